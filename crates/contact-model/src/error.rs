@@ -1,0 +1,122 @@
+//! The one error type of the model crates: numbers, not prose.
+
+use crate::state::ContactState;
+use std::borrow::Cow;
+use std::fmt;
+
+/// Result of everything in the model crates.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// What can go wrong between a scene and a state.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// A number lies outside what is meaningful.
+    Domain {
+        /// The quantity, in the words of ARCHITECTURE.md (and where it came from, such as `heights[3, 7]`).
+        name: Cow<'static, str>,
+        /// The value found.
+        value: f64,
+        /// What was expected instead.
+        expected: Cow<'static, str>,
+    },
+    /// An array does not have the promised number of values.
+    Shape {
+        /// The array.
+        name: Cow<'static, str>,
+        /// Number of values found.
+        found: usize,
+        /// What was expected instead.
+        expected: Cow<'static, str>,
+    },
+    /// The model does not know this surface, effect, load or output.
+    Unsupported {
+        /// Name of the model ([`crate::ContactModel::name`]).
+        model: &'static str,
+        /// What it was asked for.
+        what: Cow<'static, str>,
+    },
+    /// A load outside the range in which the model holds.
+    OutOfRange {
+        /// The quantity that left its range.
+        name: Cow<'static, str>,
+        /// The value that was asked for or reached.
+        value: f64,
+        /// Smallest admissible value.
+        min: f64,
+        /// Largest admissible value.
+        max: f64,
+    },
+    /// The solver stopped before its tolerance was met; the best state is evidence, not an answer.
+    NotConverged {
+        /// Best state reached, with its full report.
+        best: Box<ContactState>,
+    },
+    /// The caller's stop closure said so (a deadline, Ctrl-C).
+    Stopped {
+        /// Best state so far where there is one.
+        best: Option<Box<ContactState>>,
+    },
+}
+
+impl Error {
+    /// Shorthand for [`Error::Domain`].
+    pub fn domain(
+        name: impl Into<Cow<'static, str>>,
+        value: f64,
+        expected: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self::Domain { name: name.into(), value, expected: expected.into() }
+    }
+
+    /// Shorthand for [`Error::Unsupported`].
+    pub fn unsupported(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
+        Self::Unsupported { model, what: what.into() }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Domain { name, value, expected } => write!(f, "{name} = {value}: expected {expected}"),
+            Self::Shape { name, found, expected } => {
+                write!(f, "{name} has {found} values: expected {expected}")
+            }
+            Self::Unsupported { model, what } => write!(f, "the model {model} does not support {what}"),
+            Self::OutOfRange { name, value, min, max } => {
+                write!(f, "{name} = {value} is outside [{min}, {max}], the range in which the model holds")
+            }
+            Self::NotConverged { best } => {
+                let r = &best.report;
+                write!(f, "not converged after {} iterations: {}", r.iterations, r.certificate)
+            }
+            Self::Stopped { .. } => write!(f, "stopped by the caller before the solve was complete"),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Checks that `value` is finite and positive.
+///
+/// # Errors
+/// [`Error::Domain`] otherwise.
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::domain(name, value, "a finite number > 0"))
+    }
+}
+
+/// Checks that `value` is finite and not negative.
+///
+/// # Errors
+/// [`Error::Domain`] otherwise.
+pub(crate) fn non_negative(name: &'static str, value: f64) -> Result<f64> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::domain(name, value, "a finite number >= 0"))
+    }
+}

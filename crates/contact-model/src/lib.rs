@@ -1,0 +1,45 @@
+//! The shared words of fractal-contact.
+//!
+//! Three words organise everything: **physics** ([`Scene`]), **numerics** (each model's own options) and **chance** (the
+//! `seed` of [`ContactModel::prepare`]). This crate defines the first, the traits that join them, and what comes back: a
+//! [`ContactState`] that always carries its evidence in a [`SolveReport`]. It has no numerics, no input or output, and no
+//! dependency besides `std`.
+//!
+//! # Conventions
+//!
+//! * The body is an elastic half-space of effective modulus E* whose surface carries heights `h`; a rigid flat presses on
+//!   it. With `z = h_max - h >= 0` the contact conditions are `g = u + z - d >= 0`, `p >= 0`, `p g = 0`.
+//! * The approach `d` is counted **from first touch of the highest point**, not from the mean plane. At `F = 0`, `d = 0` and
+//!   `k = 0`.
+//! * Pressure is compressive and non-negative; stiffness is `k = dF/dd`.
+//! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
+//!   Names that end in `_bar` are normalised ([`Scales`] is the only place that does it).
+//! * `None` means "this model does not claim it" or "not asked for". It is never NaN and never a silent 0.
+//!
+//! ```
+//! use contact_model::{Load, Scales};
+//! // A force of 0.01 on a square of side 1, modulus 1, rms height 0.5 is F_bar = 0.02 (Eq. 10).
+//! let scales = Scales { modulus: 1.0, side: 1.0, height: Some(0.5) };
+//! assert_eq!(scales.force_bar(0.01)?, 0.02);
+//! assert!(Load::Force(-1.0).validated().is_err());
+//! # Ok::<(), contact_model::Error>(())
+//! ```
+
+mod error;
+mod grid;
+mod load;
+mod model;
+mod scales;
+mod scene;
+mod state;
+
+pub use error::{Error, Result};
+pub use grid::{HeightMap, Line};
+pub use load::Load;
+pub use model::{ContactModel, PreparedContact, Source, Stop, never};
+pub use scales::{PAPER_STIFFNESS_FACTOR, Scales};
+pub use scene::{
+    Adhesion, Amplitude, Boundary, Effects, Friction, Outputs, Rheology, Scene, SelfAffine, Surface,
+    line_length,
+};
+pub use state::{Certificate, ContactState, Fields, SolveReport, Status};

@@ -1,0 +1,65 @@
+//! The two traits: plan once, solve often.
+
+use crate::error::Result;
+use crate::load::Load;
+use crate::scales::Scales;
+use crate::scene::Scene;
+use crate::state::ContactState;
+
+/// A work that a model is built on. Goes into the header of every CSV.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Source {
+    /// Authors, journal, year, pages.
+    pub citation: &'static str,
+    /// What is taken from it (equations).
+    pub what: &'static str,
+}
+
+/// Asked between iterations: `true` means stop now. A solver never reads a clock itself.
+pub type Stop<'a> = &'a dyn Fn() -> bool;
+
+/// The [`Stop`] that never stops.
+pub fn never() -> bool {
+    false
+}
+
+/// A way to answer "what force, approach and stiffness": plan once.
+pub trait ContactModel: Send + Sync {
+    /// Short name, the same in code, CSV and README (`bem3d`, `mdr1d`, ...).
+    fn name(&self) -> &'static str;
+
+    /// What it is built on.
+    fn sources(&self) -> &'static [Source];
+
+    /// Checks the scene against what this model can do, and plans: draws the surface from `seed` where the scene
+    /// calls for one, builds tables.
+    ///
+    /// # Errors
+    /// [`crate::Error::Unsupported`] for a surface, effect or output that the model lacks (never a silent elastic answer),
+    /// [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>>;
+}
+
+/// A planned contact: solve often. Owns tables, plans and the warm start.
+pub trait PreparedContact: Send {
+    /// The scales of this very surface (its own measured rms height).
+    fn scales(&self) -> Scales;
+
+    /// Solves for one load; `stop` is polled between iterations.
+    ///
+    /// The result does not depend on the loads solved before beyond the stated tolerance; a path of increasing loads is
+    /// the fastest order.
+    ///
+    /// # Errors
+    /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the model does not hold,
+    /// [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState>;
+
+    /// Solves for one load.
+    ///
+    /// # Errors
+    /// As [`PreparedContact::solve_until`].
+    fn solve(&mut self, load: Load) -> Result<ContactState> {
+        self.solve_until(load, &never)
+    }
+}

@@ -1,0 +1,372 @@
+//! Physics: what is pressed, which effects count, what is asked.
+
+use crate::error::{Error, Result, positive};
+use crate::grid::{HeightMap, Line};
+use std::sync::Arc;
+
+/// Everything physical about one question. Numerics are a model's own options, chance is the seed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// What carries the relief.
+    pub surface: Surface,
+    /// Effective modulus E* of the pair, `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
+    pub modulus: f64,
+    /// Effects beyond linear elastic normal contact with free boundaries; all off by default.
+    pub effects: Effects,
+    /// What is computed besides force and approach; nothing by default.
+    pub outputs: Outputs,
+}
+
+impl Scene {
+    /// A scene with no effects that asks for the stiffness.
+    pub fn new(surface: Surface, modulus: f64) -> Self {
+        let outputs = Outputs { stiffness: true, ..Outputs::default() };
+        Self { surface, modulus, effects: Effects::default(), outputs }
+    }
+
+    /// Checks the numbers that every model relies on: modulus and the surface's own parameters.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the first value that makes no sense.
+    pub fn validate(&self) -> Result<()> {
+        positive("modulus", self.modulus)?;
+        self.surface.validate()
+    }
+
+    /// Errors unless every effect is off: for models of linear elastic contact with free boundaries.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] naming the model and the effect.
+    pub fn refuse_effects(&self, model: &'static str) -> Result<()> {
+        let Effects { boundary, adhesion, friction, rheology } = self.effects;
+        if boundary != Boundary::Free {
+            return Err(Error::unsupported(model, format!("the boundary {boundary:?}")));
+        }
+        if adhesion != Adhesion::Off {
+            return Err(Error::unsupported(model, format!("adhesion ({adhesion:?})")));
+        }
+        if friction != Friction::Off {
+            return Err(Error::unsupported(model, format!("friction ({friction:?})")));
+        }
+        if rheology != Rheology::Elastic {
+            return Err(Error::unsupported(model, format!("the rheology {rheology:?}")));
+        }
+        Ok(())
+    }
+}
+
+/// What carries the relief. Axisymmetric bodies sit in the middle of the square, apex up.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Surface {
+    /// A random self-affine surface, drawn from the seed.
+    SelfAffine(SelfAffine),
+    /// A given map.
+    Heights(Arc<HeightMap>),
+    /// A given line (for one-dimensional models), standing for a square of side `side`.
+    Line {
+        /// The line.
+        line: Arc<Line>,
+        /// Side L of the square that it stands for.
+        side: f64,
+    },
+    /// Paraboloid `z = r^2 / (2 R)`: Hertz's sphere.
+    Sphere {
+        /// Radius of curvature R.
+        radius: f64,
+        /// Side of the square.
+        side: f64,
+    },
+    /// Cone `z = slope r`.
+    Cone {
+        /// Slope.
+        slope: f64,
+        /// Side of the square.
+        side: f64,
+    },
+    /// Power-law body `z = coefficient r^exponent`.
+    PowerLaw {
+        /// Coefficient c (length^(1 - exponent)).
+        coefficient: f64,
+        /// Exponent n > 0.
+        exponent: f64,
+        /// Side of the square.
+        side: f64,
+    },
+    /// A flat circular punch of the given radius; outside it nothing can touch.
+    FlatCircle {
+        /// Radius a of the face.
+        radius: f64,
+        /// Side of the square.
+        side: f64,
+    },
+    /// A flat square: the whole square touches at once.
+    FlatSquare {
+        /// Side of the square.
+        side: f64,
+    },
+    /// `h = amplitude cos(2 pi x / wavelength)`, waves along x.
+    Sine {
+        /// Amplitude (half the trough-to-crest height).
+        amplitude: f64,
+        /// Wavelength.
+        wavelength: f64,
+        /// Side of the square.
+        side: f64,
+    },
+}
+
+impl Surface {
+    /// Side L of the apparent contact square.
+    pub fn side(&self) -> f64 {
+        match self {
+            Self::SelfAffine(s) => s.side,
+            Self::Heights(m) => m.side(),
+            Self::Line { side, .. }
+            | Self::Sphere { side, .. }
+            | Self::Cone { side, .. }
+            | Self::PowerLaw { side, .. }
+            | Self::FlatCircle { side, .. }
+            | Self::FlatSquare { side }
+            | Self::Sine { side, .. } => *side,
+        }
+    }
+
+    /// Short name for messages.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::SelfAffine(_) => "a self-affine surface",
+            Self::Heights(_) => "a height map",
+            Self::Line { .. } => "a line",
+            Self::Sphere { .. } => "a sphere",
+            Self::Cone { .. } => "a cone",
+            Self::PowerLaw { .. } => "a power-law body",
+            Self::FlatCircle { .. } => "a flat circular punch",
+            Self::FlatSquare { .. } => "a flat square",
+            Self::Sine { .. } => "a sinusoidal surface",
+        }
+    }
+
+    /// Checks the surface's own parameters.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the first value that makes no sense.
+    pub fn validate(&self) -> Result<()> {
+        positive("side", self.side())?;
+        match *self {
+            Self::SelfAffine(ref s) => s.validate()?,
+            Self::Sphere { radius, .. } | Self::FlatCircle { radius, .. } => {
+                positive("radius", radius)?;
+            }
+            Self::Cone { slope, .. } => {
+                positive("slope", slope)?;
+            }
+            Self::PowerLaw { coefficient, exponent, .. } => {
+                positive("coefficient", coefficient)?;
+                positive("exponent", exponent)?;
+            }
+            Self::Sine { amplitude, wavelength, .. } => {
+                positive("amplitude", amplitude)?;
+                positive("wavelength", wavelength)?;
+            }
+            Self::Heights(_) | Self::Line { .. } | Self::FlatSquare { .. } => {}
+        }
+        Ok(())
+    }
+}
+
+/// A self-affine surface: `C_2D(q) ~ q^(-2 (H + 1))` from the longest wave of the square to the grid's shortest (Eqs. 3, 4).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfAffine {
+    /// Side L of the square; a line that stands for it has the length [`line_length`].
+    pub side: f64,
+    /// Hurst exponent in [0, 1]; the fractal dimension is `3 - hurst`.
+    pub hurst: f64,
+    /// What fixes the vertical scale.
+    pub amplitude: Amplitude,
+    /// Roll-off wavenumber q_r: below it the spectrum is the constant `C(q_r)`. `None`: no roll-off (the paper's case).
+    pub roll_off: Option<f64>,
+    /// Largest wavenumber. `None`: the grid's shortest wave, `|q| <= pi / cell`, on a circle.
+    pub short_cutoff: Option<f64>,
+}
+
+/// What fixes the vertical scale of a self-affine surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Amplitude {
+    /// The rms height of the sampled surface, exactly, at any resolution (the paper's choice: F_bar is counted in it).
+    RmsHeight(f64),
+    /// The constant `C_2D(q_0)` at the longest wave `q_0 = 2 pi / L` (length^4): finer grids add waves and leave the long ones alone.
+    /// In one dimension `C_1D = pi q C_2D` (Eq. 17).
+    Spectrum(f64),
+}
+
+impl SelfAffine {
+    /// The paper's surface: no roll-off, spectrum to the grid's end, prescribed rms height. `fractal_dimension` = 3 - H.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a fractal dimension outside [2, 3] or a side or height that is not positive.
+    pub fn new(fractal_dimension: f64, side: f64, rms_height: f64) -> Result<Self> {
+        if !(2.0..=3.0).contains(&fractal_dimension) {
+            return Err(Error::domain("fractal_dimension", fractal_dimension, "a number in [2, 3]"));
+        }
+        let amplitude = Amplitude::RmsHeight(rms_height);
+        let hurst = 3.0 - fractal_dimension;
+        let surface = Self { side, hurst, amplitude, roll_off: None, short_cutoff: None };
+        surface.validate()?;
+        Ok(surface)
+    }
+
+    /// `D_f = 3 - H`.
+    pub fn fractal_dimension(&self) -> f64 {
+        3.0 - self.hurst
+    }
+
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the first value that makes no sense.
+    pub fn validate(&self) -> Result<()> {
+        positive("side", self.side)?;
+        if !(0.0..=1.0).contains(&self.hurst) {
+            return Err(Error::domain("hurst", self.hurst, "a number in [0, 1]"));
+        }
+        match self.amplitude {
+            Amplitude::RmsHeight(h) => positive("rms_height", h)?,
+            Amplitude::Spectrum(c) => positive("spectrum constant", c)?,
+        };
+        for (name, q) in [("roll_off", self.roll_off), ("short_cutoff", self.short_cutoff)] {
+            if let Some(q) = q {
+                positive(name, q)?;
+            }
+        }
+        if let (Some(low), Some(high)) = (self.roll_off, self.short_cutoff)
+            && low > high
+        {
+            return Err(Error::domain("roll_off", low, format!("at most the short cut-off {high}")));
+        }
+        Ok(())
+    }
+}
+
+/// Length of the line that stands for a square of side L: `L_1D = (2 / sqrt(pi)) L` (Eq. 18).
+///
+/// ```
+/// assert!((contact_model::line_length(1.0) - 1.128379167).abs() < 1e-9);
+/// ```
+pub fn line_length(side: f64) -> f64 {
+    side * std::f64::consts::FRAC_2_SQRT_PI
+}
+
+/// Effects beyond linear elastic normal contact with free boundaries. Off unless named; a model that lacks one refuses it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Effects {
+    /// What lies outside the square.
+    pub boundary: Boundary,
+    /// Attraction between the surfaces.
+    pub adhesion: Adhesion,
+    /// Friction under tangential load.
+    pub friction: Friction,
+    /// Time dependence of the material.
+    pub rheology: Rheology,
+}
+
+/// What lies outside the square.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Boundary {
+    /// An unloaded half-space: the edges are the physical edges of the indenter (the paper's case).
+    #[default]
+    Free,
+    /// Periodic copies of the square.
+    Periodic,
+}
+
+/// Attraction between the surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Adhesion {
+    /// None.
+    #[default]
+    Off,
+    /// Short-range adhesion (JKR) with this work of adhesion (energy per area).
+    ShortRange {
+        /// Work of adhesion Delta gamma.
+        work: f64,
+    },
+}
+
+/// Friction under tangential load.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Friction {
+    /// None.
+    #[default]
+    Off,
+    /// Coulomb's law with this coefficient.
+    Coulomb {
+        /// Coefficient of friction.
+        coefficient: f64,
+    },
+}
+
+/// Time dependence of the material.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Rheology {
+    /// None.
+    #[default]
+    Elastic,
+    /// Kelvin-Voigt element with this viscosity, of a material with nu = 1/2.
+    KelvinVoigt {
+        /// Viscosity eta.
+        viscosity: f64,
+    },
+}
+
+/// What is computed besides force and approach. What is not asked for is not computed and not stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[allow(clippy::struct_excessive_bools)] // A set of names, each either asked for or not.
+pub struct Outputs {
+    /// Incremental stiffness k = dF/dd.
+    pub stiffness: bool,
+    /// Real contact area.
+    pub area: bool,
+    /// Pressure field.
+    pub pressure: bool,
+    /// Displacement field.
+    pub displacement: bool,
+    /// Gap field.
+    pub gap: bool,
+}
+
+impl Outputs {
+    /// Whether any field (pressure, displacement, gap) is asked for.
+    pub fn any_field(&self) -> bool {
+        self.pressure || self.displacement || self.gap
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fractal_dimension_is_checked() {
+        for df in [1.99, 3.01, f64::NAN, f64::INFINITY] {
+            assert!(SelfAffine::new(df, 1.0, 1.0).is_err());
+        }
+        assert!(SelfAffine::new(2.4, 1.0, 0.0).is_err());
+        assert!(SelfAffine::new(2.0, 1.0, 1.0).is_ok_and(|s| s.hurst >= 1.0));
+    }
+
+    #[test]
+    fn effects_are_refused_by_name() {
+        let mut scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        assert!(scene.refuse_effects("m").is_ok());
+        scene.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
+        let text = scene.refuse_effects("m").unwrap_err().to_string();
+        assert!(text.contains("adhesion"), "{text}");
+        scene.modulus = f64::NAN;
+        assert!(scene.validate().is_err());
+    }
+}

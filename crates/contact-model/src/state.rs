@@ -1,0 +1,156 @@
+//! What comes back from a solve, and its evidence.
+
+use std::fmt;
+
+/// One contact state. `None`: the model does not claim it, or it was not asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactState {
+    /// Normal force F.
+    pub force: f64,
+    /// Approach d from first touch.
+    pub approach: Option<f64>,
+    /// Incremental stiffness k = dF/dd on the contact set of this state.
+    pub stiffness: Option<f64>,
+    /// Real contact area.
+    pub area: Option<f64>,
+    /// Fields, where asked for.
+    pub fields: Option<Fields>,
+    /// How it was reached and how far it can be trusted.
+    pub report: SolveReport,
+}
+
+/// Fields on the cells of the map, row-major, `cells * cells` values each.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fields {
+    /// Pressure p >= 0.
+    pub pressure: Option<Vec<f64>>,
+    /// Displacement u of the elastic surface under each cell centre.
+    pub displacement: Option<Vec<f64>>,
+    /// Gap g = u + z - d.
+    pub gap: Option<Vec<f64>>,
+}
+
+/// The evidence that travels with every state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolveReport {
+    /// How the solve ended.
+    pub status: Status,
+    /// Which way was taken and why, in one short phrase (`closed form`, `fft 4096x4096, f64`, `dense 312`).
+    pub strategy: String,
+    /// Iterations of the linear solvers, all stages together (0 for direct and closed forms).
+    pub iterations: usize,
+    /// Applications of the elastic operator K on the fine grid, all precisions and the certificate together.
+    pub applications: usize,
+    /// Number of cells (elements) in contact, where the model has any.
+    pub contact_cells: Option<usize>,
+    /// How exactly the equations of the model itself are satisfied.
+    pub certificate: Certificate,
+}
+
+impl SolveReport {
+    /// Report of a model that evaluates a formula: nothing iterated, nothing approximated beyond rounding.
+    pub fn exact(strategy: impl Into<String>) -> Self {
+        Self {
+            status: Status::Converged,
+            strategy: strategy.into(),
+            iterations: 0,
+            applications: 0,
+            contact_cells: None,
+            certificate: Certificate::default(),
+        }
+    }
+}
+
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Status {
+    /// All numbers of the certificate are within the tolerance asked for.
+    Converged,
+    /// The limit on iterations was reached first.
+    IterationLimit,
+    /// No further progress at this precision: the tolerance is below what the arithmetic can reach.
+    Stagnated,
+    /// The caller's closure said stop.
+    Stopped,
+}
+
+impl Status {
+    /// The word used in CSV files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::IterationLimit => "iteration_limit",
+            Self::Stagnated => "stagnated",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// How exactly the contact conditions hold, measured with the exact operator in double precision.
+///
+/// All are relative and dimensionless; `s` is the measured rms height (the approach for a body without one). A tolerance `t` is
+/// met when every one of them is at most `t` ([`Certificate::meets`]).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Certificate {
+    /// `sum p (g - min g) / (F s)`: the duality gap.
+    pub frank_wolfe: f64,
+    /// `max(0, -min g) / s`.
+    pub penetration: f64,
+    /// `sum p |g| / (F s)`.
+    pub complementarity: f64,
+    /// `|F - F_asked| / F_asked`; 0 when the approach was prescribed.
+    pub load_error: f64,
+    /// Estimated relative error of the stiffness; `None` when it was not asked for.
+    pub stiffness_error: Option<f64>,
+}
+
+impl Certificate {
+    /// Whether every number is at most `tolerance` (NaN never is).
+    pub fn meets(&self, tolerance: f64) -> bool {
+        self.worst() <= tolerance
+    }
+
+    /// The largest of the numbers; NaN if one of them is.
+    pub fn worst(&self) -> f64 {
+        [
+            self.frank_wolfe,
+            self.penetration,
+            self.complementarity,
+            self.load_error,
+            self.stiffness_error.unwrap_or(0.0),
+        ]
+        .into_iter()
+        .fold(0.0, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
+    }
+}
+
+impl fmt::Display for Certificate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "frank_wolfe {:.1e}, penetration {:.1e}, complementarity {:.1e}, load_error {:.1e}",
+            self.frank_wolfe, self.penetration, self.complementarity, self.load_error
+        )?;
+        if let Some(e) = self.stiffness_error {
+            write!(f, ", stiffness_error {e:.1e}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_certificate_with_nan_meets_nothing() {
+        let mut c = Certificate::default();
+        assert!(c.meets(0.0));
+        c.penetration = f64::NAN;
+        assert!(!c.meets(1e300));
+        c.penetration = 0.0;
+        c.stiffness_error = Some(2e-3);
+        assert!(!c.meets(1e-3) && c.meets(2e-3));
+    }
+}

@@ -1,0 +1,1 @@
+//! Physics across crates; see the `tests/` folder beside this file.
