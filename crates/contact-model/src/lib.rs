@@ -32,6 +32,7 @@ mod model;
 mod scales;
 mod scene;
 mod state;
+mod units;
 
 pub use error::{Error, Result};
 pub use grid::{HeightMap, Line};
@@ -43,3 +44,4 @@ pub use scene::{
     line_length,
 };
 pub use state::{Certificate, ContactState, Fields, SolveReport, Status};
+pub use units::Units;

@@ -1,0 +1,146 @@
+//! A problem's own units, so that solvers see numbers near 1 whatever the caller's units are.
+
+use crate::error::{Error, Result, positive};
+
+/// Units in which a model solves: horizontal lengths in `length`, vertical ones in `height`, moduli in `modulus`.
+///
+/// A force is counted in `E* length height`, a stiffness in `E* length`, an area in `length^2`. The products are taken in an
+/// order that neither overflows nor underflows on the way, so a scene in units of 1e-150 or 1e150 loses nothing; only a result
+/// that no `f64` can hold is an error.
+///
+/// This is arithmetic for solvers. The normalised quantities that are reported (`F_bar`, `k_bar`) belong to [`crate::Scales`].
+///
+/// ```
+/// use contact_model::Units;
+/// let units = Units::new(1e150, 1e-150, 1e-150)?;
+/// // A sphere of radius 2 lengths pressed 0.02 deep, solved in numbers near 1: k = 2 a.
+/// let a: f64 = (0.02_f64 * 2.0).sqrt();
+/// assert!((units.stiffness(2.0 * a)? - 0.4).abs() < 1e-15);
+/// assert!(Units::new(1e300, 1e300, 1.0)?.stiffness(1.0).is_err());
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    modulus: f64,
+    length: f64,
+    height: f64,
+}
+
+impl Units {
+    /// Units of modulus, horizontal length and vertical height.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for one that is not finite and positive.
+    pub fn new(modulus: f64, length: f64, height: f64) -> Result<Self> {
+        positive("unit of modulus", modulus)?;
+        positive("unit of length", length)?;
+        positive("unit of height", height)?;
+        Ok(Self { modulus, length, height })
+    }
+
+    /// `force / (E* length height)`, dimensionless; infinite or 0 where no `f64` holds it.
+    pub fn force_in(self, force: f64) -> f64 {
+        product([force, self.modulus.recip(), self.length.recip(), self.height.recip()])
+    }
+
+    /// `length / unit`, dimensionless.
+    pub fn length_in(self, length: f64) -> f64 {
+        length / self.length
+    }
+
+    /// `approach / height`, dimensionless.
+    pub fn approach_in(self, approach: f64) -> f64 {
+        approach / self.height
+    }
+
+    /// `value E* length height`, a force.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where no `f64` holds it: it overflows, or a positive value vanishes.
+    pub fn force(self, value: f64) -> Result<f64> {
+        held("force", value, product([value, self.modulus, self.length, self.height]))
+    }
+
+    /// `value height`, an approach.
+    ///
+    /// # Errors
+    /// As [`Units::force`].
+    pub fn approach(self, value: f64) -> Result<f64> {
+        held("approach", value, value * self.height)
+    }
+
+    /// `value E* length`, a stiffness.
+    ///
+    /// # Errors
+    /// As [`Units::force`].
+    pub fn stiffness(self, value: f64) -> Result<f64> {
+        held("stiffness", value, product([value, self.modulus, self.length]))
+    }
+
+    /// `value length^2`, an area.
+    ///
+    /// # Errors
+    /// As [`Units::force`].
+    pub fn area(self, value: f64) -> Result<f64> {
+        held("area", value, product([value, self.length, self.length]))
+    }
+}
+
+/// `result` unless it overflowed or a value > 0 became 0 on the way out.
+fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
+    if result.is_finite() && (result > 0.0 || value <= 0.0) {
+        Ok(result)
+    } else {
+        Err(Error::domain(name, result, "a number within the range of f64 (choose other units)"))
+    }
+}
+
+/// Product of non-negative factors without overflow or underflow on the way: the largest left while below 1, else the smallest.
+fn product<const N: usize>(mut factors: [f64; N]) -> f64 {
+    factors.sort_by(f64::total_cmp);
+    let (mut low, mut high) = (0, N);
+    let mut result = 1.0;
+    while low < high {
+        if result < 1.0 {
+            high -= 1;
+            result *= factors[high];
+        } else {
+            result *= factors[low];
+            low += 1;
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Four factors and three reciprocals, each rounded once.
+    const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+    #[test]
+    fn there_and_back_at_extreme_scales() {
+        for (modulus, length) in
+            [(1.0, 1.0), (1e-150, 1e150), (1e150, 1e-150), (1e10, 1e-150), (1e-10, 1e150)]
+        {
+            let units = Units::new(modulus, length, length).unwrap();
+            for value in [1e-12, 0.37, 1e6] {
+                let force = units.force(value).unwrap();
+                assert_relative_eq!(units.force_in(force), value, max_relative = ROUNDING);
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_number_holds_is_an_error() {
+        let units = Units::new(1e150, 1e150, 1e150).unwrap();
+        assert!(units.force(1.0).is_err() && units.stiffness(1.0).is_ok() && units.area(1e10).is_err());
+        let units = Units::new(1e-150, 1e-150, 1e-150).unwrap();
+        let e = units.force(1.0).unwrap_err().to_string();
+        assert!(e.starts_with("force = 0: expected"), "{e}");
+        assert!(units.force(0.0).is_ok_and(|f| f <= 0.0));
+        assert!(Units::new(0.0, 1.0, 1.0).is_err());
+    }
+}
