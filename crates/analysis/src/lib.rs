@@ -1,1 +1,57 @@
 //! Ensembles, power-law fits, collapse and conductance: from contact states to the numbers of the paper.
+//!
+//! Everything here is a pure function of numbers that somebody else computed: no files, no clocks, no random state that is
+//! not a seed. All of it works on the dimensionless pair of Pohrt, Popov and Filippov (Phys. Rev. E 86, 026710 (2012)):
+//! `F_bar = F/(E* h L)` (Eq. 10) and `k_bar = k/(1.1419 E* L)` (Eq. 8).
+//!
+//! * [`Curves`]: k_bar of many surfaces at common forces; [`ensemble`]: their means and errors.
+//! * [`fit`]: `k_bar = zeta F_bar^alpha` over a stated [`Window`], errors by [`Bootstrap`] over surfaces.
+//! * [`crossing`], [`least_spread`]: where the laws, or the curves, of several fractal dimensions come together.
+//! * [`collapse`]: the master curve of Fig. 4 and what is left around it.
+//! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
+//! * [`Table`]: named columns with units that hold no NaN; `figures` writes them.
+//!
+//! # Conventions and accuracy
+//!
+//! Sums are compensated (Neumaier), so a mean of 1e7 terms keeps its digits. A number that does not exist is `None` with a
+//! reason, never NaN. Errors come from resampling whole surfaces: curves of different fractal dimension share their random
+//! phases, and [`Bootstrap::draws`] gives every curve of a run the same surfaces. Cost is linear in the number of samples
+//! (times the number of resamples for an error).
+//!
+//! # What it does not do
+//!
+//! It does not solve contacts, and it does not repair them: samples that did not converge must be left out by the caller
+//! (a `None` in [`Curves`]), and forces at which one is missing are left out of fits.
+//!
+//! ```
+//! use analysis::{Bootstrap, Curves, Sample, Window, fit};
+//! // A body z ~ r has k ~ F^(1/2): F_bar = 1e-6, 1e-4, 1e-2 give k_bar = 1e-3, 1e-2, 1e-1.
+//! let row = [1e-3, 1e-2, 1e-1].map(|k| Some(Sample { stiffness_bar: k, contact_cells: None }));
+//! let curves = Curves::new(vec![1e-6, 1e-4, 1e-2], vec![row.to_vec()])?;
+//! let law = fit(&curves, &Window::default(), &Bootstrap::default()).expect("three points");
+//! assert!((law.alpha - 0.5).abs() < 1e-12 && (law.zeta - 1.0).abs() < 1e-12);
+//! assert_eq!(law.alpha_se, None); // one surface has no scatter to resample
+//! # Ok::<(), contact_model::Error>(())
+//! ```
+
+mod bootstrap;
+mod collapse;
+mod conductance;
+mod crossing;
+mod curves;
+mod ensemble;
+mod fit;
+mod kappa;
+mod sum;
+mod table;
+
+pub use bootstrap::Bootstrap;
+pub use collapse::{CollapsePoint, Residual, collapse, decades_within};
+pub use conductance::conductance;
+pub use crossing::{Crossing, crossing, least_spread};
+pub use curves::{Curves, Sample, interpolate};
+pub use ensemble::{EnsemblePoint, Statistics, ensemble, statistics};
+pub use fit::{NoFit, PowerLaw, Window, fit, least_squares};
+pub use kappa::kappa;
+pub use sum::sum;
+pub use table::{Column, Table, Value};

@@ -1,0 +1,238 @@
+//! `k_bar = zeta F_bar^alpha` by least squares in ln-ln.
+
+use crate::bootstrap::Bootstrap;
+use crate::curves::Curves;
+use crate::sum::sum;
+use std::fmt;
+
+/// Which forces a power law is fitted to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Smallest F_bar.
+    pub min_force_bar: f64,
+    /// Largest F_bar; the paper's upper limit of its power law is 0.086.
+    pub max_force_bar: f64,
+    /// Every surface must have at least this many cells in contact (where the model has cells): fewer is the one-cell floor.
+    pub min_contact_cells: usize,
+}
+
+impl Default for Window {
+    /// `F_bar <= 0.086`, at least 10 contact cells on every surface.
+    fn default() -> Self {
+        Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 }
+    }
+}
+
+impl fmt::Display for Window {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.min_force_bar > 0.0 {
+            write!(f, "{:?} <= ", self.min_force_bar)?;
+        }
+        let Self { max_force_bar, min_contact_cells, .. } = self;
+        write!(f, "F_bar <= {max_force_bar:?}, all surfaces >= {min_contact_cells} contact cells")
+    }
+}
+
+/// A fitted power law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PowerLaw {
+    /// Exponent.
+    pub alpha: f64,
+    /// Standard error of alpha from the bootstrap over surfaces; `None` for one surface.
+    pub alpha_se: Option<f64>,
+    /// Factor: k_bar of the law at F_bar = 1.
+    pub zeta: f64,
+    /// Standard error of zeta from the same draws.
+    pub zeta_se: Option<f64>,
+    /// Smallest F_bar used.
+    pub force_bar_min: f64,
+    /// Largest F_bar used.
+    pub force_bar_max: f64,
+    /// Number of forces used.
+    pub points: usize,
+    /// Number of surfaces.
+    pub surfaces: usize,
+}
+
+/// Why there is no fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum NoFit {
+    /// The window holds fewer than three forces.
+    TooFewPoints {
+        /// Forces in the window.
+        points: usize,
+        /// The window.
+        window: Window,
+    },
+}
+
+impl fmt::Display for NoFit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooFewPoints { points, window } => {
+                write!(f, "{points} forces in the window ({window}): at least 3 are needed")
+            }
+        }
+    }
+}
+
+impl std::error::Error for NoFit {}
+
+/// Slope and intercept of the straight line through `points` by least squares; `None` for fewer than two different x or a
+/// number that is not finite.
+///
+/// ```
+/// assert_eq!(analysis::least_squares(&[(0.0, 1.0), (1.0, 3.0)]), Some((2.0, 1.0)));
+/// ```
+pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let n = points.len() as f64;
+    let x0 = sum(points.iter().map(|p| p.0)) / n;
+    let y0 = sum(points.iter().map(|p| p.1)) / n;
+    let xx = sum(points.iter().map(|p| (p.0 - x0) * (p.0 - x0)));
+    let xy = sum(points.iter().map(|p| (p.0 - x0) * (p.1 - y0)));
+    let slope = xy / xx;
+    let intercept = y0 - slope * x0;
+    (xx > 0.0 && slope.is_finite() && intercept.is_finite()).then_some((slope, intercept))
+}
+
+/// Fits `ln k_bar = ln zeta + alpha ln F_bar` to the arithmetic mean of k_bar over the surfaces, all forces of the window with
+/// equal weight; forces at which a surface is missing are left out.
+///
+/// Source: Eqs. 6, 8, 9 of the paper, which fits its averaged curves; the window is PHYSICS.md section 6. Errors: standard
+/// deviation over `bootstrap` resamples of the surfaces, window fixed.
+///
+/// # Errors
+/// [`NoFit`] when the window holds fewer than three forces.
+pub fn fit(curves: &Curves, window: &Window, bootstrap: &Bootstrap) -> Result<PowerLaw, NoFit> {
+    let inside = points_inside(curves, window);
+    let too_few = NoFit::TooFewPoints { points: inside.len(), window: *window };
+    if inside.len() < 3 {
+        return Err(too_few);
+    }
+    let all = curves.all();
+    let (alpha, ln_zeta) = law(curves, &inside, &all).ok_or(too_few)?;
+    let error = |pick: fn((f64, f64)) -> f64| {
+        bootstrap.standard_error(all.len(), |draw| law(curves, &inside, draw).map(pick))
+    };
+    Ok(PowerLaw {
+        alpha,
+        alpha_se: error(|l| l.0),
+        zeta: ln_zeta.exp(),
+        zeta_se: error(|l| l.1.exp()),
+        force_bar_min: curves.force_bar()[inside[0]],
+        force_bar_max: curves.force_bar()[inside[inside.len() - 1]],
+        points: inside.len(),
+        surfaces: all.len(),
+    })
+}
+
+/// Forces of the window at which every surface counts.
+fn points_inside(curves: &Curves, window: &Window) -> Vec<usize> {
+    let all = curves.all();
+    (0..curves.force_bar().len())
+        .filter(|&j| {
+            let f = curves.force_bar()[j];
+            (window.min_force_bar..=window.max_force_bar).contains(&f)
+                && curves
+                    .drawn(&all, j)
+                    .all(|s| s.is_some_and(|s| s.contact_cells.is_none_or(|c| c >= window.min_contact_cells)))
+        })
+        .collect()
+}
+
+/// alpha and ln zeta from the surfaces `draw` at the forces `inside`.
+fn law(curves: &Curves, inside: &[usize], draw: &[usize]) -> Option<(f64, f64)> {
+    let points: Vec<(f64, f64)> = inside
+        .iter()
+        .filter_map(|&j| {
+            let k = sum(curves.drawn(draw, j).flatten().map(|s| s.stiffness_bar)) / draw.len() as f64;
+            Some((curves.force_bar()[j].ln(), k.ln())).filter(|p| p.1.is_finite())
+        })
+        .collect();
+    least_squares(&points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Sample;
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    /// Rounding of ln and exp over a few tens of points.
+    const ROUNDING: f64 = 1e-12;
+
+    fn power(surfaces: &[f64], alpha: f64, cells: impl Fn(usize) -> Option<usize>) -> Curves {
+        let force: Vec<f64> = (0..16).map(|j| 10f64.powf(-6.0 + f64::from(j) * 0.5)).collect();
+        let rows = surfaces
+            .iter()
+            .map(|zeta| {
+                (force.iter().enumerate())
+                    .map(|(j, f)| {
+                        Some(Sample { stiffness_bar: zeta * f.powf(alpha), contact_cells: cells(j) })
+                    })
+                    .collect()
+            })
+            .collect();
+        Curves::new(force, rows).unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+        #[test]
+        fn a_power_law_body_gives_its_exponent(n in 0.2..4.0_f64, zeta in 0.1..10.0_f64) {
+            // PHYSICS.md section 4: dlnk/dlnF = 1/(n + 1) for f = c r^n.
+            let law = fit(&power(&[zeta], 1.0 / (n + 1.0), |_| None), &Window::default(), &Bootstrap::default());
+            let law = law.unwrap();
+            assert_relative_eq!(law.alpha, 1.0 / (n + 1.0), max_relative = ROUNDING);
+            assert_relative_eq!(law.zeta, zeta, max_relative = ROUNDING);
+            prop_assert!(law.alpha_se.is_none() && law.force_bar_max <= 0.086);
+        }
+    }
+
+    #[test]
+    fn the_window_leaves_the_floor_out() {
+        let law = fit(&power(&[1.0, 2.0], 0.6, |j| Some(4 * j)), &Window::default(), &Bootstrap::default());
+        let law = law.unwrap();
+        assert_relative_eq!(law.force_bar_min, 10f64.powf(-4.5), max_relative = ROUNDING);
+        // From j = 3 (12 cells, 10^-4.5) to j = 9 (10^-1.5 <= 0.086).
+        assert_eq!(law.points, 7);
+        // Surfaces that differ by a factor only: alpha is the same in every resample, zeta is not.
+        assert!(law.alpha_se.unwrap() < ROUNDING && law.zeta_se.unwrap() > 0.1);
+    }
+
+    #[test]
+    fn too_few_points_are_a_reason_and_not_a_nan() {
+        let none = fit(&power(&[1.0], 0.5, |_| Some(9)), &Window::default(), &Bootstrap::default());
+        let reason = none.unwrap_err().to_string();
+        assert!(reason.starts_with("0 forces in the window (F_bar <= 0.086, all"), "{reason}");
+        let empty = Curves::new(vec![], vec![vec![]]).unwrap();
+        assert!(fit(&empty, &Window::default(), &Bootstrap::default()).is_err());
+        assert_eq!(least_squares(&[]), None);
+        assert_eq!(least_squares(&[(1.0, 1.0), (1.0, 2.0)]), None);
+        assert_eq!(least_squares(&[(1.0, f64::NAN), (2.0, 2.0)]), None);
+    }
+
+    #[test]
+    fn a_missing_sample_removes_its_force() {
+        let full = power(&[1.0, 1.5], 0.5, |_| Some(100));
+        let mut rows = full.surfaces().to_vec();
+        rows[1][2] = None;
+        let holed = Curves::new(full.force_bar().to_vec(), rows).unwrap();
+        let points = |c| fit(c, &Window::default(), &Bootstrap::default()).unwrap().points;
+        assert_eq!(points(&holed) + 1, points(&full));
+    }
+
+    #[test]
+    fn errors_are_reproducible() {
+        let curves = power(&[1.0, 1.2, 0.9, 1.4], 0.55, |_| Some(50));
+        let w = Window::default();
+        let b = Bootstrap::default();
+        assert_eq!(fit(&curves, &w, &b), fit(&curves, &w, &b));
+        assert_ne!(
+            fit(&curves, &w, &b).unwrap().zeta_se,
+            fit(&curves, &w, &Bootstrap { seed: 1, ..b }).unwrap().zeta_se
+        );
+    }
+}
