@@ -1,0 +1,5 @@
+//! What is measured on samples.
+
+mod moments;
+
+pub use moments::rms_height;
