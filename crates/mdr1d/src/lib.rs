@@ -1,1 +1,50 @@
-//! The method of reduction of dimensionality: rough lines and axisymmetric bodies on a Winkler foundation.
+//! The method of reduction of dimensionality (MDR): rough lines and axisymmetric bodies on a foundation of independent springs.
+//!
+//! # What it computes
+//!
+//! * [`Bearing`]: force, approach and stiffness of any line at any load, exactly, by order statistics: no time step, no
+//!   iteration, no tolerance.
+//! * [`rule`]: which line stands for a self-affine square (Pohrt, Popov, Filippov 2012, Eqs. 14 to 18).
+//! * [`axisymmetric`]: spheres, cones, power-law bodies and flat circular punches through their profile `g(x)`, where the method is
+//!   exact in three dimensions.
+//! * [`Mdr1d`]: all of it behind [`contact_model::ContactModel`].
+//!
+//! # Conventions
+//!
+//! The springs have the stiffness E* per length. `z = h_max - h`, the approach `d` counts from first touch, the contact set
+//! is `{z < d}`: an element that touches without force is outside, and `F = 0` means `d = 0` and `k = 0`. A line stands for a square
+//! of side L and has the length `L_1D = 2 L / sqrt(pi)`; `F_bar` and `k_bar` are counted with that L and with the line's own
+//! measured rms height ([`contact_model::Scales`]).
+//!
+//! # Accuracy and speed
+//!
+//! The equations of the line are met to a few units in the last place, at any load and in any units from 1e-150 to 1e150. How
+//! well a *rough* line stands for a rough surface is a matter of physics: 1D exceeds 3D by 7 to 18 % at `F_bar` = 1, and its
+//! plateau is 2 % below that of a rigid square.
+//! One line of 2^20 elements takes milliseconds, and each further load microseconds ([`Bearing`]).
+//!
+//! # What it does not do
+//!
+//! It offers no contact area, pressure or mean gap for rough surfaces: a line's length in contact is not an area, and both fail
+//! even qualitatively (Lyashenko, Pastewka, Persson 2013). Such outputs are refused, as are adhesion, friction,
+//! periodic boundaries and rheology.
+//!
+//! ```
+//! use contact_model::{ContactModel, Load, Scene, Surface};
+//! // A sphere of radius 1 on a square of side 1 at d = 0.01: a = 0.1, k = 2 E* a, F = (4/3) E* a^3.
+//! let scene = Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 3.0);
+//! let mut contact = mdr1d::Mdr1d::default().prepare(&scene, 0)?;
+//! let state = contact.solve(Load::Approach(0.01))?;
+//! assert!((state.force - 0.004).abs() < 1e-15);
+//! assert!((state.stiffness.unwrap_or(0.0) - 0.6).abs() < 1e-14);
+//! # Ok::<(), contact_model::Error>(())
+//! ```
+
+pub mod axisymmetric;
+mod bearing;
+mod model;
+pub mod rule;
+
+pub use axisymmetric::Profile;
+pub use bearing::{Bearing, Support};
+pub use model::Mdr1d;

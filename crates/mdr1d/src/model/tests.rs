@@ -1,0 +1,140 @@
+use super::*;
+use approx::assert_relative_eq;
+use contact_model::{Adhesion, Boundary, Effects, HeightMap, SelfAffine, line_length};
+use std::sync::Arc;
+
+/// Rounding of a root and a handful of products.
+const ROUNDING: f64 = 1e-14;
+
+fn scene(surface: Surface) -> Scene {
+    Scene::new(surface, 2.0)
+}
+
+fn asking_for_area(surface: Surface) -> Scene {
+    let mut scene = scene(surface);
+    scene.outputs.area = true;
+    scene
+}
+
+fn rough(fractal_dimension: f64) -> Surface {
+    Surface::SelfAffine(SelfAffine::new(fractal_dimension, 3.0, 0.1).unwrap())
+}
+
+fn prepare(scene: &Scene, seed: u64) -> Box<dyn PreparedContact> {
+    Mdr1d { elements: 1 << 12 }.prepare(scene, seed).unwrap()
+}
+
+#[test]
+fn a_rough_line_claims_force_approach_and_stiffness() {
+    let mut contact = prepare(&scene(rough(2.4)), 1);
+    let scales = contact.scales();
+    assert_relative_eq!(scales.rms_height().unwrap(), 0.1, max_relative = 1e-12);
+    let s = contact.solve(Load::Force(scales.force(0.086).unwrap())).unwrap();
+    assert!(s.area.is_none() && s.fields.is_none() && s.approach.is_some());
+    let cells = s.report.contact_cells.unwrap();
+    assert!(cells > 10 && cells < 1 << 12);
+    assert_relative_eq!(
+        s.stiffness.unwrap(),
+        2.0 * line_length(3.0) * cells as f64 / 4096.0,
+        max_relative = ROUNDING
+    );
+    // The plateau of the paper's Eq. 18: k_bar = 1.128379 / 1.1419.
+    let s = contact.solve(Load::Force(scales.force(1e3).unwrap())).unwrap();
+    assert_relative_eq!(scales.stiffness_bar(s.stiffness.unwrap()), 0.988_159, max_relative = 1e-6);
+}
+
+#[test]
+fn seeds_matter_and_a_given_line_is_the_same() {
+    let surface = SelfAffine::new(2.2, 1.0, 1.0).unwrap();
+    let drawn = scene(Surface::SelfAffine(surface));
+    let load = Load::Force(0.01);
+    let first = prepare(&drawn, 1).solve(load).unwrap();
+    assert_eq!(first, prepare(&drawn, 1).solve(load).unwrap());
+    assert_ne!(first, prepare(&drawn, 2).solve(load).unwrap());
+    let line = Arc::new(surface_gen::self_affine_line(&surface, 1 << 12, 1).unwrap());
+    let given = scene(Surface::Line { line, side: 1.0 });
+    assert_eq!(first, prepare(&given, 99).solve(load).unwrap());
+}
+
+#[test]
+fn what_is_not_asked_is_not_there() {
+    let mut silent = scene(rough(2.0));
+    silent.outputs.stiffness = false;
+    assert!(prepare(&silent, 0).solve(Load::Force(1.0)).unwrap().stiffness.is_none());
+    let sphere = scene(Surface::Sphere { radius: 1.0, side: 1.0 });
+    assert!(prepare(&sphere, 0).solve(Load::Force(1e-3)).unwrap().area.is_none());
+}
+
+#[test]
+fn bodies_in_three_dimensions() {
+    let (modulus, side) = (2.0, 1.0);
+    for surface in [
+        Surface::Sphere { radius: 3.0, side },
+        Surface::Cone { slope: 0.2, side },
+        Surface::PowerLaw { coefficient: 0.7, exponent: 0.6, side },
+        Surface::FlatCircle { radius: 0.2, side },
+    ] {
+        let mut contact = prepare(&asking_for_area(surface), 0);
+        assert!(contact.scales().height.is_none());
+        let s = contact.solve(Load::Force(1e-3)).unwrap();
+        let radius = s.stiffness.unwrap() / (2.0 * modulus);
+        assert_relative_eq!(s.area.unwrap(), std::f64::consts::PI * radius * radius, max_relative = ROUNDING);
+        let back = contact.solve(Load::Approach(s.approach.unwrap())).unwrap();
+        assert_relative_eq!(back.force, 1e-3, max_relative = ROUNDING);
+        let zero = contact.solve(Load::Approach(0.0)).unwrap();
+        assert!(zero.force <= 0.0 && zero.stiffness.unwrap() <= 0.0 && zero.area.unwrap() <= 0.0);
+    }
+}
+
+#[test]
+fn hertz_in_any_units() {
+    // F = 1e-3 E* R^2 is a = 0.090856 R, whatever E* and R are.
+    for (modulus, radius) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+        let scene = Scene::new(Surface::Sphere { radius, side: radius }, modulus);
+        let force = Units::new(modulus, radius, radius).unwrap().force(1e-3).unwrap();
+        let s = prepare(&scene, 0).solve(Load::Force(force)).unwrap();
+        assert_relative_eq!(
+            s.stiffness.unwrap() / modulus / radius,
+            2.0 * 0.090_856_029_642,
+            max_relative = 1e-10
+        );
+        assert_relative_eq!(s.approach.unwrap() / radius, 0.008_254_818_122, max_relative = 1e-9);
+    }
+}
+
+#[test]
+fn a_contact_that_leaves_the_square_is_refused() {
+    let mut contact = prepare(&scene(Surface::Sphere { radius: 1.0, side: 1.0 }), 0);
+    assert!(contact.solve(Load::Approach(0.25)).is_ok());
+    let e = contact.solve(Load::Approach(0.36)).unwrap_err();
+    assert!(matches!(e, Error::OutOfRange { value, max, .. } if value > 0.59 && max < 0.51), "{e}");
+    assert!(contact.solve(Load::Approach(-1.0)).is_err());
+    assert!(contact.solve(Load::Force(f64::INFINITY)).is_err());
+}
+
+#[test]
+fn what_the_model_lacks_is_refused() {
+    let model = Mdr1d::default();
+    let refused = |scene: &Scene| matches!(model.prepare(scene, 0), Err(Error::Unsupported { .. }));
+    assert!(refused(&asking_for_area(rough(2.0))));
+    assert!(refused(&scene(Surface::FlatSquare { side: 1.0 })));
+    assert!(refused(&scene(Surface::Sine { amplitude: 0.1, wavelength: 1.0, side: 1.0 })));
+    let map = Arc::new(HeightMap::new(2, 1.0, vec![0.0; 4]).unwrap());
+    assert!(refused(&scene(Surface::Heights(map))));
+    for effects in [
+        Effects { boundary: Boundary::Periodic, ..Effects::default() },
+        Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() },
+    ] {
+        assert!(refused(&Scene { effects, ..scene(rough(2.0)) }));
+    }
+    for field in 0..3 {
+        let mut scene = scene(Surface::Sphere { radius: 1.0, side: 1.0 });
+        scene.outputs.pressure = field == 0;
+        scene.outputs.displacement = field == 1;
+        scene.outputs.gap = field == 2;
+        assert!(refused(&scene));
+    }
+    assert!(Mdr1d { elements: 0 }.prepare(&scene(rough(2.0)), 0).is_err());
+    let mut stopped = prepare(&scene(rough(2.0)), 0);
+    assert!(matches!(stopped.solve_until(Load::Force(1.0), &|| true), Err(Error::Stopped { best: None })));
+}
