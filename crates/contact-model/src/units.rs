@@ -30,11 +30,14 @@ impl Units {
     /// Units of modulus, horizontal length and vertical height.
     ///
     /// # Errors
-    /// [`Error::Domain`] for one that is not finite and positive.
+    /// [`Error::Domain`] for one that is not finite and positive or whose reciprocal overflows (below 6e-309).
     pub fn new(modulus: f64, length: f64, height: f64) -> Result<Self> {
-        positive("unit of modulus", modulus)?;
-        positive("unit of length", length)?;
-        positive("unit of height", height)?;
+        for (name, unit) in [("modulus", modulus), ("length", length), ("height", height)] {
+            positive(name, unit)?;
+            if unit.recip().is_infinite() {
+                return Err(Error::domain(name, unit, "a number with a finite reciprocal (choose other units)"));
+            }
+        }
         Ok(Self { modulus, length, height })
     }
 
@@ -141,6 +144,6 @@ mod tests {
         let e = units.force(1.0).unwrap_err().to_string();
         assert!(e.starts_with("force = 0: expected"), "{e}");
         assert!(units.force(0.0).is_ok_and(|f| f <= 0.0));
-        assert!(Units::new(0.0, 1.0, 1.0).is_err());
+        assert!(Units::new(0.0, 1.0, 1.0).is_err() && Units::new(1.0, 1e-310, 1.0).is_err());
     }
 }
