@@ -12,7 +12,7 @@ pub(crate) const RECESS: f64 = 1e3;
 /// `-depth(r)` at every cell centre, r from the middle of the square.
 pub(crate) fn axisymmetric(cells: usize, side: f64, depth: impl Fn(f64) -> f64) -> Result<HeightMap> {
     let half_cell = 0.5 * side / cells as f64;
-    from_distances(cells, side, |twice2| -depth(half_cell * twice2.sqrt()))
+    from_distances(cells, side, |twice2| 0.0 - depth(half_cell * twice2.sqrt()))
 }
 
 /// A flat circular face at height 0; `RECESS` sides lower outside it.

@@ -121,3 +121,122 @@ impl LineGenerator {
 pub fn self_affine_line(surface: &SelfAffine, elements: usize, seed: u64) -> Result<Line> {
     LineGenerator::new(surface, elements)?.line(seed)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MapGenerator, hurst_from_line_spectrum, line_phase, line_spectrum, rms_height};
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use contact_model::{Amplitude, Error};
+    use std::f64::consts::PI;
+
+    /// Rounding of a transform and of sums over up to 1e6 waves, relative to the rms.
+    const ROUNDING: f64 = 1e-12;
+
+    fn unit(fractal_dimension: f64) -> SelfAffine {
+        SelfAffine::new(fractal_dimension, 1.0, 1.0).unwrap()
+    }
+
+    /// The slow twin: Eq. 14 wave by wave, both signs of q, `B_1D = sqrt((2 pi / L_1D) pi q C_2D)`.
+    fn direct(surface: &SelfAffine, constant: f64, n: usize, seed: u64) -> Vec<f64> {
+        let length = line_length(surface.side);
+        let (q0, floor) = (TAU / surface.side, surface.roll_off.unwrap_or(0.0));
+        let element = length / n as f64;
+        let cutoff = surface.short_cutoff.unwrap_or(f64::INFINITY).min(PI / element) * (1.0 + 1e-12);
+        let order = i32::try_from((n - 1) / 2).unwrap();
+        let mut heights = vec![0.0; n];
+        for m in (-order..=order).filter(|&m| m != 0) {
+            let q = TAU / length * f64::from(m);
+            if q.abs() > cutoff {
+                continue;
+            }
+            let c2 = constant * (q.abs().max(floor) / q0.max(floor)).powf(-2.0 * (surface.hurst + 1.0));
+            let amplitude = (TAU / length * PI * q.abs() * c2).sqrt();
+            let phase = line_phase(seed, m);
+            for (i, h) in heights.iter_mut().enumerate() {
+                *h += amplitude * (q * (i as f64 + 0.5) * element + phase).cos();
+            }
+        }
+        heights
+    }
+
+    #[test]
+    fn transform_is_the_sum_over_waves() {
+        let base = SelfAffine { side: 2.0, amplitude: Amplitude::Spectrum(0.3), ..unit(2.4) };
+        for (n, roll_off, short_cutoff) in [
+            (3, None, None),
+            (4, None, None),
+            (37, Some(9.0), None),
+            (600, None, Some(200.0)),
+            (601, Some(3.0), None),
+        ] {
+            let surface = SelfAffine { roll_off, short_cutoff, ..base };
+            let line = self_affine_line(&surface, n, 8).unwrap();
+            let expected = direct(&surface, 0.3, n, 8);
+            let rms = rms_height(&expected);
+            for (h, e) in line.heights().iter().zip(&expected) {
+                assert_abs_diff_eq!(h, e, epsilon = ROUNDING * rms);
+            }
+            assert_relative_eq!(line.length(), 2.0 * line_length(1.0));
+        }
+    }
+
+    #[test]
+    fn rms_is_exact_mean_is_zero_exponent_comes_back() {
+        for n in [3, 4, 5, 97, 1000, 4096] {
+            let line = self_affine_line(&SelfAffine::new(2.6, 5.0, 0.1).unwrap(), n, 1).unwrap();
+            assert_relative_eq!(rms_height(line.heights()), 0.1, max_relative = ROUNDING);
+            assert_abs_diff_eq!(line.heights().iter().sum::<f64>() / n as f64, 0.0, epsilon = ROUNDING);
+        }
+        for hurst in [0.0, 0.5, 1.0] {
+            let line = self_affine_line(&unit(3.0 - hurst), 4096, 1).unwrap();
+            let fitted = hurst_from_line_spectrum(&line_spectrum(&line), 1.0, 5000.0).unwrap();
+            assert_abs_diff_eq!(fitted, hurst, epsilon = 1e-9); // no rings, no scatter: rounding of small waves
+        }
+    }
+
+    /// Independent values for 2^20 elements and N = 2048, printed with four digits.
+    #[test]
+    fn ratio_of_line_to_map_at_the_same_constant() {
+        let expected = [(2.0, 1.263), (2.2, 1.213), (2.4, 1.162), (2.6, 1.112), (2.8, 1.083), (3.0, 1.368)];
+        for (fractal_dimension, ratio) in expected {
+            let surface = SelfAffine { amplitude: Amplitude::Spectrum(1.0), ..unit(fractal_dimension) };
+            let line = LineGenerator::new(&surface, 1 << 20).unwrap().rms_height();
+            let map = MapGenerator::new(&surface, 2048).unwrap().rms_height();
+            assert_relative_eq!(line / map, ratio, max_relative = 5e-4);
+        }
+    }
+
+    #[test]
+    fn long_waves_are_the_same_at_every_resolution() {
+        let surface =
+            SelfAffine { amplitude: Amplitude::Spectrum(1.0), short_cutoff: Some(100.0), ..unit(2.0) };
+        let coarse = self_affine_line(&surface, 50, 2).unwrap();
+        let fine = self_affine_line(&surface, 150, 2).unwrap();
+        // Element i of 50 has the centre of element 3 i + 1 of 150.
+        for (i, h) in coarse.heights().iter().enumerate() {
+            assert_abs_diff_eq!(*h, fine.heights()[3 * i + 1], epsilon = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn lines_are_neither_even_nor_alike() {
+        let generator = LineGenerator::new(&unit(2.4), 256).unwrap();
+        let [a, b] = [1, 2].map(|seed| generator.line(seed).unwrap());
+        let against = |other: &mut dyn Iterator<Item = &f64>| {
+            rms_height(&a.heights().iter().zip(other).map(|(x, y)| x - y).collect::<Vec<_>>())
+        };
+        assert!(against(&mut a.heights().iter().rev()) > 0.3);
+        assert!(against(&mut b.heights().iter()) > 0.3);
+    }
+
+    #[test]
+    fn what_cannot_be_made_is_named() {
+        for n in [0, 1, 2, usize::MAX] {
+            let e = self_affine_line(&unit(2.4), n, 0).unwrap_err();
+            assert!(matches!(e, Error::Domain { ref name, .. } if name == "elements"), "{e}");
+        }
+        let blunt = SelfAffine { short_cutoff: Some(1.0), ..unit(2.4) };
+        assert!(self_affine_line(&blunt, 64, 0).is_err());
+    }
+}

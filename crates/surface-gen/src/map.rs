@@ -206,3 +206,254 @@ fn zeroed<T: Copy>(n: usize, m: usize, zero: T) -> Result<Vec<T>> {
 pub fn self_affine_map(surface: &SelfAffine, cells: usize, seed: u64) -> Result<HeightMap> {
     MapGenerator::new(surface, cells)?.map(seed)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{hurst_from_spectrum, map_phase, radial_spectrum, rms_height, rms_slope};
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use contact_model::Amplitude;
+    use proptest::prelude::*;
+    use std::f64::consts::{PI, TAU};
+
+    /// Rounding of a transform and of sums over up to 1e6 waves, relative to the rms.
+    const ROUNDING: f64 = 1e-12;
+
+    fn unit(fractal_dimension: f64) -> SelfAffine {
+        SelfAffine::new(fractal_dimension, 1.0, 1.0).unwrap()
+    }
+
+    /// `C_2D` as the paper writes it, with the constant at q_0 = 2 pi / L.
+    fn density(surface: &SelfAffine, constant: f64, q: f64) -> f64 {
+        let q0 = TAU / surface.side;
+        let floor = surface.roll_off.unwrap_or(0.0);
+        constant * (q.max(floor) / q0.max(floor)).powf(-2.0 * (surface.hurst + 1.0))
+    }
+
+    /// The slow twin: Eq. 4 wave by wave, both half-planes, in the plain words of the formula.
+    fn direct(surface: &SelfAffine, constant: f64, cells: usize, seed: u64) -> Vec<f64> {
+        let (n, side) = (i32::try_from(cells).unwrap(), surface.side);
+        let cell = side / cells as f64;
+        let cutoff = surface.short_cutoff.unwrap_or(f64::INFINITY).min(PI / cell) * (1.0 + 1e-12);
+        let mut heights = vec![0.0; cells * cells];
+        for mx in -n / 2..=n / 2 {
+            for my in -n / 2..=n / 2 {
+                let (qx, qy) = (TAU / side * f64::from(mx), TAU / side * f64::from(my));
+                let q = qx.hypot(qy);
+                let nyquist = 2 * mx.abs() == n || 2 * my.abs() == n;
+                if (mx, my) == (0, 0) || nyquist || q > cutoff {
+                    continue;
+                }
+                let amplitude = TAU / side * density(surface, constant, q).sqrt();
+                let phase = map_phase(seed, mx, my);
+                for (i, h) in heights.iter_mut().enumerate() {
+                    let x = ((i % cells) as f64 + 0.5) * cell;
+                    let y = ((i / cells) as f64 + 0.5) * cell;
+                    *h += amplitude * (qx * x + qy * y + phase).cos();
+                }
+            }
+        }
+        heights
+    }
+
+    fn spectral(hurst: f64, roll_off: Option<f64>, short_cutoff: Option<f64>) -> SelfAffine {
+        SelfAffine { side: 2.0, hurst, amplitude: Amplitude::Spectrum(0.3), roll_off, short_cutoff }
+    }
+
+    #[test]
+    fn transform_is_the_sum_over_waves() {
+        let q0 = PI; // 2 pi / 2
+        for (cells, surface) in [
+            (3, spectral(0.5, None, None)),
+            (4, spectral(0.0, None, None)),
+            (7, spectral(1.0, None, Some(2.0 * q0))),
+            (16, spectral(0.6, Some(2.5 * q0), None)),
+            (17, spectral(0.2, Some(2.0 * q0), Some(6.1 * q0))),
+            (24, spectral(0.8, Some(100.0 * q0), None)),
+        ] {
+            let map = self_affine_map(&surface, cells, 11).unwrap();
+            let expected = direct(&surface, 0.3, cells, 11);
+            let rms = rms_height(&expected);
+            for (h, e) in map.heights().iter().zip(&expected) {
+                assert_abs_diff_eq!(h, e, epsilon = ROUNDING * rms);
+            }
+        }
+    }
+
+    #[test]
+    fn variance_is_the_integral_of_the_spectrum() {
+        for fractal_dimension in [2.0, 2.5, 3.0] {
+            let surface = SelfAffine { amplitude: Amplitude::Spectrum(1e-3), ..unit(fractal_dimension) };
+            let map = self_affine_map(&surface, 40, 5).unwrap();
+            let mut variance = 0.0;
+            for mx in -19_i32..=19 {
+                for my in -19_i32..=19 {
+                    let m2 = mx * mx + my * my;
+                    if m2 > 0 && m2 <= 400 {
+                        variance += density(&surface, 1e-3, TAU * f64::from(m2).sqrt()) * TAU * TAU;
+                    }
+                }
+            }
+            assert_relative_eq!(rms_height(map.heights()).powi(2), variance, max_relative = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn rms_is_exact_and_mean_is_zero() {
+        for cells in [3, 4, 5, 31, 64, 97, 129] {
+            for fractal_dimension in [2.0, 2.4, 3.0] {
+                let surface = SelfAffine::new(fractal_dimension, 3.0, 0.02).unwrap();
+                let map = self_affine_map(&surface, cells, 1).unwrap();
+                assert_relative_eq!(rms_height(map.heights()), 0.02, max_relative = ROUNDING);
+                let mean = map.heights().iter().sum::<f64>() / (cells * cells) as f64;
+                assert_abs_diff_eq!(mean, 0.0, epsilon = 0.02 * ROUNDING);
+            }
+        }
+    }
+
+    /// Independent values for N = 2048 (circular cut-off, L = h = 1), printed with four digits.
+    #[test]
+    fn slopes_of_the_papers_grid() {
+        let expected = [(2.0, 17.38), (2.2, 37.29), (2.4, 99.39), (2.6, 283.4), (2.8, 764.5), (3.0, 1679.0)];
+        for (fractal_dimension, slope) in expected {
+            let generator = MapGenerator::new(&unit(fractal_dimension), 2048).unwrap();
+            assert_relative_eq!(generator.rms_slope(), slope, max_relative = 3e-4);
+            assert_relative_eq!(generator.rms_height(), 1.0, max_relative = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn amplitude_sums_are_what_is_measured() {
+        for fractal_dimension in [2.0, 2.6, 3.0] {
+            let generator = MapGenerator::new(&unit(fractal_dimension), 256).unwrap();
+            let map = generator.map(2).unwrap();
+            assert_relative_eq!(rms_height(map.heights()), generator.rms_height(), max_relative = ROUNDING);
+            assert_relative_eq!(rms_slope(&map), generator.rms_slope(), max_relative = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn the_hurst_exponent_comes_back() {
+        /// What is left of the rings' finite width from ring 8 on.
+        const RINGS: f64 = 0.01;
+        for hurst in [0.0, 0.3, 0.8, 1.0] {
+            let map = self_affine_map(&unit(3.0 - hurst), 256, 2).unwrap();
+            let fitted = hurst_from_spectrum(&radial_spectrum(&map), 8.0 * TAU, 120.0 * TAU).unwrap();
+            assert_abs_diff_eq!(fitted, hurst, epsilon = RINGS);
+        }
+    }
+
+    #[test]
+    fn the_field_is_not_point_symmetric() {
+        let n = 64;
+        let map = self_affine_map(&unit(2.4), n, 3).unwrap();
+        // The origin of the waves is the corner: the printed phases would make h(-x) = h(x), index n - 1 - i.
+        let mirrored: Vec<f64> = map.heights().iter().rev().copied().collect();
+        let difference: Vec<f64> = map.heights().iter().zip(&mirrored).map(|(a, b)| a - b).collect();
+        assert!(rms_height(&difference) > 0.5);
+    }
+
+    /// Amplitude of the wave (mx, my) about the corner of the square, `mean of h exp(-i q x)`.
+    fn project(map: &HeightMap, mx: f64, my: f64) -> C {
+        let n = map.cells();
+        let sum: C = (0..n * n)
+            .map(|i| {
+                let x = ((i % n) as f64 + 0.5) / n as f64;
+                let y = ((i / n) as f64 + 0.5) / n as f64;
+                C::from_polar(map.heights()[i], -TAU * (mx * x + my * y))
+            })
+            .sum();
+        sum / (n * n) as f64
+    }
+
+    #[test]
+    fn long_waves_are_the_same_at_every_resolution() {
+        let fixed = SelfAffine { amplitude: Amplitude::Spectrum(1e-2), ..unit(2.4) };
+        let [coarse, odd, fine] = [32, 33, 64].map(|n| self_affine_map(&fixed, n, 9).unwrap());
+        let normed = self_affine_map(&unit(2.4), 64, 9).unwrap();
+        let ratio = project(&normed, 1.0, 0.0).norm() / project(&fine, 1.0, 0.0).norm();
+        for (mx, my) in [(1.0, 0.0), (0.0, 1.0), (2.0, -3.0), (-5.0, -7.0), (11.0, 11.0), (15.0, 0.0)] {
+            let wave = project(&coarse, mx, my);
+            assert!(wave.norm() > 1e-4);
+            for other in [project(&odd, mx, my), project(&fine, mx, my), project(&normed, mx, my) / ratio] {
+                assert_abs_diff_eq!(wave.re, other.re, epsilon = ROUNDING);
+                assert_abs_diff_eq!(wave.im, other.im, epsilon = ROUNDING);
+            }
+        }
+    }
+
+    #[test]
+    fn nyquist_waves_and_corners_are_empty() {
+        let map = self_affine_map(&unit(3.0), 16, 4).unwrap();
+        for (mx, my) in [(8.0, 0.0), (0.0, 8.0), (8.0, 3.0), (8.0, 8.0), (6.0, 6.0), (7.0, -4.0), (0.0, 0.0)]
+        {
+            assert_abs_diff_eq!(project(&map, mx, my).norm(), 0.0, epsilon = ROUNDING);
+        }
+        assert!(project(&map, 7.0, 3.0).norm() > 1e-3);
+        // An odd grid keeps its last wave.
+        assert!(project(&self_affine_map(&unit(3.0), 15, 4).unwrap(), 7.0, 0.0).norm() > 1e-3);
+    }
+
+    #[test]
+    fn threads_change_no_byte() {
+        let generator = MapGenerator::new(&unit(2.2), 100).unwrap();
+        let alone = generator.synthesise(6, false).unwrap();
+        for threads in [1, 2, 4] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let shared = pool.install(|| generator.synthesise(6, true)).unwrap();
+            assert!(alone.heights().iter().zip(shared.heights()).all(|(a, b)| a.to_bits() == b.to_bits()));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_made_is_named() {
+        for cells in [0, 1, 2, MOST + 1, usize::MAX] {
+            let e = self_affine_map(&unit(2.4), cells, 0).unwrap_err();
+            assert!(matches!(e, Error::Domain { ref name, .. } if name == "cells"), "{e}");
+        }
+        let e = self_affine_map(&SelfAffine { short_cutoff: Some(6.0), ..unit(2.4) }, 64, 0).unwrap_err();
+        assert!(e.to_string().starts_with("short_cutoff = 6: expected"), "{e}");
+        for hurst in [-0.1, 1.1, f64::NAN] {
+            assert!(self_affine_map(&SelfAffine { hurst, ..unit(2.4) }, 8, 0).is_err());
+        }
+        let huge = SelfAffine { amplitude: Amplitude::RmsHeight(1e308), ..unit(2.4) };
+        assert!(self_affine_map(&huge, 8, 0).is_err());
+        let steep = SelfAffine { side: 1e-300, amplitude: Amplitude::Spectrum(1e300), ..unit(2.4) };
+        assert!(self_affine_map(&steep, 8, 0).is_err());
+    }
+
+    const MOST: usize = crate::spectrum::MOST_CELLS;
+
+    #[test]
+    fn extreme_units_change_nothing() {
+        let plain = self_affine_map(&unit(2.4), 16, 0).unwrap();
+        for length in [1e-150, 1e150] {
+            let surface = SelfAffine::new(2.4, length, length).unwrap();
+            let map = self_affine_map(&surface, 16, 0).unwrap();
+            for (a, b) in map.heights().iter().zip(plain.heights()) {
+                assert_relative_eq!(a / length, b, max_relative = ROUNDING);
+            }
+            assert_relative_eq!(rms_slope(&map), rms_slope(&plain), max_relative = ROUNDING);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn any_grid_any_hurst_exponent(
+            cells in 3_usize..70,
+            hurst in 0.0..=1.0_f64,
+            seed: u64,
+            roll_off in proptest::option::of(0.1..200.0_f64),
+            cutoff in proptest::option::of(200.0..500.0_f64),
+        ) {
+            let surface = SelfAffine { hurst, roll_off, short_cutoff: cutoff, ..unit(2.0) };
+            let generator = MapGenerator::new(&surface, cells).unwrap();
+            let map = generator.map(seed).unwrap();
+            assert_relative_eq!(rms_height(map.heights()), 1.0, max_relative = ROUNDING);
+            assert_relative_eq!(rms_slope(&map), generator.rms_slope(), max_relative = ROUNDING);
+            prop_assert!(map.heights() != self_affine_map(&surface, cells, seed ^ 1).unwrap().heights());
+        }
+    }
+}

@@ -124,3 +124,64 @@ pub fn line_phase(seed: u64, m: i32) -> f64 {
         _ => -phase(m.unsigned_abs()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+
+    /// One rounding of 2 pi times a fraction that both sides hold exactly.
+    const ROUNDING: f64 = f64::EPSILON;
+
+    /// From an independent implementation of the stream as written above. These numbers never change.
+    #[test]
+    fn the_stream_is_pinned() {
+        for (seed, mx, my, phase) in [
+            (0, 1, 0, 6.227_021_147_532_822),
+            (0, 0, 1, 2.117_013_336_396_112_8),
+            (1, 3, -2, 1.992_376_711_560_797_3),
+            (12345, 1000, -1000, 1.422_088_761_948_071),
+            (u64::MAX, 7, 128, 5.319_361_775_393_973),
+        ] {
+            assert_relative_eq!(map_phase(seed, mx, my), phase, max_relative = ROUNDING);
+            assert_relative_eq!(map_phase(seed, -mx, -my), -phase, max_relative = ROUNDING);
+        }
+        for (seed, m, phase) in [
+            (0, 1, 5.938_681_511_061_623),
+            (1, 255, 1.040_334_255_401_237_4),
+            (1, 256, 4.470_092_531_528_349),
+            (u64::MAX, 524_287, 1.173_025_401_734_64),
+        ] {
+            assert_relative_eq!(line_phase(seed, m), phase, max_relative = ROUNDING);
+            assert_relative_eq!(line_phase(seed, -m), -phase, max_relative = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn a_row_read_in_order_is_the_same_row() {
+        let mut turns = Turns::new(3, Stream::Line, 0);
+        turns.next();
+        for m in 1..1000 {
+            assert_relative_eq!(radians(turns.next()), line_phase(3, m), max_relative = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn phases_are_uniform() {
+        /// Four standard errors of the mean of 10^4 cosines, sqrt(1 / (2 n)) each.
+        const BOUND: f64 = 4.0 * 0.007_07;
+        for harmonic in [1.0, 2.0, 3.0] {
+            let mean = |phase: &dyn Fn(i32, i32) -> f64| {
+                let waves = (1..=100).flat_map(|a| (-50..50).map(move |b| (a, b)));
+                waves.map(|(a, b)| (harmonic * phase(a, b)).cos()).sum::<f64>() / 1e4
+            };
+            assert_abs_diff_eq!(mean(&|a, b| map_phase(1, a, b)), 0.0, epsilon = BOUND);
+            assert_abs_diff_eq!(mean(&|a, b| line_phase(1, 100 * a + b)), 0.0, epsilon = BOUND);
+            // Neighbouring waves and neighbouring seeds are independent.
+            let neighbour = |a, b| map_phase(1, a, b) - map_phase(1, a, b + 1);
+            assert_abs_diff_eq!(mean(&neighbour), 0.0, epsilon = BOUND);
+            let seeds = |a, b| map_phase(1, a, b) - map_phase(2, a, b);
+            assert_abs_diff_eq!(mean(&seeds), 0.0, epsilon = BOUND);
+        }
+    }
+}

@@ -78,3 +78,115 @@ pub fn line(surface: &Surface, elements: usize, seed: u64) -> Result<Arc<Line>> 
         _ => Err(Error::unsupported(NAME, format!("{} as a line", surface.kind()))),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rms_slope_differences;
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use contact_model::SelfAffine;
+    use std::f64::consts::PI;
+
+    /// A few roundings of a closed form.
+    const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+    #[test]
+    fn axisymmetric_bodies_at_known_points() {
+        // Cell (0, 1) of 4 on a side of 4: r = sqrt(1.5^2 + 0.5^2) = sqrt(2.5).
+        let at = |surface: Surface| height_map(&surface, 4, 0).unwrap().heights()[4];
+        assert_relative_eq!(at(Surface::Sphere { radius: 5.0, side: 4.0 }), -0.25, max_relative = ROUNDING);
+        let cone = at(Surface::Cone { slope: 0.1, side: 4.0 });
+        assert_relative_eq!(cone, -0.1 * 2.5_f64.sqrt(), max_relative = ROUNDING);
+        let power = at(Surface::PowerLaw { coefficient: 2.0, exponent: 4.0, side: 4.0 });
+        assert_relative_eq!(power, -12.5, max_relative = ROUNDING);
+    }
+
+    #[test]
+    fn bodies_have_the_symmetries_of_the_square() {
+        for n in [1, 2, 5, 8] {
+            let surface = Surface::PowerLaw { coefficient: 0.3, exponent: 0.7, side: 0.37 };
+            let map = height_map(&surface, n, 0).unwrap();
+            let h = |ix: usize, iy: usize| map.heights()[iy * n + ix].to_bits();
+            for iy in 0..n {
+                for ix in 0..n {
+                    assert!(h(ix, iy) == h(iy, ix) && h(ix, iy) == h(n - 1 - ix, iy));
+                }
+            }
+            assert!(n % 2 == 0 || map.highest() >= 0.0);
+        }
+    }
+
+    #[test]
+    fn a_cone_has_its_slope() {
+        let map = height_map(&Surface::Cone { slope: 0.2, side: 3.0 }, 301, 0).unwrap();
+        assert_relative_eq!(rms_slope_differences(&map), 0.2, max_relative = 2e-3); // second order, but for the apex
+    }
+
+    #[test]
+    fn a_punch_covers_its_face() {
+        let punch = |radius| height_map(&Surface::FlatCircle { radius, side: 2.0 }, 100, 0);
+        let map = punch(0.9).unwrap();
+        let inside = map.heights().iter().filter(|&&h| h >= 0.0).count();
+        assert_relative_eq!(inside as f64 / 1e4, PI * 0.81 / 4.0, max_relative = 5e-3); // lattice points in a circle
+        assert_relative_eq!(map.heights()[0], -2000.0);
+        assert!(punch(1.01).is_err() && punch(0.013).is_err() && punch(0.0142).is_ok());
+        let one = height_map(&Surface::FlatCircle { radius: 1e-9, side: 2.0 }, 3, 0).unwrap();
+        assert_eq!(one.heights().iter().filter(|&&h| h >= 0.0).count(), 1);
+    }
+
+    #[test]
+    fn sine_and_flat() {
+        let sine = |wavelength| height_map(&Surface::Sine { amplitude: 2.0, wavelength, side: 1.0 }, 8, 0);
+        let map = sine(0.5).unwrap();
+        for (ix, h) in map.heights()[16..24].iter().enumerate() {
+            assert_abs_diff_eq!(*h, 2.0 * (4.0 * PI * (ix as f64 + 0.5) / 8.0).cos(), epsilon = ROUNDING);
+        }
+        assert!(sine(0.25).is_ok() && sine(0.24).is_err());
+        let flat = height_map(&Surface::FlatSquare { side: 1.0 }, 3, 0).unwrap();
+        assert!(flat.heights().iter().all(|&h| h.abs() <= 0.0));
+    }
+
+    #[test]
+    fn given_samples_are_passed_on() {
+        let map = Arc::new(HeightMap::new(2, 1.0, vec![0.0; 4]).unwrap());
+        let surface = Surface::Heights(Arc::clone(&map));
+        assert!(Arc::ptr_eq(&height_map(&surface, 2, 0).unwrap(), &map));
+        assert!(matches!(height_map(&surface, 3, 0), Err(Error::Shape { found: 4, .. })));
+        assert!(matches!(line(&surface, 3, 0), Err(Error::Unsupported { .. })));
+
+        let given = Arc::new(Line::new(1.0, vec![0.0; 5]).unwrap());
+        let surface = Surface::Line { line: Arc::clone(&given), side: 1.0 };
+        assert!(Arc::ptr_eq(&line(&surface, 5, 0).unwrap(), &given));
+        assert!(matches!(line(&surface, 4, 0), Err(Error::Shape { found: 5, .. })));
+        let e = height_map(&surface, 5, 0).unwrap_err();
+        assert_eq!(e.to_string(), "the model surface-gen does not support a line as a map");
+    }
+
+    #[test]
+    fn random_surfaces_are_the_same_by_either_door() {
+        let s = SelfAffine::new(2.4, 1.0, 1.0).unwrap();
+        let surface = Surface::SelfAffine(s);
+        assert_eq!(*height_map(&surface, 9, 4).unwrap(), self_affine_map(&s, 9, 4).unwrap());
+        assert_eq!(*line(&surface, 9, 4).unwrap(), self_affine_line(&s, 9, 4).unwrap());
+    }
+
+    #[test]
+    fn bad_numbers_are_errors() {
+        let side = 1.0;
+        for surface in [
+            Surface::Sphere { radius: 0.0, side },
+            Surface::Cone { slope: f64::NAN, side },
+            Surface::PowerLaw { coefficient: 1.0, exponent: -1.0, side },
+            Surface::FlatCircle { radius: f64::INFINITY, side },
+            Surface::FlatSquare { side: 0.0 },
+            Surface::Sine { amplitude: 0.0, wavelength: 1.0, side },
+            Surface::Sphere { radius: 1e-300, side: 1e200 },
+        ] {
+            assert!(matches!(height_map(&surface, 4, 0), Err(Error::Domain { .. })), "{surface:?}");
+        }
+        assert!(height_map(&Surface::FlatSquare { side }, 0, 0).is_err());
+        assert!(height_map(&Surface::FlatSquare { side }, usize::MAX, 0).is_err());
+        assert!(height_map(&Surface::FlatCircle { radius: 0.1, side }, 0, 0).is_err());
+        assert!(height_map(&Surface::Sine { amplitude: 1.0, wavelength: 1.0, side }, 0, 0).is_err());
+    }
+}

@@ -1,5 +1,7 @@
 //! Moments of samples.
 
+use contact_model::HeightMap;
+
 /// Below this many values a plain sum is as good as a pairwise one.
 const PLAIN: usize = 128;
 
@@ -33,4 +35,61 @@ pub fn rms_height(heights: &[f64]) -> f64 {
     let mean = pairwise(heights, &|h| (h - middle) / unit) / n;
     let square = pairwise(heights, &|h| ((h - middle) / unit - mean).powi(2)) / n;
     unit * square.sqrt()
+}
+
+/// Root mean square slope from differences of neighbours inside the square, dimensionless.
+///
+/// `sqrt(mean over x-neighbours (Delta h / h_c)^2 + mean over y-neighbours (Delta h / h_c)^2)`: for bodies that are not periodic. It
+/// falls below [`crate::rms_slope`] on rough surfaces, whose shortest waves it damps (by `sin(q h_c / 2) / (q h_c / 2)`). 0 for one cell. Cost O(N^2).
+///
+/// ```
+/// use contact_model::HeightMap;
+/// // A plane that rises by 3 per cell along x and 4 along y, cells of size 1.
+/// let plane = HeightMap::new(2, 2.0, vec![0.0, 3.0, 4.0, 7.0])?;
+/// assert!((surface_gen::rms_slope_differences(&plane) - 5.0).abs() < 1e-15);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn rms_slope_differences(map: &HeightMap) -> f64 {
+    let (n, heights) = (map.cells(), map.heights());
+    let along_x = || heights.chunks_exact(n).flat_map(|row| row.windows(2).map(|w| w[1] - w[0]));
+    let along_y = || heights.iter().zip(&heights[n..]).map(|(a, b)| b - a);
+    let unit = along_x().chain(along_y()).fold(0.0, |unit: f64, step| unit.max(step.abs()));
+    if unit <= 0.0 {
+        return 0.0;
+    }
+    let sum: f64 = along_x().chain(along_y()).map(|step| (step / unit).powi(2)).sum();
+    (sum / (n * (n - 1)) as f64).sqrt() * (unit / map.cell())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// A few roundings: sums of at most 4 terms.
+    const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+    #[test]
+    fn extreme_heights_keep_their_rms() {
+        for unit in [1e-150, 1e150, 1e-300, 1e300] {
+            assert_relative_eq!(rms_height(&[unit, -unit]), unit, max_relative = ROUNDING);
+            assert_relative_eq!(rms_height(&[0.0, unit, 0.0, unit]), 0.5 * unit, max_relative = ROUNDING);
+            let map = HeightMap::new(2, 2.0 * unit, [0.0, 3.0, 4.0, 7.0].map(|h| h * unit).to_vec());
+            assert_relative_eq!(rms_slope_differences(&map.unwrap()), 5.0, max_relative = ROUNDING);
+        }
+        assert!(rms_height(&[]) <= 0.0 && rms_height(&[7.0; 9]) <= 0.0);
+    }
+
+    #[test]
+    fn an_offset_costs_its_own_rounding_only() {
+        let heights = [0.25, 1.0, -0.5, 2.0];
+        let lifted = heights.map(|h| h + 1_048_576.0);
+        assert_relative_eq!(rms_height(&lifted), rms_height(&heights), max_relative = ROUNDING);
+    }
+
+    #[test]
+    fn pairwise_is_the_plain_sum() {
+        let values: Vec<f64> = (0..1000).map(f64::from).collect();
+        assert_relative_eq!(pairwise(&values, &|v| v), 499_500.0, max_relative = ROUNDING);
+    }
 }

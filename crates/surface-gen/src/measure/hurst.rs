@@ -1,0 +1,53 @@
+//! The Hurst exponent of a measured spectrum.
+
+use contact_model::{Error, Result};
+
+/// Fewest points that a straight line is fitted through.
+const FEWEST: usize = 3;
+
+/// Hurst exponent from a radial spectrum: least squares of `ln C_2D = const - 2 (H + 1) ln q` over `q_min <= q <= q_max`.
+///
+/// All points weigh the same; points with C = 0 are left out. The first rings bend the fit (see [`crate::radial_spectrum`]): start at ring 8
+/// or so.
+///
+/// # Errors
+/// [`Error::Domain`] where fewer than 3 points with C > 0 lie in the window.
+///
+/// ```
+/// let spectrum: Vec<_> = (1..20).map(|k| (f64::from(k), f64::from(k).powf(-3.6))).collect();
+/// let h = surface_gen::hurst_from_spectrum(&spectrum, 1.0, 20.0)?;
+/// assert!((h - 0.8).abs() < 1e-12);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn hurst_from_spectrum(spectrum: &[(f64, f64)], q_min: f64, q_max: f64) -> Result<f64> {
+    Ok(-0.5 * slope(spectrum, q_min, q_max)? - 1.0)
+}
+
+/// Hurst exponent from the spectrum of a line: least squares of `ln C_1D = const - (2 H + 1) ln q` over `q_min <= q <= q_max`.
+///
+/// # Errors
+/// As [`hurst_from_spectrum`].
+pub fn hurst_from_line_spectrum(spectrum: &[(f64, f64)], q_min: f64, q_max: f64) -> Result<f64> {
+    Ok(-0.5 * (slope(spectrum, q_min, q_max)? + 1.0))
+}
+
+fn slope(spectrum: &[(f64, f64)], q_min: f64, q_max: f64) -> Result<f64> {
+    let inside = |&&(q, c): &&(f64, f64)| q > 0.0 && q >= q_min && q <= q_max && c.is_normal() && c > 0.0;
+    let points: Vec<(f64, f64)> = spectrum.iter().filter(inside).map(|&(q, c)| (q.ln(), c.ln())).collect();
+    let n = points.len();
+    let too_few = || {
+        let expected = format!("at least {FEWEST} different wavenumbers with C > 0 in [{q_min}, {q_max}]");
+        Error::domain("points of the spectrum", n as f64, expected)
+    };
+    if n < FEWEST {
+        return Err(too_few());
+    }
+    let mean = |f: fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n as f64;
+    let (x0, y0) = (mean(|p| p.0), mean(|p| p.1));
+    let (mut xx, mut xy) = (0.0, 0.0);
+    for (x, y) in &points {
+        xx += (x - x0) * (x - x0);
+        xy += (x - x0) * (y - y0);
+    }
+    if xx > 0.0 { Ok(xy / xx) } else { Err(too_few()) }
+}

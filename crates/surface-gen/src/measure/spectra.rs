@@ -1,0 +1,143 @@
+//! Spectra of samples, as periodic fields.
+
+use contact_model::{HeightMap, Line};
+use realfft::RealFftPlanner;
+use rustfft::{FftPlanner, num_complex::Complex};
+use std::f64::consts::TAU;
+
+/// Middle and half width of the range of the heights; the width is 1 where there is none.
+fn range(heights: &[f64]) -> (f64, f64) {
+    let (low, high) =
+        heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &h| (low.min(h), high.max(h)));
+    let unit = 0.5 * high - 0.5 * low;
+    (0.5 * low + 0.5 * high, if unit > 0.0 { unit } else { 1.0 })
+}
+
+/// Transform of one real row, `X_m = sum x_j exp(-2 pi i m j / n) / n` for m = 0 ..= n/2.
+struct RowTransform {
+    plan: std::sync::Arc<dyn realfft::RealToComplex<f64>>,
+    input: Vec<f64>,
+    scratch: Vec<Complex<f64>>,
+    output: Vec<Complex<f64>>,
+}
+
+impl RowTransform {
+    fn new(n: usize) -> Self {
+        let plan = RealFftPlanner::new().plan_fft_forward(n);
+        let (input, output, scratch) =
+            (plan.make_input_vec(), plan.make_output_vec(), plan.make_scratch_vec());
+        Self { plan, input, scratch, output }
+    }
+
+    /// Transform of `(row - middle) / unit`.
+    fn of(&mut self, row: &[f64], middle: f64, unit: f64) -> &[Complex<f64>] {
+        let n = row.len() as f64;
+        for (x, h) in self.input.iter_mut().zip(row) {
+            *x = (h - middle) / unit / n;
+        }
+        let done = self.plan.process_with_scratch(&mut self.input, &mut self.output, &mut self.scratch);
+        debug_assert!(done.is_ok(), "buffers come from the plan");
+        &self.output
+    }
+}
+
+/// Calls `visit(|m|^2, |H|^2, copies)` for every wave but the mean, in a fixed order; returns the unit of H. `copies` counts the conjugate wave.
+fn waves(map: &HeightMap, mut visit: impl FnMut(u64, f64, f64)) -> f64 {
+    let n = map.cells();
+    let (middle, unit) = range(map.heights());
+    let width = n / 2 + 1;
+    let mut columns = vec![Complex::new(0.0, 0.0); width * n];
+    let mut along_x = RowTransform::new(n);
+    for (iy, row) in map.heights().chunks_exact(n).enumerate() {
+        for (mx, &value) in along_x.of(row, middle, unit).iter().enumerate() {
+            columns[mx * n + iy] = value;
+        }
+    }
+    let along_y = FftPlanner::new().plan_fft_forward(n);
+    let mut scratch = vec![Complex::new(0.0, 0.0); along_y.get_inplace_scratch_len()];
+    for (mx, column) in columns.chunks_exact_mut(n).enumerate() {
+        along_y.process_with_scratch(column, &mut scratch);
+        let copies = if mx == 0 || 2 * mx == n { 1.0 } else { 2.0 };
+        for (iy, value) in column.iter().enumerate() {
+            let my = iy.min(n - iy);
+            let m2 = (mx * mx + my * my) as u64;
+            if m2 > 0 {
+                visit(m2, value.norm_sqr() / (n as f64).powi(2), copies);
+            }
+        }
+    }
+    unit
+}
+
+/// Root mean square slope of a map as a periodic field, `sqrt(sum q^2 |H(q)|^2)`, dimensionless.
+///
+/// Exact for the surfaces of this crate. For a body that is not periodic the jump from one edge to the opposite one counts as
+/// slope: take [`crate::rms_slope_differences`] there. Cost O(N^2 log N), memory about that of the map.
+///
+/// ```
+/// use contact_model::Surface;
+/// // h = 0.1 cos(2 pi x): h' has the amplitude 0.2 pi, its rms is 0.2 pi / sqrt(2).
+/// let sine = Surface::Sine { amplitude: 0.1, wavelength: 1.0, side: 1.0 };
+/// let slope = surface_gen::rms_slope(&*surface_gen::height_map(&sine, 16, 0)?);
+/// assert!((slope - 0.4442882938158366).abs() < 1e-14);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn rms_slope(map: &HeightMap) -> f64 {
+    let mut sum = 0.0;
+    let unit = waves(map, |m2, power, copies| sum += copies * m2 as f64 * power);
+    TAU * sum.sqrt() * (unit / map.side())
+}
+
+/// Spectrum of a map averaged over rings: pairs (q, C_2D) in units of 1/length and length^4, for ring 1, 2, ..., N/2.
+///
+/// `C_2D(q) = (L / 2 pi)^2 |H(q)|^2`, two-sided: `integral of C_2D over all of the plane of q = rms^2` (the convention of Eq. 2). Ring k holds the
+/// waves with |m| nearest to k, q is the mean of their wavenumbers and C the arithmetic mean of theirs, zeros beyond a cut-off
+/// included. On a power law `q^-p` a ring's mean exceeds the value at its q by about `p (p + 1) / (24 k^2)` of it. The mean height is left out.
+/// Cost O(N^2 log N), memory about that of the map.
+///
+/// ```
+/// use contact_model::Surface;
+/// // One wave along x of amplitude 0.2: two of the 4 waves (+-1, 0), (0, +-1) and 4 of (+-1, +-1) of ring 1 carry 0.01 each.
+/// let sine = Surface::Sine { amplitude: 0.2, wavelength: 1.0, side: 1.0 };
+/// let spectrum = surface_gen::radial_spectrum(&*surface_gen::height_map(&sine, 16, 0)?);
+/// let tau = std::f64::consts::TAU;
+/// assert!((spectrum[0].1 * tau * tau - 2.0 * 0.01 / 8.0).abs() < 1e-15);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn radial_spectrum(map: &HeightMap) -> Vec<(f64, f64)> {
+    let rings = map.cells() / 2;
+    // Count, sum of |m|, sum of |H|^2.
+    let mut sums = vec![(0.0, 0.0, 0.0); rings + 1];
+    let unit = waves(map, |m2, power, copies| {
+        let m = (m2 as f64).sqrt();
+        if let Some(sum) = sums.get_mut(m.round() as usize) {
+            *sum = (sum.0 + copies, sum.1 + copies * m, sum.2 + copies * power);
+        }
+    });
+    let side = map.side();
+    let point = |&(count, m, power): &(f64, f64, f64)| {
+        (TAU / side * (m / count), ((power / count).sqrt() * unit * side / TAU).powi(2))
+    };
+    sums.iter().skip(1).map(point).collect()
+}
+
+/// Spectrum of a line: pairs (q, C_1D) in units of 1/length and length^3, for the waves m = 1, 2, ..., n/2.
+///
+/// `C_1D(q) = (L_1D / 2 pi) |H(q)|^2`, two-sided: `integral of C_1D over q of both signs = rms^2`, so that `C_1D = pi |q| C_2D` (Eq. 17) keeps the
+/// variance. The mean height is left out. Cost O(n log n).
+///
+/// ```
+/// // cos(2 pi x) on 4 elements: |H| = 1/2 for m = 1.
+/// let line = contact_model::Line::new(1.0, vec![1.0, 0.0, -1.0, 0.0])?;
+/// let spectrum = surface_gen::line_spectrum(&line);
+/// assert!((spectrum[0].1 - 0.25 / std::f64::consts::TAU).abs() < 1e-15 && spectrum[1].1 < 1e-30);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn line_spectrum(line: &Line) -> Vec<(f64, f64)> {
+    let (middle, unit) = range(line.heights());
+    let length = line.length();
+    let mut transform = RowTransform::new(line.elements());
+    let waves = transform.of(line.heights(), middle, unit).iter().enumerate().skip(1);
+    let density = |h: &Complex<f64>| (h.norm() * unit * (length / TAU).sqrt()).powi(2);
+    waves.map(|(m, h)| (TAU / length * m as f64, density(h))).collect()
+}
