@@ -1,0 +1,120 @@
+//! What all closed forms share: a law in units of its own becomes a [`PreparedContact`].
+
+use contact_model::{
+    ContactState, Error, Load, Outputs, PreparedContact, Result, Scales, Scene, SolveReport, Stop, Units,
+};
+
+/// A closed form between force, approach and stiffness, in the [`Units`] of its [`Closed`]; loads are positive.
+pub(crate) trait Law: Send {
+    /// State at a force.
+    fn at_force(&self, force: f64) -> Result<Point>;
+    /// State at an approach.
+    fn at_approach(&self, approach: f64) -> Result<Point>;
+}
+
+/// One state of a [`Law`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Point {
+    pub force: f64,
+    pub approach: f64,
+    pub stiffness: f64,
+    /// `None` where the theory has no area; its model then refuses to be asked.
+    pub area: Option<f64>,
+}
+
+/// A law with its scales and what is asked of it.
+pub(crate) struct Closed<L> {
+    pub model: &'static str,
+    pub law: L,
+    pub units: Units,
+    pub scales: Scales,
+    pub outputs: Outputs,
+    /// For [`SolveReport::strategy`].
+    pub strategy: &'static str,
+    /// Relative uncertainty of the stiffness that the theory itself states.
+    pub stiffness_error: f64,
+}
+
+impl<L: Law> PreparedContact for Closed<L> {
+    fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
+        let units = self.units;
+        let (asked, value) = match load.validated()? {
+            Load::Force(force) => (force, units.force_in(force)),
+            Load::Approach(approach) => (approach, units.approach_in(approach)),
+            _ => return Err(Error::unsupported(self.model, format!("the load {load:?}"))),
+        };
+        let point = if asked <= 0.0 {
+            Point { force: 0.0, approach: 0.0, stiffness: 0.0, area: Some(0.0) }
+        } else if value.is_finite() && value > 0.0 {
+            match load {
+                Load::Force(_) => self.law.at_force(value)?,
+                _ => self.law.at_approach(value)?,
+            }
+        } else {
+            return Err(out_of_f64(value));
+        };
+        // A loaded contact of which nothing is left in f64 is no state.
+        if asked > 0.0 {
+            for value in [point.force, point.approach, point.stiffness] {
+                if !(value.is_finite() && value > 0.0) {
+                    return Err(out_of_f64(value));
+                }
+            }
+        }
+        let (force, approach) = match load {
+            Load::Force(force) => (force, units.approach(point.approach)?),
+            _ => (units.force(point.force)?, asked),
+        };
+        let stiffness = self.outputs.stiffness.then(|| units.stiffness(point.stiffness)).transpose()?;
+        let area = point.area.filter(|_| self.outputs.area).map(|area| units.area(area)).transpose()?;
+        let mut report = SolveReport::exact(self.strategy);
+        report.certificate.stiffness_error = stiffness.map(|_| self.stiffness_error);
+        Ok(ContactState { force, approach: Some(approach), stiffness, area, fields: None, report })
+    }
+}
+
+/// Checks a scene against what every closed form here lacks: effects and fields.
+///
+/// # Errors
+/// [`Error::Unsupported`] and the errors of [`Scene::validate`].
+pub(crate) fn check(scene: &Scene, model: &'static str) -> Result<()> {
+    scene.validate()?;
+    scene.refuse_effects(model)?;
+    if scene.outputs.any_field() {
+        return Err(Error::unsupported(model, "fields: a closed form has no cells"));
+    }
+    Ok(())
+}
+
+/// Units and scales of a body without rms height: everything is counted in the side of the square.
+///
+/// # Errors
+/// [`Error::Domain`] for a modulus or side that no unit can be.
+pub(crate) fn of_body(scene: &Scene) -> Result<(Units, Scales)> {
+    let (modulus, side) = (scene.modulus, scene.surface.side());
+    Ok((Units::new(modulus, side, side)?, Scales { modulus, side, height: None }))
+}
+
+/// Errors where a round contact (radius in units of the side) has left the square, beyond which the half-space is free.
+pub(crate) fn within_square(radius: f64, side: f64) -> Result<()> {
+    if radius <= 0.5 * ROUNDED_UP {
+        Ok(())
+    } else {
+        let value = radius * side;
+        Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max: 0.5 * side })
+    }
+}
+
+/// A load exactly at the end of a range may come out a few roundings beyond it.
+pub(crate) const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+
+fn out_of_f64(value: f64) -> Error {
+    Error::domain("state in units of side and modulus", value, "numbers within the range of f64")
+}

@@ -1,0 +1,62 @@
+//! Checks that every closed form passes (tests only).
+
+use approx::assert_relative_eq;
+use contact_model::{ContactModel, ContactState, Load, Result, Scene, Surface, Units};
+
+/// Digits to which the reference values are printed.
+pub(crate) const PRINTED: f64 = 1e-10;
+/// A root and a handful of products.
+pub(crate) const ROUNDING: f64 = 1e-14;
+
+/// One state, with the area where the model has one.
+pub(crate) fn pressed(model: &dyn ContactModel, scene: &Scene, load: Load) -> Result<ContactState> {
+    let mut scene = scene.clone();
+    scene.outputs.area = !matches!(scene.surface, Surface::SelfAffine(_));
+    model.prepare(&scene, 0)?.solve(load)
+}
+
+/// Round trip, k = dF/dd by differences, convexity, k that does not decrease, F proportional to E*, no load.
+pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
+    let at = |load| pressed(model, scene, load).unwrap();
+    let here = at(Load::Approach(d));
+    // Round trip: two inverse powers of exponents down to 0.1.
+    let back = at(Load::Force(here.force));
+    assert_relative_eq!(back.approach.unwrap(), d, max_relative = 1e-13);
+    assert_relative_eq!(back.stiffness.unwrap(), here.stiffness.unwrap(), max_relative = 1e-12);
+    // Central difference: its error is e^2 times the third logarithmic derivative, at most 1e3 for the steepest power 11.
+    let e = 1e-5;
+    let (low, high) = (at(Load::Approach(d * (1.0 - e))), at(Load::Approach(d * (1.0 + e))));
+    assert_relative_eq!(
+        (high.force - low.force) / (2.0 * e * d),
+        here.stiffness.unwrap(),
+        max_relative = 1e-7
+    );
+    assert!(2.0 * here.force <= (low.force + high.force) * (1.0 + ROUNDING));
+    assert!(low.stiffness.unwrap() <= high.stiffness.unwrap());
+    let stiffer = Scene { modulus: 2.0 * scene.modulus, ..scene.clone() };
+    let doubled = pressed(model, &stiffer, Load::Approach(d)).unwrap();
+    assert_relative_eq!(doubled.force, 2.0 * here.force, max_relative = ROUNDING);
+    assert_relative_eq!(doubled.stiffness.unwrap(), 2.0 * here.stiffness.unwrap(), max_relative = ROUNDING);
+    for zero in [at(Load::Force(0.0)), at(Load::Approach(0.0))] {
+        assert!(zero.force <= 0.0 && zero.approach.unwrap() <= 0.0 && zero.stiffness.unwrap() <= 0.0);
+        assert!(zero.area.is_none_or(|a| a <= 0.0));
+    }
+}
+
+/// F and k follow E* and the unit of length to both ends of f64.
+pub(crate) fn scale_invariant(
+    model: &dyn ContactModel,
+    surface: impl Fn(f64) -> Surface,
+    d: f64,
+    tolerance: f64,
+) {
+    let one = pressed(model, &Scene::new(surface(1.0), 1.0), Load::Approach(d)).unwrap();
+    for (modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+        let scene = Scene::new(surface(length), modulus);
+        let s = pressed(model, &scene, Load::Approach(d * length)).unwrap();
+        let units = Units::new(modulus, length, length).unwrap();
+        assert_relative_eq!(s.force, units.force(one.force).unwrap(), max_relative = tolerance);
+        let k = units.stiffness(one.stiffness.unwrap()).unwrap();
+        assert_relative_eq!(s.stiffness.unwrap(), k, max_relative = tolerance);
+    }
+}
