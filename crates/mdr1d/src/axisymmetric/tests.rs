@@ -3,6 +3,7 @@ use crate::Bearing;
 use approx::assert_relative_eq;
 use contact_model::Load;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Digits to which PHYSICS.md and its sources print their values.
 const PRINTED: f64 = 1e-10;
@@ -122,7 +123,7 @@ fn bad_bodies() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(64) })]
 
     #[test]
     fn exponent_round_trip_and_tangent(n in 0.1_f64..6.0, c in 0.01_f64..10.0, d in 1e-6_f64..1e-1) {
