@@ -4,7 +4,7 @@
 //! into independent springs of stiffness E* per length. The half width of the line in contact is the radius of the round contact.
 
 use contact_model::{Error, Line, Result, Surface};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 /// The MDR profile of an axisymmetric body, in units of the side of its square.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ impl Profile {
     pub fn new(surface: &Surface) -> Result<Option<Self>> {
         surface.validate()?;
         let power = |exponent: f64, slope: f64| {
-            let slope = kappa(exponent) * slope;
+            let slope = kappa(exponent)? * slope;
             if slope.is_finite() && slope > 0.0 {
                 Ok(Some(Self::Power { exponent, slope }))
             } else {
@@ -186,12 +186,16 @@ pub(crate) fn check_radius(radius: f64, side: f64) -> Result<()> {
 /// No gamma function is needed: `kappa_n = sqrt(pi) Gamma(x + 1/2) / Gamma(x)` with `x = (n + 1)/2` obeys `kappa_n = kappa_(n+2)
 /// (n + 1)/(n + 2)` and for large n has a rapidly convergent asymptotic series. Relative error below 1e-14 for every n > 0.
 ///
+/// # Errors
+/// [`Error::Domain`] for an exponent that is not finite and positive.
+///
 /// ```
 /// use mdr1d::axisymmetric::kappa;
-/// assert!((kappa(1.0) - std::f64::consts::FRAC_PI_2).abs() < 1e-14); // a cone
-/// assert!((kappa(2.0) - 2.0).abs() < 1e-14); // a sphere
+/// assert!((kappa(1.0)? - std::f64::consts::FRAC_PI_2).abs() < 1e-14); // a cone
+/// assert!((kappa(2.0)? - 2.0).abs() < 1e-14); // a sphere
+/// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn kappa(exponent: f64) -> f64 {
+pub fn kappa(exponent: f64) -> Result<f64> {
     /// Where the series takes over: its first neglected term is below 3e-17 of the sum.
     const LARGE: f64 = 24.0;
     /// Coefficients of `w^(-2 i)`, from Bernoulli polynomials; all are exact in binary.
@@ -204,6 +208,9 @@ pub fn kappa(exponent: f64) -> f64 {
         1_268_343.0 / 268_435_456.0,
         -227_803_437.0 / 17_179_869_184.0,
     ];
+    if !(exponent.is_finite() && exponent > 0.0) {
+        return Err(Error::domain("exponent", exponent, "a finite number > 0"));
+    }
     let mut n = exponent;
     let mut factor = 1.0;
     while n < LARGE {
@@ -214,7 +221,7 @@ pub fn kappa(exponent: f64) -> f64 {
     let w = 0.5 * (n + 0.5);
     let y = (w * w).recip();
     let series = SERIES.iter().rev().fold(0.0, |sum, c| sum * y + c);
-    factor * (2.0 * FRAC_PI_2 * w * series).sqrt()
+    Ok(factor * (PI * w * series).sqrt())
 }
 
 #[cfg(test)]

@@ -143,6 +143,20 @@ fn earlier_loads_change_no_bit() {
 }
 
 #[test]
+fn a_rebuilt_bearing_is_a_new_one() {
+    let mut used = Bearing::new(&long_line(20_000));
+    for elements in [3_000, 1, 30_000, 20_000] {
+        let line = long_line(elements);
+        used.press(Load::Force(1.0), 1.0).unwrap();
+        used.rebuild(&line);
+        for force in [1e-6, 1e-2, 1e2, 1e5] {
+            let load = Load::Force(force);
+            assert_eq!(used.press(load, 1.0).unwrap(), Bearing::new(&line).press(load, 1.0).unwrap());
+        }
+    }
+}
+
+#[test]
 fn extreme_units() {
     let base = long_line(3000);
     let reference = Bearing::new(&base).press(Load::Approach(0.3), 1.0).unwrap();
