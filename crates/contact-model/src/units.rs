@@ -35,7 +35,11 @@ impl Units {
         for (name, unit) in [("modulus", modulus), ("length", length), ("height", height)] {
             positive(name, unit)?;
             if unit.recip().is_infinite() {
-                return Err(Error::domain(name, unit, "a number with a finite reciprocal (choose other units)"));
+                return Err(Error::domain(
+                    name,
+                    unit,
+                    "a number with a finite reciprocal (choose other units)",
+                ));
             }
         }
         Ok(Self { modulus, length, height })
@@ -78,6 +82,14 @@ impl Units {
     /// As [`Units::force`].
     pub fn stiffness(self, value: f64) -> Result<f64> {
         held("stiffness", value, product([value, self.modulus, self.length]))
+    }
+
+    /// `value E* height / length`, a pressure.
+    ///
+    /// # Errors
+    /// As [`Units::force`].
+    pub fn pressure(self, value: f64) -> Result<f64> {
+        held("pressure", value, product([value, self.modulus, self.height, self.length.recip()]))
     }
 
     /// `value length^2`, an area.

@@ -1,0 +1,49 @@
+//! The cells that may touch at a given approach: those whose undeformed gap z is smaller.
+
+use crate::cells::CellSet;
+use std::sync::Arc;
+
+/// How far above the asked approach the list is filled, so that a path of loads does not scan the grid each time.
+const AHEAD: f64 = 2.0;
+
+/// Finds the cells with `z < d`.
+///
+/// Outside them the gap `u + z - d` is positive because u is not negative: they need no check and no storage.
+#[derive(Debug)]
+pub struct Candidates {
+    side: usize,
+    z: Arc<Vec<f64>>,
+    /// Cells with z < cap.
+    list: CellSet,
+    cap: f64,
+}
+
+impl Candidates {
+    /// Takes the undeformed gaps of an N x N grid.
+    pub fn new(side: usize, z: Arc<Vec<f64>>) -> Self {
+        Self { side, z, list: CellSet::new(side, Vec::new()), cap: 0.0 }
+    }
+
+    /// The undeformed gaps of the whole grid.
+    pub fn z(&self) -> &[f64] {
+        &self.z
+    }
+
+    /// The cells with `z < d`.
+    ///
+    /// Cost: the grid once for each doubling of d, else the candidates of the last doubling.
+    pub fn below(&mut self, d: f64) -> CellSet {
+        if d > self.cap {
+            self.cap = AHEAD * d;
+            let cap = self.cap;
+            let index = self.z.iter().enumerate().filter(|&(_, &z)| z < cap).map(|(i, _)| i as u32).collect();
+            self.list = CellSet::new(self.side, index);
+        }
+        self.list.filter(|k| self.z[self.list.index()[k] as usize] < d)
+    }
+
+    /// The undeformed gaps on a set.
+    pub fn gaps(&self, set: &CellSet) -> Vec<f64> {
+        set.index().iter().map(|&i| self.z[i as usize]).collect()
+    }
+}

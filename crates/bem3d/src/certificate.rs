@@ -1,0 +1,45 @@
+//! How well a pressure satisfies the contact conditions, from the exact gap.
+
+/// The numbers of [`contact_model::Certificate`] that do not concern the load or the stiffness.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Evidence {
+    /// `sum p (g - min g) / (F s)`.
+    pub frank_wolfe: f64,
+    /// `max(0, -min g) / s`.
+    pub penetration: f64,
+    /// `sum p |g| / (F s)`.
+    pub complementarity: f64,
+    /// `max(0, -min g)`, a length.
+    pub deepest: f64,
+}
+
+impl Evidence {
+    /// The largest of the relative numbers.
+    pub fn worst(&self) -> f64 {
+        self.frank_wolfe.max(self.penetration).max(self.complementarity)
+    }
+}
+
+/// Measures a pressure and its gap on the candidates against the length `s`.
+///
+/// The gap is positive on all other cells of the grid, so that its minimum over the candidates is the minimum of all.
+pub fn measure(p: &[f64], gap: &[f64], s: f64) -> Evidence {
+    let lowest = gap.iter().copied().fold(f64::INFINITY, f64::min);
+    let (mut force, mut weighted, mut duality) = (0.0, 0.0, 0.0);
+    for (&p, &g) in p.iter().zip(gap) {
+        force += p;
+        weighted += p * g.abs();
+        duality += p * (g - lowest);
+    }
+    let deepest = (-lowest).max(0.0);
+    if force <= 0.0 {
+        // Nothing presses yet: only the penetration says anything.
+        return Evidence { penetration: deepest / s, deepest, ..Evidence::default() };
+    }
+    Evidence {
+        frank_wolfe: duality / (force * s),
+        penetration: deepest / s,
+        complementarity: weighted / (force * s),
+        deepest,
+    }
+}

@@ -1,0 +1,155 @@
+//! Preconditioned conjugate gradients on one set of cells.
+
+use crate::cells::CellSet;
+use crate::operator::Operators;
+use contact_model::Stop;
+
+/// What one call of [`correct`] is asked to do.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// Keep the sum of the correction at 0: the force is prescribed and the approach adapts.
+    pub fixed_sum: bool,
+    /// Stop when the residual has fallen by this factor (2-norm) ...
+    pub reduction: f64,
+    /// ... or below this value everywhere.
+    pub floor: f64,
+    /// ... or after so many steps.
+    pub steps: usize,
+    /// Use the spectral preconditioner.
+    pub precondition: bool,
+}
+
+/// A correction and what it took.
+#[derive(Debug)]
+pub struct Correction {
+    /// Change of the pressure on the set.
+    pub x: Vec<f64>,
+    /// Conjugate gradient steps.
+    pub steps: usize,
+}
+
+/// Solves `K x = r` on a set approximately; with `fixed_sum`, `K x = r + const` and `sum x = 0`.
+///
+/// One single-precision application of K a step (and one of the preconditioner): the caller checks the result with the exact
+/// operator. The preconditioner is projected so that the constraint holds at every step.
+pub fn correct(
+    operators: &mut Operators,
+    set: &CellSet,
+    right: &[f64],
+    request: Request,
+    stop: Stop<'_>,
+) -> Correction {
+    let n = set.len();
+    let mut x = vec![0.0; n];
+    let mut r = right.to_vec();
+    let mut preconditioner = Preconditioner::new(operators, set, request);
+    let (mut z, mut direction, mut kt) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    let mut offset = preconditioner.apply(operators, set, &r, &mut z);
+    let (start, _) = size(&r, offset);
+    let mut rz = dot(&r, &z);
+    let mut steps = 0;
+    while steps < request.steps && rz > 0.0 && !stop() {
+        if steps == 0 {
+            direction.copy_from_slice(&z);
+        }
+        operators.fast(set, &direction, &mut kt);
+        let curvature = dot(&direction, &kt);
+        if curvature.is_nan() || curvature <= 0.0 {
+            break; // Below what single precision can resolve.
+        }
+        let step = rz / curvature;
+        for k in 0..n {
+            x[k] += step * direction[k];
+            r[k] -= step * kt[k];
+        }
+        steps += 1;
+        offset = preconditioner.apply(operators, set, &r, &mut z);
+        let (norm, largest) = size(&r, offset);
+        if norm <= request.reduction * start || largest <= request.floor {
+            break;
+        }
+        let next = dot(&r, &z);
+        let beta = next / rz;
+        rz = next;
+        for (t, &z) in direction.iter_mut().zip(&z) {
+            *t = z + beta * *t;
+        }
+    }
+    Correction { x, steps }
+}
+
+/// Upper estimate of the energy error `r' K^-1 r`: the inverse of the wrapped kernel, or the smallest eigenvalue.
+///
+/// `(K_CC)^-1 <= (K^-1)_CC` for every set C, so that the estimate with the inverse of the whole lattice is a bound; wrapping the
+/// lattice on a torus makes it an estimate. The eigenvalue gives a bound without any transform, larger by up to the condition.
+pub fn energy(operators: &mut Operators, set: &CellSet, r: &[f64], spectral: bool) -> f64 {
+    if spectral {
+        let mut z = vec![0.0; r.len()];
+        operators.inverse(set, r, &mut z);
+        dot(r, &z).max(0.0)
+    } else {
+        dot(r, r) / crate::love::SMALLEST_EIGENVALUE
+    }
+}
+
+/// Projected preconditioner: `z = M r - (1'M r / 1'M 1) M 1`.
+struct Preconditioner {
+    spectral: bool,
+    /// `M 1` and its sum, where the sum of the correction is fixed and M is not the identity.
+    ones: Option<(Vec<f64>, f64)>,
+    fixed_sum: bool,
+}
+
+impl Preconditioner {
+    fn new(operators: &mut Operators, set: &CellSet, request: Request) -> Self {
+        let ones = (request.precondition && request.fixed_sum).then(|| {
+            let mut m1 = vec![0.0; set.len()];
+            operators.inverse(set, &vec![1.0; set.len()], &mut m1);
+            let sum = m1.iter().sum();
+            (m1, sum)
+        });
+        Self { spectral: request.precondition, ones, fixed_sum: request.fixed_sum }
+    }
+
+    /// Fills `z` and returns the constant that the constraint takes from the residual.
+    fn apply(&mut self, operators: &mut Operators, set: &CellSet, r: &[f64], z: &mut [f64]) -> f64 {
+        if self.spectral {
+            operators.inverse(set, r, z);
+        } else {
+            z.copy_from_slice(r);
+        }
+        if !self.fixed_sum {
+            return 0.0;
+        }
+        let sum: f64 = z.iter().sum();
+        if let Some((m1, total)) = &self.ones {
+            let offset = sum / total;
+            for (z, m) in z.iter_mut().zip(m1) {
+                *z -= offset * m;
+            }
+            offset
+        } else {
+            let offset = sum / z.len() as f64;
+            for z in z.iter_mut() {
+                *z -= offset;
+            }
+            offset
+        }
+    }
+}
+
+/// 2-norm and largest magnitude of `r - offset`.
+fn size(r: &[f64], offset: f64) -> (f64, f64) {
+    let (mut square, mut largest) = (0.0, 0.0f64);
+    for &r in r {
+        let e = r - offset;
+        square += e * e;
+        largest = largest.max(e.abs());
+    }
+    (f64::sqrt(square), largest)
+}
+
+/// Scalar product.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,353 @@
+//! The boundary-element model behind the common traits.
+
+use crate::active_set::{self, Guess, Limits, Problem, Solved, Target};
+use crate::candidates::Candidates;
+use crate::operator::{Operators, Table};
+use crate::seed;
+use crate::stiffness::{self, Stiffness};
+use contact_model::{
+    Certificate, ContactModel, ContactState, Error, Fields, HeightMap, Load, Outputs, PreparedContact,
+    Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units,
+};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A load this many times the last one begins cold: the last state says little about it.
+const WARM_RANGE: f64 = 30.0;
+
+/// Times that the contact set is settled further for the sake of the stiffness, and by how much each time.
+const TIGHTENINGS: usize = 5;
+const TIGHTER: f64 = 0.1;
+
+/// Name of the model.
+const NAME: &str = "bem3d";
+
+/// Numerics of the boundary-element model.
+///
+/// ```
+/// use bem3d::Bem3d;
+/// use contact_model::{ContactModel, Load, Scene, Surface};
+/// // Two cells a side, all four in contact: k = 0.993186221 E* L (PHYSICS.md section 4).
+/// let model = Bem3d { cells: 2, ..Bem3d::default() };
+/// let scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+/// let state = model.prepare(&scene, 0)?.solve(Load::Force(1.0))?;
+/// assert!((state.stiffness.unwrap() - 0.993186221).abs() < 1e-9);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bem3d {
+    /// Cells a side, N >= 1. Ignored where the scene brings its own map.
+    pub cells: usize,
+    /// Bound t of the certificate and of the estimated relative error of k ([`Certificate::meets`]).
+    pub tolerance: f64,
+    /// Rounds of the active set at most (each a handful of operator applications).
+    pub rounds: usize,
+    /// How small sets are solved.
+    pub method: Method,
+}
+
+/// How the linear systems of one active set are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// Factor small sets, iterate on large ones: whichever is cheaper.
+    #[default]
+    Auto,
+    /// Iterate always.
+    Iterative,
+}
+
+impl Default for Bem3d {
+    fn default() -> Self {
+        Self { cells: 257, tolerance: 1e-6, rounds: 200, method: Method::Auto }
+    }
+}
+
+impl ContactModel for Bem3d {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn sources(&self) -> &'static [Source] {
+        &[
+            Source {
+                citation: "A. E. H. Love, Phil. Trans. R. Soc. A 228, 377 (1929)",
+                what: "displacement under uniform pressure on a rectangle",
+            },
+            Source {
+                citation: "R. Pohrt, V. L. Popov, A. E. Filippov, Phys. Rev. E 86, 026710 (2012)",
+                what: "problem, surfaces, normalisation (Eqs. 2-10)",
+            },
+        ]
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
+        scene.validate()?;
+        scene.refuse_effects(NAME)?;
+        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
+            return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
+        }
+        let map = match &scene.surface {
+            Surface::Heights(map) => Arc::clone(map),
+            Surface::Line { .. } => return Err(Error::unsupported(NAME, "a line (it needs a map)")),
+            surface => surface_gen::height_map(surface, self.cells, seed)?,
+        };
+        let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));
+        Ok(Box::new(Prepared::new(*self, scene, &map, has_rms)?))
+    }
+}
+
+/// One surface, ready to be pressed.
+#[derive(Debug)]
+struct Prepared {
+    options: Bem3d,
+    outputs: Outputs,
+    problem: Problem,
+    units: Units,
+    /// Unit of lengths normal to the surface: the rms height where there is one.
+    height: f64,
+    scales: Scales,
+    last: Option<Last>,
+}
+
+/// The state solved last, from which the next is predicted.
+#[derive(Debug)]
+struct Last {
+    solved: Solved,
+    force: f64,
+    /// q and its sum, where known.
+    tangent: Option<(Vec<f64>, f64)>,
+}
+
+impl Prepared {
+    fn new(options: Bem3d, scene: &Scene, map: &HeightMap, has_rms: bool) -> Result<Self> {
+        let highest = map.highest();
+        // Differences first: an offset of the heights changes nothing.
+        let mut z: Vec<f64> = map.heights().iter().map(|h| highest - h).collect();
+        let rms = surface_gen::rms_height(&z);
+        let height = if rms > 0.0 { rms } else { 1.0 };
+        for z in &mut z {
+            *z /= height;
+        }
+        let units = Units::new(scene.modulus, map.cell(), height)?;
+        let problem = Problem {
+            candidates: Candidates::new(map.cells(), Arc::new(z)),
+            operators: Operators::new(Table::shared(map.cells())),
+            side: map.cells(),
+        };
+        let scales = Scales { modulus: scene.modulus, side: map.side(), height: has_rms.then_some(rms) };
+        Ok(Self { options, outputs: scene.outputs, problem, units, height, scales, last: None })
+    }
+
+    /// The guess for a target: the tangent at the last state, or a cold start.
+    fn guess(&mut self, target: Target, limits: Limits, stop: Stop<'_>) -> Guess {
+        if let Some(last) = &self.last
+            && let Some(guess) = predict(last, target)
+        {
+            return guess;
+        }
+        seed::cold(&mut self.problem, target, limits, stop)
+    }
+
+    fn tangent(&mut self, solved: &Solved, guess: Option<Vec<f64>>, stop: Stop<'_>) -> Stiffness {
+        if let Some(q) = solved.q.clone() {
+            return stiffness::factored(&mut self.problem, solved, q);
+        }
+        let guess = guess.or_else(|| {
+            let last = self.last.as_ref()?;
+            last.tangent.as_ref().map(|(q, _)| solved.contact.carry(&last.solved.contact, q))
+        });
+        stiffness::solve(&mut self.problem, solved, guess, self.options.tolerance, stop)
+    }
+
+    /// Pressure, and stiffness where asked for. The stiffness may call for a tighter pressure than the certificate does: as long as
+    /// undecided cells could change it by more than the tolerance, the set is settled further.
+    fn settle(&mut self, target: Target, mut limits: Limits, stop: Stop<'_>) -> (Solved, Option<Stiffness>) {
+        let guess = self.guess(target, limits, stop);
+        let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
+        if !self.outputs.stiffness {
+            return (solved, None);
+        }
+        let mut tangent = self.tangent(&solved, None, stop);
+        for _ in 0..TIGHTENINGS {
+            if solved.status != Status::Converged || tangent.error() <= self.options.tolerance || stop() {
+                break;
+            }
+            limits.tolerance *= TIGHTER;
+            let guess = Guess { set: solved.contact.clone(), p: solved.p.clone(), d: solved.d };
+            let steps = solved.steps + tangent.steps;
+            let next = active_set::solve(&mut self.problem, target, guess, limits, stop);
+            if next.look.evidence.worst() >= solved.look.evidence.worst() {
+                solved.steps += next.steps;
+                break;
+            }
+            // The tighter state counts as converged when it meets the tolerance that was asked for.
+            let converged = next.look.evidence.worst() <= self.options.tolerance;
+            let status = if converged { Status::Converged } else { next.status };
+            let q = next.contact.carry(&solved.contact, &tangent.q);
+            solved = Solved { status, steps: next.steps + steps, ..next };
+            tangent = self.tangent(&solved, Some(q), stop);
+        }
+        (solved, Some(tangent))
+    }
+
+    fn state(
+        &mut self,
+        solved: Solved,
+        tangent: Option<Stiffness>,
+        target: Target,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
+        let force: f64 = solved.p.iter().sum();
+        let certificate = Certificate {
+            frank_wolfe: solved.look.evidence.frank_wolfe,
+            penetration: solved.look.evidence.penetration,
+            complementarity: solved.look.evidence.complementarity,
+            load_error: match target {
+                Target::Force(asked) => ((force - asked) / asked).abs(),
+                Target::Approach(_) => 0.0,
+            },
+            stiffness_error: tangent.as_ref().map(Stiffness::error),
+        };
+        let met = certificate.meets(self.options.tolerance);
+        let status = match solved.status {
+            Status::Converged if met => Status::Converged,
+            Status::Converged if stop() => Status::Stopped,
+            Status::Converged => Status::Stagnated,
+            other => other,
+        };
+        let report = SolveReport {
+            status,
+            strategy: self.problem.operators.describe(&solved),
+            iterations: solved.steps + tangent.as_ref().map_or(0, |t| t.steps),
+            applications: std::mem::take(&mut self.problem.operators.applications),
+            contact_cells: Some(solved.contact.len()),
+            certificate,
+        };
+        let state = ContactState {
+            force: self.units.force(PI * force)?,
+            approach: Some(self.units.approach(solved.d)?),
+            stiffness: match &tangent {
+                Some(t) => Some(self.units.stiffness(PI * t.value)?),
+                None => None,
+            },
+            area: if self.outputs.area { Some(self.units.area(solved.contact.len() as f64)?) } else { None },
+            fields: self.fields(&solved)?,
+            report,
+        };
+        if status == Status::Converged {
+            self.last = Some(Last { force, tangent: tangent.map(|t| (t.q, t.value)), solved });
+            Ok(state)
+        } else if status == Status::Stopped {
+            Err(Error::Stopped { best: Some(Box::new(state)) })
+        } else {
+            Err(Error::NotConverged { best: Box::new(state) })
+        }
+    }
+
+    fn fields(&mut self, solved: &Solved) -> Result<Option<Fields>> {
+        if !self.outputs.any_field() {
+            return Ok(None);
+        }
+        let count = self.problem.side * self.problem.side;
+        let mut fields = Fields::default();
+        if self.outputs.pressure {
+            let mut p = vec![0.0; count];
+            for (&i, &value) in solved.contact.index().iter().zip(&solved.p) {
+                p[i as usize] = self.units.pressure(PI * value)?;
+            }
+            fields.pressure = Some(p);
+        }
+        if self.outputs.displacement || self.outputs.gap {
+            let all = crate::cells::CellSet::new(self.problem.side, (0..count as u32).collect());
+            let u = self.problem.operators.exact(&solved.contact, &solved.p, &all);
+            let height = self.height;
+            if self.outputs.gap {
+                let z = self.problem.candidates.z();
+                fields.gap = Some(u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect());
+            }
+            if self.outputs.displacement {
+                fields.displacement = Some(u.iter().map(|u| u * height).collect());
+            }
+        }
+        Ok(Some(fields))
+    }
+
+    /// The state before first touch, and at it.
+    fn untouched(&self) -> ContactState {
+        let count = self.problem.side * self.problem.side;
+        let zeros = |wanted: bool| wanted.then(|| vec![0.0; count]);
+        let gap = |z: &[f64], height: f64| z.iter().map(|z| z * height).collect();
+        let fields = self.outputs.any_field().then(|| Fields {
+            pressure: zeros(self.outputs.pressure),
+            displacement: zeros(self.outputs.displacement),
+            gap: self.outputs.gap.then(|| gap(self.problem.candidates.z(), self.height)),
+        });
+        let mut report = SolveReport::exact("no contact");
+        report.contact_cells = Some(0);
+        ContactState {
+            force: 0.0,
+            approach: Some(0.0),
+            stiffness: self.outputs.stiffness.then_some(0.0),
+            area: self.outputs.area.then_some(0.0),
+            fields,
+            report,
+        }
+    }
+}
+
+impl PreparedContact for Prepared {
+    fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        let target = match load.validated()? {
+            Load::Force(f) => Target::Force(scaled("force", f, self.units.force_in(f) / PI)?),
+            Load::Approach(d) => Target::Approach(scaled("approach", d, self.units.approach_in(d))?),
+            other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+        };
+        if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
+            return Ok(self.untouched());
+        }
+        self.problem.operators.applications = 0;
+        let limits = Limits {
+            tolerance: self.options.tolerance,
+            height: self.scales.height.filter(|&h| h > 0.0).map(|h| self.units.approach_in(h)),
+            rounds: self.options.rounds,
+            dense: self.options.method == Method::Auto,
+        };
+        let (solved, tangent) = self.settle(target, limits, stop);
+        self.state(solved, tangent, target, stop)
+    }
+}
+
+/// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load, so that the predicted
+/// approach is an upper bound and every new contact cell lies below it.
+fn predict(last: &Last, target: Target) -> Option<Guess> {
+    let (q, k) = last.tangent.as_ref()?;
+    let (ratio, step) = match target {
+        Target::Force(force) => (force / last.force, (force - last.force) / k),
+        Target::Approach(d) => (d / last.solved.d, d - last.solved.d),
+    };
+    if !(1.0 / WARM_RANGE..=WARM_RANGE).contains(&ratio) {
+        return None;
+    }
+    let pressure: Vec<f64> = last.solved.p.iter().zip(q).map(|(p, q)| p + step * q).collect();
+    let set = last.solved.contact.filter(|k| pressure[k] > 0.0);
+    if set.is_empty() {
+        return None;
+    }
+    let p = pressure.into_iter().filter(|&p| p > 0.0).collect();
+    // Unloading: the old approach is the upper bound.
+    let d = (last.solved.d + step.max(0.0)).max(f64::MIN_POSITIVE);
+    Some(Guess { set, p, d })
+}
+
+/// A load in scaled units, unless no f64 holds it.
+fn scaled(name: &'static str, value: f64, result: f64) -> Result<f64> {
+    if result.is_finite() && (result > 0.0 || value <= 0.0) {
+        Ok(result)
+    } else {
+        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
+    }
+}

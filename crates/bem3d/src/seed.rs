@@ -1,0 +1,119 @@
+//! Where a cold solve begins: a small superset, or the same surface on a coarser grid.
+
+use crate::active_set::{self, Guess, Limits, Problem, Target};
+use crate::candidates::Candidates;
+use crate::cells::CellSet;
+use crate::operator::{Operators, Table};
+use crate::{love, strategy};
+use contact_model::Stop;
+use std::sync::Arc;
+
+/// Grids of this size or less are solved without a coarser one.
+const COARSEST: usize = 48;
+/// Tolerance on coarse grids: a seed, not a result.
+const SEED_TOLERANCE: f64 = 1e-2;
+/// Rounds at most on a coarse grid.
+const SEED_ROUNDS: usize = 20;
+
+/// A guess for a load with nothing known.
+///
+/// The cells with `z < F / k_1` (k_1: one cell alone, the softest contact) contain the contact set. If they are few they are the guess;
+/// otherwise the surface averaged over 2 x 2 cells is solved first. A coarse grid only says where to begin: every fine cell
+/// stays a candidate, because fractal summits vanish on coarse grids.
+pub fn cold(problem: &mut Problem, target: Target, limits: Limits, stop: Stop<'_>) -> Guess {
+    // The highest cell of a coarse grid lies below the plane of first touch.
+    let (highest, first, deepest) = range(problem.candidates.z());
+    let reach = match target {
+        Target::Force(force) => first + force * love::influence(0, 0),
+        Target::Approach(d) => d,
+    };
+    let superset = problem.candidates.below(reach.min(2.0 * deepest + f64::MIN_POSITIVE));
+    let superset = active_set::with(&superset, &CellSet::new(problem.side, vec![highest]));
+    if problem.side <= COARSEST
+        || (limits.dense && strategy::dense_is_cheaper(superset.len(), superset.free_lengths()))
+    {
+        return uniform(superset, target, reach);
+    }
+    let mut coarse = coarser(problem);
+    if let Target::Approach(d) = target
+        && range(coarse.candidates.z()).1 >= d
+    {
+        return uniform(superset, target, reach);
+    }
+    let limits = Limits { tolerance: SEED_TOLERANCE, rounds: SEED_ROUNDS, ..limits };
+    // A force is a sum of scaled pressures, which double when the cell does and are a quarter as many.
+    let coarse_target = match target {
+        Target::Force(force) => Target::Force(force / 2.0),
+        approach @ Target::Approach(_) => approach,
+    };
+    let guess = cold(&mut coarse, coarse_target, limits, stop);
+    let solved = active_set::solve(&mut coarse, coarse_target, guess, limits, stop);
+    prolong(problem, &coarse, &solved.contact, &solved.p, solved.d)
+}
+
+fn uniform(set: CellSet, target: Target, reach: f64) -> Guess {
+    let pressure = match target {
+        Target::Force(force) => force / set.len() as f64,
+        // Any positive value: the first round sees the true gap.
+        Target::Approach(d) => d / (love::influence(0, 0) * set.len() as f64),
+    };
+    Guess { p: vec![pressure; set.len()], set, d: reach }
+}
+
+/// The highest cell, its gap and the largest gap.
+fn range(z: &[f64]) -> (u32, f64, f64) {
+    let mut highest = 0;
+    let mut deepest = 0.0f64;
+    for (i, &value) in z.iter().enumerate() {
+        if value < z[highest] {
+            highest = i;
+        }
+        deepest = deepest.max(value);
+    }
+    (highest as u32, z[highest], deepest)
+}
+
+/// The same relief on cells twice as large: means of 2 x 2 (fewer at the last row and column of an odd grid).
+fn coarser(problem: &Problem) -> Problem {
+    let (fine, side) = (problem.side, problem.side.div_ceil(2));
+    let z = problem.candidates.z();
+    let mut mean = Vec::with_capacity(side * side);
+    for y in 0..side {
+        for x in 0..side {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for fy in 2 * y..(2 * y + 2).min(fine) {
+                for fx in 2 * x..(2 * x + 2).min(fine) {
+                    sum += z[fy * fine + fx];
+                    count += 1.0;
+                }
+            }
+            mean.push(sum / count);
+        }
+    }
+    Problem {
+        candidates: Candidates::new(side, Arc::new(mean)),
+        operators: Operators::new(Table::shared(side)),
+        side,
+    }
+}
+
+/// Coarse pressure on the fine cells below it that lie under the plane (all four if none does).
+fn prolong(problem: &Problem, coarse: &Problem, contact: &CellSet, p: &[f64], d: f64) -> Guess {
+    let (fine, z) = (problem.side, problem.candidates.z());
+    let mut cells: Vec<(u32, f64)> = Vec::with_capacity(4 * p.len());
+    for (k, &p) in p.iter().enumerate() {
+        let i = contact.index()[k] as usize;
+        let (cx, cy) = (i % coarse.side, i / coarse.side);
+        let children: Vec<usize> = (2 * cy..(2 * cy + 2).min(fine))
+            .flat_map(|y| (2 * cx..(2 * cx + 2).min(fine)).map(move |x| y * fine + x))
+            .collect();
+        let below: Vec<usize> = children.iter().copied().filter(|&i| z[i] < d).collect();
+        let chosen = if below.is_empty() { children } else { below };
+        // Equal force: cells half as large carry twice the sum in scaled units.
+        let share = 2.0 * p / chosen.len() as f64;
+        cells.extend(chosen.into_iter().map(|i| (i as u32, share)));
+    }
+    cells.sort_unstable_by_key(|&(i, _)| i);
+    let (index, p) = cells.into_iter().unzip();
+    Guess { set: CellSet::new(fine, index), p, d }
+}

@@ -1,0 +1,43 @@
+//! Which way is the cheapest: pure functions of the work at hand with measured constants.
+
+use crate::operator::convolution::Lengths;
+
+/// Nanoseconds of one kernel look-up and addition of the direct sum.
+const PAIR_NS: f64 = 0.9;
+/// Nanoseconds per point of a padded transform, per log2 of the points: one application in f64, fully populated.
+const POINT_NS: f64 = 0.30;
+/// Nanoseconds per multiplication of a Cholesky factorisation.
+const FACTOR_NS: f64 = 0.07;
+/// Applications that the iterative solution of one active set takes (pressure and stiffness).
+const APPLICATIONS: f64 = 20.0;
+/// Factorisations that the dense solution of one active set takes.
+const FACTORS: f64 = 2.5;
+/// A factor is never larger than this, whatever the rest costs (memory: 16 n^2 bytes).
+const LARGEST_FACTOR: usize = 6000;
+/// Sets up to this size are always factored: the result is exact and the time is below a tenth of a millisecond.
+const ALWAYS_FACTORED: usize = 100;
+/// Share of the window in contact from which the spectral preconditioner saves more applications than it costs.
+const DENSE_CONTACT: f64 = 0.02;
+
+fn fft_ns(lengths: Lengths) -> f64 {
+    let points = lengths.points() as f64;
+    POINT_NS * points * points.log2()
+}
+
+/// Whether the sum over all pairs beats one FFT application.
+pub fn direct_is_cheaper(sources: usize, targets: usize, lengths: Lengths) -> bool {
+    PAIR_NS * sources as f64 * targets as f64 <= fft_ns(lengths)
+}
+
+/// Whether an active set of `n` cells is solved by factorisation.
+pub fn dense_is_cheaper(n: usize, lengths: Lengths) -> bool {
+    let cells = n as f64;
+    let factor = FACTORS * (FACTOR_NS * cells.powi(3) / 3.0 + 4.0 * cells * cells);
+    let iterate = APPLICATIONS * (fft_ns(lengths) * 0.5).min(PAIR_NS * cells * cells);
+    n <= ALWAYS_FACTORED || (n <= LARGEST_FACTOR && factor <= iterate)
+}
+
+/// Whether conjugate gradients use the spectral preconditioner.
+pub fn precondition(contact: usize, window_cells: usize) -> bool {
+    contact as f64 >= DENSE_CONTACT * window_cells as f64
+}
