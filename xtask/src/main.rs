@@ -1,2 +1,98 @@
-//! Runner.
-fn main() {}
+//! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `check-reference`.
+//!
+//! Argument parsing, progress and exit codes; the figures are in the crate `figures`.
+//!
+//! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge or
+//! stored numbers differ.
+
+mod arguments;
+mod progress;
+
+use arguments::{Arguments, Command};
+use clap::Parser as _;
+use figures::{Outcome, Result, Run};
+use progress::Reporter;
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match execute(Arguments::parse().command) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn execute(command: Command) -> Result<ExitCode> {
+    if let Command::CheckReference(options) = command {
+        return check_reference(options.bless, &options.out);
+    }
+    let name = command.name();
+    let run = Run::new(&command.request())?;
+    let reporter = Reporter::new();
+    let outcomes = match command {
+        Command::ReproduceFig1(_) => vec![figures::fig1(&run, &reporter)?],
+        Command::ReproduceFig2(_) => vec![figures::fig2(&run, &reporter)?],
+        Command::ReproduceFig3(_) => vec![figures::fig3(&run, &reporter)?],
+        Command::ReproduceFig4(_) => vec![figures::fig4(&run, &reporter)?],
+        Command::ReproduceFig5(_) => vec![figures::fig5(&run, &reporter)?],
+        Command::ReproduceFig6(_) => vec![figures::fig6(&run, &reporter)?],
+        Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
+        Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
+        Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
+        Command::CheckReference(_) => Vec::new(),
+    };
+    let typed: Vec<String> = std::env::args().skip(1).collect();
+    let manifest =
+        figures::write_manifest(&run, name, &format!("cargo xtask {}", typed.join(" ")), &outcomes)?;
+    Ok(report(&outcomes, &manifest))
+}
+
+/// Prints what was made and what the paper says to it.
+fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
+    for outcome in outcomes {
+        for file in &outcome.files {
+            println!("{}", file.display());
+        }
+    }
+    println!("{}", manifest.display());
+    let verified = outcomes.iter().find(|o| o.name == "verify");
+    let claims = verified.map_or_else(
+        || {
+            let mut all: Vec<_> = outcomes.iter().flat_map(|o| o.claims.iter().cloned()).collect();
+            figures::sort(&mut all);
+            all
+        },
+        |o| o.claims.clone(),
+    );
+    if !claims.is_empty() {
+        println!("\nThe paper beside these numbers:\n\n{}", figures::plain(&claims));
+    }
+    let seconds: f64 = outcomes.iter().map(|o| o.seconds).sum();
+    let missing = outcomes.iter().map(|o| o.not_converged).max().unwrap_or(0);
+    if missing == 0 {
+        println!("done in {seconds:.1} s");
+        return ExitCode::SUCCESS;
+    }
+    println!(
+        "done in {seconds:.1} s, but {missing} solves did not converge: they are in the samples with their status and in no mean"
+    );
+    ExitCode::from(3)
+}
+
+fn check_reference(bless: bool, out: &Path) -> Result<ExitCode> {
+    let reference = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/reference");
+    let differences = figures::check_reference(&reference, &out.join("reference"), bless, &Reporter::new())?;
+    for line in &differences {
+        println!("{line}");
+    }
+    if differences.is_empty() {
+        let relative = figures::RELATIVE;
+        println!("{}", if bless { "stored".to_owned() } else { format!("equal to {relative:e}") });
+        return Ok(ExitCode::SUCCESS);
+    }
+    println!("{} differences (--bless stores the new numbers)", differences.len());
+    Ok(ExitCode::from(3))
+}

@@ -85,6 +85,16 @@ impl Curves {
             .collect()
     }
 
+    /// The ensemble of the surfaces `draw` (a surface may be drawn more than once).
+    ///
+    /// # Panics
+    /// When `draw` names a surface that does not exist.
+    #[must_use]
+    pub fn resampled(&self, draw: &[usize]) -> Self {
+        let surfaces = draw.iter().map(|&i| self.surfaces[i].clone()).collect();
+        Self { force_bar: self.force_bar.clone(), surfaces }
+    }
+
     /// Every surface once.
     pub fn all(&self) -> Vec<usize> {
         (0..self.surfaces.len()).collect()

@@ -1,0 +1,35 @@
+//! All seven figures and the verification, each ensemble solved once.
+
+use crate::error::Result;
+use crate::measured::{measure_1d, measure_3d};
+use crate::outcome::Outcome;
+use crate::progress::Progress;
+use crate::run::Run;
+use crate::session::Session;
+use crate::{claims, fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
+
+/// Makes Figs. 1 to 7 and the verification.
+///
+/// # Errors
+/// Those of each figure.
+pub fn reproduce_all(run: &Run, progress: &dyn Progress) -> Result<Vec<Outcome>> {
+    let mut outcomes = vec![fig1::fig1(run, progress)?, fig5::fig5(run, progress)?];
+    let session = Session::open(run)?;
+    let solid = measure_3d(run, &session.store, progress)?;
+    let mut two = fig2::write(run, &solid)?;
+    two.claims = claims::curves_3d(&solid);
+    outcomes.insert(1, session.close(two)?);
+    let session = Session::open(run)?;
+    let line = measure_1d(run, &session.store, progress)?;
+    let mut six = fig6::write(run, &line)?;
+    six.claims = claims::curves_1d(&line);
+    outcomes.push(session.close(six)?);
+    for write in [fig3::write, fig7::write, verify::write] {
+        let session = Session::open(run)?;
+        outcomes.push(session.close(write(run, &solid, &line)?)?);
+    }
+    let session = Session::open(run)?;
+    outcomes.insert(2, session.close(fig4::write(run, &solid)?)?);
+    outcomes.sort_by_key(|o| o.name);
+    Ok(outcomes)
+}

@@ -1,0 +1,92 @@
+//! The claims of the paper, one function per group; each compares and none tunes.
+//!
+//! What counts as agreement is fixed here, beforehand, from the uncertainty that PHYSICS.md states for independent values
+//! (alpha: 0.03, and 0.08 at D_f = 3, where the exponent is logarithmic), the digits the paper prints, and twice the standard
+//! error of this run.
+
+mod area;
+mod curve;
+mod exponent;
+mod factor;
+mod paper;
+mod plateau;
+mod scaling;
+mod speed;
+
+use crate::claim::Claim;
+use crate::measured::{Measured, Series};
+use analysis::{Bootstrap, interpolate};
+
+pub(crate) use paper::paper_against_itself;
+pub(crate) use plateau::plateaus;
+pub(crate) use scaling::scaling;
+pub(crate) use speed::speed;
+
+/// What Fig. 2 can judge.
+pub(crate) fn curves_3d(solid: &Measured) -> Vec<Claim> {
+    let mut claims = curve::near_the_crossing(solid);
+    claims.extend(curve::conductance(solid));
+    claims.extend(curve::saturation(solid));
+    claims.extend(area::proportionality(solid));
+    claims
+}
+
+/// What Fig. 6 can judge.
+pub(crate) fn curves_1d(line: &Measured) -> Vec<Claim> {
+    let mut claims = curve::saturation(line);
+    claims.extend(exponent::down_to_small_forces(line));
+    claims
+}
+
+/// What Fig. 3 can judge.
+pub(crate) fn exponents(solid: &Measured, line: &Measured) -> Vec<Claim> {
+    let mut claims = exponent::against_the_fit(solid);
+    claims.extend(exponent::against_the_scaling(solid));
+    claims.extend(exponent::against_the_fit(line));
+    claims.extend(exponent::against_the_scaling(line));
+    claims.extend(exponent::line_against_solid(solid, line));
+    claims
+}
+
+/// What Fig. 7 can judge.
+pub(crate) fn factors(solid: &Measured, line: &Measured) -> Vec<Claim> {
+    let mut claims = factor::against_the_fit(solid);
+    claims.extend(factor::crossing(solid));
+    claims.extend(factor::line_against_solid(solid, line));
+    claims
+}
+
+/// What Fig. 4 can judge.
+pub(crate) fn collapse(solid: &Measured) -> Vec<Claim> {
+    curve::collapse(solid)
+}
+
+/// What Figs. 2 and 6 together can judge.
+pub(crate) fn crossover(solid: &Measured, line: &Measured) -> Vec<Claim> {
+    curve::line_above_solid(solid, line)
+}
+
+/// Uncertainty of alpha that independent values have (PHYSICS.md section 3).
+fn alpha_allowed(d: f64) -> f64 {
+    if d > 2.9 { 0.08 } else { 0.03 }
+}
+
+/// How a model is called in a claim.
+fn label(measured: &Measured) -> &'static str {
+    if measured.numerics.name() == "bem3d" { "3D" } else { "1D" }
+}
+
+/// k_bar at any force of the curve, with the standard error of its mean.
+fn stiffness_at(series: &Series, force_bar: f64) -> Option<(f64, Option<f64>)> {
+    let forces = series.curves.force_bar();
+    let value = interpolate(forces, &series.means(), force_bar)?;
+    let error = Bootstrap::default().standard_error(series.units.len(), |draw| {
+        interpolate(forces, &series.curves.mean_of(draw), force_bar)
+    });
+    Some((value, error))
+}
+
+/// Twice a standard error; 0 where there is none.
+fn twice(error: Option<f64>) -> f64 {
+    2.0 * error.unwrap_or(0.0)
+}

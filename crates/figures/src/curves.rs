@@ -1,0 +1,121 @@
+//! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
+
+use crate::csv_file::{CsvFile, Header, write_csv};
+use crate::error::Result;
+use crate::measured::Measured;
+use crate::plot::{Axis, Key, Mark, Picture, color, decades};
+use crate::run::{Flag, Run, list};
+use crate::tables;
+use kuva::plot::line::LineStyle;
+use kuva::plot::scatter::MarkerShape;
+use std::path::{Path, PathBuf};
+
+pub(crate) const FLAGS_3D: [Flag; 6] =
+    [Flag::Cells, Flag::Surfaces, Flag::FractalDimensions, Flag::Forces, Flag::Tolerance, Flag::Seed];
+pub(crate) const FLAGS_1D: [Flag; 5] =
+    [Flag::Elements, Flag::Lines, Flag::FractalDimensions, Flag::Forces, Flag::Seed];
+
+/// Header lines about an ensemble.
+pub(crate) fn describe(mut header: Header, run: &Run, measured: &[&Measured]) -> Header {
+    header = header
+        .with_note("normalisation: F_bar = F/(E* h L) with the measured rms height h of each surface, k_bar = k/(1.1419 E* L)")
+        .with_note("surfaces: fixed amplitudes, uniform phases, no roll-off, spectrum to the end of the grid on a circle")
+        .with_note(format!("fractal_dimensions: {}", list(&run.dimensions())))
+        .with_note(format!("seed: {} (surface i: surface_seed(seed, i); D_f does not enter)", run.seed));
+    for m in measured {
+        let (size, count, forces) = match m.numerics {
+            crate::Numerics::Bem3d { cells, tolerance } => {
+                (format!("{cells} cells a side, tolerance {tolerance:?}"), run.surfaces, &run.forces_3d)
+            }
+            crate::Numerics::Mdr1d { elements } => {
+                (format!("{elements} elements"), run.lines, &run.forces_1d)
+            }
+        };
+        header = header
+            .with_sources(m.numerics.model().sources())
+            .with_note(format!(
+                "{}: {size}, {count} surfaces per D_f, loads {}",
+                m.numerics.name(),
+                forces.spec()
+            ))
+            .with_note(format!("{}: {} solves not converged", m.numerics.name(), m.not_converged()));
+    }
+    header
+}
+
+/// Writes `name.csv`, `name-samples.csv`, `name.svg`, `name.png`.
+pub(crate) fn write(
+    name: &'static str,
+    title: &str,
+    flags: &[Flag],
+    run: &Run,
+    measured: &Measured,
+) -> Result<Vec<PathBuf>> {
+    let header = describe(Header::new(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
+    let csv = run.out.join(format!("{name}.csv"));
+    let samples = run.out.join(format!("{name}-samples.csv"));
+    write_csv(&csv, &tables::curves(title, measured)?, &header)?;
+    let all = tables::samples(&format!("{title}: every surface and load"), measured)?;
+    write_csv(&samples, &all, &header)?;
+    let mut files = vec![csv.clone(), samples];
+    files.extend(draw(name, title, &csv, &run.out)?);
+    Ok(files)
+}
+
+/// The curves of a CSV file: (D_f, points with their floor mark).
+type CurvePoints = (f64, Vec<(f64, f64, bool)>);
+
+fn read(csv: &Path) -> Result<Vec<CurvePoints>> {
+    let file = CsvFile::read(csv)?;
+    let d = file.numbers("fractal_dimension")?;
+    let force = file.numbers("force_bar")?;
+    let k = file.numbers("stiffness_bar")?;
+    let floor = file.texts("below_floor")?;
+    let mut curves: Vec<CurvePoints> = Vec::new();
+    for i in 0..d.len() {
+        let (Some(d), Some(f), Some(k)) = (d[i], force[i], k[i]) else { continue };
+        if curves.last().is_none_or(|c| c.0.total_cmp(&d).is_ne()) {
+            curves.push((d, Vec::new()));
+        }
+        if let Some(curve) = curves.last_mut() {
+            curve.1.push((f, k, floor[i] == "true"));
+        }
+    }
+    Ok(curves)
+}
+
+fn draw(name: &str, title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+    let curves = read(csv)?;
+    let points = || curves.iter().flat_map(|c| &c.1);
+    let x = decades(points().map(|p| p.0));
+    let y = decades(points().map(|p| p.1));
+    let mut picture =
+        Picture::new(x, y, "F\u{304} = F / (E* h L)", "k\u{304} = k / (1.1419 E* L)").with_title(title);
+    let circle = MarkerShape::Circle;
+    for (d, points) in &curves {
+        let color = color(*d);
+        let inside: Vec<(f64, f64)> = points.iter().filter(|p| !p.2).map(|p| (p.0, p.1)).collect();
+        let floor: Vec<(f64, f64)> = points.iter().filter(|p| p.2).map(|p| (p.0, p.1)).collect();
+        picture.line(&paper_law(*d, x, y), &color, 1.0, &LineStyle::Dashed);
+        picture.line(&inside, &color, 1.8, &LineStyle::Solid);
+        picture.points(&inside, &color, 3.4, Mark::Solid(circle));
+        picture.points(&floor, &color, 3.0, Mark::Hollow(circle));
+        picture.legend(&format!("D_f = {d:?}"), &color, Key::Mark(circle));
+    }
+    picture.legend("paper, Eq. 12", "#444444", Key::Dashed);
+    if points().any(|p| p.2) {
+        picture.legend("open: < 10 contact cells", "#888888", Key::Mark(MarkerShape::Circle));
+    }
+    picture.save(out, name)
+}
+
+/// Eq. 12 where it is claimed to hold, `k_bar <= 0.18`, within the axes.
+fn paper_law(d: f64, x: Axis, y: Axis) -> Vec<(f64, f64)> {
+    let (Axis::Log(x0, _) | Axis::Linear(x0, _), Axis::Log(y0, _) | Axis::Linear(y0, _)) = (x, y);
+    let alpha = analytic::exponent_fit(d);
+    let law = |f: f64| analytic::K_BAR_UL * (f / analytic::F_BAR_UL).powf(alpha);
+    let inverse = |k: f64| analytic::F_BAR_UL * (k / analytic::K_BAR_UL).powf(1.0 / alpha);
+    // Just inside the frame, so that rounding does not put the end outside.
+    let start = x0.max(inverse(y0)) * (1.0 + 1e-9);
+    vec![(start, law(start).max(y0)), (analytic::F_BAR_UL, analytic::K_BAR_UL)]
+}

@@ -1,0 +1,174 @@
+//! Fig. 1: what the surfaces look like.
+
+use crate::arrays::{Image, base64, encode_grey, grey, write_npy};
+use crate::csv_file::{CsvFile, Header, write_csv};
+use crate::error::{Error, Result};
+use crate::files;
+use crate::outcome::Outcome;
+use crate::plot::{pixels_per_unit, raster};
+use crate::progress::Progress;
+use crate::run::{Flag, Run, list};
+use crate::session::Session;
+use crate::tables::{FRACTAL_DIMENSION, column};
+use analysis::Table;
+use contact_model::{HeightMap, SelfAffine};
+use kuva::backend::svg::SvgBackend;
+use kuva::render::render::{Primitive, Scene, TextAnchor};
+use std::path::{Path, PathBuf};
+
+/// Flags that decide what Fig. 1 holds.
+pub const FLAGS: [Flag; 3] = [Flag::Cells, Flag::FractalDimensions, Flag::Seed];
+
+/// Largest side of a map in the CSV.
+const CSV_SIDE: usize = 257;
+
+/// Draws surface number 0 of each fractal dimension: `fig1.csv` (at most 257 x 257 a map), `fig1.svg`, `fig1.png`, and at full
+/// size `fig1-df2.0.npy`, `fig1-df2.0.png`, ... (grey-scale, darker = higher).
+///
+/// Source: Fig. 1 of the paper (2049 x 2049 cells, six fractal dimensions).
+///
+/// # Errors
+/// Files that cannot be written, maps that do not fit in memory.
+pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    let session = Session::open(run)?;
+    let dimensions = run.dimensions();
+    let mut outcome = Outcome::new("fig1");
+    let mut table = Table::new(
+        "Fig. 1: self-affine surfaces",
+        vec![
+            column("fractal_dimension", "1", FRACTAL_DIMENSION),
+            column("x", "L", "centre of the cell"),
+            column("y", "L", "centre of the cell"),
+            column("height", "h", "in units of the rms height of the whole map, mean 0"),
+        ],
+    );
+    let seed = surface_gen::surface_seed(run.seed, 0);
+    let (n, cost) = (run.cells, (run.cells * run.cells) as u64);
+    progress
+        .begin(&format!("{} surfaces of {n} x {n} cells", dimensions.len()), cost * dimensions.len() as u64);
+    for &d in &dimensions {
+        let map = SelfAffine::new(d, 1.0, 1.0)
+            .and_then(|s| surface_gen::self_affine_map(&s, n, seed))
+            .map_err(Error::model(format!("the surface of D_f = {d:?}")))?;
+        sample(&mut table, d, &map)?;
+        outcome.files.extend(full_size(&run.out, d, &map)?);
+        progress.advance(cost, false);
+    }
+    progress.end();
+    let kept = n.min(CSV_SIDE);
+    let header = Header::new(run.command("reproduce-fig1", &FLAGS))
+        .with_note(format!("fractal_dimensions: {}", list(&dimensions)))
+        .with_note(format!("seed: {} (surface 0: {seed}; the same phases for every D_f)", run.seed))
+        .with_note(format!(
+            "map: {n} x {n} cells; here {kept} x {kept} of them, cell round(i ({n} - 1)/({kept} - 1)) in each direction, no smoothing"
+        ));
+    let csv = run.out.join("fig1.csv");
+    write_csv(&csv, &table, &header)?;
+    outcome.files.push(csv.clone());
+    outcome.files.extend(panel(&csv, &run.out)?);
+    session.close(outcome)
+}
+
+/// The cells that the CSV keeps, along one direction.
+fn kept(n: usize) -> Vec<usize> {
+    let m = n.min(CSV_SIDE);
+    (0..m).map(|i| (2 * i * (n - 1) + m - 1) / (2 * (m - 1).max(1))).collect()
+}
+
+fn sample(table: &mut Table, d: f64, map: &HeightMap) -> Result<()> {
+    let n = map.cells();
+    let kept = kept(n);
+    let centre = |i: usize| (i as f64 + 0.5) / n as f64;
+    for &iy in &kept {
+        for &ix in &kept {
+            let row = vec![d.into(), centre(ix).into(), centre(iy).into(), map.heights()[iy * n + ix].into()];
+            table.push(row).map_err(Error::model("a height"))?;
+        }
+    }
+    Ok(())
+}
+
+/// Rows from the top: y grows upwards in a picture.
+fn flipped(values: &[u8], side: usize) -> Vec<u8> {
+    values.chunks(side.max(1)).rev().flatten().copied().collect()
+}
+
+fn full_size(out: &Path, d: f64, map: &HeightMap) -> Result<[PathBuf; 2]> {
+    let n = map.cells();
+    let npy = out.join(format!("fig1-df{d:?}.npy"));
+    write_npy(&npy, &[n as u64, n as u64], map.heights())?;
+    let png = out.join(format!("fig1-df{d:?}.png"));
+    files::write_whole(&png, &encode_grey(&png, n, &flipped(&grey(map.heights()), n))?)?;
+    Ok([npy, png])
+}
+
+/// Side of one map in the panel, and the space around it.
+const MAP: f64 = 260.0;
+const GAP: f64 = 22.0;
+const TITLE: f64 = 34.0;
+
+fn panel(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+    let file = CsvFile::read(csv)?;
+    let d: Vec<f64> = file.numbers("fractal_dimension")?.into_iter().flatten().collect();
+    let heights: Vec<f64> = file.numbers("height")?.into_iter().flatten().collect();
+    let mut maps: Vec<(f64, Vec<u8>, usize)> = Vec::new();
+    let mut start = 0;
+    for group in d.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
+        let side = group.len().isqrt();
+        let shades = grey(&heights[start..start + group.len()]);
+        maps.push((group[0], flipped(&shades, side), side));
+        start += group.len();
+    }
+    let columns = maps.len().clamp(1, 3);
+    let rows = maps.len().div_ceil(columns);
+    let place = |i: usize| {
+        (GAP + (i % columns) as f64 * (MAP + GAP), TITLE + (i / columns) as f64 * (MAP + GAP + TITLE))
+    };
+    let mut scene = Scene::new(GAP + columns as f64 * (MAP + GAP), rows as f64 * (MAP + GAP + TITLE));
+    scene.font_family = Some("DejaVu Sans, Verdana, Arial, sans-serif".to_owned());
+    for (i, (d, ..)) in maps.iter().enumerate() {
+        let (x, y) = place(i);
+        scene.add(Primitive::Text {
+            x: x + MAP / 2.0,
+            y: y - 9.0,
+            content: format!("D_f = {d:?}"),
+            size: 17,
+            anchor: TextAnchor::Middle,
+            rotate: None,
+            bold: false,
+            color: None,
+        });
+    }
+    let (svg, png) = (out.join("fig1.svg"), out.join("fig1.png"));
+    // The raster backend knows no images, and a rectangle per cell would be a file of many megabytes: paint the maps ourselves.
+    let mut image = Image::decode(&png, &raster(&scene, &png)?)?;
+    let mut pictures = String::new();
+    for (i, (_, shades, side)) in maps.iter().enumerate() {
+        let (x, y) = place(i);
+        let scale = pixels_per_unit();
+        image.paint(x as usize * scale, y as usize * scale, MAP as usize * scale, shades, *side);
+        let data = base64(&encode_grey(&png, *side, shades)?);
+        pictures += &format!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{MAP}\" height=\"{MAP}\" style=\"image-rendering:pixelated\" \
+             href=\"data:image/png;base64,{data}\"/>\n"
+        );
+    }
+    let text = SvgBackend::new().render_scene(&scene);
+    let end = text.rfind("</svg>").ok_or_else(|| Error::content(&svg, "no end of the picture"))?;
+    files::write_whole(&svg, format!("{}{pictures}{}", &text[..end], &text[end..]).as_bytes())?;
+    files::write_whole(&png, &image.encode(&png)?)?;
+    Ok(vec![svg, png])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kept_cells_reach_both_edges() {
+        assert_eq!(kept(4), [0, 1, 2, 3]);
+        let k = kept(2049);
+        assert_eq!((k.len(), k[0], k[1], k[256]), (257, 0, 8, 2048));
+        assert!(kept(300).windows(2).all(|w| w[0] < w[1]));
+    }
+}

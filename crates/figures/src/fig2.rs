@@ -1,0 +1,35 @@
+//! Fig. 2: stiffness over force in three dimensions.
+
+use crate::claims;
+use crate::curves;
+use crate::error::Result;
+use crate::measured::{Measured, measure_3d};
+use crate::outcome::Outcome;
+use crate::progress::Progress;
+use crate::run::Run;
+use crate::session::Session;
+
+use crate::curves::FLAGS_3D as FLAGS;
+
+/// Solves the 3D ensemble and writes `fig2.csv`, `fig2-samples.csv`, `fig2.svg`, `fig2.png`.
+///
+/// Source: Fig. 2 of the paper (2049 cells a side, 60 surfaces, F_bar from 1e-8 to 20).
+///
+/// # Errors
+/// What the solver refuses, and files that cannot be written.
+pub fn fig2(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    let session = Session::open(run)?;
+    let measured = measure_3d(run, &session.store, progress)?;
+    let mut outcome = write(run, &measured)?;
+    outcome.claims = claims::curves_3d(&measured);
+    session.close(outcome)
+}
+
+pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
+    let mut outcome = Outcome::new("fig2");
+    let title = "Fig. 2: stiffness over force, 3D boundary elements";
+    outcome.files = curves::write("fig2", title, &FLAGS, run, measured)?;
+    outcome.not_converged = measured.not_converged();
+    outcome.bem3d_seconds = Some(measured.seconds());
+    Ok(outcome)
+}

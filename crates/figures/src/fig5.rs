@@ -1,0 +1,146 @@
+//! Fig. 5: what the equivalent lines look like.
+
+use crate::arrays::write_npy;
+use crate::csv_file::{CsvFile, Header, write_csv};
+use crate::error::{Error, Result};
+use crate::outcome::Outcome;
+use crate::plot::{Axis, Picture, extent, save};
+use crate::progress::Progress;
+use crate::run::{Flag, Run, list};
+use crate::session::Session;
+use crate::tables::{FRACTAL_DIMENSION, column};
+use analysis::Table;
+use contact_model::{Line, SelfAffine};
+use kuva::plot::line::LineStyle;
+use kuva::render::figure::Figure;
+use std::path::{Path, PathBuf};
+
+/// Flags that decide what Fig. 5 holds.
+pub const FLAGS: [Flag; 3] = [Flag::Elements, Flag::FractalDimensions, Flag::Seed];
+
+/// The paper's three lines, from top to bottom.
+const DIMENSIONS: [f64; 3] = [3.0, 2.5, 2.0];
+
+/// Bins of the CSV: two extremes each, more than a picture has pixels.
+const BINS: usize = 1000;
+
+/// Draws line number 0 of each fractal dimension (3, 2.5 and 2 by default): `fig5.csv` with the lowest and the highest element of
+/// each of 1000 bins, so that no peak is lost, `fig5.svg`, `fig5.png`, and whole as `fig5-df2.0.npy`, ...
+///
+/// Source: Fig. 5 of the paper (2^20 elements).
+///
+/// # Errors
+/// Files that cannot be written, lines that do not fit in memory.
+pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    let session = Session::open(run)?;
+    let dimensions: Vec<f64> = run
+        .fractal_dimensions
+        .as_ref()
+        .map_or_else(|| DIMENSIONS.to_vec(), |given| given.iter().rev().copied().collect());
+    let mut outcome = Outcome::new("fig5");
+    let mut table = Table::new(
+        "Fig. 5: equivalent rough lines",
+        vec![
+            column("fractal_dimension", "1", FRACTAL_DIMENSION),
+            column("x", "L", "centre of the element, 0 to L_1D = (2/sqrt(pi)) L"),
+            column("height", "h", "in units of the rms height of the whole line, mean 0"),
+        ],
+    );
+    let seed = surface_gen::surface_seed(run.seed, 0);
+    let cost = run.elements as u64;
+    progress.begin(
+        &format!("{} lines of {} elements", dimensions.len(), run.elements),
+        cost * dimensions.len() as u64,
+    );
+    for &d in &dimensions {
+        let line = SelfAffine::new(d, 1.0, 1.0)
+            .and_then(|s| surface_gen::self_affine_line(&s, run.elements, seed))
+            .map_err(Error::model(format!("the line of D_f = {d:?}")))?;
+        for i in extremes(&line) {
+            let x = (i as f64 + 0.5) * line.element();
+            let row = vec![d.into(), x.into(), line.heights()[i].into()];
+            table.push(row).map_err(Error::model("a height"))?;
+        }
+        let npy = run.out.join(format!("fig5-df{d:?}.npy"));
+        write_npy(&npy, &[run.elements as u64], line.heights())?;
+        outcome.files.push(npy);
+        progress.advance(cost, false);
+    }
+    progress.end();
+    let header = Header::new(run.command("reproduce-fig5", &FLAGS))
+        .with_note(format!("fractal_dimensions: {}", list(&dimensions)))
+        .with_note(format!("seed: {} (line 0: {seed}; the same phases for every D_f)", run.seed))
+        .with_note(format!(
+            "line: {} elements; here the lowest and the highest of each of {} bins, in order of x",
+            run.elements,
+            BINS.min(run.elements)
+        ));
+    let csv = run.out.join("fig5.csv");
+    write_csv(&csv, &table, &header)?;
+    outcome.files.push(csv.clone());
+    outcome.files.extend(draw(&csv, &run.out)?);
+    session.close(outcome)
+}
+
+/// Indices of the lowest and the highest element of each bin, increasing; one where both are the same.
+fn extremes(line: &Line) -> Vec<usize> {
+    let h = line.heights();
+    let bins = BINS.min(h.len());
+    let mut kept = Vec::with_capacity(2 * bins);
+    for bin in 0..bins {
+        let range = bin * h.len() / bins..(bin + 1) * h.len() / bins;
+        let lowest = range.clone().min_by(|&a, &b| h[a].total_cmp(&h[b]));
+        let highest = range.max_by(|&a, &b| h[a].total_cmp(&h[b]));
+        if let (Some(a), Some(b)) = (lowest, highest) {
+            kept.push(a.min(b));
+            if a != b {
+                kept.push(a.max(b));
+            }
+        }
+    }
+    kept
+}
+
+fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+    let file = CsvFile::read(csv)?;
+    let (d, x, h) = (file.numbers("fractal_dimension")?, file.numbers("x")?, file.numbers("height")?);
+    let rows: Vec<(f64, f64, f64)> = (0..d.len()).filter_map(|i| Some((d[i]?, x[i]?, h[i]?))).collect();
+    let (mut plots, mut layouts) = (Vec::new(), Vec::new());
+    for (panel, curve) in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()).enumerate() {
+        let (low, high) = extent(curve.iter().map(|r| r.2)).unwrap_or((-1.0, 1.0));
+        let margin = 0.08 * (high - low).max(1e-3);
+        let axes =
+            (Axis::Linear(0.0, contact_model::line_length(1.0)), Axis::Linear(low - margin, high + margin));
+        let letter = char::from(b'a' + panel as u8);
+        let mut picture = Picture::new(axes.0, axes.1, "x / L", "height / h")
+            .with_size(760.0, 260.0)
+            .with_title(&format!("({letter})  D_f = {:?}", curve[0].0));
+        let points: Vec<(f64, f64)> = curve.iter().map(|r| (r.1, r.2)).collect();
+        picture.line(&points, "#1f2937", 0.8, &LineStyle::Solid);
+        let (p, l) = picture.parts();
+        plots.push(p);
+        layouts.push(l);
+    }
+    let scene = Figure::new(plots.len().max(1), 1)
+        .with_cell_size(760.0, 260.0)
+        .with_plots(plots)
+        .with_layouts(layouts)
+        .render();
+    save(scene, out, "fig5")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_peak_is_lost() {
+        let heights: Vec<f64> = (0..5000).map(|i| if i == 3001 { 9.0 } else { f64::from(i % 7) }).collect();
+        let line = Line::new(1.0, heights).unwrap();
+        let kept = extremes(&line);
+        assert!(kept.contains(&3001) && kept.windows(2).all(|w| w[0] < w[1]));
+        assert_eq!(kept.len(), 2 * BINS);
+        let short = Line::new(1.0, vec![1.0, 0.0, 2.0]).unwrap();
+        assert_eq!(extremes(&short), [0, 1, 2]);
+    }
+}

@@ -1,0 +1,29 @@
+//! What a command leaves behind.
+
+use crate::claim::Claim;
+use std::path::PathBuf;
+
+/// What a figure (or the verification) made.
+#[derive(Debug, Clone, Default)]
+pub struct Outcome {
+    /// `fig1` .. `fig7`, `verify`.
+    pub name: &'static str,
+    /// Files written, in order.
+    pub files: Vec<PathBuf>,
+    /// The paper's claims that these numbers can judge.
+    pub claims: Vec<Claim>,
+    /// Solves that did not meet their tolerance; they are in the samples and left out of every mean.
+    pub not_converged: usize,
+    /// Wall-clock seconds of this command.
+    pub seconds: f64,
+    /// Seconds of all 3D units together, whenever they were solved.
+    pub bem3d_seconds: Option<f64>,
+    /// Seconds of all 1D units together.
+    pub mdr1d_seconds: Option<f64>,
+}
+
+impl Outcome {
+    pub(crate) fn new(name: &'static str) -> Self {
+        Self { name, ..Self::default() }
+    }
+}

@@ -1,0 +1,21 @@
+//! What a run tells while it works.
+
+/// Listens to a run. All methods may be called from any thread.
+pub trait Progress: Sync {
+    /// A stage begins; `total` is its relative cost.
+    fn begin(&self, what: &str, total: u64);
+    /// A unit of this relative cost is done; `reused` when it was found on disk.
+    fn advance(&self, cost: u64, reused: bool);
+    /// The stage is over.
+    fn end(&self);
+}
+
+/// Listens to nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _: &str, _: u64) {}
+    fn advance(&self, _: u64, _: bool) {}
+    fn end(&self) {}
+}

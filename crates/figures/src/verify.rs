@@ -1,0 +1,64 @@
+//! Every claim of the paper beside what was found.
+
+use crate::claim::{Claim, markdown, sort, table};
+use crate::claims;
+use crate::csv_file::{Header, write_csv};
+use crate::curves::describe;
+use crate::error::Result;
+use crate::files;
+use crate::measured::{Measured, measure_1d, measure_3d};
+use crate::outcome::Outcome;
+use crate::progress::Progress;
+use crate::run::{Flag, Run};
+use crate::session::Session;
+
+/// Judges every claim (solving what is not stored) and writes `verify.csv` and `verify.md`, disagreements first.
+///
+/// One row, the ratio of run times, depends on the machine; everything else has the same bytes for any number of threads.
+///
+/// # Errors
+/// As [`crate::fig2`] and [`crate::fig6`].
+pub fn verify(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    let session = Session::open(run)?;
+    let solid = measure_3d(run, &session.store, progress)?;
+    let line = measure_1d(run, &session.store, progress)?;
+    let mut outcome = write(run, &solid, &line)?;
+    outcome.bem3d_seconds = Some(solid.seconds());
+    outcome.mdr1d_seconds = Some(line.seconds());
+    session.close(outcome)
+}
+
+/// All claims in order of figures; [`sort`] puts the disagreements first.
+fn all(solid: &Measured, line: &Measured) -> Result<Vec<Claim>> {
+    let mut claims = claims::exponents(solid, line);
+    claims.extend(claims::factors(solid, line));
+    claims.extend(claims::collapse(solid));
+    claims.extend(claims::curves_3d(solid));
+    claims.extend(claims::curves_1d(line));
+    claims.extend(claims::crossover(solid, line));
+    claims.extend(claims::plateaus()?);
+    claims.extend(claims::paper_against_itself());
+    claims.extend(claims::scaling()?);
+    claims.push(claims::speed(solid, line));
+    Ok(claims)
+}
+
+pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outcome> {
+    let mut claims = all(solid, line)?;
+    sort(&mut claims);
+    let command = run.command("verify", &Flag::ALL);
+    let title = "Claims of the paper beside what was found, disagreements first";
+    let header = describe(Header::new(command.clone()), run, &[solid, line])
+        .with_note("the row on run times depends on the machine, all others do not");
+    let csv = run.out.join("verify.csv");
+    write_csv(&csv, &table(title, &claims)?, &header)?;
+    let notes: String = header.notes.iter().map(|n| format!("- {n}\n")).collect();
+    let text = format!("# {title}\n\n`{command}`\n\n{notes}\n{}", markdown(&claims));
+    let md = run.out.join("verify.md");
+    files::write_whole(&md, text.as_bytes())?;
+    let mut outcome = Outcome::new("verify");
+    outcome.files = vec![csv, md];
+    outcome.not_converged = solid.not_converged() + line.not_converged();
+    outcome.claims = claims;
+    Ok(outcome)
+}

@@ -1,0 +1,371 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use figures::{Preset, Request};
+use std::path::PathBuf;
+
+/// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
+///
+/// Each figure is computed by real solves and written as CSV, SVG and PNG, with the paper's own claim beside each number.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version, after_long_help = AFTER)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const AFTER: &str = "\
+Examples:
+  cargo xtask reproduce-fig2                          3D curves, a few minutes on two cores
+  cargo xtask reproduce-all --preset quick            everything, coarse
+  cargo xtask reproduce-fig2 --cells 513 --surfaces 20 --fractal-dimensions 2.0,2.4
+  cargo xtask reproduce-fig6 --forces 1e-9:20:60      60 loads, logarithmic, both ends in
+  cargo xtask verify                                  one line per claim of the paper
+  cargo xtask reproduce-fig2 --preset paper           2049 cells, 60 surfaces: stop and resume at will
+
+Results go to out/ (--out). Finished surfaces are kept in out/.units and reused by every command with the same parameters; an
+interruption loses at most the surfaces in flight, and the same command resumes. The same command gives the same bytes of CSV
+for any number of threads; times and the machine are in manifest.json.
+
+Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge or stored numbers differ.";
+
+const EXPAND: &str = "Run with --help for every flag.";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Grey-scale maps of the six surfaces (CSV, NPY, PNG).
+    #[command(after_help = EXPAND)]
+    ReproduceFig1(Maps),
+    /// Stiffness over force, 3D boundary elements.
+    #[command(after_help = EXPAND)]
+    ReproduceFig2(Solid),
+    /// Exponent alpha over the fractal dimension, 3D and 1D.
+    #[command(after_help = EXPAND)]
+    ReproduceFig3(Both),
+    /// Collapse of the 3D curves onto one.
+    #[command(after_help = EXPAND)]
+    ReproduceFig4(Solid),
+    /// Three equivalent rough lines (CSV, NPY).
+    #[command(after_help = EXPAND)]
+    ReproduceFig5(Lines),
+    /// Stiffness over force, 1D reduction.
+    #[command(after_help = EXPAND)]
+    ReproduceFig6(Reduced),
+    /// Factor zeta over the fractal dimension, 3D and 1D.
+    #[command(after_help = EXPAND)]
+    ReproduceFig7(Both),
+    /// All seven figures and the verification.
+    #[command(after_help = EXPAND)]
+    ReproduceAll(Both),
+    /// Every claim of the paper beside what is found here, disagreements first (verify.csv, verify.md).
+    #[command(after_help = EXPAND)]
+    Verify(Both),
+    /// A small fixed run of Figs. 2 and 6 against the numbers in data/reference (for continuous integration).
+    CheckReference(Reference),
+}
+
+impl Command {
+    /// Its name on the command line.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::ReproduceFig1(_) => "reproduce-fig1",
+            Self::ReproduceFig2(_) => "reproduce-fig2",
+            Self::ReproduceFig3(_) => "reproduce-fig3",
+            Self::ReproduceFig4(_) => "reproduce-fig4",
+            Self::ReproduceFig5(_) => "reproduce-fig5",
+            Self::ReproduceFig6(_) => "reproduce-fig6",
+            Self::ReproduceFig7(_) => "reproduce-fig7",
+            Self::ReproduceAll(_) => "reproduce-all",
+            Self::Verify(_) => "verify",
+            Self::CheckReference(_) => "check-reference",
+        }
+    }
+
+    /// What it asks for.
+    pub fn request(&self) -> Request {
+        let mut request = Request::default();
+        match self {
+            Self::ReproduceFig1(a) => a.fill(&mut request),
+            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => a.fill(&mut request),
+            Self::ReproduceFig5(a) => a.fill(&mut request),
+            Self::ReproduceFig6(a) => a.fill(&mut request),
+            Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
+                a.fill(&mut request);
+            }
+            Self::CheckReference(a) => request.out = Some(a.out.clone()),
+        }
+        request
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum PresetName {
+    /// Well under a minute: 65 cells, 4 surfaces, 2^14 elements, 20 lines.
+    Quick,
+    /// A few minutes: 257 cells, 8 surfaces, 2^18 elements, 50 lines.
+    Default,
+    /// The paper's sizes: 2049 cells, 60 surfaces, 2^20 elements, 500 lines.
+    Paper,
+}
+
+/// Flags of every figure.
+#[derive(Debug, Args)]
+pub struct Common {
+    /// Sizes to start from; the other flags override them.
+    #[arg(long, value_enum, default_value = "default")]
+    preset: PresetName,
+    /// Fractal dimensions in [2, 3], separated by commas, such as 2.0,2.2.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    fractal_dimensions: Option<Vec<f64>>,
+    /// Master seed: surface number i is the same for every fractal dimension and resolution.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+impl Common {
+    fn fill(&self, request: &mut Request) {
+        request.preset = match self.preset {
+            PresetName::Quick => Preset::Quick,
+            PresetName::Default => Preset::Default,
+            PresetName::Paper => Preset::Paper,
+        };
+        request.fractal_dimensions.clone_from(&self.fractal_dimensions);
+        request.seed = self.seed;
+        request.out = Some(self.out.clone());
+    }
+}
+
+/// Flags of everything that is solved.
+#[derive(Debug, Args)]
+pub struct Solve {
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    forces: Option<String>,
+    /// Threads; 0 is one per core. Changes no byte of a CSV.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Ignore stored units and solve everything again.
+    #[arg(long)]
+    fresh: bool,
+}
+
+impl Solve {
+    fn fill(&self, request: &mut Request) {
+        request.forces.clone_from(&self.forces);
+        request.threads = Some(self.threads);
+        request.fresh = self.fresh;
+    }
+}
+
+/// Size of the 3D ensemble.
+#[derive(Debug, Args)]
+pub struct SolidSize {
+    /// Cells a side of each surface, N (any number from 4; the paper has 2049).
+    #[arg(long, value_name = "N")]
+    cells: Option<usize>,
+    /// Surfaces per fractal dimension (the paper has 60).
+    #[arg(long, value_name = "COUNT")]
+    surfaces: Option<usize>,
+    /// Tolerance of the 3D solver: bound of the certificate and of the error of k.
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+}
+
+impl SolidSize {
+    fn fill(&self, request: &mut Request) {
+        (request.cells, request.surfaces, request.tolerance) = (self.cells, self.surfaces, self.tolerance);
+    }
+}
+
+/// Size of the 1D ensemble.
+#[derive(Debug, Args)]
+pub struct LineSize {
+    /// Elements of each line (the paper has 2^20 = 1048576).
+    #[arg(long, value_name = "N")]
+    elements: Option<usize>,
+    /// Lines per fractal dimension (the paper has 500).
+    #[arg(long, value_name = "COUNT")]
+    lines: Option<usize>,
+}
+
+impl LineSize {
+    fn fill(&self, request: &mut Request) {
+        (request.elements, request.lines) = (self.elements, self.lines);
+    }
+}
+
+/// Flags of Fig. 1.
+#[derive(Debug, Args)]
+pub struct Maps {
+    #[command(flatten)]
+    common: Common,
+    /// Cells a side of each map (the paper has 2049).
+    #[arg(long, value_name = "N")]
+    cells: Option<usize>,
+}
+
+impl Maps {
+    fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        request.cells = self.cells;
+    }
+}
+
+/// Flags of Fig. 5.
+#[derive(Debug, Args)]
+pub struct Lines {
+    #[command(flatten)]
+    common: Common,
+    /// Elements of each line (the paper has 2^20 = 1048576).
+    #[arg(long, value_name = "N")]
+    elements: Option<usize>,
+}
+
+impl Lines {
+    fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        request.elements = self.elements;
+    }
+}
+
+/// Flags of Figs. 2 and 4.
+#[derive(Debug, Args)]
+pub struct Solid {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    size: SolidSize,
+    #[command(flatten)]
+    solve: Solve,
+}
+
+impl Solid {
+    fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        self.size.fill(request);
+        self.solve.fill(request);
+    }
+}
+
+/// Flags of Fig. 6.
+#[derive(Debug, Args)]
+pub struct Reduced {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    size: LineSize,
+    #[command(flatten)]
+    solve: Solve,
+}
+
+impl Reduced {
+    fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        self.size.fill(request);
+        self.solve.fill(request);
+    }
+}
+
+/// Flags of everything that needs both models.
+#[derive(Debug, Args)]
+pub struct Both {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    solid: SolidSize,
+    #[command(flatten)]
+    line: LineSize,
+    #[command(flatten)]
+    solve: Solve,
+}
+
+impl Both {
+    fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        self.solid.fill(request);
+        self.line.fill(request);
+        self.solve.fill(request);
+    }
+}
+
+/// Flags of the comparison with stored numbers.
+#[derive(Debug, Args)]
+pub struct Reference {
+    /// Store the numbers of this run as the new reference.
+    #[arg(long)]
+    pub bless: bool,
+    /// Directory of the results; the run works in its folder reference/.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    fn parse(line: &str) -> Result<Arguments, clap::Error> {
+        Arguments::try_parse_from(std::iter::once("xtask").chain(line.split_whitespace()))
+    }
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn the_same_words_for_every_figure() {
+        let arguments = parse(
+            "verify --preset paper --cells 9 --surfaces 2 --elements 64 --lines 3 --fractal-dimensions 2.0,2.2 \
+             --forces 1e-2:20:4 --tolerance 1e-3 --seed 7 --threads 2 --out d --fresh",
+        )
+        .unwrap();
+        let request = arguments.command.request();
+        let expected = Request {
+            preset: Preset::Paper,
+            cells: Some(9),
+            surfaces: Some(2),
+            elements: Some(64),
+            lines: Some(3),
+            fractal_dimensions: Some(vec![2.0, 2.2]),
+            forces: Some("1e-2:20:4".into()),
+            tolerance: Some(1e-3),
+            seed: Some(7),
+            threads: Some(2),
+            out: Some("d".into()),
+            fresh: true,
+        };
+        assert_eq!(request, expected);
+        assert_eq!(arguments.command.name(), "verify");
+    }
+
+    #[test]
+    fn flags_that_do_not_apply_are_refused() {
+        for line in [
+            "reproduce-fig1 --surfaces 2",
+            "reproduce-fig1 --threads 2",
+            "reproduce-fig2 --elements 64",
+            "reproduce-fig5 --cells 9",
+            "reproduce-fig6 --tolerance 1e-3",
+            "reproduce-fig2 --preset huge",
+            "reproduce-fig2 --cells -3",
+            "reproduce-fig2 --fractal-dimensions 2.0,x",
+            "reproduce-fig8",
+            "reproduce-fig2 --unknown",
+            "",
+        ] {
+            assert!(parse(line).is_err(), "{line}");
+        }
+        // A negative force reaches the run, which names it.
+        assert!(parse("reproduce-fig2 --forces -1").is_ok());
+    }
+
+    #[test]
+    fn no_flags_is_the_default_run() {
+        let request = parse("reproduce-fig2").unwrap().command.request();
+        assert_eq!(request, Request { threads: Some(0), out: Some("out".into()), ..Request::default() });
+    }
+}
