@@ -180,6 +180,29 @@ pub fn markdown(claims: &[Claim]) -> String {
     text
 }
 
+/// The short table of a README: claim, paper, here (with its standard error), verdict; untested claims and run times are left out.
+///
+/// ```
+/// let c = figures::Claim::compare("alpha", 0.532, 0.54, Some(0.01), 0.03, "");
+/// assert!(figures::readme_table(&[c]).ends_with("| alpha | 0.532 | 0.54 +- 0.01 | agrees |\n"));
+/// ```
+pub fn readme_table(claims: &[Claim]) -> String {
+    let mut text = String::from("| quantity | paper | here | verdict |\n|---|---|---|---|\n");
+    for c in claims.iter().filter(|c| c.verdict != Verdict::NotTested && !c.timed) {
+        let error = c.standard_error.map(|e| format!(" +- {}", rounded(e))).unwrap_or_default();
+        let verdict =
+            if c.verdict == Verdict::Disagrees { "**disagrees**".to_owned() } else { c.verdict.to_string() };
+        let cells = [c.claim.clone(), value(&c.paper), format!("{}{error}", value(&c.here)), verdict];
+        text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
+    }
+    text
+}
+
+/// One significant digit: enough for an error.
+fn rounded(v: f64) -> String {
+    short(format!("{v:.0e}").parse().unwrap_or(v))
+}
+
 /// The claims as aligned plain text, `why` below each disagreement and each untested claim.
 pub fn plain(claims: &[Claim]) -> String {
     let wide = claims.iter().map(|c| c.claim.chars().count()).max().unwrap_or(0).clamp(5, 64);
@@ -218,7 +241,10 @@ fn value(v: &Value) -> String {
 pub(crate) fn short(v: f64) -> String {
     let rounded: f64 = format!("{v:.3e}").parse().unwrap_or(v);
     let size = rounded.abs();
-    if size > 0.0 && !(1e-4..1e6).contains(&size) { format!("{rounded:e}") } else { rounded.to_string() }
+    if size < f64::MIN_POSITIVE {
+        return "0".to_owned();
+    }
+    if (1e-4..1e6).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 #[cfg(test)]

@@ -14,8 +14,9 @@ mod scaling;
 mod speed;
 
 use crate::claim::Claim;
+use crate::laws::Law;
 use crate::measured::{Measured, Series};
-use analysis::{Bootstrap, interpolate};
+use analysis::{Bootstrap, PowerLaw, interpolate};
 
 pub(crate) use paper::paper_against_itself;
 pub(crate) use plateau::plateaus;
@@ -84,6 +85,22 @@ fn stiffness_at(series: &Series, force_bar: f64) -> Option<(f64, Option<f64>)> {
         interpolate(forces, &series.curves.mean_of(draw), force_bar)
     });
     Some((value, error))
+}
+
+/// A window shorter than this says little about a power law.
+const LEAST_DECADES: f64 = 1.0;
+
+/// A fit that can be judged, or why it cannot.
+fn usable(law: &Law) -> Result<&PowerLaw, String> {
+    let fit = law.fit.as_ref().map_err(ToString::to_string)?;
+    let decades = (fit.force_bar_max / fit.force_bar_min).log10();
+    if decades < LEAST_DECADES {
+        return Err(format!(
+            "the window {:.1e} .. {:.1e} spans {decades:.1} decades, at least {LEAST_DECADES} is needed: finer grids widen it",
+            fit.force_bar_min, fit.force_bar_max
+        ));
+    }
+    Ok(fit)
 }
 
 /// Twice a standard error; 0 where there is none.

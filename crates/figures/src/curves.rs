@@ -3,7 +3,7 @@
 use crate::csv_file::{CsvFile, Header, write_csv};
 use crate::error::Result;
 use crate::measured::Measured;
-use crate::plot::{Axis, Key, Mark, Picture, color, decades};
+use crate::plot::{Axis, Key, Mark, Picture, color, logarithmic};
 use crate::run::{Flag, Run, list};
 use crate::tables;
 use kuva::plot::line::LineStyle;
@@ -87,10 +87,11 @@ fn read(csv: &Path) -> Result<Vec<CurvePoints>> {
 fn draw(name: &str, title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let curves = read(csv)?;
     let points = || curves.iter().flat_map(|c| &c.1);
-    let x = decades(points().map(|p| p.0));
-    let y = decades(points().map(|p| p.1));
-    let mut picture =
-        Picture::new(x, y, "F\u{304} = F / (E* h L)", "k\u{304} = k / (1.1419 E* L)").with_title(title);
+    let x = logarithmic(points().map(|p| p.0));
+    let y = logarithmic(points().map(|p| p.1));
+    let mut picture = Picture::new(x, y, "force  F / (E* h L)", "stiffness  k / (1.1419 E* L)")
+        .with_title(title)
+        .with_legend_below();
     let circle = MarkerShape::Circle;
     for (d, points) in &curves {
         let color = color(*d);
@@ -104,7 +105,7 @@ fn draw(name: &str, title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>>
     }
     picture.legend("paper, Eq. 12", "#444444", Key::Dashed);
     if points().any(|p| p.2) {
-        picture.legend("open: < 10 contact cells", "#888888", Key::Mark(MarkerShape::Circle));
+        picture.legend("fewer than 10 contact cells", "", Key::Open);
     }
     picture.save(out, name)
 }

@@ -54,7 +54,7 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     write_csv(&csv, &table, &header("fig3", run, solid, line))?;
     let mut outcome = Outcome::new("fig3");
     outcome.files = vec![csv.clone()];
-    outcome.files.extend(draw(title, &csv, &run.out)?);
+    outcome.files.extend(draw(&csv, &run.out)?);
     outcome.not_converged = solid.not_converged() + line.not_converged();
     outcome.bem3d_seconds = Some(solid.seconds());
     outcome.mdr1d_seconds = Some(line.seconds());
@@ -146,11 +146,11 @@ pub(crate) fn both(picture: &mut Picture, file: &CsvFile, value: &str) -> Result
     Ok(())
 }
 
-fn draw(title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let axes = (Axis::Linear(1.9, 3.1), Axis::Linear(0.4, 1.05));
-    let mut picture =
-        Picture::new(axes.0, axes.1, "fractal dimension D_f", "exponent \u{3b1}").with_title(title);
+    let mut picture = Picture::new(axes.0, axes.1, "fractal dimension D_f", "exponent \u{3b1}")
+        .with_title("Fig. 3: exponent of the power law over the fractal dimension");
     let bare = |model| -> Result<Vec<(f64, f64)>> {
         Ok(series(&file, model, "alpha")?.into_iter().map(|p| (p.0, p.1)).collect())
     };

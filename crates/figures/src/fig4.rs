@@ -6,7 +6,7 @@ use crate::curves::describe;
 use crate::error::{Error, Result};
 use crate::measured::{Measured, Series, measure_3d};
 use crate::outcome::Outcome;
-use crate::plot::{Key, Mark, Picture, color, decades};
+use crate::plot::{Key, Mark, Picture, color, logarithmic};
 use crate::progress::Progress;
 use crate::run::Run;
 use crate::sample::FLOOR_CELLS;
@@ -94,11 +94,12 @@ fn draw(title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let rows: Vec<(f64, f64, f64, bool)> =
         (0..d.len()).filter_map(|i| Some((d[i]?, f[i]?, t[i]?, floor[i] == "true"))).collect();
     // Both axes from the loads: the floor would stretch them for nothing.
-    let x = decades(rows.iter().map(|r| r.1));
-    let y = decades(rows.iter().filter(|r| !r.3).map(|r| r.2).chain(rows.iter().map(|r| r.1)));
+    let x = logarithmic(rows.iter().map(|r| r.1));
+    let y = logarithmic(rows.iter().filter(|r| !r.3).map(|r| r.2).chain(rows.iter().map(|r| r.1)));
     let mut picture =
-        Picture::new(x, y, "F\u{304} = F / (E* h L)", "F\u{303} = 0.086 (k\u{304} / 0.18)^(1 / 0.266 D_f)")
-            .with_title(title);
+        Picture::new(x, y, "force  F / (E* h L)", "0.086 (k / 0.18 k_s)^(1 / 0.266 D_f),  k_s = 1.1419 E* L")
+            .with_title(title)
+            .with_legend_below();
     let ends: Vec<f64> = rows.iter().map(|r| r.1).filter(|f| *f <= 1.0).collect();
     if let Some((low, high)) = crate::plot::extent(ends) {
         picture.line(&[(low, low), (high, high)], "#222222", 1.4, &LineStyle::Dashed);
@@ -108,10 +109,13 @@ fn draw(title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let select = |on_floor: bool| -> Vec<(f64, f64)> {
             series.iter().filter(|r| r.3 == on_floor).map(|r| (r.1, r.2)).collect()
         };
-        picture.points(&select(true), &color, 3.0, Mark::Faint(MarkerShape::Circle));
+        picture.points(&select(true), &color, 3.0, Mark::Hollow(MarkerShape::Circle));
         picture.points(&select(false), &color, 3.6, Mark::Solid(MarkerShape::Circle));
         picture.legend(&format!("D_f = {:?}", series[0].0), &color, Key::Mark(MarkerShape::Circle));
     }
-    picture.legend("paper, Eq. 12: F\u{303} = F\u{304}", "#222222", Key::Dashed);
+    picture.legend("paper, Eq. 12", "#222222", Key::Dashed);
+    if rows.iter().any(|r| r.3) {
+        picture.legend("fewer than 10 contact cells", "", Key::Open);
+    }
     picture.save(out, "fig4")
 }

@@ -43,14 +43,14 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     write_csv(&csv, &table, &header("fig7", run, solid, line))?;
     let mut outcome = Outcome::new("fig7");
     outcome.files = vec![csv.clone()];
-    outcome.files.extend(draw(title, &csv, &run.out)?);
+    outcome.files.extend(draw(&csv, &run.out)?);
     outcome.not_converged = solid.not_converged() + line.not_converged();
     outcome.bem3d_seconds = Some(solid.seconds());
     outcome.mdr1d_seconds = Some(line.seconds());
     Ok(outcome)
 }
 
-fn draw(title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let law: Vec<(f64, f64)> = series(&file, "paper_fit", "zeta")?.into_iter().map(|p| (p.0, p.1)).collect();
     let mut highest: f64 = 1.8;
@@ -60,8 +60,8 @@ fn draw(title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         }
     }
     let axes = (Axis::Linear(1.9, 3.1), Axis::Linear(0.4, (highest * 5.0).ceil() / 5.0));
-    let mut picture =
-        Picture::new(axes.0, axes.1, "fractal dimension D_f", "factor \u{3b6}").with_title(title);
+    let mut picture = Picture::new(axes.0, axes.1, "fractal dimension D_f", "factor \u{3b6}")
+        .with_title("Fig. 7: factor of the power law over the fractal dimension");
     picture.line(&law, "#222222", 1.6, &LineStyle::Dashed);
     both(&mut picture, &file, "zeta")?;
     picture.legend("paper, Eq. 11: 0.18/0.086^(0.266 D_f)", "#222222", Key::Dashed);

@@ -69,7 +69,7 @@ mod verify;
 
 pub use all::reproduce_all;
 pub use arrays::write_npy;
-pub use claim::{Claim, Verdict, markdown, plain, sort};
+pub use claim::{Claim, Verdict, markdown, plain, readme_table, sort};
 pub use csv_file::{CsvFile, Header, PAPER, write_csv};
 pub use error::{Error, Result};
 pub use fig1::fig1;

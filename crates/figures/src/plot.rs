@@ -7,6 +7,7 @@ use kuva::backend::svg::SvgBackend;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::line::{LinePlot, LineStyle};
 use kuva::plot::scatter::{MarkerShape, ScatterPlot};
+use kuva::render::color::Color;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene, render_multiple};
@@ -16,12 +17,16 @@ use std::sync::Arc;
 /// Pixels of a PNG per unit of the scene.
 const SCALE: f32 = 2.0;
 
+/// Colour of a legend key that is drawn open; used for nothing else.
+const OPEN: &str = "#777779";
+
 /// A pair of axes and what is drawn on them.
 pub(crate) struct Picture {
     plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
     range: [(f64, f64); 2],
     layout: Layout,
+    corner: LegendPosition,
 }
 
 /// How far an axis goes, and whether it is logarithmic.
@@ -39,11 +44,11 @@ impl Axis {
     }
 }
 
-/// Whole decades around positive values; one decade around nothing.
-pub(crate) fn decades(values: impl IntoIterator<Item = f64>) -> Axis {
+/// A logarithmic axis around positive values with room for their marks; one decade around nothing.
+pub(crate) fn logarithmic(values: impl IntoIterator<Item = f64>) -> Axis {
+    const ROOM: f64 = 1.7;
     let (low, high) = extent(values.into_iter().filter(|v| *v > 0.0)).unwrap_or((1.0, 10.0));
-    let (low, high) = (low.log10().floor(), high.log10().ceil());
-    Axis::Log(10f64.powf(low), 10f64.powf(high.max(low + 1.0)))
+    Axis::Log(low / ROOM, high * ROOM)
 }
 
 /// Smallest and largest value.
@@ -76,11 +81,23 @@ impl Picture {
         if matches!(y, Axis::Log(..)) {
             layout = layout.with_log_y().with_y_tick_format(power_of_ten());
         }
-        Self { plots: Vec::new(), legend: Vec::new(), range: [x.range(), y.range()], layout }
+        Self {
+            plots: Vec::new(),
+            legend: Vec::new(),
+            range: [x.range(), y.range()],
+            layout,
+            corner: LegendPosition::InsideTopLeft,
+        }
     }
 
     pub(crate) fn with_title(mut self, title: &str) -> Self {
         self.layout = self.layout.with_title(title).with_title_size(17);
+        self
+    }
+
+    /// The legend in the lower right corner, which rising curves leave free.
+    pub(crate) fn with_legend_below(mut self) -> Self {
+        self.corner = LegendPosition::InsideBottomRight;
         self
     }
 
@@ -118,7 +135,6 @@ impl Picture {
         let (shape, opacity) = match mark {
             Mark::Solid(shape) => (shape, 1.0),
             Mark::Hollow(shape) => (shape, 0.0),
-            Mark::Faint(shape) => (shape, 0.25),
         };
         let mut plot =
             ScatterPlot::new().with_data(data).with_color(color).with_size(size).with_marker(shape);
@@ -142,9 +158,12 @@ impl Picture {
     pub(crate) fn legend(&mut self, label: &str, color: &str, key: Key) {
         let (shape, dash) = match key {
             Key::Line => (LegendShape::Line, None),
-            Key::Dashed => (LegendShape::Line, LineStyle::Dashed.dasharray()),
+            // Short enough for two dashes on the key.
+            Key::Dashed => (LegendShape::Line, Some("3 6".to_owned())),
             Key::Mark(shape) => (LegendShape::Marker(shape), None),
+            Key::Open => (LegendShape::Circle, None),
         };
+        let color = if matches!(key, Key::Open) { OPEN } else { color };
         self.legend.push(LegendEntry {
             label: label.to_owned(),
             color: color.to_owned(),
@@ -158,7 +177,7 @@ impl Picture {
         let layout = if self.legend.is_empty() {
             self.layout
         } else {
-            self.layout.with_legend_entries(self.legend).with_legend_position(LegendPosition::InsideTopLeft)
+            self.layout.with_legend_entries(self.legend).with_legend_position(self.corner)
         };
         (self.plots, layout)
     }
@@ -177,9 +196,8 @@ fn within(x: (f64, f64), y: (f64, f64), p: (f64, f64)) -> bool {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Mark {
     Solid(MarkerShape),
-    Hollow(MarkerShape),
     /// On the one-cell floor of the grid.
-    Faint(MarkerShape),
+    Hollow(MarkerShape),
 }
 
 /// How a legend line looks.
@@ -188,6 +206,8 @@ pub(crate) enum Key {
     Line,
     Dashed,
     Mark(MarkerShape),
+    /// An open circle.
+    Open,
 }
 
 /// Dark blue to yellow-green over D_f = 2 .. 3: order is visible, also in grey.
@@ -209,6 +229,10 @@ pub(crate) fn color(fractal_dimension: f64) -> String {
 fn power_of_ten() -> TickFormat {
     TickFormat::Custom(Arc::new(|v: f64| {
         let exponent = v.log10().round() as i32;
+        // Ticks between the decades stay without a label.
+        if (v.log10() - f64::from(exponent)).abs() > 1e-6 {
+            return String::new();
+        }
         if exponent == 0 {
             return "1".to_owned();
         }
@@ -230,6 +254,7 @@ fn power_of_ten() -> TickFormat {
 /// Writes a scene as SVG and PNG.
 pub(crate) fn save(mut scene: Scene, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
     number_clips(&mut scene);
+    open_keys(&mut scene);
     let svg = directory.join(format!("{name}.svg"));
     let png = directory.join(format!("{name}.png"));
     files::write_whole(&svg, SvgBackend::new().render_scene(&scene).as_bytes())?;
@@ -249,11 +274,29 @@ pub(crate) fn pixels_per_unit() -> usize {
 
 /// The library counts clip regions per process; counted per picture, the same picture has the same bytes.
 fn number_clips(scene: &mut Scene) {
-    let mut count = 0;
+    let Scene { elements, defs, .. } = scene;
+    let starts = elements.iter_mut().filter_map(|e| match e {
+        Primitive::ClipStart { id, .. } => Some(id),
+        _ => None,
+    });
+    for (i, id) in starts.enumerate() {
+        let own = format!("clip-{}", i + 1);
+        for def in defs.iter_mut() {
+            *def = def.replace(&format!("\"{id}\""), &format!("\"{own}\""));
+        }
+        *id = own;
+    }
+}
+
+/// The library's legend knows no open marks: empties those of the colour [`OPEN`].
+fn open_keys(scene: &mut Scene) {
     for element in &mut scene.elements {
-        if let Primitive::ClipStart { id, .. } = element {
-            count += 1;
-            *id = format!("clip-{count}");
+        if let Primitive::Circle { fill, stroke, stroke_width, r, .. } = element
+            && *fill == Color::from(OPEN)
+        {
+            (*stroke, *stroke_width) = (Some(fill.clone()), Some(1.4));
+            *fill = Color::None;
+            *r = 4.0;
         }
     }
 }

@@ -19,10 +19,10 @@ const NUMBERS: [&str; 5] =
 /// The fixed small run: under half a minute on two cores.
 fn small(out: PathBuf) -> Result<Run> {
     Run::new(&Request {
-        cells: Some(33),
-        surfaces: Some(3),
-        elements: Some(1 << 12),
-        lines: Some(8),
+        cells: Some(65),
+        surfaces: Some(4),
+        elements: Some(1 << 13),
+        lines: Some(10),
         forces: Some("1e-3:20:10,0.086,1".to_owned()),
         tolerance: Some(1e-8),
         fresh: true,

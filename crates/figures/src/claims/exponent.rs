@@ -1,26 +1,10 @@
 //! alpha: Eqs. 6 and 24, 1D against 3D, 1D at small forces.
 
-use super::{alpha_allowed, label, twice};
+use super::{alpha_allowed, label, twice, usable};
 use crate::claim::Claim;
-use crate::laws::{Law, laws, laws_within};
+use crate::laws::{laws, laws_within};
 use crate::measured::Measured;
 use analysis::{PowerLaw, Window};
-
-/// A window shorter than this says little about an exponent.
-const LEAST_DECADES: f64 = 1.0;
-
-/// The fit, or why it cannot be judged.
-fn usable(law: &Law) -> Result<&PowerLaw, String> {
-    let fit = law.fit.as_ref().map_err(ToString::to_string)?;
-    let decades = (fit.force_bar_max / fit.force_bar_min).log10();
-    if decades < LEAST_DECADES {
-        return Err(format!(
-            "the window {:.1e} .. {:.1e} spans {decades:.1} decades, at least {LEAST_DECADES} is needed: finer grids widen it",
-            fit.force_bar_min, fit.force_bar_max
-        ));
-    }
-    Ok(fit)
-}
 
 fn window(fit: &PowerLaw) -> String {
     format!("fit over {:.1e} .. {:.1e}, {} loads", fit.force_bar_min, fit.force_bar_max, fit.points)

@@ -1,10 +1,10 @@
 //! zeta and the crossing point: Eq. 11, Fig. 7.
 
-use super::{alpha_allowed, label, twice};
+use super::{alpha_allowed, label, twice, usable};
 use crate::claim::Claim;
 use crate::laws::laws;
-use crate::measured::Measured;
-use analysis::{Bootstrap, Window, crossing as cross, fit};
+use crate::measured::{Measured, Series};
+use analysis::{Bootstrap, PowerLaw, Window, crossing as cross, fit};
 use analytic::{F_BAR_UL, K_BAR_UL};
 
 /// 0.18 is printed with two digits: +-0.005 is 2.8 %.
@@ -22,7 +22,7 @@ pub(super) fn against_the_fit(measured: &Measured) -> Vec<Claim> {
             let d = law.fractal_dimension;
             let claim = format!("zeta {} at D_f = {d:?}, Eq. 11", label(measured));
             let paper = analytic::zeta_fit(d);
-            match &law.fit {
+            match usable(law) {
                 Ok(l) => {
                     let allowed = paper * ln_zeta_allowed(d) + twice(l.zeta_se);
                     let why = format!(
@@ -32,7 +32,7 @@ pub(super) fn against_the_fit(measured: &Measured) -> Vec<Claim> {
                     );
                     Claim::compare(claim, paper, l.zeta, l.zeta_se, allowed, why)
                 }
-                Err(reason) => Claim::not_tested(claim, paper, reason.to_string()),
+                Err(reason) => Claim::not_tested(claim, paper, reason),
             }
         })
         .collect()
@@ -44,62 +44,72 @@ pub(super) fn line_against_solid(solid: &Measured, line: &Measured) -> Vec<Claim
         .iter()
         .zip(&laws(line))
         .filter_map(|(a, b)| {
-            let (a3, b1) = (a.fit.as_ref().ok()?, b.fit.as_ref().ok()?);
+            let (a3, b1) = (usable(a).ok()?, usable(b).ok()?);
             let ratio = b1.zeta / a3.zeta;
             let relative = a3.zeta_se.zip(b1.zeta_se).map(|(x, y)| (x / a3.zeta).hypot(y / b1.zeta));
             Some((a.fractal_dimension, ratio, relative.map(|r| ratio * r)))
         })
         .collect();
-    let farthest = pairs.iter().max_by(|a, b| a.1.ln().abs().total_cmp(&b.1.ln().abs()));
-    let names =
-        ["zeta 1D over 3D, farthest from 1: same order", "zeta 1D over 3D, farthest from 1: not equal"];
-    let Some(&(d, ratio, error)) = farthest else {
-        return names.map(|n| Claim::not_tested(n, "about 1", "no fractal dimension has both fits")).into();
+    let distance = |p: &(f64, f64, Option<f64>)| p.1.ln().abs();
+    let sure = |p: &(f64, f64, Option<f64>)| p.2.map(|e| (p.1 - 1.0).abs() / e);
+    let names = [
+        "zeta 1D over 3D: same order (the farthest from 1)",
+        "zeta 1D over 3D: not equal (the surest difference)",
+    ];
+    let Some(&(d, ratio, error)) = pairs.iter().max_by(|a, b| distance(a).total_cmp(&distance(b))) else {
+        let reason = "no fractal dimension has two fits over a decade or more";
+        return vec![
+            Claim::not_tested(names[0], "1/3 to 3", reason),
+            Claim::not_tested(names[1], "not 1", reason),
+        ];
     };
-    let order = ratio.log10().abs() < 0.5;
-    let different = error.map(|e| (ratio - 1.0).abs() > 2.0 * e);
-    let mut claims = vec![Claim::judge(
-        names[0],
-        "1/3 to 3",
-        ratio,
-        error,
-        order,
-        format!("at D_f = {d:?}; an order of magnitude is a factor sqrt(10) either way"),
-    )];
-    claims.push(match different {
-        Some(holds) => Claim::judge(
-            names[1],
-            "not 1",
-            ratio,
-            error,
-            holds,
-            format!("at D_f = {d:?}; different means by more than 2 s.e."),
-        ),
+    let why = format!("at D_f = {d:?}; an order of magnitude is a factor sqrt(10) either way");
+    let order = Claim::judge(names[0], "1/3 to 3", ratio, error, ratio.log10().abs() < 0.5, why);
+    let surest = (pairs.iter().filter_map(|p| Some((p, sure(p)?)))).max_by(|a, b| a.1.total_cmp(&b.1));
+    let unequal = match surest {
+        Some((&(d, ratio, error), times)) if times > 2.0 => {
+            let why = format!("at D_f = {d:?}, {times:.1} s.e. from 1; more than 2 counts as different");
+            Claim::judge(names[1], "not 1", ratio, error, true, why)
+        }
+        Some((&(d, ratio, _), times)) => {
+            let reason = format!(
+                "{ratio:.3} at D_f = {d:?} is {times:.1} s.e. from 1: more surfaces are needed to tell them apart"
+            );
+            Claim::not_tested(names[1], "not 1", reason)
+        }
         None => Claim::not_tested(names[1], "not 1", "one surface has no standard error"),
-    });
-    claims
+    };
+    vec![order, unequal]
 }
 
 /// Where the fitted laws of all fractal dimensions meet.
 pub(super) fn crossing(solid: &Measured) -> Vec<Claim> {
     let names = ["crossing of the 3D laws: F_bar", "crossing of the 3D laws: k_bar"];
-    let window = Window::default();
-    let bootstrap = Bootstrap { resamples: 1, ..Bootstrap::default() };
-    let law_of = |c: &analysis::Curves| fit(c, &window, &bootstrap).ok().map(|l| (l.alpha, l.zeta));
-    let found: Vec<(f64, f64)> = solid.series.iter().filter_map(|s| law_of(&s.curves)).collect();
-    let Some(here) = cross(&found) else {
-        let reason = "fewer than two fractal dimensions have a fit of another exponent";
+    let fitted = laws(solid);
+    let used: Vec<(&Series, &PowerLaw)> =
+        solid.series.iter().zip(&fitted).filter_map(|(s, l)| Some((s, usable(l).ok()?))).collect();
+    let found: Vec<(f64, f64)> = used.iter().map(|(_, l)| (l.alpha, l.zeta)).collect();
+    let Some(here) = cross(&found).filter(|_| found.len() >= 3) else {
+        let reason = format!(
+            "{} fractal dimensions have a fit over a decade or more: three of different exponents are needed",
+            found.len()
+        );
         return vec![
-            Claim::not_tested(names[0], F_BAR_UL, reason),
+            Claim::not_tested(names[0], F_BAR_UL, reason.clone()),
             Claim::not_tested(names[1], K_BAR_UL, reason),
         ];
     };
-    // All fractal dimensions are resampled with the same surfaces: they share phases.
+    // All fractal dimensions are resampled with the same surfaces: they share phases. The forces of each fit stay.
+    let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
+    let redrawn = |s: &Series, l: &PowerLaw, draw: &[usize]| {
+        let window =
+            Window { min_force_bar: l.force_bar_min, max_force_bar: l.force_bar_max, min_contact_cells: 0 };
+        fit(&s.curves.resampled(draw), &window, &once).ok().map(|l| (l.alpha, l.zeta))
+    };
     let surfaces = solid.series.first().map_or(0, |s| s.units.len());
     let error = |pick: fn(&analysis::Crossing) -> f64| {
         Bootstrap::default().standard_error(surfaces, |draw| {
-            let drawn: Option<Vec<(f64, f64)>> =
-                solid.series.iter().map(|s| law_of(&s.curves.resampled(draw))).collect();
+            let drawn: Option<Vec<(f64, f64)>> = used.iter().map(|(s, l)| redrawn(s, l, draw)).collect();
             cross(&drawn?).map(|c| pick(&c))
         })
     };

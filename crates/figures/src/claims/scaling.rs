@@ -14,7 +14,7 @@ const SEED: u64 = 20_120_829;
 
 fn models() -> [Box<dyn ContactModel>; 2] {
     [
-        Box::new(Bem3d { cells: 33, tolerance: TOLERANCE, ..Bem3d::default() }),
+        Box::new(Bem3d { cells: 65, tolerance: TOLERANCE, ..Bem3d::default() }),
         Box::new(Mdr1d { elements: 1 << 12 }),
     ]
 }
@@ -47,7 +47,7 @@ pub(crate) fn scaling() -> Result<Vec<Claim>> {
 /// Heights, force and approach times c leave k alone; so delta = -alpha/2 (Eq. 7).
 fn vertical(model: &dyn ContactModel) -> Result<Vec<Claim>> {
     let name = model.name();
-    let (force, c, modulus) = (0.02, 3.0, 5.0);
+    let (force, c, modulus) = (0.5, 3.0, 5.0);
     let base = solve(model, rough(1.0, 1.0)?, 1.0, force)?;
     let scaled = solve(model, rough(c, 1.0)?, 1.0, c * force)?;
     let harder = solve(model, rough(1.0, 1.0)?, modulus, modulus * force)?;
@@ -60,8 +60,8 @@ fn vertical(model: &dyn ContactModel) -> Result<Vec<Claim>> {
         approach(&harder) / approach(&base) - 1.0,
     ];
     let worst = off.iter().map(|v| v.abs()).fold(0.0, f64::max);
-    // Eq. 7, k ~ F^alpha (h^2)^delta, by two central differences of the same small step.
-    let step = 0.05_f64.exp();
+    // Eq. 7, k ~ F^alpha (h^2)^delta, by two central differences of the same step.
+    let step = 0.5_f64.exp();
     let log = |height: f64, force: f64| -> Result<f64> {
         Ok(stiffness(&solve(model, rough(height, 1.0)?, 1.0, force)?).ln())
     };

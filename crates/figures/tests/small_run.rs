@@ -1,0 +1,185 @@
+//! Tiny runs of real solves: resume, threads, damage, files.
+
+#![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
+
+use figures::{
+    CsvFile, Error, Progress, Request, Run, Silent, Verdict, fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify,
+};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+fn request(out: &Path) -> Request {
+    Request {
+        cells: Some(17),
+        surfaces: Some(2),
+        elements: Some(256),
+        lines: Some(3),
+        fractal_dimensions: Some(vec![2.0, 2.6]),
+        forces: Some("1e-3:20:5,0.086".to_owned()),
+        out: Some(out.to_owned()),
+        ..Request::default()
+    }
+}
+
+fn run(out: &Path) -> Run {
+    Run::new(&request(out)).unwrap()
+}
+
+fn read(out: &Path, name: &str) -> Vec<u8> {
+    fs::read(out.join(name)).unwrap()
+}
+
+/// Counts units and those found on disk.
+#[derive(Default)]
+struct Counter {
+    units: AtomicUsize,
+    reused: AtomicUsize,
+}
+
+impl Progress for Counter {
+    fn begin(&self, _: &str, _: u64) {}
+    fn advance(&self, _: u64, reused: bool) {
+        self.units.fetch_add(1, Ordering::Relaxed);
+        self.reused.fetch_add(usize::from(reused), Ordering::Relaxed);
+    }
+    fn end(&self) {}
+}
+
+fn units(out: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> =
+        fs::read_dir(out.join(".units")).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+const TABLES: [&str; 2] = ["fig2.csv", "fig2-samples.csv"];
+
+#[test]
+fn threads_change_no_byte_and_the_seed_does() {
+    let (a, b, c) =
+        (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let one = Run::new(&Request { threads: Some(1), ..request(a.path()) }).unwrap();
+    let two = Run::new(&Request { threads: Some(2), ..request(b.path()) }).unwrap();
+    let other = Run::new(&Request { seed: Some(1), ..request(c.path()) }).unwrap();
+    for run in [&one, &two, &other] {
+        fig2(run, &Silent).unwrap();
+        fig6(run, &Silent).unwrap();
+    }
+    for name in TABLES.into_iter().chain(["fig6.csv", "fig6-samples.csv", "fig2.svg", "fig6.png"]) {
+        assert!(read(a.path(), name) == read(b.path(), name), "{name}");
+        assert!(read(a.path(), name) != read(c.path(), name), "{name}");
+    }
+}
+
+#[test]
+fn a_run_resumes_and_damage_is_solved_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = run(dir.path());
+    fig2(&run, &Silent).unwrap();
+    let whole: Vec<Vec<u8>> = TABLES.iter().map(|t| read(dir.path(), t)).collect();
+    let files = units(dir.path());
+    assert_eq!(files.len(), 4);
+    // One unit lost, one cut short, one of somebody else's, and what a kill leaves behind.
+    fs::remove_file(&files[0]).unwrap();
+    let text = fs::read_to_string(&files[1]).unwrap();
+    fs::write(&files[1], &text[..text.len() / 2]).unwrap();
+    fs::copy(&files[3], &files[2]).unwrap();
+    fs::write(dir.path().join(".units/.partial-0-0-x.csv"), "half").unwrap();
+    let counter = Counter::default();
+    fig2(&run, &counter).unwrap();
+    assert_eq!((counter.units.into_inner(), counter.reused.into_inner()), (4, 1));
+    assert!(TABLES.map(|t| read(dir.path(), t)).to_vec() == whole);
+    assert_eq!(units(dir.path()).len(), 4);
+}
+
+#[test]
+fn other_figures_reuse_units_and_other_parameters_do_not() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = run(dir.path());
+    fig2(&run, &Silent).unwrap();
+    fig6(&run, &Silent).unwrap();
+    let reused = |run: &Run, figure: fn(&Run, &dyn Progress) -> figures::Result<figures::Outcome>| {
+        let counter = Counter::default();
+        figure(run, &counter).unwrap();
+        (counter.units.into_inner(), counter.reused.into_inner())
+    };
+    assert_eq!(reused(&run, fig3), (10, 10));
+    assert_eq!(reused(&run, fig4), (4, 4));
+    assert_eq!(reused(&run, fig7), (10, 10));
+    assert_eq!(reused(&run, verify), (10, 10));
+    assert_eq!(reused(&Run { fresh: true, ..run.clone() }, fig4), (4, 0));
+    assert_eq!(reused(&Run { tolerance: 1e-5, ..run.clone() }, fig4), (4, 0));
+    // One surface more: the others are there.
+    assert_eq!(reused(&Run { surfaces: 3, ..run }, fig4), (6, 4));
+}
+
+#[test]
+fn every_figure_leaves_its_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = run(dir.path());
+    let figures = [fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify];
+    for figure in figures {
+        let outcome = figure(&run, &Silent).unwrap();
+        assert_eq!(outcome.not_converged, 0);
+        for file in &outcome.files {
+            let bytes = fs::read(file).unwrap();
+            match file.extension().and_then(|e| e.to_str()) {
+                Some("png") => {
+                    let reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+                    assert!(reader.info().width >= 17, "{}", file.display());
+                }
+                Some("svg") => {
+                    let text = String::from_utf8(bytes).unwrap();
+                    assert!(text.starts_with("<svg") || text.starts_with("<?xml"), "{}", file.display());
+                    assert!(text.trim_end().ends_with("</svg>") && !text.contains("NaN"));
+                }
+                Some("csv") => {
+                    let table = CsvFile::read(file).unwrap();
+                    assert!(
+                        !table.rows.is_empty() && table.comments.iter().any(|c| c.starts_with("command: "))
+                    );
+                    assert!(!table.rows.iter().flatten().any(|f| f == "NaN" || f == "inf"));
+                }
+                _ => assert!(!bytes.is_empty()),
+            }
+        }
+    }
+    let columns = |name: &str| CsvFile::read(&dir.path().join(name)).unwrap().columns.join(",");
+    assert!(columns("fig1.csv").starts_with("fractal_dimension,x,y,height"));
+    let curves = "model,fractal_dimension,force_bar,stiffness_bar,stiffness_bar_se,stiffness_bar_log_mean,surfaces,cells";
+    assert!(columns("fig2.csv").starts_with(curves) && columns("fig6.csv").starts_with(curves));
+    assert!(columns("fig3.csv").starts_with("model,fractal_dimension,alpha,alpha_se"));
+    assert!(columns("fig4.csv").starts_with("model,fractal_dimension,force_bar,force_tilde"));
+    assert!(columns("fig5.csv").starts_with("fractal_dimension,x,height"));
+    assert!(columns("fig7.csv").starts_with("model,fractal_dimension,zeta,zeta_se"));
+    assert_eq!(columns("verify.csv"), "claim,paper,here,standard_error,difference,allowed,verdict,why");
+}
+
+#[test]
+fn the_plateau_disagrees_and_stands_before_what_agrees() {
+    let dir = tempfile::tempdir().unwrap();
+    let claims = verify(&run(dir.path()), &Silent).unwrap().claims;
+    let first_agreement = claims.iter().position(|c| c.verdict == Verdict::Agrees).unwrap();
+    let plateau = claims.iter().position(|c| c.claim.starts_with("plateau 3D")).unwrap();
+    assert_eq!(claims[plateau].verdict, Verdict::Disagrees);
+    assert!(plateau < first_agreement);
+    assert!(claims.is_sorted_by_key(|c| c.verdict));
+    for name in ["delta of Eq. 7", "when heights, F and d are scaled together", "exponent of a body z = r^H"]
+    {
+        let rows: Vec<_> = claims.iter().filter(|c| c.claim.contains(name)).collect();
+        assert!(rows.len() == 2 && rows.iter().all(|c| c.verdict == Verdict::Agrees), "{rows:?}");
+    }
+    let text = fs::read_to_string(dir.path().join("verify.md")).unwrap();
+    assert!(text.lines().filter(|l| l.starts_with("| ")).count() == claims.len() + 1);
+}
+
+#[test]
+fn an_unwritable_directory_is_named_and_nothing_is_left() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("taken");
+    fs::write(&file, "a file").unwrap();
+    let error = fig6(&run(&file.join("out")), &Silent).unwrap_err();
+    assert!(matches!(error, Error::File { .. }) && error.to_string().contains("taken"), "{error}");
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+}
