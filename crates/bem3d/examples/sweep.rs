@@ -1,48 +1,67 @@
-//! Sweeps one NPY map of heights over forces and prints the work of each load: `sweep MAP.npy TOLERANCE F1,F2,...`.
-#![allow(clippy::unwrap_used)]
+//! Sweeps one surface over forces and prints the work of each load.
+//!
+//! `sweep MAP.npy TOLERANCE F1,F2,...` for a square float64 NPY map (L = E* = 1), or `sweep CELLS:DF:SEED TOLERANCE F1,...` for a
+//! self-affine one. Forces are F_bar in the measured rms height.
+
 use bem3d::Bem3d;
-use contact_model::{ContactModel, HeightMap, Load, Scene, Surface};
+use contact_model::{ContactModel, Error, HeightMap, Load, Scene, SelfAffine, Surface};
+use std::error::Error as StdError;
 use std::sync::Arc;
 use std::time::Instant;
-fn read(path: &str) -> (usize, Vec<f64>) {
-    let bytes = std::fs::read(path).unwrap();
-    let header = u16::from_le_bytes([bytes[8], bytes[9]]) as usize;
-    let data: Vec<f64> =
-        bytes[10 + header..].chunks(8).map(|c| f64::from_le_bytes(c.try_into().unwrap())).collect();
-    ((data.len() as f64).sqrt() as usize, data)
-}
-fn main() {
-    let args: Vec<String> = std::env::args().collect();
-    let (cells, heights) = read(&args[1]);
-    let tolerance: f64 = args[2].parse().unwrap();
-    let forces: Vec<f64> = args[3].split(',').map(|f| f.parse().unwrap()).collect();
-    let model = Bem3d { cells, tolerance, ..Bem3d::default() };
-    let mut scene = Scene::new(Surface::Heights(Arc::new(HeightMap::new(cells, 1.0, heights).unwrap())), 1.0);
+
+fn main() -> Result<(), Box<dyn StdError>> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let [_, source, tolerance, forces] = &arguments[..] else {
+        return Err("usage: sweep MAP.npy|CELLS:DF:SEED TOLERANCE F1,F2,...".into());
+    };
+    let (surface, cells, seed) = surface(source)?;
+    let model = Bem3d { cells, tolerance: tolerance.parse()?, ..Bem3d::default() };
+    let mut scene = Scene::new(surface, 1.0);
     scene.outputs.area = true;
-    let t = Instant::now();
-    let mut prepared = model.prepare(&scene, 0).unwrap();
-    println!("prepare {:.3}", t.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let mut prepared = model.prepare(&scene, seed)?;
+    let scales = prepared.scales();
+    println!("prepared in {:.3} s", start.elapsed().as_secs_f64());
+    println!(
+        "force_bar approach_over_h stiffness_bar cells steps applications seconds strategy status certificate"
+    );
     let all = Instant::now();
-    for f in forces {
-        let t = Instant::now();
-        let (state, word) = match prepared.solve(Load::Force(f)) {
-            Ok(s) => (s, "ok"),
-            Err(contact_model::Error::NotConverged { best }) => (*best, "NOT"),
-            Err(e) => panic!("{e}"),
+    for force in forces.split(',') {
+        let force_bar: f64 = force.parse()?;
+        let start = Instant::now();
+        let state = match prepared.solve(Load::Force(scales.force(force_bar)?)) {
+            Ok(state) => state,
+            Err(Error::NotConverged { best }) => *best,
+            Err(error) => return Err(error.into()),
         };
-        let r = &state.report;
+        let report = &state.report;
         println!(
-            "{f:.3e} d {:.12} kbar {:.12} n {} it {} app {} {:.3}s {} {} [{}]",
-            state.approach.unwrap(),
-            state.stiffness.unwrap() / 1.1419,
-            r.contact_cells.unwrap(),
-            r.iterations,
-            r.applications,
-            t.elapsed().as_secs_f64(),
-            r.strategy,
-            word,
-            r.certificate
+            "{force_bar:.3e} {:.12} {:.12} {} {} {} {:.3} {} {} {}",
+            scales.approach_over_h(state.approach.unwrap_or(0.0))?,
+            scales.stiffness_bar(state.stiffness.unwrap_or(0.0)),
+            report.contact_cells.unwrap_or(0),
+            report.iterations,
+            report.applications,
+            start.elapsed().as_secs_f64(),
+            report.strategy,
+            report.status.as_str(),
+            report.certificate
         );
     }
-    println!("total {:.3}", all.elapsed().as_secs_f64());
+    println!("all loads {:.3} s", all.elapsed().as_secs_f64());
+    Ok(())
+}
+
+fn surface(source: &str) -> Result<(Surface, usize, u64), Box<dyn StdError>> {
+    if let [cells, fractal_dimension, seed] = source.split(':').collect::<Vec<_>>()[..] {
+        let surface = SelfAffine::new(fractal_dimension.parse()?, 1.0, 1.0)?;
+        return Ok((Surface::SelfAffine(surface), cells.parse()?, seed.parse()?));
+    }
+    let bytes = std::fs::read(source)?;
+    let header = bytes.get(8..10).map_or(0, |b| usize::from(u16::from_le_bytes([b[0], b[1]])));
+    let data = bytes.get(10 + header..).ok_or("not an NPY file")?;
+    let heights: Vec<f64> =
+        data.chunks_exact(8).filter_map(|c| c.try_into().ok()).map(f64::from_le_bytes).collect();
+    let cells = heights.len().isqrt();
+    Ok((Surface::Heights(Arc::new(HeightMap::new(cells, 1.0, heights)?)), cells, 0))
 }

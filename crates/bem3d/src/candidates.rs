@@ -47,3 +47,18 @@ impl Candidates {
         set.index().iter().map(|&i| self.z[i as usize]).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn below_is_strict_and_complete_whatever_was_asked_before() {
+        let z = Arc::new(vec![0.0, 0.5, 1.0, 0.25, 3.0, 2.0, 0.0, 1.5, 0.75]);
+        let mut candidates = Candidates::new(3, Arc::clone(&z));
+        for d in [0.5, 0.1, 4.0, 1.0, 0.0] {
+            let expected: Vec<u32> = (0..9).filter(|&i| z[i as usize] < d).collect();
+            assert_eq!(candidates.below(d).index(), expected, "d = {d}");
+        }
+    }
+}

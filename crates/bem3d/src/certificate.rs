@@ -43,3 +43,25 @@ pub fn measure(p: &[f64], gap: &[f64], s: f64) -> Evidence {
         deepest,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn by_hand() {
+        // p = (2, 1, 0), gap (0.1, -0.2, 0.5), s = 2: force 3, lowest -0.2.
+        let e = measure(&[2.0, 1.0, 0.0], &[0.1, -0.2, 0.5], 2.0);
+        assert_relative_eq!(e.frank_wolfe, (2.0 * 0.3) / 6.0, max_relative = 1e-14);
+        assert_relative_eq!(e.complementarity, 0.4 / 6.0, max_relative = 1e-14);
+        assert_relative_eq!(e.penetration, 0.1, max_relative = 1e-14);
+        assert_relative_eq!(e.worst(), 0.1, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn nothing_pressed_is_only_penetration() {
+        let e = measure(&[0.0, 0.0], &[-1.0, 2.0], 4.0);
+        assert_relative_eq!(e.worst(), 0.25, max_relative = 1e-14);
+    }
+}

@@ -117,3 +117,66 @@ fn prolong(problem: &Problem, coarse: &Problem, contact: &CellSet, p: &[f64], d:
     let (index, p) = cells.into_iter().unzip();
     Guess { set: CellSet::new(fine, index), p, d }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::never;
+
+    fn problem(side: usize, z: Vec<f64>) -> Problem {
+        Problem {
+            candidates: Candidates::new(side, Arc::new(z)),
+            operators: Operators::new(Table::shared(side)),
+            side,
+        }
+    }
+
+    fn limits() -> Limits {
+        Limits { tolerance: 1e-6, height: Some(1.0), rounds: 50, dense: false }
+    }
+
+    /// A broad hill with one needle on its flank that no coarse grid sees as a summit.
+    fn needle(side: usize) -> Vec<f64> {
+        let middle = side as f64 / 2.0;
+        let mut z: Vec<f64> = (0..side * side)
+            .map(|i| {
+                let (x, y) = ((i % side) as f64 - middle, (i / side) as f64 - middle);
+                0.2 + (x * x + y * y) / (middle * middle)
+            })
+            .collect();
+        z[3 * side + 5] = 0.0;
+        z
+    }
+
+    #[test]
+    fn a_needle_that_coarse_grids_lose_still_carries() {
+        let side = 97;
+        let mut problem = problem(side, needle(side));
+        let target = Target::Approach(0.3);
+        let guess = cold(&mut problem, target, limits(), &never);
+        let solved = active_set::solve(&mut problem, target, guess, limits(), &never);
+        assert_eq!(solved.status, contact_model::Status::Converged);
+        assert!(solved.contact.index().contains(&((3 * side + 5) as u32)));
+        assert!(solved.contact.len() > 10, "the hill carries too");
+    }
+
+    #[test]
+    fn a_coarse_grid_keeps_the_force() {
+        let side = 97;
+        let mut problem = problem(side, needle(side));
+        let force = 40.0;
+        let guess = cold(&mut problem, Target::Force(force), limits(), &never);
+        approx::assert_relative_eq!(guess.p.iter().sum::<f64>(), force, max_relative = 1e-12);
+        assert!(guess.p.iter().all(|&p| p > 0.0));
+        assert_eq!(guess.p.len(), guess.set.len());
+    }
+
+    #[test]
+    fn an_approach_below_every_coarse_summit_starts_from_the_fine_grid() {
+        let side = 97;
+        let mut problem = problem(side, needle(side));
+        let target = Target::Approach(1e-3);
+        let guess = cold(&mut problem, target, limits(), &never);
+        assert_eq!(guess.set.len(), 1);
+    }
+}

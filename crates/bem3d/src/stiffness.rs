@@ -111,16 +111,21 @@ fn penetrating(state: &Solved) -> CellSet {
 ///
 /// Adding cell j adds `(1 - (Kq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
 /// takes away `q_j^2 / (K^-1)_jj`, at most `q_j^2 K_jj`. Undecided are the cells that penetrate and those whose pressure
-/// is below what the residual gap can change.
+/// is below what their own residual gap can change. `tests/honest.rs` compares the sum of both parts with true errors.
 fn set_error(state: &Solved, targets: &CellSet, v: &[f64], ambiguous: &CellSet, q: &[f64]) -> f64 {
     let added: f64 = targets.positions(ambiguous).iter().map(|&k| (1.0 - v[k as usize]).powi(2)).sum::<f64>()
         / love::SMALLEST_EIGENVALUE;
-    let on_contact = |(&p, &g): (&f64, &f64)| if p > 0.0 { g.abs() } else { 0.0 };
-    let residual = state.look.p.iter().zip(&state.look.gap).map(on_contact).fold(0.0, f64::max);
-    let undecided = residual / love::SMALLEST_EIGENVALUE;
-    let removed: f64 =
-        state.p.iter().zip(q).filter(|&(&p, _)| p < undecided).map(|(_, q)| q * q).sum::<f64>()
-            * love::influence(0, 0);
+    let look = &state.look;
+    let gap = look.gap.iter().zip(&look.p).filter(|&(_, &p)| p > 0.0).map(|(g, _)| g.abs());
+    let removed: f64 = state
+        .p
+        .iter()
+        .zip(q)
+        .zip(gap)
+        .filter(|&((&p, _), gap)| p < gap / love::SMALLEST_EIGENVALUE)
+        .map(|((_, q), _)| q * q)
+        .sum::<f64>()
+        * love::influence(0, 0);
     added + removed
 }
 
@@ -136,4 +141,69 @@ pub fn factored(problem: &mut Problem, state: &Solved, q: Vec<f64>) -> Stiffness
     let upper = sum + rq + cg::energy(&mut problem.operators, &state.contact, &r, false);
     let set_error = set_error(state, &targets, &v, &ambiguous, &q) / value;
     Stiffness { value, solve_error: (upper - value).max(0.0) / value, set_error, q, steps: 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::active_set::{self, Guess, Limits, Target};
+    use crate::candidates::Candidates;
+    use crate::operator::{Operators, Table};
+    use approx::assert_relative_eq;
+    use contact_model::never;
+    use std::sync::Arc;
+
+    /// Full contact of a flat square of `side` cells.
+    fn flat(side: usize, dense: bool) -> (Problem, Solved) {
+        let n = side * side;
+        let mut problem = Problem {
+            candidates: Candidates::new(side, Arc::new(vec![0.0; n])),
+            operators: Operators::new(Table::shared(side)),
+            side,
+        };
+        let guess =
+            Guess { set: CellSet::new(side, (0..n as u32).collect()), p: vec![1.0; n], d: 4.0 * n as f64 };
+        let limits = Limits { tolerance: 1e-9, height: None, rounds: 100, dense };
+        let solved = active_set::solve(&mut problem, Target::Force(1.0), guess, limits, &never);
+        (problem, solved)
+    }
+
+    #[test]
+    fn full_contact_of_small_squares() {
+        // PHYSICS.md section 4, given to 8 or 9 digits; k / (E* L) = pi k_scaled / N.
+        for (side, expected) in [
+            (1, 0.891_106_989),
+            (2, 0.993_186_221),
+            (4, 1.065_467_232),
+            (8, 1.106_498_258),
+            (16, 1.128_630_66),
+        ] {
+            for dense in [true, false] {
+                let (mut problem, solved) = flat(side, dense);
+                let k = match solved.q.clone() {
+                    Some(q) => factored(&mut problem, &solved, q),
+                    None => solve(&mut problem, &solved, None, 1e-9, &never),
+                };
+                let physical = std::f64::consts::PI * k.value / side as f64;
+                assert_relative_eq!(physical, expected, max_relative = 5e-9);
+                assert!(k.error() < 1e-9, "{}", k.error());
+            }
+        }
+    }
+
+    #[test]
+    fn the_estimate_covers_a_loose_solve() {
+        let (mut problem, solved) = flat(32, false);
+        let exact = solve(&mut problem, &solved, None, 1e-10, &never);
+        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4] {
+            let loose = solve(&mut problem, &solved, None, tolerance, &never);
+            let error = (loose.value / exact.value - 1.0).abs();
+            assert!(
+                error <= loose.solve_error && loose.solve_error <= tolerance,
+                "{error} {}",
+                loose.solve_error
+            );
+            assert!(loose.value <= exact.value * (1.0 + 1e-12), "a Ritz value is a lower bound");
+        }
+    }
 }

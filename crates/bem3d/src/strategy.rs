@@ -14,8 +14,8 @@ const APPLICATIONS: f64 = 20.0;
 const FACTORS: f64 = 2.5;
 /// A factor is never larger than this, whatever the rest costs (memory: 16 n^2 bytes).
 const LARGEST_FACTOR: usize = 6000;
-/// Sets up to this size are always factored: the result is exact and the time is below a tenth of a millisecond.
-const ALWAYS_FACTORED: usize = 100;
+/// Sets up to this size are always factored: the result is exact and costs a millisecond or two.
+const ALWAYS_FACTORED: usize = 256;
 /// Share of the window in contact from which the spectral preconditioner saves more applications than it costs.
 const DENSE_CONTACT: f64 = 0.02;
 
@@ -40,4 +40,35 @@ pub fn dense_is_cheaper(n: usize, lengths: Lengths) -> bool {
 /// Whether conjugate gradients use the spectral preconditioner.
 pub fn precondition(contact: usize, window_cells: usize) -> bool {
     contact as f64 >= DENSE_CONTACT * window_cells as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRID: Lengths = Lengths { x: 4096, y: 4096 };
+
+    #[test]
+    fn small_sets_never_pay_for_the_grid() {
+        assert!(direct_is_cheaper(300, 3000, GRID));
+        assert!(dense_is_cheaper(200, GRID));
+        assert!(!direct_is_cheaper(100_000, 100_000, GRID));
+        assert!(!dense_is_cheaper(50_000, GRID));
+    }
+
+    #[test]
+    fn the_choice_is_monotone_in_the_size_of_the_set() {
+        let small = Lengths { x: 64, y: 64 };
+        for lengths in [small, GRID] {
+            let dense: Vec<bool> = (1..9000).step_by(50).map(|n| dense_is_cheaper(n, lengths)).collect();
+            assert!(dense.windows(2).all(|w| w[0] || !w[1]), "once too large, always too large");
+        }
+        assert!(!dense_is_cheaper(LARGEST_FACTOR + 1, Lengths { x: 1 << 20, y: 1 << 20 }));
+    }
+
+    #[test]
+    fn the_preconditioner_is_for_dense_contact() {
+        assert!(!precondition(10, 1000));
+        assert!(precondition(30, 1000));
+    }
 }

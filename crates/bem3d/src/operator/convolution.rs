@@ -334,4 +334,24 @@ mod tests {
         let window = Window { x: 0, y: 0, width: 2049, height: 1 };
         assert_eq!(Lengths::free(window), Lengths { x: 4096, y: 2 });
     }
+
+    #[test]
+    fn symbol_is_the_cosine_sum() {
+        let lengths = Lengths { x: 6, y: 4 };
+        let kernel = |x: usize, y: usize| 1.0 / (1.0 + x as f64 + 2.0 * y as f64);
+        let symbol = Symbol::of_kernel(lengths, kernel);
+        let angle = |k: usize, x: usize, l: usize| std::f64::consts::TAU * (k * x) as f64 / l as f64;
+        for kx in 0..=3 {
+            for ky in 0..=2 {
+                let mut sum = 0.0;
+                for y in 0..4 {
+                    for x in 0..6 {
+                        let value = kernel(x.min(6 - x), y.min(4 - y));
+                        sum += value * angle(kx, x, 6).cos() * angle(ky, y, 4).cos();
+                    }
+                }
+                approx::assert_relative_eq!(symbol.values[kx * 3 + ky], sum, epsilon = 1e-13);
+            }
+        }
+    }
 }

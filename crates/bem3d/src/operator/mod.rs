@@ -137,3 +137,136 @@ fn union(a: &CellSet, b: &CellSet) -> Window {
         (None, None) => Window { x: 0, y: 0, width: 1, height: 1 },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    /// Rounding of a double-precision transform of a few thousand points.
+    const DOUBLE: f64 = 1e-13;
+    /// Noise floor of a single-precision one.
+    const SINGLE: f64 = 2e-6;
+
+    fn set(side: usize, picks: &[bool]) -> CellSet {
+        let index = (0..(side * side) as u32).filter(|&i| picks[i as usize % picks.len()]).collect();
+        CellSet::new(side, index)
+    }
+
+    fn largest(values: &[f64]) -> f64 {
+        values.iter().fold(0.0, |m, v| m.max(v.abs()))
+    }
+
+    fn free(table: &Table, window: Window) -> Convolution<f64> {
+        let lengths = Lengths::free(window);
+        Convolution::new(window, lengths, table.symbol_f64(lengths))
+    }
+
+    fn pressure(n: usize) -> Vec<f64> {
+        (0..n).map(|k| 1.0 + (k as f64 * 0.7).sin()).collect()
+    }
+
+    #[test]
+    fn a_circular_length_of_twice_n_less_one_is_exact() {
+        // The lag n - 1 meets its own mirror image; an odd kernel would not survive this.
+        for side in [2, 3, 5, 9, 33] {
+            let table = Table::shared(side);
+            let all = set(side, &[true]);
+            let window = all.window().unwrap();
+            assert_eq!(Lengths::free(window).x, 2 * (side - 1), "this test is about the shortest length");
+            let p = pressure(all.len());
+            let (mut direct, mut fft) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+            direct::apply(&table, &all, &p, &all, &mut direct);
+            free(&table, window).apply(&all, &p, &all, &mut fft);
+            for (a, b) in direct.iter().zip(&fft) {
+                assert_relative_eq!(a, b, max_relative = DOUBLE);
+            }
+        }
+    }
+
+    #[test]
+    fn the_factor_inverts_the_direct_sum() {
+        let side = 12;
+        let table = Table::shared(side);
+        let cells = set(side, &[true, false, true, true, false, true, false]);
+        let z = pressure(cells.len());
+        let (q, w) = dense::Factor::new(&table, &cells).unwrap().solve_pair(&z);
+        let mut back = vec![0.0; z.len()];
+        direct::apply(&table, &cells, &q, &cells, &mut back);
+        for b in &back {
+            assert_relative_eq!(*b, 1.0, max_relative = DOUBLE);
+        }
+        direct::apply(&table, &cells, &w, &cells, &mut back);
+        for (b, z) in back.iter().zip(&z) {
+            assert_relative_eq!(b, z, max_relative = DOUBLE);
+        }
+    }
+
+    #[test]
+    fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
+        // Far from the edges B K p = p up to what the wrapped kernel lacks.
+        let side = 48;
+        let mut operators = Operators::new(Table::shared(side));
+        let all = set(side, &[true]);
+        let bump = |k: usize| {
+            let (x, y) = all.place(k);
+            (-((x as f64 - 24.0).powi(2) + (y as f64 - 24.0).powi(2)) / 18.0).exp()
+        };
+        let p: Vec<f64> = (0..all.len()).map(bump).collect();
+        let u = operators.exact(&all, &p, &all);
+        let mut back = vec![0.0; p.len()];
+        operators.inverse(&all, &u, &mut back);
+        let error: Vec<f64> = back.iter().zip(&p).map(|(a, b)| a - b).collect();
+        assert!(largest(&error) < 0.05, "{}", largest(&error));
+        assert_eq!(operators.applications, 1, "the preconditioner is not an application of K");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 24, rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
+        #[test]
+        fn every_operator_agrees_with_the_direct_sum(
+            side in 1usize..40,
+            sources in prop::collection::vec(any::<bool>(), 1..90),
+            targets in prop::collection::vec(any::<bool>(), 1..90),
+        ) {
+            let (sources, targets) = (set(side, &sources), set(side, &targets));
+            prop_assume!(!sources.is_empty() && !targets.is_empty());
+            let table = Table::shared(side);
+            let p = pressure(sources.len());
+            let mut direct = vec![0.0; targets.len()];
+            direct::apply(&table, &sources, &p, &targets, &mut direct);
+            let window = union(&sources, &targets);
+            let mut fft = vec![0.0; targets.len()];
+            free(&table, window).apply(&sources, &p, &targets, &mut fft);
+            let scale = largest(&direct);
+            for (a, b) in direct.iter().zip(&fft) {
+                prop_assert!((a - b).abs() <= DOUBLE * scale);
+            }
+            let lengths = Lengths::free(window);
+            let mut single = Convolution::<f32>::new(window, lengths, table.symbol_f32(lengths));
+            single.apply(&sources, &p, &targets, &mut fft);
+            for (a, b) in direct.iter().zip(&fft) {
+                prop_assert!((a - b).abs() <= SINGLE * scale);
+            }
+        }
+
+        #[test]
+        fn reciprocity(
+            side in 2usize..30,
+            a in prop::collection::vec(any::<bool>(), 1..60),
+            b in prop::collection::vec(any::<bool>(), 1..60),
+        ) {
+            // Maxwell-Betti: the work of one load on the other's displacement is mutual.
+            let (a, b) = (set(side, &a), set(side, &b));
+            prop_assume!(!a.is_empty() && !b.is_empty());
+            let mut operators = Operators::new(Table::shared(side));
+            let (pa, pb) = (pressure(a.len()), pressure(b.len()));
+            let ub = operators.exact(&a, &pa, &b);
+            let ua = operators.exact(&b, &pb, &a);
+            let (one, two) = (crate::cg::dot(&ub, &pb), crate::cg::dot(&ua, &pa));
+            prop_assert!((one - two).abs() <= DOUBLE * one.abs());
+        }
+    }
+}

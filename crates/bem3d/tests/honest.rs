@@ -1,0 +1,41 @@
+//! Is the estimated error of the stiffness honest? Loose solves against tight ones.
+
+use bem3d::{Bem3d, Method};
+use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};
+
+/// Share of true errors inside the estimate that is called honest.
+const INSIDE: f64 = 0.9;
+/// The median estimate may not be more than so many times the true error: a bound nobody can use is not honest either.
+const WASTE: f64 = 20.0;
+
+#[test]
+fn the_estimated_error_of_k_covers_the_true_one() {
+    let forces: Vec<f64> = (0..8).map(|i| 0.03 * 2.5f64.powi(i)).collect();
+    let mut ratios = Vec::new();
+    for (cells, fractal_dimension, seed) in [(96, 2.0, 1), (129, 2.4, 2), (128, 2.8, 3), (150, 2.2, 4)] {
+        let surface = Surface::SelfAffine(SelfAffine::new(fractal_dimension, 1.0, 1.0).unwrap());
+        let scene = Scene::new(surface, 1.0);
+        let sweep = |model: Bem3d| -> Vec<(f64, f64)> {
+            let mut contact = model.prepare(&scene, seed).unwrap();
+            let solve = |&f: &f64| {
+                let state = contact.solve(Load::Force(f)).unwrap();
+                (state.stiffness.unwrap(), state.report.certificate.stiffness_error.unwrap())
+            };
+            forces.iter().map(solve).collect()
+        };
+        let exact = sweep(Bem3d { cells, tolerance: 1e-9, ..Bem3d::default() });
+        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4] {
+            let loose = sweep(Bem3d { cells, tolerance, method: Method::Iterative, ..Bem3d::default() });
+            for ((k, estimate), (exact, _)) in loose.iter().zip(&exact) {
+                assert!(*estimate <= tolerance);
+                ratios.push((k / exact - 1.0).abs().max(1e-16) / estimate.max(1e-16));
+            }
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    let inside = ratios.iter().filter(|&&r| r <= 1.0).count() as f64 / ratios.len() as f64;
+    let median = ratios[ratios.len() / 2];
+    println!("{} solves: {inside:.3} inside, median true / estimated {median:.3}", ratios.len());
+    assert!(inside >= INSIDE, "only {inside} of the true errors lie inside their estimate");
+    assert!(median >= 1.0 / WASTE, "the estimates are {} times too large", 1.0 / median);
+}
