@@ -81,6 +81,34 @@ impl Claim {
         }
     }
 
+    /// Agrees within `tolerance` + 2 standard errors; but where 2 standard errors are more than twice the tolerance, an agreement
+    /// would say nothing: not tested, with the numbers.
+    ///
+    /// ```
+    /// use figures::{Claim, Verdict};
+    /// let verdict = |here, error| Claim::within("zeta", 0.66, here, Some(error), 0.05, "").verdict;
+    /// assert_eq!(verdict(0.70, 0.02), Verdict::Agrees);
+    /// assert_eq!(verdict(0.90, 0.02), Verdict::Disagrees);
+    /// assert_eq!(verdict(0.90, 0.15), Verdict::NotTested);
+    /// ```
+    pub fn within(
+        claim: impl Into<String>,
+        paper: f64,
+        here: f64,
+        standard_error: Option<f64>,
+        tolerance: f64,
+        why: impl Into<String>,
+    ) -> Self {
+        let scatter = 2.0 * standard_error.unwrap_or(0.0);
+        let why = format!("{}; allowed: this + 2 s.e.", why.into());
+        let mut claim = Self::compare(claim, paper, here, standard_error, tolerance + scatter, why);
+        if claim.verdict == Verdict::Agrees && scatter > 2.0 * tolerance {
+            claim.verdict = Verdict::NotTested;
+            claim.why = format!("the scatter of so few surfaces hides it; {}", claim.why);
+        }
+        claim
+    }
+
     /// A claim in words (`at least 4`), judged by the caller.
     pub fn judge(
         claim: impl Into<String>,

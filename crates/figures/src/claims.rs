@@ -96,14 +96,9 @@ fn usable(law: &Law) -> Result<&PowerLaw, String> {
     let decades = (fit.force_bar_max / fit.force_bar_min).log10();
     if decades < LEAST_DECADES {
         return Err(format!(
-            "the window {:.1e} .. {:.1e} spans {decades:.1} decades, at least {LEAST_DECADES} is needed: finer grids widen it",
+            "the window {:.1e} .. {:.1e} spans {decades:.2} decades, at least {LEAST_DECADES} is needed: finer grids widen it",
             fit.force_bar_min, fit.force_bar_max
         ));
     }
     Ok(fit)
-}
-
-/// Twice a standard error; 0 where there is none.
-fn twice(error: Option<f64>) -> f64 {
-    2.0 * error.unwrap_or(0.0)
 }

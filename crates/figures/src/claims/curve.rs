@@ -1,6 +1,6 @@
 //! What the curves themselves say: the crossing, saturation, the crossover, the collapse.
 
-use super::{label, stiffness_at, twice, usable};
+use super::{label, stiffness_at, usable};
 use crate::claim::Claim;
 use crate::fig4::transformed;
 use crate::laws::laws;
@@ -18,9 +18,8 @@ pub(super) fn near_the_crossing(measured: &Measured) -> Vec<Claim> {
             let claim = format!("k_bar {} at F_bar = 0.086, D_f = {:?}", label(measured), s.fractal_dimension);
             match stiffness_at(s, F_BAR_UL) {
                 Some((k, error)) => {
-                    let why = "all curves through (0.086, 0.18) (Sec. II); allowed: 0.01 for a value read off six curves to two digits, \
-                               + 2 s.e.";
-                    Claim::compare(claim, K_BAR_UL, k, error, 0.01 + twice(error), why)
+                    let why = "all curves through (0.086, 0.18) (Sec. II); 0.01 for a value read off six curves to two digits";
+                    Claim::within(claim, K_BAR_UL, k, error, 0.01, why)
                 }
                 None => Claim::not_tested(claim, K_BAR_UL, "0.086 lies outside the loads of this run"),
             }
@@ -42,8 +41,8 @@ pub(super) fn conductance(measured: &Measured) -> Vec<Claim> {
     let error = errors.map(|e| factor * sum(e) / count);
     match analysis::conductance(k * PAPER_STIFFNESS_FACTOR, 1.0, 0.5, 0.5) {
         Ok(lambda) if !values.is_empty() => {
-            let why = "Lambda (rho1 + rho2)/L = 2 k/(E* L), exact (Barber); allowed: 0.01 in k_bar as at the crossing, + 2 s.e.";
-            vec![Claim::compare(claim, paper, lambda, error, 0.01 * factor + twice(error), why)]
+            let why = "Lambda (rho1 + rho2)/L = 2 k/(E* L), exact (Barber); 0.01 in k_bar as at the crossing";
+            vec![Claim::within(claim, paper, lambda, error, 0.01 * factor, why)]
         }
         _ => vec![Claim::not_tested(claim, paper, "0.086 lies outside the loads of this run")],
     }
@@ -66,9 +65,9 @@ pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
             Some((k, error)) => {
                 let error = error.map(|e| e / plateau);
                 let why = format!(
-                    "saturated at about F_bar = 20 (Sec. III); plateau of this grid {plateau:.5}; allowed: 1 %, what a plot over three decades shows, + 2 s.e."
+                    "saturated at about F_bar = 20 (Sec. III); plateau of this grid {plateau:.5}; 1 %: what a plot over three decades shows"
                 );
-                claims.push(Claim::compare(claim, 1.0, k / plateau, error, 0.01 + twice(error), why));
+                claims.push(Claim::within(claim, 1.0, k / plateau, error, 0.01, why));
             }
             None => claims.push(Claim::not_tested(claim, 1.0, "20 lies outside the loads of this run")),
         }
@@ -109,9 +108,9 @@ pub(super) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> 
     match largest {
         Some((excess, f, d, error)) => {
             let why = format!(
-                "at F_bar = {f:.3}, D_f = {d:?}; \"up to 25 %\" (Sec. III); independent values give about 20 % near F_bar = 1.8; allowed: 0.05 + 2 s.e."
+                "at F_bar = {f:.3}, D_f = {d:?}; \"up to 25 %\" (Sec. III); independent values give about 20 % near F_bar = 1.8; 0.05: the step from \"about 20\" to \"up to 25 %\""
             );
-            vec![Claim::compare(claim, 0.25, excess, error, 0.05 + twice(error), why)]
+            vec![Claim::within(claim, 0.25, excess, error, 0.05, why)]
         }
         None => vec![Claim::not_tested(claim, 0.25, "no load of the two models in common above 0.086")],
     }

@@ -1,6 +1,6 @@
 //! alpha: Eqs. 6 and 24, 1D against 3D, 1D at small forces.
 
-use super::{alpha_allowed, label, twice, usable};
+use super::{alpha_allowed, label, usable};
 use crate::claim::Claim;
 use crate::laws::{laws, laws_within};
 use crate::measured::Measured;
@@ -18,13 +18,10 @@ fn against(measured: &Measured, name: &str, formula: impl Fn(f64) -> f64, why: &
             let claim = format!("alpha {} at D_f = {d:?}, {name}", label(measured));
             match usable(law) {
                 Ok(fit) => {
-                    let allowed = alpha_allowed(d) + twice(fit.alpha_se);
-                    let why = format!(
-                        "{why}; allowed: {} of PHYSICS 3 + 2 s.e.; {}",
-                        alpha_allowed(d),
-                        window(fit)
-                    );
-                    Claim::compare(claim, formula(d), fit.alpha, fit.alpha_se, allowed, why)
+                    let allowed = alpha_allowed(d);
+                    let why =
+                        format!("{why}; {}; {allowed}: the uncertainty of independent values", window(fit));
+                    Claim::within(claim, formula(d), fit.alpha, fit.alpha_se, allowed, why)
                 }
                 Err(reason) => Claim::not_tested(claim, formula(d), reason),
             }
@@ -58,10 +55,10 @@ pub(super) fn line_against_solid(solid: &Measured, line: &Measured) -> Vec<Claim
                 (Ok(a), Ok(b)) => {
                     // Different surfaces: independent errors.
                     let error = a.alpha_se.zip(b.alpha_se).map(|(x, y)| x.hypot(y));
-                    let allowed = 2f64.sqrt() * alpha_allowed(d) + twice(error);
-                    let why = "\"coincide almost exactly\" for D_f from 2 to 2.5 (Sec. III); allowed: 0.03 of PHYSICS 3 for each, \
-                               in quadrature, + 2 s.e.";
-                    Claim::compare(claim, 0.0, b.alpha - a.alpha, error, allowed, why)
+                    let allowed = 2f64.sqrt() * alpha_allowed(d);
+                    let why = "\"coincide almost exactly\" for D_f from 2 to 2.5 (Sec. III); 0.03 for each, in quadrature: the uncertainty of \
+                               independent values";
+                    Claim::within(claim, 0.0, b.alpha - a.alpha, error, allowed, why)
                 }
                 (Err(reason), _) | (_, Err(reason)) => Claim::not_tested(claim, 0.0, reason),
             }
@@ -83,15 +80,14 @@ pub(super) fn down_to_small_forces(line: &Measured) -> Vec<Claim> {
                 // Two loads a decade at least, from within a factor 2.2 of 1e-7.
                 (Ok(a), Ok(b)) if a.force_bar_min <= 2.2e-7 => {
                     let error = a.alpha_se.zip(b.alpha_se).map(|(x, y)| x.hypot(y));
-                    let allowed = alpha_allowed(d) + twice(error);
+                    let allowed = alpha_allowed(d);
                     let why = format!(
-                        "\"power-law dependencies remain correct up to forces of 10^-7\" (Sec. III); {} below, {:.3} above; \
-                         allowed: {} of PHYSICS 3 + 2 s.e.",
+                        "\"power-law dependencies remain correct up to forces of 10^-7\" (Sec. III); {} below, {:.3} above; {allowed}: the \
+                         uncertainty of independent values",
                         window(a),
-                        b.alpha,
-                        alpha_allowed(d)
+                        b.alpha
                     );
-                    Claim::compare(claim, 0.0, a.alpha - b.alpha, error, allowed, why)
+                    Claim::within(claim, 0.0, a.alpha - b.alpha, error, allowed, why)
                 }
                 (Ok(a), Ok(_)) => Claim::not_tested(
                     claim,
