@@ -22,6 +22,9 @@ const FLOOR: f64 = 0.2;
 const BETTER: f64 = 0.9;
 /// Rounds without a better certificate after which the arithmetic has given all it can.
 const PATIENCE: usize = 12;
+/// Above this certificate, and above so many times the tolerance, the next look is one in single precision: half the cost.
+const ROUGH: f64 = 0.03;
+const ROUGH_ROUNDS: f64 = 10.0;
 /// A cell is added when it penetrates by more than this multiple of the rms gap that the contact cells still have: below it,
 /// the gap is only as good as the pressure that made it, and adding half of all candidates by chance undoes the elimination.
 const NOISE: f64 = 1.0;
@@ -104,7 +107,7 @@ pub struct Look {
     pub gap: Vec<f64>,
     /// How well the conditions hold.
     pub evidence: Evidence,
-    /// Whether every cell below the plane was among them.
+    /// Whether every cell below the plane was among them, in double precision.
     complete: bool,
 }
 
@@ -133,9 +136,9 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
     };
     let mut now = Pressed { contact: guess.set, p: guess.p, d: guess.d, q: None };
     let mut best: Option<(Pressed, Look)> = None;
-    let (mut steps, mut round, mut since_best) = (0, 0, 0);
+    let (mut steps, mut round, mut since_best, mut rough) = (0, 0, 0, false);
     loop {
-        let look = look(problem, target, &mut now, reach, limits);
+        let look = look(problem, target, &mut now, reach, limits, rough);
         let error = look.evidence.worst();
         let settled = now.q.is_none() || look.evidence.deepest <= FACTOR_ROUNDING * now.d;
         let status = if look.complete && settled && error <= limits.tolerance {
@@ -159,8 +162,9 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
         }
         // Just above the plane: a generous guess must not make every round look at the whole grid.
         reach = REACH * now.d;
+        rough = error > ROUGH && error > ROUGH_ROUNDS * limits.tolerance;
         let better = look.complete && best.as_ref().is_none_or(|b| error < BETTER * b.1.evidence.worst());
-        since_best = if better { 0 } else { since_best + 1 };
+        since_best = if better { 0 } else { since_best + usize::from(!rough) };
         let next = improve(problem, target, &look, &now, limits, &mut steps, stop);
         if next.q.is_some() {
             reach = REACH * next.d;
@@ -174,12 +178,27 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
 }
 
 /// The exact gap under a pressure, and the approach that it makes at a prescribed force.
-fn look(problem: &mut Problem, target: Target, now: &mut Pressed, reach: f64, limits: Limits) -> Look {
+///
+/// A `rough` look in single precision says how to go on, but is never evidence.
+fn look(
+    problem: &mut Problem,
+    target: Target,
+    now: &mut Pressed,
+    reach: f64,
+    limits: Limits,
+    rough: bool,
+) -> Look {
     if let Target::Force(force) = target {
         rescale(&mut now.p, force);
     }
     let checked = with(&problem.candidates.below(reach), &now.contact);
-    let mut gap = problem.operators.exact(&now.contact, &now.p, &checked);
+    let mut gap = if rough {
+        let mut u = vec![0.0; checked.len()];
+        problem.operators.fast(&now.contact, &now.p, &checked, &mut u);
+        u
+    } else {
+        problem.operators.exact(&now.contact, &now.p, &checked)
+    };
     for (g, z) in gap.iter_mut().zip(problem.candidates.gaps(&checked)) {
         *g += z;
     }
@@ -194,7 +213,7 @@ fn look(problem: &mut Problem, target: Target, now: &mut Pressed, reach: f64, li
         *g -= now.d;
     }
     let evidence = measure(&p, &gap, limits.height.unwrap_or(now.d));
-    Look { checked, p, gap, evidence, complete: now.d <= reach }
+    Look { checked, p, gap, evidence, complete: !rough && now.d <= reach }
 }
 
 /// One round: a new set from the look, a solution on it (exact when it is small), and the cells in tension dropped.

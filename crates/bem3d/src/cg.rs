@@ -55,7 +55,7 @@ pub fn correct(
         if steps == 0 {
             direction.copy_from_slice(&z);
         }
-        operators.fast(set, &direction, &mut kt);
+        operators.fast(set, &direction, set, &mut kt);
         let curvature = dot(&direction, &kt);
         if curvature.is_nan() || curvature <= 0.0 {
             break; // Below what single precision can resolve.

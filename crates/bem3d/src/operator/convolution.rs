@@ -7,8 +7,11 @@ use rustfft::{Fft, FftNum, FftPlanner};
 use std::fmt;
 use std::sync::Arc;
 
-/// Columns transformed together: one cache line of f32 spectra, so that the transposition reads whole lines.
-const BLOCK: usize = 8;
+/// Columns transformed together: whole cache lines for the transposition.
+const BLOCK: usize = 16;
+
+/// Gap between the columns of a block: at a stride of a power of two they would all fall into the same few lines of the cache.
+const SKEW: usize = 8;
 
 /// Floating point of a convolution: f64, or f32 inside an iteration that is certified in f64.
 pub trait Real: FftNum + Default {
@@ -212,7 +215,7 @@ impl<T: Real> Convolution<T> {
             column_forward,
             column_inverse,
             spectrum: vec![zero; window.height * (lengths.x / 2 + 1)],
-            columns: vec![zero; BLOCK * lengths.y],
+            columns: vec![zero; BLOCK * (lengths.y + SKEW)],
             row: vec![T::default(); lengths.x],
             scratch: vec![zero; scratch],
         }
@@ -262,29 +265,28 @@ impl<T: Real> Convolution<T> {
     fn columns(&mut self, sources: &CellSet, targets: &CellSet) {
         let half = self.lengths.x / 2 + 1;
         let (length, half_y) = (self.lengths.y, self.lengths.y / 2 + 1);
+        let stride = length + SKEW;
         for first in (0..half).step_by(BLOCK) {
             let width = BLOCK.min(half - first);
-            let block = &mut self.columns[..width * length];
-            block.fill(Complex::default());
+            self.columns.fill(Complex::default());
             for row in sources.rows() {
                 let y = row.y - self.window.y;
                 let line = &self.spectrum[y * half + first..y * half + first + width];
                 for (c, &value) in line.iter().enumerate() {
-                    block[c * length + y] = value;
+                    self.columns[c * stride + y] = value;
                 }
             }
-            self.column_forward.process_with_scratch(block, &mut self.scratch);
             for c in 0..width {
-                let column = &mut block[c * length..(c + 1) * length];
-                let symbol = &self.symbol[(first + c) * half_y..(first + c + 1) * half_y];
-                multiply_even(column, symbol);
+                let column = &mut self.columns[c * stride..c * stride + length];
+                self.column_forward.process_with_scratch(column, &mut self.scratch);
+                multiply_even(column, &self.symbol[(first + c) * half_y..(first + c + 1) * half_y]);
+                self.column_inverse.process_with_scratch(column, &mut self.scratch);
             }
-            self.column_inverse.process_with_scratch(block, &mut self.scratch);
             for row in targets.rows() {
                 let y = row.y - self.window.y;
                 let line = &mut self.spectrum[y * half + first..y * half + first + width];
                 for (c, value) in line.iter_mut().enumerate() {
-                    *value = block[c * length + y];
+                    *value = self.columns[c * stride + y];
                 }
             }
         }

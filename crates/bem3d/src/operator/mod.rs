@@ -58,18 +58,21 @@ impl Operators {
         u
     }
 
-    /// `u = K p` on the same set in single precision, for use inside an iteration that is checked with [`Self::exact`].
-    pub fn fast(&mut self, set: &CellSet, p: &[f64], u: &mut [f64]) {
+    /// `u = K p` in single precision, for use inside an iteration that is checked with [`Self::exact`].
+    pub fn fast(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
+        if sources.is_empty() || targets.is_empty() {
+            return u.fill(0.0);
+        }
         self.applications += 1;
-        let Some(window) = set.window() else { return };
-        if strategy::direct_is_cheaper(set.len(), set.len(), Lengths::free(window)) {
-            direct::apply(&self.table, set, p, set, u);
+        let window = union(sources, targets);
+        if strategy::direct_is_cheaper(sources.len(), targets.len(), Lengths::free(window)) {
+            direct::apply(&self.table, sources, p, targets, u);
         } else {
             let operator = planned(&mut self.fast, window, &self.table, |t, w| {
                 let lengths = Lengths::free(w);
                 Convolution::new(w, lengths, t.symbol_f32(lengths))
             });
-            operator.apply(set, p, set, u);
+            operator.apply(sources, p, targets, u);
         }
     }
 
