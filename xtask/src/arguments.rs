@@ -100,9 +100,9 @@ impl Command {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum PresetName {
-    /// Well under a minute: 65 cells, 4 surfaces, 2^14 elements, 20 lines.
+    /// Well under a minute: 129 cells, 8 surfaces, 2^16 elements, 40 lines.
     Quick,
-    /// A few minutes: 257 cells, 8 surfaces, 2^18 elements, 50 lines.
+    /// A few minutes: 513 cells, 40 surfaces, 2^18 elements, 200 lines.
     Default,
     /// The paper's sizes: 2049 cells, 60 surfaces, 2^20 elements, 500 lines.
     Paper,

@@ -172,7 +172,8 @@ impl Prepared {
             if solved.status != Status::Converged || tangent.error() <= self.options.tolerance || stop() {
                 break;
             }
-            limits.tolerance *= TIGHTER;
+            // The state may be better than it was asked to be: begin there.
+            limits.tolerance = TIGHTER * limits.tolerance.min(solved.look.evidence.worst());
             let guess = Guess { set: solved.contact.clone(), p: solved.p.clone(), d: solved.d };
             let steps = solved.steps + tangent.steps;
             let next = active_set::solve(&mut self.problem, target, guess, limits, stop);

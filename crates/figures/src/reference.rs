@@ -8,7 +8,7 @@ use crate::{fig2, fig6};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Largest relative difference of a stored number. The 3D solves have the tolerance 1e-8, and k follows it; another processor or
+/// Largest relative difference of a stored number. The 3D solves have the tolerance 1e-10, and k follows it; another processor or
 /// version of the transform library moves last digits.
 pub const RELATIVE: f64 = 1e-6;
 
@@ -24,7 +24,7 @@ fn small(out: PathBuf) -> Result<Run> {
         elements: Some(1 << 13),
         lines: Some(10),
         forces: Some("1e-3:20:10,0.086,1".to_owned()),
-        tolerance: Some(1e-8),
+        tolerance: Some(1e-10),
         fresh: true,
         out: Some(out),
         ..Request::default()

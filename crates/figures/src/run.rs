@@ -30,18 +30,18 @@ impl Preset {
     fn sizes(self) -> Sizes {
         match self {
             Self::Quick => Sizes {
-                cells: 65,
-                surfaces: 4,
-                elements: 1 << 14,
-                lines: 20,
+                cells: 129,
+                surfaces: 8,
+                elements: 1 << 16,
+                lines: 40,
                 forces_3d: "1e-4:20:17,0.086,1",
                 forces_1d: "1e-6:20:23,0.086,1",
             },
             Self::Default => Sizes {
-                cells: 257,
-                surfaces: 8,
+                cells: 513,
+                surfaces: 40,
                 elements: 1 << 18,
-                lines: 50,
+                lines: 200,
                 forces_3d: "1e-6:20:23,0.086,1",
                 forces_1d: "1e-8:20:29,0.086,1",
             },
@@ -50,7 +50,7 @@ impl Preset {
                 surfaces: 60,
                 elements: 1 << 20,
                 lines: 500,
-                forces_3d: "1e-8:20:38,0.086,1",
+                forces_3d: "1e-8:20:29,0.086,1",
                 forces_1d: "1e-9:20:42,0.086,1",
             },
         }
