@@ -114,7 +114,7 @@ mod tests {
         write_manifest(&run, "reproduce-fig2", "cargo xtask reproduce-fig2", &[outcome]).unwrap();
         let path = write_manifest(&run, "verify", "cargo xtask verify", &[]).unwrap();
         let v: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-        assert_eq!(v["commands"]["reproduce-fig2"]["parameters"]["cells"], 257);
+        assert_eq!(v["commands"]["reproduce-fig2"]["parameters"]["cells"], 513);
         assert_eq!(v["commands"]["reproduce-fig2"]["bem3d_unit_seconds"], 2.0);
         assert!(v["commands"]["verify"]["machine"]["cores"].as_u64().unwrap() >= 1);
     }

@@ -341,7 +341,7 @@ mod tests {
         let run = Run::new(&request).unwrap();
         assert_eq!(
             run.command("reproduce-fig2", &[Flag::Cells, Flag::FractalDimensions, Flag::Forces, Flag::Seed]),
-            "cargo xtask reproduce-fig2 --preset default --cells 257 --fractal-dimensions 2.0,2.4 \
+            "cargo xtask reproduce-fig2 --preset default --cells 513 --fractal-dimensions 2.0,2.4 \
              --forces 1e-2,1 --seed 86026710"
         );
     }
