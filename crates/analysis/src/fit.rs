@@ -99,7 +99,7 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 /// Fits `ln k_bar = ln zeta + alpha ln F_bar` to the arithmetic mean of k_bar over the surfaces, all forces of the window with
 /// equal weight; forces at which a surface is missing are left out.
 ///
-/// Source: Eqs. 6, 8, 9 of the paper, which fits its averaged curves; the window is PHYSICS.md section 6. Errors: standard
+/// Source: Eqs. 6, 8, 9 of the paper, which fits its averaged curves. Errors: standard
 /// deviation over `bootstrap` resamples of the surfaces, window fixed.
 ///
 /// # Errors
@@ -182,7 +182,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(32))]
         #[test]
         fn a_power_law_body_gives_its_exponent(n in 0.2..4.0_f64, zeta in 0.1..10.0_f64) {
-            // PHYSICS.md section 4: dlnk/dlnF = 1/(n + 1) for f = c r^n.
+            // Exactly (data/paper/VALUES.md): dlnk/dlnF = 1/(n + 1) for f = c r^n.
             let law = fit(&power(&[zeta], 1.0 / (n + 1.0), |_| None), &Window::default(), &Bootstrap::default());
             let law = law.unwrap();
             assert_relative_eq!(law.alpha, 1.0 / (n + 1.0), max_relative = ROUNDING);

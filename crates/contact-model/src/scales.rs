@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn one_cell_alone_in_k_bar() {
-        // PHYSICS.md section 3: one cell of an N x N grid is k_bar = 0.780372 / N.
+        // data/paper/VALUES.md: one cell of an N x N grid is k_bar = 0.780372 / N.
         let s = Scales { modulus: 2.0, side: 3.0, height: Some(1.0) };
         let k = 0.891_106_989 * 2.0 * 3.0 / 2049.0;
         approx::assert_relative_eq!(s.stiffness_bar(k), 0.780_372 / 2049.0, max_relative = 1e-6);

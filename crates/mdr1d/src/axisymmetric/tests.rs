@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::f64::consts::FRAC_PI_2;
 
-/// Digits to which PHYSICS.md and its sources print their values.
+/// Digits of the values in data/paper/VALUES.md.
 const PRINTED: f64 = 1e-10;
 /// Rounding of a root and a handful of products.
 const ROUNDING: f64 = 1e-14;
