@@ -39,7 +39,8 @@ impl ContactModel for FlatPunch {
     fn sources(&self) -> &'static [Source] {
         &[
             Source {
-                citation: "J. Boussinesq, Application des potentiels, Gauthier-Villars (1885)",
+                citation: "J. Boussinesq, Application des potentiels a l'etude de l'equilibre et du mouvement des solides elastiques, \
+                           Gauthier-Villars, Paris (1885)",
                 what: "circle: k = 2 E* a and the pressure",
             },
             Source {
@@ -95,7 +96,8 @@ impl Law for Face {
     }
 }
 
-/// `p(r) = F / (2 pi a^2) (1 - r^2/a^2)^(-1/2)` under a flat circular punch of radius a; 0 outside (Boussinesq).
+/// `p(r) = F / (2 pi a^2) (1 - r^2/a^2)^(-1/2)` under a flat circular punch of radius a, in the unit of F/a^2; 0 outside
+/// (Boussinesq).
 ///
 /// # Errors
 /// [`Error::Domain`] at the edge itself, where the pressure is infinite, and for a force or radius that makes no sense.
