@@ -2,7 +2,7 @@
 
 use contact_model::{Error, Result};
 
-/// What one surface contributes at one force.
+/// What one surface gives at one force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// `k_bar` (Eq. 8), dimensionless.

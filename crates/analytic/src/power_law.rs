@@ -20,7 +20,7 @@ const EXPONENT_PER_DIMENSION: f64 = 0.266;
 /// Factor 0.411 of Eq. 13, as printed; it is `2 x 1.1419 x 0.18 = 0.41108`.
 const CONDUCTANCE_FACTOR: f64 = 0.411;
 
-/// `alpha = 0.266 D_f`: the exponent fitted to three-dimensional solutions (Eq. 6).
+/// `alpha = 0.266 D_f`: the exponent fitted to three-dimensional solutions (Eq. 6), for D_f in [2, 3] (not checked).
 ///
 /// ```
 /// assert!((analytic::exponent_fit(2.0) - 0.532).abs() < 1e-15);
@@ -29,7 +29,7 @@ pub fn exponent_fit(fractal_dimension: f64) -> f64 {
     EXPONENT_PER_DIMENSION * fractal_dimension
 }
 
-/// `alpha = 1 / (1 + H)`: the exponent by the zoom argument of Eqs. 19 to 24.
+/// `alpha = 1 / (1 + H)`: the exponent by the zoom argument of Eqs. 19 to 24, for a Hurst exponent H in [0, 1] (not checked).
 ///
 /// ```
 /// assert_eq!(analytic::exponent_scaling(1.0), 0.5); // D_f = 2
@@ -38,7 +38,7 @@ pub fn exponent_scaling(hurst: f64) -> f64 {
     (1.0 + hurst).recip()
 }
 
-/// `zeta = 0.18 / 0.086^(0.266 D_f)`: the prefactor of `k_bar = zeta F_bar^alpha` (Eq. 11).
+/// `zeta = 0.18 / 0.086^(0.266 D_f)`: the factor of `k_bar = zeta F_bar^alpha` (Eq. 11), for D_f in [2, 3] (not checked).
 ///
 /// ```
 /// assert!((analytic::zeta_fit(2.0) - 0.664).abs() < 5e-4);
@@ -64,7 +64,8 @@ pub fn force_tilde(stiffness_bar: f64, fractal_dimension: f64) -> Result<f64> {
 
 /// `Lambda = 0.411 L / (rho1 + rho2) (F_bar / 0.086)^(0.266 D_f)`: contact conductance (Eq. 13).
 ///
-/// `side` L = sqrt(A0); `resistivity` is the sum rho1 + rho2. Barber's exact relation `Lambda = 2 k / (E* (rho1 + rho2))` applied to Eq. 12.
+/// `side` L = sqrt(A0), a length; `resistivity` the sum rho1 + rho2, resistance times length; the result is 1/resistance. Barber's exact
+/// relation `Lambda = 2 k / (E* (rho1 + rho2))` applied to Eq. 12.
 /// (The introduction prints it as `k = E* (rho1 + rho2) Lambda / 2`, which is the same.)
 ///
 /// # Errors
@@ -234,7 +235,7 @@ mod tests {
 
     #[test]
     fn the_fits_in_numbers() {
-        // Eq. 11 for the six fractal dimensions of the paper, printed to three decimals in PHYSICS.md section 3.
+        // Eq. 11 for the six fractal dimensions of the paper, to three decimals (data/paper/claims.csv).
         for (df, zeta) in [(2.0, 0.664), (2.2, 0.757), (2.4, 0.862), (2.6, 0.982), (2.8, 1.119), (3.0, 1.275)]
         {
             assert_relative_eq!(zeta_fit(df), zeta, epsilon = 6e-4);

@@ -27,6 +27,13 @@ pub fn hurst_from_spectrum(spectrum: &[(f64, f64)], q_min: f64, q_max: f64) -> R
 ///
 /// # Errors
 /// As [`hurst_from_spectrum`].
+///
+/// ```
+/// let spectrum: Vec<_> = (1..20).map(|m| (f64::from(m), f64::from(m).powf(-2.6))).collect();
+/// let h = surface_gen::hurst_from_line_spectrum(&spectrum, 1.0, 20.0)?;
+/// assert!((h - 0.8).abs() < 1e-12);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
 pub fn hurst_from_line_spectrum(spectrum: &[(f64, f64)], q_min: f64, q_max: f64) -> Result<f64> {
     Ok(-0.5 * (slope(spectrum, q_min, q_max)? + 1.0))
 }
