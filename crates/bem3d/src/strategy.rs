@@ -2,10 +2,12 @@
 
 use crate::operator::convolution::Lengths;
 
-/// Nanoseconds of one kernel look-up and addition of the direct sum.
-const PAIR_NS: f64 = 0.9;
+/// Nanoseconds of one kernel look-up and addition of the direct sum, for scattered cells (short rows).
+const PAIR_NS: f64 = 2.0;
 /// Nanoseconds per point of a padded transform, per log2 of the points: one application in f64, fully populated.
 const POINT_NS: f64 = 0.30;
+/// The same in f32, relative to f64.
+const SINGLE: f64 = 0.5;
 /// Nanoseconds per multiplication of a Cholesky factorisation.
 const FACTOR_NS: f64 = 0.07;
 /// Applications that the iterative solution of one active set takes (pressure and stiffness).
@@ -24,16 +26,26 @@ fn fft_ns(lengths: Lengths) -> f64 {
     POINT_NS * points * points.log2()
 }
 
+/// Precision of an application that may be done by transforms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Single.
+    Single,
+    /// Double.
+    Double,
+}
+
 /// Whether the sum over all pairs beats one FFT application.
-pub fn direct_is_cheaper(sources: usize, targets: usize, lengths: Lengths) -> bool {
-    PAIR_NS * sources as f64 * targets as f64 <= fft_ns(lengths)
+pub fn direct_is_cheaper(sources: usize, targets: usize, lengths: Lengths, precision: Precision) -> bool {
+    let share = if precision == Precision::Single { SINGLE } else { 1.0 };
+    PAIR_NS * sources as f64 * targets as f64 <= share * fft_ns(lengths)
 }
 
 /// Whether an active set of `n` cells is solved by factorisation.
 pub fn dense_is_cheaper(n: usize, lengths: Lengths) -> bool {
     let cells = n as f64;
     let factor = FACTORS * (FACTOR_NS * cells.powi(3) / 3.0 + 4.0 * cells * cells);
-    let iterate = APPLICATIONS * (fft_ns(lengths) * 0.5).min(PAIR_NS * cells * cells);
+    let iterate = APPLICATIONS * (SINGLE * fft_ns(lengths)).min(PAIR_NS * cells * cells);
     n <= ALWAYS_FACTORED || (n <= LARGEST_FACTOR && factor <= iterate)
 }
 
@@ -50,9 +62,11 @@ mod tests {
 
     #[test]
     fn small_sets_never_pay_for_the_grid() {
-        assert!(direct_is_cheaper(300, 3000, GRID));
+        assert!(direct_is_cheaper(300, 3000, GRID, Precision::Double));
         assert!(dense_is_cheaper(200, GRID));
-        assert!(!direct_is_cheaper(100_000, 100_000, GRID));
+        assert!(!direct_is_cheaper(100_000, 100_000, GRID, Precision::Double));
+        assert!(!direct_is_cheaper(6000, 6000, GRID, Precision::Single));
+        assert!(direct_is_cheaper(6000, 6000, GRID, Precision::Double));
         assert!(!dense_is_cheaper(50_000, GRID));
     }
 

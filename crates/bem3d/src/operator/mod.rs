@@ -11,7 +11,7 @@ mod table;
 pub use table::Table;
 
 use crate::cells::{CellSet, Window};
-use crate::strategy;
+use crate::strategy::{Precision, direct_is_cheaper};
 use convolution::{Convolution, Lengths};
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ impl Operators {
         }
         self.applications += 1;
         let window = union(sources, targets);
-        if strategy::direct_is_cheaper(sources.len(), targets.len(), Lengths::free(window)) {
+        if direct_is_cheaper(sources.len(), targets.len(), Lengths::free(window), Precision::Double) {
             direct::apply(&self.table, sources, p, targets, &mut u);
         } else {
             let table = &self.table;
@@ -65,7 +65,7 @@ impl Operators {
         }
         self.applications += 1;
         let window = union(sources, targets);
-        if strategy::direct_is_cheaper(sources.len(), targets.len(), Lengths::free(window)) {
+        if direct_is_cheaper(sources.len(), targets.len(), Lengths::free(window), Precision::Single) {
             direct::apply(&self.table, sources, p, targets, u);
         } else {
             let operator = planned(&mut self.fast, window, &self.table, |t, w| {
