@@ -31,8 +31,9 @@
 //! One load is solved by **predict and eliminate** (`active_set`): from a guess (the tangent of the last state, or the same relief on
 //! coarser grids), the cells that would penetrate are a superset of the contact set; solving on it and dropping the cells
 //! in tension leads to it. Small sets are factored (`operator::dense`), and pressure and stiffness come from one factor. Larger
-//! ones take preconditioned conjugate gradients in single precision (`cg`) between looks at the exact gap in double precision;
-//! the operator is a sum over pairs or an FFT on the bounding box of the candidates, whichever is cheaper (`strategy`).
+//! ones take preconditioned conjugate gradients (`cg`) between looks at the exact gap in double precision. Inside the iteration the
+//! operator is a sum over pairs, a two-level sum (smooth far field on a lattice, close pairs exactly) or a single-precision FFT on the
+//! bounding box, whichever is cheaper (`strategy`); looks that certify are exact sums or double-precision transforms.
 //!
 //! # How accurate
 //!

@@ -27,7 +27,7 @@ const NAME: &str = "bem3d";
 /// ```
 /// use bem3d::Bem3d;
 /// use contact_model::{ContactModel, Load, Scene, Surface};
-/// // Two cells a side, all four in contact: k = 0.993186221 E* L (PHYSICS.md section 4).
+/// // Two cells a side, all four in contact: k = 0.993186221 E* L (data/paper/VALUES.md).
 /// let model = Bem3d { cells: 2, ..Bem3d::default() };
 /// let scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
 /// let state = model.prepare(&scene, 0)?.solve(Load::Force(1.0))?;

@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn full_contact_of_small_squares() {
-        // PHYSICS.md section 4, given to 8 or 9 digits; k / (E* L) = pi k_scaled / N.
+        // data/paper/VALUES.md, given to 8 or 9 digits; k / (E* L) = pi k_scaled / N.
         for (side, expected) in [
             (1, 0.891_106_989),
             (2, 0.993_186_221),

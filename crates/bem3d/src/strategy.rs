@@ -1,6 +1,8 @@
 //! Which way is the cheapest: pure functions of the work at hand with measured constants.
 
+use crate::cells::{CellSet, Window};
 use crate::operator::convolution::Lengths;
+use crate::operator::lattice::Split;
 
 /// Nanoseconds of one kernel look-up and addition of the direct sum, for scattered cells (short rows).
 const PAIR_NS: f64 = 2.0;
@@ -8,6 +10,18 @@ const PAIR_NS: f64 = 2.0;
 const POINT_NS: f64 = 0.30;
 /// The same in f32, relative to f64.
 const SINGLE: f64 = 0.5;
+/// Nanoseconds of one close pair of the two-level operator, its short runs and misses counted in.
+const CLOSE_PAIR_NS: f64 = 3.0;
+/// Nanoseconds of one interpolation weight of the two-level operator.
+const SPREAD_NS: f64 = 1.0;
+/// Reach and order of the two-level operator: an error of 4e-5 of the largest displacement, a fortieth of the smallest
+/// eigenvalue on a window of 2000 cells, so that it stays positive definite.
+const REACH: usize = 6;
+const ORDER: usize = 6;
+/// Two levels are for at most one contact cell in so many of the window ...
+const SCATTERED: usize = 20;
+/// ... and for at most so many.
+const LARGEST_SCATTERED: usize = 200_000;
 /// Nanoseconds per multiplication of a Cholesky factorisation.
 const FACTOR_NS: f64 = 0.07;
 /// Applications that the iterative solution of one active set takes (pressure and stiffness).
@@ -26,19 +40,74 @@ fn fft_ns(lengths: Lengths) -> f64 {
     POINT_NS * points * points.log2()
 }
 
-/// Precision of an application that may be done by transforms.
+/// How one application of K is done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// Single.
-    Single,
-    /// Double.
-    Double,
+pub enum Choice {
+    /// Sum over all pairs.
+    Direct,
+    /// Smooth part on a lattice, near part by pairs.
+    TwoLevel(Split),
+    /// Transform of the window.
+    Fft,
 }
 
-/// Whether the sum over all pairs beats one FFT application.
-pub fn direct_is_cheaper(sources: usize, targets: usize, lengths: Lengths, precision: Precision) -> bool {
-    let share = if precision == Precision::Single { SINGLE } else { 1.0 };
-    PAIR_NS * sources as f64 * targets as f64 <= share * fft_ns(lengths)
+/// The cheaper exact way between two sets: direct sums or a transform in double precision.
+pub fn exact_choice(sources: usize, targets: usize, lengths: Lengths) -> Choice {
+    let direct = PAIR_NS * sources as f64 * targets as f64;
+    if direct <= fft_ns(lengths) { Choice::Direct } else { Choice::Fft }
+}
+
+/// The cheapest way to five digits or more between two sets inside a window.
+///
+/// Cost: nothing for a dense set, a count of the cells on coarse tiles for a scattered one.
+pub fn fast_choice(sources: &CellSet, targets: &CellSet, window: Window) -> Choice {
+    let direct = PAIR_NS * sources.len() as f64 * targets.len() as f64;
+    let fft = SINGLE * fft_ns(Lengths::free(window));
+    let mut best = if direct <= fft { (direct, Choice::Direct) } else { (fft, Choice::Fft) };
+    let cells = sources.len().max(targets.len());
+    if cells > LARGEST_SCATTERED || cells * SCATTERED > window.width * window.height {
+        return best.1;
+    }
+    for spacing in [4, 8, 16, 32] {
+        let split = Split { spacing, reach: REACH, order: ORDER };
+        let transform = fft_ns(Lengths::free(split.lattice(window)));
+        let spread = SPREAD_NS * (ORDER * ORDER * (sources.len() + targets.len())) as f64;
+        if transform + spread >= best.0 {
+            continue;
+        }
+        let near = CLOSE_PAIR_NS * close_pairs(sources, targets, split.radius());
+        if transform + spread + near < best.0 {
+            best = (transform + spread + near, Choice::TwoLevel(split));
+        }
+    }
+    best.1
+}
+
+/// About how many pairs lie within a radius: each tile of that size with the nine around it, by the share of a disc.
+fn close_pairs(sources: &CellSet, targets: &CellSet, radius: usize) -> f64 {
+    let tiles = sources.side() / radius + 3;
+    let count = |set: &CellSet| {
+        let mut tile = vec![0u32; tiles * tiles];
+        for row in set.rows() {
+            let line = (row.y / radius + 1) * tiles + 1;
+            for &i in &set.index()[row.span.clone()] {
+                tile[line + (i as usize - row.y * set.side()) / radius] += 1;
+            }
+        }
+        tile
+    };
+    let (a, b) = (count(sources), count(targets));
+    let mut pairs = 0.0;
+    for y in 1..tiles - 1 {
+        for x in 1..tiles - 1 {
+            let here = f64::from(b[y * tiles + x]);
+            if here > 0.0 {
+                let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| y * tiles + x));
+                pairs += here * around.map(|t| f64::from(a[t])).sum::<f64>();
+            }
+        }
+    }
+    pairs * std::f64::consts::PI / 9.0
 }
 
 /// Whether an active set of `n` cells is solved by factorisation.
@@ -59,15 +128,35 @@ mod tests {
     use super::*;
 
     const GRID: Lengths = Lengths { x: 4096, y: 4096 };
+    const WINDOW: Window = Window { x: 0, y: 0, width: 2049, height: 2049 };
+
+    /// One cell in `step`, all over the grid.
+    fn every(step: usize) -> CellSet {
+        CellSet::new(2049, (0..2049 * 2049_u32).step_by(step).collect())
+    }
 
     #[test]
     fn small_sets_never_pay_for_the_grid() {
-        assert!(direct_is_cheaper(300, 3000, GRID, Precision::Double));
+        assert_eq!(exact_choice(300, 3000, GRID), Choice::Direct);
+        assert_eq!(exact_choice(100_000, 100_000, GRID), Choice::Fft);
         assert!(dense_is_cheaper(200, GRID));
-        assert!(!direct_is_cheaper(100_000, 100_000, GRID, Precision::Double));
-        assert!(!direct_is_cheaper(6000, 6000, GRID, Precision::Single));
-        assert!(direct_is_cheaper(6000, 6000, GRID, Precision::Double));
         assert!(!dense_is_cheaper(50_000, GRID));
+    }
+
+    #[test]
+    fn direct_two_levels_and_transform_in_this_order() {
+        let choice = |set: &CellSet| fast_choice(set, set, WINDOW);
+        assert_eq!(choice(&every(20_000)), Choice::Direct);
+        assert!(matches!(choice(&every(400)), Choice::TwoLevel(_)));
+        assert_eq!(choice(&every(3)), Choice::Fft);
+    }
+
+    #[test]
+    fn close_pairs_are_counted_well_enough() {
+        let set = every(41);
+        let estimate = close_pairs(&set, &set, 48);
+        let uniform = set.len() as f64 * std::f64::consts::PI * 48.0 * 48.0 / 41.0;
+        assert!((0.8..1.1).contains(&(estimate / uniform)), "{}", estimate / uniform);
     }
 
     #[test]

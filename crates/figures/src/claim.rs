@@ -54,7 +54,7 @@ impl Claim {
     ///
     /// ```
     /// use figures::{Claim, Verdict};
-    /// let c = Claim::compare("alpha", 0.532, 0.54, Some(0.01), 0.03, "PHYSICS 3");
+    /// let c = Claim::compare("alpha", 0.532, 0.54, Some(0.01), 0.03, "two digits of the print");
     /// assert_eq!(c.verdict, Verdict::Agrees);
     /// assert_eq!(Claim::compare("alpha", 0.532, 0.60, None, 0.03, "").verdict, Verdict::Disagrees);
     /// ```

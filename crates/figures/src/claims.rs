@@ -1,6 +1,6 @@
 //! The claims of the paper, one function per group; each compares and none tunes.
 //!
-//! What counts as agreement is fixed here, beforehand, from the uncertainty that PHYSICS.md states for independent values
+//! What counts as agreement is fixed here, beforehand, from the uncertainty that data/paper/VALUES.md states for independent values
 //! (alpha: 0.03, and 0.08 at D_f = 3, where the exponent is logarithmic), the digits the paper prints, and twice the standard
 //! error of this run.
 
@@ -67,7 +67,7 @@ pub(crate) fn crossover(solid: &Measured, line: &Measured) -> Vec<Claim> {
     curve::line_above_solid(solid, line)
 }
 
-/// Uncertainty of alpha that independent values have (PHYSICS.md section 3).
+/// Uncertainty of alpha that independent values have (data/paper/VALUES.md).
 fn alpha_allowed(d: f64) -> f64 {
     if d > 2.9 { 0.08 } else { 0.03 }
 }

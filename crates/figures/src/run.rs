@@ -116,7 +116,7 @@ pub struct Run {
     pub forces_1d: Forces,
     /// Whether the loads were given rather than taken from the preset.
     pub forces_given: bool,
-    /// Tolerance of the 3D solver (PHYSICS: certificate and stiffness error at most this).
+    /// Tolerance of the 3D solver (certificate and stiffness error at most this).
     pub tolerance: f64,
     /// Master seed; surface number i has the seed `surface_gen::surface_seed(seed, i)`.
     pub seed: u64,

@@ -1,18 +1,21 @@
 //! The elastic operator `u = K p` between sets of cells, in scaled units (`u_i = sum_j I(i - j) p_j`).
 //!
-//! [`direct`] is the exact sum over pairs of cells, [`convolution`] the FFT on a window, [`dense`] the factor of a small set.
+//! [`direct`] is the exact sum over pairs of cells, [`convolution`] the FFT on a window, [`lattice`] two levels for scattered
+//! cells, [`dense`] the factor of a small set.
 //! [`Operators`] holds the ones that a surface needs and makes each when it is first asked for.
 
 pub mod convolution;
 pub mod dense;
 pub mod direct;
+pub mod lattice;
 mod table;
 
 pub use table::Table;
 
 use crate::cells::{CellSet, Window};
-use crate::strategy::{Precision, direct_is_cheaper};
+use crate::strategy::{Choice, exact_choice, fast_choice};
 use convolution::{Convolution, Lengths};
+use lattice::TwoLevel;
 use std::sync::Arc;
 
 /// The operators of one surface, with the count of what they did.
@@ -21,15 +24,18 @@ pub struct Operators {
     table: Arc<Table>,
     exact: Option<Convolution<f64>>,
     fast: Option<Convolution<f32>>,
+    two_level: Option<TwoLevel>,
     inverse: Option<Convolution<f32>>,
     /// Applications of K so far, all precisions together.
     pub applications: usize,
+    /// What the last fast application was done with.
+    last: Option<Choice>,
 }
 
 impl Operators {
     /// Nothing is built yet.
     pub fn new(table: Arc<Table>) -> Self {
-        Self { table, exact: None, fast: None, inverse: None, applications: 0 }
+        Self { table, exact: None, fast: None, two_level: None, inverse: None, applications: 0, last: None }
     }
 
     /// The kernel table.
@@ -45,7 +51,7 @@ impl Operators {
         }
         self.applications += 1;
         let window = union(sources, targets);
-        if direct_is_cheaper(sources.len(), targets.len(), Lengths::free(window), Precision::Double) {
+        if exact_choice(sources.len(), targets.len(), Lengths::free(window)) == Choice::Direct {
             direct::apply(&self.table, sources, p, targets, &mut u);
         } else {
             let table = &self.table;
@@ -58,22 +64,32 @@ impl Operators {
         u
     }
 
-    /// `u = K p` in single precision, for use inside an iteration that is checked with [`Self::exact`].
+    /// `u = K p` to five digits or more, for use inside an iteration that is checked with [`Self::exact`].
     pub fn fast(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
         if sources.is_empty() || targets.is_empty() {
             return u.fill(0.0);
         }
         self.applications += 1;
         let window = union(sources, targets);
-        if direct_is_cheaper(sources.len(), targets.len(), Lengths::free(window), Precision::Single) {
-            direct::apply(&self.table, sources, p, targets, u);
-        } else {
-            let operator = planned(&mut self.fast, window, &self.table, |t, w| {
-                let lengths = Lengths::free(w);
-                Convolution::new(w, lengths, t.symbol_f32(lengths))
-            });
-            operator.apply(sources, p, targets, u);
+        let choice = fast_choice(sources, targets, window);
+        match choice {
+            Choice::Direct => direct::apply(&self.table, sources, p, targets, u),
+            Choice::TwoLevel(split) => {
+                if !self.two_level.as_ref().is_some_and(|o| o.split() == split && fits(o.window(), window)) {
+                    self.two_level = None;
+                }
+                let operator = self.two_level.get_or_insert_with(|| TwoLevel::new(window, split));
+                operator.apply(sources, p, targets, u);
+            }
+            Choice::Fft => {
+                let operator = planned(&mut self.fast, window, &self.table, |t, w| {
+                    let lengths = Lengths::free(w);
+                    Convolution::new(w, lengths, t.symbol_f32(lengths))
+                });
+                operator.apply(sources, p, targets, u);
+            }
         }
+        self.last = Some(choice);
     }
 
     /// `out = B r` on the same set: the inverse of the kernel wrapped on a torus around the set (about |q| / 2 pi).
@@ -95,9 +111,14 @@ impl Operators {
         if solved.q.is_some() {
             return format!("dense {}", solved.contact.len());
         }
-        match &self.fast {
-            Some(fast) => format!("fft {} x {}, f32 in f64", fast.lengths().x, fast.lengths().y),
-            None => format!("direct {}", solved.contact.len()),
+        match (self.last, &self.fast) {
+            (Some(Choice::Fft), Some(fast)) => {
+                format!("fft {} x {}, f32 in f64", fast.lengths().x, fast.lengths().y)
+            }
+            (Some(Choice::TwoLevel(split)), _) => {
+                format!("two levels, spacing {} reach {} order {}", split.spacing, split.reach, split.order)
+            }
+            _ => format!("direct {}", solved.contact.len()),
         }
     }
 }
@@ -109,11 +130,14 @@ fn planned<'a, T: convolution::Real>(
     table: &Table,
     plan: impl Fn(&Table, Window) -> Convolution<T>,
 ) -> &'a mut Convolution<T> {
-    let fits = slot.as_ref().is_some_and(|c| holds(c.window(), window) && !wasteful(c.window(), window));
-    if !fits {
+    if !slot.as_ref().is_some_and(|c| fits(c.window(), window)) {
         *slot = None;
     }
     slot.get_or_insert_with(|| plan(table, window))
+}
+
+fn fits(planned: Window, wanted: Window) -> bool {
+    holds(planned, wanted) && !wasteful(planned, wanted)
 }
 
 fn holds(outer: Window, inner: Window) -> bool {

@@ -51,7 +51,7 @@ pub(super) fn conductance(measured: &Measured) -> Vec<Claim> {
 /// "The saturation value is reached for forces of about 20", long before full material contact.
 pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
     let mut claims = Vec::new();
-    // The plateau of the grid itself: PHYSICS.md section 4 for N x N cells, 2/sqrt(pi) for a line.
+    // The plateau of the grid itself: data/paper/VALUES.md for N x N cells, 2/sqrt(pi) for a line.
     let n = measured.numerics.size() as f64;
     let plateau = if label(measured) == "3D" {
         1.152_298_5 - 0.4025 / n + 0.12 / n.powf(1.59)

@@ -9,7 +9,7 @@ use mdr1d::Mdr1d;
 /// Half a unit of the last digit of 1.1419.
 const PRINTED: f64 = 5e-5;
 
-/// Full contact of two grids of this many cells a side, extrapolated in 1/N (the error is of first order: PHYSICS.md section 4).
+/// Full contact of two grids of this many cells a side, extrapolated in 1/N (the error is of first order: data/paper/VALUES.md).
 const GRIDS: [usize; 2] = [64, 128];
 
 /// k/(E* L) of a rigid square of N x N cells, all in contact.

@@ -1,0 +1,265 @@
+//! Two levels: the smooth far field on a coarse lattice, the near field by sums over close pairs.
+//!
+//! The kernel is split at a radius R into a part that is smooth everywhere and a part that ends at R:
+//! `I(r) = S(r) + (I(r) - S(r))`. For `r >= R`, S is the kernel's own far field; inside it is continued by an even polynomial in
+//! r (multi-level summation; Brandt and Lubrecht, J. Comput. Phys. 90, 348 (1990); Hardy et al., J. Chem. Theory Comput. 11, 766
+//! (2015)). S is interpolated from a lattice of a few cells' spacing, where an FFT of that much smaller size sums it; the rest is
+//! exact for each close pair. The cost follows the number of cells and of close pairs; the window counts only by its lattice.
+
+use super::convolution::{Convolution, Lengths, Symbol};
+use crate::cells::{CellSet, Window};
+use crate::love::influence;
+use std::fmt;
+
+/// Spacing, reach and order of a two-level operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Split {
+    /// Lattice spacing in cells.
+    pub spacing: usize,
+    /// Radius of the near part in lattice spacings.
+    pub reach: usize,
+    /// Points of the Lagrange interpolation in each direction, even.
+    pub order: usize,
+}
+
+impl Split {
+    /// Radius of the near part in cells.
+    pub fn radius(self) -> usize {
+        self.spacing * self.reach
+    }
+
+    /// Window of the lattice that serves a window of cells.
+    pub fn lattice(self, window: Window) -> Window {
+        let nodes = |first: usize, count: usize| {
+            let (low, high) = (first / self.spacing, (first + count - 1) / self.spacing);
+            (low, high - low + self.order)
+        };
+        let ((x, width), (y, height)) = (nodes(window.x, window.width), nodes(window.y, window.height));
+        Window { x, y, width, height }
+    }
+}
+
+/// A planned two-level operator for sets inside one window.
+pub struct TwoLevel {
+    window: Window,
+    split: Split,
+    lattice: Window,
+    /// Interpolation weights of each position between two nodes.
+    weights: Vec<Vec<f64>>,
+    /// `I - S` at the lags `0 .. radius` in both directions.
+    near: Vec<f64>,
+    nodes: CellSet,
+    charge: Vec<f64>,
+    potential: Vec<f64>,
+    far: Convolution<f64>,
+}
+
+impl fmt::Debug for TwoLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "TwoLevel({:?}, {:?})", self.window, self.split)
+    }
+}
+
+impl TwoLevel {
+    /// Plans for a window: the near table and the symbol of the smooth kernel on the lattice.
+    pub fn new(window: Window, split: Split) -> Self {
+        let radius = split.radius() as f64;
+        let box_of_nodes = split.lattice(window);
+        // The lattice has a grid of its own, as wide as its window.
+        let side = box_of_nodes.width.max(box_of_nodes.height);
+        let local = Window { x: 0, y: 0, ..box_of_nodes };
+        let lengths = Lengths::free(local);
+        let spacing = split.spacing as f64;
+        let symbol = Symbol::of_kernel(lengths, |x, y| smooth((x as f64).hypot(y as f64) * spacing, radius));
+        let index = (0..local.height).flat_map(|y| (0..local.width).map(move |x| (y * side + x) as u32));
+        let nodes = CellSet::new(side, index.collect());
+        let count = split.radius();
+        let near = (0..count * count)
+            .map(|i| {
+                let (x, y) = (i % count, i / count);
+                let r = (x as f64).hypot(y as f64);
+                if r < radius { influence(x, y) - smooth(r, radius) } else { 0.0 }
+            })
+            .collect();
+        Self {
+            window,
+            split,
+            lattice: box_of_nodes,
+            weights: (0..split.spacing).map(|i| lagrange(i as f64 / spacing, split.order)).collect(),
+            near,
+            charge: vec![0.0; nodes.len()],
+            potential: vec![0.0; nodes.len()],
+            far: Convolution::new(local, lengths, Convolution::<f64>::scaled(&symbol)),
+            nodes,
+        }
+    }
+
+    /// The window.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// The split.
+    pub fn split(&self) -> Split {
+        self.split
+    }
+
+    /// `u = K p` up to the error of the interpolation.
+    ///
+    /// Cost: order^2 for each cell, one for each close pair, and the transform of the lattice.
+    pub fn apply(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
+        self.spread(sources, p);
+        self.far.apply(&self.nodes, &self.charge, &self.nodes, &mut self.potential);
+        self.interpolate(targets, u);
+        self.add_near(sources, p, targets, u);
+    }
+
+    /// First node of a cell in the local lattice and its weights.
+    fn node(&self, cell: usize, first: usize) -> (usize, &[f64]) {
+        (cell / self.split.spacing - first, &self.weights[cell % self.split.spacing])
+    }
+
+    fn spread(&mut self, sources: &CellSet, p: &[f64]) {
+        let mut charge = std::mem::take(&mut self.charge);
+        charge.fill(0.0);
+        let width = self.lattice.width;
+        for row in sources.rows() {
+            let (ny, wy) = self.node(row.y, self.lattice.y);
+            for k in row.span.clone() {
+                let (nx, wx) =
+                    self.node(sources.index()[k] as usize - row.y * sources.side(), self.lattice.x);
+                for (j, &wy) in wy.iter().enumerate() {
+                    let line = &mut charge[(ny + j) * width + nx..][..wx.len()];
+                    for (c, &wx) in line.iter_mut().zip(wx) {
+                        *c += p[k] * wy * wx;
+                    }
+                }
+            }
+        }
+        self.charge = charge;
+    }
+
+    fn interpolate(&self, targets: &CellSet, u: &mut [f64]) {
+        let width = self.lattice.width;
+        for row in targets.rows() {
+            let (ny, wy) = self.node(row.y, self.lattice.y);
+            for k in row.span.clone() {
+                let (nx, wx) =
+                    self.node(targets.index()[k] as usize - row.y * targets.side(), self.lattice.x);
+                let mut sum = 0.0;
+                for (j, &wy) in wy.iter().enumerate() {
+                    let line = &self.potential[(ny + j) * width + nx..][..wx.len()];
+                    sum += wy * line.iter().zip(wx).map(|(c, w)| c * w).sum::<f64>();
+                }
+                u[k] = sum;
+            }
+        }
+    }
+
+    fn add_near(&self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
+        let (radius, side) = (self.split.radius(), sources.side());
+        let (index, rows) = (sources.index(), sources.rows());
+        let mut first_row = 0;
+        for target_row in targets.rows() {
+            while rows.get(first_row).is_some_and(|r| r.y + radius <= target_row.y) {
+                first_row += 1;
+            }
+            for source_row in rows[first_row..].iter().take_while(|r| r.y < target_row.y + radius) {
+                let line = &self.near[source_row.y.abs_diff(target_row.y) * radius..][..radius];
+                let start = source_row.y * side;
+                let (mut low, mut high) = (source_row.span.start, source_row.span.start);
+                for k in target_row.span.clone() {
+                    let x = targets.index()[k] as usize - target_row.y * side;
+                    while low < source_row.span.end && index[low] as usize - start + radius <= x {
+                        low += 1;
+                    }
+                    while high < source_row.span.end && (index[high] as usize - start) < x + radius {
+                        high += 1;
+                    }
+                    let close = index[low..high].iter().zip(&p[low..high]);
+                    u[k] += close.map(|(&i, p)| line[x.abs_diff(i as usize - start)] * p).sum::<f64>();
+                }
+            }
+        }
+    }
+}
+
+/// The smooth part of the kernel: `1/r + 1/(24 r^3)` from `radius` on, inside its Taylor series in r^2 about `radius`.
+fn smooth(r: f64, radius: f64) -> f64 {
+    if r >= radius {
+        return (1.0 + 1.0 / (24.0 * r * r)) / r;
+    }
+    let s = (r / radius).powi(2) - 1.0;
+    let (mut power, mut first, mut third) = (1.0, 1.0, 1.0);
+    let (mut a, mut b) = (1.0, 1.0);
+    for j in 1..=SMOOTHNESS {
+        // Binomial series of (1 + s)^(-1/2) and (1 + s)^(-3/2).
+        let j = f64::from(j);
+        power *= s;
+        a *= (-0.5 - (j - 1.0)) / j;
+        b *= (-1.5 - (j - 1.0)) / j;
+        first += a * power;
+        third += b * power;
+    }
+    first / radius + third / (24.0 * radius.powi(3))
+}
+
+/// Continuous derivatives of the smooth kernel at the radius.
+const SMOOTHNESS: i32 = 5;
+
+/// Weights of Lagrange interpolation at `t` in [0, 1) between the two middle nodes of `order`.
+fn lagrange(t: f64, order: usize) -> Vec<f64> {
+    let at = t + (order / 2 - 1) as f64;
+    let weight = |i: usize| -> f64 {
+        let others = (0..order).filter(|&j| j != i);
+        others.map(|j| (at - j as f64) / (i as f64 - j as f64)).product()
+    };
+    (0..order).map(weight).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operator::{Table, direct};
+
+    const SIDE: usize = 200;
+
+    fn scattered() -> CellSet {
+        // Clusters and loners.
+        let keep = |i: u32| {
+            let (x, y) = (i % SIDE as u32, i / SIDE as u32);
+            (x.wrapping_mul(2_654_435_761) ^ y.wrapping_mul(40_503)) % 97 < 3
+                || ((x / 9) * (y / 11)) % 13 == 5
+        };
+        CellSet::new(SIDE, (0..(SIDE * SIDE) as u32).filter(|&i| keep(i)).collect())
+    }
+
+    /// Largest error relative to the largest displacement.
+    fn error(split: Split) -> f64 {
+        let set = scattered();
+        let p: Vec<f64> = (0..set.len()).map(|k| 1.0 + (k as f64).sin()).collect();
+        let (mut exact, mut fast) = (vec![0.0; set.len()], vec![0.0; set.len()]);
+        direct::apply(&Table::shared(SIDE), &set, &p, &set, &mut exact);
+        TwoLevel::new(set.window().unwrap(), split).apply(&set, &p, &set, &mut fast);
+        let scale = exact.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+        exact.iter().zip(&fast).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale
+    }
+
+    #[test]
+    fn the_error_falls_with_the_order_and_with_the_reach() {
+        let mut last = f64::INFINITY;
+        for order in [2, 4, 6, 8] {
+            let e = error(Split { spacing: 4, reach: 6, order });
+            println!("spacing 4, reach 6, order {order}: {e:.1e}");
+            assert!(e < 0.4 * last, "order {order}: {e}");
+            last = e;
+        }
+        let mut last = f64::INFINITY;
+        for reach in [3, 6, 12] {
+            let e = error(Split { spacing: 4, reach, order: 6 });
+            println!("spacing 4, reach {reach}, order 6: {e:.1e}");
+            assert!(e < 0.2 * last, "reach {reach}: {e}");
+            last = e;
+        }
+    }
+}
