@@ -1,6 +1,34 @@
-//! Physics across crates; see the `tests/` folder beside this file.
+//! What the physical tests share: problems that travel with their exact solutions, one checker for every model, orders of
+//! convergence, maps made by hand, and an oracle that tries every contact set.
+//!
+//! The tests themselves are in the `tests/` folder beside this file, one topic a file. They follow four rules.
+//!
+//! * A [`Problem`] knows its exact solution; [`deviation`] compares any model that accepts the scene, and says `None` where it refuses.
+//! * Errors of a discretisation are stated as an [`order`] over several grids and as a bound on the finest, not as one loose tolerance.
+//! * A number that nobody can derive by hand is compared with one found another way ([`every_contact_set`], published values, the
+//!   stored results of other programs in `data/peers`).
+//! * Every tolerance is a named constant with its reason.
+//!
+//! ```
+//! use tests::{Prescribed, deviation, problems};
+//! for problem in problems()? {
+//!     // The method of reduction of dimensionality is exact for every round body and refuses the square.
+//!     match deviation(&mdr1d::Mdr1d::default(), &problem, Prescribed::Force)? {
+//!         Some(found) => assert!(found.response < 1e-10),
+//!         None => assert_eq!(problem.name, "flat square"),
+//!     }
+//! }
+//! # Ok::<(), contact_model::Error>(())
+//! ```
 
-/// The examples of README.md are tests too.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-mod readme {}
+mod deviation;
+mod enumerate;
+mod maps;
+mod order;
+mod problem;
+
+pub use deviation::{Deviation, Prescribed, deviation};
+pub use enumerate::{SmallContact, every_contact_set};
+pub use maps::{embedded, map, mirrored, rotated, rough, rough_map, scene, stretched, transposed};
+pub use order::order;
+pub use problem::{Case, Problem, problems};

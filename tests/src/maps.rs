@@ -1,0 +1,81 @@
+//! Maps made by hand, and the symmetries of the square.
+
+use contact_model::{HeightMap, Result, Scene, SelfAffine, Surface};
+use std::sync::Arc;
+
+/// A map of `cells` x `cells` heights `h(ix, iy)`.
+///
+/// # Errors
+/// Those of [`HeightMap::new`].
+pub fn map(cells: usize, side: f64, h: impl Fn(usize, usize) -> f64) -> Result<HeightMap> {
+    let heights = (0..cells * cells).map(|i| h(i % cells, i / cells)).collect();
+    HeightMap::new(cells, side, heights)
+}
+
+/// A scene of a map with modulus 1 that asks for the stiffness.
+pub fn scene(map: HeightMap) -> Scene {
+    Scene::new(Surface::Heights(Arc::new(map)), 1.0)
+}
+
+/// The paper's surface of side 1 and rms height 1.
+///
+/// # Errors
+/// Those of [`SelfAffine::new`].
+pub fn rough(fractal_dimension: f64) -> Result<SelfAffine> {
+    SelfAffine::new(fractal_dimension, 1.0, 1.0)
+}
+
+/// The paper's surface on a grid.
+///
+/// # Errors
+/// Those of [`surface_gen::self_affine_map`].
+pub fn rough_map(fractal_dimension: f64, cells: usize, seed: u64) -> Result<HeightMap> {
+    surface_gen::self_affine_map(&rough(fractal_dimension)?, cells, seed)
+}
+
+/// The map with x reversed.
+///
+/// # Errors
+/// None for a map.
+pub fn mirrored(of: &HeightMap) -> Result<HeightMap> {
+    let (n, h) = (of.cells(), of.heights());
+    map(n, of.side(), |x, y| h[y * n + n - 1 - x])
+}
+
+/// The map with x and y exchanged.
+///
+/// # Errors
+/// None for a map.
+pub fn transposed(of: &HeightMap) -> Result<HeightMap> {
+    let (n, h) = (of.cells(), of.heights());
+    map(n, of.side(), |x, y| h[x * n + y])
+}
+
+/// The map turned by 90 degrees.
+///
+/// # Errors
+/// None for a map.
+pub fn rotated(of: &HeightMap) -> Result<HeightMap> {
+    mirrored(&transposed(of)?)
+}
+
+/// The map with lateral lengths times `lateral` and heights times `vertical`.
+///
+/// # Errors
+/// Those of [`HeightMap::new`] where a factor is not positive or overflows.
+pub fn stretched(of: &HeightMap, lateral: f64, vertical: f64) -> Result<HeightMap> {
+    HeightMap::new(of.cells(), of.side() * lateral, of.heights().iter().map(|h| h * vertical).collect())
+}
+
+/// The map with its cells unchanged in the middle of `factor` times as many a side, all new ones at `height`.
+///
+/// # Errors
+/// Those of [`HeightMap::new`].
+pub fn embedded(of: &HeightMap, factor: usize, height: f64) -> Result<HeightMap> {
+    let (n, h) = (of.cells(), of.heights());
+    let first = (factor - 1) * n / 2;
+    let inside = first..first + n;
+    map(factor * n, of.side() * factor as f64, |x, y| {
+        if inside.contains(&x) && inside.contains(&y) { h[(y - first) * n + x - first] } else { height }
+    })
+}

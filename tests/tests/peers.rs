@@ -1,0 +1,80 @@
+//! Agreement with another program on its surface: data/peers.
+
+use approx::assert_relative_eq;
+use bem3d::Bem3d;
+use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact};
+use std::path::PathBuf;
+use tests::scene;
+
+/// What the reference states of itself: approach and stiffness to 1e-6.
+const AGREEMENT: f64 = 1e-6;
+
+/// One row of the reference.
+struct Row {
+    force_bar: f64,
+    approach_over_h: f64,
+    stiffness_bar: f64,
+    contact_cells: usize,
+}
+
+fn data(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../data/peers").join(name)
+}
+
+fn rows() -> Vec<Row> {
+    let mut reader = csv::Reader::from_path(data("reference-N256-Df2.4.csv")).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let columns = ["force_bar", "approach_over_h", "stiffness_bar_1.1419", "contact_cells"].map(column);
+    reader
+        .records()
+        .map(|record| {
+            let record = record.unwrap();
+            let [force_bar, approach_over_h, stiffness_bar, cells] =
+                columns.map(|c| record[c].parse::<f64>().unwrap());
+            Row { force_bar, approach_over_h, stiffness_bar, contact_cells: cells as usize }
+        })
+        .collect()
+}
+
+fn prepared() -> Box<dyn PreparedContact> {
+    let bytes = std::fs::read(data("surface_N256_Df2.4_seed1.npy")).unwrap();
+    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
+    assert_eq!(file.shape(), [256, 256]);
+    let map = HeightMap::new(256, 1.0, file.into_vec::<f64>().unwrap()).unwrap();
+    Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene(map), 0).unwrap()
+}
+
+fn press(contact: &mut dyn PreparedContact, row: &Row) -> ContactState {
+    let force = contact.scales().force(row.force_bar).unwrap();
+    contact.solve(Load::Force(force)).unwrap()
+}
+
+fn agree(contact: &dyn PreparedContact, state: &ContactState, row: &Row) {
+    let scales = contact.scales();
+    let approach = scales.approach_over_h(state.approach.unwrap()).unwrap();
+    assert_relative_eq!(approach, row.approach_over_h, max_relative = AGREEMENT);
+    let stiffness = scales.stiffness_bar(state.stiffness.unwrap());
+    assert_relative_eq!(stiffness, row.stiffness_bar, max_relative = AGREEMENT);
+    assert_eq!(state.report.contact_cells, Some(row.contact_cells), "F_bar {}", row.force_bar);
+}
+
+#[test]
+fn one_sweep_up_and_down() {
+    let rows = rows();
+    assert_eq!(rows.len(), 5);
+    let mut contact = prepared();
+    for row in rows.iter().chain(rows.iter().rev()) {
+        let state = press(&mut *contact, row);
+        agree(&*contact, &state, row);
+    }
+}
+
+#[test]
+fn each_load_alone() {
+    for row in rows() {
+        let mut contact = prepared();
+        let state = press(&mut *contact, &row);
+        agree(&*contact, &state, &row);
+    }
+}
