@@ -1,6 +1,6 @@
 //! Every claim of the paper beside what was found.
 
-use crate::claim::{Claim, markdown, sort, table};
+use crate::claim::{Claim, markdown, readme_table, sort, table};
 use crate::claims;
 use crate::csv_file::{Header, write_csv};
 use crate::curves::describe;
@@ -12,7 +12,8 @@ use crate::progress::Progress;
 use crate::run::{Flag, Run};
 use crate::session::Session;
 
-/// Judges every claim (solving what is not stored) and writes `verify.csv` and `verify.md`, disagreements first.
+/// Judges every claim (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
+/// `verify-table.md`, disagreements first.
 ///
 /// One row, the ratio of run times, depends on the machine; everything else has the same bytes for any number of threads.
 ///
@@ -56,8 +57,10 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     let text = format!("# {title}\n\n`{command}`\n\n{notes}\n{}", markdown(&claims));
     let md = run.out.join("verify.md");
     files::write_whole(&md, text.as_bytes())?;
+    let short = run.out.join("verify-table.md");
+    files::write_whole(&short, readme_table(&claims).as_bytes())?;
     let mut outcome = Outcome::new("verify");
-    outcome.files = vec![csv, md];
+    outcome.files = vec![csv, md, short];
     outcome.not_converged = solid.not_converged() + line.not_converged();
     outcome.claims = claims;
     Ok(outcome)
