@@ -25,6 +25,9 @@ pub struct SmallContact {
 /// every one of them with Gauss's elimination. There should be exactly one.
 ///
 /// Cost O(2^n n^3).
+///
+/// # Panics
+/// For more than 16 cells.
 pub fn every_contact_set(map: &HeightMap, cells: &[usize], load: Load) -> Vec<SmallContact> {
     assert!(cells.len() <= 16, "every set of {} cells is too many", cells.len());
     (1..1_u32 << cells.len())

@@ -1,5 +1,7 @@
 //! dlnk/dlnF = 1/(1 + n) for `z = c r^n`, n standing for H: solver, scales, curves and fit together.
 
+#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
+
 use analysis::{Bootstrap, Curves, Sample, Window, fit};
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Scene, Surface};

@@ -1,5 +1,7 @@
 //! Sets of cells with known stiffness: full squares, two cells, two circles.
 
+#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
+
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, HeightMap, Load, Scene, Surface};
@@ -45,6 +47,16 @@ fn full_contact_between_the_table_and_the_continuum() {
     let n = 128.0_f64;
     let formula = 1.152_298_5 - 0.402_5 / n + 0.12 / n.powf(1.59);
     assert_relative_eq!(square(128, Method::Auto), formula, max_relative = FORMULA);
+}
+
+/// The plateau of a correct N x N code in the paper's units, above its 1.
+#[test]
+fn plateaus_in_the_units_of_the_paper() {
+    for (cells, plateau) in [(129, 1.00642), (257, 1.00775)] {
+        let k_bar = square(cells, Method::Auto) / contact_model::PAPER_STIFFNESS_FACTOR;
+        // Half a unit of the last printed digit.
+        assert_relative_eq!(k_bar, plateau, epsilon = 5e-6);
+    }
 }
 
 /// Flat cells at height 0 where `face` says so, everything else one side lower.

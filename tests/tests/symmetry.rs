@@ -1,5 +1,7 @@
 //! Scaling and symmetry: the same contact in other units, turned, mirrored, zoomed.
 
+#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
+
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
 use contact_model::{ContactModel, ContactState, HeightMap, Line, Load, Scene, Surface};
@@ -14,6 +16,9 @@ const TOLERANCE: f64 = 1e-10;
 const SAME: f64 = 1e-7;
 
 const CELLS: usize = 33;
+
+/// A symmetry of the square.
+type Turn = fn(&HeightMap) -> contact_model::Result<HeightMap>;
 
 fn solve(scene: &Scene, load: Load) -> ContactState {
     let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
@@ -36,7 +41,6 @@ fn line(of: &HeightMap, lateral: f64, vertical: f64) -> Surface {
 #[test]
 fn turned_mirrored_transposed() {
     let original = rough_map(2.4, CELLS, 17).unwrap();
-    type Turn = fn(&HeightMap) -> contact_model::Result<HeightMap>;
     let turns: [Turn; 4] = [mirrored as Turn, transposed as Turn, rotated as Turn, |m| rotated(&rotated(m)?)];
     let pressed = |map: HeightMap, load: Load| {
         let mut scene = scene(map);

@@ -1,0 +1,162 @@
+//! What a model lacks it refuses; what was not asked for is not there.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
+
+use analytic::{FlatPunch, Hertz, PowerLaw, PowerLawBody};
+use bem3d::Bem3d;
+use contact_model::{
+    Adhesion, Boundary, ContactModel, Effects, Error, Friction, Line, Load, Outputs, Rheology, Scene, Surface,
+};
+use mdr1d::Mdr1d;
+use std::sync::Arc;
+use tests::{map, rough};
+
+/// Every surface, in the order of the columns below.
+fn surfaces() -> [Surface; 9] {
+    let line = Arc::new(Line::new(1.128, vec![0.0, 0.3, -0.2, 0.1]).unwrap());
+    [
+        Surface::SelfAffine(rough(2.4).unwrap()),
+        Surface::Heights(Arc::new(map(3, 1.0, |x, y| (x + 2 * y) as f64).unwrap())),
+        Surface::Line { line, side: 1.0 },
+        Surface::Sphere { radius: 1.0, side: 1.0 },
+        Surface::Cone { slope: 0.1, side: 1.0 },
+        Surface::PowerLaw { coefficient: 0.1, exponent: 1.5, side: 1.0 },
+        Surface::FlatCircle { radius: 0.3, side: 1.0 },
+        Surface::FlatSquare { side: 1.0 },
+        Surface::Sine { amplitude: 0.1, wavelength: 0.5, side: 1.0 },
+    ]
+}
+
+/// A model and, surface by surface, whether it takes it (`x`).
+fn models() -> Vec<(Box<dyn ContactModel>, &'static str)> {
+    vec![
+        //                                                                      rough map line sphere cone power circle square sine
+        (Box::new(Bem3d { cells: 17, ..Bem3d::default() }), "xx-xxxxxx"),
+        (Box::new(Mdr1d { elements: 256 }), "x-xxxxx--"),
+        (Box::new(Hertz), "---x-----"),
+        (Box::new(PowerLawBody), "---xxx---"),
+        (Box::new(FlatPunch), "------xx-"),
+        (Box::new(PowerLaw), "x--------"),
+    ]
+}
+
+/// Every model with every scene that it takes; these ask for the stiffness.
+fn accepted() -> Vec<(Box<dyn ContactModel>, Vec<Scene>)> {
+    models()
+        .into_iter()
+        .map(|(model, takes)| {
+            let scenes = surfaces().into_iter().zip(takes.chars()).filter(|(_, c)| *c == 'x');
+            (model, scenes.map(|(surface, _)| Scene::new(surface, 1.0)).collect())
+        })
+        .collect()
+}
+
+fn unsupported(model: &dyn ContactModel, scene: &Scene) -> String {
+    match model.prepare(scene, 0) {
+        Err(Error::Unsupported { model: name, what }) => {
+            assert_eq!(name, model.name());
+            what.into_owned()
+        }
+        Err(other) => panic!("{}: {other}", model.name()),
+        Ok(_) => panic!("{} takes {scene:?}", model.name()),
+    }
+}
+
+#[test]
+fn surfaces_are_taken_or_refused() {
+    for (model, takes) in models() {
+        for (surface, taken) in surfaces().into_iter().zip(takes.chars()) {
+            let scene = Scene::new(surface, 1.0);
+            if taken == 'x' {
+                let mut contact = model.prepare(&scene, 0).unwrap();
+                let state = contact.solve(Load::Force(1e-3)).unwrap();
+                assert!(state.approach.unwrap() > 0.0, "{} {scene:?}", model.name());
+                assert!(state.stiffness.unwrap() > 0.0);
+                assert!(!model.sources().is_empty());
+            } else {
+                unsupported(&*model, &scene);
+            }
+        }
+    }
+}
+
+/// No model has any effect beyond elastic contact with free boundaries: each is refused by its name, never solved as if it were off.
+#[test]
+fn effects_are_refused() {
+    let effects = [
+        ("boundary", Effects { boundary: Boundary::Periodic, ..Effects::default() }),
+        ("adhesion", Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() }),
+        ("friction", Effects { friction: Friction::Coulomb { coefficient: 0.3 }, ..Effects::default() }),
+        ("rheology", Effects { rheology: Rheology::KelvinVoigt { viscosity: 1.0 }, ..Effects::default() }),
+    ];
+    for (model, scenes) in accepted() {
+        for scene in scenes {
+            for (name, effects) in effects {
+                let what = unsupported(&*model, &Scene { effects, ..scene.clone() });
+                assert!(what.contains(name), "{}: {what}", model.name());
+            }
+        }
+    }
+}
+
+/// The five outputs, one at a time.
+fn each_output() -> [Outputs; 5] {
+    let none = Outputs::default();
+    [
+        Outputs { stiffness: true, ..none },
+        Outputs { area: true, ..none },
+        Outputs { pressure: true, ..none },
+        Outputs { displacement: true, ..none },
+        Outputs { gap: true, ..none },
+    ]
+}
+
+/// Solves for exactly the outputs asked for, or refuses them: loaded and unloaded.
+#[test]
+fn outputs_are_those_asked_for() {
+    for (model, scenes) in accepted() {
+        for scene in scenes {
+            for outputs in [Outputs::default()].into_iter().chain(each_output()) {
+                let scene = Scene { outputs, ..scene.clone() };
+                let place = format!("{} {scene:?}", model.name());
+                let mut contact = match model.prepare(&scene, 0) {
+                    Ok(contact) => contact,
+                    Err(Error::Unsupported { .. }) => {
+                        assert!(outputs.area || outputs.any_field(), "{place}");
+                        assert_ne!(model.name(), "bem3d", "{place}");
+                        continue;
+                    }
+                    Err(other) => panic!("{place}: {other}"),
+                };
+                for load in [Load::Force(1e-3), Load::Force(0.0)] {
+                    let state = contact.solve(load).unwrap();
+                    let fields = state.fields.unwrap_or_default();
+                    let given = Outputs {
+                        stiffness: state.stiffness.is_some(),
+                        area: state.area.is_some(),
+                        pressure: fields.pressure.is_some(),
+                        displacement: fields.displacement.is_some(),
+                        gap: fields.gap.is_some(),
+                    };
+                    assert_eq!(given, outputs, "{place} {load:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A line has no area and closed forms have no cells.
+#[test]
+fn which_outputs_are_refused() {
+    let [_, area, fields @ ..] = each_output();
+    for (model, scenes) in accepted().into_iter().filter(|(model, _)| model.name() != "bem3d") {
+        for scene in scenes {
+            for outputs in fields {
+                unsupported(&*model, &Scene { outputs, ..scene.clone() });
+            }
+            if matches!(scene.surface, Surface::SelfAffine(_) | Surface::Line { .. }) {
+                unsupported(&*model, &Scene { outputs: area, ..scene.clone() });
+            }
+        }
+    }
+}
