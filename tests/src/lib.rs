@@ -32,3 +32,8 @@ pub use enumerate::{SmallContact, every_contact_set};
 pub use maps::{embedded, map, mirrored, rotated, rough, rough_map, scene, stretched, transposed};
 pub use order::order;
 pub use problem::{Case, Problem, problems};
+
+/// The examples of README.md are tests too.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+mod readme {}

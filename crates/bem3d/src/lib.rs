@@ -44,7 +44,7 @@
 //!
 //! # How fast
 //!
-//! Work follows the contact: a few hundred cells take milliseconds on any grid. A dense load takes 30 to 110 applications of K for
+//! Work follows the contact: a few hundred cells take milliseconds on any grid. A dense load takes 40 to 120 applications of K for
 //! four digits and 100 to 250 for eight, k included, nearly independent of N and of the load; one application costs about
 //! 4 ms at N = 512 and 60 ms at N = 2048 (single precision, one thread). The example `sweep` prints the work of each load.
 //!
