@@ -1,0 +1,65 @@
+//! Any order of loads on any map: a solver that remembers gives what a fresh one gives.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
+
+use approx::assert_relative_eq;
+use bem3d::{Bem3d, Method};
+use contact_model::{ContactModel, HeightMap, Load};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use tests::{map, rough_map, scene};
+
+const TOLERANCE: f64 = 1e-9;
+/// The certificate bounds gaps weighted by pressure; the approach is one weighted by the tangent's pressure, up to ten times that.
+const SAME: f64 = 2e-8;
+
+/// Reliefs that solvers have tripped over, of `cells` x `cells` and drawn from numbers in [0, 1).
+fn relief(kind: u8, cells: usize, noise: &[f64]) -> HeightMap {
+    let at = |x: usize, y: usize| noise[(y * cells + x) % noise.len()];
+    map(cells, 1.0, |x, y| match kind {
+        // White noise; the same in steps; stripes; a tilted plane; a few spikes; one sharp summit; heights over twenty decades.
+        0 => at(x, y),
+        1 => (4.0 * at(x, y)).floor(),
+        2 => ((x / 2 + y / 3) % 2) as f64,
+        3 => 0.1 * x as f64 + 0.03 * y as f64,
+        4 if at(x, y) < 0.02 => 1.0,
+        4 => 0.01 * at(x, y),
+        5 => -(x as f64 - 0.5 * cells as f64).hypot(y as f64 - cells as f64 / 3.0),
+        _ => at(x, y).powi(20),
+    })
+    .unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::with_cases(150) })]
+
+    #[test]
+    fn remembering_changes_nothing(
+        kind in 0_u8..8, cells in 1_usize..40, seed in 0_u64..1000,
+        noise in prop::collection::vec(0.0_f64..1.0, 1600),
+        // Logarithm of the load over the rms height, and whether it is a force.
+        loads in prop::collection::vec((-8.0_f64..3.0, any::<bool>()), 1..6),
+    ) {
+        let map = if kind == 7 && cells > 2 { rough_map(2.6, cells, seed).unwrap() } else { relief(kind, cells, &noise) };
+        let rms = surface_gen::rms_height(map.heights());
+        let unit = if rms > 0.0 { rms } else { 1.0 };
+        let scene = scene(map);
+        let model = |method| Bem3d { tolerance: TOLERANCE, method, ..Bem3d::default() };
+        let mut remembering = model(Method::Auto).prepare(&scene, 0).unwrap();
+        for (exponent, is_force) in loads {
+            let size = 10_f64.powf(exponent) * unit;
+            let load = if is_force { Load::Force(size) } else { Load::Approach(size) };
+            let one = remembering.solve(load).unwrap();
+            let other = model(Method::Iterative).prepare(&scene, 0).unwrap().solve(load).unwrap();
+            let stiffness = other.stiffness.unwrap();
+            // Flat: gaps are counted in the approach.
+            let gap = SAME * if rms > 0.0 { rms } else { other.approach.unwrap() };
+            assert_relative_eq!(one.approach.unwrap(), other.approach.unwrap(), epsilon = gap);
+            assert_relative_eq!(one.force, other.force, epsilon = gap * stiffness);
+            assert_relative_eq!(one.stiffness.unwrap(), stiffness, max_relative = SAME);
+            for state in [one, other] {
+                assert!(state.report.certificate.meets(TOLERANCE), "{:?}", state.report);
+            }
+        }
+    }
+}
