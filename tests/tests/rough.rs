@@ -38,7 +38,7 @@ fn no_state_exceeds_the_plateau_of_its_grid() {
             model(cells).prepare(&flat, 0).unwrap().solve(Load::Force(1.0)).unwrap().stiffness.unwrap();
         for fractal_dimension in [2.0, 2.8] {
             let mut contact = prepared(fractal_dimension, cells, 3);
-            let forces = [1e-3, 0.1, 1.0, 5.0, 20.0, 1e2, 1e3, 1e4];
+            let forces = [1e-3, 0.1, 1.0, 5.0, 20.0, 1e2, 1e3, 1e4, 1e5, 1e6];
             let states = sweep(&mut *contact, forces.map(Load::Force));
             for state in &states {
                 assert!(state.stiffness.unwrap() <= plateau * (1.0 + SAME), "{state:?}");

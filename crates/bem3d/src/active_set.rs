@@ -25,6 +25,8 @@ const PATIENCE: usize = 12;
 /// Above this certificate, and above so many times the tolerance, the next look is one in single precision: half the cost.
 const ROUGH: f64 = 0.03;
 const ROUGH_ROUNDS: f64 = 10.0;
+/// ... as long as the gap that it measures stands out of the noise of single precision, this share of the approach.
+const SINGLE_NOISE: f64 = 1e-4;
 /// A cell is added when it penetrates by more than this multiple of the rms gap that the contact cells still have: below it,
 /// the gap is only as good as the pressure that made it, and adding half of all candidates by chance undoes the elimination.
 const NOISE: f64 = 1.0;
@@ -162,7 +164,8 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
         }
         // Just above the plane: a generous guess must not make every round look at the whole grid.
         reach = REACH * now.d;
-        rough = error > ROUGH && error > ROUGH_ROUNDS * limits.tolerance;
+        let length = error * limits.height.unwrap_or(now.d);
+        rough = error > ROUGH && error > ROUGH_ROUNDS * limits.tolerance && length > SINGLE_NOISE * now.d;
         let better = look.complete && best.as_ref().is_none_or(|b| error < BETTER * b.1.evidence.worst());
         since_best = if better { 0 } else { since_best + usize::from(!rough) };
         let next = improve(problem, target, &look, &now, limits, &mut steps, stop);
@@ -205,7 +208,9 @@ fn look(
     let p = checked.carry(&now.contact, &now.p);
     match target {
         // The mean weighted by the pressure: the gap is then right where it carries.
-        Target::Force(_) if now.q.is_none() => now.d = cg::dot(&p, &gap) / now.p.iter().sum::<f64>(),
+        Target::Force(force) if now.q.is_none() => {
+            now.d = p.iter().zip(&gap).map(|(p, g)| p / force * g).sum();
+        }
         Target::Force(_) => {}
         Target::Approach(asked) => now.d = asked,
     }
@@ -276,14 +281,13 @@ fn eliminate(problem: &Problem, superset: &CellSet, target: Target) -> Option<Pr
 
 /// Root mean square of the gap that is left on the contact cells.
 fn residual(p: &[f64], gap: &[f64]) -> f64 {
-    let (mut square, mut count) = (0.0, 0.0f64);
-    for (&p, &g) in p.iter().zip(gap) {
-        if p > 0.0 {
-            square += g * g;
-            count += 1.0;
-        }
+    let on_contact = || p.iter().zip(gap).filter(|&(&p, _)| p > 0.0).map(|(_, g)| g.abs());
+    let largest = on_contact().fold(0.0, f64::max);
+    if largest <= 0.0 {
+        return 0.0;
     }
-    (square / count.max(1.0)).sqrt()
+    let (square, count) = on_contact().fold((0.0, 0.0), |(s, n), g| (s + (g / largest).powi(2), n + 1.0));
+    largest * f64::sqrt(square / count)
 }
 
 fn rescale(p: &mut [f64], force: f64) {

@@ -25,23 +25,20 @@ impl Evidence {
 /// The gap is positive on all other cells of the grid, so that its minimum over the candidates is the minimum of all.
 pub fn measure(p: &[f64], gap: &[f64], s: f64) -> Evidence {
     let lowest = gap.iter().copied().fold(f64::INFINITY, f64::min);
-    let (mut force, mut weighted, mut duality) = (0.0, 0.0, 0.0);
-    for (&p, &g) in p.iter().zip(gap) {
-        force += p;
-        weighted += p * g.abs();
-        duality += p * (g - lowest);
-    }
+    let force: f64 = p.iter().sum();
     let deepest = (-lowest).max(0.0);
     if force <= 0.0 {
         // Nothing presses yet: only the penetration says anything.
         return Evidence { penetration: deepest / s, deepest, ..Evidence::default() };
     }
-    Evidence {
-        frank_wolfe: duality / (force * s),
-        penetration: deepest / s,
-        complementarity: weighted / (force * s),
-        deepest,
+    let (mut weighted, mut duality) = (0.0, 0.0);
+    for (&p, &g) in p.iter().zip(gap) {
+        // Shares of the force, so that no product of two tiny or two huge numbers is ever formed.
+        let share = p / force;
+        weighted += share * g.abs();
+        duality += share * (g - lowest);
     }
+    Evidence { frank_wolfe: duality / s, penetration: deepest / s, complementarity: weighted / s, deepest }
 }
 
 #[cfg(test)]

@@ -44,7 +44,13 @@ pub fn correct(
 ) -> Correction {
     let n = set.len();
     let mut x = vec![0.0; n];
-    let mut r = right.to_vec();
+    // In units of the residual's own size: its square neither overflows nor underflows.
+    let unit = right.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+    if unit <= 0.0 {
+        return Correction { x, steps: 0 };
+    }
+    let floor = request.floor / unit;
+    let mut r: Vec<f64> = right.iter().map(|r| r / unit).collect();
     let mut preconditioner = Preconditioner::new(operators, set, request);
     let (mut z, mut direction, mut kt) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     let mut offset = preconditioner.apply(operators, set, &r, &mut z);
@@ -68,7 +74,7 @@ pub fn correct(
         steps += 1;
         offset = preconditioner.apply(operators, set, &r, &mut z);
         let (norm, largest) = size(&r, offset);
-        if norm <= request.reduction * start || largest <= request.floor {
+        if norm <= request.reduction * start || largest <= floor {
             break;
         }
         let next = dot(&r, &z);
@@ -77,6 +83,9 @@ pub fn correct(
         for (t, &z) in direction.iter_mut().zip(&z) {
             *t = z + beta * *t;
         }
+    }
+    for x in &mut x {
+        *x *= unit;
     }
     Correction { x, steps }
 }

@@ -39,6 +39,9 @@ pub struct Bem3d {
     /// Cells a side, N >= 1. Ignored where the scene brings its own map.
     pub cells: usize,
     /// Bound t of the certificate and of the estimated relative error of k ([`Certificate::meets`]).
+    ///
+    /// The certificate counts gaps in rms heights, so that at a prescribed force the approach is good to a few t (at worst about ten) of
+    /// the rms height, not of itself: a light load on a rough surface wants a smaller t for a precise d.
     pub tolerance: f64,
     /// Rounds of the active set at most (each a handful of operator applications).
     pub rounds: usize,

@@ -21,6 +21,8 @@ pub trait Real: FftNum + Default {
     fn of(value: f64) -> Self;
     /// Widens to f64.
     fn to_f64(self) -> f64;
+    /// A power of two that brings values of this magnitude into the middle of the range; 1 where f64 needs none.
+    fn unit(largest: f64) -> f64;
 }
 
 impl Real for f64 {
@@ -31,6 +33,9 @@ impl Real for f64 {
     fn to_f64(self) -> f64 {
         self
     }
+    fn unit(_largest: f64) -> f64 {
+        1.0
+    }
 }
 
 impl Real for f32 {
@@ -40,6 +45,9 @@ impl Real for f32 {
     }
     fn to_f64(self) -> f64 {
         f64::from(self)
+    }
+    fn unit(largest: f64) -> f64 {
+        if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
     }
 }
 
@@ -242,18 +250,19 @@ impl<T: Real> Convolution<T> {
     /// Rows without sources are not transformed forward, rows without targets not backward.
     /// Cost: O(lx ly log) at most.
     pub fn apply(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, out: &mut [f64]) {
-        self.forward_rows(sources, p);
+        let unit = T::unit(p.iter().fold(0.0, |m: f64, p| m.max(p.abs())));
+        self.forward_rows(sources, p, unit.recip());
         self.columns(sources, targets);
-        self.inverse_rows(targets, out);
+        self.inverse_rows(targets, out, unit);
     }
 
-    fn forward_rows(&mut self, sources: &CellSet, p: &[f64]) {
+    fn forward_rows(&mut self, sources: &CellSet, p: &[f64], scale: f64) {
         let half = self.lengths.x / 2 + 1;
         for row in sources.rows() {
             self.row.fill(T::default());
             let start = row.y * sources.side() + self.window.x;
             for k in row.span.clone() {
-                self.row[sources.index()[k] as usize - start] = T::of(p[k]);
+                self.row[sources.index()[k] as usize - start] = T::of(p[k] * scale);
             }
             let y = row.y - self.window.y;
             let output = &mut self.spectrum[y * half..(y + 1) * half];
@@ -292,7 +301,7 @@ impl<T: Real> Convolution<T> {
         }
     }
 
-    fn inverse_rows(&mut self, targets: &CellSet, out: &mut [f64]) {
+    fn inverse_rows(&mut self, targets: &CellSet, out: &mut [f64], unit: f64) {
         let half = self.lengths.x / 2 + 1;
         for row in targets.rows() {
             let y = row.y - self.window.y;
@@ -304,7 +313,7 @@ impl<T: Real> Convolution<T> {
             debug_assert!(done.is_ok());
             let start = row.y * targets.side() + self.window.x;
             for k in row.span.clone() {
-                out[k] = self.row[targets.index()[k] as usize - start].to_f64();
+                out[k] = self.row[targets.index()[k] as usize - start].to_f64() * unit;
             }
         }
     }
