@@ -163,7 +163,7 @@ impl Solve {
 /// Size of the 3D ensemble.
 #[derive(Debug, Args)]
 pub struct SolidSize {
-    /// Cells a side of each surface, N (any number from 4; the paper has 2049).
+    /// Cells a side of each surface, N (any number from 3; the paper has 2049).
     #[arg(long, value_name = "N")]
     cells: Option<usize>,
     /// Surfaces per fractal dimension (the paper has 60).

@@ -148,7 +148,7 @@ impl Run {
     /// let run = Run::new(&Request { preset: Preset::Paper, surfaces: Some(2), ..Request::default() })?;
     /// assert_eq!((run.cells, run.surfaces), (2049, 2));
     /// let none = Run::new(&Request { cells: Some(0), ..Request::default() });
-    /// assert_eq!(none.unwrap_err().to_string(), "--cells 0: expected a whole number from 4 to 65536");
+    /// assert_eq!(none.unwrap_err().to_string(), "--cells 0: expected a whole number from 3 to 65536");
     /// # Ok::<(), figures::Error>(())
     /// ```
     pub fn new(request: &Request) -> Result<Self> {
@@ -160,10 +160,10 @@ impl Run {
         }
         Ok(Self {
             preset: request.preset,
-            // Fewer than 4 cells a side hold no wave besides the Nyquist one, which has no phase: no relief.
-            cells: within("cells", request.cells.unwrap_or(sizes.cells), 4, 1 << 16)?,
+            // Fewer than 3 cells a side hold no wave besides the Nyquist one, which has no phase: no relief.
+            cells: within("cells", request.cells.unwrap_or(sizes.cells), 3, 1 << 16)?,
             surfaces: within("surfaces", request.surfaces.unwrap_or(sizes.surfaces), 1, 1_000_000)?,
-            elements: within("elements", request.elements.unwrap_or(sizes.elements), 4, 1 << 32)?,
+            elements: within("elements", request.elements.unwrap_or(sizes.elements), 3, 1 << 31)?,
             lines: within("lines", request.lines.unwrap_or(sizes.lines), 1, 10_000_000)?,
             fractal_dimensions: request.fractal_dimensions.as_deref().map(dimensions).transpose()?,
             forces_3d: forces(sizes.forces_3d)?,
