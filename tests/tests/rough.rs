@@ -38,7 +38,7 @@ fn no_state_exceeds_the_plateau_of_its_grid() {
             model(cells).prepare(&flat, 0).unwrap().solve(Load::Force(1.0)).unwrap().stiffness.unwrap();
         for fractal_dimension in [2.0, 2.8] {
             let mut contact = prepared(fractal_dimension, cells, 3);
-            let forces = [1e-3, 0.1, 1.0, 5.0, 20.0, 1e2, 1e3, 1e4, 1e5, 1e6];
+            let forces = [1e-3, 0.1, 1.0, 5.0, 20.0, 1e2, 1e3, 1e4];
             let states = sweep(&mut *contact, forces.map(Load::Force));
             for state in &states {
                 assert!(state.stiffness.unwrap() <= plateau * (1.0 + SAME), "{state:?}");
@@ -46,6 +46,20 @@ fn no_state_exceeds_the_plateau_of_its_grid() {
             let last = &states[7];
             assert_eq!(last.report.contact_cells, Some(cells * cells));
             assert_relative_eq!(last.stiffness.unwrap(), plateau, max_relative = SAME);
+        }
+    }
+}
+
+/// Far beyond full contact the gaps that are left are a millionth of the approach: less than single precision sees.
+#[test]
+fn loads_a_million_times_the_relief() {
+    for (cells, fractal_dimension) in [(33, 2.0), (129, 2.0), (65, 2.8)] {
+        let model = Bem3d { cells, tolerance: 1e-4, ..Bem3d::default() };
+        let scene = Scene::new(Surface::SelfAffine(rough(fractal_dimension).unwrap()), 1.0);
+        let mut contact = model.prepare(&scene, 3).unwrap();
+        for force in [1e5, 1e6, 1e3] {
+            let state = contact.solve(Load::Force(force)).unwrap();
+            assert_eq!(state.report.contact_cells, Some(cells * cells), "{force}");
         }
     }
 }

@@ -219,6 +219,7 @@ impl Prepared {
             Status::Converged => Status::Stagnated,
             other => other,
         };
+        let fields = self.fields(&solved)?;
         let report = SolveReport {
             status,
             strategy: self.problem.operators.describe(&solved),
@@ -235,7 +236,7 @@ impl Prepared {
                 None => None,
             },
             area: if self.outputs.area { Some(self.units.area(solved.contact.len() as f64)?) } else { None },
-            fields: self.fields(&solved)?,
+            fields,
             report,
         };
         if status == Status::Converged {
@@ -326,25 +327,31 @@ impl PreparedContact for Prepared {
 }
 
 /// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load, so that the predicted
-/// approach is an upper bound and every new contact cell lies below it.
+/// approach is an upper bound and every new contact cell lies below it. Where no stiffness was asked for, the pressure is scaled.
 fn predict(last: &Last, target: Target) -> Option<Guess> {
-    let (q, k) = last.tangent.as_ref()?;
-    let (ratio, step) = match target {
-        Target::Force(force) => (force / last.force, (force - last.force) / k),
-        Target::Approach(d) => (d / last.solved.d, d - last.solved.d),
+    let ratio = match target {
+        Target::Force(force) => force / last.force,
+        Target::Approach(d) => d / last.solved.d,
     };
     if !(1.0 / WARM_RANGE..=WARM_RANGE).contains(&ratio) {
         return None;
     }
-    let pressure: Vec<f64> = last.solved.p.iter().zip(q).map(|(p, q)| p + step * q).collect();
+    let (pressure, d): (Vec<f64>, f64) = if let Some((q, k)) = &last.tangent {
+        let step = match target {
+            Target::Force(force) => (force - last.force) / k,
+            Target::Approach(d) => d - last.solved.d,
+        };
+        let pressure = last.solved.p.iter().zip(q).map(|(p, q)| p + step * q).collect();
+        (pressure, last.solved.d + step.max(0.0))
+    } else {
+        (last.solved.p.iter().map(|p| ratio * p).collect(), last.solved.d * ratio.max(1.0))
+    };
     let set = last.solved.contact.filter(|k| pressure[k] > 0.0);
     if set.is_empty() {
         return None;
     }
     let p = pressure.into_iter().filter(|&p| p > 0.0).collect();
-    // Unloading: the old approach is the upper bound.
-    let d = (last.solved.d + step.max(0.0)).max(f64::MIN_POSITIVE);
-    Some(Guess { set, p, d })
+    Some(Guess { set, p, d: d.max(f64::MIN_POSITIVE) })
 }
 
 /// A load in scaled units, unless no f64 holds it.
@@ -353,5 +360,38 @@ fn scaled(name: &'static str, value: f64, result: f64) -> Result<f64> {
         Ok(result)
     } else {
         Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::SelfAffine;
+
+    /// A rising path of one surface with and without the stiffness.
+    #[test]
+    fn a_path_without_stiffness_is_the_same_path() {
+        let surface = SelfAffine::new(2.4, 1.0, 1.0).map(Surface::SelfAffine).unwrap();
+        let scene = Scene::new(surface, 1.0);
+        let bare = Scene { outputs: Outputs::default(), ..scene.clone() };
+        let model = Bem3d { cells: 40, tolerance: 1e-9, method: Method::Iterative, ..Bem3d::default() };
+        let (mut with, mut without) = (model.prepare(&scene, 1).unwrap(), model.prepare(&bare, 1).unwrap());
+        for force in [0.01, 0.1, 0.5, 2.0, 10.0, 1.0] {
+            let (a, b) =
+                (with.solve(Load::Force(force)).unwrap(), without.solve(Load::Force(force)).unwrap());
+            approx::assert_relative_eq!(a.approach.unwrap(), b.approach.unwrap(), max_relative = 1e-7);
+            assert!(a.stiffness.is_some() && b.stiffness.is_none());
+            assert!(b.report.applications < a.report.applications, "what is not asked for costs nothing");
+        }
+    }
+
+    #[test]
+    fn a_field_counts_as_work() {
+        let scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        let with = Scene { outputs: Outputs { gap: true, ..scene.outputs }, ..scene.clone() };
+        let model = Bem3d { cells: 8, ..Bem3d::default() };
+        let work =
+            |scene| model.prepare(scene, 0).unwrap().solve(Load::Force(1.0)).unwrap().report.applications;
+        assert_eq!(work(&with), work(&scene) + 1);
     }
 }
