@@ -14,8 +14,8 @@ const SINGLE: f64 = 0.5;
 const CLOSE_PAIR_NS: f64 = 3.0;
 /// Nanoseconds of one interpolation weight of the two-level operator.
 const SPREAD_NS: f64 = 1.0;
-/// Reach and order of the two-level operator: an error of 4e-5 of the largest displacement, a fortieth of the smallest
-/// eigenvalue on a window of 2000 cells, so that it stays positive definite.
+/// Reach and order of the two-level operator: an error of 4e-5 of the largest displacement in the test of `lattice`. A direction
+/// along which that makes the curvature negative ends the correction; the exact look that follows sees what is left.
 const REACH: usize = 6;
 const ORDER: usize = 6;
 /// Two levels are for at most one contact cell in so many of the window ...

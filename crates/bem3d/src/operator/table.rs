@@ -5,8 +5,8 @@ use crate::love::influence;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-/// Symbols kept at most, in numbers of either precision: 1.5e8 are about 1 GiB of f64.
-const KEPT: usize = 3 << 25;
+/// Numbers kept at most in the symbols of one kind: 134 MB of f64, four times the largest symbol of 2049 cells a side.
+const KEPT: usize = 1 << 24;
 
 /// Love's kernel at the lags `0 .. n` in both directions and the symbols made from it.
 ///
