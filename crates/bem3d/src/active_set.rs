@@ -4,13 +4,15 @@ use crate::candidates::Candidates;
 use crate::cells::CellSet;
 use crate::certificate::{Evidence, measure};
 use crate::cg::{self, Request};
-use crate::operator::Operators;
+use crate::filled::{Arrays, Filled};
 use crate::operator::dense::Factor;
+use crate::operator::{Operators, Table};
 use crate::strategy;
 use contact_model::{Status, Stop};
+use std::sync::Arc;
 
 /// Residual reduction asked of conjugate gradients between two looks at the set.
-const REDUCTION: f64 = 0.1;
+const REDUCTION: f64 = 0.2;
 /// The same while the set still changes a lot (certificate above [`EARLY`]): no use in solving well on a wrong set.
 const EARLY_REDUCTION: f64 = 0.3;
 const EARLY: f64 = 0.02;
@@ -29,7 +31,7 @@ const ROUGH_ROUNDS: f64 = 10.0;
 const SINGLE_NOISE: f64 = 1e-4;
 /// A cell is added when it penetrates by more than this multiple of the rms gap that the contact cells still have: below it,
 /// the gap is only as good as the pressure that made it, and adding half of all candidates by chance undoes the elimination.
-const NOISE: f64 = 1.0;
+pub const NOISE: f64 = 1.0;
 /// Candidates are looked for up to this multiple of the approach; a plane that ends higher costs one more round.
 const REACH: f64 = 1.05;
 /// Penetration that an exact (factored) solution leaves by rounding, relative to the approach.
@@ -44,6 +46,24 @@ pub struct Problem {
     pub operators: Operators,
     /// Cells a side.
     pub side: usize,
+    /// Room for contact that fills the grid.
+    pub arrays: Arrays,
+    /// The same relief on cells twice as large, once a cold start has asked for it.
+    pub coarser: Option<Box<Problem>>,
+}
+
+impl Problem {
+    /// A relief of `side^2` gaps from the plane of first touch.
+    pub fn new(side: usize, z: Arc<Vec<f64>>) -> Self {
+        let operators = Operators::new(Table::shared(side));
+        Self {
+            candidates: Candidates::new(side, z),
+            operators,
+            side,
+            arrays: Arrays::default(),
+            coarser: None,
+        }
+    }
 }
 
 /// What is prescribed, in scaled units.
@@ -101,7 +121,7 @@ pub struct Solved {
 /// A look at the exact gap on the candidates.
 #[derive(Debug, Clone)]
 pub struct Look {
-    /// The candidates.
+    /// The candidates (at least those that press or penetrate).
     pub checked: CellSet,
     /// Pressure on them.
     pub p: Vec<f64>,
@@ -109,8 +129,106 @@ pub struct Look {
     pub gap: Vec<f64>,
     /// How well the conditions hold.
     pub evidence: Evidence,
-    /// Whether every cell below the plane was among them, in double precision.
-    complete: bool,
+}
+
+/// What a look says about how to go on.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen {
+    /// How well the conditions hold.
+    pub evidence: Evidence,
+    /// Whether every cell below the plane was looked at, in double precision.
+    pub complete: bool,
+    /// Approach.
+    pub d: f64,
+    /// Whether p and d are exact on the set, up to rounding.
+    pub factored: bool,
+}
+
+/// Where the iteration of [`solve`] runs: on lists of cells or on arrays over the grid.
+pub trait Ground {
+    /// Looks at the gap under the present pressure, and at a prescribed force finds the approach that it makes.
+    ///
+    /// A `rough` look in single precision says how to go on, but is never evidence.
+    fn look(&mut self, rough: bool) -> Seen;
+    /// One round: a new set from the look, a solution on it, and the cells in tension dropped.
+    fn improve(&mut self, seen: Seen, steps: &mut usize, stop: Stop<'_>);
+    /// Remembers the pressure of the last look as the best.
+    fn keep(&mut self);
+    /// The state of the last look, or the one kept where `best` says so.
+    fn finish(self, status: Status, best: Option<Seen>, last: Seen, steps: usize) -> Solved;
+}
+
+/// Solves for one load from a guess.
+///
+/// At fixed force, solving on a superset of the contact set and dropping the cells in tension never drops a true contact cell
+/// where K restricted to the set is an inverse M-matrix, which it was on every set tried: bilateral contact on a superset needs a larger
+/// approach than the true one, and every drop lowers it. Rounding and early stops can break this, so each round looks at the
+/// exact gap on all candidates and adds what penetrates.
+///
+/// Cost: 20 to 60 applications of K for four digits, a few factorisations for a small set.
+pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
+    if strategy::fills(guess.set.len(), problem.side) {
+        let Problem { candidates, operators, arrays, .. } = problem;
+        return iterate(Filled::new(candidates, operators, arrays, target, &guess, limits), limits, stop);
+    }
+    iterate(Listed::new(problem, target, guess, limits), limits, stop)
+}
+
+fn iterate(mut ground: impl Ground, limits: Limits, stop: Stop<'_>) -> Solved {
+    let mut best: Option<Seen> = None;
+    let (mut steps, mut round, mut since_best, mut rough) = (0, 0, 0, false);
+    loop {
+        let seen = ground.look(rough);
+        let error = seen.evidence.worst();
+        let settled = !seen.factored || seen.evidence.deepest <= FACTOR_ROUNDING * seen.d;
+        let status = if seen.complete && settled && error <= limits.tolerance {
+            Some(Status::Converged)
+        } else if stop() {
+            Some(Status::Stopped)
+        } else if round >= limits.rounds {
+            Some(Status::IterationLimit)
+        } else if since_best > PATIENCE {
+            Some(Status::Stagnated)
+        } else {
+            None
+        };
+        if let Some(status) = status {
+            let better = best.filter(|b| status != Status::Converged && b.evidence.worst() <= error);
+            return ground.finish(status, better, seen, steps);
+        }
+        let length = error * limits.height.unwrap_or(seen.d);
+        rough = error > ROUGH && error > ROUGH_ROUNDS * limits.tolerance && length > SINGLE_NOISE * seen.d;
+        if seen.complete && best.is_none_or(|b| error < BETTER * b.evidence.worst()) {
+            ground.keep();
+            (best, since_best) = (Some(seen), 0);
+        } else {
+            since_best += usize::from(!rough);
+        }
+        ground.improve(seen, &mut steps, stop);
+        round += 1;
+    }
+}
+
+/// Number of cells that press or would penetrate under a guess, in single precision.
+pub fn promised(problem: &mut Problem, guess: &Guess) -> usize {
+    let checked = with(&problem.candidates.below(guess.d), &guess.set);
+    let mut u = vec![0.0; checked.len()];
+    problem.operators.fast(&guess.set, &guess.p, &checked, &mut u);
+    let penetrating =
+        u.iter().zip(problem.candidates.gaps(&checked)).filter(|&(u, z)| u + z < guess.d).count();
+    penetrating.max(guess.set.len())
+}
+
+/// What conjugate gradients are asked for after a look.
+pub fn request(target: Target, limits: Limits, seen: Seen) -> Request {
+    Request {
+        fixed_sum: matches!(target, Target::Force(_)),
+        reduction: if seen.evidence.worst() > EARLY { EARLY_REDUCTION } else { REDUCTION },
+        energy: None,
+        floor: FLOOR * limits.tolerance * limits.height.unwrap_or(seen.d),
+        steps: STEPS,
+        precondition: true,
+    }
 }
 
 /// A pressure on its way to a solution.
@@ -123,138 +241,106 @@ struct Pressed {
     q: Option<Vec<f64>>,
 }
 
-/// Solves for one load from a guess.
-///
-/// At fixed force, solving on a superset of the contact set and dropping the cells in tension never drops a true contact cell
-/// where K restricted to the set is an inverse M-matrix, which it was on every set tried: bilateral contact on a superset needs a larger
-/// approach than the true one, and every drop lowers it. Rounding and early stops can break this, so each round looks at the
-/// exact gap on all candidates and adds what penetrates.
-///
-/// Cost: 30 to 80 applications of K for four digits, a few factorisations for a small set.
-pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
-    let mut reach = match target {
-        Target::Force(_) => guess.d,
-        Target::Approach(asked) => asked,
-    };
-    let mut now = Pressed { contact: guess.set, p: guess.p, d: guess.d, q: None };
-    let mut best: Option<(Pressed, Look)> = None;
-    let (mut steps, mut round, mut since_best, mut rough) = (0, 0, 0, false);
-    loop {
-        let look = look(problem, target, &mut now, reach, limits, rough);
-        let error = look.evidence.worst();
-        let settled = now.q.is_none() || look.evidence.deepest <= FACTOR_ROUNDING * now.d;
-        let status = if look.complete && settled && error <= limits.tolerance {
-            Some(Status::Converged)
-        } else if stop() {
-            Some(Status::Stopped)
-        } else if round >= limits.rounds {
-            Some(Status::IterationLimit)
-        } else if since_best > PATIENCE {
-            Some(Status::Stagnated)
-        } else {
-            None
-        };
-        if let Some(status) = status {
-            let (pressed, look) = match best {
-                Some(best) if status != Status::Converged && best.1.evidence.worst() <= error => best,
-                _ => (now, look),
-            };
-            let Pressed { contact, p, d, q } = pressed;
-            return Solved { contact, p, d, q, look, steps, status };
-        }
-        // Just above the plane: a generous guess must not make every round look at the whole grid.
-        reach = REACH * now.d;
-        let length = error * limits.height.unwrap_or(now.d);
-        rough = error > ROUGH && error > ROUGH_ROUNDS * limits.tolerance && length > SINGLE_NOISE * now.d;
-        let better = look.complete && best.as_ref().is_none_or(|b| error < BETTER * b.1.evidence.worst());
-        since_best = if better { 0 } else { since_best + usize::from(!rough) };
-        let next = improve(problem, target, &look, &now, limits, &mut steps, stop);
-        if next.q.is_some() {
-            reach = REACH * next.d;
-        }
-        if better {
-            best = Some((now, look));
-        }
-        now = next;
-        round += 1;
-    }
-}
-
-/// The exact gap under a pressure, and the approach that it makes at a prescribed force.
-///
-/// A `rough` look in single precision says how to go on, but is never evidence.
-fn look(
-    problem: &mut Problem,
+/// One load on lists of cells.
+struct Listed<'a> {
+    problem: &'a mut Problem,
     target: Target,
-    now: &mut Pressed,
+    limits: Limits,
+    now: Pressed,
+    /// The look at it.
+    look: Look,
+    best: Option<(Pressed, Look)>,
+    /// Candidates are looked for up to here.
     reach: f64,
-    limits: Limits,
-    rough: bool,
-) -> Look {
-    if let Target::Force(force) = target {
-        rescale(&mut now.p, force);
-    }
-    let checked = with(&problem.candidates.below(reach), &now.contact);
-    let mut gap = if rough {
-        let mut u = vec![0.0; checked.len()];
-        problem.operators.fast(&now.contact, &now.p, &checked, &mut u);
-        u
-    } else {
-        problem.operators.exact(&now.contact, &now.p, &checked)
-    };
-    for (g, z) in gap.iter_mut().zip(problem.candidates.gaps(&checked)) {
-        *g += z;
-    }
-    let p = checked.carry(&now.contact, &now.p);
-    match target {
-        // The mean weighted by the pressure: the gap is then right where it carries.
-        Target::Force(force) if now.q.is_none() => {
-            now.d = p.iter().zip(&gap).map(|(p, g)| p / force * g).sum();
-        }
-        Target::Force(_) => {}
-        Target::Approach(asked) => now.d = asked,
-    }
-    for g in &mut gap {
-        *g -= now.d;
-    }
-    let evidence = measure(&p, &gap, limits.height.unwrap_or(now.d));
-    Look { checked, p, gap, evidence, complete: !rough && now.d <= reach }
 }
 
-/// One round: a new set from the look, a solution on it (exact when it is small), and the cells in tension dropped.
-fn improve(
-    problem: &mut Problem,
-    target: Target,
-    look: &Look,
-    now: &Pressed,
-    limits: Limits,
-    steps: &mut usize,
-    stop: Stop<'_>,
-) -> Pressed {
-    let noise = NOISE * residual(&look.p, &look.gap);
-    let set = look.checked.filter(|k| look.p[k] > 0.0 || look.gap[k] < -noise);
-    if limits.dense
-        && strategy::dense_is_cheaper(set.len(), set.free_lengths())
-        && let Some(exact) = eliminate(problem, &set, target)
-    {
-        return exact;
+impl<'a> Listed<'a> {
+    fn new(problem: &'a mut Problem, target: Target, guess: Guess, limits: Limits) -> Self {
+        let reach = match target {
+            Target::Force(_) => guess.d,
+            Target::Approach(asked) => asked,
+        };
+        let now = Pressed { contact: guess.set, p: guess.p, d: guess.d, q: None };
+        let checked = CellSet::new(problem.side, Vec::new());
+        let look = Look { checked, p: Vec::new(), gap: Vec::new(), evidence: Evidence::default() };
+        Self { problem, target, limits, now, look, best: None, reach }
     }
-    let position = look.checked.positions(&set);
-    let right: Vec<f64> = position.iter().map(|&k| -look.gap[k as usize]).collect();
-    let request = Request {
-        fixed_sum: matches!(target, Target::Force(_)),
-        reduction: if look.evidence.worst() > EARLY { EARLY_REDUCTION } else { REDUCTION },
-        floor: FLOOR * limits.tolerance * limits.height.unwrap_or(now.d),
-        steps: STEPS,
-        precondition: strategy::precondition(now.contact.len(), set.window_cells()),
-    };
-    let correction = cg::correct(&mut problem.operators, &set, &right, request, stop);
-    *steps += correction.steps;
-    let pressure: Vec<f64> =
-        position.iter().zip(&correction.x).map(|(&k, x)| look.p[k as usize] + x).collect();
-    let contact = set.filter(|k| pressure[k] > 0.0);
-    let p = pressure.into_iter().filter(|&p| p > 0.0).collect();
-    Pressed { contact, p, d: now.d, q: None }
+}
+
+impl Ground for Listed<'_> {
+    fn look(&mut self, rough: bool) -> Seen {
+        let Self { problem, target, limits, now, reach, .. } = self;
+        if let Target::Force(force) = *target {
+            rescale(&mut now.p, force);
+        }
+        let checked = with(&problem.candidates.below(*reach), &now.contact);
+        let mut gap = if rough {
+            let mut u = vec![0.0; checked.len()];
+            problem.operators.fast(&now.contact, &now.p, &checked, &mut u);
+            u
+        } else {
+            problem.operators.exact(&now.contact, &now.p, &checked)
+        };
+        for (g, z) in gap.iter_mut().zip(problem.candidates.gaps(&checked)) {
+            *g += z;
+        }
+        let p = checked.carry(&now.contact, &now.p);
+        match *target {
+            // The mean weighted by the pressure: the gap is then right where it carries.
+            Target::Force(force) if now.q.is_none() => {
+                now.d = p.iter().zip(&gap).map(|(p, g)| p / force * g).sum();
+            }
+            Target::Force(_) => {}
+            Target::Approach(asked) => now.d = asked,
+        }
+        for g in &mut gap {
+            *g -= now.d;
+        }
+        let evidence = measure(&p, &gap, limits.height.unwrap_or(now.d));
+        let complete = !rough && now.d <= *reach;
+        // Just above the plane: a generous guess must not make every round look at the whole grid.
+        *reach = REACH * now.d;
+        self.look = Look { checked, p, gap, evidence };
+        Seen { evidence, complete, d: self.now.d, factored: self.now.q.is_some() }
+    }
+
+    fn improve(&mut self, seen: Seen, steps: &mut usize, stop: Stop<'_>) {
+        let (look, target) = (&self.look, self.target);
+        let noise = NOISE * residual(&look.p, &look.gap);
+        let set = look.checked.filter(|k| look.p[k] > 0.0 || look.gap[k] < -noise);
+        if self.limits.dense
+            && strategy::dense_is_cheaper(set.len(), set.free_lengths())
+            && let Some(exact) = eliminate(self.problem, &set, target)
+        {
+            self.reach = REACH * exact.d;
+            self.now = exact;
+            return;
+        }
+        let position = look.checked.positions(&set);
+        let right: Vec<f64> = position.iter().map(|&k| -look.gap[k as usize]).collect();
+        let precondition = strategy::precondition(self.now.contact.len(), set.window_cells());
+        let request = Request { precondition, ..request(target, self.limits, seen) };
+        let correction = cg::correct(&mut self.problem.operators, &set, &right, request, stop);
+        *steps += correction.steps;
+        let pressure: Vec<f64> =
+            position.iter().zip(&correction.x).map(|(&k, x)| look.p[k as usize] + x).collect();
+        let contact = set.filter(|k| pressure[k] > 0.0);
+        let p = pressure.into_iter().filter(|&p| p > 0.0).collect();
+        self.now = Pressed { contact, p, d: self.now.d, q: None };
+    }
+
+    fn keep(&mut self) {
+        self.best = Some((self.now.clone(), self.look.clone()));
+    }
+
+    fn finish(self, status: Status, best: Option<Seen>, _: Seen, steps: usize) -> Solved {
+        let (pressed, look) = match self.best {
+            Some(kept) if best.is_some() => kept,
+            _ => (self.now, self.look),
+        };
+        let Pressed { contact, p, d, q } = pressed;
+        Solved { contact, p, d, q, look, steps, status }
+    }
 }
 
 /// Drops cells in tension from a small superset until none is left; p, q and d are exact up to rounding.
@@ -290,7 +376,8 @@ fn residual(p: &[f64], gap: &[f64]) -> f64 {
     largest * f64::sqrt(square / count)
 }
 
-fn rescale(p: &mut [f64], force: f64) {
+/// Brings a pressure to a force.
+pub fn rescale(p: &mut [f64], force: f64) {
     let sum: f64 = p.iter().sum();
     if sum > 0.0 {
         let factor = force / sum;
@@ -322,7 +409,6 @@ pub fn with(set: &CellSet, other: &CellSet) -> CellSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::operator::Table;
     use approx::assert_relative_eq;
     use contact_model::never;
     use proptest::prelude::*;
@@ -331,11 +417,7 @@ mod tests {
     const TOLERANCE: f64 = 1e-9;
 
     fn problem(side: usize, z: Vec<f64>) -> Problem {
-        Problem {
-            candidates: Candidates::new(side, Arc::new(z)),
-            operators: Operators::new(Table::shared(side)),
-            side,
-        }
+        Problem::new(side, Arc::new(z))
     }
 
     fn limits(dense: bool) -> Limits {

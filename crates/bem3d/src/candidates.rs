@@ -36,10 +36,18 @@ impl Candidates {
         if d > self.cap {
             self.cap = AHEAD * d;
             let cap = self.cap;
-            let index = self.z.iter().enumerate().filter(|&(_, &z)| z < cap).map(|(i, _)| i as u32).collect();
+            let mut index = Vec::with_capacity(self.z.iter().filter(|&&z| z < cap).count());
+            index.extend(self.z.iter().enumerate().filter(|&(_, &z)| z < cap).map(|(i, _)| i as u32));
             self.list = CellSet::new(self.side, index);
         }
         self.list.filter(|k| self.z[self.list.index()[k] as usize] < d)
+    }
+
+    /// Whether more than `count` cells lie below d.
+    ///
+    /// Cost: the grid at most, much less where the answer is yes.
+    pub fn more_than(&self, count: usize, d: f64) -> bool {
+        self.z.iter().filter(|&&z| z < d).nth(count).is_some()
     }
 
     /// The undeformed gaps on a set.

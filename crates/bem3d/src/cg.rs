@@ -5,7 +5,16 @@ use crate::operator::Operators;
 use contact_model::Stop;
 
 /// Safety factor of the energy estimate on a torus.
-const TORUS: f64 = 2.0;
+pub const TORUS: f64 = 2.0;
+
+/// A linear equation whose value `r' x` counts: how small the energy of its error shall be.
+#[derive(Debug, Clone, Copy)]
+pub struct Energy {
+    /// Relative error of the value that is allowed.
+    pub share: f64,
+    /// The value before the correction.
+    pub base: f64,
+}
 
 /// What one call of [`correct`] is asked to do.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +23,9 @@ pub struct Request {
     pub fixed_sum: bool,
     /// Stop when the residual has fallen by this factor (2-norm) ...
     pub reduction: f64,
-    /// ... or below this value everywhere.
+    /// ... or the energy of its error is below this share of the value that the equation is solved for ...
+    pub energy: Option<Energy>,
+    /// ... or the residual is below this value everywhere ...
     pub floor: f64,
     /// ... or after so many steps.
     pub steps: usize,
@@ -56,7 +67,9 @@ pub fn correct(
     let mut offset = preconditioner.apply(operators, set, &r, &mut z);
     let (start, _) = size(&r, offset);
     let mut rz = dot(&r, &z);
-    let mut steps = 0;
+    let (mut steps, mut gain) = (0, 0.0);
+    // The energy of the error is at most this multiple of r'z.
+    let safety = if request.precondition { TORUS } else { 1.0 / crate::love::SMALLEST_EIGENVALUE };
     while steps < request.steps && rz > 0.0 && !stop() {
         if steps == 0 {
             direction.copy_from_slice(&z);
@@ -78,6 +91,13 @@ pub fn correct(
             break;
         }
         let next = dot(&r, &z);
+        gain += step * rz;
+        if request
+            .energy
+            .is_some_and(|e| safety * next * unit * unit <= e.share * (e.base + gain * unit * unit))
+        {
+            break;
+        }
         let beta = next / rz;
         rz = next;
         for (t, &z) in direction.iter_mut().zip(&z) {
@@ -191,7 +211,14 @@ mod tests {
         let (q, w) = Factor::new(operators.table(), &set).unwrap().solve_pair(&r);
         for precondition in [false, true] {
             for fixed_sum in [false, true] {
-                let request = Request { fixed_sum, reduction: 1e-5, floor: 0.0, steps: 200, precondition };
+                let request = Request {
+                    fixed_sum,
+                    reduction: 1e-5,
+                    energy: None,
+                    floor: 0.0,
+                    steps: 200,
+                    precondition,
+                };
                 let got = correct(&mut operators, &set, &r, request, &never);
                 // With a fixed sum the approach takes up the rest: x = w - (sum w / sum q) q.
                 let shift = if fixed_sum { w.iter().sum::<f64>() / q.iter().sum::<f64>() } else { 0.0 };

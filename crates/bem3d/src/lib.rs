@@ -58,6 +58,7 @@ mod candidates;
 mod cells;
 mod certificate;
 mod cg;
+mod filled;
 pub mod love;
 mod model;
 mod operator;
@@ -69,4 +70,4 @@ pub use model::{Bem3d, Method};
 
 /// Number of the solver's format. It changes with anything that can change a result beyond its tolerance, so that stored
 /// results of other versions are not mixed with new ones.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;

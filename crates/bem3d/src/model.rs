@@ -1,10 +1,10 @@
 //! The boundary-element model behind the common traits.
 
 use crate::active_set::{self, Guess, Limits, Problem, Solved, Target};
-use crate::candidates::Candidates;
-use crate::operator::{Operators, Table};
+use crate::cells::CellSet;
 use crate::seed;
 use crate::stiffness::{self, Stiffness};
+use crate::strategy;
 use contact_model::{
     Certificate, ContactModel, ContactState, Error, Fields, HeightMap, Load, Outputs, PreparedContact,
     Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units,
@@ -115,10 +115,22 @@ struct Prepared {
 /// The state solved last, from which the next is predicted.
 #[derive(Debug)]
 struct Last {
-    solved: Solved,
+    contact: CellSet,
+    p: Vec<f64>,
+    d: f64,
     force: f64,
     /// q and its sum, where known.
     tangent: Option<(Vec<f64>, f64)>,
+}
+
+impl Last {
+    /// How many times the last load is asked for.
+    fn ratio(&self, target: Target) -> f64 {
+        match target {
+            Target::Force(force) => force / self.force,
+            Target::Approach(d) => d / self.d,
+        }
+    }
 }
 
 impl Prepared {
@@ -132,11 +144,7 @@ impl Prepared {
             *z /= height;
         }
         let units = Units::new(scene.modulus, map.cell(), height)?;
-        let problem = Problem {
-            candidates: Candidates::new(map.cells(), Arc::new(z)),
-            operators: Operators::new(Table::shared(map.cells())),
-            side: map.cells(),
-        };
+        let problem = Problem::new(map.cells(), Arc::new(z));
         let scales = Scales { modulus: scene.modulus, side: map.side(), height: has_rms.then_some(rms) };
         Ok(Self { options, outputs: scene.outputs, problem, units, height, scales, last: None })
     }
@@ -146,7 +154,11 @@ impl Prepared {
         if let Some(last) = &self.last
             && let Some(guess) = predict(last, target)
         {
-            return guess;
+            let problem = &mut self.problem;
+            let promised = || active_set::promised(problem, &guess);
+            if !strategy::start_anew(&last.contact, last.ratio(target), promised) {
+                return guess;
+            }
         }
         seed::cold(&mut self.problem, target, limits, stop)
     }
@@ -157,7 +169,7 @@ impl Prepared {
         }
         let guess = guess.or_else(|| {
             let last = self.last.as_ref()?;
-            last.tangent.as_ref().map(|(q, _)| solved.contact.carry(&last.solved.contact, q))
+            last.tangent.as_ref().map(|(q, _)| solved.contact.carry(&last.contact, q))
         });
         stiffness::solve(&mut self.problem, solved, guess, self.options.tolerance, stop)
     }
@@ -240,7 +252,8 @@ impl Prepared {
             report,
         };
         if status == Status::Converged {
-            self.last = Some(Last { force, tangent: tangent.map(|t| (t.q, t.value)), solved });
+            let Solved { contact, p, d, .. } = solved;
+            self.last = Some(Last { force, tangent: tangent.map(|t| (t.q, t.value)), contact, p, d });
             Ok(state)
         } else if status == Status::Stopped {
             Err(Error::Stopped { best: Some(Box::new(state)) })
@@ -263,7 +276,7 @@ impl Prepared {
             fields.pressure = Some(p);
         }
         if self.outputs.displacement || self.outputs.gap {
-            let all = crate::cells::CellSet::new(self.problem.side, (0..count as u32).collect());
+            let all = CellSet::new(self.problem.side, (0..count as u32).collect());
             let u = self.problem.operators.exact(&solved.contact, &solved.p, &all);
             let height = self.height;
             if self.outputs.gap {
@@ -329,24 +342,21 @@ impl PreparedContact for Prepared {
 /// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load, so that the predicted
 /// approach is an upper bound and every new contact cell lies below it. Where no stiffness was asked for, the pressure is scaled.
 fn predict(last: &Last, target: Target) -> Option<Guess> {
-    let ratio = match target {
-        Target::Force(force) => force / last.force,
-        Target::Approach(d) => d / last.solved.d,
-    };
+    let ratio = last.ratio(target);
     if !(1.0 / WARM_RANGE..=WARM_RANGE).contains(&ratio) {
         return None;
     }
     let (pressure, d): (Vec<f64>, f64) = if let Some((q, k)) = &last.tangent {
         let step = match target {
             Target::Force(force) => (force - last.force) / k,
-            Target::Approach(d) => d - last.solved.d,
+            Target::Approach(d) => d - last.d,
         };
-        let pressure = last.solved.p.iter().zip(q).map(|(p, q)| p + step * q).collect();
-        (pressure, last.solved.d + step.max(0.0))
+        let pressure = last.p.iter().zip(q).map(|(p, q)| p + step * q).collect();
+        (pressure, last.d + step.max(0.0))
     } else {
-        (last.solved.p.iter().map(|p| ratio * p).collect(), last.solved.d * ratio.max(1.0))
+        (last.p.iter().map(|p| ratio * p).collect(), last.d * ratio.max(1.0))
     };
-    let set = last.solved.contact.filter(|k| pressure[k] > 0.0);
+    let set = last.contact.filter(|k| pressure[k] > 0.0);
     if set.is_empty() {
         return None;
     }

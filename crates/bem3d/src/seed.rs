@@ -1,9 +1,7 @@
 //! Where a cold solve begins: a small superset, or the same surface on a coarser grid.
 
 use crate::active_set::{self, Guess, Limits, Problem, Target};
-use crate::candidates::Candidates;
 use crate::cells::CellSet;
-use crate::operator::{Operators, Table};
 use crate::{love, strategy};
 use contact_model::Stop;
 use std::sync::Arc;
@@ -27,18 +25,26 @@ pub fn cold(problem: &mut Problem, target: Target, limits: Limits, stop: Stop<'_
         Target::Force(force) => first + force * love::influence(0, 0),
         Target::Approach(d) => d,
     };
-    let superset = problem.candidates.below(reach.min(2.0 * deepest + f64::MIN_POSITIVE));
-    let superset = active_set::with(&superset, &CellSet::new(problem.side, vec![highest]));
-    if problem.side <= COARSEST
-        || (limits.dense && strategy::dense_is_cheaper(superset.len(), superset.free_lengths()))
-    {
-        return uniform(superset, target, reach);
+    let reach = reach.min(2.0 * deepest + f64::MIN_POSITIVE);
+    let from_above = |problem: &mut Problem| {
+        let superset = problem.candidates.below(reach);
+        active_set::with(&superset, &CellSet::new(problem.side, vec![highest]))
+    };
+    if problem.side <= COARSEST {
+        return uniform(from_above(problem), target, reach);
     }
-    let mut coarse = coarser(problem);
+    if limits.dense && !problem.candidates.more_than(strategy::LARGEST_FACTOR, reach) {
+        let superset = from_above(problem);
+        if strategy::dense_is_cheaper(superset.len(), superset.free_lengths()) {
+            return uniform(superset, target, reach);
+        }
+    }
+    let mut coarse = problem.coarser.take().unwrap_or_else(|| Box::new(coarser(problem)));
     if let Target::Approach(d) = target
         && range(coarse.candidates.z()).1 >= d
     {
-        return uniform(superset, target, reach);
+        problem.coarser = Some(coarse);
+        return uniform(from_above(problem), target, reach);
     }
     let limits = Limits { tolerance: SEED_TOLERANCE, rounds: SEED_ROUNDS, ..limits };
     // A force is a sum of scaled pressures, which double when the cell does and are a quarter as many.
@@ -48,7 +54,9 @@ pub fn cold(problem: &mut Problem, target: Target, limits: Limits, stop: Stop<'_
     };
     let guess = cold(&mut coarse, coarse_target, limits, stop);
     let solved = active_set::solve(&mut coarse, coarse_target, guess, limits, stop);
-    prolong(problem, &coarse, &solved.contact, &solved.p, solved.d)
+    let guess = prolong(problem, &coarse, &solved.contact, &solved.p, solved.d);
+    problem.coarser = Some(coarse);
+    guess
 }
 
 fn uniform(set: CellSet, target: Target, reach: f64) -> Guess {
@@ -90,32 +98,31 @@ fn coarser(problem: &Problem) -> Problem {
             mean.push(sum / count);
         }
     }
-    Problem {
-        candidates: Candidates::new(side, Arc::new(mean)),
-        operators: Operators::new(Table::shared(side)),
-        side,
-    }
+    Problem::new(side, Arc::new(mean))
 }
 
 /// Coarse pressure on the fine cells below it that lie under the plane (all four if none does).
 fn prolong(problem: &Problem, coarse: &Problem, contact: &CellSet, p: &[f64], d: f64) -> Guess {
     let (fine, z) = (problem.side, problem.candidates.z());
-    let mut cells: Vec<(u32, f64)> = Vec::with_capacity(4 * p.len());
-    for (k, &p) in p.iter().enumerate() {
-        let i = contact.index()[k] as usize;
-        let (cx, cy) = (i % coarse.side, i / coarse.side);
-        let children: Vec<usize> = (2 * cy..(2 * cy + 2).min(fine))
-            .flat_map(|y| (2 * cx..(2 * cx + 2).min(fine)).map(move |x| y * fine + x))
-            .collect();
-        let below: Vec<usize> = children.iter().copied().filter(|&i| z[i] < d).collect();
-        let chosen = if below.is_empty() { children } else { below };
-        // Equal force: cells half as large carry twice the sum in scaled units.
-        let share = 2.0 * p / chosen.len() as f64;
-        cells.extend(chosen.into_iter().map(|i| (i as u32, share)));
+    let (mut index, mut pressure) = (Vec::with_capacity(4 * p.len()), Vec::with_capacity(4 * p.len()));
+    for row in contact.rows() {
+        let rows = 2 * row.y..(2 * row.y + 2).min(fine);
+        for y in rows.clone() {
+            for k in row.span.clone() {
+                let x = 2 * (contact.index()[k] as usize - row.y * coarse.side);
+                let columns = x..(x + 2).min(fine);
+                let below = |y: usize| columns.clone().filter(move |&x| z[y * fine + x] < d).count();
+                let chosen: usize = rows.clone().map(below).sum();
+                let carrying = if chosen > 0 { chosen } else { rows.len() * columns.len() };
+                for i in columns.map(|x| y * fine + x).filter(|&i| chosen == 0 || z[i] < d) {
+                    index.push(i as u32);
+                    // Equal force: cells half as large carry twice the sum in scaled units.
+                    pressure.push(2.0 * p[k] / carrying as f64);
+                }
+            }
+        }
     }
-    cells.sort_unstable_by_key(|&(i, _)| i);
-    let (index, p) = cells.into_iter().unzip();
-    Guess { set: CellSet::new(fine, index), p, d }
+    Guess { set: CellSet::new(fine, index), p: pressure, d }
 }
 
 #[cfg(test)]
@@ -124,11 +131,7 @@ mod tests {
     use contact_model::never;
 
     fn problem(side: usize, z: Vec<f64>) -> Problem {
-        Problem {
-            candidates: Candidates::new(side, Arc::new(z)),
-            operators: Operators::new(Table::shared(side)),
-            side,
-        }
+        Problem::new(side, Arc::new(z))
     }
 
     fn limits() -> Limits {

@@ -2,7 +2,8 @@
 
 use crate::active_set::{Problem, Solved};
 use crate::cells::CellSet;
-use crate::cg::{self, Request};
+use crate::cg::{self, Energy, Request, TORUS};
+use crate::filled::{self, Arrays};
 use crate::{love, strategy};
 use contact_model::Stop;
 
@@ -13,6 +14,10 @@ const STEPS: usize = 60;
 
 /// Share of the tolerance that the linear solve may use up; the rest is left to undecided cells.
 const SHARE: f64 = 0.5;
+/// Share of the tolerance that conjugate gradients aim at: what they estimate is not yet checked in double precision.
+const AIM: f64 = 0.3;
+/// Reduction of the residual at most in one correction: single precision has no more to give.
+const REDUCTION: f64 = 1e-3;
 
 /// Stiffness in scaled units with its evidence.
 #[derive(Debug, Clone)]
@@ -30,6 +35,10 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
+    fn unknown() -> Self {
+        Self { value: 0.0, solve_error: f64::INFINITY, set_error: 0.0, q: Vec::new(), steps: 0 }
+    }
+
     /// Estimated relative error, both parts.
     pub fn error(&self) -> f64 {
         self.solve_error + self.set_error
@@ -49,6 +58,9 @@ pub fn solve(
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Stiffness {
+    if strategy::fills(state.contact.len(), problem.side) {
+        return filled(problem, state, guess.as_deref(), tolerance, stop);
+    }
     let contact = &state.contact;
     let n = contact.len();
     let spectral = strategy::precondition(n, contact.window_cells());
@@ -58,8 +70,7 @@ pub fn solve(
     let mut v = vec![0.0; targets.len()];
     let mut fresh = q.iter().all(|&q| q == 0.0);
     let on_contact = targets.positions(contact);
-    let mut best =
-        Stiffness { value: 0.0, solve_error: f64::INFINITY, set_error: 0.0, q: Vec::new(), steps: 0 };
+    let mut best = Stiffness::unknown();
     let mut steps = 0;
     let mut unimproved = 0;
     for round in 0..ROUNDS {
@@ -67,15 +78,14 @@ pub fn solve(
             v = problem.operators.exact(contact, &q, &targets);
         }
         let r: Vec<f64> = on_contact.iter().map(|&k| 1.0 - v[k as usize]).collect();
+        let (sum, rq): (f64, f64) = (q.iter().sum(), cg::dot(&r, &q));
         if !fresh {
-            let sum: f64 = q.iter().sum();
-            let rq = cg::dot(&r, &q);
-            let ritz = sum * sum / (sum - rq);
-            let upper = sum + rq + cg::energy(&mut problem.operators, contact, &r, spectral);
-            let error = (upper - ritz).max(0.0) / ritz;
+            let energy = cg::energy(&mut problem.operators, contact, &r, spectral);
+            let (ritz, error) = bounds(sum, rq, energy);
             let improved = error < 0.9 * best.solve_error;
             if error < best.solve_error {
-                let set_error = set_error(state, &targets, &v, &ambiguous, &q) / ritz;
+                let at_ambiguous = targets.positions(&ambiguous).into_iter().map(|k| v[k as usize]);
+                let set_error = set_error(state, at_ambiguous, &q) / ritz;
                 best = Stiffness { value: ritz, solve_error: error, set_error, q: q.clone(), steps };
             }
             unimproved = if improved { 0 } else { unimproved + 1 };
@@ -86,8 +96,8 @@ pub fn solve(
         fresh = false;
         let request = Request {
             fixed_sum: false,
-            // The error of k is the square of this; a start from nothing needs the square root of the tolerance.
-            reduction: (0.3 * tolerance.sqrt()).clamp(1e-3, 0.1),
+            reduction: REDUCTION,
+            energy: Some(Energy { share: AIM * tolerance, base: sum + rq }),
             floor: 0.0,
             steps: STEPS,
             precondition: spectral,
@@ -101,6 +111,99 @@ pub fn solve(
     Stiffness { steps, ..best }
 }
 
+/// The same on arrays over the grid. The energy of a residual is the first thing that conjugate gradients find, so that the check
+/// of one round is the beginning of the next.
+fn filled(
+    problem: &mut Problem,
+    state: &Solved,
+    guess: Option<&[f64]>,
+    tolerance: f64,
+    stop: Stop<'_>,
+) -> Stiffness {
+    let Problem { operators, arrays, side, .. } = problem;
+    let side = *side;
+    arrays.reserve(side);
+    let Arrays { p: q, gap: v, vectors, .. } = arrays;
+    let ambiguous = penetrating(state);
+    vectors.mask.fill(0.0);
+    for &i in state.contact.index() {
+        vectors.mask[i as usize] = 1.0;
+    }
+    match guess {
+        Some(guess) => Arrays::spread(&state.contact, guess, q),
+        None => q.fill(0.0),
+    }
+    let row = |y: usize| y * side..(y + 1) * side;
+    let mut fresh = guess.is_none();
+    let mut best = Stiffness::unknown();
+    let (mut steps, mut unimproved) = (0, 0);
+    for round in 0..ROUNDS {
+        let (mut sum, mut rq, mut unit) = (0.0, 0.0, 0.0f64);
+        if fresh {
+            v.fill(0.0);
+            unit = 1.0;
+        } else {
+            let mask = &vectors.mask;
+            operators.exact_rows(
+                side,
+                |y, out| out.copy_from_slice(&q[row(y)]),
+                |y, u| {
+                    v[row(y)].copy_from_slice(u);
+                    for ((&u, &q), &mask) in u.iter().zip(&q[row(y)]).zip(&mask[row(y)]) {
+                        let r = f64::from(mask) * (1.0 - u);
+                        sum += q;
+                        rq += r * q;
+                        unit = unit.max(r.abs());
+                    }
+                },
+            );
+        }
+        if unit <= 0.0 {
+            break;
+        }
+        for ((r, &mask), &v) in vectors.r.iter_mut().zip(&vectors.mask).zip(&*v) {
+            *r = mask * ((1.0 - v) / unit) as f32;
+        }
+        let last = round + 1 == ROUNDS || unimproved > 2;
+        let square = unit * unit;
+        let request = filled::cg::Request {
+            fixed_sum: false,
+            reduction: REDUCTION,
+            energy: Some(Energy { share: AIM * tolerance, base: (sum + rq) / square }),
+            floor: 0.0,
+            steps: if last { 0 } else { STEPS },
+        };
+        let done = filled::cg::correct(operators, side, vectors, request, stop);
+        if !fresh {
+            let (ritz, error) = bounds(sum, rq, TORUS * done.start.max(0.0) * square);
+            unimproved = if error < 0.9 * best.solve_error { 0 } else { unimproved + 1 };
+            if error < best.solve_error {
+                let on = |set: &CellSet, values: &[f64]| -> Vec<f64> {
+                    set.index().iter().map(|&i| values[i as usize]).collect()
+                };
+                let q = on(&state.contact, q);
+                let set_error = set_error(state, on(&ambiguous, v).into_iter(), &q) / ritz;
+                best = Stiffness { value: ritz, solve_error: error, set_error, q, steps };
+            }
+            if error <= SHARE * tolerance || last || stop() {
+                break;
+            }
+        }
+        fresh = false;
+        steps += done.steps;
+        for (q, &x) in q.iter_mut().zip(&vectors.x) {
+            *q += unit * f64::from(x);
+        }
+    }
+    Stiffness { steps, ..best }
+}
+
+/// Ritz value and relative width of the bounds from `1'q`, `r'q` and the energy `r' K^-1 r`.
+fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
+    let ritz = sum * sum / (sum - rq);
+    (ritz, (sum + rq + energy - ritz).max(0.0) / ritz)
+}
+
 /// Cells outside the contact set whose gap is negative within the tolerance: they may belong to it.
 fn penetrating(state: &Solved) -> CellSet {
     let look = &state.look;
@@ -112,9 +215,8 @@ fn penetrating(state: &Solved) -> CellSet {
 /// Adding cell j adds `(1 - (Kq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
 /// takes away `q_j^2 / (K^-1)_jj`, at most `q_j^2 K_jj`. Undecided are the cells that penetrate and those whose pressure
 /// is below what their own residual gap can change. `tests/honest.rs` compares the sum of both parts with true errors.
-fn set_error(state: &Solved, targets: &CellSet, v: &[f64], ambiguous: &CellSet, q: &[f64]) -> f64 {
-    let added: f64 = targets.positions(ambiguous).iter().map(|&k| (1.0 - v[k as usize]).powi(2)).sum::<f64>()
-        / love::SMALLEST_EIGENVALUE;
+fn set_error(state: &Solved, at_ambiguous: impl Iterator<Item = f64>, q: &[f64]) -> f64 {
+    let added: f64 = at_ambiguous.map(|v| (1.0 - v).powi(2)).sum::<f64>() / love::SMALLEST_EIGENVALUE;
     let look = &state.look;
     let gap = look.gap.iter().zip(&look.p).filter(|&(_, &p)| p > 0.0).map(|(g, _)| g.abs());
     let removed: f64 = state
@@ -137,18 +239,17 @@ pub fn factored(problem: &mut Problem, state: &Solved, q: Vec<f64>) -> Stiffness
     let r: Vec<f64> = targets.positions(&state.contact).iter().map(|&k| 1.0 - v[k as usize]).collect();
     let sum: f64 = q.iter().sum();
     let rq = cg::dot(&r, &q);
-    let value = sum * sum / (sum - rq);
-    let upper = sum + rq + cg::energy(&mut problem.operators, &state.contact, &r, false);
-    let set_error = set_error(state, &targets, &v, &ambiguous, &q) / value;
-    Stiffness { value, solve_error: (upper - value).max(0.0) / value, set_error, q, steps: 0 }
+    let energy = cg::energy(&mut problem.operators, &state.contact, &r, false);
+    let (value, solve_error) = bounds(sum, rq, energy);
+    let at_ambiguous = targets.positions(&ambiguous).into_iter().map(|k| v[k as usize]);
+    let set_error = set_error(state, at_ambiguous, &q) / value;
+    Stiffness { value, solve_error, set_error, q, steps: 0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::active_set::{self, Guess, Limits, Target};
-    use crate::candidates::Candidates;
-    use crate::operator::{Operators, Table};
     use approx::assert_relative_eq;
     use contact_model::never;
     use std::sync::Arc;
@@ -156,11 +257,7 @@ mod tests {
     /// Full contact of a flat square of `side` cells.
     fn flat(side: usize, dense: bool) -> (Problem, Solved) {
         let n = side * side;
-        let mut problem = Problem {
-            candidates: Candidates::new(side, Arc::new(vec![0.0; n])),
-            operators: Operators::new(Table::shared(side)),
-            side,
-        };
+        let mut problem = Problem::new(side, Arc::new(vec![0.0; n]));
         let guess =
             Guess { set: CellSet::new(side, (0..n as u32).collect()), p: vec![1.0; n], d: 4.0 * n as f64 };
         let limits = Limits { tolerance: 1e-9, height: None, rounds: 100, dense };

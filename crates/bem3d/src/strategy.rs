@@ -29,9 +29,19 @@ const APPLICATIONS: f64 = 20.0;
 /// Factorisations that the dense solution of one active set takes.
 const FACTORS: f64 = 2.5;
 /// A factor is never larger than this, whatever the rest costs (memory: 16 n^2 bytes).
-const LARGEST_FACTOR: usize = 6000;
+pub const LARGEST_FACTOR: usize = 6000;
 /// Sets up to this size are always factored: the result is exact and costs a millisecond or two.
 const ALWAYS_FACTORED: usize = 256;
+/// From one contact cell in so many of the grid on, arrays over the grid are cheaper than lists of cells.
+const FILLED: usize = 40;
+/// Where one cell in so many will touch, no tangent is followed far.
+const FILLING: f64 = 10.0;
+/// Where one cell in so many will touch, the cells that a tangent promises are counted before it is followed ...
+const COUNTED: f64 = 200.0;
+/// ... and it is not if they are so many times what the load has grown by.
+const OVERSHOOT: f64 = 2.5;
+/// Ratio of loads that a tangent covers.
+const NEAR: std::ops::RangeInclusive<f64> = 0.8..=1.25;
 /// Share of the window in contact from which the spectral preconditioner saves more applications than it costs.
 const DENSE_CONTACT: f64 = 0.02;
 
@@ -116,6 +126,23 @@ pub fn dense_is_cheaper(n: usize, lengths: Lengths) -> bool {
     let factor = FACTORS * (FACTOR_NS * cells.powi(3) / 3.0 + 4.0 * cells * cells);
     let iterate = APPLICATIONS * (SINGLE * fft_ns(lengths)).min(PAIR_NS * cells * cells);
     n <= ALWAYS_FACTORED || (n <= LARGEST_FACTOR && factor <= iterate)
+}
+
+/// Whether the contact fills the grid so far that arrays are cheaper than lists.
+pub fn fills(contact: usize, side: usize) -> bool {
+    contact > LARGEST_FACTOR && contact * FILLED >= side * side
+}
+
+/// Whether a load that is `ratio` times the last one begins on coarse grids although a state is known.
+///
+/// The tangent overshoots (the stiffness grows with every cell that joins); where it promises far more cells than the load
+/// has grown by, eliminating them costs more than a coarse solution at a third of the price. `promised` counts them with one
+/// application; where a good part of the grid will touch, the answer is known without.
+pub fn start_anew(last: &CellSet, ratio: f64, promised: impl FnOnce() -> usize) -> bool {
+    let (expected, all) = (last.len() as f64 * ratio, (last.side() as f64).powi(2));
+    !NEAR.contains(&ratio)
+        && (expected * FILLING >= all
+            || (expected * COUNTED >= all && promised() as f64 > OVERSHOOT * expected))
 }
 
 /// Whether conjugate gradients use the spectral preconditioner.

@@ -1,17 +1,19 @@
-//! Convolution with an even kernel on a window of the grid, by real FFTs of pruned rows and blocked columns.
+//! Convolution with an even kernel on a window of the grid, by real FFTs of its rows and complex ones of its columns.
 
 use crate::cells::{CellSet, Window};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftNum, FftPlanner};
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
-/// Columns transformed together: whole cache lines for the transposition.
-const BLOCK: usize = 16;
-
-/// Gap between the columns of a block: at a stride of a power of two they would all fall into the same few lines of the cache.
-const SKEW: usize = 8;
+/// Rows that are laid down together: eight complex numbers in single precision are one cache line.
+const TILE: usize = 8;
+/// Bytes of a cache line.
+const LINE: usize = 64;
+/// Columns at a distance of a multiple of so many numbers would fall into the same few lines of the cache.
+const ALIASED: usize = 64;
 
 /// Floating point of a convolution: f64, or f32 inside an iteration that is certified in f64.
 pub trait Real: FftNum + Default {
@@ -174,7 +176,10 @@ fn even_rows(
     }
 }
 
-/// A planned convolution on a window: `u = kernel * p` from the cells of one set to those of another.
+/// A planned convolution on a window: `u = kernel * p` from rows of the window to rows of the window.
+///
+/// Rows are transformed one by one; their spectra are laid down column by column, [`TILE`] rows at a time, so that whole cache lines
+/// move and the column transforms run through memory in order. Most of the time of a plain implementation goes into that move.
 pub struct Convolution<T: Real> {
     window: Window,
     lengths: Lengths,
@@ -184,8 +189,13 @@ pub struct Convolution<T: Real> {
     row_inverse: Arc<dyn ComplexToReal<T>>,
     column_forward: Arc<dyn Fft<T>>,
     column_inverse: Arc<dyn Fft<T>>,
+    /// Row spectra, column after column at a distance of `pitch`, from `start` on (where a cache line begins).
     spectrum: Vec<Complex<T>>,
-    columns: Vec<Complex<T>>,
+    start: usize,
+    pitch: usize,
+    /// One tile of row spectra, row after row.
+    lines: Vec<Complex<T>>,
+    column: Vec<Complex<T>>,
     row: Vec<T>,
     scratch: Vec<Complex<T>>,
 }
@@ -214,6 +224,13 @@ impl<T: Real> Convolution<T> {
         ];
         let scratch = scratch.into_iter().max().unwrap_or(0);
         let zero = Complex::default();
+        let half = lengths.x / 2 + 1;
+        let mut pitch = window.height.next_multiple_of(TILE);
+        if pitch.is_multiple_of(ALIASED) {
+            pitch += TILE;
+        }
+        let spectrum = vec![zero; half * pitch + TILE];
+        let start = Some(spectrum.as_ptr().align_offset(LINE)).filter(|&s| s <= TILE).unwrap_or(0);
         Self {
             window,
             lengths,
@@ -222,8 +239,11 @@ impl<T: Real> Convolution<T> {
             row_inverse,
             column_forward,
             column_inverse,
-            spectrum: vec![zero; window.height * (lengths.x / 2 + 1)],
-            columns: vec![zero; BLOCK * (lengths.y + SKEW)],
+            spectrum,
+            start,
+            pitch,
+            lines: vec![zero; TILE * half],
+            column: vec![zero; lengths.y],
             row: vec![T::default(); lengths.x],
             scratch: vec![zero; scratch],
         }
@@ -251,70 +271,153 @@ impl<T: Real> Convolution<T> {
     /// Cost: O(lx ly log) at most.
     pub fn apply(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, out: &mut [f64]) {
         let unit = T::unit(p.iter().fold(0.0, |m: f64, p| m.max(p.abs())));
-        self.forward_rows(sources, p, unit.recip());
-        self.columns(sources, targets);
-        self.inverse_rows(targets, out, unit);
+        let scale = unit.recip();
+        let Window { x: x0, y: y0, height, .. } = self.window;
+        let (from, to) = (Rows::new(sources, y0, height), Rows::new(targets, y0, height));
+        self.rows(
+            |y| from.holds(y),
+            |y, row| {
+                let start = (y + y0) * sources.side() + x0;
+                for k in from.span(y) {
+                    row[sources.index()[k] as usize - start] = T::of(p[k] * scale);
+                }
+            },
+            |y| to.holds(y),
+            |y, row| {
+                let start = (y + y0) * targets.side() + x0;
+                for k in to.span(y) {
+                    out[k] = row[targets.index()[k] as usize - start].to_f64() * unit;
+                }
+            },
+        );
     }
 
-    fn forward_rows(&mut self, sources: &CellSet, p: &[f64], scale: f64) {
+    /// The convolution of whole rows of the window: `fill` writes row y (given as zeros) where `given` says so, `take` reads the result
+    /// where it is `wanted`. Both see the rows in increasing order, all of `fill` before the first of `take`.
+    ///
+    /// Cost: O(lx ly log) at most; rows and columns of zeros are not transformed.
+    pub fn rows(
+        &mut self,
+        given: impl Fn(usize) -> bool,
+        mut fill: impl FnMut(usize, &mut [T]),
+        wanted: impl Fn(usize) -> bool,
+        mut take: impl FnMut(usize, &[T]),
+    ) {
+        let tiles = self.window.height.div_ceil(TILE);
+        let within = |tile: usize| tile * TILE..((tile + 1) * TILE).min(self.window.height);
+        let runs = |has: &dyn Fn(usize) -> bool| runs(tiles, |tile| within(tile).any(has));
+        let (sources, targets) = (runs(&given), runs(&wanted));
         let half = self.lengths.x / 2 + 1;
-        for row in sources.rows() {
-            self.row.fill(T::default());
-            let start = row.y * sources.side() + self.window.x;
-            for k in row.span.clone() {
-                self.row[sources.index()[k] as usize - start] = T::of(p[k] * scale);
+        for tile in sources.iter().flat_map(Range::clone) {
+            for (j, line) in self.lines.chunks_exact_mut(half).enumerate() {
+                let y = tile * TILE + j;
+                if y < self.window.height && given(y) {
+                    self.row.fill(T::default());
+                    fill(y, &mut self.row[..self.window.width]);
+                    let done = self.row_forward.process_with_scratch(&mut self.row, line, &mut self.scratch);
+                    debug_assert!(done.is_ok());
+                } else {
+                    line.fill(Complex::default());
+                }
             }
-            let y = row.y - self.window.y;
-            let output = &mut self.spectrum[y * half..(y + 1) * half];
-            let done = self.row_forward.process_with_scratch(&mut self.row, output, &mut self.scratch);
-            debug_assert!(done.is_ok());
+            lay_down(&self.lines, half, &mut self.spectrum[self.start + tile * TILE..], self.pitch);
+        }
+        self.columns(&sources, &targets);
+        for tile in targets.iter().flat_map(Range::clone) {
+            take_up(&self.spectrum[self.start + tile * TILE..], self.pitch, &mut self.lines, half);
+            for (j, line) in self.lines.chunks_exact_mut(half).enumerate() {
+                let y = tile * TILE + j;
+                if y >= self.window.height || !wanted(y) {
+                    continue;
+                }
+                // The spectrum of a real row has real ends; rounding may say otherwise and the plan would complain.
+                line[0].im = T::default();
+                line[half - 1].im = T::default();
+                let done = self.row_inverse.process_with_scratch(line, &mut self.row, &mut self.scratch);
+                debug_assert!(done.is_ok());
+                take(y, &self.row[..self.window.width]);
+            }
         }
     }
 
-    fn columns(&mut self, sources: &CellSet, targets: &CellSet) {
-        let half = self.lengths.x / 2 + 1;
-        let (length, half_y) = (self.lengths.y, self.lengths.y / 2 + 1);
-        let stride = length + SKEW;
-        for first in (0..half).step_by(BLOCK) {
-            let width = BLOCK.min(half - first);
-            self.columns.fill(Complex::default());
-            for row in sources.rows() {
-                let y = row.y - self.window.y;
-                let line = &self.spectrum[y * half + first..y * half + first + width];
-                for (c, &value) in line.iter().enumerate() {
-                    self.columns[c * stride + y] = value;
-                }
+    /// Transforms each column, multiplies it by the symbol and transforms it back.
+    fn columns(&mut self, sources: &[Range<usize>], targets: &[Range<usize>]) {
+        let (half, half_y) = (self.lengths.x / 2 + 1, self.lengths.y / 2 + 1);
+        let height = self.window.height;
+        let rows = |tiles: &Range<usize>| tiles.start * TILE..(tiles.end * TILE).min(height);
+        for (kx, symbol) in self.symbol.chunks_exact(half_y).take(half).enumerate() {
+            let line = &mut self.spectrum[self.start + kx * self.pitch..][..height];
+            let mut end = 0;
+            for y in sources.iter().map(rows) {
+                self.column[end..y.start].fill(Complex::default());
+                self.column[y.clone()].copy_from_slice(&line[y.clone()]);
+                end = y.end;
             }
-            for c in 0..width {
-                let column = &mut self.columns[c * stride..c * stride + length];
-                self.column_forward.process_with_scratch(column, &mut self.scratch);
-                multiply_even(column, &self.symbol[(first + c) * half_y..(first + c + 1) * half_y]);
-                self.column_inverse.process_with_scratch(column, &mut self.scratch);
-            }
-            for row in targets.rows() {
-                let y = row.y - self.window.y;
-                let line = &mut self.spectrum[y * half + first..y * half + first + width];
-                for (c, value) in line.iter_mut().enumerate() {
-                    *value = self.columns[c * stride + y];
-                }
+            self.column[end..].fill(Complex::default());
+            self.column_forward.process_with_scratch(&mut self.column, &mut self.scratch);
+            multiply_even(&mut self.column, symbol);
+            self.column_inverse.process_with_scratch(&mut self.column, &mut self.scratch);
+            for y in targets.iter().map(rows) {
+                line[y.clone()].copy_from_slice(&self.column[y]);
             }
         }
     }
+}
 
-    fn inverse_rows(&mut self, targets: &CellSet, out: &mut [f64], unit: f64) {
-        let half = self.lengths.x / 2 + 1;
-        for row in targets.rows() {
-            let y = row.y - self.window.y;
-            let input = &mut self.spectrum[y * half..(y + 1) * half];
-            // The spectrum of a real row has real ends; rounding may say otherwise and the plan would complain.
-            input[0].im = T::default();
-            input[half - 1].im = T::default();
-            let done = self.row_inverse.process_with_scratch(input, &mut self.row, &mut self.scratch);
-            debug_assert!(done.is_ok());
-            let start = row.y * targets.side() + self.window.x;
-            for k in row.span.clone() {
-                out[k] = self.row[targets.index()[k] as usize - start].to_f64() * unit;
-            }
+/// Runs of consecutive numbers below `count` that have a property.
+fn runs(count: usize, has: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for i in (0..count).filter(|&i| has(i)) {
+        match runs.last_mut() {
+            Some(run) if run.end == i => run.end += 1,
+            _ => runs.push(i..i + 1),
+        }
+    }
+    runs
+}
+
+/// The rows of a set by their number in a window.
+struct Rows<'a> {
+    set: &'a CellSet,
+    /// Position in the set's list of rows, `u32::MAX` where the row is empty.
+    at: Vec<u32>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(set: &'a CellSet, first: usize, height: usize) -> Self {
+        let mut at = vec![u32::MAX; height];
+        for (k, row) in set.rows().iter().enumerate() {
+            at[row.y - first] = k as u32;
+        }
+        Self { set, at }
+    }
+
+    fn holds(&self, y: usize) -> bool {
+        self.at[y] != u32::MAX
+    }
+
+    /// Positions of the cells of row y in the list of the set.
+    fn span(&self, y: usize) -> Range<usize> {
+        self.set.rows().get(self.at[y] as usize).map_or(0..0, |row| row.span.clone())
+    }
+}
+
+/// Writes a tile of rows as columns: `columns[k * pitch + j] = lines[j * half + k]`.
+fn lay_down<T: Real>(lines: &[Complex<T>], half: usize, columns: &mut [Complex<T>], pitch: usize) {
+    let mut row = lines.chunks_exact(half);
+    let rows: [&[Complex<T>]; TILE] = std::array::from_fn(|_| row.next().unwrap_or_default());
+    for (k, column) in columns.chunks_mut(pitch).take(half).enumerate() {
+        for (value, row) in column[..TILE].iter_mut().zip(&rows) {
+            *value = row[k];
+        }
+    }
+}
+
+/// Reads a tile of rows back from columns: the inverse of [`lay_down`].
+fn take_up<T: Real>(columns: &[Complex<T>], pitch: usize, lines: &mut [Complex<T>], half: usize) {
+    for (k, column) in columns.chunks(pitch).take(half).enumerate() {
+        for (j, &value) in column[..TILE].iter().enumerate() {
+            lines[j * half + k] = value;
         }
     }
 }

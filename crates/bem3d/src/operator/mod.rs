@@ -92,6 +92,51 @@ impl Operators {
         self.last = Some(choice);
     }
 
+    /// `u = K p` in double precision over the whole grid: `fill` writes row y, `take` reads row y of the result.
+    pub fn exact_rows(
+        &mut self,
+        side: usize,
+        fill: impl FnMut(usize, &mut [f64]),
+        take: impl FnMut(usize, &[f64]),
+    ) {
+        self.applications += 1;
+        let operator = planned(&mut self.exact, whole(side), &self.table, |t, w| {
+            let lengths = Lengths::free(w);
+            Convolution::new(w, lengths, t.symbol_f64(lengths))
+        });
+        operator.rows(|_| true, fill, |_| true, take);
+    }
+
+    /// The same in single precision.
+    pub fn fast_rows(
+        &mut self,
+        side: usize,
+        fill: impl FnMut(usize, &mut [f32]),
+        take: impl FnMut(usize, &[f32]),
+    ) {
+        self.applications += 1;
+        self.last = Some(Choice::Fft);
+        let operator = planned(&mut self.fast, whole(side), &self.table, |t, w| {
+            let lengths = Lengths::free(w);
+            Convolution::new(w, lengths, t.symbol_f32(lengths))
+        });
+        operator.rows(|_| true, fill, |_| true, take);
+    }
+
+    /// [`Self::inverse`] over the whole grid.
+    pub fn inverse_rows(
+        &mut self,
+        side: usize,
+        fill: impl FnMut(usize, &mut [f32]),
+        take: impl FnMut(usize, &[f32]),
+    ) {
+        let operator = planned(&mut self.inverse, whole(side), &self.table, |t, w| {
+            let lengths = Lengths::torus(w);
+            Convolution::new(w, lengths, t.inverse_symbol(lengths))
+        });
+        operator.rows(|_| true, fill, |_| true, take);
+    }
+
     /// `out = B r` on the same set: the inverse of the kernel wrapped on a torus around the set (about |q| / 2 pi).
     ///
     /// Positive definite. A quarter of the cost of K or less.
@@ -121,6 +166,11 @@ impl Operators {
             _ => format!("direct {}", solved.contact.len()),
         }
     }
+}
+
+/// The window of a whole grid.
+fn whole(side: usize) -> Window {
+    Window { x: 0, y: 0, width: side, height: side }
 }
 
 /// The convolution of `slot` where its window holds the wanted one without waste, else a new one.
