@@ -1,7 +1,8 @@
 //! The command line.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use figures::{Preset, Request};
+use contact_model::Boundary;
+use figures::{Bench, Forces, Method, Preset, Request, Surfaces};
 use std::path::PathBuf;
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
@@ -28,6 +29,17 @@ interruption loses at most the surfaces in flight, and the same command resumes.
 for any number of threads; times and the machine are in manifest.json.
 
 Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge or stored numbers differ.";
+
+const BENCH: &str = "\
+Examples:
+  cargo xtask bench --surface heights.npy --sweep 1e-6:20:20 --tolerance 1e-8     one map, 20 loads
+  cargo xtask bench --cells 257,513,1025 --fractal-dimensions 2.4 --forces 0.1,1 --cold
+  cargo xtask bench --cells 257,513,1025,2049,4097 --forces 1e-2,1 --cold --plot scaling.svg
+
+`seconds` is wall-clock time of everything that a row took: transforms and tables, coarse grids, every look with the exact operator,
+pressure and stiffness. The first row of a series includes drawing or scaling the surface; with --cold every row does.
+
+Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge.";
 
 const EXPAND: &str = "Run with --help for every flag.";
 
@@ -60,6 +72,9 @@ pub enum Command {
     /// Every claim of the paper beside what is found here, disagreements first (verify.csv, verify.md).
     #[command(after_help = EXPAND)]
     Verify(Both),
+    /// What an answer costs: work, time, memory and certificate of each solve.
+    #[command(after_long_help = BENCH)]
+    Bench(BenchArguments),
     /// A small fixed run of Figs. 2 and 6 against the numbers in data/reference (for continuous integration).
     CheckReference(Reference),
 }
@@ -77,6 +92,7 @@ impl Command {
             Self::ReproduceFig7(_) => "reproduce-fig7",
             Self::ReproduceAll(_) => "reproduce-all",
             Self::Verify(_) => "verify",
+            Self::Bench(_) => "bench",
             Self::CheckReference(_) => "check-reference",
         }
     }
@@ -92,6 +108,7 @@ impl Command {
             Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
                 a.fill(&mut request);
             }
+            Self::Bench(_) => {}
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
         }
         request
@@ -288,6 +305,122 @@ impl Both {
         self.solid.fill(request);
         self.line.fill(request);
         self.solve.fill(request);
+    }
+}
+
+/// Edges of the square.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum BoundaryName {
+    /// Nothing presses outside the square.
+    Free,
+    /// The square repeats.
+    Periodic,
+}
+
+/// How linear systems are solved.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum MethodName {
+    /// The cheapest way for each set.
+    Auto,
+    /// No factors.
+    Iterative,
+    /// No factors, no two-level sums, no coarse grids.
+    SingleLevel,
+}
+
+/// Flags of the bench.
+#[derive(Debug, Args)]
+pub struct BenchArguments {
+    /// A square float64 NPY map, taken as it is (L = E* = 1, F_bar by its measured rms height).
+    #[arg(long, value_name = "FILE.npy", conflicts_with_all = ["cells", "fractal_dimensions", "seed"])]
+    surface: Option<PathBuf>,
+    /// Cells a side of generated surfaces, separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "257,513,1025")]
+    cells: Vec<usize>,
+    /// Fractal dimensions of generated surfaces, separated by commas.
+    #[arg(
+        long,
+        visible_alias = "df",
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "2.0,2.4,2.8"
+    )]
+    fractal_dimensions: Vec<f64>,
+    /// Seed of generated surfaces.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    #[arg(
+        long,
+        visible_alias = "sweep",
+        value_name = "LIST",
+        allow_hyphen_values = true,
+        default_value = "1e-4,1e-2,0.1,1,20"
+    )]
+    forces: String,
+    /// Edges of the square.
+    #[arg(long, value_enum, default_value = "free")]
+    boundary: BoundaryName,
+    /// Tolerances, separated by commas: bound of the certificate and of the error of k.
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        default_value = "1e-6"
+    )]
+    tolerance: Vec<f64>,
+    /// How linear systems are solved.
+    #[arg(long, value_enum, default_value = "auto")]
+    method: MethodName,
+    /// Prepare anew for every load.
+    #[arg(long)]
+    cold: bool,
+    /// Series (surface and tolerance) solved at the same time; one solve runs on one thread.
+    #[arg(long, default_value_t = 1)]
+    threads: usize,
+    /// Write the pressure of every row as NPY into this directory.
+    #[arg(long, value_name = "DIR")]
+    pressure: Option<PathBuf>,
+    /// Write the table; it is whole after every row.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Draw seconds and iterations over cells and over force from the table, with slopes (SVG or PNG by its name).
+    #[arg(long, value_name = "FILE", requires = "csv")]
+    pub plot: Option<PathBuf>,
+}
+
+impl BenchArguments {
+    /// What it asks for.
+    ///
+    /// # Errors
+    /// [`figures::Error::Parameter`] naming the value that makes no sense.
+    pub fn bench(&self) -> figures::Result<Bench> {
+        let surfaces = match &self.surface {
+            Some(path) => Surfaces::File(path.clone()),
+            None => Surfaces::SelfAffine {
+                cells: self.cells.clone(),
+                fractal_dimensions: self.fractal_dimensions.clone(),
+                seed: self.seed,
+            },
+        };
+        Ok(Bench {
+            surfaces,
+            forces: Forces::parse(&self.forces)?,
+            tolerances: self.tolerance.clone(),
+            boundary: match self.boundary {
+                BoundaryName::Free => Boundary::Free,
+                BoundaryName::Periodic => Boundary::Periodic,
+            },
+            method: match self.method {
+                MethodName::Auto => Method::Auto,
+                MethodName::Iterative => Method::Iterative,
+                MethodName::SingleLevel => Method::SingleLevel,
+            },
+            cold: self.cold,
+            threads: self.threads,
+            pressure: self.pressure.clone(),
+        })
     }
 }
 

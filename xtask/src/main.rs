@@ -1,4 +1,4 @@
-//! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `check-reference`.
+//! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `bench`, `check-reference`.
 //!
 //! Argument parsing, progress and exit codes; the figures are in the crate `figures`.
 //!
@@ -8,12 +8,13 @@
 mod arguments;
 mod progress;
 
-use arguments::{Arguments, Command};
+use arguments::{Arguments, BenchArguments, Command};
 use clap::Parser as _;
 use figures::{Outcome, Result, Run};
 use progress::Reporter;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Mutex;
 
 fn main() -> ExitCode {
     match execute(Arguments::parse().command) {
@@ -29,6 +30,9 @@ fn execute(command: Command) -> Result<ExitCode> {
     if let Command::CheckReference(options) = command {
         return check_reference(options.bless, &options.out);
     }
+    if let Command::Bench(options) = &command {
+        return bench(options);
+    }
     let name = command.name();
     let run = Run::new(&command.request())?;
     let reporter = Reporter::new();
@@ -42,7 +46,7 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
         Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
-        Command::CheckReference(_) => Vec::new(),
+        Command::Bench(_) | Command::CheckReference(_) => Vec::new(),
     };
     let typed: Vec<String> = std::env::args().skip(1).collect();
     let manifest =
@@ -80,6 +84,71 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
         "done in {seconds:.1} s, but {missing} solves did not converge: they are in the samples with their status and in no mean"
     );
     ExitCode::from(3)
+}
+
+/// Prints each row as it comes; the file is whole after every row, so that an interruption keeps what was solved.
+fn bench(options: &BenchArguments) -> Result<ExitCode> {
+    let rows = Mutex::new((Vec::new(), Ok(())));
+    println!("{}", PRINTED.map(|(name, width)| format!("{name:>width$}")).join(" "));
+    figures::bench(&options.bench()?, &contact_model::never, &|row| {
+        // A poisoned lock means that another thread panicked: that is reported elsewhere.
+        let Ok(mut kept) = rows.lock() else { return };
+        kept.0.push(row.clone());
+        let written = options.csv.as_ref().map_or(Ok(()), |path| figures::write_bench(path, &kept.0));
+        let line = row.fields().map(|fields| println!("{}", line(&fields)));
+        if kept.1.is_ok() {
+            kept.1 = written.and(line);
+        }
+    })?;
+    let (rows, written) = rows.into_inner().unwrap_or((Vec::new(), Ok(())));
+    written?;
+    if let Some(path) = &options.csv {
+        println!("{}", path.display());
+        if let Some(picture) = &options.plot {
+            for slope in figures::plot_bench(path, picture)? {
+                println!("{slope}");
+            }
+            println!("{}", picture.display());
+        }
+    }
+    let missing = rows.iter().filter(|row| !row.converged()).count();
+    if missing > 0 {
+        println!("{missing} of {} solves did not converge", rows.len());
+        return Ok(ExitCode::from(3));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Columns on the terminal and their widths.
+const PRINTED: [(&str, usize); 16] = [
+    ("cells", 6),
+    ("fractal_dimension", 17),
+    ("tolerance", 9),
+    ("force_bar", 10),
+    ("approach_over_h", 16),
+    ("stiffness_bar", 14),
+    ("contact_cells", 13),
+    ("frank_wolfe", 11),
+    ("stiffness_error", 15),
+    ("iterations", 10),
+    ("applications", 12),
+    ("seconds", 9),
+    ("cpu_seconds", 11),
+    ("peak_memory_bytes", 17),
+    ("status", 10),
+    ("strategy", 8),
+];
+
+fn line(fields: &[String; figures::BENCH_COLUMNS.len()]) -> String {
+    let field =
+        |name: &str| figures::BENCH_COLUMNS.iter().position(|c| *c == name).map_or("", |i| &fields[i]);
+    let short = |name: &str| match (name, field(name).parse::<f64>()) {
+        ("approach_over_h" | "stiffness_bar", Ok(v)) => format!("{v:.10}"),
+        ("frank_wolfe" | "stiffness_error" | "force_bar", Ok(v)) => format!("{v:.2e}"),
+        ("seconds" | "cpu_seconds", Ok(v)) => format!("{v:.4}"),
+        _ => field(name).to_owned(),
+    };
+    PRINTED.map(|(name, width)| format!("{:>width$}", short(name))).join(" ")
 }
 
 fn check_reference(bless: bool, out: &Path) -> Result<ExitCode> {

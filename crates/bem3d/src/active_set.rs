@@ -50,6 +50,8 @@ pub struct Problem {
     pub arrays: Arrays,
     /// The same relief on cells twice as large, once a cold start has asked for it.
     pub coarser: Option<Box<Problem>>,
+    /// Whether coarse grids may say where to begin.
+    pub levels: bool,
 }
 
 impl Problem {
@@ -62,6 +64,7 @@ impl Problem {
             side,
             arrays: Arrays::default(),
             coarser: None,
+            levels: true,
         }
     }
 }

@@ -57,6 +57,8 @@ pub enum Method {
     Auto,
     /// Iterate always.
     Iterative,
+    /// One grid and one operator, to compare with: no factors, no two-level sums, no coarse grids to begin on.
+    SingleLevel,
 }
 
 impl Default for Bem3d {
@@ -144,7 +146,9 @@ impl Prepared {
             *z /= height;
         }
         let units = Units::new(scene.modulus, map.cell(), height)?;
-        let problem = Problem::new(map.cells(), Arc::new(z));
+        let mut problem = Problem::new(map.cells(), Arc::new(z));
+        problem.levels = options.method != Method::SingleLevel;
+        problem.operators.two_levels = problem.levels;
         let scales = Scales { modulus: scene.modulus, side: map.side(), height: has_rms.then_some(rms) };
         Ok(Self { options, outputs: scene.outputs, problem, units, height, scales, last: None })
     }
@@ -155,6 +159,9 @@ impl Prepared {
             && let Some(guess) = predict(last, target)
         {
             let problem = &mut self.problem;
+            if !problem.levels {
+                return guess;
+            }
             let promised = || active_set::promised(problem, &guess);
             if !strategy::start_anew(&last.contact, last.ratio(target), promised) {
                 return guess;

@@ -30,7 +30,7 @@ pub fn cold(problem: &mut Problem, target: Target, limits: Limits, stop: Stop<'_
         let superset = problem.candidates.below(reach);
         active_set::with(&superset, &CellSet::new(problem.side, vec![highest]))
     };
-    if problem.side <= COARSEST {
+    if problem.side <= COARSEST || !problem.levels {
         return uniform(from_above(problem), target, reach);
     }
     if limits.dense && !problem.candidates.more_than(strategy::LARGEST_FACTOR, reach) {

@@ -37,6 +37,8 @@
 
 mod all;
 mod arrays;
+mod bench;
+mod bench_plot;
 mod claim;
 mod claims;
 mod csv_file;
@@ -54,6 +56,7 @@ mod forces;
 mod laws;
 mod manifest;
 mod measured;
+mod npy;
 mod outcome;
 mod plot;
 mod progress;
@@ -69,6 +72,9 @@ mod verify;
 
 pub use all::reproduce_all;
 pub use arrays::write_npy;
+pub use bem3d::Method;
+pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, write_bench};
+pub use bench_plot::plot_bench;
 pub use claim::{Claim, Verdict, markdown, plain, readme_table, sort};
 pub use csv_file::{CsvFile, Header, PAPER, write_csv};
 pub use error::{Error, Result};
@@ -84,6 +90,7 @@ pub use forces::Forces;
 pub use laws::{Law, laws};
 pub use manifest::write_manifest;
 pub use measured::{Measured, Series, measure_1d, measure_3d};
+pub use npy::read_map;
 pub use outcome::Outcome;
 pub use progress::{Progress, Silent};
 pub use reference::{RELATIVE, check_reference};

@@ -28,6 +28,8 @@ pub struct Operators {
     inverse: Option<Convolution<f32>>,
     /// Applications of K so far, all precisions together.
     pub applications: usize,
+    /// Whether the two-level operator may be chosen.
+    pub two_levels: bool,
     /// What the last fast application was done with.
     last: Option<Choice>,
 }
@@ -35,7 +37,16 @@ pub struct Operators {
 impl Operators {
     /// Nothing is built yet.
     pub fn new(table: Arc<Table>) -> Self {
-        Self { table, exact: None, fast: None, two_level: None, inverse: None, applications: 0, last: None }
+        Self {
+            table,
+            exact: None,
+            fast: None,
+            two_level: None,
+            inverse: None,
+            applications: 0,
+            two_levels: true,
+            last: None,
+        }
     }
 
     /// The kernel table.
@@ -71,7 +82,11 @@ impl Operators {
         }
         self.applications += 1;
         let window = union(sources, targets);
-        let choice = fast_choice(sources, targets, window);
+        let choice = if self.two_levels {
+            fast_choice(sources, targets, window)
+        } else {
+            exact_choice(sources.len(), targets.len(), Lengths::free(window))
+        };
         match choice {
             Choice::Direct => direct::apply(&self.table, sources, p, targets, u),
             Choice::TwoLevel(split) => {

@@ -1,0 +1,380 @@
+//! What an answer costs: one row per surface, tolerance and load, with the work, the time, the memory and the certificate.
+
+use crate::arrays::write_npy;
+use crate::error::{Error, Result};
+use crate::files;
+use crate::forces::Forces;
+use crate::npy::read_map;
+use crate::sample::number;
+use bem3d::{Bem3d, Method};
+use contact_model::{
+    Boundary, ContactModel, ContactState, Load, PreparedContact, Scales, Scene, SelfAffine, Stop, Surface,
+};
+use rayon::prelude::*;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What is measured.
+#[derive(Debug, Clone)]
+pub struct Bench {
+    /// Which reliefs.
+    pub surfaces: Surfaces,
+    /// Loads F_bar, increasing: the order of the rows.
+    pub forces: Forces,
+    /// Tolerances, each a series of its own.
+    pub tolerances: Vec<f64>,
+    /// Edges of the square.
+    pub boundary: Boundary,
+    /// How the linear systems are solved.
+    pub method: Method,
+    /// Each load from nothing, set-up included; else one prepared contact under increasing loads.
+    pub cold: bool,
+    /// Series solved at the same time, at least 1. One solve runs on one thread.
+    pub threads: usize,
+    /// Directory for the pressure of each row (NPY, row-major, in units of E*).
+    pub pressure: Option<PathBuf>,
+}
+
+/// Reliefs of a bench.
+#[derive(Debug, Clone)]
+pub enum Surfaces {
+    /// A map as it is, on a square of side 1.
+    File(PathBuf),
+    /// Self-affine surfaces without roll-off, every size with every fractal dimension.
+    SelfAffine {
+        /// Cells a side.
+        cells: Vec<usize>,
+        /// D_f.
+        fractal_dimensions: Vec<f64>,
+        /// Seed of the surface itself.
+        seed: u64,
+    },
+}
+
+/// One solve.
+#[derive(Debug, Clone)]
+pub struct BenchRow {
+    /// File name, or `self-affine`.
+    pub surface: String,
+    /// D_f and seed of a generated surface.
+    pub drawn: Option<(f64, u64)>,
+    /// Cells a side.
+    pub cells: usize,
+    /// F/(E* h L) with the measured rms height.
+    pub force_bar: f64,
+    /// Asked for.
+    pub tolerance: f64,
+    /// The state, converged or the best that was reached.
+    pub state: ContactState,
+    /// Scales of this surface.
+    pub scales: Scales,
+    /// Wall-clock seconds: the first row of a prepared contact includes preparing it.
+    pub seconds: f64,
+    /// Seconds of the processor on this thread, where the platform tells.
+    pub cpu_seconds: Option<f64>,
+    /// Largest resident memory of the process so far, in bytes, where the platform tells.
+    pub peak_memory: Option<u64>,
+    /// Whether it was solved from nothing.
+    pub cold: bool,
+}
+
+/// Columns of the table, in order.
+pub const BENCH_COLUMNS: [&str; 24] = [
+    "cells",
+    "force_bar",
+    "approach_over_h",
+    "stiffness_bar",
+    "contact_cells",
+    "penetration",
+    "frank_wolfe",
+    "iterations",
+    "applications",
+    "seconds",
+    "strategy",
+    "status",
+    "tolerance",
+    "complementarity",
+    "load_error",
+    "stiffness_error",
+    "stiffness",
+    "cpu_seconds",
+    "peak_memory_bytes",
+    "start",
+    "surface",
+    "fractal_dimension",
+    "seed",
+    "version",
+];
+
+impl BenchRow {
+    /// The row as text, in the order of [`BENCH_COLUMNS`]; absent is empty.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when a value does not fit in a double.
+    pub fn fields(&self) -> Result<[String; BENCH_COLUMNS.len()]> {
+        let report = &self.state.report;
+        let certificate = &report.certificate;
+        let text = |v: Option<f64>| v.map(number).unwrap_or_default();
+        let approach = match self.state.approach {
+            Some(d) if self.scales.height.is_some_and(|h| h > 0.0) => {
+                Some(self.scales.approach_over_h(d).map_err(Error::model("approach"))?)
+            }
+            _ => None,
+        };
+        Ok([
+            self.cells.to_string(),
+            number(self.force_bar),
+            text(approach),
+            text(self.state.stiffness.map(|k| self.scales.stiffness_bar(k))),
+            report.contact_cells.map(|n| n.to_string()).unwrap_or_default(),
+            number(certificate.penetration),
+            number(certificate.frank_wolfe),
+            report.iterations.to_string(),
+            report.applications.to_string(),
+            number(self.seconds),
+            report.strategy.clone(),
+            report.status.as_str().to_owned(),
+            number(self.tolerance),
+            number(certificate.complementarity),
+            number(certificate.load_error),
+            text(certificate.stiffness_error),
+            text(self.state.stiffness),
+            text(self.cpu_seconds),
+            self.peak_memory.map(|b| b.to_string()).unwrap_or_default(),
+            if self.cold { "cold" } else { "warm" }.to_owned(),
+            self.surface.clone(),
+            text(self.drawn.map(|(d, _)| d)),
+            self.drawn.map(|(_, seed)| seed.to_string()).unwrap_or_default(),
+            env!("CARGO_PKG_VERSION").to_owned(),
+        ])
+    }
+
+    /// Whether it met its tolerance.
+    pub fn converged(&self) -> bool {
+        self.state.report.status == contact_model::Status::Converged
+    }
+}
+
+/// One relief at one tolerance.
+struct Series {
+    surface: String,
+    drawn: Option<(f64, u64)>,
+    scene: Scene,
+    seed: u64,
+    model: Bem3d,
+}
+
+/// Solves everything, loads from the smallest up, series after series, and hands out each row as soon as it is there. With
+/// several threads `stop` is not asked.
+///
+/// # Errors
+/// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model refuses.
+pub fn bench(bench: &Bench, stop: Stop<'_>, found: &(dyn Fn(&BenchRow) + Sync)) -> Result<Vec<BenchRow>> {
+    let series = series(bench)?;
+    if let Some(directory) = &bench.pressure {
+        files::create_directory(directory)?;
+    }
+    if bench.threads <= 1 {
+        let rows: Result<Vec<_>> = series.iter().map(|s| s.run(bench, stop, found)).collect();
+        return Ok(rows?.into_iter().flatten().collect());
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(bench.threads).build().map_err(|e| {
+        Error::parameter("threads", bench.threads, format!("a number of threads that start ({e})"))
+    })?;
+    let rows: Result<Vec<_>> =
+        pool.install(|| series.par_iter().map(|s| s.run(bench, &contact_model::never, found)).collect());
+    Ok(rows?.into_iter().flatten().collect())
+}
+
+fn series(bench: &Bench) -> Result<Vec<Series>> {
+    let mut reliefs = Vec::new();
+    match &bench.surfaces {
+        Surfaces::File(path) => {
+            let map = read_map(path)?;
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            reliefs.push((name, None, map.cells(), 0, Surface::Heights(Arc::new(map))));
+        }
+        Surfaces::SelfAffine { cells, fractal_dimensions, seed } => {
+            for &d in fractal_dimensions {
+                for &n in cells {
+                    let surface =
+                        SelfAffine::new(d, 1.0, 1.0).map_err(Error::model(format!("D_f = {d:?}")))?;
+                    let surface = Surface::SelfAffine(surface);
+                    reliefs.push(("self-affine".to_owned(), Some((d, *seed)), n, *seed, surface));
+                }
+            }
+        }
+    }
+    let mut all = Vec::new();
+    for (surface, drawn, cells, seed, relief) in reliefs {
+        for &tolerance in &bench.tolerances {
+            let mut scene = Scene::new(relief.clone(), 1.0);
+            scene.effects.boundary = bench.boundary;
+            scene.outputs.pressure = bench.pressure.is_some();
+            let model = Bem3d { cells, tolerance, method: bench.method, ..Bem3d::default() };
+            all.push(Series { surface: surface.clone(), drawn, scene, seed, model });
+        }
+    }
+    Ok(all)
+}
+
+impl Series {
+    fn prepare(&self) -> Result<Box<dyn PreparedContact>> {
+        self.model.prepare(&self.scene, self.seed).map_err(Error::model(format!("bem3d on {}", self.surface)))
+    }
+
+    fn run(
+        &self,
+        bench: &Bench,
+        stop: Stop<'_>,
+        found: &(dyn Fn(&BenchRow) + Sync),
+    ) -> Result<Vec<BenchRow>> {
+        let mut rows = Vec::with_capacity(bench.forces.values().len());
+        let mut contact: Option<Box<dyn PreparedContact>> = None;
+        for &force_bar in bench.forces.values() {
+            let (start, cpu) = (Instant::now(), cpu_seconds());
+            let fresh = contact.is_none() || bench.cold;
+            if fresh {
+                contact = None; // Its memory first.
+            }
+            let prepared = match &mut contact {
+                Some(prepared) => prepared,
+                none => none.insert(self.prepare()?),
+            };
+            let scales = prepared.scales();
+            let what = || format!("bem3d on {} at F_bar = {force_bar:?}", self.surface);
+            let load = Load::Force(scales.force(force_bar).map_err(Error::model(what()))?);
+            let state = match prepared.solve_until(load, stop) {
+                Err(contact_model::Error::NotConverged { best }) => *best,
+                other => other.map_err(Error::model(what()))?,
+            };
+            let seconds = start.elapsed().as_secs_f64();
+            let mut row = BenchRow {
+                surface: self.surface.clone(),
+                drawn: self.drawn,
+                cells: self.cells(),
+                force_bar,
+                tolerance: self.model.tolerance,
+                state,
+                scales,
+                seconds,
+                cpu_seconds: cpu.zip(cpu_seconds()).map(|(a, b)| b - a),
+                peak_memory: peak_memory(),
+                cold: fresh,
+            };
+            if let Some(directory) = &bench.pressure {
+                self.save_pressure(directory, &mut row)?;
+            }
+            found(&row);
+            rows.push(row);
+        }
+        Ok(rows)
+    }
+
+    fn cells(&self) -> usize {
+        match &self.scene.surface {
+            Surface::Heights(map) => map.cells(),
+            _ => self.model.cells,
+        }
+    }
+
+    /// Writes the field and forgets it: a bench of many loads would keep them all.
+    fn save_pressure(&self, directory: &Path, row: &mut BenchRow) -> Result<()> {
+        let Some(pressure) = row.state.fields.take().and_then(|f| f.pressure) else { return Ok(()) };
+        let stem = Path::new(&self.surface)
+            .file_stem()
+            .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let drawn =
+            row.drawn.map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells)).unwrap_or_default();
+        let name = format!("pressure_{stem}{drawn}_F{:?}_tol{:?}.npy", row.force_bar, row.tolerance);
+        let n = row.cells as u64;
+        write_npy(&directory.join(name), &[n, n], &pressure)
+    }
+}
+
+/// The table as CSV, column names first.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be written (the file appears whole or not at all).
+pub fn write_bench(path: &Path, rows: &[BenchRow]) -> Result<()> {
+    let mut bytes = Vec::new();
+    let mut writer = csv::Writer::from_writer(&mut bytes);
+    let failed = |e: csv::Error| Error::content(path, e.to_string());
+    writer.write_record(BENCH_COLUMNS).map_err(failed)?;
+    for row in rows {
+        writer.write_record(row.fields()?).map_err(failed)?;
+    }
+    writer.flush().map_err(Error::file("write", path))?;
+    drop(writer);
+    files::write_whole(path, &bytes)
+}
+
+/// Processor seconds of this thread (Linux).
+fn cpu_seconds() -> Option<f64> {
+    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split_whitespace().next()?.parse::<u64>().ok().map(|ns| ns as f64 * 1e-9)
+}
+
+/// Largest resident memory of the process (Linux).
+fn peak_memory() -> Option<u64> {
+    let text = fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kb| 1024 * kb)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::never;
+
+    fn small() -> Bench {
+        Bench {
+            surfaces: Surfaces::SelfAffine { cells: vec![17], fractal_dimensions: vec![2.4], seed: 3 },
+            forces: Forces::parse("1,0.01").unwrap(),
+            tolerances: vec![1e-6],
+            boundary: Boundary::Free,
+            method: Method::Auto,
+            cold: false,
+            threads: 1,
+            pressure: None,
+        }
+    }
+
+    #[test]
+    fn rows_are_written_whole() {
+        let dir = tempfile::tempdir().unwrap();
+        let pressure = dir.path().join("fields");
+        let rows = bench(&Bench { pressure: Some(pressure.clone()), ..small() }, &never, &|_| {}).unwrap();
+        assert_eq!(rows.iter().map(|r| r.force_bar).collect::<Vec<_>>(), [0.01, 1.0]);
+        assert!(rows.iter().all(BenchRow::converged));
+        let path = dir.path().join("bench.csv");
+        write_bench(&path, &rows).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with("cells,force_bar,approach_over_h,stiffness_bar,contact_cells,penetration,frank_wolfe,iterations,applications,seconds,strategy,status,"));
+        assert_eq!(text.lines().count(), 3);
+        assert_eq!(fs::read_dir(pressure).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn cold_and_warm_rows_agree() {
+        let warm = bench(&small(), &never, &|_| {}).unwrap();
+        let cold = bench(&Bench { cold: true, threads: 2, ..small() }, &never, &|_| {}).unwrap();
+        for (a, b) in warm.iter().zip(&cold) {
+            approx::assert_relative_eq!(
+                a.state.stiffness.unwrap(),
+                b.state.stiffness.unwrap(),
+                max_relative = 1e-5
+            );
+        }
+        assert!(cold.iter().all(|r| r.cold) && warm[0].cold && !warm[1].cold);
+    }
+
+    #[test]
+    fn what_the_model_lacks_is_an_error() {
+        let periodic = Bench { boundary: Boundary::Periodic, ..small() };
+        let error = bench(&periodic, &never, &|_| {}).unwrap_err().to_string();
+        assert!(error.contains("Periodic"), "{error}");
+    }
+}
