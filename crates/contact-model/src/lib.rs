@@ -14,6 +14,8 @@
 //! * Pressure is compressive and non-negative; stiffness is `k = dF/dd`.
 //! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
 //!   Names that end in `_bar` are normalised ([`Scales`] is the only place that does it).
+//! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative derivative of the force in it.
+//! * What depends on the path of the loads (friction, rheology) is a [`History`], taken [`Step`] by step.
 //! * `None` means "this model does not claim it" or "not asked for". It is never NaN and never a silent 0.
 //!
 //! ```
@@ -27,8 +29,11 @@
 
 mod error;
 mod grid;
+mod history;
 mod load;
 mod model;
+mod pair;
+mod rheology;
 mod scales;
 mod scene;
 mod state;
@@ -36,12 +41,14 @@ mod units;
 
 pub use error::{Error, Result};
 pub use grid::{HeightMap, Line};
+pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use load::Load;
 pub use model::{ContactModel, PreparedContact, Source, Stop, never};
+pub use pair::{Body, Pair};
+pub use rheology::{PronySeries, Relaxing, Rheology};
 pub use scales::{PAPER_STIFFNESS_FACTOR, Scales};
 pub use scene::{
-    Adhesion, Amplitude, Boundary, Effects, Friction, Outputs, Rheology, Scene, SelfAffine, Surface,
-    line_length,
+    Adhesion, Amplitude, Boundary, Effects, Friction, Outputs, Scene, SelfAffine, Surface, line_length,
 };
 pub use state::{Certificate, ContactState, Fields, SolveReport, Status};
 pub use units::Units;

@@ -1,27 +1,49 @@
 //! What is prescribed in one solve.
 
-use crate::error::{Result, non_negative};
+use crate::error::{Error, Result, non_negative};
 
-/// What is prescribed in one solve: the normal force or the approach, never both.
+/// What is prescribed in one solve: the normal force, the approach or the mean gap, never two of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Load {
-    /// Normal force F >= 0.
+    /// Normal force F >= 0; with adhesion it may be negative (a pull).
     Force(f64),
-    /// Approach d >= 0, from first touch of the highest point.
+    /// Approach d >= 0, from first touch of the highest point; with adhesion it may be negative (a neck).
     Approach(f64),
+    /// Mean gap >= 0 over the square, for periodic boundaries: there no approach is defined.
+    MeanGap(f64),
 }
 
 impl Load {
     /// The load itself where it is finite and not negative.
     ///
     /// # Errors
-    /// [`crate::Error::Domain`] with the value otherwise.
+    /// [`Error::Domain`] with the value otherwise.
     pub fn validated(self) -> Result<Self> {
         match self {
             Self::Force(f) => non_negative("force", f)?,
             Self::Approach(d) => non_negative("approach", d)?,
+            Self::MeanGap(g) => non_negative("mean_gap", g)?,
         };
         Ok(self)
+    }
+
+    /// The load itself where it is finite, of either sign: for models with adhesion, which can pull.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the value otherwise, or for a negative mean gap.
+    ///
+    /// ```
+    /// use contact_model::Load;
+    /// assert!(Load::Force(-1.0).validated_with_adhesion().is_ok());
+    /// assert!(Load::Force(f64::NAN).validated_with_adhesion().is_err());
+    /// ```
+    pub fn validated_with_adhesion(self) -> Result<Self> {
+        let (name, value) = match self {
+            Self::Force(f) => ("force", f),
+            Self::Approach(d) => ("approach", d),
+            Self::MeanGap(_) => return self.validated(),
+        };
+        if value.is_finite() { Ok(self) } else { Err(Error::domain(name, value, "a finite number")) }
     }
 }

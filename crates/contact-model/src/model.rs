@@ -1,6 +1,6 @@
 //! The two traits: plan once, solve often.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::scales::Scales;
 use crate::scene::Scene;
@@ -61,5 +61,16 @@ pub trait PreparedContact: Send {
     /// As [`PreparedContact::solve_until`].
     fn solve(&mut self, load: Load) -> Result<ContactState> {
         self.solve_until(load, &never)
+    }
+
+    /// Mean gap over the square in the state at a load, a length; for periodic boundaries, where a state has no approach.
+    ///
+    /// Computed only when asked for. The contact of a flat with heights h has the mean gap `mean(u + z) - d` of its gap field.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] unless the contact is periodic and its model claims a mean gap; otherwise as [`PreparedContact::solve_until`].
+    fn mean_gap(&mut self, load: Load) -> Result<f64> {
+        let _ = load;
+        Err(Error::unsupported("of this contact", "a mean gap"))
     }
 }

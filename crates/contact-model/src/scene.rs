@@ -1,8 +1,13 @@
 //! Physics: what is pressed, which effects count, what is asked.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, non_negative, positive};
 use crate::grid::{HeightMap, Line};
+use crate::pair::Pair;
+use crate::rheology::Rheology;
 use std::sync::Arc;
+
+/// How far the modulus may be from E* of the pair: it may have been rounded on its way through a file.
+const SAME_MODULUS: f64 = 1e-9;
 
 /// Everything physical about one question. Numerics are a model's own options, chance is the seed.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +16,8 @@ pub struct Scene {
     pub surface: Surface,
     /// Effective modulus E* of the pair, `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
     pub modulus: f64,
+    /// Both bodies, where E* does not say enough (friction); their E* is `modulus`.
+    pub pair: Option<Pair>,
     /// Effects beyond linear elastic normal contact with free boundaries; all off by default.
     pub effects: Effects,
     /// What is computed besides force and approach; nothing by default.
@@ -21,15 +28,37 @@ impl Scene {
     /// A scene with no effects that asks for the stiffness.
     pub fn new(surface: Surface, modulus: f64) -> Self {
         let outputs = Outputs { stiffness: true, ..Outputs::default() };
-        Self { surface, modulus, effects: Effects::default(), outputs }
+        Self { surface, modulus, pair: None, effects: Effects::default(), outputs }
     }
 
-    /// Checks the numbers that every model relies on: modulus and the surface's own parameters.
+    /// A scene with both bodies named: its modulus is their E*.
     ///
     /// # Errors
-    /// [`Error::Domain`] with the first value that makes no sense.
+    /// As [`Pair::modulus`].
+    ///
+    /// ```
+    /// use contact_model::{Body, Pair, Scene, Surface};
+    /// let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.5 } };
+    /// assert_eq!(Scene::of_pair(Surface::Sphere { radius: 1.0, side: 1.0 }, pair)?.modulus, 4.0);
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn of_pair(surface: Surface, pair: Pair) -> Result<Self> {
+        Ok(Self { pair: Some(pair), ..Self::new(surface, pair.modulus()?) })
+    }
+
+    /// Checks the numbers that every model relies on: modulus, bodies, effects and the surface's own parameters.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the first value that makes no sense, or a modulus that is not E* of the pair.
     pub fn validate(&self) -> Result<()> {
         positive("modulus", self.modulus)?;
+        if let Some(pair) = &self.pair {
+            let expected = pair.modulus()?;
+            if (self.modulus / expected - 1.0).abs() > SAME_MODULUS {
+                return Err(Error::domain("modulus", self.modulus, format!("{expected}, E* of the pair")));
+            }
+        }
+        self.effects.validate()?;
         self.surface.validate()
     }
 
@@ -38,20 +67,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Unsupported`] naming the model and the effect.
     pub fn refuse_effects(&self, model: &'static str) -> Result<()> {
-        let Effects { boundary, adhesion, friction, rheology } = self.effects;
-        if boundary != Boundary::Free {
-            return Err(Error::unsupported(model, format!("the boundary {boundary:?}")));
-        }
-        if adhesion != Adhesion::Off {
-            return Err(Error::unsupported(model, format!("adhesion ({adhesion:?})")));
-        }
-        if friction != Friction::Off {
-            return Err(Error::unsupported(model, format!("friction ({friction:?})")));
-        }
-        if rheology != Rheology::Elastic {
-            return Err(Error::unsupported(model, format!("the rheology {rheology:?}")));
-        }
-        Ok(())
+        self.effects.refuse(model)
     }
 }
 
@@ -270,6 +286,50 @@ pub struct Effects {
     pub rheology: Rheology,
 }
 
+impl Effects {
+    /// Checks the parameters of the effects that are on.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the first value that makes no sense.
+    pub fn validate(&self) -> Result<()> {
+        if let Adhesion::ShortRange { work } = self.adhesion {
+            non_negative("work of adhesion", work)?;
+        }
+        if let Friction::Coulomb { coefficient } = self.friction {
+            non_negative("coefficient of friction", coefficient)?;
+        }
+        self.rheology.validate()
+    }
+
+    /// Errors unless every effect is off. A model that has one asks this of the others.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] naming the model and the effect.
+    ///
+    /// ```
+    /// use contact_model::{Adhesion, Effects};
+    /// let effects = Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() };
+    /// assert!(effects.refuse("hertz").is_err());
+    /// assert!(Effects { adhesion: Adhesion::Off, ..effects }.refuse("jkr").is_ok());
+    /// ```
+    pub fn refuse(self, model: &'static str) -> Result<()> {
+        let Self { boundary, adhesion, friction, rheology } = self;
+        if boundary != Boundary::Free {
+            return Err(Error::unsupported(model, format!("the boundary {boundary:?}")));
+        }
+        if adhesion != Adhesion::Off {
+            return Err(Error::unsupported(model, format!("adhesion ({adhesion:?})")));
+        }
+        if friction != Friction::Off {
+            return Err(Error::unsupported(model, format!("friction ({friction:?})")));
+        }
+        if rheology != Rheology::Elastic {
+            return Err(Error::unsupported(model, format!("the rheology {rheology:?}")));
+        }
+        Ok(())
+    }
+}
+
 /// What lies outside the square.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -309,20 +369,6 @@ pub enum Friction {
     },
 }
 
-/// Time dependence of the material.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub enum Rheology {
-    /// None.
-    #[default]
-    Elastic,
-    /// Kelvin-Voigt element with this viscosity, of a material with nu = 1/2.
-    KelvinVoigt {
-        /// Viscosity eta.
-        viscosity: f64,
-    },
-}
-
 /// What is computed besides force and approach. What is not asked for is not computed and not stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[allow(clippy::struct_excessive_bools)] // A set of names, each either asked for or not.
@@ -349,6 +395,7 @@ impl Outputs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pair::Body;
 
     #[test]
     fn fractal_dimension_is_checked() {
@@ -368,5 +415,25 @@ mod tests {
         assert!(text.contains("adhesion"), "{text}");
         scene.modulus = f64::NAN;
         assert!(scene.validate().is_err());
+    }
+
+    #[test]
+    fn effects_and_bodies_are_checked() {
+        let mut scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        for effects in [
+            Effects { adhesion: Adhesion::ShortRange { work: -0.1 }, ..Effects::default() },
+            Effects { friction: Friction::Coulomb { coefficient: f64::INFINITY }, ..Effects::default() },
+            Effects { rheology: Rheology::KelvinVoigt { viscosity: 0.0 }, ..Effects::default() },
+        ] {
+            scene.effects = effects;
+            assert!(matches!(scene.validate(), Err(Error::Domain { .. })));
+        }
+        let second = Body::Elastic { young: 2.0, poisson: 0.0 };
+        let mut scene =
+            Scene::of_pair(Surface::FlatSquare { side: 1.0 }, Pair { first: Body::Rigid, second }).unwrap();
+        assert!(scene.validate().is_ok());
+        scene.modulus = 2.1;
+        let text = scene.validate().unwrap_err().to_string();
+        assert_eq!(text, "modulus = 2.1: expected 2, E* of the pair");
     }
 }

@@ -5,11 +5,11 @@ use std::fmt;
 /// One contact state. `None`: the model does not claim it, or it was not asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactState {
-    /// Normal force F.
+    /// Normal force F; negative where adhesion holds against a pull.
     pub force: f64,
-    /// Approach d from first touch.
+    /// Approach d from first touch; `None` with periodic boundaries ([`crate::PreparedContact::mean_gap`]).
     pub approach: Option<f64>,
-    /// Incremental stiffness k = dF/dd on the contact set of this state.
+    /// Incremental stiffness k = dF/dd on the contact set of this state. With periodic boundaries -dF/d(mean gap).
     pub stiffness: Option<f64>,
     /// Real contact area.
     pub area: Option<f64>,

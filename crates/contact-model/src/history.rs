@@ -1,0 +1,148 @@
+//! Contacts that remember: friction and rheology under a path of loads.
+//!
+//! A [`crate::ContactModel`] answers one load, whatever came before. With friction or a viscous material the answer depends on the path: a
+//! [`HistoryModel`] plans a [`History`], which takes the path [`Step`] by step and keeps what has to be remembered.
+
+use crate::error::{Error, Result};
+use crate::load::Load;
+use crate::model::Source;
+use crate::scales::Scales;
+use crate::scene::Scene;
+use crate::state::ContactState;
+
+/// The tangential load, in one fixed direction. Signed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Tangential {
+    /// Tangential force.
+    Force(f64),
+    /// Tangential displacement of the bodies relative to each other, far from the contact.
+    Displacement(f64),
+}
+
+impl Default for Tangential {
+    /// No tangential force.
+    fn default() -> Self {
+        Self::Force(0.0)
+    }
+}
+
+/// The end of a straight piece of a path; it begins where the last one ended. Before the first step: time 0, no contact, no load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// Time at the end of the piece; it never decreases. Equal times are a jump. Friction alone does not look at it.
+    pub time: f64,
+    /// Normal load at the end.
+    pub normal: Load,
+    /// Tangential load at the end.
+    pub tangential: Tangential,
+}
+
+impl Step {
+    /// A step of the normal load alone.
+    pub fn normal(time: f64, normal: Load) -> Self {
+        Self { time, normal, tangential: Tangential::default() }
+    }
+
+    /// The step itself where its numbers make sense after a step that ended at `last`.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a time before `last`, a normal load as [`Load::validated`], or a tangential load that is not finite.
+    pub fn validated(self, last: f64) -> Result<Self> {
+        if !(self.time.is_finite() && self.time >= last) {
+            return Err(Error::domain(
+                "time",
+                self.time,
+                format!("a finite number >= {last}, the last time"),
+            ));
+        }
+        self.normal.validated()?;
+        let (name, value) = match self.tangential {
+            Tangential::Force(force) => ("tangential force", force),
+            Tangential::Displacement(displacement) => ("tangential displacement", displacement),
+        };
+        if value.is_finite() { Ok(self) } else { Err(Error::domain(name, value, "a finite number")) }
+    }
+}
+
+/// The state at the end of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HistoryState {
+    /// Its time.
+    pub time: f64,
+    /// Its normal part, with the evidence.
+    pub normal: ContactState,
+    /// Contact radius, of round contacts.
+    pub contact_radius: Option<f64>,
+    /// Its tangential part, of models with friction.
+    pub tangential: Option<TangentialState>,
+}
+
+/// The tangential part of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TangentialState {
+    /// Tangential force.
+    pub force: f64,
+    /// Tangential displacement.
+    pub displacement: f64,
+    /// Radius of the region that stuck to the end of the step, of round contacts: the contact radius without any slip, 0 in full slip.
+    pub stick_radius: Option<f64>,
+    /// Energy that friction has dissipated since the first step, >= 0.
+    pub dissipated: f64,
+}
+
+/// A way to answer what happens along a path: plan once. Which effect it is about is in the scene.
+pub trait HistoryModel: Send + Sync {
+    /// Short name, the same in code, CSV and README.
+    fn name(&self) -> &'static str;
+
+    /// What it is built on.
+    fn sources(&self) -> &'static [Source];
+
+    /// Checks the scene against what this model can do, and plans, as [`crate::ContactModel::prepare`].
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a surface, effect or output that the model lacks, [`Error::Domain`] or [`Error::Shape`] for
+    /// numbers that make no sense.
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>>;
+}
+
+/// A planned contact that remembers its path.
+pub trait History: Send {
+    /// The scales of this very surface.
+    fn scales(&self) -> Scales;
+
+    /// Goes to the end of the next step. **A step that fails leaves the history as it was before.**
+    ///
+    /// # Errors
+    /// [`Error::Domain`] as [`Step::validated`], [`Error::OutOfRange`] for loads beyond what the model holds for (gross slip, a time from which the
+    /// contact would shrink), [`Error::Unsupported`] for loads that it does not know.
+    fn advance(&mut self, step: Step) -> Result<HistoryState>;
+
+    /// Forgets the path: back to no contact at time 0.
+    fn restart(&mut self);
+
+    /// Goes along a whole path from where it is, one state per step.
+    ///
+    /// # Errors
+    /// As [`History::advance`], at the first step that fails; the history then stands at the end of the step before it.
+    fn follow(&mut self, path: &[Step]) -> Result<Vec<HistoryState>> {
+        path.iter().map(|step| self.advance(*step)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_checked() {
+        let step = Step::normal(1.0, Load::Force(1.0));
+        assert!(step.validated(0.0).is_ok() && step.validated(1.0).is_ok());
+        let late = step.validated(2.0).unwrap_err().to_string();
+        assert_eq!(late, "time = 1: expected a finite number >= 2, the last time");
+        assert!(Step { normal: Load::Force(-1.0), ..step }.validated(0.0).is_err());
+        assert!(Step { tangential: Tangential::Force(f64::NAN), ..step }.validated(0.0).is_err());
+        assert!(Step { tangential: Tangential::Displacement(-3.0), ..step }.validated(0.0).is_ok());
+    }
+}
