@@ -11,9 +11,10 @@ use crate::strategy;
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
-/// Residual reduction asked of conjugate gradients between two looks at the set.
-const REDUCTION: f64 = 0.2;
-/// The same while the set still changes a lot (certificate above [`EARLY`]): no use in solving well on a wrong set.
+/// Reduction of the error asked of conjugate gradients between two looks at the set: half of what is still wanted, within this range. A
+/// looser one restarts too often, a tighter one solves well on a set that will change.
+const REDUCTION: (f64, f64) = (0.02, 0.2);
+/// The same while the set still changes a lot (certificate above [`EARLY`]).
 const EARLY_REDUCTION: f64 = 0.3;
 const EARLY: f64 = 0.02;
 /// Conjugate gradient steps at most between two looks at the set.
@@ -224,9 +225,14 @@ pub fn promised(problem: &mut Problem, guess: &Guess) -> usize {
 
 /// What conjugate gradients are asked for after a look.
 pub fn request(target: Target, limits: Limits, seen: Seen) -> Request {
+    let error = seen.evidence.worst();
     Request {
         fixed_sum: matches!(target, Target::Force(_)),
-        reduction: if seen.evidence.worst() > EARLY { EARLY_REDUCTION } else { REDUCTION },
+        reduction: if error > EARLY {
+            EARLY_REDUCTION
+        } else {
+            (0.5 * limits.tolerance / error).clamp(REDUCTION.0, REDUCTION.1)
+        },
         energy: None,
         floor: FLOOR * limits.tolerance * limits.height.unwrap_or(seen.d),
         steps: STEPS,

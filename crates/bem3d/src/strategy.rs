@@ -33,7 +33,7 @@ pub const LARGEST_FACTOR: usize = 6000;
 /// Sets up to this size are always factored: the result is exact and costs a millisecond or two.
 const ALWAYS_FACTORED: usize = 256;
 /// From one contact cell in so many of the grid on, arrays over the grid are cheaper than lists of cells.
-const FILLED: usize = 40;
+const FILLED: usize = 22;
 /// Where one cell in so many will touch, no tangent is followed far.
 const FILLING: f64 = 10.0;
 /// Where one cell in so many will touch, the cells that a tangent promises are counted before it is followed ...

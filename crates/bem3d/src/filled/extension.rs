@@ -108,8 +108,11 @@ impl Extension {
                 fine.value.chunks_exact_mut(fine.side).zip(fine.weight.chunks_exact(fine.side)).enumerate()
             {
                 let above = &coarse.value[y / 2 * coarse.side..][..coarse.side];
-                for (x, (value, &weight)) in row.iter_mut().zip(weights).enumerate() {
-                    *value = if weight > 0.0 { *value * weight } else { DECAY * above[x / 2] };
+                for ((values, weights), above) in row.chunks_mut(2).zip(weights.chunks(2)).zip(above) {
+                    let handed = DECAY * above;
+                    for (value, &weight) in values.iter_mut().zip(weights) {
+                        *value = *value * weight + if weight > 0.0 { 0.0 } else { handed };
+                    }
                 }
             }
         }
@@ -124,13 +127,13 @@ impl Extension {
                 fine.value.chunks_exact_mut(fine.side).zip(fine.weight.chunks_exact(fine.side)).enumerate()
             {
                 let above = &mut coarse.value[y / 2 * coarse.side..][..coarse.side];
-                for (x, (value, &weight)) in row.iter_mut().zip(weights).enumerate() {
-                    if weight > 0.0 {
+                for ((values, weights), above) in row.chunks_mut(2).zip(weights.chunks(2)).zip(above) {
+                    let mut up = 0.0;
+                    for (value, &weight) in values.iter_mut().zip(weights) {
+                        up += if weight > 0.0 { 0.0 } else { *value };
                         *value *= weight;
-                    } else {
-                        above[x / 2] += DECAY * *value;
-                        *value = 0.0;
                     }
+                    *above += DECAY * up;
                 }
             }
         }
