@@ -80,13 +80,21 @@ impl<L: Law> PreparedContact for Closed<L> {
     }
 }
 
-/// Checks a scene against what every closed form here lacks: effects and fields.
+/// Checks a scene against what closed forms of elastic contact lack: effects and fields.
 ///
 /// # Errors
 /// [`Error::Unsupported`] and the errors of [`Scene::validate`].
 pub(crate) fn check(scene: &Scene, model: &'static str) -> Result<()> {
     scene.validate()?;
     scene.refuse_effects(model)?;
+    refuse_fields(scene, model)
+}
+
+/// Errors where a field is asked for.
+///
+/// # Errors
+/// [`Error::Unsupported`].
+pub(crate) fn refuse_fields(scene: &Scene, model: &'static str) -> Result<()> {
     if scene.outputs.any_field() {
         return Err(Error::unsupported(model, "fields: a closed form has no cells"));
     }

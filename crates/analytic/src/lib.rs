@@ -5,6 +5,7 @@
 //! | [`Hertz`] | sphere | F, d, k, area |
 //! | [`PowerLawBody`] | power law, cone, sphere | F, d, k, area |
 //! | [`FlatPunch`] | flat circle, flat square | F, d, k, area |
+//! | [`Jkr`] | sphere, [`contact_model::Adhesion::ShortRange`] | F, d (of either sign), k, area, pull-off |
 //! | [`PowerLaw`] | self-affine, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
 //! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11), [`conductance_fit`] (Eq. 13),
@@ -24,12 +25,13 @@
 //! # What it does not do
 //!
 //! No fields: a closed form has no cells. Where the pressure is a formula it is a function of r ([`hertz::pressure`],
-//! [`flat_punch::pressure`]). No adhesion, friction, rheology or periodic boundaries; they are refused.
+//! [`flat_punch::pressure`]). Effects that the table does not name are refused.
 
 mod closed;
 pub mod flat_punch;
 mod gamma;
 pub mod hertz;
+pub mod jkr;
 pub mod power_law;
 pub mod power_law_body;
 mod round;
@@ -38,6 +40,7 @@ mod testing;
 
 pub use flat_punch::FlatPunch;
 pub use hertz::Hertz;
+pub use jkr::Jkr;
 pub use power_law::{
     F_BAR_UL, K_BAR_UL, PowerLaw, conductance_fit, exponent_fit, exponent_scaling, force_tilde, zeta_fit,
 };
