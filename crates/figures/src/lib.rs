@@ -98,5 +98,5 @@ pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE};
 pub use sample::{FIELDS, FLOOR_CELLS, Sample};
 pub use store::{Store, fnv1a_128};
 pub use sweep::sweep;
-pub use unit::{FORMAT, Numerics, Unit, UnitResult};
+pub use unit::{FORMAT, Models, Numerics, Unit, UnitResult};
 pub use verify::verify;

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::store::Store;
-use crate::unit::{Unit, UnitResult};
+use crate::unit::{Models, Unit, UnitResult};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -28,12 +28,13 @@ pub fn sweep(
     let results: Vec<OnceLock<Result<UnitResult>>> = units.iter().map(|_| OnceLock::new()).collect();
     let next = AtomicUsize::new(0);
     let failed = AtomicBool::new(false);
+    let models = Models::default();
     let work = || {
         while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             if failed.load(Ordering::Relaxed) {
                 return;
             }
-            let result = one(&units[i], store, &failed, progress);
+            let result = one(&units[i], &models, store, &failed, progress);
             if result.is_err() {
                 failed.store(true, Ordering::Relaxed);
             }
@@ -70,12 +71,18 @@ fn collect(done: Vec<Option<Result<UnitResult>>>) -> Result<Vec<UnitResult>> {
     stopped.map_or(Ok(results), Err)
 }
 
-fn one(unit: &Unit, store: &Store, failed: &AtomicBool, progress: &dyn Progress) -> Result<UnitResult> {
+fn one(
+    unit: &Unit,
+    models: &Models,
+    store: &Store,
+    failed: &AtomicBool,
+    progress: &dyn Progress,
+) -> Result<UnitResult> {
     if let Some(stored) = store.load(unit) {
         progress.advance(unit.cost(), true);
         return Ok(stored);
     }
-    let result = unit.solve(&|| failed.load(Ordering::Relaxed))?;
+    let result = unit.solve_among(models, &|| failed.load(Ordering::Relaxed))?;
     store.save(unit, &result)?;
     progress.advance(unit.cost(), false);
     Ok(result)

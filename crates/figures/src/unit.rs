@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use crate::sample::Sample;
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Outputs, Scene, SelfAffine, Stop, Surface};
-use mdr1d::Mdr1d;
-use std::sync::Arc;
+use mdr1d::{Ensemble, Mdr1d};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 /// Number of the format of stored units. Raise it when the numbers of `surface-gen` or `mdr1d`, or the fields of a [`Sample`],
@@ -52,6 +52,29 @@ impl Numerics {
             Self::Bem3d { cells, tolerance } => Box::new(Bem3d { cells, tolerance, ..Bem3d::default() }),
             Self::Mdr1d { elements } => Box::new(Mdr1d { elements }),
         }
+    }
+}
+
+/// Models that units share: what a line's ensemble plans once serves all its lines.
+#[derive(Debug, Default)]
+pub struct Models {
+    lines: Mutex<Vec<(u64, Arc<Ensemble>)>>,
+}
+
+impl Models {
+    /// The model of a unit.
+    fn of(&self, unit: &Unit, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
+        let Numerics::Mdr1d { elements } = unit.numerics else { return Ok(Arc::from(unit.numerics.model())) };
+        let key = unit.fractal_dimension.to_bits() ^ elements as u64;
+        // A poisoned lock means that another thread panicked while it only pushed.
+        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, ensemble)) = lines.iter().find(|(k, _)| *k == key) {
+            let ensemble: Arc<dyn ContactModel> = ensemble.clone();
+            return Ok(ensemble);
+        }
+        let ensemble = Arc::new(Ensemble::new(surface, elements)?);
+        lines.push((key, Arc::clone(&ensemble)));
+        Ok(ensemble)
     }
 }
 
@@ -130,15 +153,29 @@ impl Unit {
     /// # Errors
     /// [`Error::Model`] for anything that a model refuses.
     pub fn solve(&self, stop: Stop<'_>) -> Result<UnitResult> {
-        self.solve_with(&*self.numerics.model(), stop)
+        self.solve_among(&Models::default(), stop)
+    }
+
+    /// The same with what other units have planned.
+    ///
+    /// # Errors
+    /// As [`Unit::solve`].
+    pub fn solve_among(&self, models: &Models, stop: Stop<'_>) -> Result<UnitResult> {
+        let what = || format!("{} at D_f = {:?}", self.numerics.name(), self.fractal_dimension);
+        let surface = self.surface().map_err(|e| Error::model(what())(e))?;
+        let model = models.of(self, &surface).map_err(|e| Error::model(what())(e))?;
+        self.solve_with(&*model, stop)
+    }
+
+    fn surface(&self) -> contact_model::Result<SelfAffine> {
+        SelfAffine::new(self.fractal_dimension, 1.0, 1.0)
     }
 
     fn solve_with(&self, model: &dyn ContactModel, stop: Stop<'_>) -> Result<UnitResult> {
         let start = Instant::now();
         let what =
             || format!("{} at D_f = {:?}, surface {}", model.name(), self.fractal_dimension, self.index);
-        let surface =
-            SelfAffine::new(self.fractal_dimension, 1.0, 1.0).map_err(|e| Error::model(what())(e))?;
+        let surface = self.surface().map_err(|e| Error::model(what())(e))?;
         let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
         // A rough line has no area to claim.
         let area = matches!(self.numerics, Numerics::Bem3d { .. });

@@ -66,9 +66,14 @@ impl Bearing {
     ///
     /// Cost: O(n); for 2^20 elements three passes and 8 MB.
     pub fn new(line: &Line) -> Self {
-        let mut bearing = Self { element: 0.0, depths: Vec::new(), bins: Vec::new() };
+        let mut bearing = Self::empty();
         bearing.rebuild(line);
         bearing
+    }
+
+    /// What [`Bearing::rebuild`] can start from; not to be pressed.
+    pub(crate) fn empty() -> Self {
+        Self { element: 0.0, depths: Vec::new(), bins: Vec::new() }
     }
 
     /// Takes another line into the memory of this one; the same as [`Bearing::new`].

@@ -7,6 +7,7 @@
 //! * [`rule`]: which line stands for a self-affine square (Pohrt, Popov, Filippov 2012, Eqs. 14 to 18).
 //! * [`axisymmetric`]: spheres, cones, power-law bodies and flat circular punches through their profile `g(x)`, where the method is
 //!   exact in three dimensions.
+//! * Short-range adhesion of these bodies by Hess's rule: the springs at the edge tear at `sqrt(2 pi a w / E*)`.
 //! * [`Mdr1d`]: all of it behind [`contact_model::ContactModel`].
 //!
 //! # Conventions
@@ -26,8 +27,8 @@
 //! # What it does not do
 //!
 //! It offers no contact area, pressure or mean gap for rough surfaces: a line's length in contact is not an area, and both fail
-//! even qualitatively (Lyashenko, Pastewka, Persson 2013). Such outputs are refused, as are adhesion, friction,
-//! periodic boundaries and rheology.
+//! even qualitatively (Lyashenko, Pastewka, Persson 2013). Such outputs are refused, as are
+//! adhesion of rough lines, friction, periodic boundaries and rheology.
 //!
 //! ```
 //! use contact_model::{ContactModel, Load, Scene, Surface};
@@ -40,6 +41,7 @@
 //! # Ok::<(), contact_model::Error>(())
 //! ```
 
+mod adhesion;
 pub mod axisymmetric;
 mod bearing;
 mod model;
@@ -47,4 +49,4 @@ pub mod rule;
 
 pub use axisymmetric::Profile;
 pub use bearing::{Bearing, Support};
-pub use model::Mdr1d;
+pub use model::{Ensemble, Mdr1d};

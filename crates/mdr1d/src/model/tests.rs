@@ -138,3 +138,65 @@ fn what_the_model_lacks_is_refused() {
     let mut stopped = prepare(&scene(rough(2.0)), 0);
     assert!(matches!(stopped.solve_until(Load::Force(1.0), &|| true), Err(Error::Stopped { best: None })));
 }
+
+#[test]
+fn an_ensemble_gives_the_same_bits_with_memory_used_before() {
+    let surface = SelfAffine::new(2.4, 1.0, 1.0).unwrap();
+    let ensemble = Ensemble::new(&surface, 4097).unwrap();
+    let scene = Scene::new(Surface::SelfAffine(surface), 2.0);
+    for seed in 0..4 {
+        let mut kept = ensemble.prepare(&scene, seed).unwrap();
+        let mut fresh = Mdr1d { elements: 4097 }.prepare(&scene, seed).unwrap();
+        for force in [1e-6, 1e-2, 3.0] {
+            let [a, b] = [&mut kept, &mut fresh].map(|c| c.solve(Load::Force(force)).unwrap());
+            assert_eq!((a.approach, a.stiffness), (b.approach, b.stiffness));
+        }
+        assert_eq!(kept.scales(), fresh.scales());
+    }
+    // Another surface is none of its own, and an area is refused as ever.
+    let other = Scene::new(Surface::SelfAffine(SelfAffine::new(2.0, 1.0, 1.0).unwrap()), 2.0);
+    assert!(ensemble.prepare(&other, 1).is_ok());
+    let mut area = scene;
+    area.outputs.area = true;
+    assert!(ensemble.prepare(&area, 1).is_err());
+}
+
+#[test]
+fn adhesion_of_a_sphere_behind_the_trait() {
+    // PHYSICS: E* = R = 1, w = 0.01. In other units too.
+    for (modulus, length) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+        let mut scene = Scene::new(Surface::Sphere { radius: length, side: 2.0 * length }, modulus);
+        scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 * (modulus * length) };
+        let mut contact = prepare(&scene, 0);
+        let s = contact.solve(Load::Force(0.0)).unwrap();
+        assert_relative_eq!(
+            s.stiffness.unwrap() / modulus / length,
+            2.0 * 0.520_939_707_9,
+            max_relative = 1e-9
+        );
+        let units = Units::new(modulus, length, length).unwrap();
+        let pull_off = -units.force(0.015 * std::f64::consts::PI).unwrap();
+        assert!(contact.solve(Load::Force(0.999 * pull_off)).is_ok());
+        let e = contact.solve(Load::Force(1.001 * pull_off)).unwrap_err();
+        let Error::OutOfRange { min, ref name, .. } = e else { panic!("{e}") };
+        assert!(name.contains("pulls off"));
+        assert_relative_eq!(min, pull_off, max_relative = 1e-13);
+        assert!(contact.solve(Load::Approach(-length)).is_err());
+    }
+}
+
+#[test]
+fn adhesion_where_the_rule_has_no_radius_is_refused() {
+    let effects = Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() };
+    let refusal = |surface| {
+        let scene = Scene { effects, ..scene(surface) };
+        Mdr1d::default().prepare(&scene, 0).map(|_| ()).unwrap_err().to_string()
+    };
+    let line = Arc::new(Line::new(1.0, vec![0.0, 0.1]).unwrap());
+    let map = Arc::new(HeightMap::new(2, 1.0, vec![0.0; 4]).unwrap());
+    for surface in [rough(2.2), Surface::Line { line, side: 1.0 }, Surface::Heights(map)] {
+        let text = refusal(surface);
+        assert!(text.contains("adhesion") && text.contains("round contact"), "{text}");
+    }
+    assert!(refusal(Surface::PowerLaw { coefficient: 1.0, exponent: 0.5, side: 1.0 }).contains("exponent"));
+}
