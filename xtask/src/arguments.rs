@@ -23,6 +23,7 @@ Examples:
   cargo xtask reproduce-fig6 --forces 1e-9:20:60      60 loads, logarithmic, both ends in
   cargo xtask verify                                  one line per claim of the paper
   cargo xtask reproduce-fig2 --preset paper           2049 cells, 60 surfaces: stop and resume at will
+  cargo xtask reproduce-fig2 --preset extended --over data/figures/paper/fig2.csv   16385 cells, light loads
 
 Results go to out/ (--out). Finished surfaces are kept in out/.units and reused by every command with the same parameters; an
 interruption loses at most the surfaces in flight, and the same command resumes. The same command gives the same bytes of CSV
@@ -121,8 +122,10 @@ pub enum PresetName {
     Quick,
     /// A few minutes: 513 cells, 40 surfaces, 2^18 elements, 200 lines.
     Default,
-    /// The paper's sizes: 2049 cells, 60 surfaces, 2^20 elements, 500 lines.
+    /// The paper's sizes: 2049 cells, 60 surfaces, 2^20 elements, 500 lines; tolerance 1e-3.
     Paper,
+    /// Beyond the paper: 16385 cells, 4 surfaces, light loads; tolerance 1e-3, 5 GB for each thread.
+    Extended,
 }
 
 /// Flags of every figure.
@@ -148,6 +151,7 @@ impl Common {
             PresetName::Quick => Preset::Quick,
             PresetName::Default => Preset::Default,
             PresetName::Paper => Preset::Paper,
+            PresetName::Extended => Preset::Extended,
         };
         request.fractal_dimensions.clone_from(&self.fractal_dimensions);
         request.seed = self.seed;
@@ -167,6 +171,9 @@ pub struct Solve {
     /// Ignore stored units and solve everything again.
     #[arg(long)]
     fresh: bool,
+    /// Draw the curves of another run's fig2.csv or fig6.csv underneath (Figs. 2 and 6).
+    #[arg(long, value_name = "FILE.csv")]
+    over: Option<PathBuf>,
 }
 
 impl Solve {
@@ -174,6 +181,7 @@ impl Solve {
         request.forces.clone_from(&self.forces);
         request.threads = Some(self.threads);
         request.fresh = self.fresh;
+        request.over.clone_from(&self.over);
     }
 }
 
@@ -470,6 +478,7 @@ mod tests {
             threads: Some(2),
             out: Some("d".into()),
             fresh: true,
+            over: None,
         };
         assert_eq!(request, expected);
         assert_eq!(arguments.command.name(), "verify");

@@ -58,7 +58,7 @@ pub(crate) fn write(
     let all = tables::samples(&format!("{title}: every surface and load"), measured)?;
     write_csv(&samples, &all, &header)?;
     let mut files = vec![csv.clone(), samples];
-    files.extend(draw(name, title, &csv, &run.out)?);
+    files.extend(draw(name, title, &csv, run.over.as_deref(), &run.out)?);
     Ok(files)
 }
 
@@ -84,15 +84,21 @@ fn read(csv: &Path) -> Result<Vec<CurvePoints>> {
     Ok(curves)
 }
 
-fn draw(name: &str, title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+fn draw(name: &str, title: &str, csv: &Path, over: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
     let curves = read(csv)?;
-    let points = || curves.iter().flat_map(|c| &c.1);
+    let below = over.map(read).transpose()?.unwrap_or_default();
+    let points = || curves.iter().chain(&below).flat_map(|c| &c.1);
     let x = logarithmic(points().map(|p| p.0));
     let y = logarithmic(points().map(|p| p.1));
     let mut picture = Picture::new(x, y, "force  F / (E* h L)", "stiffness  k / (1.1419 E* L)")
         .with_title(title)
         .with_legend_below();
     let circle = MarkerShape::Circle;
+    for (d, points) in &below {
+        let inside: Vec<(f64, f64)> = points.iter().filter(|p| !p.2).map(|p| (p.0, p.1)).collect();
+        picture.line(&inside, &color(*d), 1.0, &LineStyle::Solid);
+        picture.points(&inside, &color(*d), 2.6, Mark::Hollow(MarkerShape::Square));
+    }
     for (d, points) in &curves {
         let color = color(*d);
         let inside: Vec<(f64, f64)> = points.iter().filter(|p| !p.2).map(|p| (p.0, p.1)).collect();
@@ -104,7 +110,15 @@ fn draw(name: &str, title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>>
         picture.legend(&format!("D_f = {d:?}"), &color, Key::Mark(circle));
     }
     picture.legend("paper, Eq. 12", "#444444", Key::Dashed);
-    if points().any(|p| p.2) {
+    if let Some(over) = over {
+        let name = over.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        picture.legend(
+            &format!("squares: {name} of the other run"),
+            "#444444",
+            Key::Mark(MarkerShape::Square),
+        );
+    }
+    if curves.iter().flat_map(|c| &c.1).any(|p| p.2) {
         picture.legend("fewer than 10 contact cells", "", Key::Open);
     }
     picture.save(out, name)
