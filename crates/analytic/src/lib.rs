@@ -6,16 +6,20 @@
 //! | [`PowerLawBody`] | power law, cone, sphere | F, d, k, area |
 //! | [`FlatPunch`] | flat circle, flat square | F, d, k, area |
 //! | [`Jkr`] | sphere, [`contact_model::Adhesion::ShortRange`] | F, d (of either sign), k, area, pull-off |
+//! | [`Westergaard`] | sine, periodic | F, mean gap, k, area |
 //! | [`PowerLaw`] | self-affine, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
 //! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11), [`conductance_fit`] (Eq. 13),
-//! [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4).
+//! [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4). The product of two waves has no closed form; its limits for small and
+//! nearly full contact are functions of [`westergaard`].
 //!
 //! # Conventions
 //!
 //! As in [`contact_model`]: `d` counts from first touch, pressure is compressive, units are the caller's own. Round contacts
 //! sit in the middle of the square; once their radius exceeds half its side they are out of range, because the half-space outside
 //! carries no pressure.
+//!
+//! Periodic contacts have a mean gap and no approach: [`contact_model::PreparedContact::mean_gap`], [`contact_model::Load::MeanGap`].
 //!
 //! # Accuracy and speed
 //!
@@ -32,11 +36,14 @@ pub mod flat_punch;
 mod gamma;
 pub mod hertz;
 pub mod jkr;
+mod periodic;
 pub mod power_law;
 pub mod power_law_body;
+mod root;
 mod round;
 #[cfg(test)]
 mod testing;
+pub mod westergaard;
 
 pub use flat_punch::FlatPunch;
 pub use hertz::Hertz;
@@ -45,3 +52,4 @@ pub use power_law::{
     F_BAR_UL, K_BAR_UL, PowerLaw, conductance_fit, exponent_fit, exponent_scaling, force_tilde, zeta_fit,
 };
 pub use power_law_body::PowerLawBody;
+pub use westergaard::Westergaard;

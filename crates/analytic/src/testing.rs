@@ -60,3 +60,33 @@ pub(crate) fn scale_invariant(
         assert_relative_eq!(s.stiffness.unwrap(), k, max_relative = tolerance);
     }
 }
+
+/// Of a periodic contact at a mean pressure on a square of side 1: both loads agree, k = -dF/d(mean gap) by differences, F proportional to E*,
+/// gap and area monotone, nothing without load. `tolerance`: relative, of the round trip.
+pub(crate) fn check_periodic(model: &dyn ContactModel, scene: &Scene, pressure: f64, tolerance: f64) {
+    let mut contact = model.prepare(scene, 0).unwrap();
+    let here = contact.solve(Load::Force(pressure)).unwrap();
+    assert!(here.approach.is_none());
+    let mut gap = |p: f64| contact.mean_gap(Load::Force(p)).unwrap();
+    // Central difference: its error is e^2 times third derivatives in ln p, a few thousand at most.
+    let e = 1e-5;
+    let (middle, wide, narrow) = (gap(pressure), gap(pressure * (1.0 - e)), gap(pressure * (1.0 + e)));
+    assert!(wide >= middle && middle >= narrow);
+    let slope = 2.0 * e * pressure / (wide - narrow);
+    // Rounding of the gaps is divided by their difference.
+    let rounding = 4.0 * f64::EPSILON * middle / (wide - narrow);
+    assert_relative_eq!(slope, here.stiffness.unwrap(), max_relative = 1e-6 + rounding);
+    if rounding < 1e-3 {
+        // The load has the digits that the gap leaves it.
+        let back = contact.solve(Load::MeanGap(middle)).unwrap();
+        assert_relative_eq!(back.force, pressure, max_relative = tolerance + e * rounding);
+    }
+    let more = contact.solve(Load::Force(1.001 * pressure));
+    assert!(more.is_err() || more.unwrap().area.unwrap() >= here.area.unwrap());
+    let stiffer = Scene { modulus: 2.0 * scene.modulus, ..scene.clone() };
+    let doubled = model.prepare(&stiffer, 0).unwrap().solve(Load::Force(2.0 * pressure)).unwrap();
+    assert_relative_eq!(doubled.area.unwrap(), here.area.unwrap(), max_relative = ROUNDING);
+    assert_relative_eq!(doubled.stiffness.unwrap(), 2.0 * here.stiffness.unwrap(), max_relative = ROUNDING);
+    let zero = contact.solve(Load::Force(0.0)).unwrap();
+    assert!(zero.force <= 0.0 && zero.stiffness.unwrap() <= 0.0 && zero.area.unwrap() <= 0.0);
+}

@@ -1,0 +1,111 @@
+//! What all theories of periodic contact share: a law in the mean pressure becomes a [`PreparedContact`].
+
+use crate::closed;
+use contact_model::{
+    Boundary, ContactState, Effects, Error, Load, Outputs, PreparedContact, Result, Scales, Scene,
+    SolveReport, Stop, Units,
+};
+
+/// A theory of a periodic contact in the mean pressure p, in units of `E* h / L`: h is the unit of heights of its [`Periodic`].
+pub(crate) trait PeriodicLaw: Send {
+    /// Errors for a pressure > 0 beyond what the theory holds for.
+    fn admit(&self, pressure: f64) -> Result<()>;
+    /// `A/A0` at p > 0.
+    fn fraction(&self, pressure: f64) -> Result<f64>;
+    /// `-dp/d(mean gap)` at p > 0, in `E* / L`.
+    fn stiffness(&self, pressure: f64) -> Result<f64>;
+    /// Mean gap at p >= 0, in h.
+    fn gap(&self, pressure: f64) -> Result<f64>;
+    /// The pressure at a mean gap >= 0, 0 where the surfaces are apart.
+    fn pressure(&self, gap: f64) -> Result<f64>;
+    /// Relative uncertainty of the stiffness from quadratures and the like.
+    fn stiffness_error(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A periodic law with its scales and what is asked of it.
+pub(crate) struct Periodic<L> {
+    pub model: &'static str,
+    pub law: L,
+    pub units: Units,
+    pub scales: Scales,
+    pub outputs: Outputs,
+    /// For [`SolveReport::strategy`].
+    pub strategy: &'static str,
+}
+
+impl<L: PeriodicLaw> Periodic<L> {
+    /// The mean pressure under a load, in units.
+    fn press(&self, load: Load) -> Result<f64> {
+        let (asked, pressure) = match load.validated()? {
+            Load::Force(force) => (force > 0.0, self.units.force_in(force)),
+            Load::MeanGap(gap) => (false, self.law.pressure(self.units.approach_in(gap))?),
+            Load::Approach(_) => {
+                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
+                return Err(Error::unsupported(self.model, what));
+            }
+            _ => return Err(Error::unsupported(self.model, format!("the load {load:?}"))),
+        };
+        if !pressure.is_finite() || (asked && pressure <= 0.0) {
+            let expected = "a number within the range of f64";
+            return Err(Error::domain("mean pressure over E* h/L", pressure, expected));
+        }
+        if pressure > 0.0 {
+            self.law.admit(pressure)?;
+        }
+        Ok(pressure)
+    }
+}
+
+impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
+    fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
+        let pressure = self.press(load)?;
+        let or_none = |f: &dyn Fn(f64) -> Result<f64>| if pressure > 0.0 { f(pressure) } else { Ok(0.0) };
+        let units = self.units;
+        let force = match load {
+            Load::Force(force) => force,
+            _ => units.force(pressure)?,
+        };
+        let stiffness = self
+            .outputs
+            .stiffness
+            .then(|| units.stiffness(or_none(&|p| self.law.stiffness(p))?))
+            .transpose()?;
+        let area = self.outputs.area.then(|| units.area(or_none(&|p| self.law.fraction(p))?)).transpose()?;
+        let mut report = SolveReport::exact(self.strategy);
+        report.certificate.stiffness_error = stiffness.map(|_| self.law.stiffness_error());
+        Ok(ContactState { force, approach: None, stiffness, area, fields: None, report })
+    }
+
+    fn mean_gap(&mut self, load: Load) -> Result<f64> {
+        let pressure = self.press(load)?;
+        match load {
+            Load::MeanGap(gap) => Ok(gap),
+            _ => self.units.approach(self.law.gap(pressure)?),
+        }
+    }
+}
+
+/// Checks a scene against what the periodic theories here lack: free boundaries, other effects, fields.
+///
+/// # Errors
+/// [`Error::Unsupported`] and the errors of [`Scene::validate`].
+pub(crate) fn check(scene: &Scene, model: &'static str) -> Result<()> {
+    scene.validate()?;
+    Effects { boundary: Boundary::Free, ..scene.effects }.refuse(model)?;
+    closed::refuse_fields(scene, model)?;
+    if scene.effects.boundary == Boundary::Periodic {
+        Ok(())
+    } else {
+        let what = format!("the boundary {:?} (the theory is periodic)", scene.effects.boundary);
+        Err(Error::unsupported(model, what))
+    }
+}
