@@ -458,6 +458,54 @@ mod tests {
         z
     }
 
+    /// The same load on lists of cells and on arrays over the grid.
+    fn both_grounds(side: usize, z: &[f64], target: Target) -> [Solved; 2] {
+        let mut on_lists = problem(side, z.to_vec());
+        let guess = everything(side, target);
+        let lists = Listed::new(&mut on_lists, target, guess.clone(), limits(false));
+        let lists = iterate(lists, limits(false), &never);
+        let mut on_arrays = problem(side, z.to_vec());
+        let Problem { candidates, operators, arrays, .. } = &mut on_arrays;
+        let filled = Filled::new(candidates, operators, arrays, target, &guess, limits(false));
+        [lists, iterate(filled, limits(false), &never)]
+    }
+
+    #[test]
+    fn arrays_and_lists_are_twins() {
+        for side in [1, 2, 3, 31, 48] {
+            let z = rough(side, 9);
+            for target in [0.3, 2.0, 30.0].map(Target::Force).into_iter().chain([Target::Approach(0.7)]) {
+                let [lists, arrays] = both_grounds(side, &z, target);
+                assert_eq!(
+                    (lists.status, arrays.status),
+                    (Status::Converged, Status::Converged),
+                    "{side} {target:?}"
+                );
+                assert_eq!(lists.contact.index(), arrays.contact.index(), "{side} {target:?}");
+                assert_relative_eq!(lists.d, arrays.d, max_relative = 1e-7);
+                let largest = lists.p.iter().copied().fold(0.0, f64::max);
+                for (a, b) in lists.p.iter().zip(&arrays.p) {
+                    assert!((a - b).abs() < 1e-6 * largest, "{side} {target:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_stiffness_of_filled_contact_is_that_of_lists() {
+        // Large enough that the strategy takes arrays; the twin is a tight solve on lists.
+        let side = 96;
+        let mut problem = problem(side, rough(side, 4));
+        let target = Target::Force(4000.0);
+        let solved = solve(&mut problem, target, everything(side, target), limits(false), &never);
+        assert!(strategy::fills(solved.contact.len(), side), "{} cells", solved.contact.len());
+        let arrays = crate::stiffness::solve(&mut problem, &solved, None, 1e-8, &never);
+        let lists = crate::stiffness::on_lists(&mut problem, &solved, None, 1e-8, &never);
+        assert_relative_eq!(arrays.value, lists.value, max_relative = 1e-8);
+        assert!(arrays.solve_error <= 1e-8 && arrays.solve_error > 0.0);
+        assert_relative_eq!(arrays.set_error, lists.set_error, epsilon = 1e-8);
+    }
+
     #[test]
     fn work_of_standard_solves_is_pinned() {
         // Counts, not times: a change of the algorithm shows here. The band leaves room for other processors' last digits.

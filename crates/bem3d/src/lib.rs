@@ -31,9 +31,12 @@
 //! One load is solved by **predict and eliminate** (`active_set`): from a guess (the tangent of the last state, or the same relief on
 //! coarser grids), the cells that would penetrate are a superset of the contact set; solving on it and dropping the cells
 //! in tension leads to it. Small sets are factored (`operator::dense`), and pressure and stiffness come from one factor. Larger
-//! ones take preconditioned conjugate gradients (`cg`) between looks at the exact gap in double precision. Inside the iteration the
-//! operator is a sum over pairs, a two-level sum (smooth far field on a lattice, close pairs exactly) or a single-precision FFT on the
-//! bounding box, whichever is cheaper (`strategy`); looks that certify are exact sums or double-precision transforms.
+//! ones take preconditioned conjugate gradients between looks at the exact gap in double precision: on lists of cells (`cg`), or on
+//! arrays over the grid where contact fills it (`filled`). The preconditioner there extends the residual into the gaps between contacts
+//! and applies the inverse of K on a torus: `E' B E >= (K_CC)^-1` for every extension E, and the better it follows the displacement, the
+//! sharper. The same inequality bounds the error of k. Inside the iteration the operator is a sum over pairs, a two-level sum (smooth
+//! far field on a lattice, close pairs exactly) or a single-precision FFT on the bounding box, whichever is cheaper (`strategy`);
+//! looks that certify are exact sums or double-precision transforms.
 //!
 //! # How accurate
 //!
@@ -44,9 +47,10 @@
 //!
 //! # How fast
 //!
-//! Work follows the contact: a few hundred cells take milliseconds on any grid. A dense load takes 40 to 120 applications of K for
-//! four digits and 100 to 250 for eight, k included, nearly independent of N and of the load; one application costs about
-//! 4 ms at N = 512 and 60 ms at N = 2048 (single precision, one thread). The example `sweep` prints the work of each load.
+//! Work follows the contact: a few hundred cells take milliseconds on any grid. A dense load takes 30 to 60 applications of K for
+//! three digits and 60 to 110 for eight, k included, nearly independent of N and of the load; one application costs about 2 ms at
+//! N = 512 and 45 ms at N = 2049 (single precision, one thread of an AMD EPYC of 2024). `cargo xtask bench` prints the work of each
+//! load on any surface; README has tables.
 //!
 //! # What it does not do
 //!
@@ -62,6 +66,8 @@ mod filled;
 pub mod love;
 mod model;
 mod operator;
+#[doc(hidden)]
+pub mod operators;
 mod seed;
 mod stiffness;
 mod strategy;

@@ -61,6 +61,17 @@ pub fn solve(
     if strategy::fills(state.contact.len(), problem.side) {
         return filled(problem, state, guess.as_deref(), tolerance, stop);
     }
+    on_lists(problem, state, guess, tolerance, stop)
+}
+
+/// The same on lists of cells.
+pub fn on_lists(
+    problem: &mut Problem,
+    state: &Solved,
+    guess: Option<Vec<f64>>,
+    tolerance: f64,
+    stop: Stop<'_>,
+) -> Stiffness {
     let contact = &state.contact;
     let n = contact.len();
     let spectral = strategy::precondition(n, contact.window_cells());

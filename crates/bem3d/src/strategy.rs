@@ -197,6 +197,24 @@ mod tests {
     }
 
     #[test]
+    fn arrays_are_for_contact_that_fills_the_grid() {
+        assert!(!fills(LARGEST_FACTOR, 60), "small sets are factored");
+        assert!(fills(2049 * 2049 / 10, 2049) && !fills(2049 * 2049 / 100, 2049));
+    }
+
+    #[test]
+    fn a_tangent_is_followed_unless_it_overshoots() {
+        let (few, many) = (every(20_000), every(8));
+        let count = |n: usize| move || n;
+        assert!(!start_anew(&few, 2.0, count(usize::MAX)), "few cells: nothing to save");
+        assert!(!start_anew(&many, 1.1, count(usize::MAX)), "a small step");
+        assert!(start_anew(&many, 2.0, || unreachable!("much will touch: no need to count")));
+        let scattered = every(200);
+        assert!(start_anew(&scattered, 2.0, count(20 * scattered.len())));
+        assert!(!start_anew(&scattered, 2.0, count(3 * scattered.len())));
+    }
+
+    #[test]
     fn the_preconditioner_is_for_dense_contact() {
         assert!(!precondition(10, 1000));
         assert!(precondition(30, 1000));

@@ -56,17 +56,17 @@ impl Table {
     }
 
     /// Scaled symbol of the free operator in double precision.
-    pub(super) fn symbol_f64(&self, lengths: Lengths) -> Arc<Vec<f64>> {
+    pub fn symbol_f64(&self, lengths: Lengths) -> Arc<Vec<f64>> {
         lock(&self.double).get(lengths, || Convolution::<f64>::scaled(&free_symbol(lengths)))
     }
 
     /// Scaled symbol of the free operator in single precision.
-    pub(super) fn symbol_f32(&self, lengths: Lengths) -> Arc<Vec<f32>> {
+    pub fn symbol_f32(&self, lengths: Lengths) -> Arc<Vec<f32>> {
         lock(&self.single).get(lengths, || Convolution::<f32>::scaled(&free_symbol(lengths)))
     }
 
     /// Scaled inverse symbol of the kernel wrapped on a torus.
-    pub(super) fn inverse_symbol(&self, lengths: Lengths) -> Arc<Vec<f32>> {
+    pub fn inverse_symbol(&self, lengths: Lengths) -> Arc<Vec<f32>> {
         lock(&self.inverse).get(lengths, || {
             let mut symbol = free_symbol(lengths);
             // The wrapped kernel is positive definite; a rounding error in a tiny window must not turn a sign.
