@@ -7,11 +7,13 @@
 //! | [`FlatPunch`] | flat circle, flat square | F, d, k, area |
 //! | [`Jkr`] | sphere, [`contact_model::Adhesion::ShortRange`] | F, d (of either sign), k, area, pull-off |
 //! | [`Westergaard`] | sine, periodic | F, mean gap, k, area |
+//! | [`Persson`] | self-affine with cut-off, periodic | F, mean gap, k, area |
+//! | [`GreenwoodWilliamson`] | self-affine with cut-off, periodic | F, mean gap, k, area up to half of the summits |
 //! | [`PowerLaw`] | self-affine, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
 //! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11), [`conductance_fit`] (Eq. 13),
 //! [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4). The product of two waves has no closed form; its limits for small and
-//! nearly full contact are functions of [`westergaard`].
+//! nearly full contact are functions of [`westergaard`]. What theories know of a random surface is in [`spectrum`].
 //!
 //! # Conventions
 //!
@@ -24,7 +26,8 @@
 //! # Accuracy and speed
 //!
 //! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the constant of the flat square is known to
-//! 1e-6 and says so in the report. A state costs well under a microsecond. [`PowerLaw`] is as good as the fit it is.
+//! 1e-6 and says so in the report. A state costs well under a microsecond, of [`Persson`] up to a
+//! millisecond (quadratures to 1e-11). How good theories of rough surfaces are is another matter. [`PowerLaw`] is as good as the fit it is.
 //!
 //! # What it does not do
 //!
@@ -34,20 +37,27 @@
 mod closed;
 pub mod flat_punch;
 mod gamma;
+pub mod greenwood_williamson;
 pub mod hertz;
 pub mod jkr;
 mod periodic;
+pub mod persson;
 pub mod power_law;
 pub mod power_law_body;
+mod quadrature;
 mod root;
 mod round;
+mod special;
+pub mod spectrum;
 #[cfg(test)]
 mod testing;
 pub mod westergaard;
 
 pub use flat_punch::FlatPunch;
+pub use greenwood_williamson::GreenwoodWilliamson;
 pub use hertz::Hertz;
 pub use jkr::Jkr;
+pub use persson::Persson;
 pub use power_law::{
     F_BAR_UL, K_BAR_UL, PowerLaw, conductance_fit, exponent_fit, exponent_scaling, force_tilde, zeta_fit,
 };
