@@ -76,6 +76,9 @@ pub enum Command {
     /// What an answer costs: work, time, memory and certificate of each solve.
     #[command(after_long_help = BENCH)]
     Bench(BenchArguments),
+    /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
+    #[command(after_help = EXPAND)]
+    Audit(Audit),
     /// A small fixed run of Figs. 2 and 6 against the numbers in data/reference (for continuous integration).
     CheckReference(Reference),
 }
@@ -93,6 +96,7 @@ impl Command {
             Self::ReproduceFig7(_) => "reproduce-fig7",
             Self::ReproduceAll(_) => "reproduce-all",
             Self::Verify(_) => "verify",
+            Self::Audit(_) => "audit",
             Self::Bench(_) => "bench",
             Self::CheckReference(_) => "check-reference",
         }
@@ -109,6 +113,7 @@ impl Command {
             Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
                 a.fill(&mut request);
             }
+            Self::Audit(a) => a.solid.fill(&mut request),
             Self::Bench(_) => {}
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
         }
@@ -314,6 +319,19 @@ impl Both {
         self.line.fill(request);
         self.solve.fill(request);
     }
+}
+
+/// Flags of the second look.
+#[derive(Debug, Args)]
+pub struct Audit {
+    #[command(flatten)]
+    solid: Solid,
+    /// Share of all solves.
+    #[arg(long, default_value_t = 0.01, allow_hyphen_values = true)]
+    pub share: f64,
+    /// Tolerance of the second look.
+    #[arg(long = "audit-tolerance", value_name = "T", default_value_t = 1e-8, allow_hyphen_values = true)]
+    pub tight: f64,
 }
 
 /// Edges of the square.

@@ -1,4 +1,5 @@
-//! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `bench`, `check-reference`.
+//! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
+//! `check-reference`.
 //!
 //! Argument parsing, progress and exit codes; the figures are in the crate `figures`.
 //!
@@ -46,6 +47,11 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
         Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
+        Command::Audit(options) => {
+            let (outcome, summary) = figures::audit(&run, options.share, options.tight, &reporter)?;
+            println!("{summary}");
+            vec![outcome]
+        }
         Command::Bench(_) | Command::CheckReference(_) => Vec::new(),
     };
     let typed: Vec<String> = std::env::args().skip(1).collect();
@@ -89,10 +95,12 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
 /// Prints each row as it comes; the file is whole after every row, so that an interruption keeps what was solved.
 fn bench(options: &BenchArguments) -> Result<ExitCode> {
     let rows = Mutex::new((Vec::new(), Ok(())));
-    println!("{}", PRINTED.map(|(name, width)| format!("{name:>width$}")).join(" "));
     figures::bench(&options.bench()?, &contact_model::never, &|row| {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
         let Ok(mut kept) = rows.lock() else { return };
+        if kept.0.is_empty() {
+            println!("{}", PRINTED.map(|(name, width)| format!("{name:>width$}")).join(" "));
+        }
         kept.0.push(row.clone());
         let written = options.csv.as_ref().map_or(Ok(()), |path| figures::write_bench(path, &kept.0));
         let line = row.fields().map(|fields| println!("{}", line(&fields)));

@@ -172,6 +172,9 @@ struct Series {
 /// # Errors
 /// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model refuses.
 pub fn bench(bench: &Bench, stop: Stop<'_>, found: &(dyn Fn(&BenchRow) + Sync)) -> Result<Vec<BenchRow>> {
+    if bench.threads == 0 {
+        return Err(Error::parameter("threads", 0, "at least one thread"));
+    }
     let series = series(bench)?;
     if let Some(directory) = &bench.pressure {
         files::create_directory(directory)?;

@@ -37,6 +37,7 @@
 
 mod all;
 mod arrays;
+mod audit;
 mod bench;
 mod bench_plot;
 mod claim;
@@ -72,6 +73,7 @@ mod verify;
 
 pub use all::reproduce_all;
 pub use arrays::write_npy;
+pub use audit::audit;
 pub use bem3d::Method;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, write_bench};
 pub use bench_plot::plot_bench;
