@@ -1,4 +1,4 @@
-//! Closed forms of normal contact, one theory per file, each a [`contact_model::ContactModel`] that names its sources.
+//! Closed forms, one theory per file, each a [`contact_model::ContactModel`] (with friction a [`contact_model::HistoryModel`]) that names its sources.
 //!
 //! | model | surfaces | claims |
 //! |---|---|---|
@@ -9,6 +9,7 @@
 //! | [`Westergaard`] | sine, periodic | F, mean gap, k, area |
 //! | [`Persson`] | self-affine with cut-off, periodic | F, mean gap, k, area |
 //! | [`GreenwoodWilliamson`] | self-affine with cut-off, periodic | F, mean gap, k, area up to half of the summits |
+//! | [`CattaneoMindlin`] (a history) | sphere, [`contact_model::Friction::Coulomb`] | tangential force and displacement, stick radius, dissipated energy |
 //! | [`PowerLaw`] | self-affine, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
 //! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11), [`conductance_fit`] (Eq. 13),
@@ -34,6 +35,7 @@
 //! No fields: a closed form has no cells. Where the pressure is a formula it is a function of r ([`hertz::pressure`],
 //! [`flat_punch::pressure`]). Effects that the table does not name are refused.
 
+pub mod cattaneo_mindlin;
 mod closed;
 pub mod flat_punch;
 mod gamma;
@@ -53,6 +55,7 @@ pub mod spectrum;
 mod testing;
 pub mod westergaard;
 
+pub use cattaneo_mindlin::CattaneoMindlin;
 pub use flat_punch::FlatPunch;
 pub use greenwood_williamson::GreenwoodWilliamson;
 pub use hertz::Hertz;

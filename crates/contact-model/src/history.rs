@@ -85,7 +85,7 @@ pub struct TangentialState {
     pub force: f64,
     /// Tangential displacement.
     pub displacement: f64,
-    /// Radius of the region that stuck to the end of the step, of round contacts: the contact radius without any slip, 0 in full slip.
+    /// Radius inside which the traction is below what friction can hold, of round contacts: the contact radius without any slip, 0 in full slip.
     pub stick_radius: Option<f64>,
     /// Energy that friction has dissipated since the first step, >= 0.
     pub dissipated: f64,

@@ -1,0 +1,619 @@
+//! Cattaneo and Mindlin: a sphere under a constant normal and a changing tangential load; Mindlin and Deresiewicz: its memory.
+
+use crate::closed::ROUNDED_UP;
+use crate::hertz::Hertz;
+use contact_model::{
+    Adhesion, Boundary, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Outputs,
+    PreparedContact, Result, Rheology, Scales, Scene, Source, Step, Surface, Tangential, TangentialState,
+};
+
+const NAME: &str = "cattaneo_mindlin";
+
+/// A sphere with Coulomb's friction, pressed first and then loaded tangentially, to and fro.
+///
+/// First loading: stick radius `c = a (1 - T/(mu F))^(1/3)`, displacement `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`. After a turn at
+/// `(T_r, u_r)` the curve is the first one, doubled: `u_r - u = 2 u_1((T_r - T)/2)`, until it closes the loop with an earlier turn and goes on where that
+/// one left off (Mindlin and Deresiewicz 1953). The memory is the list of turns that are not closed.
+///
+/// Takes [`Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]). The normal load may change only before the first
+/// tangential one; a tangential force beyond mu F is [`Error::OutOfRange`], a displacement beyond is gross slip. Tangential tractions are
+/// taken not to disturb the normal ones: exact where [`contact_model::Pair::coupling`] is 0, otherwise an approximation of that order.
+///
+/// ```
+/// use analytic::CattaneoMindlin;
+/// use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
+/// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
+/// let pair = Pair { first: body, second: body };
+/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, side: 2.0 }, pair)?;
+/// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
+/// let mut contact = CattaneoMindlin.prepare(&scene, 0)?;
+/// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260.
+/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::Force(0.0025) })?;
+/// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a round contact with friction") };
+/// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-10);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CattaneoMindlin;
+
+impl HistoryModel for CattaneoMindlin {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn sources(&self) -> &'static [Source] {
+        &[
+            Source {
+                citation: "C. Cattaneo, Rend. Accad. Naz. Lincei 27, 342 (1938); R. D. Mindlin, J. Appl. Mech. 16, 259 (1949)",
+                what: "stick radius and displacement of first loading",
+            },
+            Source {
+                citation: "R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20, 327 (1953)",
+                what: "turns of the tangential load, energy of a cycle",
+            },
+        ]
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
+        scene.validate()?;
+        let Effects { boundary, adhesion, friction, rheology } = scene.effects;
+        let rest = Effects { boundary, adhesion, friction: Friction::Off, rheology };
+        rest.refuse(NAME)?;
+        let Friction::Coulomb { coefficient } = friction else {
+            return Err(Error::unsupported(NAME, format!("friction ({friction:?}): it needs Coulomb's")));
+        };
+        if coefficient <= 0.0 {
+            return Err(Error::domain("coefficient of friction", coefficient, "a finite number > 0"));
+        }
+        let Surface::Sphere { .. } = scene.surface else {
+            return Err(Error::unsupported(NAME, scene.surface.kind()));
+        };
+        let Some(pair) = scene.pair else {
+            return Err(Error::unsupported(
+                NAME,
+                "a scene without both bodies (Scene::of_pair): friction needs G*",
+            ));
+        };
+        let elastic = Scene {
+            effects: Effects {
+                boundary: Boundary::Free,
+                adhesion: Adhesion::Off,
+                friction: Friction::Off,
+                rheology: Rheology::Elastic,
+            },
+            outputs: Outputs { stiffness: true, ..scene.outputs },
+            ..scene.clone()
+        };
+        Ok(Box::new(Prepared {
+            normal: contact_model::ContactModel::prepare(&Hertz, &elastic, seed)?,
+            shear_modulus: pair.shear_modulus()?,
+            coefficient,
+            outputs: scene.outputs,
+            at: At::default(),
+        }))
+    }
+}
+
+/// A sphere under a constant normal load, first loading: everything in the caller's units.
+///
+/// ```
+/// use analytic::cattaneo_mindlin::Sphere;
+/// // mu F = 1, a = 1, G* = 3/4: u = 1 - (1 - T)^(2/3), c = (1 - T)^(1/3).
+/// let sphere = Sphere::new(2.0, 0.5, 1.0, 0.75)?;
+/// assert!((sphere.displacement(0.875)? - 0.75).abs() < 1e-15);
+/// assert!((sphere.stick_radius(0.875)? - 0.5).abs() < 1e-15);
+/// assert!((sphere.force(0.75)? - 0.875).abs() < 1e-15);
+/// // Full slip: 4 x 3/10 of mu F u.
+/// assert!((sphere.energy_per_cycle(1.0)? - 0.8).abs() < 1e-14);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere {
+    /// mu F.
+    limit: f64,
+    /// `3 mu F/(4 G* a)`: the displacement at which gross slip begins.
+    reach: f64,
+    contact_radius: f64,
+}
+
+impl Sphere {
+    /// Normal force F > 0, coefficient mu > 0, contact radius a > 0, shear modulus G* > 0 of the pair ([`contact_model::Pair::shear_modulus`]).
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a number that is not finite and positive, or a `mu F` or `mu F/(G* a)` that no `f64` holds.
+    pub fn new(force: f64, coefficient: f64, contact_radius: f64, shear_modulus: f64) -> Result<Self> {
+        let limit = coefficient * force;
+        let reach = 0.75 * limit / contact_radius / shear_modulus;
+        for (name, value) in [
+            ("force", force),
+            ("coefficient of friction", coefficient),
+            ("contact radius", contact_radius),
+            ("shear_modulus", shear_modulus),
+            ("mu F", limit),
+            ("mu F/(G* a)", reach),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(Error::domain(name, value, "a finite number > 0"));
+            }
+        }
+        Ok(Self { limit, reach, contact_radius })
+    }
+
+    /// `c = a (1 - |T|/(mu F))^(1/3)`.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a tangential force beyond mu F, [`Error::Domain`] for one that is not finite.
+    pub fn stick_radius(&self, tangential_force: f64) -> Result<f64> {
+        Ok(self.contact_radius * (1.0 - self.share(tangential_force)?.abs()).cbrt())
+    }
+
+    /// `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`, odd in T.
+    ///
+    /// # Errors
+    /// As [`Sphere::stick_radius`].
+    pub fn displacement(&self, tangential_force: f64) -> Result<f64> {
+        let t = self.share(tangential_force)?;
+        Ok(self.reach * reached(t.abs()).copysign(t))
+    }
+
+    /// The inverse: `T = mu F (1 - (1 - u/u_slip)^(3/2))`, mu F beyond `u_slip = 3 mu F/(4 G* a)`.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a displacement that is not finite.
+    pub fn force(&self, tangential_displacement: f64) -> Result<f64> {
+        if !tangential_displacement.is_finite() {
+            return Err(Error::domain("tangential displacement", tangential_displacement, "a finite number"));
+        }
+        let u = tangential_displacement / self.reach;
+        Ok(self.limit * held(u.abs().min(1.0)).copysign(u))
+    }
+
+    /// Energy that a cycle between -T and T dissipates: `(24/5) mu F u_slip (1 - (1 - t)^(5/3) - (5 t/6) (1 + (1 - t)^(2/3)))` with `t = T/(mu F)`.
+    ///
+    /// For small t it is `(4/27) mu F u_slip t^3`; the closed form cancels there and a series is taken. First loading dissipates a quarter
+    /// of it.
+    ///
+    /// # Errors
+    /// As [`Sphere::stick_radius`].
+    pub fn energy_per_cycle(&self, tangential_force: f64) -> Result<f64> {
+        let t = self.share(tangential_force)?.abs();
+        Ok(4.0 * self.limit * self.reach * lost(t))
+    }
+
+    fn share(&self, tangential_force: f64) -> Result<f64> {
+        if !tangential_force.is_finite() {
+            return Err(Error::domain("tangential force", tangential_force, "a finite number"));
+        }
+        let share = tangential_force / self.limit;
+        if share.abs() <= ROUNDED_UP {
+            return Ok(share.clamp(-1.0, 1.0));
+        }
+        Err(Error::OutOfRange {
+            name: "tangential force (beyond it the contact slips as a whole)".into(),
+            value: tangential_force,
+            min: -self.limit,
+            max: self.limit,
+        })
+    }
+}
+
+/// `u = 1 - (1 - t)^(2/3)`: displacement of first loading over its reach, t in [0, 1].
+fn reached(t: f64) -> f64 {
+    if t >= 1.0 { 1.0 } else { -(2.0 / 3.0 * (-t).ln_1p()).exp_m1() }
+}
+
+/// `t = 1 - (1 - u)^(3/2)`, its inverse.
+fn held(u: f64) -> f64 {
+    if u >= 1.0 { 1.0 } else { -(1.5 * (-u).ln_1p()).exp_m1() }
+}
+
+/// Energy that first loading dissipates, over mu F and the reach: `(6/5) (1 - (1 - t)^(5/3)) - t (1 + (1 - t)^(2/3))`.
+///
+/// By its power series `t^3/27 + ...` where the closed form cancels.
+fn lost(t: f64) -> f64 {
+    const SMALL: f64 = 0.3;
+    if t > SMALL {
+        let q = 1.0 - reached(t);
+        return 1.2 * (1.0 - (1.0 - t) * q) - t * (1.0 + q);
+    }
+    // (1 - t)^b = sum of c_k t^k with c_k = c_(k - 1) (k - 1 - b)/k.
+    let (mut five, mut two) = (1.0, 1.0);
+    let mut power = 1.0;
+    let mut sum = 0.0;
+    for k in 1..=40 {
+        let k = f64::from(k);
+        let last = two;
+        five *= (k - 1.0 - 5.0 / 3.0) / k;
+        two *= (k - 1.0 - 2.0 / 3.0) / k;
+        power *= t;
+        // The terms of first and second order cancel exactly.
+        if k > 2.5 {
+            sum += (-1.2 * five - last) * power;
+        }
+    }
+    sum
+}
+
+/// A point of the curve: force over mu F, displacement over the reach.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Point {
+    t: f64,
+    u: f64,
+}
+
+/// Where a branch is left: at a force or at a displacement.
+#[derive(Debug, Clone, Copy)]
+enum Goal {
+    Force(f64),
+    Displacement(f64),
+}
+
+impl Goal {
+    fn from(self, point: Point) -> f64 {
+        match self {
+            Self::Force(t) => t - point.t,
+            Self::Displacement(u) => u - point.u,
+        }
+    }
+}
+
+/// The curve so far.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Curve {
+    now: Point,
+    /// Sign of the last motion, 0 before any.
+    direction: f64,
+    /// Turns that are not closed, the first one on the curve of first loading.
+    turns: Vec<Point>,
+    /// Displacement at which first loading begins: it moves with gross slip.
+    origin: f64,
+    /// Over mu F and the reach.
+    dissipated: f64,
+}
+
+impl Curve {
+    /// Moves to a goal; a force is within [-1, 1].
+    fn go(&mut self, goal: Goal) {
+        let way = goal.from(self.now);
+        if way.abs() <= 0.0 {
+            return;
+        }
+        let direction = way.signum();
+        if direction * self.direction < 0.0 {
+            self.turns.push(self.now);
+        }
+        self.direction = direction;
+        loop {
+            // Where this branch ends, and the turn before its own that is closed there.
+            let end = match self.turns[..] {
+                [] => Point { t: direction, u: self.origin + direction },
+                // Back to first loading on the other side.
+                [turn] => Point { t: -turn.t, u: 2.0 * self.origin - turn.u },
+                [.., earlier, _] => earlier,
+            };
+            if goal.from(end) * direction < 0.0 {
+                self.along(goal);
+                return;
+            }
+            let before = self.now;
+            self.along(Goal::Force(end.t));
+            // The same point, without the rounding of the branch.
+            self.now = end;
+            if self.turns.is_empty() {
+                if let Goal::Displacement(u) = goal {
+                    self.dissipated += (u - end.u).abs();
+                    self.now.u = u;
+                    self.origin = u - direction;
+                }
+                return;
+            }
+            self.turns.truncate(self.turns.len().saturating_sub(2));
+            if before == self.now && goal.from(self.now).abs() <= 0.0 {
+                return;
+            }
+        }
+    }
+
+    /// Moves along the branch that begins at the last turn: the first curve, doubled.
+    fn along(&mut self, goal: Goal) {
+        let (start, scale) = match self.turns.last() {
+            Some(turn) => (*turn, 2.0),
+            None => (Point { t: 0.0, u: self.origin }, 1.0),
+        };
+        let share = |t: f64| ((t - start.t).abs() / scale).min(1.0);
+        let before = lost(share(self.now.t));
+        self.now = match goal {
+            Goal::Force(t) => Point { t, u: start.u + self.direction * scale * reached(share(t)) },
+            Goal::Displacement(u) => {
+                let part = ((u - start.u).abs() / scale).min(1.0);
+                Point { t: start.t + self.direction * scale * held(part), u }
+            }
+        };
+        self.dissipated += scale * (lost(share(self.now.t)) - before).max(0.0);
+    }
+
+    /// Stick radius over contact radius.
+    fn stick(&self) -> f64 {
+        let (start, scale) = self.turns.last().map_or((0.0, 1.0), |turn| (turn.t, 2.0));
+        (1.0 - ((self.now.t - start).abs() / scale).min(1.0)).cbrt()
+    }
+}
+
+/// Where the history stands.
+#[derive(Debug, Clone, Default)]
+struct At {
+    time: f64,
+    /// Normal state and the sphere under it, once there is one.
+    pressed: Option<(ContactState, Option<Sphere>)>,
+    curve: Curve,
+}
+
+struct Prepared {
+    normal: Box<dyn PreparedContact>,
+    shear_modulus: f64,
+    coefficient: f64,
+    outputs: Outputs,
+    at: At,
+}
+
+impl Prepared {
+    /// The state under the normal load, with its contact radius.
+    fn press(&mut self, step: &Step) -> Result<(ContactState, Option<Sphere>)> {
+        let mut state = self.normal.solve(step.normal)?;
+        let radius = 0.5 * state.stiffness.unwrap_or(0.0) / self.normal.scales().modulus;
+        if !self.outputs.stiffness {
+            state.stiffness = None;
+            state.report.certificate.stiffness_error = None;
+        }
+        let sphere = if state.force > 0.0 {
+            Some(Sphere::new(state.force, self.coefficient, radius, self.shear_modulus)?)
+        } else {
+            None
+        };
+        Ok((state, sphere))
+    }
+}
+
+impl History for Prepared {
+    fn scales(&self) -> Scales {
+        self.normal.scales()
+    }
+
+    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+        /// A normal load that comes back through a conversion is the same one.
+        const SAME: f64 = 1e-12;
+        let step = step.validated(self.at.time)?;
+        let (state, sphere) = self.press(&step)?;
+        let untouched = self.at.curve == Curve::default();
+        if let (Some((last, _)), false) = (&self.at.pressed, untouched)
+            && (state.force - last.force).abs() > SAME * last.force
+        {
+            let what = "a change of the normal load after a tangential one (the theory holds it constant)";
+            return Err(Error::unsupported(NAME, what));
+        }
+        // After a tangential load the first normal state stays, to the last digit.
+        let (state, sphere) = match &self.at.pressed {
+            Some(pressed) if !untouched => pressed.clone(),
+            _ => (state, sphere),
+        };
+        let mut curve = self.at.curve.clone();
+        let tangential = if let Some(sphere) = sphere {
+            curve.go(match step.tangential {
+                Tangential::Force(force) => Goal::Force(sphere.share(force)?),
+                Tangential::Displacement(u) => Goal::Displacement(u / sphere.reach),
+                other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+            });
+            let (force, displacement) = match step.tangential {
+                Tangential::Force(force) => (force, curve.now.u * sphere.reach),
+                Tangential::Displacement(u) => (curve.now.t * sphere.limit, u),
+                other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+            };
+            TangentialState {
+                force,
+                displacement,
+                stick_radius: Some(curve.stick() * sphere.contact_radius),
+                dissipated: curve.dissipated * sphere.limit * sphere.reach,
+            }
+        } else {
+            if step.tangential != Tangential::Force(0.0) && step.tangential != Tangential::Displacement(0.0) {
+                let what = "a tangential load without a normal one";
+                return Err(Error::unsupported(NAME, what));
+            }
+            TangentialState { force: 0.0, displacement: 0.0, stick_radius: Some(0.0), dissipated: 0.0 }
+        };
+        self.at = At { time: step.time, pressed: Some((state.clone(), sphere)), curve };
+        Ok(HistoryState {
+            time: step.time,
+            normal: state,
+            contact_radius: Some(sphere.map_or(0.0, |sphere| sphere.contact_radius)),
+            tangential: Some(tangential),
+        })
+    }
+
+    fn restart(&mut self) {
+        self.at = At::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{PRINTED, ROUNDING};
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use contact_model::{Body, Load, Pair};
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    const MU: f64 = 0.4;
+    const FORCE: f64 = 0.01;
+
+    fn scene(mu: f64) -> Scene {
+        let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 0.75, poisson: 0.5 } };
+        let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, side: 2.0 }, pair).unwrap();
+        scene.effects.friction = Friction::Coulomb { coefficient: mu };
+        scene
+    }
+
+    fn at(tangential: Tangential) -> Step {
+        Step { time: 0.0, normal: Load::Force(FORCE), tangential }
+    }
+
+    fn tangential(contact: &mut dyn History, load: Tangential) -> TangentialState {
+        contact.advance(at(load)).unwrap().tangential.unwrap()
+    }
+
+    #[test]
+    fn reference_numbers() {
+        // PHYSICS section 4.
+        for (share, ratio) in [(0.25, 0.908_560_296_4), (0.5, 0.793_700_526_0), (0.9, 0.464_158_883_4)] {
+            let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
+            let state = contact.advance(at(Tangential::Force(share * MU * FORCE))).unwrap();
+            let stick = state.tangential.unwrap().stick_radius.unwrap();
+            assert_relative_eq!(stick / state.contact_radius.unwrap(), ratio, max_relative = 2.0 * PRINTED);
+            assert!(state.normal.stiffness.is_some() && state.normal.area.is_none());
+        }
+    }
+
+    #[test]
+    fn a_light_load_does_not_slip() {
+        // k_x = 2 G* a, G* = (2/3) E* for nu = 1/2. Friction without end is the same limit.
+        for (mu, force) in [(MU, 1e-9), (1e9, 1e-3)] {
+            let mut contact = CattaneoMindlin.prepare(&scene(mu), 0).unwrap();
+            let state = contact.advance(at(Tangential::Force(force))).unwrap();
+            let (a, tangential) = (state.contact_radius.unwrap(), state.tangential.unwrap());
+            let stiffness = tangential.force / tangential.displacement;
+            assert_relative_eq!(stiffness, 2.0 * 2.0 / 3.0 * a, max_relative = 1e-6);
+            assert_relative_eq!(tangential.stick_radius.unwrap(), a, max_relative = 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_energy_and_its_series() {
+        // Both forms where they meet, t^3/27 for small loads, 1/5 in full slip.
+        assert_relative_eq!(lost(0.3 - 1e-12), lost(0.3 + 1e-12), max_relative = 1e-9);
+        assert_relative_eq!(lost(1e-6), 1e-18 / 27.0, max_relative = 1e-5);
+        assert_relative_eq!(lost(1.0), 0.2, max_relative = ROUNDING);
+        assert!(lost(0.0) <= 0.0);
+    }
+
+    #[test]
+    fn a_cycle_closes_and_dissipates_what_mindlin_and_deresiewicz_say() {
+        let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
+        let top = 0.7 * MU * FORCE;
+        let first = tangential(&mut *contact, Tangential::Force(top));
+        let mut points = vec![(first.force, first.displacement)];
+        // To -T and back in small steps; the area of the loop by trapezoids.
+        let steps = 2000;
+        for i in 1..=2 * steps {
+            let phase = f64::from(i) / f64::from(steps);
+            let force = if phase <= 1.0 { top * (1.0 - 2.0 * phase) } else { top * (2.0 * phase - 3.0) };
+            let state = tangential(&mut *contact, Tangential::Force(force));
+            points.push((state.force, state.displacement));
+        }
+        let area: f64 = points.windows(2).map(|w| 0.5 * (w[0].0 + w[1].0) * (w[1].1 - w[0].1)).sum();
+        let last = tangential(&mut *contact, Tangential::Force(top));
+        assert_relative_eq!(last.displacement, first.displacement, max_relative = 1e-12);
+        let state = contact.advance(at(Tangential::Force(top))).unwrap();
+        let sphere = Sphere::new(FORCE, MU, state.contact_radius.unwrap(), 2.0 / 3.0).unwrap();
+        let energy = sphere.energy_per_cycle(top).unwrap();
+        assert_relative_eq!(area, energy, max_relative = 1e-5);
+        assert_relative_eq!(last.dissipated - first.dissipated, energy, max_relative = 1e-10);
+        assert_relative_eq!(first.dissipated, energy / 4.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn gross_slip_and_the_way_back() {
+        let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
+        assert!(matches!(
+            contact.advance(at(Tangential::Force(1.01 * MU * FORCE))),
+            Err(Error::OutOfRange { .. })
+        ));
+        // A failed step leaves no trace.
+        let reach = tangential(&mut *contact, Tangential::Force(MU * FORCE)).displacement;
+        let slid = tangential(&mut *contact, Tangential::Displacement(3.0 * reach));
+        assert_relative_eq!(slid.force, MU * FORCE, max_relative = ROUNDING);
+        assert!(slid.stick_radius.unwrap() <= 0.0);
+        // 1/5 of mu F u_slip before, mu F times the way after.
+        assert_relative_eq!(slid.dissipated, MU * FORCE * reach * 2.2, max_relative = 1e-12);
+        // Back by twice the reach: full slip the other way.
+        let back = tangential(&mut *contact, Tangential::Displacement(reach));
+        assert_relative_eq!(back.force, -MU * FORCE, max_relative = 1e-12);
+        let on = tangential(&mut *contact, Tangential::Displacement(-reach));
+        assert_relative_eq!(on.dissipated, slid.dissipated + MU * FORCE * reach * 2.4, max_relative = 1e-12);
+        contact.restart();
+        let again = tangential(&mut *contact, Tangential::Displacement(reach));
+        assert_relative_eq!(again.force, MU * FORCE, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn what_the_theory_does_not_cover_is_refused() {
+        let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
+        let alone = Step { time: 0.0, normal: Load::Force(0.0), tangential: Tangential::Force(1.0) };
+        assert!(matches!(contact.advance(alone), Err(Error::Unsupported { .. })));
+        // The normal load may change while there is nothing tangential.
+        for force in [0.0, 0.02, FORCE] {
+            contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
+        }
+        tangential(&mut *contact, Tangential::Force(1e-4));
+        let heavier = Step { time: 0.0, normal: Load::Force(0.02), tangential: Tangential::Force(1e-4) };
+        assert!(matches!(contact.advance(heavier), Err(Error::Unsupported { .. })));
+        let early = Step { time: -1.0, ..at(Tangential::Force(0.0)) };
+        assert!(matches!(contact.advance(early), Err(Error::Domain { .. })));
+
+        let refused = |scene: &Scene| CattaneoMindlin.prepare(scene, 0).map(|_| ()).unwrap_err();
+        assert!(refused(&Scene { pair: None, ..scene(MU) }).to_string().contains("both bodies"));
+        let mut smooth = scene(MU);
+        smooth.effects.friction = Friction::Off;
+        assert!(matches!(refused(&smooth), Error::Unsupported { .. }));
+        let mut sticky = scene(MU);
+        sticky.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
+        assert!(matches!(refused(&sticky), Error::Unsupported { .. }));
+        let cone = Scene { surface: Surface::Cone { slope: 0.1, side: 1.0 }, ..scene(MU) };
+        assert!(matches!(refused(&cone), Error::Unsupported { .. }));
+        assert!(matches!(refused(&scene(0.0)), Error::Domain { .. }));
+        assert!(Sphere::new(1.0, 0.5, 0.0, 1.0).is_err());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(64) })]
+
+        /// Springs with Coulomb's limit, the picture behind the theory: `f = clamp(f + du, limit (1 - x^2))`.
+        #[test]
+        fn any_path_is_that_of_springs(path in proptest::collection::vec(-1.6_f64..1.6, 1..12)) {
+            const SPRINGS: usize = 4000;
+            let mut springs = vec![0.0; SPRINGS];
+            let x = |i: usize| (i as f64 + 0.5) / SPRINGS as f64;
+            let mut curve = Curve::default();
+            let (mut last, mut lost) = (0.0, 0.0);
+            for u in path {
+                curve.go(Goal::Displacement(u));
+                for (i, spring) in springs.iter_mut().enumerate() {
+                    let limit = 1.0 - x(i) * x(i);
+                    let free = *spring + u - last;
+                    *spring = free.clamp(-limit, limit);
+                    // mu F = (2/3) of limits of length 1.
+                    lost += limit * (free - *spring).abs() * 1.5 / SPRINGS as f64;
+                }
+                last = u;
+                let force = springs.iter().sum::<f64>() * 1.5 / SPRINGS as f64;
+                // Midpoints over kinks: second order in 1/4000.
+                assert_abs_diff_eq!(curve.now.t, force, epsilon = 1e-6);
+                assert_abs_diff_eq!(curve.dissipated, lost, epsilon = 1e-6);
+                prop_assert!(curve.now.t.abs() <= 1.0 && curve.turns.len() <= 12);
+            }
+        }
+
+        /// Force and displacement drive the same curve.
+        #[test]
+        fn both_controls_agree(path in proptest::collection::vec(-0.99_f64..0.99, 1..12)) {
+            let (mut by_force, mut by_displacement) = (Curve::default(), Curve::default());
+            for t in path {
+                by_force.go(Goal::Force(t));
+                by_displacement.go(Goal::Displacement(by_force.now.u));
+                assert_abs_diff_eq!(by_displacement.now.t, t, epsilon = 1e-12);
+                assert_abs_diff_eq!(by_displacement.dissipated, by_force.dissipated, epsilon = 1e-12);
+                assert_abs_diff_eq!(by_displacement.stick(), by_force.stick(), epsilon = 1e-4);
+            }
+        }
+    }
+}
