@@ -9,6 +9,7 @@
 //!   exact in three dimensions.
 //! * Short-range adhesion of these bodies by Hess's rule: the springs at the edge tear at `sqrt(2 pi a w / E*)`.
 //! * [`Mdr1d`]: all of it behind [`contact_model::ContactModel`].
+//! * [`PartialSlip`] (a history): Coulomb's friction of these bodies under any path of normal and tangential loads.
 //!
 //! # Conventions
 //!
@@ -28,7 +29,7 @@
 //!
 //! It offers no contact area, pressure or mean gap for rough surfaces: a line's length in contact is not an area, and both fail
 //! even qualitatively (Lyashenko, Pastewka, Persson 2013). Such outputs are refused, as are
-//! adhesion of rough lines, friction, periodic boundaries and rheology.
+//! periodic boundaries, and adhesion, friction and rheology of rough lines: these rules need the radius of a round contact.
 //!
 //! ```
 //! use contact_model::{ContactModel, Load, Scene, Surface};
@@ -45,8 +46,12 @@ mod adhesion;
 pub mod axisymmetric;
 mod bearing;
 mod model;
+mod partial_slip;
+mod root;
 pub mod rule;
+mod slip;
 
 pub use axisymmetric::Profile;
 pub use bearing::{Bearing, Support};
 pub use model::{Ensemble, Mdr1d};
+pub use partial_slip::PartialSlip;
