@@ -7,9 +7,9 @@ use crate::operator::lattice::Split;
 /// Nanoseconds of one kernel look-up and addition of the direct sum, for scattered cells (short rows).
 const PAIR_NS: f64 = 2.0;
 /// Nanoseconds per point of a padded transform, per log2 of the points: one application in f64, fully populated.
-const POINT_NS: f64 = 0.30;
+const POINT_NS: f64 = 0.17;
 /// The same in f32, relative to f64.
-const SINGLE: f64 = 0.5;
+const SINGLE: f64 = 0.65;
 /// Nanoseconds of one close pair of the two-level operator, its short runs and misses counted in.
 const CLOSE_PAIR_NS: f64 = 3.0;
 /// Nanoseconds of one interpolation weight of the two-level operator.
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn direct_two_levels_and_transform_in_this_order() {
         let choice = |set: &CellSet| fast_choice(set, set, WINDOW);
-        assert_eq!(choice(&every(20_000)), Choice::Direct);
+        assert_eq!(choice(&every(200_000)), Choice::Direct);
         assert!(matches!(choice(&every(400)), Choice::TwoLevel(_)));
         assert_eq!(choice(&every(3)), Choice::Fft);
     }
