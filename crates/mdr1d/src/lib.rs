@@ -10,6 +10,7 @@
 //! * Short-range adhesion of these bodies by Hess's rule: the springs at the edge tear at `sqrt(2 pi a w / E*)`.
 //! * [`Mdr1d`]: all of it behind [`contact_model::ContactModel`].
 //! * [`PartialSlip`] (a history): Coulomb's friction of these bodies under any path of normal and tangential loads.
+//! * [`Viscoelastic`] (a history): these bodies on Kelvin-Voigt, Maxwell, standard and Prony solids, along any history while the contact grows.
 //!
 //! # Conventions
 //!
@@ -45,13 +46,16 @@
 mod adhesion;
 pub mod axisymmetric;
 mod bearing;
+mod material;
 mod model;
 mod partial_slip;
 mod root;
 pub mod rule;
 mod slip;
+mod viscoelastic;
 
 pub use axisymmetric::Profile;
 pub use bearing::{Bearing, Support};
 pub use model::{Ensemble, Mdr1d};
 pub use partial_slip::PartialSlip;
+pub use viscoelastic::Viscoelastic;
