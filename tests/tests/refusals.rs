@@ -2,12 +2,15 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
-use analytic::{FlatPunch, Hertz, Jkr, PowerLaw, PowerLawBody};
+use analytic::{
+    CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
+};
 use bem3d::Bem3d;
 use contact_model::{
-    Adhesion, Boundary, ContactModel, Effects, Error, Friction, Line, Load, Outputs, Rheology, Scene, Surface,
+    Adhesion, Body, Boundary, ContactModel, Effects, Error, Friction, HistoryModel, Line, Load, Outputs,
+    Pair, Rheology, Scene, Step, Surface,
 };
-use mdr1d::Mdr1d;
+use mdr1d::{Mdr1d, PartialSlip, Viscoelastic};
 use std::sync::Arc;
 use tests::{map, rough};
 
@@ -87,18 +90,22 @@ fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     effect == "adhesion" && (model == "jkr" || (model == "mdr1d" && round))
 }
 
-/// An effect that a model lacks is refused by its name, never solved as if it were off.
-#[test]
-fn effects_are_refused() {
-    let effects = [
+/// One of each effect, by a word of its refusal.
+fn each_effect() -> [(&'static str, Effects); 4] {
+    [
         ("boundary", Effects { boundary: Boundary::Periodic, ..Effects::default() }),
         ("adhesion", Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() }),
         ("friction", Effects { friction: Friction::Coulomb { coefficient: 0.3 }, ..Effects::default() }),
         ("rheology", Effects { rheology: Rheology::KelvinVoigt { viscosity: 1.0 }, ..Effects::default() }),
-    ];
+    ]
+}
+
+/// An effect that a model lacks is refused by its name, never solved as if it were off.
+#[test]
+fn effects_are_refused() {
     for (model, scenes) in accepted() {
         for scene in scenes {
-            for (name, effects) in effects {
+            for (name, effects) in each_effect() {
                 if has(model.name(), &scene.surface, name) {
                     let scene = Scene { effects, ..scene.clone() };
                     assert!(model.prepare(&scene, 0).is_ok(), "{} {scene:?}", model.name());
@@ -106,6 +113,85 @@ fn effects_are_refused() {
                 }
                 let what = unsupported(&*model, &Scene { effects, ..scene.clone() });
                 assert!(what.contains(name), "{}: {what}", model.name());
+            }
+        }
+    }
+}
+
+/// Theories of periodic contact take nothing without periodic boundaries, and no other effect with them; their states have a mean gap
+/// and no approach.
+#[test]
+fn periodic_theories() {
+    let mut with_cutoff = rough(2.4).unwrap();
+    with_cutoff.short_cutoff = Some(32.0 * std::f64::consts::TAU);
+    let random = Surface::SelfAffine(with_cutoff);
+    let sine = Surface::Sine { amplitude: 0.1, wavelength: 0.5, side: 1.0 };
+    let models: [(&dyn ContactModel, &Surface); 3] =
+        [(&Persson::default(), &random), (&GreenwoodWilliamson::default(), &random), (&Westergaard, &sine)];
+    for (model, surface) in models {
+        let [periodic, rest @ ..] = each_effect();
+        let mut scene = Scene::new(surface.clone(), 1.0);
+        assert!(unsupported(model, &scene).contains("boundary"));
+        scene.effects = periodic.1;
+        for (name, mut effects) in rest {
+            effects.boundary = Boundary::Periodic;
+            let what = unsupported(model, &Scene { effects, ..scene.clone() });
+            assert!(what.contains(name), "{}: {what}", model.name());
+        }
+        let [_, _, fields @ ..] = each_output();
+        for outputs in fields {
+            unsupported(model, &Scene { outputs, ..scene.clone() });
+        }
+        for other in surfaces().into_iter().filter(|other| other.kind() != surface.kind()) {
+            unsupported(model, &Scene { surface: other, ..scene.clone() });
+        }
+        let mut contact = model.prepare(&scene, 0).unwrap();
+        let state = contact.solve(Load::Force(1e-3)).unwrap();
+        assert!(state.approach.is_none() && state.area.is_none() && state.stiffness.unwrap() > 0.0);
+        let gap = contact.mean_gap(Load::Force(1e-3)).unwrap();
+        let back = contact.solve(Load::MeanGap(gap)).unwrap().force;
+        assert!((back / 1e-3 - 1.0).abs() < 1e-9, "{}", model.name());
+        assert!(matches!(contact.solve(Load::Approach(1e-3)), Err(Error::Unsupported { .. })));
+    }
+    // Where there is an approach there is no mean gap.
+    for (model, scenes) in accepted() {
+        for scene in scenes {
+            let mut contact = model.prepare(&scene, 0).unwrap();
+            assert!(matches!(contact.mean_gap(Load::Force(1e-3)), Err(Error::Unsupported { .. })));
+            assert!(matches!(contact.solve(Load::MeanGap(1e-3)), Err(Error::Unsupported { .. })));
+        }
+    }
+}
+
+/// Histories have one effect each, for round contacts; they refuse to do without it and the others beside it.
+#[test]
+fn histories() {
+    let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 0.75, poisson: 0.5 } };
+    let models: [(&dyn HistoryModel, &str, &str); 3] = [
+        //                            rough map line sphere cone power circle square sine
+        (&CattaneoMindlin, "friction", "---x-----"),
+        (&PartialSlip, "friction", "---xxxx--"),
+        (&Viscoelastic, "rheology", "---xxxx--"),
+    ];
+    for (model, own, takes) in models {
+        let refused = |scene: &Scene| matches!(model.prepare(scene, 0), Err(Error::Unsupported { .. }));
+        for (surface, taken) in surfaces().into_iter().zip(takes.chars()) {
+            for (name, effects) in each_effect() {
+                let mut scene = Scene { effects, ..Scene::of_pair(surface.clone(), pair).unwrap() };
+                scene.outputs = Outputs::default();
+                if name != own || taken == '-' {
+                    assert!(refused(&scene), "{} {name} {scene:?}", model.name());
+                    continue;
+                }
+                assert!(refused(&Scene { effects: Effects::default(), ..scene.clone() }));
+                let mut both = scene.clone();
+                both.effects.boundary = Boundary::Periodic;
+                assert!(refused(&both));
+                let mut contact = model.prepare(&scene, 0).unwrap();
+                let state = contact.advance(Step::normal(1.0, Load::Force(1e-3))).unwrap();
+                assert!(state.normal.stiffness.is_none() && state.normal.area.is_none());
+                assert!(state.contact_radius.unwrap() > 0.0 && !model.sources().is_empty());
+                assert_eq!(state.tangential.is_some(), own == "friction");
             }
         }
     }

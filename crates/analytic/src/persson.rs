@@ -21,8 +21,8 @@ const NAME: &str = "persson";
 /// of the spectrum are those of [`crate::spectrum`]. The mean gap has no bound as p -> 0 (a Gaussian surface has no highest point): it is an error at no load, and
 /// real, finite surfaces leave the exponential where few summits touch.
 ///
-/// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative error below 1e-11. A state with stiffness or gap costs
-/// some thousand nodes, up to a millisecond.
+/// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative error below 1e-11. A state costs
+/// some thousand nodes: tens of microseconds, a few hundred for its gap, a few milliseconds for the state at a given gap.
 ///
 /// ```
 /// use analytic::Persson;

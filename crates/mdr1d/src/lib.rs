@@ -7,15 +7,22 @@
 //! * [`rule`]: which line stands for a self-affine square (Pohrt, Popov, Filippov 2012, Eqs. 14 to 18).
 //! * [`axisymmetric`]: spheres, cones, power-law bodies and flat circular punches through their profile `g(x)`, where the method is
 //!   exact in three dimensions.
-//! * Short-range adhesion of these bodies by Hess's rule: the springs at the edge tear at `sqrt(2 pi a w / E*)`.
-//! * [`Mdr1d`]: all of it behind [`contact_model::ContactModel`].
-//! * [`PartialSlip`] (a history): Coulomb's friction of these bodies under any path of normal and tangential loads.
-//! * [`Viscoelastic`] (a history): these bodies on Kelvin-Voigt, Maxwell, standard and Prony solids, along any history while the contact grows.
+//! * Adhesion, friction and rheology of such bodies, each spring obeying a rule of its own.
+//!
+//! Behind the common traits, one file each:
+//!
+//! | model | surfaces | effects | claims |
+//! |---|---|---|---|
+//! | [`Mdr1d`] | self-affine, line | none | F, d, k |
+//! | [`Mdr1d`] | [`axisymmetric`] bodies | none, or short-range adhesion: edge springs tear at `sqrt(2 pi a w / E*)` (Hess) | F, d (of either sign with adhesion), k, area, pull-off |
+//! | [`PartialSlip`] (a history) | [`axisymmetric`] bodies | Coulomb's friction, any path of both loads | tangential force and displacement, stick radius, dissipated energy |
+//! | [`Viscoelastic`] (a history) | [`axisymmetric`] bodies | Kelvin-Voigt, Maxwell, standard solid, Prony series, while the contact grows | F, d, area of time |
 //!
 //! # Conventions
 //!
 //! The springs have the stiffness E* per length. `z = h_max - h`, the approach `d` counts from first touch, the contact set
-//! is `{z < d}`: an element that touches without force is outside, and `F = 0` means `d = 0` and `k = 0`. A line stands for a square
+//! is `{z < d}`: an element that touches without force is outside, and `F = 0` means `d = 0` and `k = 0`
+//! (with adhesion it means the adhered contact). A line stands for a square
 //! of side L and has the length `L_1D = 2 L / sqrt(pi)`; `F_bar` and `k_bar` are counted with that L and with the line's own
 //! measured rms height ([`contact_model::Scales`]).
 //!
@@ -24,7 +31,8 @@
 //! The equations of the line are met to a few units in the last place, at any load and in any units from 1e-150 to 1e150. How
 //! well a *rough* line stands for a rough surface is a matter of physics: 1D exceeds 3D by 7 to 18 % at `F_bar` = 1, and its
 //! plateau is 2 % below that of a rigid square.
-//! One line of 2^20 elements takes milliseconds, and each further load microseconds ([`Bearing`]).
+//! One line of 2^20 elements takes milliseconds, and each further load microseconds ([`Bearing`]). A step
+//! of [`PartialSlip`] costs a microsecond by displacement and some twenty by force, of [`Viscoelastic`] a hundred with 16 arms.
 //!
 //! # What it does not do
 //!

@@ -22,7 +22,7 @@ const NAME: &str = "mdr1d_viscoelastic";
 /// value is the instant from which it would. Under a falling force that may lie well after the force began to fall.
 ///
 /// Under a prescribed force the state is in closed form (exponentials of the material's own creep rates); under a prescribed approach it is a
-/// quadrature to 1e-13 per arm. Force and approach at a time of up to 16 arms cost well below a millisecond. No stiffness is claimed: it depends on how fast one
+/// quadrature to 1e-12 per arm. Force and approach at a time of up to 16 arms cost well below a millisecond. No stiffness is claimed: it depends on how fast one
 /// pushes.
 ///
 /// ```

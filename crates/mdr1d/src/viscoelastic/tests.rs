@@ -92,7 +92,7 @@ fn ramps_in_closed_form() {
             z + (-z).exp_m1()
         };
         let expected = 4.0 * 2.0 * factor * v * v * tau * tau * rest;
-        assert_relative_eq!(force(&mut *contact, time, v * time), expected, max_relative = 1e-11);
+        assert_relative_eq!(force(&mut *contact, time, v * time), expected, max_relative = ROUNDING);
         // F = r t: Phi = r (t + t^2/(2 tau)).
         contact.restart();
         let expected = (1e-4 / 4.0 * (time + time * time / (2.0 * tau)) / factor).sqrt();
