@@ -464,7 +464,7 @@ mod tests {
 
     #[test]
     fn reference_numbers() {
-        // PHYSICS section 4.
+        // data/paper/VALUES.md.
         for (share, ratio) in [(0.25, 0.908_560_296_4), (0.5, 0.793_700_526_0), (0.9, 0.464_158_883_4)] {
             let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
             let state = contact.advance(at(Tangential::Force(share * MU * FORCE))).unwrap();

@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn integrals_of_the_table() {
-        // PHYSICS section 4.
+        // data/paper/VALUES.md.
         for (t, three_halves, half) in [
             (0.0, 0.430_019_99, 0.411_089_48),
             (1.0, 0.075_668_18, 0.104_153_68),

@@ -285,7 +285,7 @@ mod tests {
 
     #[test]
     fn reference_numbers() {
-        // PHYSICS section 4: u_0/h = 1.054 gamma at H = 0.8 and two decades.
+        // data/paper/VALUES.md: u_0/h = 1.054 gamma at H = 0.8 and two decades.
         assert_relative_eq!(law(0.8, None, 100.0, 1.0).light(), 1.054, max_relative = 5e-4);
         assert_relative_eq!(SMALL_AREA_FACTOR, (8.0 / std::f64::consts::PI).sqrt(), max_relative = 1e-15);
         let spectrum = Spectrum::new(&surface(0.8, None, 100.0)).unwrap();
