@@ -259,7 +259,7 @@ impl PeriodicLaw for Law {
         let t = (gap - elevation) / scatter;
         if t < -8.0 * f64::EPSILON * elevation / scatter {
             let name = "mean gap over rms height (half of the summits are in contact at the smallest)".into();
-            return Err(Error::OutOfRange { name, value: gap, min: elevation, max: f64::MAX });
+            return Err(Error::OutOfRange { name, value: gap, min: elevation, max: f64::INFINITY });
         }
         Ok(self.pressure_at(t.max(0.0)))
     }

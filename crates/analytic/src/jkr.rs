@@ -228,7 +228,7 @@ impl Sphere {
                 name: "force (the contact pulls off under a prescribed force)".into(),
                 value: force,
                 min: self.pull_off_at_force()?.force,
-                max: f64::MAX,
+                max: f64::INFINITY,
             });
         }
         let root = (scaled + pull_off).max(0.0).sqrt() + pull_off.sqrt();
@@ -250,7 +250,7 @@ impl Sphere {
                 name: "approach (the contact pulls off under a prescribed approach)".into(),
                 value: approach,
                 min: self.pull_off_at_approach()?.approach,
-                max: f64::MAX,
+                max: f64::INFINITY,
             });
         }
         if d <= least {

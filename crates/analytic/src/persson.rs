@@ -240,7 +240,7 @@ impl PeriodicLaw for Law {
         if value(high) >= 0.0 {
             let min = self.gap(CLOSED * self.slope)?;
             let name = "mean gap over rms height".into();
-            return Err(Error::OutOfRange { name, value: gap, min, max: f64::MAX });
+            return Err(Error::OutOfRange { name, value: gap, min, max: f64::INFINITY });
         }
         let mut low = -2.0;
         while value(low) < 0.0 {

@@ -276,9 +276,12 @@ impl Body {
             };
         match found {
             Ok(contact) => Ok((contact, adhesive.attracts() || value.abs() > 0.0)),
-            Err(Failure::PullsOff { smallest: least }) => {
-                Err(Error::OutOfRange { name: name.into(), value, min: -smallest(-least)?, max: f64::MAX })
-            }
+            Err(Failure::PullsOff { smallest: least }) => Err(Error::OutOfRange {
+                name: name.into(),
+                value,
+                min: -smallest(-least)?,
+                max: f64::INFINITY,
+            }),
             Err(Failure::Range(radius)) => Err(out_of_f64(radius)),
         }
     }

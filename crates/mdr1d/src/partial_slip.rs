@@ -16,7 +16,7 @@ const NAME: &str = "mdr1d_partial_slip";
 /// loads: a step goes straight from one pair of approach and tangential displacement to the next (a step by force ends where the force is
 /// reached). The state at its end is exact for the springs, whatever the length of the step, energy included: nothing is discretised in x or in
 /// the path. Cost: O(m) for m corners that the path has left in the state of the springs, at most two more per step; a tangential force some
-/// thirty times that.
+/// thirty times that. Energies are results too: units in which they leave f64 (lengths below 1e-100) are errors.
 ///
 /// The springs are exact for the half-space in the approximation of Cattaneo, Mindlin, Jaeger and Ciavarella: tangential tractions do not disturb the normal
 /// ones ([`contact_model::Pair::coupling`] is 0, or neglected), slip has the direction of the load everywhere (an error of a few per cent of the slip).

@@ -71,15 +71,17 @@ impl Springs {
     pub fn stick_radius(&self) -> f64 {
         /// A spring within this share of its bound is at it.
         const AT_BOUND: f64 = 1.0 - 1e-11;
-        let full = self.approach * self.bound;
+        // Nothing holds without contact or without friction.
+        if self.approach * self.bound <= 0.0 {
+            return 0.0;
+        }
         let slips = |knot: &Knot| knot.u.abs() >= self.limit(knot.gamma, self.approach) * AT_BOUND;
         // From the edge inwards; the edge itself has no bound to be below of.
-        let inner = self.polygon.iter().rev().skip(1).take_while(|knot| full > 0.0 && slips(knot)).last();
+        let inner = self.polygon.iter().rev().skip(1).take_while(|knot| slips(knot)).last();
         match self.profile {
             Profile::Flat { radius } => match inner {
                 Some(knot) if knot.gamma <= 0.0 => 0.0,
-                _ if self.approach > 0.0 => radius,
-                _ => 0.0,
+                _ => radius,
             },
             Profile::Power { .. } => position(self.profile, inner.map_or(self.approach, |knot| knot.gamma)),
         }

@@ -104,7 +104,7 @@ fn limits_and_failures() {
     // Without friction there is no tangential force.
     let mut smooth = PartialSlip.prepare(&scene(sphere(1.0), 0.0), 0).unwrap();
     let state = smooth.advance(step(0.01, Tangential::Displacement(0.1))).unwrap().tangential.unwrap();
-    assert!(state.force.abs() <= 0.0 && state.dissipated <= 0.0);
+    assert!(state.force.abs() <= 0.0 && state.dissipated <= 0.0 && state.stick_radius.unwrap() <= 0.0);
     assert!(smooth.advance(step(0.01, Tangential::Force(0.0))).is_ok());
 }
 
