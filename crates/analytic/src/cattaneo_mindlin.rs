@@ -2,6 +2,7 @@
 
 use crate::closed::ROUNDED_UP;
 use crate::hertz::Hertz;
+use crate::memory::{Curve, Goal, held, lost, reached};
 use contact_model::{
     Adhesion, Boundary, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Outputs,
     PreparedContact, Result, Rheology, Scales, Scene, Source, Step, Surface, Tangential, TangentialState,
@@ -11,13 +12,15 @@ const NAME: &str = "cattaneo_mindlin";
 
 /// A sphere with Coulomb's friction, pressed first and then loaded tangentially, to and fro.
 ///
-/// First loading: stick radius `c = a (1 - T/(mu F))^(1/3)`, displacement `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`. After a turn at
-/// `(T_r, u_r)` the curve is the first one, doubled: `u_r - u = 2 u_1((T_r - T)/2)`, until it closes the loop with an earlier turn and goes on where that
-/// one left off (Mindlin and Deresiewicz 1953). The memory is the list of turns that are not closed.
+/// First loading: stick radius `c = a (1 - T/(mu F))^(1/3)`, displacement `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`. After a
+/// turn at `(T_r, u_r)` the curve is the first one, doubled: `u_r - u = 2 u_1((T_r - T)/2)`, until it closes the loop with an
+/// earlier turn and goes on where that one left off (Mindlin and Deresiewicz 1953). The memory is the list of turns that are not
+/// closed.
 ///
-/// Takes [`Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]). The normal load may change only before the first
-/// tangential one; a tangential force beyond mu F is [`Error::OutOfRange`], a displacement beyond is gross slip. Tangential tractions are
-/// taken not to disturb the normal ones: exact where [`contact_model::Pair::coupling`] is 0, otherwise an approximation of that order.
+/// Takes [`Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]). The normal load may change only before
+/// the first tangential one; a tangential force beyond mu F is [`Error::OutOfRange`], a displacement beyond is gross slip.
+/// Tangential tractions are taken not to disturb the normal ones: exact where [`contact_model::Pair::coupling`] is 0, otherwise an
+/// approximation of that order.
 ///
 /// ```
 /// use analytic::CattaneoMindlin;
@@ -117,7 +120,8 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Normal force F > 0, coefficient mu > 0, contact radius a > 0, shear modulus G* > 0 of the pair ([`contact_model::Pair::shear_modulus`]).
+    /// Normal force F > 0, coefficient mu > 0, contact radius a > 0, shear modulus G* > 0 of the pair
+    /// ([`contact_model::Pair::shear_modulus`]).
     ///
     /// # Errors
     /// [`Error::Domain`] for a number that is not finite and positive, or a `mu F` or `mu F/(G* a)` that no `f64` holds.
@@ -168,7 +172,8 @@ impl Sphere {
         Ok(self.limit * held(u.abs().min(1.0)).copysign(u))
     }
 
-    /// Energy that a cycle between -T and T dissipates: `(24/5) mu F u_slip (1 - (1 - t)^(5/3) - (5 t/6) (1 + (1 - t)^(2/3)))` with `t = T/(mu F)`.
+    /// Energy that a cycle between -T and T dissipates: `(24/5) mu F u_slip (1 - (1 - t)^(5/3) - (5 t/6) (1 + (1 - t)^(2/3)))` with
+    /// `t = T/(mu F)`.
     ///
     /// For small t it is `(4/27) mu F u_slip t^3`; the closed form cancels there and a series is taken. First loading dissipates a quarter
     /// of it.
@@ -194,148 +199,6 @@ impl Sphere {
             min: -self.limit,
             max: self.limit,
         })
-    }
-}
-
-/// `u = 1 - (1 - t)^(2/3)`: displacement of first loading over its reach, t in [0, 1].
-fn reached(t: f64) -> f64 {
-    if t >= 1.0 { 1.0 } else { -(2.0 / 3.0 * (-t).ln_1p()).exp_m1() }
-}
-
-/// `t = 1 - (1 - u)^(3/2)`, its inverse.
-fn held(u: f64) -> f64 {
-    if u >= 1.0 { 1.0 } else { -(1.5 * (-u).ln_1p()).exp_m1() }
-}
-
-/// Energy that first loading dissipates, over mu F and the reach: `(6/5) (1 - (1 - t)^(5/3)) - t (1 + (1 - t)^(2/3))`.
-///
-/// By its power series `t^3/27 + ...` where the closed form cancels.
-fn lost(t: f64) -> f64 {
-    const SMALL: f64 = 0.3;
-    if t > SMALL {
-        let q = 1.0 - reached(t);
-        return 1.2 * (1.0 - (1.0 - t) * q) - t * (1.0 + q);
-    }
-    // (1 - t)^b = sum of c_k t^k with c_k = c_(k - 1) (k - 1 - b)/k.
-    let (mut five, mut two) = (1.0, 1.0);
-    let mut power = 1.0;
-    let mut sum = 0.0;
-    for k in 1..=40 {
-        let k = f64::from(k);
-        let last = two;
-        five *= (k - 1.0 - 5.0 / 3.0) / k;
-        two *= (k - 1.0 - 2.0 / 3.0) / k;
-        power *= t;
-        // The terms of first and second order cancel exactly.
-        if k > 2.5 {
-            sum += (-1.2 * five - last) * power;
-        }
-    }
-    sum
-}
-
-/// A point of the curve: force over mu F, displacement over the reach.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Point {
-    t: f64,
-    u: f64,
-}
-
-/// Where a branch is left: at a force or at a displacement.
-#[derive(Debug, Clone, Copy)]
-enum Goal {
-    Force(f64),
-    Displacement(f64),
-}
-
-impl Goal {
-    fn from(self, point: Point) -> f64 {
-        match self {
-            Self::Force(t) => t - point.t,
-            Self::Displacement(u) => u - point.u,
-        }
-    }
-}
-
-/// The curve so far.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Curve {
-    now: Point,
-    /// Sign of the last motion, 0 before any.
-    direction: f64,
-    /// Turns that are not closed, the first one on the curve of first loading.
-    turns: Vec<Point>,
-    /// Displacement at which first loading begins: it moves with gross slip.
-    origin: f64,
-    /// Over mu F and the reach.
-    dissipated: f64,
-}
-
-impl Curve {
-    /// Moves to a goal; a force is within [-1, 1].
-    fn go(&mut self, goal: Goal) {
-        let way = goal.from(self.now);
-        if way.abs() <= 0.0 {
-            return;
-        }
-        let direction = way.signum();
-        if direction * self.direction < 0.0 {
-            self.turns.push(self.now);
-        }
-        self.direction = direction;
-        loop {
-            // Where this branch ends, and the turn before its own that is closed there.
-            let end = match self.turns[..] {
-                [] => Point { t: direction, u: self.origin + direction },
-                // Back to first loading on the other side.
-                [turn] => Point { t: -turn.t, u: 2.0 * self.origin - turn.u },
-                [.., earlier, _] => earlier,
-            };
-            if goal.from(end) * direction < 0.0 {
-                self.along(goal);
-                return;
-            }
-            let before = self.now;
-            self.along(Goal::Force(end.t));
-            // The same point, without the rounding of the branch.
-            self.now = end;
-            if self.turns.is_empty() {
-                if let Goal::Displacement(u) = goal {
-                    self.dissipated += (u - end.u).abs();
-                    self.now.u = u;
-                    self.origin = u - direction;
-                }
-                return;
-            }
-            self.turns.truncate(self.turns.len().saturating_sub(2));
-            if before == self.now && goal.from(self.now).abs() <= 0.0 {
-                return;
-            }
-        }
-    }
-
-    /// Moves along the branch that begins at the last turn: the first curve, doubled.
-    fn along(&mut self, goal: Goal) {
-        let (start, scale) = match self.turns.last() {
-            Some(turn) => (*turn, 2.0),
-            None => (Point { t: 0.0, u: self.origin }, 1.0),
-        };
-        let share = |t: f64| ((t - start.t).abs() / scale).min(1.0);
-        let before = lost(share(self.now.t));
-        self.now = match goal {
-            Goal::Force(t) => Point { t, u: start.u + self.direction * scale * reached(share(t)) },
-            Goal::Displacement(u) => {
-                let part = ((u - start.u).abs() / scale).min(1.0);
-                Point { t: start.t + self.direction * scale * held(part), u }
-            }
-        };
-        self.dissipated += scale * (lost(share(self.now.t)) - before).max(0.0);
-    }
-
-    /// Stick radius over contact radius.
-    fn stick(&self) -> f64 {
-        let (start, scale) = self.turns.last().map_or((0.0, 1.0), |turn| (turn.t, 2.0));
-        (1.0 - ((self.now.t - start).abs() / scale).min(1.0)).cbrt()
     }
 }
 

@@ -14,11 +14,10 @@ const SUMMIT_SCATTER: f64 = 0.8968;
 
 /// Greenwood and Williamson's contact of spherical summits that do not feel each other, in McCool's variant.
 ///
-/// From the profile moments m0, m2, m4 of the spectrum, `alpha = m0 m4/m2^2`: all summits have the radius `R = (3/8) sqrt(pi/m4)`, there are
-/// `n = m4/(6 sqrt(3) pi m2)` per area, and their heights scatter by `s = sqrt((1 - 0.8968/alpha) m0)` around a plane that lies
-/// `4 sqrt(m0/(pi alpha))` above the mean of the surface. At a flat t s above that plane, per area:
-/// `p = (4/3) n E* sqrt(R) s^(3/2) F_(3/2)(t)`, `A/A0 = pi n R s F_1(t)`, `K = 2 n E* sqrt(R s) F_(1/2)(t)`, with
-/// `F_j(t) = int_t^inf (x - t)^j phi(x) dx`.
+/// From the profile moments m0, m2, m4 of the spectrum, `alpha = m0 m4/m2^2`: all summits have the radius `R = (3/8) sqrt(pi/m4)`,
+/// there are `n = m4/(6 sqrt(3) pi m2)` per area, and their heights scatter by `s = sqrt((1 - 0.8968/alpha) m0)` around a plane that
+/// lies `4 sqrt(m0/(pi alpha))` above the mean of the surface. At a flat t s above that plane, per area: `p = (4/3) n E* sqrt(R)
+/// s^(3/2) F_(3/2)(t)`, `A/A0 = pi n R s F_1(t)`, `K = 2 n E* sqrt(R s) F_(1/2)(t)`, with `F_j(t) = int_t^inf (x - t)^j phi(x) dx`.
 ///
 /// The mean gap is the distance of the flat from the mean of the undeformed surface: between summits the theory's surface does not
 /// move. Loads beyond t = 0, where half of the summits would be in contact, are [`Error::OutOfRange`].

@@ -11,10 +11,10 @@ const NAME: &str = "jkr";
 
 /// The JKR contact of a sphere with [`Adhesion::ShortRange`]: `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d = a^2/R - sqrt(2 pi w a/E*)`.
 ///
-/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be negative, and no load means the
-/// adhered contact, not an empty one. (Bodies that approach each other jump into this contact at d = 0.) A force below
-/// `-3/2 pi w R` or an approach below that of `F = -5/6 pi w R` is [`Error::OutOfRange`], named a pull-off: the smallest admissible load is in the
-/// error. So is a contact radius beyond half the side.
+/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be negative, and no load means
+/// the adhered contact, not an empty one. (Bodies that approach each other jump into this contact at d = 0.) A force below `-3/2 pi
+/// w R` or an approach below that of `F = -5/6 pi w R` is [`Error::OutOfRange`], named a pull-off: the smallest admissible load is
+/// in the error. So is a contact radius beyond half the side.
 ///
 /// The stiffness is that of the contact set, `k = 2 E* a`: what an oscillation too small to move the edge sees, and what a
 /// conductance follows from. The slope of the equilibrium curve, where the edge moves, is [`Sphere::slope`].
@@ -132,12 +132,14 @@ impl Sphere {
         signed(self.approach_of(a), |approach| self.units.approach(approach))
     }
 
-    /// `dF/dd` along the equilibrium curve: positive where a prescribed force holds the contact, negative where only a prescribed approach does.
+    /// `dF/dd` along the equilibrium curve: positive where a prescribed force holds the contact, negative where only a prescribed
+    /// approach does.
     ///
     /// `2 E* a (1 - b) / (1 - b/3)` with `b = (3/4) sqrt(2 pi w R^2/(E* a^3))`; without adhesion 2 E* a.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a radius that is not finite or at or below that of the pull-off under prescribed approach, where the slope has no bound.
+    /// [`Error::Domain`] for a radius that is not finite or at or below that of the pull-off under prescribed approach, where the
+    /// slope has no bound.
     pub fn slope(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
         let b = 0.75 * (2.0 * PI * self.work / a).sqrt() / a;

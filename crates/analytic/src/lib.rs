@@ -1,4 +1,5 @@
-//! Closed forms, one theory per file, each a [`contact_model::ContactModel`] (with friction a [`contact_model::HistoryModel`]) that names its sources.
+//! Closed forms, one theory per file, each a [`contact_model::ContactModel`] (with friction a [`contact_model::HistoryModel`]) that
+//! names its sources.
 //!
 //! | model | surfaces | claims |
 //! |---|---|---|
@@ -26,9 +27,10 @@
 //!
 //! # Accuracy and speed
 //!
-//! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the constant of the flat square is known to
-//! 1e-6 and says so in the report. A state costs well under a microsecond; of
-//! [`GreenwoodWilliamson`] and [`Persson`] tens of microseconds (quadratures to 1e-11), with the mean gap a few hundred. How good theories of rough surfaces are is another matter. [`PowerLaw`] is as good as the fit it is.
+//! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the constant of the flat
+//! square is known to 1e-6 and says so in the report. A state costs well under a microsecond; of [`GreenwoodWilliamson`] and
+//! [`Persson`] tens of microseconds (quadratures to 1e-11), with the mean gap a few hundred. How good theories of rough surfaces are
+//! is another matter. [`PowerLaw`] is as good as the fit it is.
 //!
 //! # What it does not do
 //!
@@ -42,6 +44,7 @@ mod gamma;
 pub mod greenwood_williamson;
 pub mod hertz;
 pub mod jkr;
+mod memory;
 mod periodic;
 pub mod persson;
 pub mod power_law;

@@ -13,16 +13,17 @@ const NAME: &str = "persson";
 /// Persson's theory of a statistically homogeneous, periodic surface.
 ///
 /// * Area: `A/A0 = erf(sqrt(2) p/(E* g))` with the rms slope g; `kappa = sqrt(8/pi)` for small p.
-/// * Mean gap: `u(p) = sqrt(pi) int dq q^2 C w int_p^inf dp'/p' (gamma + 3 (1 - gamma) P^2) exp(-(w p'/E*)^2)`, where `P = erf(w p'/E*)` and
-///   `w(q) = (pi int_(q_0)^q q'^3 C dq')^(-1/2)` (Yang and Persson 2008, Eq. 19). Stiffness per area: `-dp/du`.
+/// * Mean gap: `u(p) = sqrt(pi) int dq q^2 C w int_p^inf dp'/p' (gamma + 3 (1 - gamma) P^2) exp(-(w p'/E*)^2)`, where `P = erf(w
+///   p'/E*)` and `w(q) = (pi int_(q_0)^q q'^3 C dq')^(-1/2)` (Yang and Persson 2008, Eq. 19). Stiffness per area: `-dp/du`.
 /// * At small p this is `p = beta E* exp(-u/u_0)`, so the stiffness is p/u_0 ([`Persson::decay_length`]).
 ///
 /// Takes a [`Surface::SelfAffine`] with a short cut-off and [`contact_model::Boundary::Periodic`]; the seed changes nothing. Moments
-/// of the spectrum are those of [`crate::spectrum`]. The mean gap has no bound as p -> 0 (a Gaussian surface has no highest point): it is an error at no load, and
-/// real, finite surfaces leave the exponential where few summits touch.
+/// of the spectrum are those of [`crate::spectrum`]. The mean gap has no bound as p -> 0 (a Gaussian surface has no highest point):
+/// it is an error at no load, and real, finite surfaces leave the exponential where few summits touch.
 ///
-/// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative error below 1e-11. A state costs
-/// some thousand nodes: tens of microseconds, a few hundred for its gap, a few milliseconds for the state at a given gap.
+/// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative error below 1e-11. A
+/// state costs some thousand nodes: tens of microseconds, a few hundred for its gap, a few milliseconds for the state at a given
+/// gap.
 ///
 /// ```
 /// use analytic::Persson;
@@ -120,8 +121,8 @@ impl Persson {
 
 /// In units of h, L and E*: slopes in h/L, pressures in E* h/L.
 ///
-/// With `y = 1/w`, `dG = 2 y dy = pi q^3 C dq`: `sqrt(pi) q^2 C w dq = (2/sqrt(pi)) dy/q`, and `w p = p/y`. The integrand is smooth: geometric
-/// panels from the longest wave and from y = 0 resolve any p.
+/// With `y = 1/w`, `dG = 2 y dy = pi q^3 C dq`: `sqrt(pi) q^2 C w dq = (2/sqrt(pi)) dy/q`, and `w p = p/y`. The integrand is smooth:
+/// geometric panels from the longest wave and from y = 0 resolve any p.
 struct Law {
     gamma: f64,
     /// `g/sqrt(2)`.

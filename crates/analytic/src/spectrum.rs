@@ -1,10 +1,11 @@
 //! Moments of a self-affine spectrum between its cut-offs, in closed form: what theories know of a surface.
 //!
-//! The spectrum of [`SelfAffine`]: constant from `q_0 = 2 pi/L` to the roll-off, then `q^(-2 (H + 1))` to the short cut-off. Integrals run
-//! over the whole plane of wavenumbers; a surface drawn on a grid has the sum over the grid's waves instead. The few longest waves carry most of the
-//! height, and there the two differ: at equal rms height and without roll-off, 2048 cells a side, the slope here is 35/31/24/16/9/3 % larger than
-//! that of the grid for D_f = 2.0/2.2/2.4/2.6/2.8/3.0. At an equal constant ([`Amplitude::Spectrum`]), or with a roll-off some
-//! octaves from the longest wave, they agree closely: compare theories with drawn surfaces in that way.
+//! The spectrum of [`SelfAffine`]: constant from `q_0 = 2 pi/L` to the roll-off, then `q^(-2 (H + 1))` to the short cut-off.
+//! Integrals run over the whole plane of wavenumbers; a surface drawn on a grid has the sum over the grid's waves instead. The few
+//! longest waves carry most of the height, and there the two differ: at equal rms height and without roll-off, 2048 cells a side,
+//! the slope here is 35/31/24/16/9/3 % larger than that of the grid for D_f = 2.0/2.2/2.4/2.6/2.8/3.0. At an equal constant
+//! ([`Amplitude::Spectrum`]), or with a roll-off some octaves from the longest wave, they agree closely: compare theories with drawn
+//! surfaces in that way.
 
 use contact_model::{Amplitude, Error, Result, SelfAffine};
 use std::f64::consts::{PI, TAU};
@@ -101,7 +102,8 @@ impl Spectrum {
         m0 * (m4 / m2) / m2
     }
 
-    /// Moments m0, m2, m4 of a profile of the surface: variances of height, slope and curvature along a line, in `h^2`, `(h/L)^2` and `(h/L^2)^2`.
+    /// Moments m0, m2, m4 of a profile of the surface: variances of height, slope and curvature along a line, in `h^2`, `(h/L)^2`
+    /// and `(h/L^2)^2`.
     ///
     /// `m0 = h^2`, `m2 = g^2/2`, `m4 = (3/8) 2 pi int q^5 C dq`: the angular means of `cos^2` and `cos^4`.
     pub(crate) fn profile_moments(&self) -> [f64; 3] {

@@ -13,11 +13,12 @@ const WHOLE_WAVES: f64 = 1e-9;
 
 /// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat: closes at the mean pressure `p* = pi E* D/w`.
 ///
-/// With `r = p/p*`: contact width over wavelength `(2/pi) asin sqrt(r)`, mean gap `D (1 - r + r ln r)`, stiffness per area `pi E*/(w ln(1/r))`.
-/// From `p*` on the contact is full: the area is that of the square, the mean gap 0, and there is no finite stiffness; asking for it is
-/// [`Error::OutOfRange`]. A mean gap beyond D is no contact.
+/// With `r = p/p*`: contact width over wavelength `(2/pi) asin sqrt(r)`, mean gap `D (1 - r + r ln r)`, stiffness per area `pi E*/(w
+/// ln(1/r))`. From `p*` on the contact is full: the area is that of the square, the mean gap 0, and there is no finite stiffness;
+/// asking for it is [`Error::OutOfRange`]. A mean gap beyond D is no contact.
 ///
-/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves on the side. The rms height of the scales is D/sqrt(2).
+/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves on the side. The rms height of the
+/// scales is D/sqrt(2).
 ///
 /// ```
 /// use analytic::Westergaard;
@@ -144,7 +145,8 @@ impl PeriodicLaw for Wave {
     }
 }
 
-/// `p* = sqrt(2) pi E* D/w`: the mean pressure that closes `h = D cos(2 pi x/w) cos(2 pi y/w)` (Johnson, Greenwood, Higginson, Int. J. Mech. Sci. 27, 383 (1985)).
+/// `p* = sqrt(2) pi E* D/w`: the mean pressure that closes `h = D cos(2 pi x/w) cos(2 pi y/w)` (Johnson, Greenwood, Higginson, Int.
+/// J. Mech. Sci. 27, 383 (1985)).
 ///
 /// # Errors
 /// [`Error::Domain`] for a number that is not finite and positive.
@@ -168,7 +170,8 @@ pub fn product_full_pressure(modulus: f64, amplitude: f64, wavelength: f64) -> R
     }
 }
 
-/// `A/A0 = pi (3 r/(8 pi))^(2/3)` of that product of waves, asymptotic for small `r = p/p*`: Hertz's contact at each of the two crests a square.
+/// `A/A0 = pi (3 r/(8 pi))^(2/3)` of that product of waves, asymptotic for small `r = p/p*`: Hertz's contact at each of the two
+/// crests a square.
 ///
 /// The crests' mutual displacement is neglected: a relative error of order `r^(1/3)`.
 ///
@@ -185,7 +188,8 @@ pub fn product_small_fraction(ratio: f64) -> Result<f64> {
     Ok(PI * (3.0 / 8.0 / PI * share(ratio)?).cbrt().powi(2))
 }
 
-/// `K w/E* = 2 sqrt(2) (3 r/(8 pi))^(1/3)` of that product of waves, its stiffness per area for small r: `2 E* a` at each of the two crests a square.
+/// `K w/E* = 2 sqrt(2) (3 r/(8 pi))^(1/3)` of that product of waves, its stiffness per area for small r: `2 E* a` at each of the two
+/// crests a square.
 ///
 /// Hertz's contact as in [`product_small_fraction`], with the same neglect.
 ///

@@ -85,7 +85,8 @@ pub struct TangentialState {
     pub force: f64,
     /// Tangential displacement.
     pub displacement: f64,
-    /// Radius inside which the traction is below what friction can hold, of round contacts: the contact radius without any slip, 0 in full slip.
+    /// Radius inside which the traction is below what friction can hold, of round contacts: the contact radius without any slip, 0
+    /// in full slip.
     pub stick_radius: Option<f64>,
     /// Energy that friction has dissipated since the first step, >= 0.
     pub dissipated: f64,
@@ -115,8 +116,8 @@ pub trait History: Send {
     /// Goes to the end of the next step. **A step that fails leaves the history as it was before.**
     ///
     /// # Errors
-    /// [`Error::Domain`] as [`Step::validated`], [`Error::OutOfRange`] for loads beyond what the model holds for (gross slip, a time from which the
-    /// contact would shrink), [`Error::Unsupported`] for loads that it does not know.
+    /// [`Error::Domain`] as [`Step::validated`], [`Error::OutOfRange`] for loads beyond what the model holds for (gross slip, a time
+    /// from which the contact would shrink), [`Error::Unsupported`] for loads that it does not know.
     fn advance(&mut self, step: Step) -> Result<HistoryState>;
 
     /// Forgets the path: back to no contact at time 0.

@@ -68,7 +68,8 @@ pub trait PreparedContact: Send {
     /// Computed only when asked for. The contact of a flat with heights h has the mean gap `mean(u + z) - d` of its gap field.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] unless the contact is periodic and its model claims a mean gap; otherwise as [`PreparedContact::solve_until`].
+    /// [`Error::Unsupported`] unless the contact is periodic and its model claims a mean gap; otherwise as
+    /// [`PreparedContact::solve_until`].
     fn mean_gap(&mut self, load: Load) -> Result<f64> {
         let _ = load;
         Err(Error::unsupported("of this contact", "a mean gap"))

@@ -1,9 +1,9 @@
 //! A linear viscoelastic material under pieces of straight load: relaxation and creep, both in closed form.
 //!
-//! With `E*(t) = E* (e + sum w_i exp(-r_i t)) + E* v delta(t)` a load `Phi(t)` (what an elastic contact with modulus 1 would carry) gives the force
-//! `F/E* = e Phi + sum w_i q_i + v Phi'` with `q_i' = Phi' - r_i q_i`: Boltzmann's integral with one memory per arm. The other way
-//! round, a straight force gives Phi as a parabola and exponentials whose rates are the zeros of `e + sum w_i s/(s + r_i) + v s`; they lie one
-//! between each pair of neighbouring r_i, and are found once.
+//! With `E*(t) = E* (e + sum w_i exp(-r_i t)) + E* v delta(t)` a load `Phi(t)` (what an elastic contact with modulus 1 would carry)
+//! gives the force `F/E* = e Phi + sum w_i q_i + v Phi'` with `q_i' = Phi' - r_i q_i`: Boltzmann's integral with one memory per arm.
+//! The other way round, a straight force gives Phi as a parabola and exponentials whose rates are the zeros of `e + sum w_i s/(s +
+//! r_i) + v s`; they lie one between each pair of neighbouring r_i, and are found once.
 
 use crate::root;
 use contact_model::{Error, Relaxing, Result, Rheology};
@@ -139,7 +139,8 @@ impl Material {
         Memory { force, ..self.jumped(memory, by) }
     }
 
-    /// After a piece in which Phi went to `load` and ended with the rate `speed`; `integrals` are `int exp(-r_i (D - s)) Phi'(s) ds` over it.
+    /// After a piece in which Phi went to `load` and ended with the rate `speed`; `integrals` are `int exp(-r_i (D - s)) Phi'(s) ds`
+    /// over it.
     pub fn relaxed(
         &self,
         memory: &Memory,

@@ -18,9 +18,9 @@ const NAME: &str = "mdr1d";
 /// rough lines it claims force, approach and stiffness; for axisymmetric bodies also the area, `pi a^2`, which is exact there.
 ///
 /// The bodies of [`Profile`] may adhere ([`Adhesion::ShortRange`]): their loads may then be negative, down to the pull-off, which is
-/// [`Error::OutOfRange`] with the smallest admissible load; no load means the adhered contact. The stiffness stays that of the contact set, `2 E*
-/// a`. Power-law bodies with exponents up to 1/2 have no such contact and are refused. So is adhesion of rough lines: the rule that tears a
-/// spring needs the radius of a round contact.
+/// [`Error::OutOfRange`] with the smallest admissible load; no load means the adhered contact. The stiffness stays that of the
+/// contact set, `2 E* a`. Power-law bodies with exponents up to 1/2 have no such contact and are refused. So is adhesion of rough
+/// lines: the rule that tears a spring needs the radius of a round contact.
 ///
 /// An ensemble over one spectrum is faster with one [`surface_gen::LineGenerator`] and its lines as [`Surface::Line`]: the plan
 /// and the amplitudes are then made once. The states are the same.

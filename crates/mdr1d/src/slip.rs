@@ -1,9 +1,9 @@
 //! The tangential springs of an axisymmetric contact, exactly: what sticks, what slips, what is lost.
 //!
-//! A spring at x has the tangential deflection U(x); its force is G* U, and Coulomb's law holds it within `mu E* (d - g(x))`. Along a straight
-//! piece of a path (d and u linear) a spring moves with the body until it reaches that bound and then along it, so at the end
-//! `U = clamp(U_0 + Du, -c, c)` with `c = mu E*/G* (d - g)`; a spring that comes into contact on the way begins there with U = 0.
-//! All of this is linear in `g`: with `gamma = g(x)` as the coordinate, U stays a polygon for any path and any profile, and
+//! A spring at x has the tangential deflection U(x); its force is G* U, and Coulomb's law holds it within `mu E* (d - g(x))`. Along
+//! a straight piece of a path (d and u linear) a spring moves with the body until it reaches that bound and then along it, so at the
+//! end `U = clamp(U_0 + Du, -c, c)` with `c = mu E*/G* (d - g)`; a spring that comes into contact on the way begins there with U =
+//! 0. All of this is linear in `g`: with `gamma = g(x)` as the coordinate, U stays a polygon for any path and any profile, and
 //! forces and losses are integrals of polynomials of gamma. Nothing is discretised.
 //!
 //! The polygon's slope never exceeds that of the bound, so slip begins at the edge and reaches inward to one gamma.
@@ -174,7 +174,8 @@ impl Springs {
 
     /// `int (slip x force) dx / G*` of the springs that are in contact at the end, on one side.
     ///
-    /// A spring that ends e beyond its bound has slipped for the share `e/rate` of the piece, against a bound that grew by `growth` in all of it.
+    /// A spring that ends e beyond its bound has slipped for the share `e/rate` of the piece, against a bound that grew by `growth`
+    /// in all of it.
     fn lost_in_contact(&self, free: &[Knot], approach: f64, by: f64, slip: Option<(f64, f64)>) -> f64 {
         let Some((begin, sign)) = slip else { return 0.0 };
         let growth = self.bound * (approach - self.approach);
@@ -242,8 +243,8 @@ fn position(profile: Profile, gamma: f64) -> f64 {
 
 /// `int q dx` over the x of an interval of gamma, for the quadratic q of gamma with these values at the ends and in the middle.
 ///
-/// By moments where the interval is wide; these cancel where it is narrow, and there dx/dgamma is smooth and five points of Gauss are exact to
-/// the last place. A flat punch has all its springs at gamma = 0.
+/// By moments where the interval is wide; these cancel where it is narrow, and there dx/dgamma is smooth and five points of Gauss
+/// are exact to the last place. A flat punch has all its springs at gamma = 0.
 fn integral(profile: Profile, [low, high]: [f64; 2], [first, middle, last]: [f64; 3]) -> f64 {
     /// `low/high` above which an interval is narrow: the singularity at 0 is then 19 half widths away, and the rule's error 1e-16.
     const NARROW: f64 = 0.9;
