@@ -35,10 +35,17 @@ const BENCH: &str = "\
 Examples:
   cargo xtask bench --surface heights.npy --sweep 1e-6:20:20 --tolerance 1e-8     one map, 20 loads
   cargo xtask bench --cells 257,513,1025 --fractal-dimensions 2.4 --forces 0.1,1 --cold
-  cargo xtask bench --cells 257,513,1025,2049,4097 --forces 1e-2,1 --cold --plot scaling.svg
+  cargo xtask bench --scaling                           cost over cells and over force, with slopes
+  cargo xtask bench --cells 513 --forces 1e-6:20:23 --csv cost.csv --plot cost.svg
 
 `seconds` is wall-clock time of everything that a row took: transforms and tables, coarse grids, every look with the exact operator,
-pressure and stiffness. The first row of a series includes drawing or scaling the surface; with --cold every row does.
+pressure and stiffness; not the reading and writing of files. The first row of a series (a surface at a tolerance) includes drawing or
+scaling the surface; with --cold every row does. `cpu_seconds` is processor time of the row's thread, `peak_memory_bytes` the most
+that the process held during the row, maps and all; both are empty where the system does not tell.
+
+Loads are solved and printed from the smallest up, whatever their order; the rows of the file stand in the order asked for. The file is
+whole all along: an interruption keeps the rows so far. A load that does not converge has its row with its status and the certificate
+of the best state, and the others go on.
 
 Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge.";
 
@@ -360,9 +367,9 @@ pub struct BenchArguments {
     /// A square float64 NPY map, taken as it is (L = E* = 1, F_bar by its measured rms height).
     #[arg(long, value_name = "FILE.npy", conflicts_with_all = ["cells", "fractal_dimensions", "seed"])]
     surface: Option<PathBuf>,
-    /// Cells a side of generated surfaces, separated by commas.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "257,513,1025")]
-    cells: Vec<usize>,
+    /// Cells a side of generated surfaces, separated by commas [default: 257,513,1025].
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    cells: Option<Vec<usize>>,
     /// Fractal dimensions of generated surfaces, separated by commas.
     #[arg(
         long,
@@ -402,21 +409,42 @@ pub struct BenchArguments {
     /// Prepare anew for every load.
     #[arg(long)]
     cold: bool,
+    /// Cost as the work grows: 257 to 4097 cells and every load from nothing unless said otherwise, table and pictures in
+    /// out/bench-scaling.* unless named.
+    #[arg(long, conflicts_with = "surface")]
+    scaling: bool,
     /// Series (surface and tolerance) solved at the same time; one solve runs on one thread.
     #[arg(long, default_value_t = 1)]
     threads: usize,
     /// Write the pressure of every row as NPY into this directory.
     #[arg(long, value_name = "DIR")]
     pressure: Option<PathBuf>,
-    /// Write the table; it is whole after every row.
-    #[arg(long, value_name = "FILE")]
-    pub csv: Option<PathBuf>,
-    /// Draw seconds and iterations over cells and over force from the table, with slopes (SVG or PNG by its name).
-    #[arg(long, value_name = "FILE", requires = "csv")]
-    pub plot: Option<PathBuf>,
+    /// Write the table; it is whole all along.
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+    /// Draw seconds over cells and over force from the table (SVG and PNG), and print the slopes of seconds and iterations.
+    #[arg(long, value_name = "FILE.svg", requires = "csv")]
+    plot: Option<PathBuf>,
 }
 
+/// Sizes of generated surfaces.
+const CELLS: [usize; 3] = [257, 513, 1025];
+/// Sizes that show how cost grows.
+const SCALING_CELLS: [usize; 5] = [257, 513, 1025, 2049, 4097];
+/// Where its table goes.
+const SCALING_CSV: &str = "out/bench-scaling.csv";
+
 impl BenchArguments {
+    /// Table and picture.
+    pub fn files(&self) -> (Option<PathBuf>, Option<PathBuf>) {
+        if !self.scaling {
+            return (self.csv.clone(), self.plot.clone());
+        }
+        let csv = self.csv.clone().unwrap_or_else(|| SCALING_CSV.into());
+        let plot = self.plot.clone().unwrap_or_else(|| csv.with_extension("svg"));
+        (Some(csv), Some(plot))
+    }
+
     /// What it asks for.
     ///
     /// # Errors
@@ -425,7 +453,10 @@ impl BenchArguments {
         let surfaces = match &self.surface {
             Some(path) => Surfaces::File(path.clone()),
             None => Surfaces::SelfAffine {
-                cells: self.cells.clone(),
+                cells: self
+                    .cells
+                    .clone()
+                    .unwrap_or_else(|| if self.scaling { SCALING_CELLS.to_vec() } else { CELLS.to_vec() }),
                 fractal_dimensions: self.fractal_dimensions.clone(),
                 seed: self.seed,
             },
@@ -443,7 +474,7 @@ impl BenchArguments {
                 MethodName::Iterative => Method::Iterative,
                 MethodName::SingleLevel => Method::SingleLevel,
             },
-            cold: self.cold,
+            cold: self.cold || self.scaling,
             threads: self.threads,
             pressure: self.pressure.clone(),
         })
@@ -514,6 +545,15 @@ mod tests {
             "reproduce-fig2 --cells -3",
             "reproduce-fig2 --fractal-dimensions 2.0,x",
             "reproduce-fig8",
+            "bench --boundary clamped",
+            "bench --surface a.npy --cells 9",
+            "bench --surface a.npy --seed 2",
+            "bench --surface a.npy --scaling",
+            "bench --plot a.svg",
+            "bench --cells 9,x",
+            "bench --threads -1",
+            "bench --method magic",
+            "bench --preset paper",
             "reproduce-fig2 --unknown",
             "",
         ] {
@@ -521,6 +561,38 @@ mod tests {
         }
         // A negative force reaches the run, which names it.
         assert!(parse("reproduce-fig2 --forces -1").is_ok());
+    }
+
+    fn bench(line: &str) -> BenchArguments {
+        match parse(line).unwrap().command {
+            Command::Bench(options) => options,
+            other => panic!("{}", other.name()),
+        }
+    }
+
+    #[test]
+    fn benches_say_what_is_solved_and_where_it_goes() {
+        let asked = bench(
+            "bench --surface a.npy --sweep 1:100:3,20 --tolerance 1e-8,1e-3 --csv d/t.csv --pressure p",
+        );
+        assert_eq!(asked.files(), (Some("d/t.csv".into()), None));
+        let asked = asked.bench().unwrap();
+        assert_eq!(asked.forces.values(), [1.0, 10.0, 20.0, 100.0]);
+        assert_eq!(asked.forces.asked(), [1.0, 10.0, 100.0, 20.0]);
+        assert_eq!((asked.tolerances.len(), asked.cold, asked.threads), (2, false, 1));
+        assert_eq!(asked.pressure, Some("p".into()));
+        assert!(matches!(asked.surfaces, Surfaces::File(_)));
+
+        let scaling = bench("bench --scaling --df 2.4");
+        assert_eq!(scaling.files(), (Some(SCALING_CSV.into()), Some("out/bench-scaling.svg".into())));
+        let scaling = scaling.bench().unwrap();
+        let Surfaces::SelfAffine { cells, fractal_dimensions, .. } = scaling.surfaces else { panic!() };
+        assert_eq!((cells, fractal_dimensions, scaling.cold), (SCALING_CELLS.to_vec(), vec![2.4], true));
+
+        // Values that the words allow and the bench refuses.
+        for line in ["bench --forces -1", "bench --forces 1:2"] {
+            assert!(bench(line).bench().unwrap_err().to_string().starts_with("--forces"), "{line}");
+        }
     }
 
     #[test]

@@ -11,11 +11,12 @@ mod progress;
 
 use arguments::{Arguments, BenchArguments, Command};
 use clap::Parser as _;
-use figures::{Outcome, Result, Run};
+use figures::{BenchRow, Outcome, Result, Run};
 use progress::Reporter;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
     match execute(Arguments::parse().command) {
@@ -92,31 +93,31 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
     ExitCode::from(3)
 }
 
-/// Prints each row as it comes; the file is whole after every row, so that an interruption keeps what was solved.
+/// Prints each row as it comes and keeps the file whole all along, so that an interruption keeps what was solved; in the end the file
+/// is in the order asked for.
 fn bench(options: &BenchArguments) -> Result<ExitCode> {
-    let rows = Mutex::new((Vec::new(), Ok(())));
-    figures::bench(&options.bench()?, &contact_model::never, &|row| {
+    let (csv, plot) = options.files();
+    if let Some(directory) = csv.as_deref().and_then(Path::parent) {
+        figures::create_directory(directory)?;
+    }
+    let table = Mutex::new(Table::default());
+    let rows = figures::bench(&options.bench()?, &|row| {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
-        let Ok(mut kept) = rows.lock() else { return };
-        if kept.0.is_empty() {
+        let Ok(mut table) = table.lock() else { return Ok(()) };
+        if table.rows.is_empty() {
             println!("{}", PRINTED.map(|(name, width)| format!("{name:>width$}")).join(" "));
         }
-        kept.0.push(row.clone());
-        let written = options.csv.as_ref().map_or(Ok(()), |path| figures::write_bench(path, &kept.0));
-        let line = row.fields().map(|fields| println!("{}", line(&fields)));
-        if kept.1.is_ok() {
-            kept.1 = written.and(line);
-        }
+        println!("{}", line(&row.fields()?));
+        table.rows.push(row.clone());
+        csv.as_deref().map_or(Ok(()), |path| table.write(path))
     })?;
-    let (rows, written) = rows.into_inner().unwrap_or((Vec::new(), Ok(())));
-    written?;
-    if let Some(path) = &options.csv {
+    if let Some(path) = &csv {
+        figures::write_bench(path, &rows)?;
         println!("{}", path.display());
-        if let Some(picture) = &options.plot {
-            for slope in figures::plot_bench(path, picture)? {
-                println!("{slope}");
-            }
-            println!("{}", picture.display());
+        if let Some(picture) = &plot {
+            let drawn = figures::plot_bench(path, picture)?;
+            drawn.files.iter().for_each(|file| println!("{}", file.display()));
+            drawn.slopes.iter().for_each(|slope| println!("{slope}"));
         }
     }
     let missing = rows.iter().filter(|row| !row.converged()).count();
@@ -125,6 +126,27 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
         return Ok(ExitCode::from(3));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The rows so far and when they were written last.
+#[derive(Default)]
+struct Table {
+    rows: Vec<BenchRow>,
+    /// End and length of the last writing.
+    written: Option<(Instant, Duration)>,
+}
+
+impl Table {
+    /// Writes the rows unless that would take more than a twentieth of the time: a long table of cheap rows is written now and then.
+    fn write(&mut self, path: &Path) -> Result<()> {
+        let start = Instant::now();
+        if self.written.is_some_and(|(end, took)| start.duration_since(end) < 20 * took) {
+            return Ok(());
+        }
+        figures::write_bench(path, &self.rows)?;
+        self.written = Some((Instant::now(), start.elapsed()));
+        Ok(())
+    }
 }
 
 /// Columns on the terminal and their widths.

@@ -4,16 +4,16 @@ use crate::arrays::write_npy;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::forces::Forces;
+use crate::meters::{cpu_seconds, peak_memory, reset_peak_memory};
 use crate::npy::read_map;
 use crate::sample::number;
 use bem3d::{Bem3d, Method};
 use contact_model::{
     Boundary, ContactModel, ContactState, Load, PreparedContact, Scales, Scene, SelfAffine, Stop, Surface,
 };
-use rayon::prelude::*;
-use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 /// What is measured.
@@ -21,7 +21,7 @@ use std::time::Instant;
 pub struct Bench {
     /// Which reliefs.
     pub surfaces: Surfaces,
-    /// Loads F_bar, increasing: the order of the rows.
+    /// Loads F_bar: solved from the smallest up, rows in the order in which they were written.
     pub forces: Forces,
     /// Tolerances, each a series of its own.
     pub tolerances: Vec<f64>,
@@ -74,7 +74,8 @@ pub struct BenchRow {
     pub seconds: f64,
     /// Seconds of the processor on this thread, where the platform tells.
     pub cpu_seconds: Option<f64>,
-    /// Largest resident memory of the process so far, in bytes, where the platform tells.
+    /// Largest resident memory of the process during this row, in bytes, where the platform tells (with what other threads hold; since
+    /// the start of the process where the count cannot be set back).
     pub peak_memory: Option<u64>,
     /// Whether it was solved from nothing.
     pub cold: bool,
@@ -166,12 +167,13 @@ struct Series {
     model: Bem3d,
 }
 
-/// Solves everything, loads from the smallest up, series after series, and hands out each row as soon as it is there. With
-/// several threads `stop` is not asked.
+/// Solves everything, loads from the smallest up, and hands out each row as soon as it is there. The rows that it gives stand in the
+/// order asked for: surfaces, tolerances, loads.
 ///
 /// # Errors
-/// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model refuses.
-pub fn bench(bench: &Bench, stop: Stop<'_>, found: &(dyn Fn(&BenchRow) + Sync)) -> Result<Vec<BenchRow>> {
+/// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model
+/// refuses; whatever `found` says. The first of them stops everything.
+pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) -> Result<Vec<BenchRow>> {
     if bench.threads == 0 {
         return Err(Error::parameter("threads", 0, "at least one thread"));
     }
@@ -179,16 +181,30 @@ pub fn bench(bench: &Bench, stop: Stop<'_>, found: &(dyn Fn(&BenchRow) + Sync)) 
     if let Some(directory) = &bench.pressure {
         files::create_directory(directory)?;
     }
-    if bench.threads <= 1 {
-        let rows: Result<Vec<_>> = series.iter().map(|s| s.run(bench, stop, found)).collect();
-        return Ok(rows?.into_iter().flatten().collect());
-    }
+    let rows: Vec<OnceLock<Vec<BenchRow>>> = series.iter().map(|_| OnceLock::new()).collect();
+    let failure: OnceLock<Error> = OnceLock::new();
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some(i) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < series.len()) {
+            if failure.get().is_some() {
+                return;
+            }
+            // Each index is taken once; of several failures the first is the reason.
+            let _ = match series[i].run(bench, &|| failure.get().is_some(), found) {
+                Ok(found) => rows[i].set(found).is_ok(),
+                Err(error) => failure.set(error).is_ok(),
+            };
+        }
+    };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(bench.threads).build().map_err(|e| {
-        Error::parameter("threads", bench.threads, format!("a number of threads that start ({e})"))
+        Error::parameter("threads", bench.threads, format!("threads that the system grants ({e})"))
     })?;
-    let rows: Result<Vec<_>> =
-        pool.install(|| series.par_iter().map(|s| s.run(bench, &contact_model::never, found)).collect());
-    Ok(rows?.into_iter().flatten().collect())
+    // A loop per thread, as in a sweep: a thread that waits inside a row begins no other row, which its time would then contain.
+    pool.broadcast(|_| work());
+    match failure.into_inner() {
+        Some(error) => Err(error),
+        None => Ok(rows.into_iter().filter_map(OnceLock::into_inner).flatten().collect()),
+    }
 }
 
 fn series(bench: &Bench) -> Result<Vec<Series>> {
@@ -232,16 +248,18 @@ impl Series {
         &self,
         bench: &Bench,
         stop: Stop<'_>,
-        found: &(dyn Fn(&BenchRow) + Sync),
+        found: &(dyn Fn(&BenchRow) -> Result<()> + Sync),
     ) -> Result<Vec<BenchRow>> {
         let mut rows = Vec::with_capacity(bench.forces.values().len());
         let mut contact: Option<Box<dyn PreparedContact>> = None;
         for &force_bar in bench.forces.values() {
-            let (start, cpu) = (Instant::now(), cpu_seconds());
             let fresh = contact.is_none() || bench.cold;
             if fresh {
                 contact = None; // Its memory first.
             }
+            reset_peak_memory();
+            let cpu = cpu_seconds();
+            let start = Instant::now();
             let prepared = match &mut contact {
                 Some(prepared) => prepared,
                 none => none.insert(self.prepare()?),
@@ -270,9 +288,12 @@ impl Series {
             if let Some(directory) = &bench.pressure {
                 self.save_pressure(directory, &mut row)?;
             }
-            found(&row);
+            found(&row)?;
             rows.push(row);
         }
+        let place =
+            |row: &BenchRow| bench.forces.asked().iter().position(|f| f.total_cmp(&row.force_bar).is_eq());
+        rows.sort_by_key(place);
         Ok(rows)
     }
 
@@ -314,23 +335,11 @@ pub fn write_bench(path: &Path, rows: &[BenchRow]) -> Result<()> {
     files::write_whole(path, &bytes)
 }
 
-/// Processor seconds of this thread (Linux).
-fn cpu_seconds() -> Option<f64> {
-    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    text.split_whitespace().next()?.parse::<u64>().ok().map(|ns| ns as f64 * 1e-9)
-}
-
-/// Largest resident memory of the process (Linux).
-fn peak_memory() -> Option<u64> {
-    let text = fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kb| 1024 * kb)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contact_model::never;
+    use std::fs;
+    use std::sync::Mutex;
 
     fn small() -> Bench {
         Bench {
@@ -349,8 +358,15 @@ mod tests {
     fn rows_are_written_whole() {
         let dir = tempfile::tempdir().unwrap();
         let pressure = dir.path().join("fields");
-        let rows = bench(&Bench { pressure: Some(pressure.clone()), ..small() }, &never, &|_| {}).unwrap();
-        assert_eq!(rows.iter().map(|r| r.force_bar).collect::<Vec<_>>(), [0.01, 1.0]);
+        let solved = Mutex::new(Vec::new());
+        let rows = bench(&Bench { pressure: Some(pressure.clone()), ..small() }, &|row| {
+            solved.lock().unwrap().push(row.force_bar);
+            Ok(())
+        })
+        .unwrap();
+        // Asked for as "1,0.01", solved from the smallest up.
+        assert_eq!(solved.into_inner().unwrap(), [0.01, 1.0]);
+        assert_eq!(rows.iter().map(|r| r.force_bar).collect::<Vec<_>>(), [1.0, 0.01]);
         assert!(rows.iter().all(BenchRow::converged));
         let path = dir.path().join("bench.csv");
         write_bench(&path, &rows).unwrap();
@@ -362,8 +378,8 @@ mod tests {
 
     #[test]
     fn cold_and_warm_rows_agree() {
-        let warm = bench(&small(), &never, &|_| {}).unwrap();
-        let cold = bench(&Bench { cold: true, threads: 2, ..small() }, &never, &|_| {}).unwrap();
+        let warm = bench(&small(), &|_| Ok(())).unwrap();
+        let cold = bench(&Bench { cold: true, threads: 2, ..small() }, &|_| Ok(())).unwrap();
         for (a, b) in warm.iter().zip(&cold) {
             approx::assert_relative_eq!(
                 a.state.stiffness.unwrap(),
@@ -371,13 +387,51 @@ mod tests {
                 max_relative = 1e-5
             );
         }
-        assert!(cold.iter().all(|r| r.cold) && warm[0].cold && !warm[1].cold);
+        assert!(cold.iter().all(|r| r.cold) && !warm[0].cold && warm[1].cold);
+    }
+
+    #[test]
+    fn rows_stand_in_the_order_asked_for_whatever_the_threads() {
+        let surfaces =
+            Surfaces::SelfAffine { cells: vec![17, 9], fractal_dimensions: vec![2.4, 2.0], seed: 3 };
+        let many = Bench { surfaces, tolerances: vec![1e-6, 1e-3], ..small() };
+        let numbers = |threads| {
+            let rows = bench(&Bench { threads, ..many.clone() }, &|_| Ok(())).unwrap();
+            let row = |r: &BenchRow| (r.cells, r.drawn, r.tolerance, r.force_bar, r.state.stiffness);
+            rows.iter().map(row).collect::<Vec<_>>()
+        };
+        assert_eq!(numbers(1), numbers(3));
+        assert_eq!(numbers(1).len(), 16);
+    }
+
+    #[test]
+    fn a_row_that_cannot_be_kept_stops_the_rest() {
+        let count = Mutex::new(0);
+        let error = bench(&small(), &|_| {
+            *count.lock().unwrap() += 1;
+            Err(Error::parameter("csv", "full", "room on the disk"))
+        });
+        assert!(error.unwrap_err().to_string().contains("room on the disk"));
+        assert_eq!(*count.lock().unwrap(), 1);
+    }
+
+    #[test]
+    fn a_load_that_gives_up_has_its_row() {
+        // Beyond double precision: reached or not, every load has its row and its certificate.
+        let tired = Bench { method: Method::SingleLevel, tolerances: vec![1e-15], ..small() };
+        let rows = bench(&tired, &|_| Ok(())).unwrap();
+        assert_eq!(rows.len(), 2);
+        for row in &rows {
+            let fields = row.fields().unwrap();
+            assert_eq!(fields[11] == "converged", row.converged());
+            assert!(fields[..12].iter().all(|f| !f.is_empty()));
+        }
     }
 
     #[test]
     fn what_the_model_lacks_is_an_error() {
         let periodic = Bench { boundary: Boundary::Periodic, ..small() };
-        let error = bench(&periodic, &never, &|_| {}).unwrap_err().to_string();
+        let error = bench(&periodic, &|_| Ok(())).unwrap_err().to_string();
         assert!(error.contains("Periodic"), "{error}");
     }
 }

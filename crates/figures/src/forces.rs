@@ -1,12 +1,15 @@
 //! Lists of loads, as written on the command line.
 
 use crate::error::{Error, Result};
+use std::collections::HashSet;
 
 /// Loads F_bar, increasing, and how they were written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forces {
     spec: String,
     values: Vec<f64>,
+    /// The same in the order of the text.
+    asked: Vec<f64>,
 }
 
 const EXPECTED: &str = "positive numbers and logarithmic ranges MIN:MAX:COUNT, separated by commas \
@@ -39,14 +42,21 @@ impl Forces {
                 _ => return Err(Error::parameter("forces", item, EXPECTED)),
             }
         }
+        let mut seen = HashSet::new();
+        let asked: Vec<f64> = values.into_iter().filter(|v| seen.insert(v.to_bits())).collect();
+        let mut values = asked.clone();
         values.sort_by(f64::total_cmp);
-        values.dedup_by(|a, b| a.total_cmp(b).is_eq());
-        Ok(Self { spec: spec.split_whitespace().collect(), values })
+        Ok(Self { spec: spec.split_whitespace().collect(), values, asked })
     }
 
     /// The loads, increasing.
     pub fn values(&self) -> &[f64] {
         &self.values
+    }
+
+    /// The loads in the order in which they were written.
+    pub fn asked(&self) -> &[f64] {
+        &self.asked
     }
 
     /// How they were written (without blanks).
@@ -87,6 +97,7 @@ mod tests {
         let f = Forces::parse("1e-6:20:23, 0.086 ,1").unwrap();
         assert_eq!((f.values()[0], *f.values().last().unwrap(), f.values().len()), (1e-6, 20.0, 25));
         assert_eq!(f.spec(), "1e-6:20:23,0.086,1");
+        assert_eq!(Forces::parse("20,1,0.1:1:2").unwrap().asked(), [20.0, 1.0, 0.1]);
         assert_relative_eq!(f.values()[1] / f.values()[0], 2e7_f64.powf(1.0 / 22.0), max_relative = 1e-12);
         assert_eq!(Forces::parse("1,1,1").unwrap().values(), [1.0]);
     }

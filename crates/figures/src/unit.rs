@@ -58,22 +58,25 @@ impl Numerics {
 /// Models that units share: what a line's ensemble plans once serves all its lines.
 #[derive(Debug, Default)]
 pub struct Models {
-    lines: Mutex<Vec<(u64, Arc<Ensemble>)>>,
+    /// By D_f and number of elements.
+    lines: Mutex<Vec<(f64, usize, Arc<Ensemble>)>>,
 }
 
 impl Models {
     /// The model of a unit.
     fn of(&self, unit: &Unit, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
         let Numerics::Mdr1d { elements } = unit.numerics else { return Ok(Arc::from(unit.numerics.model())) };
-        let key = unit.fractal_dimension.to_bits() ^ elements as u64;
+        let d = unit.fractal_dimension;
         // A poisoned lock means that another thread panicked while it only pushed.
         let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, ensemble)) = lines.iter().find(|(k, _)| *k == key) {
+        if let Some((.., ensemble)) =
+            lines.iter().find(|(of, n, _)| of.total_cmp(&d).is_eq() && *n == elements)
+        {
             let ensemble: Arc<dyn ContactModel> = ensemble.clone();
             return Ok(ensemble);
         }
         let ensemble = Arc::new(Ensemble::new(surface, elements)?);
-        lines.push((key, Arc::clone(&ensemble)));
+        lines.push((d, elements, Arc::clone(&ensemble)));
         Ok(ensemble)
     }
 }
