@@ -7,8 +7,8 @@ use analytic::{
 };
 use bem3d::Bem3d;
 use contact_model::{
-    Adhesion, Body, Boundary, ContactModel, Effects, Error, Friction, HistoryModel, Line, Load, Outputs,
-    Pair, Rheology, Scene, Step, Surface,
+    Adhesion, Body, Boundary, Conductance, ContactModel, Effects, Error, Friction, HistoryModel, Line, Load,
+    Outputs, Pair, Rheology, Scene, Step, Surface,
 };
 use mdr1d::{Mdr1d, PartialSlip, Viscoelastic};
 use std::sync::Arc;
@@ -138,8 +138,8 @@ fn periodic_theories() {
             let what = unsupported(model, &Scene { effects, ..scene.clone() });
             assert!(what.contains(name), "{}: {what}", model.name());
         }
-        let [_, _, fields @ ..] = each_output();
-        for outputs in fields {
+        let [_, _, _, cells @ ..] = each_output();
+        for outputs in cells {
             unsupported(model, &Scene { outputs, ..scene.clone() });
         }
         for other in surfaces().into_iter().filter(|other| other.kind() != surface.kind()) {
@@ -197,12 +197,16 @@ fn histories() {
     }
 }
 
-/// The five outputs, one at a time.
-fn each_output() -> [Outputs; 5] {
+const COPPER: Conductance = Conductance::Electrical { first: 1.7e-8, second: 1.7e-8 };
+
+/// The outputs that every model gives, those that only some have, and those that need cells: one at a time.
+fn each_output() -> [Outputs; 7] {
     let none = Outputs::default();
     [
         Outputs { stiffness: true, ..none },
+        Outputs { conductance: COPPER, ..none },
         Outputs { area: true, ..none },
+        Outputs { contact_patches: true, ..none },
         Outputs { pressure: true, ..none },
         Outputs { displacement: true, ..none },
         Outputs { gap: true, ..none },
@@ -220,7 +224,7 @@ fn outputs_are_those_asked_for() {
                 let mut contact = match model.prepare(&scene, 0) {
                     Ok(contact) => contact,
                     Err(Error::Unsupported { .. }) => {
-                        assert!(outputs.area || outputs.any_field(), "{place}");
+                        assert!(outputs.area || outputs.contact_patches || outputs.any_field(), "{place}");
                         assert_ne!(model.name(), "bem3d", "{place}");
                         continue;
                     }
@@ -235,6 +239,8 @@ fn outputs_are_those_asked_for() {
                         pressure: fields.pressure.is_some(),
                         displacement: fields.displacement.is_some(),
                         gap: fields.gap.is_some(),
+                        contact_patches: state.patches.is_some(),
+                        conductance: state.conductance.map_or(Conductance::Off, |_| COPPER),
                     };
                     assert_eq!(given, outputs, "{place} {load:?}");
                 }
@@ -246,10 +252,10 @@ fn outputs_are_those_asked_for() {
 /// A line has no area and closed forms have no cells.
 #[test]
 fn which_outputs_are_refused() {
-    let [_, area, fields @ ..] = each_output();
+    let [_, _, area, cells @ ..] = each_output();
     for (model, scenes) in accepted().into_iter().filter(|(model, _)| model.name() != "bem3d") {
         for scene in scenes {
-            for outputs in fields {
+            for outputs in cells {
                 unsupported(&*model, &Scene { outputs, ..scene.clone() });
             }
             if matches!(scene.surface, Surface::SelfAffine(_) | Surface::Line { .. }) {

@@ -1,14 +1,15 @@
 //! Electrical (thermal) conductance from the stiffness.
 
-use contact_model::{Error, Result};
+use contact_model::{Conductance, Result};
 
 /// Constriction conductance `Lambda = 2 k/(E* (rho1 + rho2))`, exact for any contact of half-spaces.
 ///
+/// The formula of [`Conductance`] for a fitted or averaged stiffness; a state has its own when it is asked for.
 /// `stiffness` k in force per length, `modulus` E* in force per length squared, resistivities in resistance times length; the
 /// result is 1/resistance. Source: Barber, Proc. R. Soc. A 459, 53 (2003); Sec. I and Eq. 13 of the paper.
 ///
 /// # Errors
-/// [`Error::Domain`] for a stiffness or resistivity that is negative or not finite, a modulus that is not positive or two
+/// [`contact_model::Error::Domain`] for a stiffness or resistivity that is negative or not finite, a modulus that is not positive or two
 /// bodies without any resistance.
 ///
 /// ```
@@ -17,22 +18,9 @@ use contact_model::{Error, Result};
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn conductance(stiffness: f64, modulus: f64, resistivity1: f64, resistivity2: f64) -> Result<f64> {
-    for (name, value) in
-        [("stiffness", stiffness), ("resistivity1", resistivity1), ("resistivity2", resistivity2)]
-    {
-        if !(value.is_finite() && value >= 0.0) {
-            return Err(Error::domain(name, value, "a finite number >= 0"));
-        }
-    }
-    if !(modulus.is_finite() && modulus > 0.0) {
-        return Err(Error::domain("modulus", modulus, "a finite number > 0"));
-    }
-    let lambda = 2.0 * stiffness / (modulus * (resistivity1 + resistivity2));
-    if lambda.is_finite() {
-        Ok(lambda)
-    } else {
-        Err(Error::domain("resistivity1 + resistivity2", resistivity1 + resistivity2, "a finite number > 0"))
-    }
+    let asked = Conductance::Electrical { first: resistivity1, second: resistivity2 };
+    // It is on, so it is there.
+    Ok(asked.of(stiffness, modulus)?.unwrap_or_default())
 }
 
 #[cfg(test)]

@@ -72,11 +72,22 @@ impl<L: Law> PreparedContact for Closed<L> {
             Load::Force(force) => (force, units.approach(point.approach)?),
             _ => (units.force(point.force)?, asked),
         };
-        let stiffness = self.outputs.stiffness.then(|| units.stiffness(point.stiffness)).transpose()?;
+        let stiffness =
+            self.outputs.needs_stiffness().then(|| units.stiffness(point.stiffness)).transpose()?;
         let area = point.area.filter(|_| self.outputs.area).map(|area| units.area(area)).transpose()?;
         let mut report = SolveReport::exact(self.strategy);
         report.certificate.stiffness_error = stiffness.map(|_| self.stiffness_error);
-        Ok(ContactState { force, approach: Some(approach), stiffness, area, fields: None, report })
+        ContactState {
+            force,
+            approach: Some(approach),
+            stiffness,
+            area,
+            conductance: None,
+            patches: None,
+            fields: None,
+            report,
+        }
+        .completed(&self.outputs, self.scales.modulus)
     }
 }
 
@@ -90,13 +101,16 @@ pub(crate) fn check(scene: &Scene, model: &'static str) -> Result<()> {
     refuse_fields(scene, model)
 }
 
-/// Errors where a field is asked for.
+/// Errors where a field or patches are asked for.
 ///
 /// # Errors
 /// [`Error::Unsupported`].
 pub(crate) fn refuse_fields(scene: &Scene, model: &'static str) -> Result<()> {
     if scene.outputs.any_field() {
         return Err(Error::unsupported(model, "fields: a closed form has no cells"));
+    }
+    if scene.outputs.contact_patches {
+        return Err(Error::unsupported(model, "contact patches: a closed form has no cells"));
     }
     Ok(())
 }

@@ -316,11 +316,21 @@ impl PreparedContact for Prepared {
             }
             _ => (signed(sphere.force_of(a), |force| units.force(force))?, asked),
         };
-        let stiffness = self.outputs.stiffness.then(|| units.stiffness(2.0 * a)).transpose()?;
+        let stiffness = self.outputs.needs_stiffness().then(|| units.stiffness(2.0 * a)).transpose()?;
         let area = self.outputs.area.then(|| units.area(PI * a * a)).transpose()?;
         let mut report = SolveReport::exact("closed form (JKR)");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
-        Ok(ContactState { force, approach: Some(approach), stiffness, area, fields: None, report })
+        ContactState {
+            force,
+            approach: Some(approach),
+            stiffness,
+            area,
+            conductance: None,
+            patches: None,
+            fields: None,
+            report,
+        }
+        .completed(&self.outputs, self.scales.modulus)
     }
 }
 

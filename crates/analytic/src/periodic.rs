@@ -76,13 +76,23 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
         };
         let stiffness = self
             .outputs
-            .stiffness
+            .needs_stiffness()
             .then(|| units.stiffness(or_none(&|p| self.law.stiffness(p))?))
             .transpose()?;
         let area = self.outputs.area.then(|| units.area(or_none(&|p| self.law.fraction(p))?)).transpose()?;
         let mut report = SolveReport::exact(self.strategy);
         report.certificate.stiffness_error = stiffness.map(|_| self.law.stiffness_error());
-        Ok(ContactState { force, approach: None, stiffness, area, fields: None, report })
+        ContactState {
+            force,
+            approach: None,
+            stiffness,
+            area,
+            conductance: None,
+            patches: None,
+            fields: None,
+            report,
+        }
+        .completed(&self.outputs, self.scales.modulus)
     }
 
     fn mean_gap(&mut self, load: Load) -> Result<f64> {

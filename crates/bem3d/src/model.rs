@@ -6,8 +6,8 @@ use crate::seed;
 use crate::stiffness::{self, Stiffness};
 use crate::strategy;
 use contact_model::{
-    Certificate, ContactModel, ContactState, Error, Fields, HeightMap, Load, Outputs, PreparedContact,
-    Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units,
+    Certificate, ContactModel, ContactState, Error, Fields, HeightMap, Load, Outputs, Patches,
+    PreparedContact, Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units, Work,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -186,7 +186,7 @@ impl Prepared {
     fn settle(&mut self, target: Target, mut limits: Limits, stop: Stop<'_>) -> (Solved, Option<Stiffness>) {
         let guess = self.guess(target, limits, stop);
         let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
-        if !self.outputs.stiffness {
+        if !self.outputs.needs_stiffness() {
             return (solved, None);
         }
         let mut tangent = self.tangent(&solved, None, stop);
@@ -240,6 +240,7 @@ impl Prepared {
         };
         let fields = self.fields(&solved)?;
         let report = SolveReport {
+            work: Work::default(),
             status,
             strategy: self.problem.operators.describe(&solved),
             iterations: solved.steps + tangent.as_ref().map_or(0, |t| t.steps),
@@ -255,9 +256,12 @@ impl Prepared {
                 None => None,
             },
             area: if self.outputs.area { Some(self.units.area(solved.contact.len() as f64)?) } else { None },
+            conductance: None,
+            patches: self.patches(&solved.contact)?,
             fields,
             report,
-        };
+        }
+        .completed(&self.outputs, self.scales.modulus)?;
         if status == Status::Converged {
             let Solved { contact, p, d, .. } = solved;
             self.last = Some(Last { force, tangent: tangent.map(|t| (t.q, t.value)), contact, p, d });
@@ -297,6 +301,16 @@ impl Prepared {
         Ok(Some(fields))
     }
 
+    /// Connected patches of the contact set, where asked for.
+    fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
+        if !self.outputs.contact_patches {
+            return Ok(None);
+        }
+        let sizes = surface_gen::patches(self.problem.side, contact.index(), contact_model::Boundary::Free);
+        let areas = sizes.into_iter().map(|size| self.units.area(size as f64)).collect::<Result<_>>()?;
+        Ok(Some(Patches::new(areas)))
+    }
+
     /// The state before first touch, and at it.
     fn untouched(&self) -> ContactState {
         let count = self.problem.side * self.problem.side;
@@ -312,8 +326,10 @@ impl Prepared {
         ContactState {
             force: 0.0,
             approach: Some(0.0),
-            stiffness: self.outputs.stiffness.then_some(0.0),
+            stiffness: self.outputs.needs_stiffness().then_some(0.0),
             area: self.outputs.area.then_some(0.0),
+            conductance: None,
+            patches: self.outputs.contact_patches.then(Patches::default),
             fields,
             report,
         }
@@ -332,7 +348,7 @@ impl PreparedContact for Prepared {
             other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
         };
         if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
-            return Ok(self.untouched());
+            return self.untouched().completed(&self.outputs, self.scales.modulus);
         }
         self.problem.operators.applications = 0;
         let limits = Limits {

@@ -32,23 +32,27 @@ mod grid;
 mod history;
 mod load;
 mod model;
+mod outputs;
 mod pair;
+mod patches;
 mod rheology;
 mod scales;
 mod scene;
 mod state;
 mod units;
+mod work;
 
 pub use error::{Error, Result};
 pub use grid::{HeightMap, Line};
 pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use load::Load;
 pub use model::{ContactModel, PreparedContact, Source, Stop, never};
+pub use outputs::{Conductance, Outputs};
 pub use pair::{Body, Pair};
+pub use patches::Patches;
 pub use rheology::{PronySeries, Relaxing, Rheology};
 pub use scales::{PAPER_STIFFNESS_FACTOR, Scales};
-pub use scene::{
-    Adhesion, Amplitude, Boundary, Effects, Friction, Outputs, Scene, SelfAffine, Surface, line_length,
-};
+pub use scene::{Adhesion, Amplitude, Boundary, Effects, Friction, Scene, SelfAffine, Surface, line_length};
 pub use state::{Certificate, ContactState, Fields, SolveReport, Status};
 pub use units::Units;
+pub use work::Work;

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result, non_negative, positive};
 use crate::grid::{HeightMap, Line};
+use crate::outputs::Outputs;
 use crate::pair::Pair;
 use crate::rheology::Rheology;
 use std::sync::Arc;
@@ -46,7 +47,7 @@ impl Scene {
         Ok(Self { pair: Some(pair), ..Self::new(surface, pair.modulus()?) })
     }
 
-    /// Checks the numbers that every model relies on: modulus, bodies, effects and the surface's own parameters.
+    /// Checks the numbers that every model relies on: modulus, bodies, effects, outputs and the surface's own parameters.
     ///
     /// # Errors
     /// [`Error::Domain`] with the first value that makes no sense, or a modulus that is not E* of the pair.
@@ -59,6 +60,7 @@ impl Scene {
             }
         }
         self.effects.validate()?;
+        self.outputs.conductance.resistivity()?;
         self.surface.validate()
     }
 
@@ -367,29 +369,6 @@ pub enum Friction {
         /// Coefficient of friction.
         coefficient: f64,
     },
-}
-
-/// What is computed besides force and approach. What is not asked for is not computed and not stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[allow(clippy::struct_excessive_bools)] // A set of names, each either asked for or not.
-pub struct Outputs {
-    /// Incremental stiffness k = dF/dd.
-    pub stiffness: bool,
-    /// Real contact area.
-    pub area: bool,
-    /// Pressure field.
-    pub pressure: bool,
-    /// Displacement field.
-    pub displacement: bool,
-    /// Gap field.
-    pub gap: bool,
-}
-
-impl Outputs {
-    /// Whether any field (pressure, displacement, gap) is asked for.
-    pub fn any_field(&self) -> bool {
-        self.pressure || self.displacement || self.gap
-    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,9 @@
 //! What comes back from a solve, and its evidence.
 
+use crate::error::Result;
+use crate::outputs::Outputs;
+use crate::patches::Patches;
+use crate::work::Work;
 use std::fmt;
 
 /// One contact state. `None`: the model does not claim it, or it was not asked for.
@@ -13,10 +17,30 @@ pub struct ContactState {
     pub stiffness: Option<f64>,
     /// Real contact area.
     pub area: Option<f64>,
+    /// Conductance through the contact ([`crate::Conductance`]).
+    pub conductance: Option<f64>,
+    /// Connected contact areas.
+    pub patches: Option<Patches>,
     /// Fields, where asked for.
     pub fields: Option<Fields>,
     /// How it was reached and how far it can be trusted.
     pub report: SolveReport,
+}
+
+impl ContactState {
+    /// The state with what follows from its stiffness, and without the stiffness where that was not asked for itself.
+    ///
+    /// The last thing that a model does: it computes the stiffness where [`Outputs::needs_stiffness`] says so.
+    ///
+    /// # Errors
+    /// As [`crate::Conductance::of`].
+    pub fn completed(mut self, outputs: &Outputs, modulus: f64) -> Result<Self> {
+        if let Some(stiffness) = self.stiffness {
+            self.conductance = outputs.conductance.of(stiffness, modulus)?;
+        }
+        self.stiffness = self.stiffness.filter(|_| outputs.stiffness);
+        Ok(self)
+    }
 }
 
 /// Fields on the cells of the map, row-major, `cells * cells` values each.
@@ -43,6 +67,8 @@ pub struct SolveReport {
     pub applications: usize,
     /// Number of cells (elements) in contact, where the model has any.
     pub contact_cells: Option<usize>,
+    /// What else was done for it.
+    pub work: Work,
     /// How exactly the equations of the model itself are satisfied.
     pub certificate: Certificate,
 }
@@ -56,6 +82,7 @@ impl SolveReport {
             iterations: 0,
             applications: 0,
             contact_cells: None,
+            work: Work::default(),
             certificate: Certificate::default(),
         }
     }
@@ -142,6 +169,26 @@ impl fmt::Display for Certificate {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn completed_states_have_what_was_asked_for() {
+        let state = ContactState {
+            force: 1.0,
+            approach: Some(1.0),
+            stiffness: Some(2.0),
+            area: None,
+            conductance: None,
+            patches: None,
+            fields: None,
+            report: SolveReport::exact("test"),
+        };
+        let conductance = crate::Conductance::Electrical { first: 1.0, second: 0.0 };
+        let outputs = Outputs { conductance, ..Outputs::default() };
+        let done = state.clone().completed(&outputs, 0.5).unwrap();
+        assert_eq!((done.stiffness, done.conductance), (None, Some(8.0)));
+        let done = state.completed(&Outputs { stiffness: true, ..Outputs::default() }, 0.5).unwrap();
+        assert_eq!((done.stiffness, done.conductance), (Some(2.0), None));
+    }
 
     #[test]
     fn a_certificate_with_nan_meets_nothing() {

@@ -235,8 +235,16 @@ mod tests {
             let mut report = SolveReport::exact("closed form");
             report.certificate = Certificate { frank_wolfe: 0.5, ..Default::default() };
             let stiffness = Some(force.sqrt());
-            let mut state =
-                ContactState { force, approach: None, stiffness, area: None, fields: None, report };
+            let mut state = ContactState {
+                force,
+                approach: None,
+                stiffness,
+                area: None,
+                conductance: None,
+                patches: None,
+                fields: None,
+                report,
+            };
             if force > 1.0 {
                 state.report.status = Status::IterationLimit;
                 return Err(contact_model::Error::NotConverged { best: Box::new(state) });

@@ -71,6 +71,9 @@ impl ContactModel for Mdr1d {
         if outputs.any_field() {
             return Err(Error::unsupported(NAME, "pressure, displacement and gap fields"));
         }
+        if outputs.contact_patches {
+            return Err(Error::unsupported(NAME, "contact patches (a line and a profile have no cells)"));
+        }
         let (side, modulus) = (scene.surface.side(), scene.modulus);
         if let Some(profile) = Profile::new(&scene.surface)? {
             let units = Units::new(modulus, side, side)?;
@@ -152,7 +155,11 @@ impl ContactModel for Ensemble {
     /// As [`Mdr1d`]; scenes of other surfaces are solved too, without anything kept.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         let outputs = scene.outputs;
-        if scene.surface != Surface::SelfAffine(self.surface) || outputs.any_field() || outputs.area {
+        if scene.surface != Surface::SelfAffine(self.surface)
+            || outputs.any_field()
+            || outputs.area
+            || outputs.contact_patches
+        {
             return self.model.prepare(scene, seed);
         }
         scene.validate()?;
@@ -205,15 +212,18 @@ impl PreparedContact for Rough {
         let mut report =
             SolveReport::exact(format!("order statistics of {} elements", self.bearing.elements()));
         report.contact_cells = Some(support.elements);
-        report.certificate.stiffness_error = self.outputs.stiffness.then_some(0.0);
-        Ok(ContactState {
+        report.certificate.stiffness_error = self.outputs.needs_stiffness().then_some(0.0);
+        ContactState {
             force: support.force,
             approach: Some(support.approach),
-            stiffness: self.outputs.stiffness.then_some(support.stiffness),
+            stiffness: self.outputs.needs_stiffness().then_some(support.stiffness),
             area: None,
+            conductance: None,
+            patches: None,
             fields: None,
             report,
-        })
+        }
+        .completed(&self.outputs, self.scales.modulus)
     }
 }
 
@@ -314,11 +324,22 @@ impl PreparedContact for Body {
             Load::Force(force) => force,
             _ => units.force(contact.force.abs())?.copysign(contact.force),
         };
-        let stiffness = self.outputs.stiffness.then(|| units.stiffness(contact.stiffness())).transpose()?;
+        let stiffness =
+            self.outputs.needs_stiffness().then(|| units.stiffness(contact.stiffness())).transpose()?;
         let area = self.outputs.area.then(|| units.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("closed form of the profile g(x)");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
-        Ok(ContactState { force, approach: Some(approach), stiffness, area, fields: None, report })
+        ContactState {
+            force,
+            approach: Some(approach),
+            stiffness,
+            area,
+            conductance: None,
+            patches: None,
+            fields: None,
+            report,
+        }
+        .completed(&self.outputs, self.scales.modulus)
     }
 }
 

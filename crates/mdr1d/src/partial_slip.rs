@@ -68,6 +68,9 @@ impl HistoryModel for PartialSlip {
         if scene.outputs.any_field() {
             return Err(Error::unsupported(NAME, "pressure, displacement and gap fields"));
         }
+        if scene.outputs.contact_patches {
+            return Err(Error::unsupported(NAME, "contact patches (a profile has no cells)"));
+        }
         let Some(profile) = Profile::new(&scene.surface)? else {
             let what = format!("{}: friction by springs needs a round contact", scene.surface.kind());
             return Err(Error::unsupported(NAME, what));
@@ -159,7 +162,8 @@ impl History for Prepared {
             other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
         };
         let radius = units.approach(contact.radius)?;
-        let stiffness = self.outputs.stiffness.then(|| units.stiffness(contact.stiffness())).transpose()?;
+        let stiffness =
+            self.outputs.needs_stiffness().then(|| units.stiffness(contact.stiffness())).transpose()?;
         let area = self.outputs.area.then(|| units.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("springs of the profile g(x), a polygon in g");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
@@ -168,9 +172,12 @@ impl History for Prepared {
             approach: Some(units.approach(contact.approach)?),
             stiffness,
             area,
+            conductance: None,
+            patches: None,
             fields: None,
             report,
-        };
+        }
+        .completed(&self.outputs, self.scales.modulus)?;
         let displacement = springs.displacement();
         let tangential = TangentialState {
             force: match step.tangential {

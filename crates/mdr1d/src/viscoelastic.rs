@@ -74,6 +74,9 @@ impl HistoryModel for Viscoelastic {
         if scene.outputs.any_field() {
             return Err(Error::unsupported(NAME, "pressure, displacement and gap fields"));
         }
+        if scene.outputs.contact_patches {
+            return Err(Error::unsupported(NAME, "contact patches (a profile has no cells)"));
+        }
         if scene.outputs.stiffness {
             return Err(Error::unsupported(NAME, "the stiffness (it depends on how fast one pushes)"));
         }
@@ -291,6 +294,11 @@ impl History for Prepared {
             }),
             stiffness: None,
             area: self.outputs.area.then(|| units.area(at.contact.area())).transpose()?,
+            conductance: self
+                .outputs
+                .conductance
+                .of(units.stiffness(at.contact.stiffness())?, self.scales.modulus)?,
+            patches: None,
             fields: None,
             report,
         };
