@@ -1,0 +1,477 @@
+//! The one error type of this crate: which file, where in it, which value, what to do.
+
+use crate::format::Format;
+use crate::quantity::QuantityError;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Result of everything that reads or writes.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// What can go wrong with a file.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system refused to read or write.
+    System {
+        /// What was being done (`open`, `read`, `write`, ...).
+        action: &'static str,
+        /// Where.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+    /// A file, or what is asked of it, does not make a surface.
+    Content {
+        /// Where.
+        path: PathBuf,
+        /// What is wrong.
+        problem: Problem,
+    },
+}
+
+impl Error {
+    pub(crate) fn system(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::System { action, path, source }
+    }
+
+    pub(crate) fn content(path: &Path) -> impl FnOnce(Problem) -> Self {
+        let path = path.to_owned();
+        move |problem| Self::Content { path, problem }
+    }
+
+    /// The problem, where the system did not refuse.
+    pub fn problem(&self) -> Option<&Problem> {
+        match self {
+            Self::Content { problem, .. } => Some(problem),
+            Self::System { .. } => None,
+        }
+    }
+}
+
+/// Where in a file: lines, rows, columns and values count from 1 in what is shown, offsets from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A value of a line of text, both counted from 1.
+    Line {
+        /// Line.
+        line: usize,
+        /// Number of the value in it.
+        value: usize,
+    },
+    /// A cell of a map, both counted from 0.
+    Cell {
+        /// Row.
+        row: usize,
+        /// Column.
+        column: usize,
+    },
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line { line, value } => write!(f, "line {line}, value {value}"),
+            Self::Cell { row, column } => write!(f, "row {row}, column {column} (counted from 0)"),
+        }
+    }
+}
+
+/// What is wrong with the content of a file, or with what is asked of it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Problem {
+    /// No data at all.
+    Empty,
+    /// Not a regular file.
+    NotAFile,
+    /// Longer than allowed.
+    TooLarge {
+        /// Length in bytes.
+        bytes: u64,
+        /// Largest length allowed.
+        largest: u64,
+    },
+    /// Another kind of file.
+    Foreign {
+        /// What it looks like.
+        what: &'static str,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// Not the format that was said.
+    NotOfFormat {
+        /// The format said, by the caller or by the name's ending.
+        said: Format,
+        /// The format that it looks like.
+        found: Format,
+    },
+    /// Three columns: a matrix of three columns, or points.
+    Ambiguous {
+        /// Number of lines of three.
+        lines: usize,
+    },
+    /// A byte that does not occur in text.
+    Binary {
+        /// Offset in bytes.
+        offset: usize,
+        /// The byte.
+        byte: u8,
+    },
+    /// The header of an NPY file is not one.
+    Header {
+        /// Offset in bytes.
+        offset: usize,
+        /// What was expected there.
+        expected: &'static str,
+    },
+    /// Numbers of a type that holds no heights.
+    Type {
+        /// The type as written.
+        found: String,
+    },
+    /// Not two dimensions.
+    Shape {
+        /// The lengths of the axes.
+        found: Vec<u64>,
+    },
+    /// The length of the file is not that of its shape.
+    Length {
+        /// Rows.
+        rows: u64,
+        /// Columns.
+        columns: u64,
+        /// Bytes that the shape takes.
+        expected: u128,
+        /// Bytes after the header.
+        found: u64,
+    },
+    /// What stands where a number should.
+    Number {
+        /// Where.
+        place: Place,
+        /// What is written there, shortened.
+        text: String,
+        /// Why it is no number.
+        kind: NumberKind,
+    },
+    /// An infinite height.
+    Infinite {
+        /// Where.
+        place: Place,
+        /// The value.
+        value: f64,
+    },
+    /// An integer that a double does not hold.
+    Inexact {
+        /// Where.
+        place: Place,
+        /// The integer.
+        value: i128,
+    },
+    /// A line with another number of values than the first one.
+    Ragged {
+        /// Line, from 1.
+        line: usize,
+        /// Values found.
+        found: usize,
+        /// Values of the first line.
+        expected: usize,
+        /// The first line of data, from 1.
+        first: usize,
+    },
+    /// Points with coordinates that are not numbers, or lines without three values.
+    NotPoints {
+        /// Line, from 1.
+        line: usize,
+        /// Values found.
+        found: usize,
+    },
+    /// A point without a coordinate.
+    Coordinate {
+        /// `x` or `y`.
+        axis: char,
+        /// Number of the point, from 1.
+        point: usize,
+    },
+    /// Two points at one place of the grid.
+    Duplicate {
+        /// First point of that place, from 1.
+        first: usize,
+        /// Second one.
+        second: usize,
+        /// Their coordinates.
+        at: [f64; 2],
+    },
+    /// A coordinate off the grid.
+    Irregular {
+        /// `x` or `y`.
+        axis: char,
+        /// The coordinate.
+        value: f64,
+        /// Origin of the grid.
+        origin: f64,
+        /// Spacing of the grid.
+        spacing: f64,
+    },
+    /// A grid most of whose points are missing.
+    Sparse {
+        /// Points.
+        points: usize,
+        /// Rows.
+        rows: f64,
+        /// Columns.
+        columns: f64,
+    },
+    /// Spacings along x and y differ.
+    Oblong {
+        /// Spacing along x.
+        dx: f64,
+        /// Spacing along y.
+        dy: f64,
+    },
+    /// The map is not square.
+    NotSquare {
+        /// Rows.
+        rows: usize,
+        /// Columns.
+        columns: usize,
+    },
+    /// Holes, and nobody said how to fill them.
+    Holes {
+        /// Cells without a height.
+        missing: usize,
+        /// All cells.
+        cells: usize,
+        /// The first one.
+        first: Place,
+    },
+    /// No cell has a height.
+    AllMissing {
+        /// All cells.
+        cells: usize,
+    },
+    /// Neither the file nor the caller says something.
+    Unsaid {
+        /// What.
+        what: &'static str,
+        /// How to say it.
+        remedy: &'static str,
+    },
+    /// The file and the caller, or two statements of one of them, say different things.
+    Contradiction {
+        /// About what.
+        what: &'static str,
+        /// One statement.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// Something was said that the format has no use for.
+    Useless {
+        /// What was said.
+        what: &'static str,
+        /// Why it is of no use.
+        reason: &'static str,
+    },
+    /// A number that was said makes no sense.
+    Said {
+        /// What.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A quantity that was said or is written in the file makes no sense.
+    Quantity {
+        /// What.
+        what: &'static str,
+        /// Why.
+        source: QuantityError,
+    },
+    /// The square to be cut out leaves the map.
+    Crop {
+        /// First row and column of the square.
+        from: [usize; 2],
+        /// Its cells a side.
+        cells: usize,
+        /// Rows and columns of the map.
+        shape: [usize; 2],
+    },
+    /// More cells than the map has.
+    Resample {
+        /// Cells a side asked for.
+        cells: usize,
+        /// Cells a side of the map.
+        found: usize,
+    },
+    /// Too few cells with heights, or all in a line, for a trend.
+    Trend {
+        /// Cells with heights.
+        present: usize,
+        /// Unknowns of the trend.
+        unknowns: usize,
+    },
+    /// Heights that are finite in the file overflow when they are converted or fitted.
+    Overflow {
+        /// The largest height by amount.
+        value: f64,
+    },
+    /// The map was refused.
+    Map(contact_model::Error),
+}
+
+/// Why a text is no number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NumberKind {
+    /// No number at all.
+    None,
+    /// A comma where a point is expected.
+    DecimalComma,
+    /// Two numbers with a space between where the delimiter is another one.
+    Two,
+    /// Beyond the range of doubles.
+    TooLarge,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::System { action, path, source } => {
+                write!(f, "cannot {action} {}: {source}", path.display())
+            }
+            Self::Content { path, problem } => write!(f, "{}: {problem}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::System { source, .. } => Some(source),
+            Self::Content { problem: Problem::Quantity { source, .. }, .. } => Some(source),
+            Self::Content { problem: Problem::Map(source), .. } => Some(source),
+            Self::Content { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for Problem {
+    #[allow(clippy::too_many_lines)] // One arm per problem is the plainest table of them.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "no data in it"),
+            Self::NotAFile => write!(f, "not a regular file: its length is needed before it is read"),
+            Self::TooLarge { bytes, largest } => {
+                write!(f, "{bytes} bytes: at most {largest} are read; raise largest_bytes for more")
+            }
+            Self::Foreign { what, remedy } => write!(f, "looks like {what}: {remedy}"),
+            Self::NotOfFormat { said, found } => {
+                write!(f, "said to be {said}, but the content is {found}: correct the name or the format")
+            }
+            Self::Ambiguous { lines } => write!(
+                f,
+                "{lines} lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\""
+            ),
+            Self::Binary { offset, byte } => write!(
+                f,
+                "byte 0x{byte:02x} at offset {offset} does not occur in text: expected numbers as text, or an NPY file"
+            ),
+            Self::Header { offset, expected } => {
+                write!(f, "header of an NPY file, offset {offset}: expected {expected}")
+            }
+            Self::Type { found } => write!(
+                f,
+                "numbers of type {found}: expected float64, float32, float16 or integers; numpy's astype('f8') converts"
+            ),
+            Self::Shape { found } => {
+                write!(f, "an array of {} dimensions {found:?}: expected two, rows and columns", found.len())
+            }
+            Self::Length { rows, columns, expected, found } => {
+                let what = if *expected > u128::from(*found) { "cut short" } else { "more than one array?" };
+                write!(
+                    f,
+                    "{found} bytes after the header: {rows} x {columns} numbers take {expected} ({what})"
+                )
+            }
+            Self::Number { place, text, kind } => {
+                let remedy = match kind {
+                    NumberKind::None => {
+                        "expected a number (comments begin with # or %; skip_lines leaves out a heading)"
+                    }
+                    NumberKind::DecimalComma => "a decimal comma? say decimal = \"comma\"",
+                    NumberKind::Two => {
+                        "two numbers between two delimiters: one delimiter per file, and decimal commas need decimal = \"comma\""
+                    }
+                    NumberKind::TooLarge => "beyond the range of double precision",
+                };
+                write!(f, "{place}: {text:?}: {remedy}")
+            }
+            Self::Infinite { place, value } => {
+                write!(f, "{place}: {value}: expected a finite height; write nan where nothing was measured")
+            }
+            Self::Inexact { place, value } => {
+                write!(f, "{place}: {value} is not a double: convert to float64 and decide what is rounded")
+            }
+            Self::Ragged { line, found, expected, first } => {
+                write!(f, "line {line} has {found} values: expected {expected} as in line {first}")
+            }
+            Self::NotPoints { line, found } => {
+                write!(f, "line {line} has {found} values: expected x, y and z of one point")
+            }
+            Self::Coordinate { axis, point } => {
+                write!(f, "point {point} has no {axis}: expected x, y and z of each point (z may be missing)")
+            }
+            Self::Duplicate { first, second, at: [x, y] } => {
+                write!(
+                    f,
+                    "points {first} and {second} are both at x = {x}, y = {y}: expected one height for each place"
+                )
+            }
+            Self::Irregular { axis, value, origin, spacing } => write!(
+                f,
+                "{axis} = {value} is off the grid {axis} = {origin} + i * {spacing}: expected points of a regular grid; say cell where noise hides the spacing"
+            ),
+            Self::Sparse { points, rows, columns } => write!(
+                f,
+                "{points} points on a grid of {rows} x {columns}: expected heights at half of the places at least; say cell where noise hides the spacing"
+            ),
+            Self::Oblong { dx, dy } => {
+                write!(f, "spacing {dx} along x and {dy} along y: expected square cells; resample it first")
+            }
+            Self::NotSquare { rows, columns } => write!(
+                f,
+                "{rows} rows of {columns}: expected a square map; crop = \"centre\" takes the largest square in the middle, a window takes any other"
+            ),
+            Self::Holes { missing, cells, first } => write!(
+                f,
+                "{missing} of {cells} cells have no height, the first in {first}: say how to fill them: \"neighbours\", \"plane\" or a value"
+            ),
+            Self::AllMissing { cells } => write!(f, "none of the {cells} cells has a height"),
+            Self::Unsaid { what, remedy } => write!(f, "{what} is neither in the file nor given: {remedy}"),
+            Self::Contradiction { what, first, second } => write!(f, "{what}: {first}, but {second}"),
+            Self::Useless { what, reason } => write!(f, "{what} was given: {reason}"),
+            Self::Said { what, value, expected } => write!(f, "{what} = {value}: expected {expected}"),
+            Self::Quantity { what, source } => write!(f, "{what}: {source}"),
+            Self::Crop { from: [row, column], cells, shape: [rows, columns] } => write!(
+                f,
+                "crop of {cells} x {cells} cells from row {row}, column {column}: the map has {rows} rows of {columns}"
+            ),
+            Self::Resample { cells, found } => write!(
+                f,
+                "{cells} cells a side: expected 1 to {found}, the cells of the map; finer cells would be invented"
+            ),
+            Self::Trend { present, unknowns } => write!(
+                f,
+                "a trend of {unknowns} unknowns is not determined by the {present} cells with heights"
+            ),
+            Self::Overflow { value } => {
+                write!(f, "height {value}: beyond the range of double precision after conversion")
+            }
+            Self::Map(source) => write!(f, "{source}"),
+        }
+    }
+}

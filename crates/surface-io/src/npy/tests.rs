@@ -1,0 +1,194 @@
+use crate::{Declared, Problem, Scan};
+use npyz::WriterBuilder as _;
+use proptest::prelude::*;
+
+fn header(text: &str) -> Vec<u8> {
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((text.len() as u16 + 1).to_le_bytes());
+    bytes.extend(text.bytes());
+    bytes.push(b'\n');
+    bytes
+}
+
+fn of(kind: &str, order: &str, shape: &str) -> Vec<u8> {
+    header(&format!("{{'descr': {kind}, 'fortran_order': {order}, 'shape': {shape}, }}"))
+}
+
+fn scan(bytes: &[u8]) -> crate::Result<Scan> {
+    Scan::from_bytes("a.npy", bytes, &Declared::default())
+}
+
+fn heights(scan: &Scan) -> Vec<Option<f64>> {
+    let (rows, columns) = (scan.understood().rows, scan.understood().columns);
+    (0..rows * columns).map(|i| scan.height(i / columns, i % columns)).collect()
+}
+
+#[test]
+fn every_type_and_order_of_numbers() {
+    let some = |values: [f64; 6]| values.map(Some).to_vec();
+    let numbers = [0.0, 1.0, -2.0, 3.0, 100.0, 5.0];
+    let check = |kind: &str, data: Vec<u8>, expected: [f64; 6], details: &str| {
+        let scan = scan(&[of(kind, "False", "(2, 3)"), data].concat()).unwrap();
+        assert_eq!(heights(&scan), some(expected), "{kind}");
+        assert_eq!(scan.understood().details, details);
+        assert_eq!((scan.understood().rows, scan.understood().columns), (2, 3));
+    };
+    let f = |to: fn(f64) -> Vec<u8>| numbers.iter().copied().flat_map(to).collect::<Vec<u8>>();
+    check("'<f8'", f(|v| v.to_le_bytes().to_vec()), numbers, "float64, little-endian, row by row");
+    check("'>f8'", f(|v| v.to_be_bytes().to_vec()), numbers, "float64, big-endian, row by row");
+    check("'<f4'", f(|v| (v as f32).to_le_bytes().to_vec()), numbers, "float32, little-endian, row by row");
+    check("'>f4'", f(|v| (v as f32).to_be_bytes().to_vec()), numbers, "float32, big-endian, row by row");
+    check("'|i1'", f(|v| (v as i8).to_le_bytes().to_vec()), numbers, "int8, little-endian, row by row");
+    check("'<i2'", f(|v| (v as i16).to_le_bytes().to_vec()), numbers, "int16, little-endian, row by row");
+    check("'>i4'", f(|v| (v as i32).to_be_bytes().to_vec()), numbers, "int32, big-endian, row by row");
+    check("'<i8'", f(|v| (v as i64).to_le_bytes().to_vec()), numbers, "int64, little-endian, row by row");
+    let unsigned = numbers.map(f64::abs);
+    let u = |to: fn(f64) -> Vec<u8>| unsigned.iter().copied().flat_map(to).collect::<Vec<u8>>();
+    check("'|u1'", u(|v| vec![v as u8]), unsigned, "uint8, little-endian, row by row");
+    check("'>u2'", u(|v| (v as u16).to_be_bytes().to_vec()), unsigned, "uint16, big-endian, row by row");
+    check("'<u8'", u(|v| (v as u64).to_le_bytes().to_vec()), unsigned, "uint64, little-endian, row by row");
+    let fortran = [of("'<f8'", "True", "(2, 3)"), f(|v| v.to_le_bytes().to_vec())].concat();
+    assert_eq!(heights(&scan(&fortran).unwrap()), some([0.0, -2.0, 100.0, 1.0, 3.0, 5.0]));
+}
+
+#[test]
+fn half_precision_by_its_definition() {
+    // 1, -2, largest 65504, smallest normal 2^-14, smallest subnormal 2^-24, 0.1 rounded, NaN.
+    let bits: [u16; 7] = [0x3c00, 0xc000, 0x7bff, 0x0400, 0x0001, 0x2e66, 0x7e00];
+    let values =
+        [1.0, -2.0, 65504.0, 6.103_515_625e-5, 5.960_464_477_539_063e-8, 0.099_975_585_937_5, f64::NAN];
+    for (bits, value) in bits.into_iter().zip(values) {
+        let read = super::half(bits);
+        assert!(read.to_bits() == value.to_bits() || (read.is_nan() && value.is_nan()), "{read} {value}");
+    }
+    assert!(super::half(0x7c00).is_infinite());
+}
+
+#[test]
+fn nan_is_a_hole_and_an_infinity_an_error() {
+    let data = |v: f64| {
+        [of("'<f8'", "False", "(1, 2)"), 1.0_f64.to_le_bytes().to_vec(), v.to_le_bytes().to_vec()].concat()
+    };
+    let found = scan(&data(f64::NAN)).unwrap();
+    assert_eq!((found.understood().missing, found.height(0, 1), found.height(0, 2)), (1, None, None));
+    assert_eq!(found.understood().range, Some([1.0, 1.0]));
+    let error = scan(&data(f64::INFINITY)).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "a.npy: row 0, column 1 (counted from 0): inf: expected a finite height; write nan where nothing was measured"
+    );
+}
+
+#[test]
+fn every_bad_file_says_what_is_wrong() {
+    let reason = |bytes: &[u8]| scan(bytes).unwrap_err().to_string();
+    let whole = [of("'<f8'", "False", "(2, 2)"), vec![0; 32]].concat();
+    for (bytes, expected) in [
+        (&b""[..], "no data"),
+        (b"1 2 3\n", "expected the bytes 93 4e 55 4d 50 59"),
+        (b"\x93NUMPY", "expected an NPY file"),
+        (b"\x93NUMPY\x04\x00\x00\x00", "offset 6: expected version"),
+        (b"\x93NUMPY\x01\x00\x80\x00{", "offset 8: expected a header that ends inside the file"),
+        // A header of 4 GB is neither allocated nor read.
+        (b"\x93NUMPY\x02\x00\xff\xff\xff\xff{", "offset 8: expected a header that ends inside the file"),
+        (&whole[..whole.len() - 1], "31 bytes after the header: 2 x 2 numbers take 32 (cut short)"),
+        (&whole[..20], "ends inside the file"),
+        (
+            &[&whole[..], &[0]].concat(),
+            "33 bytes after the header: 2 x 2 numbers take 32 (more than one array?)",
+        ),
+    ] {
+        assert!(reason(bytes).contains(expected), "{expected}: {}", reason(bytes));
+    }
+    for kind in ["'<c16'", "'|b1'", "'|O'", "'<f16'", "'<U8'", "'f8'", "''", "'<M8[ns]'", "[('x', '<f8')]"] {
+        assert!(reason(&of(kind, "False", "(2, 2)")).contains("astype('f8')"), "{kind}");
+    }
+    for (shape, expected) in [
+        ("(4,)", "1 dimensions [4]: expected two"),
+        ("()", "0 dimensions []"),
+        ("(1, 2, 2)", "3 dimensions [1, 2, 2]"),
+        ("(0, 4)", "no data"),
+        ("(1000000, 125000)", "take 1000000000000 (cut short)"),
+        ("(18446744073709551615, 18446744073709551615)", "cut short"),
+        ("(18446744073709551616, 1)", "below 2^64"),
+        ("(-1, 1)", "below 2^64"),
+        ("(2 2)", "a comma or )"),
+        ("[2, 2]", "a shape in brackets"),
+        ("(2, 2", "below 2^64"),
+    ] {
+        let bytes = [of("'<f8'", "False", shape), vec![0; 64]].concat();
+        assert!(reason(&bytes).contains(expected), "{shape}: {}", reason(&bytes));
+    }
+    assert!(reason(&of("'<f8'", "Maybe", "(2, 2)")).contains("True or False"));
+    assert!(reason(&header("{'descr': '<f8'}")).contains("before }"));
+    assert!(reason(&header("{'descr': '<f8', 'descr': '<f8'}")).contains("each once"));
+    assert!(reason(&header("{'descr': '<f8', 'extra': '1'}")).contains("descr, fortran_order and shape"));
+    assert!(reason(&header("{'descr': '<f8")).contains("a string that ends"));
+    // No recursion: brackets do not eat the stack.
+    assert!(reason(&header(&"(".repeat(9000))).contains("expected {"));
+    assert!(reason(&header(&"{".repeat(20000))).contains("at most 10000 bytes"));
+}
+
+#[test]
+fn integers_that_no_double_holds_are_named() {
+    let big = (1_i64 << 53) + 1;
+    let bytes = [of("'<i8'", "False", "(1, 1)"), big.to_le_bytes().to_vec()].concat();
+    assert!(
+        matches!(scan(&bytes).unwrap_err().problem(), Some(Problem::Inexact { value, .. }) if *value == i128::from(big))
+    );
+    let bytes = [of("'<i8'", "False", "(1, 1)"), i64::MIN.to_le_bytes().to_vec()].concat();
+    assert_eq!(scan(&bytes).unwrap().height(0, 0), Some(-(2_f64.powi(63))));
+}
+
+#[test]
+fn what_has_no_use_is_refused() {
+    let whole = [of("'<f8'", "False", "(1, 1)"), vec![0; 8]].concat();
+    let declared = Declared { skip_lines: 1, ..Declared::default() };
+    assert!(Scan::from_bytes("a.npy", &whole, &declared).unwrap_err().to_string().contains("has no lines"));
+    let declared = Declared { lateral_unit: Some("um".parse().unwrap()), ..Declared::default() };
+    assert!(Scan::from_bytes("a.npy", &whole, &declared).unwrap_err().to_string().contains("no coordinates"));
+    let declared = Declared { format: Some(crate::Format::Text), ..Declared::default() };
+    assert!(
+        Scan::from_bytes("a.dat", &whole, &declared).unwrap_err().to_string().contains("correct the name")
+    );
+    let declared = Declared { largest_bytes: 10, ..Declared::default() };
+    assert!(
+        Scan::from_bytes("a.npy", &whole, &declared).unwrap_err().to_string().contains("at most 10 are read")
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn what_is_written_is_read_by_this_crate_and_by_npyz(rows in 1..8_usize, columns in 1..8_usize, seed in any::<[f64; 64]>()) {
+        let values: Vec<f64> = seed[..rows * columns].iter().map(|v| if v.is_infinite() { 0.0 } else { *v }).collect();
+        let bytes = super::npy(&[rows, columns], &values).unwrap();
+        prop_assert_eq!((bytes.len() - 8 * values.len()) % 64, 0);
+        let read = heights(&scan(&bytes).unwrap());
+        for (a, b) in read.iter().zip(&values) {
+            prop_assert!(a.map_or(b.is_nan(), |a| a.to_bits() == b.to_bits()));
+        }
+        let twin = npyz::NpyFile::new(&bytes[..]).unwrap();
+        prop_assert_eq!(twin.shape(), &[rows as u64, columns as u64]);
+        let twin: Vec<f64> = twin.into_vec().unwrap();
+        prop_assert!(twin.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
+
+    #[test]
+    fn what_npyz_writes_is_read(rows in 1..6_u64, columns in 1..6_u64, values in any::<[i32; 36]>(), fortran in any::<bool>()) {
+        let mut bytes = Vec::new();
+        let order = if fortran { npyz::Order::Fortran } else { npyz::Order::C };
+        let mut writer =
+            npyz::WriteOptions::new().default_dtype().shape(&[rows, columns]).order(order).writer(&mut bytes).begin_nd().unwrap();
+        writer.extend(values[..(rows * columns) as usize].iter().copied()).unwrap();
+        writer.finish().unwrap();
+        let scan = scan(&bytes).unwrap();
+        for row in 0..rows as usize {
+            for column in 0..columns as usize {
+                let at = if fortran { column * rows as usize + row } else { row * columns as usize + column };
+                prop_assert_eq!(scan.height(row, column), Some(f64::from(values[at])));
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Points x, y, z on a regular grid, in any order.
+
+mod axis;
+
+use crate::error::Problem;
+use crate::format::Format;
+use crate::quantity::{Dimension, Quantity, Unit};
+use crate::scan::{Declared, Found, check_unit};
+use crate::text::Table;
+use axis::Axis;
+
+/// Share of the places of a grid that must have a height: a wrong spacing leaves most of them empty.
+const FULL: f64 = 0.5;
+
+/// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
+///
+/// Cost O(n log n) for n points.
+pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem> {
+    if table.columns != 3 {
+        return Err(Problem::NotPoints { line: table.first_line, found: table.columns });
+    }
+    if declared.width.is_some() {
+        let reason = "points say their width themselves; give cell where noise hides the spacing";
+        return Err(Problem::Useless { what: "width", reason });
+    }
+    let unit = table.heading.unit.clone();
+    let heights_unit = declared.unit.as_ref().or(unit.as_ref());
+    let lateral = lateral_unit(declared, table, heights_unit)?;
+    let spacing = declared.cell.map(|cell| spacing_of(cell, lateral.as_ref())).transpose()?;
+    let points = table.rows();
+    let axis = |name, at: usize| {
+        let along = table.values.iter().skip(at).step_by(3).copied();
+        if let Some(point) = along.clone().position(|v: f64| v.is_nan()) {
+            return Err(Problem::Coordinate { axis: name, point: point + 1 });
+        }
+        Axis::find(name, along.collect(), spacing)
+    };
+    let (x, y) = (axis('x', 0)?, axis('y', 1)?);
+    if x.count * y.count * FULL > points as f64 {
+        return Err(Problem::Sparse { points, rows: y.count, columns: x.count });
+    }
+    let (rows, columns) = (y.count as usize, x.count as usize);
+    let cell = common(&x, &y)?;
+    let mut heights = vec![f64::NAN; rows * columns];
+    let mut taken = vec![0_u32; rows * columns];
+    for (i, point) in table.values.chunks_exact(3).enumerate() {
+        let at = y.index(point[1])? * columns + x.index(point[0])?;
+        if taken[at] > 0 {
+            let first = taken[at] as usize;
+            return Err(Problem::Duplicate { first, second: i + 1, at: [point[0], point[1]] });
+        }
+        taken[at] = i as u32 + 1;
+        heights[at] = point[2];
+    }
+    let cell = match (declared.cell, cell) {
+        (Some(_), _) | (None, None) => None,
+        (None, Some(cell)) => {
+            let unit = lateral.unwrap_or_else(Unit::none);
+            Some(Quantity::of(cell, &unit).map_err(|source| Problem::Quantity { what: "spacing", source })?)
+        }
+    };
+    let details = format!("{points} points, {}", table.delimiter);
+    Ok(Found { format: Format::Xyz, details, rows, columns, heights, unit, cell })
+}
+
+/// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not guessed at.
+fn lateral_unit(declared: &Declared, table: &Table, heights: Option<&Unit>) -> Result<Option<Unit>, Problem> {
+    let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
+    if let (Some(a), Some(b)) = (file, given)
+        && !a.same(b)
+    {
+        let (first, second) = (format!("{a} said by the file"), format!("{b} as given"));
+        return Err(Problem::Contradiction { what: "unit of x and y", first, second });
+    }
+    let unit = given.clone().or_else(|| file.clone());
+    check_unit("lateral_unit", unit.as_ref())?;
+    if unit.is_none() && heights.is_some_and(|u| u.dimension() == Dimension::LENGTH) {
+        let remedy = "say lateral_unit = \"um\" or another unit of length";
+        return Err(Problem::Unsaid { what: "the unit of x and y", remedy });
+    }
+    Ok(unit)
+}
+
+/// The given side of a cell in the numbers of the file.
+fn spacing_of(cell: Quantity, lateral: Option<&Unit>) -> Result<f64, Problem> {
+    let unit = lateral.cloned().unwrap_or_else(Unit::none);
+    if cell.dimension() != unit.dimension() {
+        let (first, second) = (format!("cell = {cell}"), format!("x and y have {unit}"));
+        return Err(Problem::Contradiction { what: "side of a cell", first, second });
+    }
+    let spacing = cell.value() / unit.to_si(1.0);
+    if spacing.is_finite() && spacing > 0.0 {
+        Ok(spacing)
+    } else {
+        Err(Problem::Said { what: "cell", value: cell.value(), expected: "a length > 0" })
+    }
+}
+
+/// One spacing for both axes where they differ by less than half a cell over the whole map; `None` for a single point.
+fn common(x: &Axis, y: &Axis) -> Result<Option<f64>, Problem> {
+    match (x.spacing, y.spacing) {
+        (Some(dx), Some(dy)) => {
+            if (dx - dy).abs() * x.count.max(y.count) > 0.5 * dx.min(dy) {
+                return Err(Problem::Oblong { dx, dy });
+            }
+            Ok(Some((dx * (x.count - 1.0) + dy * (y.count - 1.0)) / (x.count + y.count - 2.0)))
+        }
+        (one, other) => Ok(one.or(other)),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,351 @@
+//! What a file holds before anything is done to it.
+
+use crate::error::{Error, Place, Problem, Result};
+use crate::format::Format;
+use crate::quantity::{Dimension, Quantity, Unit};
+use crate::{npy, points, text};
+use std::fmt;
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read};
+use std::path::{Path, PathBuf};
+
+/// What the caller says about a file; what contradicts the file is an error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Declared {
+    /// The format, where it is not to be told from the content and the name's ending.
+    pub format: Option<Format>,
+    /// Unit of the heights.
+    pub unit: Option<Unit>,
+    /// Unit of x and y of points.
+    pub lateral_unit: Option<Unit>,
+    /// Side of one cell: a length, or a number where the heights have no unit.
+    pub cell: Option<Quantity>,
+    /// Length of a row, `columns * cell`, instead of the cell.
+    pub width: Option<Quantity>,
+    /// How decimals are written in text.
+    pub decimal: Decimal,
+    /// A number of the file that stands for a missing height, such as -9999.
+    pub missing: Option<f64>,
+    /// Lines of text to leave out at the beginning.
+    pub skip_lines: usize,
+    /// Longest file that is read, in bytes.
+    pub largest_bytes: u64,
+}
+
+impl Default for Declared {
+    /// Nothing said, points as decimals, files of up to 8 GiB (a square of 32768 doubles a side).
+    fn default() -> Self {
+        Self {
+            format: None,
+            unit: None,
+            lateral_unit: None,
+            cell: None,
+            width: None,
+            decimal: Decimal::Point,
+            missing: None,
+            skip_lines: 0,
+            // The header of such a map goes on top.
+            largest_bytes: (8 << 30) + 65536,
+        }
+    }
+}
+
+/// How decimals are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Decimal {
+    /// 1.5
+    #[default]
+    Point,
+    /// 1,5
+    Comma,
+}
+
+/// A value and who said it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Said<T> {
+    /// The value.
+    pub value: T,
+    /// Who said it.
+    pub by: Speaker,
+}
+
+/// Who said something about a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Speaker {
+    /// The file itself.
+    File,
+    /// The caller.
+    Caller,
+}
+
+impl fmt::Display for Speaker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::File => "said by the file",
+            Self::Caller => "as given",
+        })
+    }
+}
+
+/// What was understood of a file, for the user to check; shown line by line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Understood {
+    /// The format.
+    pub format: Format,
+    /// Details of it: type of the numbers, order, delimiter.
+    pub details: String,
+    /// Rows.
+    pub rows: usize,
+    /// Columns.
+    pub columns: usize,
+    /// Side of one cell; `None` where nobody said it.
+    pub cell: Option<Said<Quantity>>,
+    /// Unit of the heights; `None` where nobody said it.
+    pub unit: Option<Said<Unit>>,
+    /// Cells without a height.
+    pub missing: usize,
+    /// Lowest and highest height in the file's unit; `None` where all are missing.
+    pub range: Option<[f64; 2]>,
+}
+
+impl Understood {
+    /// Share of the cells without a height, 0 to 1.
+    pub fn missing_share(&self) -> f64 {
+        self.missing as f64 / (self.rows as f64 * self.columns as f64)
+    }
+}
+
+impl fmt::Display for Understood {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "format   {} ({})", self.format, self.details)?;
+        writeln!(f, "shape    {} rows of {}", self.rows, self.columns)?;
+        match &self.cell {
+            Some(cell) => writeln!(f, "cell     {} ({})", cell.value, cell.by)?,
+            None => writeln!(f, "cell     not said")?,
+        }
+        match &self.unit {
+            Some(unit) => writeln!(f, "heights  in {} ({})", unit.value, unit.by)?,
+            None => writeln!(f, "heights  unit not said")?,
+        }
+        match self.range {
+            Some([low, high]) => writeln!(f, "range    {low} to {high}")?,
+            None => writeln!(f, "range    none")?,
+        }
+        write!(f, "missing  {} of {} cells", self.missing, self.rows * self.columns)?;
+        if self.missing > 0 { write!(f, " ({:.3} %)", 100.0 * self.missing_share()) } else { Ok(()) }
+    }
+}
+
+/// A rectangle of heights as a file holds them: with holes, in the file's unit.
+///
+/// [`Scan::map`] makes a square [`contact_model::HeightMap`] of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scan {
+    path: PathBuf,
+    understood: Understood,
+    /// Row-major; NaN is a hole and never leaves this crate.
+    heights: Vec<f64>,
+}
+
+/// What a reader of one format found.
+pub(crate) struct Found {
+    pub(crate) format: Format,
+    pub(crate) details: String,
+    pub(crate) rows: usize,
+    pub(crate) columns: usize,
+    pub(crate) heights: Vec<f64>,
+    pub(crate) unit: Option<Unit>,
+    pub(crate) cell: Option<Quantity>,
+}
+
+impl Scan {
+    /// Reads a file.
+    ///
+    /// Memory: the heights for NPY; for text the file and at most four times its length on top.
+    ///
+    /// # Errors
+    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the file or contradicts what is declared.
+    pub fn read(path: &Path, declared: &Declared) -> Result<Self> {
+        let file = File::open(path).map_err(Error::system("open", path))?;
+        let about = file.metadata().map_err(Error::system("read", path))?;
+        if !about.is_file() {
+            return Err(Error::content(path)(Problem::NotAFile));
+        }
+        Self::from_reader(path, BufReader::new(file), about.len(), declared)
+    }
+
+    /// Reads the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's name.
+    ///
+    /// # Errors
+    /// As [`Scan::read`].
+    ///
+    /// ```
+    /// use surface_io::{Declared, Scan};
+    /// let scan = Scan::from_bytes("a.txt", b"# Width: 3 um\n1 2 3\n4 nan 6\n", &Declared::default())?;
+    /// assert_eq!((scan.understood().rows, scan.understood().columns), (2, 3));
+    /// assert_eq!(scan.height(0, 2), Some(3.0));
+    /// assert_eq!(scan.height(1, 1), None);
+    /// # Ok::<(), surface_io::Error>(())
+    /// ```
+    pub fn from_bytes(name: impl AsRef<Path>, bytes: &[u8], declared: &Declared) -> Result<Self> {
+        Self::from_reader(name.as_ref(), Cursor::new(bytes), bytes.len() as u64, declared)
+    }
+
+    fn from_reader(path: &Path, mut reader: impl Read, length: u64, declared: &Declared) -> Result<Self> {
+        let content = Error::content;
+        if length > declared.largest_bytes {
+            let problem = Problem::TooLarge { bytes: length, largest: declared.largest_bytes };
+            return Err(content(path)(problem));
+        }
+        let mut start = Vec::with_capacity(crate::format::SNIFF);
+        reader
+            .by_ref()
+            .take(crate::format::SNIFF as u64)
+            .read_to_end(&mut start)
+            .map_err(Error::system("read", path))?;
+        let format = Format::tell(declared.format, path, &start).map_err(content(path))?;
+        let mut reader = Cursor::new(start).chain(reader);
+        let found = if format == Some(Format::Npy) {
+            npy::read(path, &mut reader, length, declared)?
+        } else {
+            let mut bytes = Vec::with_capacity(length as usize);
+            // A file that grows while it is read is cut at its length.
+            reader.take(length).read_to_end(&mut bytes).map_err(Error::system("read", path))?;
+            let table = text::Table::read(&bytes, declared).map_err(content(path))?;
+            let format = match format {
+                Some(format) => format,
+                None if table.columns == 3 && table.rows() > 3 => {
+                    return Err(content(path)(Problem::Ambiguous { lines: table.rows() }));
+                }
+                None => Format::Text,
+            };
+            drop(bytes);
+            let found = if format == Format::Xyz {
+                points::grid(&table, declared)
+            } else {
+                text::matrix(table, declared)
+            };
+            found.map_err(content(path))?
+        };
+        Self::new(path, found, declared).map_err(content(path))
+    }
+
+    fn new(path: &Path, found: Found, declared: &Declared) -> Result<Self, Problem> {
+        let Found { format, details, rows, columns, mut heights, unit, cell } = found;
+        if let Some(hole) = declared.missing {
+            for h in &mut heights {
+                if h.to_bits() == hole.to_bits() || (*h - hole).abs() <= 0.0 {
+                    *h = f64::NAN;
+                }
+            }
+        }
+        let (mut missing, mut range) = (0, None);
+        for (i, &h) in heights.iter().enumerate() {
+            if h.is_infinite() {
+                let place = Place::Cell { row: i / columns, column: i % columns };
+                return Err(Problem::Infinite { place, value: h });
+            }
+            if h.is_nan() {
+                missing += 1;
+            } else {
+                let [low, high] = range.unwrap_or([h, h]);
+                range = Some([h.min(low), h.max(high)]);
+            }
+        }
+        let unit = said(unit, declared.unit.clone(), |a, b| {
+            a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
+        })?;
+        check_unit("unit", unit.as_ref().map(|u| &u.value))?;
+        let given = given_cell(declared, columns)?;
+        let cell = said(cell, given, |a, b| {
+            let close = (a.value() / b.value() - 1.0).abs() <= PRINTED;
+            (a.dimension() == b.dimension() && close)
+                .then_some(())
+                .ok_or_else(|| contradiction("side of a cell", a, b))
+        })?;
+        let understood = Understood { format, details, rows, columns, cell, unit, missing, range };
+        Ok(Self { path: path.to_owned(), understood, heights })
+    }
+
+    /// What was understood.
+    pub fn understood(&self) -> &Understood {
+        &self.understood
+    }
+
+    /// The file, or the name that was given.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Height of a cell in the file's unit; `None` where it is missing or outside.
+    pub fn height(&self, row: usize, column: usize) -> Option<f64> {
+        let inside = row < self.understood.rows && column < self.understood.columns;
+        let height = inside.then(|| self.heights[row * self.understood.columns + column])?;
+        (!height.is_nan()).then_some(height)
+    }
+
+    pub(crate) fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+}
+
+/// Headers print lengths with three digits or more: half of the last one.
+pub(crate) const PRINTED: f64 = 5e-3;
+
+fn contradiction(what: &'static str, file: &impl fmt::Display, caller: &impl fmt::Display) -> Problem {
+    let (first, second) = (format!("{file} {}", Speaker::File), format!("{caller} {}", Speaker::Caller));
+    Problem::Contradiction { what, first, second }
+}
+
+/// What the caller says, checked against the file where both speak; else what the file says.
+fn said<T>(
+    file: Option<T>,
+    caller: Option<T>,
+    agree: impl FnOnce(&T, &T) -> Result<(), Problem>,
+) -> Result<Option<Said<T>>, Problem> {
+    if let (Some(file), Some(caller)) = (&file, &caller) {
+        agree(file, caller)?;
+    }
+    let caller = caller.map(|value| Said { value, by: Speaker::Caller });
+    Ok(caller.or(file.map(|value| Said { value, by: Speaker::File })))
+}
+
+/// Heights have a length or no unit at all.
+pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), Problem> {
+    match unit.map(|u| (u, u.dimension())) {
+        None | Some((_, Dimension::LENGTH)) => Ok(()),
+        // "%" would be a factor without a meaning here.
+        Some((u, Dimension::NONE)) if *u == Unit::none() => Ok(()),
+        Some((u, found)) => {
+            let source =
+                crate::QuantityError::Dimension { text: u.to_string(), found, expected: Dimension::LENGTH };
+            Err(Problem::Quantity { what, source })
+        }
+    }
+}
+
+/// The side of a cell as given, directly or by the length of a row.
+fn given_cell(declared: &Declared, columns: usize) -> Result<Option<Quantity>, Problem> {
+    let check = |what: &'static str, said: Option<Quantity>| match said {
+        Some(q) if q.dimension() != Dimension::LENGTH && q.dimension() != Dimension::NONE => {
+            let source = q.expect(Dimension::LENGTH).err();
+            source.map_or(Ok(None), |source| Err(Problem::Quantity { what, source }))
+        }
+        Some(q) if q.value() <= 0.0 => {
+            Err(Problem::Said { what, value: q.value(), expected: "a length > 0" })
+        }
+        said => Ok(said),
+    };
+    let (cell, width) = (check("cell", declared.cell)?, check("width", declared.width)?);
+    let quantity = |value, dimension| {
+        Quantity::new(value, dimension).map_err(|source| Problem::Quantity { what: "width", source })
+    };
+    let by_width = width.map(|w| quantity(w.value() / columns as f64, w.dimension())).transpose()?;
+    if let (Some(a), Some(b)) = (cell, by_width)
+        && (a.dimension() != b.dimension() || (a.value() / b.value() - 1.0).abs() > PRINTED)
+    {
+        let (first, second) = (format!("cell = {a}"), format!("width over {columns} columns = {b}"));
+        return Err(Problem::Contradiction { what: "side of a cell", first, second });
+    }
+    Ok(cell.or(by_width))
+}

@@ -1,0 +1,168 @@
+//! Numbers as text: lines, delimiters, comments, what a header says.
+
+mod heading;
+mod matrix;
+mod number;
+
+pub(crate) use heading::Heading;
+pub(crate) use matrix::matrix;
+
+use crate::error::{Place, Problem};
+use crate::scan::{Decimal, Declared};
+use number::Numbers;
+use std::fmt;
+
+/// What stands between two numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Delimiter {
+    Whitespace,
+    Tab,
+    Comma,
+    Semicolon,
+}
+
+impl Delimiter {
+    /// The delimiter of a line of data: a semicolon if there is one, else a tab, else a comma, else whitespace.
+    fn of(line: &[u8], decimal: Decimal) -> Self {
+        if line.contains(&b';') {
+            Self::Semicolon
+        } else if line.contains(&b'\t') {
+            Self::Tab
+        } else if line.contains(&b',') && decimal == Decimal::Point {
+            Self::Comma
+        } else {
+            Self::Whitespace
+        }
+    }
+
+    fn byte(self) -> u8 {
+        match self {
+            Self::Whitespace => b' ',
+            Self::Tab => b'\t',
+            Self::Comma => b',',
+            Self::Semicolon => b';',
+        }
+    }
+}
+
+impl fmt::Display for Delimiter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Whitespace => "spaces between numbers",
+            Self::Tab => "tabs between numbers",
+            Self::Comma => "commas between numbers",
+            Self::Semicolon => "semicolons between numbers",
+        })
+    }
+}
+
+/// Lines of equally many numbers; NaN is a hole.
+#[derive(Debug)]
+pub(crate) struct Table {
+    pub(crate) columns: usize,
+    pub(crate) values: Vec<f64>,
+    pub(crate) delimiter: Delimiter,
+    pub(crate) heading: Heading,
+    /// Number of the first line of data, from 1.
+    pub(crate) first_line: usize,
+}
+
+/// A mark that some editors put before UTF-8.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
+impl Table {
+    pub(crate) fn rows(&self) -> usize {
+        self.values.len() / self.columns
+    }
+
+    /// Reads all lines.
+    ///
+    /// Memory: at most 8 bytes for each byte of the text (a hole between two commas).
+    pub(crate) fn read(bytes: &[u8], declared: &Declared) -> Result<Self, Problem> {
+        let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
+        check_text(bytes)?;
+        let mut table: Option<Self> = None;
+        let mut heading = Heading::default();
+        let numbers = Numbers { decimal: declared.decimal };
+        for (i, line) in bytes.split(|&b| b == b'\n').enumerate().skip(declared.skip_lines) {
+            let (data, comment) = match line.iter().position(|b| matches!(b, b'#' | b'%')) {
+                Some(at) => (line[..at].trim_ascii(), Some(&line[at + 1..])),
+                None => (line, None),
+            };
+            if data.trim_ascii().is_empty() {
+                if let Some(comment) = comment {
+                    heading.read(comment);
+                }
+                continue;
+            }
+            if table.is_none() {
+                let delimiter = Delimiter::of(data.trim_ascii(), declared.decimal);
+                table = Some(Self {
+                    columns: 0,
+                    values: Vec::new(),
+                    delimiter,
+                    heading: Heading::default(),
+                    first_line: i + 1,
+                });
+            }
+            if let Some(table) = &mut table {
+                table.line(numbers, data, i + 1, bytes)?;
+            }
+        }
+        let mut table = table.ok_or(Problem::Empty)?;
+        table.heading = heading;
+        Ok(table)
+    }
+
+    fn line(&mut self, numbers: Numbers, data: &[u8], line: usize, all: &[u8]) -> Result<(), Problem> {
+        let before = self.values.len();
+        let push = |token: &[u8], value: usize, values: &mut Vec<f64>| -> Result<(), Problem> {
+            values.push(numbers.read(token, Place::Line { line, value })?);
+            Ok(())
+        };
+        if self.delimiter == Delimiter::Whitespace {
+            let tokens = data.split(u8::is_ascii_whitespace).filter(|t| !t.is_empty());
+            for (i, token) in tokens.enumerate() {
+                push(token, i + 1, &mut self.values)?;
+            }
+        } else {
+            let byte = self.delimiter.byte();
+            // Tabs at the ends are delimiters there, so only the line break and spaces go.
+            let data = data.strip_suffix(b"\r").unwrap_or(data);
+            let data = if byte == b'\t' { data } else { data.trim_ascii() };
+            // One delimiter behind the last number is the habit of some programs.
+            let data = data.strip_suffix(&[byte]).unwrap_or(data);
+            for (i, token) in data.split(|&b| b == byte).enumerate() {
+                push(token.trim_ascii(), i + 1, &mut self.values)?;
+            }
+        }
+        let found = self.values.len() - before;
+        if self.columns == 0 {
+            self.columns = found;
+            // All lines at once, and never more than there can be values in these bytes.
+            let lines = all.split(|&b| b == b'\n').count();
+            let most = (all.len() + 1).min(found.saturating_mul(lines));
+            self.values.reserve_exact(most - before.min(most));
+        } else if found != self.columns {
+            let (expected, first) = (self.columns, self.first_line);
+            return Err(Problem::Ragged { line, found, expected, first });
+        }
+        Ok(())
+    }
+}
+
+/// Refuses bytes that text does not have: control characters, and line ends of one carriage return.
+fn check_text(bytes: &[u8]) -> Result<(), Problem> {
+    let bad = |&(i, b): &(usize, &u8)| match *b {
+        b'\t' | b'\n' | 0x0c => false,
+        b'\r' => !matches!(bytes.get(i + 1), None | Some(b'\n')),
+        b => b < b' ' || b == 0x7f,
+    };
+    match bytes.iter().enumerate().find(bad) {
+        Some((offset, &byte)) => Err(Problem::Binary { offset, byte }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,63 @@
+//! One number as text.
+
+use crate::error::{NumberKind, Place, Problem};
+use crate::scan::Decimal;
+
+/// Words for a missing height, besides an empty place between two delimiters and `nan`; in lower case.
+const MISSING: [&str; 10] = ["na", "n/a", "null", "none", "bad", "nodata", "-", "--", "---", "***"];
+
+/// Longest text that an error quotes, in characters.
+const QUOTED: usize = 32;
+
+/// How numbers are read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Numbers {
+    pub(super) decimal: Decimal,
+}
+
+impl Numbers {
+    /// The number, NaN for a missing one.
+    pub(super) fn read(self, token: &[u8], place: Place) -> Result<f64, Problem> {
+        if token.is_empty() {
+            return Ok(f64::NAN);
+        }
+        let text = std::str::from_utf8(token).ok();
+        let value = match self.decimal {
+            Decimal::Point => text.and_then(|t| t.parse::<f64>().ok()),
+            Decimal::Comma if token.contains(&b'.') => None,
+            Decimal::Comma => text.and_then(|t| t.replacen(',', ".", 1).parse().ok()),
+        };
+        match value {
+            Some(value) if value.is_infinite() && token.iter().any(u8::is_ascii_digit) => {
+                Err(wrong(token, place, NumberKind::TooLarge))
+            }
+            Some(value) if value.is_infinite() => Err(Problem::Infinite { place, value }),
+            Some(value) => Ok(value),
+            None if text.is_some_and(missing) => Ok(f64::NAN),
+            None => Err(wrong(token, place, self.kind(text))),
+        }
+    }
+
+    fn kind(self, text: Option<&str>) -> NumberKind {
+        let Some(text) = text else { return NumberKind::None };
+        let number = |t: &str| t.parse::<f64>().is_ok();
+        if text.split_ascii_whitespace().count() > 1 && text.split_ascii_whitespace().all(number) {
+            NumberKind::Two
+        } else if self.decimal == Decimal::Point && text.contains(',') && number(&text.replacen(',', ".", 1))
+        {
+            NumberKind::DecimalComma
+        } else {
+            NumberKind::None
+        }
+    }
+}
+
+fn missing(text: &str) -> bool {
+    MISSING.iter().any(|word| word.eq_ignore_ascii_case(text))
+}
+
+fn wrong(token: &[u8], place: Place, kind: NumberKind) -> Problem {
+    // Four bytes are the longest character.
+    let shown = String::from_utf8_lossy(&token[..token.len().min(4 * QUOTED)]);
+    Problem::Number { place, text: shown.chars().take(QUOTED).collect(), kind }
+}

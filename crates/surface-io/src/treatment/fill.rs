@@ -1,0 +1,77 @@
+//! Holes filled by the discrete harmonic function with the measured rim.
+
+/// Residual, as a share of the first one, at which the iteration ends: rounding of heights of six digits is far larger.
+const TOLERANCE: f64 = 1e-12;
+
+/// Fills every NaN so that it is the mean of its neighbours; at least one height must be measured.
+///
+/// Conjugate gradients on the graph Laplacian of the missing cells, which is positive definite because the grid is connected. Cost O(m) for each of about as
+/// many iterations as the largest hole is wide; memory 7 numbers for each of the m missing cells and one for every cell.
+pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
+    const MEASURED: usize = usize::MAX;
+    let missing: Vec<usize> = (0..heights.len()).filter(|&i| heights[i].is_nan()).collect();
+    let mut number = vec![MEASURED; heights.len()];
+    for (k, &i) in missing.iter().enumerate() {
+        number[i] = k;
+    }
+    let neighbours = |i: usize| {
+        let (row, column) = (i / cells, i % cells);
+        [
+            (row > 0).then(|| i - cells),
+            (row + 1 < cells).then(|| i + cells),
+            (column > 0).then(|| i - 1),
+            (column + 1 < cells).then(|| i + 1),
+        ]
+        .into_iter()
+        .flatten()
+    };
+    // Heights about the middle of the measured ones and in units of half their range, so that nothing overflows.
+    let (low, high) = heights
+        .iter()
+        .filter(|h| !h.is_nan())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &h| (a.min(h), b.max(h)));
+    let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
+    let unit = if half > 0.0 { half } else { 1.0 };
+    let degree: Vec<f64> = missing.iter().map(|&i| neighbours(i).count() as f64).collect();
+    let apply = |x: &[f64], y: &mut [f64]| {
+        for (k, &i) in missing.iter().enumerate() {
+            let inner: f64 = neighbours(i).filter(|&j| number[j] != MEASURED).map(|j| x[number[j]]).sum();
+            y[k] = degree[k] * x[k] - inner;
+        }
+    };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let rim = |i: usize| {
+        neighbours(i).filter(|&j| number[j] == MEASURED).map(|j| (heights[j] - middle) / unit).sum::<f64>()
+    };
+    let mut x = vec![0.0; missing.len()];
+    let mut residual: Vec<f64> = missing.iter().map(|&i| rim(i)).collect();
+    // Preconditioned by the number of neighbours.
+    let preconditioned = |r: &[f64]| r.iter().zip(&degree).map(|(r, d)| r / d).collect::<Vec<f64>>();
+    let mut z = preconditioned(&residual);
+    let mut direction = z.clone();
+    let mut image = vec![0.0; missing.len()];
+    let mut energy = dot(&residual, &z);
+    let first = energy;
+    for _ in 0..=missing.len() {
+        if energy <= TOLERANCE * TOLERANCE * first {
+            break;
+        }
+        apply(&direction, &mut image);
+        let step = energy / dot(&direction, &image);
+        for k in 0..x.len() {
+            x[k] += step * direction[k];
+            residual[k] -= step * image[k];
+        }
+        z = preconditioned(&residual);
+        let next = dot(&residual, &z);
+        let share = next / energy;
+        for (d, z) in direction.iter_mut().zip(&z) {
+            *d = z + share * *d;
+        }
+        energy = next;
+    }
+    for (k, &i) in missing.iter().enumerate() {
+        // The harmonic function lies between the ends of the range; rounding may not.
+        heights[i] = (middle + unit * x[k]).clamp(low, high);
+    }
+}
