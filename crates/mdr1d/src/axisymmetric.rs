@@ -32,7 +32,7 @@ pub(crate) struct RoundContact {
 }
 
 impl RoundContact {
-    const NONE: Self = Self { force: 0.0, approach: 0.0, radius: 0.0 };
+    pub const NONE: Self = Self { force: 0.0, approach: 0.0, radius: 0.0 };
 
     /// k = 2 E* a: the length in contact.
     pub fn stiffness(self) -> f64 {

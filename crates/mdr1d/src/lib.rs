@@ -17,6 +17,7 @@
 //! | [`Mdr1d`] | [`axisymmetric`] bodies | none, or short-range adhesion: edge springs tear at `sqrt(2 pi a w / E*)` (Hess) | F, d (of either sign with adhesion), k, area, pull-off |
 //! | [`PartialSlip`] (a history) | [`axisymmetric`] bodies | Coulomb's friction, any path of both loads | tangential force and displacement, stick radius, dissipated energy |
 //! | [`Viscoelastic`] (a history) | [`axisymmetric`] bodies | Kelvin-Voigt, Maxwell, standard solid, Prony series, while the contact grows | F, d, area of time |
+//! | [`Equivalent`] (a history) | whatever a model M presses, rough surfaces too | Coulomb's friction or rheology, by the [`Tabulated`] profile of M's k(d) | tangential force and displacement, dissipated energy; F and d of time; M's own outputs |
 //!
 //! # Conventions
 //!
@@ -32,13 +33,15 @@
 //! well a *rough* line stands for a rough surface is a matter of physics: 1D exceeds 3D by 7 to 18 % at `F_bar` = 1, and its
 //! plateau is 2 % below that of a rigid square.
 //! One line of 2^20 elements takes milliseconds, and each further load microseconds ([`Bearing`]). A step
-//! of [`PartialSlip`] costs a microsecond by displacement and some twenty by force, of [`Viscoelastic`] a hundred with 16 arms.
+//! of [`PartialSlip`] costs a microsecond by displacement and some twenty by force, of [`Viscoelastic`] a hundred with 16 arms; one of
+//! [`Equivalent`] a solve of its model.
 //!
 //! # What it does not do
 //!
 //! It offers no contact area, pressure or mean gap for rough surfaces: a line's length in contact is not an area, and both fail
 //! even qualitatively (Lyashenko, Pastewka, Persson 2013). Such outputs are refused, as are
-//! periodic boundaries, and adhesion, friction and rheology of rough lines: these rules need the radius of a round contact.
+//! periodic boundaries, and adhesion of rough lines: that rule needs the radius of a round contact. Friction and rheology of rough
+//! surfaces are [`Equivalent`]'s, which asks a model of the normal contact and not a line.
 //!
 //! ```
 //! use contact_model::{ContactModel, Load, Scene, Surface};
@@ -54,16 +57,22 @@
 mod adhesion;
 pub mod axisymmetric;
 mod bearing;
+mod equivalent;
 mod material;
 mod model;
 mod partial_slip;
+mod relaxation;
 mod root;
 pub mod rule;
+mod shape;
 mod slip;
+mod tabulated;
 mod viscoelastic;
 
 pub use axisymmetric::Profile;
 pub use bearing::{Bearing, Support};
+pub use equivalent::Equivalent;
 pub use model::{Ensemble, Mdr1d};
 pub use partial_slip::PartialSlip;
+pub use tabulated::Tabulated;
 pub use viscoelastic::Viscoelastic;

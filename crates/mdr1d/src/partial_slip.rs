@@ -1,7 +1,6 @@
 //! [`PartialSlip`]: Coulomb's friction of axisymmetric bodies along any path.
 
 use crate::axisymmetric::{Profile, check_radius};
-use crate::root;
 use crate::slip::Springs;
 use contact_model::{
     ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Outputs, Result,
@@ -101,31 +100,17 @@ struct Prepared {
     outputs: Outputs,
     coefficient: f64,
     time: f64,
-    springs: Springs,
+    springs: Springs<Profile>,
 }
 
 impl Prepared {
     /// The springs under an approach where the tangential force is reached.
-    fn reach(&self, approach: f64, normal: f64, force: f64) -> Result<Springs> {
-        /// A force exactly at the limit may come out a few roundings beyond it; one that is there already does not move anything.
-        const ROUNDING: f64 = 8.0 * f64::EPSILON;
+    fn reach(&self, approach: f64, normal: f64, force: f64) -> Result<Springs<Profile>> {
         let limit = self.coefficient * normal;
-        if force.abs() > limit * (1.0 + ROUNDING) {
-            let limit = self.force(limit)?;
-            return Err(Error::OutOfRange {
-                name: "tangential force (beyond it the contact slips as a whole)".into(),
-                value: self.force(force)?,
-                min: -limit,
-                max: limit,
-            });
+        match self.springs.held(approach, limit, force) {
+            Some(springs) => Ok(springs),
+            None => Err(slips(self.force(force)?, self.force(limit)?)),
         }
-        let stay = self.springs.moved(approach, self.springs.displacement());
-        if (stay.force() - force).abs() <= ROUNDING * limit {
-            return Ok(stay);
-        }
-        let [low, high] = self.springs.reach(approach);
-        let displacement = root::increasing(low, high, |u| self.springs.moved(approach, u).force() - force);
-        Ok(self.springs.moved(approach, displacement))
     }
 
     fn force(&self, scaled: f64) -> Result<f64> {
@@ -204,6 +189,16 @@ impl History for Prepared {
     fn restart(&mut self) {
         self.time = 0.0;
         self.springs = self.springs.untouched();
+    }
+}
+
+/// A tangential force beyond mu F.
+pub(crate) fn slips(force: f64, limit: f64) -> Error {
+    Error::OutOfRange {
+        name: "tangential force (beyond it the contact slips as a whole)".into(),
+        value: force,
+        min: -limit,
+        max: limit,
     }
 }
 

@@ -8,7 +8,8 @@
 //!
 //! The polygon's slope never exceeds that of the bound, so slip begins at the edge and reaches inward to one gamma.
 
-use crate::axisymmetric::Profile;
+use crate::root;
+use crate::shape::Shape;
 
 /// A corner of the polygon.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,8 +20,8 @@ struct Knot {
 
 /// The springs in lengths of the side and forces of E*.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Springs {
-    profile: Profile,
+pub(crate) struct Springs<P> {
+    profile: P,
     /// G*/E*.
     shear: f64,
     /// mu E*/G*: the bound is this times `d - gamma`.
@@ -32,9 +33,9 @@ pub(crate) struct Springs {
     dissipated: f64,
 }
 
-impl Springs {
+impl<P: Shape> Springs<P> {
     /// No contact yet; mu and G*/E*.
-    pub fn new(profile: Profile, coefficient: f64, shear: f64) -> Self {
+    pub fn new(profile: P, coefficient: f64, shear: f64) -> Self {
         let polygon = vec![Knot { gamma: 0.0, u: 0.0 }];
         let bound = coefficient / shear;
         Self { profile, shear, bound, approach: 0.0, polygon, displacement: 0.0, dissipated: 0.0 }
@@ -42,7 +43,22 @@ impl Springs {
 
     /// The same springs before any contact.
     pub fn untouched(&self) -> Self {
-        Self::new(self.profile, self.bound * self.shear, self.shear)
+        Self::new(self.profile.clone(), self.bound * self.shear, self.shear)
+    }
+
+    /// The same springs on a profile that agrees with theirs as far as they have been pressed, to its accuracy.
+    pub fn on(&self, profile: P) -> Self {
+        Self { profile, polygon: self.polygon.clone(), ..*self }
+    }
+
+    /// Normal approach of the last move.
+    pub fn approach(&self) -> f64 {
+        self.approach
+    }
+
+    /// Normal force over E* L^2 that the springs carry at an approach, `2 int_0^a (d - g) dx`.
+    pub fn normal_force(&self, approach: f64) -> f64 {
+        2.0 * self.profile.integral([0.0, approach], [approach, 0.5 * approach, 0.0])
     }
 
     /// Tangential displacement of the body.
@@ -61,7 +77,7 @@ impl Springs {
         let sum: f64 = segments
             .map(|w| {
                 let [from, to] = [w[0], w[1]];
-                integral(self.profile, [from.gamma, to.gamma], [from.u, 0.5 * (from.u + to.u), to.u])
+                self.profile.integral([from.gamma, to.gamma], [from.u, 0.5 * (from.u + to.u), to.u])
             })
             .sum();
         2.0 * self.shear * sum
@@ -78,13 +94,7 @@ impl Springs {
         let slips = |knot: &Knot| knot.u.abs() >= self.limit(knot.gamma, self.approach) * AT_BOUND;
         // From the edge inwards; the edge itself has no bound to be below of.
         let inner = self.polygon.iter().rev().skip(1).take_while(|knot| slips(knot)).last();
-        match self.profile {
-            Profile::Flat { radius } => match inner {
-                Some(knot) if knot.gamma <= 0.0 => 0.0,
-                _ => radius,
-            },
-            Profile::Power { .. } => position(self.profile, inner.map_or(self.approach, |knot| knot.gamma)),
-        }
+        self.profile.radius(inner.map_or(self.approach, |knot| knot.gamma))
     }
 
     /// The springs at the end of a straight piece of the path: another approach, another displacement.
@@ -94,6 +104,7 @@ impl Springs {
         let (polygon, slip) = self.clamped(&free, approach);
         let lost = self.lost_in_contact(&free, approach, by, slip) + self.lost_on_release(approach, by);
         Self {
+            profile: self.profile.clone(),
             approach,
             polygon,
             displacement,
@@ -102,8 +113,25 @@ impl Springs {
         }
     }
 
+    /// The springs under an approach where they hold a tangential force; `None` beyond the limit mu F, at which the contact slips as a
+    /// whole.
+    pub fn held(&self, approach: f64, limit: f64, force: f64) -> Option<Self> {
+        /// A force exactly at the limit may come out a few roundings beyond it; one that is there already does not move anything.
+        const ROUNDING: f64 = 8.0 * f64::EPSILON;
+        if force.abs() > limit * (1.0 + ROUNDING) {
+            return None;
+        }
+        let stay = self.moved(approach, self.displacement);
+        if (stay.force() - force).abs() <= ROUNDING * limit {
+            return Some(stay);
+        }
+        let [low, high] = self.reach(approach);
+        let displacement = root::increasing(low, high, |u| self.moved(approach, u).force() - force);
+        Some(self.moved(approach, displacement))
+    }
+
     /// Displacements between which every tangential force lies, at an approach: there the whole contact slips.
-    pub fn reach(&self, approach: f64) -> [f64; 2] {
+    fn reach(&self, approach: f64) -> [f64; 2] {
         let centre = self.polygon.first().map_or(0.0, |knot| knot.u);
         let limit = self.limit(0.0, approach);
         [self.displacement - limit - centre, self.displacement + limit - centre]
@@ -229,69 +257,11 @@ impl Springs {
             for cut in cuts.windows(2) {
                 let middle = 0.5 * (cut[0] + cut[1]);
                 let values = [cut[0], middle, cut[1]].map(|gamma| function(gamma, at(gamma)));
-                total += integral(self.profile, [cut[0], cut[1]], values);
+                total += self.profile.integral([cut[0], cut[1]], values);
             }
         }
         total
     }
-}
-
-/// x(gamma).
-fn position(profile: Profile, gamma: f64) -> f64 {
-    profile.at_approach(gamma).radius
-}
-
-/// `int q dx` over the x of an interval of gamma, for the quadratic q of gamma with these values at the ends and in the middle.
-///
-/// By moments where the interval is wide; these cancel where it is narrow, and there dx/dgamma is smooth and five points of Gauss
-/// are exact to the last place. A flat punch has all its springs at gamma = 0.
-fn integral(profile: Profile, [low, high]: [f64; 2], [first, middle, last]: [f64; 3]) -> f64 {
-    /// `low/high` above which an interval is narrow: the singularity at 0 is then 19 half widths away, and the rule's error 1e-16.
-    const NARROW: f64 = 0.9;
-    let (exponent, width) = match profile {
-        Profile::Flat { radius } => return if low <= 0.0 && high > 0.0 { first * radius } else { 0.0 },
-        Profile::Power { exponent, .. } => (exponent, high - low),
-    };
-    if width <= 0.0 {
-        return 0.0;
-    }
-    // In s = (gamma - low)/width: q = first + s (slope + s curve).
-    let curve = 2.0 * (first - 2.0 * middle + last);
-    let slope = last - first - curve;
-    if low > NARROW * high {
-        // dx/dgamma = x/(n gamma).
-        let sum: f64 = gauss()
-            .iter()
-            .map(|(s, weight)| {
-                let gamma = low + s * width;
-                weight * (first + s * (slope + s * curve)) * (position(profile, gamma) / gamma)
-            })
-            .sum();
-        return sum * width / exponent;
-    }
-    let (a, b) = (position(profile, low), position(profile, high));
-    // Moments of gamma^k dx = d(gamma^k x)/(k n + 1).
-    let m0 = b - a;
-    let m1 = (high * b - low * a) / (exponent + 1.0);
-    let m2 = (high * high * b - low * low * a) / (2.0 * exponent + 1.0);
-    let s1 = (m1 - low * m0) / width;
-    let s2 = ((m2 - low * m1) / width - low * s1) / width;
-    first * m0 + slope * s1 + curve * s2
-}
-
-/// Nodes and weights of Gauss's rule of five points on [0, 1].
-fn gauss() -> [(f64, f64); 5] {
-    let root = (10.0_f64 / 7.0).sqrt();
-    let (inner, outer) = ((5.0 - 2.0 * root).sqrt() / 6.0, (5.0 + 2.0 * root).sqrt() / 6.0);
-    let (heavy, light) =
-        ((322.0 + 13.0 * 70.0_f64.sqrt()) / 1800.0, (322.0 - 13.0 * 70.0_f64.sqrt()) / 1800.0);
-    [
-        (0.5 - outer, light),
-        (0.5 - inner, heavy),
-        (0.5, 64.0 / 225.0),
-        (0.5 + inner, heavy),
-        (0.5 + outer, light),
-    ]
 }
 
 #[cfg(test)]

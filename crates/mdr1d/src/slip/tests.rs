@@ -1,4 +1,5 @@
 use super::*;
+use crate::axisymmetric::Profile;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use contact_model::Surface;
 use proptest::prelude::*;
@@ -21,19 +22,19 @@ fn power(exponent: f64) -> Profile {
     profile(&Surface::PowerLaw { coefficient: 0.5, exponent, side: 1.0 })
 }
 
-fn springs(profile: Profile) -> Springs {
+fn springs(profile: Profile) -> Springs<Profile> {
     Springs::new(profile, MU, SHEAR)
 }
 
 /// Elastic energy of the tangential springs, `G* int_0^a U^2 dx`.
-fn stored(springs: &Springs) -> f64 {
+fn stored(springs: &Springs<Profile>) -> f64 {
     let sum: f64 = springs
         .polygon
         .windows(2)
         .map(|w| {
             let middle = 0.5 * (w[0].u + w[1].u);
             let squares = [w[0].u.powi(2), middle * middle, w[1].u.powi(2)];
-            integral(springs.profile, [w[0].gamma, w[1].gamma], squares)
+            springs.profile.integral([w[0].gamma, w[1].gamma], squares)
         })
         .sum();
     SHEAR * sum
@@ -45,16 +46,16 @@ fn integrals_of_quadratics() {
     let q = |g: f64| 3.0 - 2.0 * g + g * g;
     let values = |low: f64, high: f64| [q(low), q(0.5 * (low + high)), q(high)];
     let antiderivative = |x: f64| 3.0 * x - 2.0 / 3.0 * x.powi(3) + x.powi(5) / 5.0;
-    let whole = integral(sphere(), [0.04, 0.25], values(0.04, 0.25));
+    let whole = sphere().integral([0.04, 0.25], values(0.04, 0.25));
     assert_relative_eq!(whole, antiderivative(0.5) - antiderivative(0.2), max_relative = 1e-14);
-    let parts = integral(sphere(), [0.04, 0.1], values(0.04, 0.1))
-        + integral(sphere(), [0.1, 0.25], values(0.1, 0.25));
+    let parts =
+        sphere().integral([0.04, 0.1], values(0.04, 0.1)) + sphere().integral([0.1, 0.25], values(0.1, 0.25));
     assert_relative_eq!(whole, parts, max_relative = 1e-14);
     // Narrow pieces too: down to a millionth of a millionth.
     let edges = [0.04, 0.0401, 0.040_100_000_1, 0.05, 0.0549, 0.06, 0.1, 0.11, 0.15, 0.25];
-    let sum: f64 = edges.windows(2).map(|w| integral(sphere(), [w[0], w[1]], values(w[0], w[1]))).sum();
+    let sum: f64 = edges.windows(2).map(|w| sphere().integral([w[0], w[1]], values(w[0], w[1]))).sum();
     assert_relative_eq!(whole, sum, max_relative = 1e-14);
-    let narrow = integral(sphere(), [0.04, 0.04 + 4e-14], [1.0, 0.25, 0.0]);
+    let narrow = sphere().integral([0.04, 0.04 + 4e-14], [1.0, 0.25, 0.0]);
     // (1 - s)^2 over dx = dgamma/(2 x): a third of 1e-13.
     assert_relative_eq!(narrow, 1e-13 / 3.0, max_relative = 1e-3);
 }

@@ -1,6 +1,6 @@
 use super::*;
 use approx::assert_relative_eq;
-use contact_model::{Friction, PronySeries, Relaxing, SelfAffine, Surface};
+use contact_model::{Body, Friction, Pair, PronySeries, Relaxing, SelfAffine, Surface};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

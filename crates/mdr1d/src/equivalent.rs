@@ -1,0 +1,475 @@
+//! [`Equivalent`]: friction and rheology of any contact that another model can press, through its equivalent profile.
+
+use crate::axisymmetric::RoundContact;
+use crate::material::Material;
+use crate::partial_slip::slips;
+use crate::relaxation::{Relaxation, check_pair};
+use crate::slip::Springs;
+use crate::tabulated::{Node, Tabulated};
+use contact_model::{
+    ContactModel, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Outputs,
+    PreparedContact, Result, Rheology, Scales, Scene, Source, Step, Tangential, TangentialState, Units, Work,
+};
+use std::sync::Arc;
+
+const NAME: &str = "equivalent";
+
+/// Friction or rheology of any surface that a model M can press, rough ones too, through the equivalent profile of M's own k(d).
+///
+/// M solves the normal problem under the scene's surface with every effect off, once per node of a table, and under each step's load; its
+/// states give a [`Tabulated`] profile, and that the springs of [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with
+/// [`contact_model::Pair`]) or the relaxing ones of [`crate::Viscoelastic`] (any [`Rheology`] while the contact grows). One effect at a time.
+/// M itself never sees it. Outputs of M pass through: area, fields, patches, conductance, each of the step's own contact.
+///
+/// **The normal part is M's own**, to the last bit, for an elastic material. Tangential results are those of the Cattaneo-Mindlin and
+/// Ciavarella-Jaeger approximation: exact for round contacts, a few per cent for others. They need a contact that grows
+/// with the load, so that k(d) never falls: checked at every state, [`Error::OutOfRange`] otherwise. Viscoelastic ones are exact for any shape
+/// while the contact grows in time; that is checked as in [`crate::Viscoelastic`]. `contact_radius` and `stick_radius` are those of
+/// the round contact of the same stiffness, `k/(2 E*)`.
+///
+/// The nodes lie on one logarithmic lattice of approaches (in rms heights, in sides for bodies without), so histories share
+/// them; the table begins so many decades below the first load after a [`History::restart`] and follows the loads upwards. Its error falls with the
+/// third (x) and fourth (F) order of the spacing where k(d) is smooth; [`Tabulated::doubt`] is in the report's strategy. A pressure field
+/// is refused with rheology (M's is that of an elastic body), and so is a stiffness.
+///
+/// Cost: one solve of M per node (about 49 at the defaults) at the first step, in ascending order, one per further step and per node that it
+/// adds. Fields and patches are asked of a second contact of M, so that the nodes do not pay for them.
+///
+/// ```
+/// use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
+/// use mdr1d::{Equivalent, Mdr1d};
+/// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
+/// let pair = Pair { first: body, second: body };
+/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, side: 2.0 }, pair)?;
+/// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
+/// let mut contact = Equivalent::new(Mdr1d::default()).prepare(&scene, 0)?;
+/// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260 (Cattaneo, Mindlin).
+/// contact.advance(Step::normal(0.0, Load::Force(0.01)))?;
+/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::Force(0.0025) })?;
+/// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a contact with friction") };
+/// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-4);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equivalent<M> {
+    /// The model that presses.
+    pub model: M,
+    /// Nodes per decade of the approach, 1 to 1000.
+    pub per_decade: u32,
+    /// Decades of the approach below the first load that are resolved, 1 to 12.
+    pub decades: u32,
+}
+
+impl<M: ContactModel> Equivalent<M> {
+    /// Sixteen nodes per decade over three decades: four to six digits of the force for smooth bodies.
+    pub fn new(model: M) -> Self {
+        Self { model, per_decade: 16, decades: 3 }
+    }
+
+    /// The equivalent profile of a scene's elastic contact up to an approach > 0 (a length); effects of the scene are left aside.
+    ///
+    /// # Errors
+    /// Those of M, for the surface, the loads and the solves; [`Error::Domain`] for an approach that is not positive or options out
+    /// of range; [`Error::OutOfRange`] where k falls with d.
+    pub fn profile(&self, scene: &Scene, seed: u64, approach: f64) -> Result<Tabulated> {
+        let bare = Scene { outputs: Outputs::default(), ..scene.clone() };
+        let mut normal = self.normal(&bare, seed)?;
+        if !(approach.is_finite() && approach > 0.0) {
+            return Err(Error::domain("approach", approach, "a finite number > 0"));
+        }
+        let (_, node) = normal.solve(Load::Approach(approach))?;
+        normal.reach(node, true)?;
+        Ok(Tabulated::clone(&normal.table))
+    }
+
+    fn normal(&self, scene: &Scene, seed: u64) -> Result<Normal> {
+        for (name, value, most) in [("per_decade", self.per_decade, 1000), ("decades", self.decades, 12)] {
+            if !(1..=most).contains(&value) {
+                return Err(Error::domain(name, f64::from(value), format!("1 to {most}")));
+            }
+        }
+        let outputs = scene.outputs;
+        let lean = Outputs {
+            stiffness: true,
+            area: outputs.area,
+            conductance: outputs.conductance,
+            ..Outputs::default()
+        };
+        let prepare = |outputs| {
+            let elastic = Scene { effects: Effects::default(), outputs, ..scene.clone() };
+            self.model.prepare(&elastic, seed)
+        };
+        let contact = prepare(lean)?;
+        let rich = outputs.any_field() || outputs.contact_patches;
+        let full = rich.then(|| prepare(Outputs { stiffness: true, ..outputs })).transpose()?;
+        let scales = contact.scales();
+        let units = Units::new(scales.modulus, scales.side, scales.side)?;
+        let height = scales.height.map_or(0.0, |height| units.approach_in(height));
+        Ok(Normal {
+            contact,
+            full,
+            scales,
+            outputs,
+            units,
+            height,
+            per_decade: f64::from(self.per_decade),
+            span: (self.decades * self.per_decade).cast_signed(),
+            lowest: 0,
+            nodes: Vec::new(),
+            end: None,
+            table: Arc::new(Tabulated::new(&[])?),
+            spent: Spent::default(),
+        })
+    }
+}
+
+impl<M: ContactModel> HistoryModel for Equivalent<M> {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    /// Those of the profile; the model that presses has its own.
+    fn sources(&self) -> &'static [Source] {
+        &[
+            Source {
+                citation: "V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction, Springer (2015)",
+                what: "springs with Coulomb's limit (Ch. 5), springs that relax (Ch. 7), profiles of contacts of any shape from k(d) (Ch. 10)",
+            },
+            Source {
+                citation: "J. Jaeger, Arch. Appl. Mech. 65, 478 (1995); M. Ciavarella, Int. J. Solids Struct. 35, 2349 (1998)",
+                what: "partial slip as a difference of normal contacts, for any shape",
+            },
+            Source {
+                citation: "E. H. Lee, J. R. M. Radok, J. Appl. Mech. 27, 438 (1960)",
+                what: "viscoelastic contact while the contact grows",
+            },
+        ]
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
+        scene.validate()?;
+        let Effects { friction, rheology, .. } = scene.effects;
+        Effects { friction: Friction::Off, rheology: Rheology::Elastic, ..scene.effects }.refuse(NAME)?;
+        let effect = match (friction, Material::new(&rheology, scene.modulus, NAME)?) {
+            (Friction::Coulomb { coefficient }, None) => {
+                let Some(pair) = scene.pair else {
+                    let what = "a scene without both bodies (Scene::of_pair): friction needs G*";
+                    return Err(Error::unsupported(NAME, what));
+                };
+                let shear = pair.shear_modulus()? / scene.modulus;
+                let table = Arc::new(Tabulated::new(&[])?);
+                Effect::Slip { springs: Springs::new(table, coefficient, shear), coefficient, time: 0.0 }
+            }
+            (Friction::Off, Some(material)) => {
+                if let Some(pair) = &scene.pair {
+                    check_pair(pair, &rheology, NAME)?;
+                }
+                if scene.outputs.pressure {
+                    return Err(Error::unsupported(NAME, "a pressure field with rheology (M's is elastic)"));
+                }
+                if scene.outputs.stiffness {
+                    let what = "the stiffness with rheology (it depends on how fast one pushes)";
+                    return Err(Error::unsupported(NAME, what));
+                }
+                Effect::Relax(Relaxation::new(material, NAME))
+            }
+            (Friction::Off, None) => {
+                return Err(Error::unsupported(
+                    NAME,
+                    "an elastic contact without friction (nothing to remember)",
+                ));
+            }
+            (friction, _) => {
+                let what = format!("friction ({friction:?}) together with the rheology {rheology:?}");
+                return Err(Error::unsupported(NAME, what));
+            }
+        };
+        Ok(Box::new(Prepared { normal: self.normal(scene, seed)?, effect }))
+    }
+}
+
+/// The elastic contact of M and the profile that its states give; lengths in L, forces in E* L^2.
+struct Normal {
+    contact: Box<dyn PreparedContact>,
+    /// The same with fields and patches, for the steps themselves.
+    full: Option<Box<dyn PreparedContact>>,
+    scales: Scales,
+    outputs: Outputs,
+    units: Units,
+    /// Rms height, 0 without one.
+    height: f64,
+    per_decade: f64,
+    /// Nodes below the first load.
+    span: i32,
+    /// Place of the first node on the lattice.
+    lowest: i32,
+    /// The nodes on the lattice, without a gap.
+    nodes: Vec<Node>,
+    /// The deepest load, where that is beyond the last node.
+    end: Option<Node>,
+    table: Arc<Tabulated>,
+    spent: Spent,
+}
+
+/// What M did since the last report.
+#[derive(Debug, Clone, Copy, Default)]
+struct Spent {
+    iterations: usize,
+    applications: usize,
+    work: Work,
+}
+
+impl Spent {
+    fn add(&mut self, state: &ContactState) {
+        self.iterations += state.report.iterations;
+        self.applications += state.report.applications;
+        self.work += state.report.work;
+    }
+}
+
+/// A load this close to the next node of the lattice, in spacings, does not have that node solved.
+const NEAR: f64 = 0.25;
+
+impl Normal {
+    /// M's state under a load, and the same as a node.
+    fn solve(&mut self, load: Load) -> Result<(ContactState, Node)> {
+        let contact = self.full.as_mut().unwrap_or(&mut self.contact);
+        let state = contact.solve(load)?;
+        self.spent.add(&state);
+        let node = self.node(&state)?;
+        Ok((state, node))
+    }
+
+    fn node(&self, state: &ContactState) -> Result<Node> {
+        /// A certificate bounds the mean error; single numbers may be off by so many times.
+        const GENEROUS: f64 = 10.0;
+        /// Of closed forms.
+        const ROUNDING: f64 = 1e-10;
+        let (Some(approach), Some(stiffness)) = (state.approach, state.stiffness) else {
+            return Err(Error::unsupported(NAME, "a model without approach and stiffness"));
+        };
+        let units = self.units;
+        let unit = units.stiffness(1.0)?;
+        let (approach, force, radius) =
+            (units.approach_in(approach), units.force_in(state.force), 0.5 * (stiffness / unit));
+        if force > 0.0 && !(approach > 0.0 && radius > 0.0 && radius.is_finite() && approach.is_finite()) {
+            return Err(Error::domain("approach over side", approach, "a number within the range of f64"));
+        }
+        // The certificate counts gaps in rms heights.
+        let lever = if force > 0.0 { 1.0 + 2.0 * radius * self.height / force } else { 1.0 };
+        let worst = state.report.certificate.worst();
+        Ok(Node { approach, force, radius, slack: GENEROUS * worst * lever + ROUNDING })
+    }
+
+    /// Makes the table reach a state just solved; nodes below the lowest are added before any contact only.
+    fn reach(&mut self, state: Node, fresh: bool) -> Result<()> {
+        if state.force <= 0.0 {
+            return Ok(());
+        }
+        let unit = if self.height > 0.0 { self.height } else { 1.0 };
+        let place = (state.approach / unit).log10() * self.per_decade;
+        let top = (place - NEAR).floor() as i32;
+        let deepest = self.end.or(self.nodes.last().copied()).map_or(0.0, |node| node.approach);
+        let bottom = top - self.span;
+        if self.nodes.is_empty() {
+            self.lowest = top + 1;
+        }
+        if state.approach <= deepest && (!fresh || bottom >= self.lowest) {
+            return Ok(());
+        }
+        if fresh && bottom < self.lowest {
+            let below = self.solved(bottom, self.lowest - 1, unit)?;
+            self.nodes.splice(0..0, below);
+            self.lowest = bottom;
+        }
+        let next = self.lowest + i32::try_from(self.nodes.len()).unwrap_or(i32::MAX);
+        let above = self.solved(next, top, unit)?;
+        self.nodes.extend(above);
+        if state.approach > deepest {
+            self.end = Some(state);
+        }
+        // A lattice that has come past the end does not need it any more.
+        let last = self.nodes.last().map_or(0.0, |node| node.approach);
+        self.end = self.end.filter(|end| end.approach > last);
+        let all: Vec<Node> = self.nodes.iter().copied().chain(self.end).collect();
+        self.table = Arc::new(Tabulated::new(&all)?);
+        Ok(())
+    }
+
+    /// The nodes at these places of the lattice, in ascending order.
+    fn solved(&mut self, from: i32, to: i32, unit: f64) -> Result<Vec<Node>> {
+        let mut nodes = Vec::new();
+        for place in from..=to {
+            let approach = unit * 10.0_f64.powf(f64::from(place) / self.per_decade);
+            let state = self.contact.solve(Load::Approach(self.units.approach(approach)?))?;
+            self.spent.add(&state);
+            let node = self.node(&state)?;
+            if node.force <= 0.0 {
+                return Err(Error::domain("force at a node", node.force, "a number > 0 (fewer decades)"));
+            }
+            nodes.push(node);
+        }
+        Ok(nodes)
+    }
+
+    /// M's state as part of a history: its own outputs, what it cost with all nodes, and what it rests on.
+    fn reported(&mut self, mut state: ContactState) -> ContactState {
+        let Spent { iterations, applications, work } = std::mem::take(&mut self.spent);
+        let report = &mut state.report;
+        (report.iterations, report.applications, report.work) = (iterations, applications, work);
+        report.strategy = format!(
+            "{}; g(x) through {} states, doubt {:.1e}",
+            report.strategy,
+            self.table.nodes(),
+            self.table.doubt()
+        );
+        state.stiffness = state.stiffness.filter(|_| self.outputs.stiffness);
+        state
+    }
+
+    fn signed(&self, force: f64) -> Result<f64> {
+        Ok(self.units.force(force.abs())?.copysign(force))
+    }
+}
+
+enum Effect {
+    Slip { springs: Springs<Arc<Tabulated>>, coefficient: f64, time: f64 },
+    Relax(Relaxation),
+}
+
+struct Prepared {
+    normal: Normal,
+    effect: Effect,
+}
+
+impl History for Prepared {
+    fn scales(&self) -> Scales {
+        self.normal.scales
+    }
+
+    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+        let normal = &mut self.normal;
+        match &mut self.effect {
+            Effect::Slip { springs, coefficient, time } => {
+                let step = step.validated(*time)?;
+                let (next, state) = slip(normal, springs, *coefficient, step)?;
+                (*springs, *time) = (next, step.time);
+                Ok(state)
+            }
+            Effect::Relax(relaxation) => {
+                let step = step.validated(relaxation.at.time)?;
+                relax(normal, relaxation, step)
+            }
+        }
+    }
+
+    fn restart(&mut self) {
+        match &mut self.effect {
+            Effect::Slip { springs, time, .. } => (*springs, *time) = (springs.untouched(), 0.0),
+            Effect::Relax(relaxation) => relaxation.restart(),
+        }
+    }
+}
+
+/// The springs at the end of a step, and the state.
+fn slip(
+    normal: &mut Normal,
+    springs: &Springs<Arc<Tabulated>>,
+    coefficient: f64,
+    step: Step,
+) -> Result<(Springs<Arc<Tabulated>>, HistoryState)> {
+    let (state, node) = normal.solve(step.normal)?;
+    normal.reach(node, springs.approach() <= 0.0)?;
+    let springs = springs.on(Arc::clone(&normal.table));
+    let units = normal.units;
+    // What the table makes of M's force: 1 at a node, and where it is not, forces follow M.
+    let own = springs.normal_force(node.approach);
+    let ratio = if own > 0.0 { node.force / own } else { 1.0 };
+    let next = match step.tangential {
+        Tangential::Force(force) => {
+            let scaled = units.force_in(force.abs()).copysign(force);
+            let held = springs.held(node.approach, coefficient * own, scaled / ratio);
+            held.ok_or_else(|| slips(force, coefficient * state.force))?
+        }
+        Tangential::Displacement(u) => springs.moved(node.approach, units.length_in(u)),
+        other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+    };
+    let tangential = TangentialState {
+        force: match step.tangential {
+            Tangential::Force(force) => force,
+            _ => normal.signed(next.force() * ratio)?,
+        },
+        displacement: match step.tangential {
+            Tangential::Displacement(u) => u,
+            _ => units.approach(next.displacement().abs())?.copysign(next.displacement()),
+        },
+        stick_radius: Some(units.approach(next.stick_radius())?),
+        // E* L^3: a force times a length.
+        dissipated: units.approach(units.force(next.dissipated())?)?,
+    };
+    let state = HistoryState {
+        time: step.time,
+        normal: normal.reported(state),
+        contact_radius: Some(units.approach(node.radius)?),
+        tangential: Some(tangential),
+    };
+    Ok((next, state))
+}
+
+/// Follows a step of a growing viscoelastic contact.
+fn relax(normal: &mut Normal, relaxation: &mut Relaxation, step: Step) -> Result<HistoryState> {
+    if step.tangential != Tangential::Force(0.0) {
+        return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
+    }
+    let fresh = relaxation.at.contact.approach <= 0.0;
+    let units = normal.units;
+    let mut solved = None;
+    let mut press = |load: Load| {
+        let (state, node) = normal.solve(load)?;
+        solved = Some(state);
+        normal.reach(node, fresh)?;
+        let Node { approach, force, radius, .. } = node;
+        Ok((RoundContact { force, approach, radius }, Arc::clone(&normal.table)))
+    };
+    let at = match step.normal {
+        Load::Force(force) => relaxation.by_force(step.time, units.force_in(force), |load| {
+            Ok(press(Load::Force(units.force(load)?))?.0)
+        })?,
+        Load::Approach(approach) => {
+            relaxation.by_approach(step.time, units.approach_in(approach), |approach| {
+                press(Load::Approach(units.approach(approach)?))
+            })?
+        }
+        other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+    };
+    let Some(mut state) = solved else {
+        return Err(Error::unsupported(NAME, "a step without a contact"));
+    };
+    for value in [at.memory.force, at.memory.load, at.contact.approach] {
+        if !value.is_finite() {
+            return Err(Error::domain("state in units of side and modulus", value, "a finite number"));
+        }
+    }
+    state.force = match step.normal {
+        Load::Force(force) => force,
+        _ => units.force(at.memory.force)?,
+    };
+    state.approach = Some(match step.normal {
+        Load::Approach(approach) => approach,
+        _ => units.approach(at.contact.approach)?,
+    });
+    let certificate = &mut state.report.certificate;
+    certificate.load_error = certificate.load_error.max(at.residual);
+    let radius = units.approach(at.contact.radius)?;
+    let state = HistoryState {
+        time: step.time,
+        normal: normal.reported(state),
+        contact_radius: Some(radius),
+        tangential: None,
+    };
+    relaxation.at = at;
+    Ok(state)
+}
+
+#[cfg(test)]
+mod tests;
