@@ -8,7 +8,7 @@ use crate::filled::{Arrays, Filled};
 use crate::operator::dense::Factor;
 use crate::operator::{Operators, Table};
 use crate::strategy;
-use contact_model::{Status, Stop};
+use contact_model::{Boundary, Status, Stop};
 use std::sync::Arc;
 
 /// Reduction of the error asked of conjugate gradients between two looks at the set: half of what is still wanted, within this range. A
@@ -57,8 +57,8 @@ pub struct Problem {
 
 impl Problem {
     /// A relief of `side^2` gaps from the plane of first touch.
-    pub fn new(side: usize, z: Arc<Vec<f64>>) -> Self {
-        let operators = Operators::new(Table::shared(side));
+    pub fn new(side: usize, z: Arc<Vec<f64>>, boundary: Boundary) -> Self {
+        let operators = Operators::new(Table::shared(side, boundary));
         Self {
             candidates: Candidates::new(side, z),
             operators,
@@ -426,7 +426,7 @@ mod tests {
     const TOLERANCE: f64 = 1e-9;
 
     fn problem(side: usize, z: Vec<f64>) -> Problem {
-        Problem::new(side, Arc::new(z))
+        Problem::new(side, Arc::new(z), Boundary::Free)
     }
 
     fn limits(dense: bool) -> Limits {

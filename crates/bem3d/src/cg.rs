@@ -191,6 +191,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::operator::{Table, dense::Factor};
+    use contact_model::Boundary;
     use contact_model::never;
 
     const SIDE: usize = 20;
@@ -206,7 +207,7 @@ mod tests {
     #[test]
     fn both_preconditioners_reach_the_factored_solution() {
         let set = scattered();
-        let mut operators = Operators::new(Table::shared(SIDE));
+        let mut operators = Operators::new(Table::shared(SIDE, Boundary::Free));
         let r = right(set.len());
         let (q, w) = Factor::new(operators.table(), &set).unwrap().solve_pair(&r);
         for precondition in [false, true] {
@@ -237,7 +238,7 @@ mod tests {
     #[test]
     fn the_energy_estimates_bound_the_energy_error() {
         let set = scattered();
-        let mut operators = Operators::new(Table::shared(SIDE));
+        let mut operators = Operators::new(Table::shared(SIDE, Boundary::Free));
         let smooth: Vec<f64> = (0..set.len()).map(|k| 1.0 + 0.1 * set.place(k).0 as f64).collect();
         for r in [right(set.len()), smooth] {
             let (_, w) = Factor::new(operators.table(), &set).unwrap().solve_pair(&r);

@@ -26,6 +26,11 @@
 //! # Ok::<(), contact_model::Error>(())
 //! ```
 //!
+//! With [`contact_model::Boundary::Periodic`] the square repeats itself for ever. K is then the exact periodic kernel of zero mean (the
+//! same pressure on square cells, summed over all images); states have no approach but a mean gap
+//! ([`contact_model::PreparedContact::mean_gap`]), which can also be prescribed, and `k = -dF/d(mean gap)`. Full contact has no finite
+//! stiffness: it stays `None` there.
+//!
 //! # How
 //!
 //! One load is solved by **predict and eliminate** (`active_set`): from a guess (the tangent of the last state, or the same relief on
@@ -54,7 +59,7 @@
 //!
 //! # What it does not do
 //!
-//! Periodic boundaries, adhesion, friction and rheology are refused at `prepare`. One solve runs on one thread: ensembles are
+//! Adhesion, friction and rheology are refused at `prepare`. One solve runs on one thread: ensembles are
 //! parallel over surfaces.
 
 mod active_set;

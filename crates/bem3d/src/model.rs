@@ -1,13 +1,15 @@
 //! The boundary-element model behind the common traits.
 
+mod mean_gap;
+
 use crate::active_set::{self, Guess, Limits, Problem, Solved, Target};
 use crate::cells::CellSet;
 use crate::seed;
 use crate::stiffness::{self, Stiffness};
 use crate::strategy;
 use contact_model::{
-    Certificate, ContactModel, ContactState, Error, Fields, HeightMap, Load, Outputs, Patches,
-    PreparedContact, Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units, Work,
+    Boundary, Certificate, ContactModel, ContactState, Effects, Error, Fields, HeightMap, Load, Outputs,
+    Patches, PreparedContact, Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units, Work,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -19,6 +21,8 @@ const WARM_RANGE: f64 = 30.0;
 const TIGHTENINGS: usize = 5;
 const TIGHTER: f64 = 0.1;
 
+/// A stiffness is solved again when its magnification turns out so many times the one that was expected.
+const MISJUDGED: f64 = 1.5;
 /// Name of the model.
 const NAME: &str = "bem3d";
 
@@ -87,7 +91,11 @@ impl ContactModel for Bem3d {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         scene.validate()?;
-        scene.refuse_effects(NAME)?;
+        let boundary = scene.effects.boundary;
+        if boundary != Boundary::Periodic {
+            scene.refuse_effects(NAME)?;
+        }
+        Effects { boundary: Boundary::Free, ..scene.effects }.refuse(NAME)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }
@@ -111,7 +119,11 @@ struct Prepared {
     /// Unit of lengths normal to the surface: the rms height where there is one.
     height: f64,
     scales: Scales,
+    /// Mean of z.
+    mean: f64,
     last: Option<Last>,
+    /// Mean gap at the load solved last, where the square repeats itself.
+    gap: Option<(Load, f64)>,
 }
 
 /// The state solved last, from which the next is predicted.
@@ -146,11 +158,26 @@ impl Prepared {
             *z /= height;
         }
         let units = Units::new(scene.modulus, map.cell(), height)?;
-        let mut problem = Problem::new(map.cells(), Arc::new(z));
+        let mean = z.iter().sum::<f64>() / z.len() as f64;
+        let mut problem = Problem::new(map.cells(), Arc::new(z), scene.effects.boundary);
         problem.levels = options.method != Method::SingleLevel;
-        problem.operators.two_levels = problem.levels;
+        problem.operators.two_levels &= problem.levels;
         let scales = Scales { modulus: scene.modulus, side: map.side(), height: has_rms.then_some(rms) };
-        Ok(Self { options, outputs: scene.outputs, problem, units, height, scales, last: None })
+        Ok(Self {
+            options,
+            outputs: scene.outputs,
+            problem,
+            units,
+            height,
+            scales,
+            mean,
+            last: None,
+            gap: None,
+        })
+    }
+
+    fn is_periodic(&self) -> bool {
+        self.problem.operators.table().boundary() == Boundary::Periodic
     }
 
     /// The guess for a target: the tangent at the last state, or a cold start.
@@ -174,11 +201,30 @@ impl Prepared {
         if let Some(q) = solved.q.clone() {
             return stiffness::factored(&mut self.problem, solved, q);
         }
-        let guess = guess.or_else(|| {
+        let known = self.last.as_ref().and_then(|last| last.tangent.as_ref());
+        let mut expected = known.map_or(1.0, |&(_, k)| self.magnification(k));
+        let mut guess = guess.or_else(|| {
             let last = self.last.as_ref()?;
             last.tangent.as_ref().map(|(q, _)| solved.contact.carry(&last.contact, q))
         });
-        stiffness::solve(&mut self.problem, solved, guess, self.options.tolerance, stop)
+        let mut steps = 0;
+        loop {
+            let tolerance = self.options.tolerance / expected;
+            let mut tangent = stiffness::solve(&mut self.problem, solved, guess, tolerance, stop);
+            steps += tangent.steps;
+            tangent.steps = steps;
+            let found = self.magnification(tangent.value);
+            if found <= MISJUDGED * expected || tangent.q.is_empty() || stop() {
+                return tangent;
+            }
+            expected = found;
+            guess = Some(tangent.q);
+        }
+    }
+
+    /// Relative error of k itself.
+    fn stiffness_error(&self, tangent: &Stiffness) -> f64 {
+        tangent.error() * self.magnification(tangent.value)
     }
 
     /// Pressure, and stiffness where asked for. The stiffness may call for a tighter pressure than the certificate does: as long as
@@ -186,12 +232,17 @@ impl Prepared {
     fn settle(&mut self, target: Target, mut limits: Limits, stop: Stop<'_>) -> (Solved, Option<Stiffness>) {
         let guess = self.guess(target, limits, stop);
         let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
-        if !self.outputs.needs_stiffness() {
+        // Full contact of a periodic square has no finite stiffness.
+        let full = self.is_periodic() && solved.contact.len() == self.problem.side.pow(2);
+        if full || !self.outputs.needs_stiffness() {
             return (solved, None);
         }
         let mut tangent = self.tangent(&solved, None, stop);
         for _ in 0..TIGHTENINGS {
-            if solved.status != Status::Converged || tangent.error() <= self.options.tolerance || stop() {
+            if solved.status != Status::Converged
+                || self.stiffness_error(&tangent) <= self.options.tolerance
+                || stop()
+            {
                 break;
             }
             // The state may be better than it was asked to be: begin there.
@@ -217,19 +268,17 @@ impl Prepared {
         &mut self,
         solved: Solved,
         tangent: Option<Stiffness>,
-        target: Target,
+        load_error: f64,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let force: f64 = solved.p.iter().sum();
+        let periodic = self.is_periodic();
         let certificate = Certificate {
             frank_wolfe: solved.look.evidence.frank_wolfe,
             penetration: solved.look.evidence.penetration,
             complementarity: solved.look.evidence.complementarity,
-            load_error: match target {
-                Target::Force(asked) => ((force - asked) / asked).abs(),
-                Target::Approach(_) => 0.0,
-            },
-            stiffness_error: tangent.as_ref().map(Stiffness::error),
+            load_error,
+            stiffness_error: tangent.as_ref().map(|t| self.stiffness_error(t)),
         };
         let met = certificate.meets(self.options.tolerance);
         let status = match solved.status {
@@ -250,9 +299,9 @@ impl Prepared {
         };
         let state = ContactState {
             force: self.units.force(PI * force)?,
-            approach: Some(self.units.approach(solved.d)?),
+            approach: if periodic { None } else { Some(self.units.approach(solved.d)?) },
             stiffness: match &tangent {
-                Some(t) => Some(self.units.stiffness(PI * t.value)?),
+                Some(t) => Some(self.units.stiffness(PI * t.value * self.magnification(t.value))?),
                 None => None,
             },
             area: if self.outputs.area { Some(self.units.area(solved.contact.len() as f64)?) } else { None },
@@ -263,8 +312,7 @@ impl Prepared {
         }
         .completed(&self.outputs, self.scales.modulus)?;
         if status == Status::Converged {
-            let Solved { contact, p, d, .. } = solved;
-            self.last = Some(Last { force, tangent: tangent.map(|t| (t.q, t.value)), contact, p, d });
+            self.remember(solved, tangent);
             Ok(state)
         } else if status == Status::Stopped {
             Err(Error::Stopped { best: Some(Box::new(state)) })
@@ -289,13 +337,15 @@ impl Prepared {
         if self.outputs.displacement || self.outputs.gap {
             let all = CellSet::new(self.problem.side, (0..count as u32).collect());
             let u = self.problem.operators.exact(&solved.contact, &solved.p, &all);
+            // What the constant in the kernel adds to every displacement.
+            let shift = self.problem.operators.table().shift() * solved.p.iter().sum::<f64>();
             let height = self.height;
             if self.outputs.gap {
                 let z = self.problem.candidates.z();
                 fields.gap = Some(u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect());
             }
             if self.outputs.displacement {
-                fields.displacement = Some(u.iter().map(|u| u * height).collect());
+                fields.displacement = Some(u.iter().map(|u| (u - shift) * height).collect());
             }
         }
         Ok(Some(fields))
@@ -306,7 +356,8 @@ impl Prepared {
         if !self.outputs.contact_patches {
             return Ok(None);
         }
-        let sizes = surface_gen::patches(self.problem.side, contact.index(), contact_model::Boundary::Free);
+        let boundary = self.problem.operators.table().boundary();
+        let sizes = surface_gen::patches(self.problem.side, contact.index(), boundary);
         let areas = sizes.into_iter().map(|size| self.units.area(size as f64)).collect::<Result<_>>()?;
         Ok(Some(Patches::new(areas)))
     }
@@ -325,7 +376,7 @@ impl Prepared {
         report.contact_cells = Some(0);
         ContactState {
             force: 0.0,
-            approach: Some(0.0),
+            approach: (!self.is_periodic()).then_some(0.0),
             stiffness: self.outputs.needs_stiffness().then_some(0.0),
             area: self.outputs.area.then_some(0.0),
             conductance: None,
@@ -342,23 +393,63 @@ impl PreparedContact for Prepared {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.gap = None;
         let target = match load.validated()? {
             Load::Force(f) => Target::Force(scaled("force", f, self.units.force_in(f) / PI)?),
-            Load::Approach(d) => Target::Approach(scaled("approach", d, self.units.approach_in(d))?),
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+            Load::Approach(d) if !self.is_periodic() => {
+                Target::Approach(scaled("approach", d, self.units.approach_in(d))?)
+            }
+            Load::MeanGap(gap) if self.is_periodic() => {
+                let state = self.press_to(scaled("mean gap", gap, self.units.approach_in(gap))?, stop)?;
+                self.gap = Some((load, gap));
+                return Ok(state);
+            }
+            Load::Approach(_) => {
+                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
+                return Err(Error::unsupported(NAME, what));
+            }
+            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
         };
         if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
+            self.gap = Some((load, self.units.approach(self.mean)?));
             return self.untouched().completed(&self.outputs, self.scales.modulus);
         }
         self.problem.operators.applications = 0;
-        let limits = Limits {
+        let (solved, tangent) = self.settle(target, self.limits(), stop);
+        self.gap = Some((load, self.units.approach(self.gap_of(&solved))?));
+        let miss = match target {
+            Target::Force(asked) => ((solved.p.iter().sum::<f64>() - asked) / asked).abs(),
+            Target::Approach(_) => 0.0,
+        };
+        self.state(solved, tangent, miss, stop)
+    }
+
+    fn mean_gap(&mut self, load: Load) -> Result<f64> {
+        if !self.is_periodic() {
+            return Err(Error::unsupported(NAME, "a mean gap (free boundaries)"));
+        }
+        if self.gap.is_none_or(|(at, _)| at != load) {
+            self.solve(load)?;
+        }
+        self.gap.map(|(_, gap)| gap).ok_or_else(|| Error::unsupported(NAME, "a mean gap"))
+    }
+}
+
+impl Prepared {
+    fn limits(&self) -> Limits {
+        Limits {
             tolerance: self.options.tolerance,
             height: self.scales.height.filter(|&h| h > 0.0).map(|h| self.units.approach_in(h)),
             rounds: self.options.rounds,
             dense: self.options.method == Method::Auto,
-        };
-        let (solved, tangent) = self.settle(target, limits, stop);
-        self.state(solved, tangent, target, stop)
+        }
+    }
+
+    /// Keeps a state to begin the next from.
+    fn remember(&mut self, solved: Solved, tangent: Option<Stiffness>) {
+        let Solved { contact, p, d, .. } = solved;
+        let force = p.iter().sum();
+        self.last = Some(Last { force, tangent: tangent.map(|t| (t.q, t.value)), contact, p, d });
     }
 }
 

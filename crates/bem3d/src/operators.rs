@@ -5,6 +5,7 @@ use crate::operator::convolution::{Convolution, Lengths};
 use crate::operator::dense::Factor;
 use crate::operator::lattice::{Split, TwoLevel};
 use crate::operator::{Table, direct};
+use contact_model::Boundary;
 
 /// One application of the named operator (`direct`, `two levels`, `f32`, `f64`, `inverse`) between every `step`-th cell of a grid.
 pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> f64>> {
@@ -12,7 +13,7 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
     let p: Vec<f64> = (0..set.len()).map(|k| 1.0 + (k as f64).sin()).collect();
     let mut u = vec![0.0; set.len()];
     let window = set.window()?;
-    let table = Table::shared(side);
+    let table = Table::shared(side, Boundary::Free);
     let (free, torus) = (Lengths::free(window), Lengths::torus(window));
     Some(match name {
         "direct" => Box::new(move || {
@@ -51,5 +52,5 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
 /// Factors the first `count` cells of a grid; whether it was positive definite.
 pub fn factor(side: usize, count: usize) -> bool {
     let set = CellSet::new(side, (0..count as u32).collect());
-    Factor::new(&Table::shared(side), &set).is_some()
+    Factor::new(&Table::shared(side, Boundary::Free), &set).is_some()
 }

@@ -98,7 +98,7 @@ fn coarser(problem: &Problem) -> Problem {
             mean.push(sum / count);
         }
     }
-    Problem::new(side, Arc::new(mean))
+    Problem::new(side, Arc::new(mean), problem.operators.table().boundary())
 }
 
 /// Coarse pressure on the fine cells below it that lie under the plane (all four if none does).
@@ -131,7 +131,7 @@ mod tests {
     use contact_model::never;
 
     fn problem(side: usize, z: Vec<f64>) -> Problem {
-        Problem::new(side, Arc::new(z))
+        Problem::new(side, Arc::new(z), contact_model::Boundary::Free)
     }
 
     fn limits() -> Limits {

@@ -268,7 +268,7 @@ mod tests {
     /// Full contact of a flat square of `side` cells.
     fn flat(side: usize, dense: bool) -> (Problem, Solved) {
         let n = side * side;
-        let mut problem = Problem::new(side, Arc::new(vec![0.0; n]));
+        let mut problem = Problem::new(side, Arc::new(vec![0.0; n]), contact_model::Boundary::Free);
         let guess =
             Guess { set: CellSet::new(side, (0..n as u32).collect()), p: vec![1.0; n], d: 4.0 * n as f64 };
         let limits = Limits { tolerance: 1e-9, height: None, rounds: 100, dense };

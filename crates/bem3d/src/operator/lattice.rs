@@ -221,6 +221,7 @@ fn lagrange(t: f64, order: usize) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::operator::{Table, direct};
+    use contact_model::Boundary;
 
     const SIDE: usize = 200;
 
@@ -239,7 +240,7 @@ mod tests {
         let set = scattered();
         let p: Vec<f64> = (0..set.len()).map(|k| 1.0 + (k as f64).sin()).collect();
         let (mut exact, mut fast) = (vec![0.0; set.len()], vec![0.0; set.len()]);
-        direct::apply(&Table::shared(SIDE), &set, &p, &set, &mut exact);
+        direct::apply(&Table::shared(SIDE, Boundary::Free), &set, &p, &set, &mut exact);
         TwoLevel::new(set.window().unwrap(), split).apply(&set, &p, &set, &mut fast);
         let scale = exact.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
         exact.iter().zip(&fast).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale

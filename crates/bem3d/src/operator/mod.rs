@@ -8,12 +8,14 @@ pub mod convolution;
 pub mod dense;
 pub mod direct;
 pub mod lattice;
+mod periodic;
 mod table;
 
 pub use table::Table;
 
 use crate::cells::{CellSet, Window};
 use crate::strategy::{Choice, exact_choice, fast_choice};
+use contact_model::Boundary;
 use convolution::{Convolution, Lengths};
 use lattice::TwoLevel;
 use std::sync::Arc;
@@ -28,7 +30,7 @@ pub struct Operators {
     inverse: Option<Convolution<f32>>,
     /// Applications of K so far, all precisions together.
     pub applications: usize,
-    /// Whether the two-level operator may be chosen.
+    /// Whether the two-level operator may be chosen (it knows the free kernel alone).
     pub two_levels: bool,
     /// What the last fast application was done with.
     last: Option<Choice>,
@@ -37,6 +39,8 @@ pub struct Operators {
 impl Operators {
     /// Nothing is built yet.
     pub fn new(table: Arc<Table>) -> Self {
+        // The far field of two levels is that of 1/r.
+        let free = table.boundary() == Boundary::Free;
         Self {
             table,
             exact: None,
@@ -44,7 +48,7 @@ impl Operators {
             two_level: None,
             inverse: None,
             applications: 0,
-            two_levels: true,
+            two_levels: free,
             last: None,
         }
     }
@@ -62,12 +66,12 @@ impl Operators {
         }
         self.applications += 1;
         let window = union(sources, targets);
-        if exact_choice(sources.len(), targets.len(), Lengths::free(window)) == Choice::Direct {
+        if exact_choice(sources.len(), targets.len(), self.table.lengths(window)) == Choice::Direct {
             direct::apply(&self.table, sources, p, targets, &mut u);
         } else {
             let table = &self.table;
             let operator = planned(&mut self.exact, window, table, |t, w| {
-                let lengths = Lengths::free(w);
+                let lengths = t.lengths(w);
                 Convolution::new(w, lengths, t.symbol_f64(lengths))
             });
             operator.apply(sources, p, targets, &mut u);
@@ -85,7 +89,7 @@ impl Operators {
         let choice = if self.two_levels {
             fast_choice(sources, targets, window)
         } else {
-            exact_choice(sources.len(), targets.len(), Lengths::free(window))
+            exact_choice(sources.len(), targets.len(), self.table.lengths(window))
         };
         match choice {
             Choice::Direct => direct::apply(&self.table, sources, p, targets, u),
@@ -98,7 +102,7 @@ impl Operators {
             }
             Choice::Fft => {
                 let operator = planned(&mut self.fast, window, &self.table, |t, w| {
-                    let lengths = Lengths::free(w);
+                    let lengths = t.lengths(w);
                     Convolution::new(w, lengths, t.symbol_f32(lengths))
                 });
                 operator.apply(sources, p, targets, u);
@@ -116,7 +120,7 @@ impl Operators {
     ) {
         self.applications += 1;
         let operator = planned(&mut self.exact, whole(side), &self.table, |t, w| {
-            let lengths = Lengths::free(w);
+            let lengths = t.lengths(w);
             Convolution::new(w, lengths, t.symbol_f64(lengths))
         });
         operator.rows(|_| true, fill, |_| true, take);
@@ -132,7 +136,7 @@ impl Operators {
         self.applications += 1;
         self.last = Some(Choice::Fft);
         let operator = planned(&mut self.fast, whole(side), &self.table, |t, w| {
-            let lengths = Lengths::free(w);
+            let lengths = t.lengths(w);
             Convolution::new(w, lengths, t.symbol_f32(lengths))
         });
         operator.rows(|_| true, fill, |_| true, take);
@@ -263,7 +267,7 @@ mod tests {
     fn a_circular_length_of_twice_n_less_one_is_exact() {
         // The lag n - 1 meets its own mirror image; an odd kernel would not survive this.
         for side in [2, 3, 5, 9, 33] {
-            let table = Table::shared(side);
+            let table = Table::shared(side, Boundary::Free);
             let all = set(side, &[true]);
             let window = all.window().unwrap();
             assert_eq!(Lengths::free(window).x, 2 * (side - 1), "this test is about the shortest length");
@@ -280,7 +284,7 @@ mod tests {
     #[test]
     fn the_factor_inverts_the_direct_sum() {
         let side = 12;
-        let table = Table::shared(side);
+        let table = Table::shared(side, Boundary::Free);
         let cells = set(side, &[true, false, true, true, false, true, false]);
         let z = pressure(cells.len());
         let (q, w) = dense::Factor::new(&table, &cells).unwrap().solve_pair(&z);
@@ -299,7 +303,7 @@ mod tests {
     fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
         // Far from the edges B K p = p up to what the wrapped kernel lacks.
         let side = 48;
-        let mut operators = Operators::new(Table::shared(side));
+        let mut operators = Operators::new(Table::shared(side, Boundary::Free));
         let all = set(side, &[true]);
         let bump = |k: usize| {
             let (x, y) = all.place(k);
@@ -325,7 +329,7 @@ mod tests {
         ) {
             let (sources, targets) = (set(side, &sources), set(side, &targets));
             prop_assume!(!sources.is_empty() && !targets.is_empty());
-            let table = Table::shared(side);
+            let table = Table::shared(side, Boundary::Free);
             let p = pressure(sources.len());
             let mut direct = vec![0.0; targets.len()];
             direct::apply(&table, &sources, &p, &targets, &mut direct);
@@ -353,7 +357,7 @@ mod tests {
             // Maxwell-Betti: the work of one load on the other's displacement is mutual.
             let (a, b) = (set(side, &a), set(side, &b));
             prop_assume!(!a.is_empty() && !b.is_empty());
-            let mut operators = Operators::new(Table::shared(side));
+            let mut operators = Operators::new(Table::shared(side, Boundary::Free));
             let (pa, pb) = (pressure(a.len()), pressure(b.len()));
             let ub = operators.exact(&a, &pa, &b);
             let ua = operators.exact(&b, &pb, &a);

@@ -1,0 +1,87 @@
+//! What a square that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
+
+use super::Prepared;
+use crate::active_set::{Solved, Target};
+use contact_model::{ContactState, Error, Result, Status, Stop};
+
+/// Largest factor from the error of `k'` to that of k ([`Prepared::magnification`]); beyond it no digit of k is left.
+const MAGNIFIED: f64 = 1e10;
+/// Loads at most on the way to a mean gap, and the largest step of ln F between two of them.
+const GAP_LOADS: usize = 60;
+const GAP_STEP: f64 = 3.0;
+
+impl Prepared {
+    /// How many times the relative error of k is that of `1' K^-1 1 = k'` with the constant c in K: `k = k' / (1 - c k')`.
+    ///
+    /// 1 with free boundaries; grows without limit towards full contact of a periodic square.
+    pub(super) fn magnification(&self, value: f64) -> f64 {
+        let rest = 1.0 - self.problem.operators.table().shift() * value;
+        if rest > 1.0 / MAGNIFIED { 1.0 / rest } else { MAGNIFIED }
+    }
+
+    /// Mean gap of a state in scaled units. The displacement under the kernel of zero mean has none.
+    pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
+        let force: f64 = solved.p.iter().sum();
+        let plane = solved.d - self.problem.operators.table().shift() * force;
+        // Rounding where the contact is full.
+        (self.mean - plane).max(0.0)
+    }
+
+    /// The state at a mean gap (scaled), by Newton's method in ln F where the stiffness is known and secants where it is not: the gap
+    /// falls about linearly with ln F. It is met to the tolerance, in rms heights.
+    pub(super) fn press_to(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
+        if asked >= self.mean {
+            return self.untouched().completed(&self.outputs, self.scales.modulus);
+        }
+        if asked <= 0.0 {
+            let name = "mean gap (at 0 every force from that of full contact on would do)".into();
+            return Err(Error::OutOfRange {
+                name,
+                value: 0.0,
+                min: 0.0,
+                max: self.units.approach(self.mean)?,
+            });
+        }
+        self.problem.operators.applications = 0;
+        let (limits, side) = (self.limits(), self.problem.side as f64);
+        // A wave of the rms height and the length of the square closes at about side x rms.
+        let mut x = self.last.as_ref().map_or(0.1 * side, |last| last.force).ln();
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut before: Option<(f64, f64)> = None;
+        let mut steps = 0;
+        for _ in 0..GAP_LOADS {
+            let (mut solved, tangent) = self.settle(Target::Force(x.exp()), limits, stop);
+            steps += solved.steps;
+            let miss = self.gap_of(&solved) - asked;
+            let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
+            if met || solved.status != Status::Converged || stop() {
+                solved.steps = steps;
+                return self.state(solved, tangent, miss.abs() / limits.height.unwrap_or(self.mean), stop);
+            }
+            if miss > 0.0 {
+                low = low.max(x);
+            } else {
+                high = high.min(x);
+            }
+            let force: f64 = solved.p.iter().sum();
+            let slope = match (&tangent, before) {
+                (Some(t), _) => t.value * self.magnification(t.value) / force,
+                (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (x - x0) / (miss0 - miss),
+                _ => 1.0 / self.mean,
+            };
+            before = Some((x, miss));
+            let next = x + (miss * slope).clamp(-GAP_STEP, GAP_STEP);
+            self.remember(solved, tangent);
+            x = if next > low && next < high {
+                next
+            } else if low.is_finite() && high.is_finite() {
+                f64::midpoint(low, high)
+            } else {
+                x + GAP_STEP.copysign(miss)
+            };
+        }
+        let name = "mean gap".into();
+        let asked = self.units.approach(asked)?;
+        Err(Error::OutOfRange { name, value: asked, min: 0.0, max: self.units.approach(self.mean)? })
+    }
+}
