@@ -353,10 +353,11 @@ impl Ground for Listed<'_> {
 }
 
 /// Drops cells in tension from a small superset until none is left; p, q and d are exact up to rounding.
-fn eliminate(problem: &Problem, superset: &CellSet, target: Target) -> Option<Pressed> {
+fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Option<Pressed> {
     let mut set = superset.clone();
     loop {
         let z = problem.candidates.gaps(&set);
+        problem.operators.solves += 1;
         let (q, w) = Factor::new(problem.operators.table(), &set)?.solve_pair(&z);
         let d = match target {
             Target::Force(force) => (force + w.iter().sum::<f64>()) / q.iter().sum::<f64>(),

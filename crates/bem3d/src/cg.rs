@@ -53,6 +53,7 @@ pub fn correct(
     request: Request,
     stop: Stop<'_>,
 ) -> Correction {
+    operators.solves += 1;
     let n = set.len();
     let mut x = vec![0.0; n];
     // In units of the residual's own size: its square neither overflows nor underflows.

@@ -289,7 +289,7 @@ impl Prepared {
         };
         let fields = self.fields(&solved)?;
         let report = SolveReport {
-            work: Work::default(),
+            work: Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref()),
             status,
             strategy: self.problem.operators.describe(&solved),
             iterations: solved.steps + tangent.as_ref().map_or(0, |t| t.steps),
@@ -374,6 +374,7 @@ impl Prepared {
         });
         let mut report = SolveReport::exact("no contact");
         report.contact_cells = Some(0);
+        report.work = Work::of(0, fields.as_ref());
         ContactState {
             force: 0.0,
             approach: (!self.is_periodic()).then_some(0.0),
@@ -415,6 +416,7 @@ impl PreparedContact for Prepared {
             return self.untouched().completed(&self.outputs, self.scales.modulus);
         }
         self.problem.operators.applications = 0;
+        self.problem.operators.solves = 0;
         let (solved, tangent) = self.settle(target, self.limits(), stop);
         self.gap = Some((load, self.units.approach(self.gap_of(&solved))?));
         let miss = match target {

@@ -1,5 +1,6 @@
 //! What was done for a state, in counts that no clock changes.
 
+use crate::state::Fields;
 use std::ops::AddAssign;
 
 /// Work beyond iterations and applications of the operator. Closed forms do none.
@@ -7,7 +8,7 @@ use std::ops::AddAssign;
 /// What is not asked for adds nothing: without fields `fields` and `bytes` are 0, without the stiffness its `linear_solves` are missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Work {
-    /// Linear systems that were solved: factors made and runs of an iteration.
+    /// Linear systems solved on the grid itself: factors made and runs of an iteration.
     pub linear_solves: usize,
     /// Fields over the whole grid that the state holds.
     pub fields: usize,
@@ -16,10 +17,22 @@ pub struct Work {
 }
 
 impl Work {
-    /// The work of one more field of so many values.
-    pub fn add_field(&mut self, values: usize) {
-        self.fields += 1;
-        self.bytes += values * size_of::<f64>();
+    /// So many linear solves and the fields of a state.
+    ///
+    /// ```
+    /// use contact_model::{Fields, Work};
+    /// let fields = Fields { gap: Some(vec![0.0; 9]), ..Fields::default() };
+    /// assert_eq!(Work::of(2, Some(&fields)), Work { linear_solves: 2, fields: 1, bytes: 72 });
+    /// ```
+    pub fn of(linear_solves: usize, fields: Option<&Fields>) -> Self {
+        let mut work = Self { linear_solves, ..Self::default() };
+        if let Some(Fields { pressure, displacement, gap }) = fields {
+            for field in [pressure, displacement, gap].into_iter().flatten() {
+                work.fields += 1;
+                work.bytes += size_of_val(field.as_slice());
+            }
+        }
+        work
     }
 }
 

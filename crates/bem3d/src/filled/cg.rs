@@ -68,6 +68,7 @@ pub fn correct(
     request: Request,
     stop: Stop<'_>,
 ) -> Done {
+    operators.solves += 1;
     let row = |y: usize| y * side..(y + 1) * side;
     let Vectors { mask, r, x, t, kt, z, ones, extension } = v;
     x.fill(0.0);

@@ -43,6 +43,7 @@ impl Prepared {
             });
         }
         self.problem.operators.applications = 0;
+        self.problem.operators.solves = 0;
         let (limits, side) = (self.limits(), self.problem.side as f64);
         // A wave of the rms height and the length of the square closes at about side x rms.
         let mut x = self.last.as_ref().map_or(0.1 * side, |last| last.force).ln();

@@ -30,6 +30,8 @@ pub struct Operators {
     inverse: Option<Convolution<f32>>,
     /// Applications of K so far, all precisions together.
     pub applications: usize,
+    /// Linear systems so far: factors and runs of conjugate gradients.
+    pub solves: usize,
     /// Whether the two-level operator may be chosen (it knows the free kernel alone).
     pub two_levels: bool,
     /// What the last fast application was done with.
@@ -48,6 +50,7 @@ impl Operators {
             two_level: None,
             inverse: None,
             applications: 0,
+            solves: 0,
             two_levels: free,
             last: None,
         }
