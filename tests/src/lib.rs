@@ -1,5 +1,5 @@
 //! What the physical tests share: problems that travel with their exact solutions, one checker for every model, orders of
-//! convergence, maps made by hand, and an oracle that tries every contact set.
+//! convergence; from `stability` maps made by hand and an oracle that tries every contact set.
 //!
 //! The tests themselves are in the `tests/` folder beside this file, one topic a file. They follow four rules.
 //!
@@ -22,16 +22,16 @@
 //! ```
 
 mod deviation;
-mod enumerate;
-mod maps;
 mod order;
 mod problem;
 
 pub use deviation::{Deviation, Prescribed, deviation};
-pub use enumerate::{SmallContact, every_contact_set};
-pub use maps::{embedded, map, mirrored, rotated, rough, rough_map, scene, stretched, transposed};
 pub use order::order;
 pub use problem::{Case, Problem, problems};
+pub use stability::{
+    SmallContact, embedded, every_contact_set, map, mirrored, rotated, rough, rough_map, scene, stretched,
+    transposed,
+};
 
 /// The examples of README.md are tests too.
 #[cfg(doctest)]

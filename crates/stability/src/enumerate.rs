@@ -1,5 +1,6 @@
 //! The slow, obviously right twin: try every contact set.
 
+use crate::plain::eliminate;
 use bem3d::love::influence;
 use contact_model::{HeightMap, Load};
 use std::f64::consts::PI;
@@ -74,42 +75,10 @@ fn one_set(map: &HeightMap, contact: Vec<usize>, outside: &[usize], load: Load) 
     })
 }
 
-/// Gauss's elimination with the largest pivot of the column.
-fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
-    let n = b.len();
-    for column in 0..n {
-        let pivot =
-            (column..n).max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs())).unwrap_or(column);
-        a.swap(column, pivot);
-        b.swap(column, pivot);
-        let (above, below) = a.split_at_mut(column + 1);
-        let top = &above[column];
-        for (i, row) in below.iter_mut().enumerate() {
-            let factor = row[column] / top[column];
-            for (x, t) in row.iter_mut().zip(top).skip(column) {
-                *x -= factor * t;
-            }
-            b[column + 1 + i] -= factor * b[column];
-        }
-    }
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|j| a[i][j] * b[j]).sum();
-        b[i] = (b[i] - known) / a[i][i];
-    }
-    b
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-
-    #[test]
-    fn by_hand() {
-        // 2 x + y = 5, x + 3 y = 10: x = 1, y = 3; the second one needs its rows exchanged.
-        assert_eq!(eliminate(vec![vec![2.0, 1.0], vec![1.0, 3.0]], vec![5.0, 10.0]), [1.0, 3.0]);
-        assert_eq!(eliminate(vec![vec![0.0, 1.0], vec![4.0, 0.0]], vec![5.0, 8.0]), [2.0, 5.0]);
-    }
 
     #[test]
     fn two_cells_of_which_one_is_out_of_reach_until_it_is_not() {

@@ -1,0 +1,317 @@
+//! What arithmetic and patience cannot reach, and what transforms and sums must.
+
+use crate::case::{Case, Effort};
+use crate::ledger::{Ledger, pressure, stiffness};
+use crate::maps::{map, rough_map};
+use crate::plain::PlainSum;
+use crate::press::{SAME, press, press_both, press_by, tight, watched};
+use bem3d::love::influence;
+use bem3d::{Bem3d, Method};
+use contact_model::{ContactModel, Error, Line, Load, Result, Scene, Status, Surface};
+use mdr1d::Mdr1d;
+use std::cell::Cell;
+use std::sync::Arc;
+
+pub(super) const CASES: [Case; 8] = [
+    Case {
+        name: "primes, powers of two and one more",
+        why: "transforms of every factorisation; a circular length one too short wraps around",
+        asserted: "displacement of every cell beside the plain sum over pairs; k of full contact by its formula in 1/N",
+        bound: 1e-12,
+        solve: sizes,
+    },
+    Case {
+        name: "far field to 1e6 cells",
+        why: "Love's closed form is a second difference: at distance r it loses r^2 of its digits",
+        asserted: "the kernel beside Gauss-Legendre quadrature of 1/r over the cell, and 40-digit values",
+        bound: 5e-12,
+        solve: |ledger, effort| {
+            far_field(ledger, effort);
+            Ok(())
+        },
+    },
+    Case {
+        name: "sums over 1e7 cells",
+        why: "running sums lose digits in proportion to their length, single precision all of them",
+        asserted: "rms height of +-1 moved by 2^30 is 1; force and k of a ramp of 1e7 elements in closed form",
+        bound: 1e-13,
+        solve: long_sums,
+    },
+    Case {
+        name: "beyond single precision",
+        why: "operators inside the iteration have a noise floor of 2e-7",
+        asserted: "gaps under pressure, by plain sums in double precision, in rms heights, at the tolerance 1e-10",
+        bound: 1e-9,
+        solve: noise_floor,
+    },
+    Case {
+        name: "an unattainable tolerance",
+        why: "1e-17 is below rounding: a loop that waits for it never ends or lies",
+        asserted: "NotConverged, never called converged; the best state's certificate is near rounding all the same",
+        bound: 1e-8,
+        solve: unattainable,
+    },
+    Case {
+        name: "a limit on rounds",
+        why: "an interrupted active set is a plausible wrong answer",
+        asserted: "NotConverged with the best state and its own certificate, or the k of the unlimited solve",
+        bound: SAME,
+        solve: few_rounds,
+    },
+    Case {
+        name: "a deadline",
+        why: "the caller stops at any moment: what is remembered may be half a state",
+        asserted: "Stopped with the best state so far; the next solve gives the k of a fresh one",
+        bound: SAME,
+        solve: deadline,
+    },
+    Case {
+        name: "no load, and loads that are none",
+        why: "0/0 in every normalisation; NaN compares false with everything",
+        asserted: "F = d = k = 0 exactly; negative, infinite and NaN loads are refused by every model (wrong answers)",
+        bound: 0.0,
+        solve: no_load,
+    },
+];
+
+fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let quick = [31, 61, 64, 65, 67];
+    let thorough = [31, 61, 64, 65, 67, 97, 127, 128, 129];
+    let sizes: &[usize] = effort.pick(&quick, &thorough);
+    for &cells in sizes {
+        let rough = rough_map(2.5, cells, 2)?;
+        for force in [0.1, 30.0] {
+            let mut scene = watched(&rough);
+            scene.outputs.displacement = true;
+            for method in [Method::Auto, Method::SingleLevel] {
+                let model = Bem3d { method, ..tight() };
+                let state = model.prepare(&scene, 0)?.solve(Load::Force(force))?;
+                let area = rough.cell() * rough.cell();
+                let forces: Vec<(usize, f64)> = pressure(&state)?
+                    .iter()
+                    .map(|p| p * area)
+                    .enumerate()
+                    .filter(|(_, f)| *f > 0.0)
+                    .collect();
+                let exact = PlainSum::of(&rough).displacement(&forces);
+                let found = state.fields.and_then(|f| f.displacement).unwrap_or_default();
+                ledger.must(found.len() == exact.len(), || format!("{} displacements", found.len()));
+                for (a, b) in found.iter().zip(&exact) {
+                    ledger.near("displacement", *a, *b);
+                }
+            }
+        }
+        let flat = press_both(ledger, &map(cells, 1.0, |_, _| 0.0)?, Load::Force(1.0))?;
+        let n = cells as f64;
+        let formula = 1.152_298_5 - 0.402_5 / n + 0.12 / n.powf(1.59);
+        let off = (stiffness(&flat)? / formula - 1.0).abs();
+        // The formula holds to a few units of its seventh digit from 60 cells on.
+        ledger.must(cells < 60 || off < 3e-6, || format!("N {cells}: k is off its formula by {off}"));
+    }
+    Ok(())
+}
+
+/// Nodes in (0, 1/2) and weights of Gauss-Legendre quadrature with eight points on an interval of length 1.
+const NODES: [(f64, f64); 4] = [
+    (0.091_717_321_247_824_9, 0.181_341_891_689_181),
+    (0.262_766_204_958_164_5, 0.156_853_322_938_943_64),
+    (0.398_333_238_706_813_4, 0.111_190_517_226_687_24),
+    (0.480_144_928_248_768_1, 0.050_614_268_145_188_13),
+];
+
+/// Mean of 1/r over the cell at (x, y): the displacement under unit pressure there.
+fn quadrature(x: f64, y: f64) -> f64 {
+    let mut sum = 0.0;
+    for (a, wa) in NODES {
+        for (b, wb) in NODES {
+            for (sa, sb) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                sum += wa * wb / (x + sa * a).hypot(y + sb * b);
+            }
+        }
+    }
+    sum
+}
+
+fn far_field(ledger: &mut Ledger, effort: Effort) {
+    for (x, y, value) in [
+        (0, 0, 3.525_494_348_078_17),
+        (1, 0, 1.038_049_735_904_76),
+        (1, 1, 0.724_697_438_134_33),
+        (10, 10, 0.070_725_435_312_116_5),
+        (64, 3, 0.015_608_020_519_585_132),
+        (1000, 10, 0.000_999_950_045_410_101_3),
+        (16384, 5000, 5.837_725_981_587_807e-5),
+        (1_000_000, 0, 1.000_000_000_000_041_7e-6),
+        (1_000_000, 999_999, 7.071_071_347_400_412e-7),
+    ] {
+        ledger.near("40-digit value", influence(x, y), value);
+        ledger.near("40-digit value", influence(y, x), value);
+    }
+    // Quadrature converges as (1/(4 r))^16: exact to rounding from five cells on. Lags in all directions, spaced by a tenth.
+    let steps = effort.pick(130, 1300);
+    for i in 0..steps {
+        let r = 6.0 * (1e6_f64 / 6.0).powf(f64::from(i) / f64::from(steps - 1));
+        for j in 0..effort.pick(9, 90) {
+            let angle = f64::from(j) * std::f64::consts::FRAC_PI_2 / f64::from(effort.pick(8, 89));
+            let (x, y) = ((r * angle.cos()).round(), (r * angle.sin()).round());
+            ledger.near("quadrature", influence(x as usize, y as usize), quadrature(x, y));
+        }
+    }
+}
+
+fn long_sums(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let count = effort.pick(10_000_000_usize, 40_000_000);
+    let offset = 1_073_741_824.0;
+    let heights: Vec<f64> =
+        (0..count).map(|i| if i % 2 == 0 { offset + 1.0 } else { offset - 1.0 }).collect();
+    ledger.near("rms height", surface_gen::rms_height(&heights), 1.0);
+    // z_i = i/n: F = E* dx sum (d - z_i) over the m elements with z_i < d.
+    let heights = (0..count).map(|i| -(i as f64) / count as f64).collect();
+    let line = Arc::new(Line::new(1.0, heights)?);
+    let mut contact = Mdr1d::default().prepare(&Scene::new(Surface::Line { line, side: 1.0 }, 1.0), 0)?;
+    let n = count as f64;
+    for d in [0.25, 1.0, 3.0] {
+        let state = contact.solve(Load::Approach(d))?;
+        let m = (d * n).min(n);
+        let exact = m / n * d - m * (m - 1.0) / (2.0 * n * n);
+        ledger.near("force of a ramp", state.force, exact);
+        ledger.near("length of a ramp", stiffness(&state)?, m / n);
+    }
+    Ok(())
+}
+
+fn noise_floor(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(65, 129);
+    for (fractal_dimension, force) in [(2.0, 1.0), (2.0, 20.0), (2.6, 20.0), (2.0, 300.0)] {
+        let map = rough_map(fractal_dimension, cells, 4)?;
+        for method in [Method::SingleLevel, Method::Iterative] {
+            let state = press_by(ledger, &Bem3d { method, ..tight() }, &map, Load::Force(force))?;
+            let area = map.cell() * map.cell();
+            let forces: Vec<(usize, f64)> =
+                pressure(&state)?.iter().map(|p| p * area).enumerate().filter(|(_, f)| *f > 0.0).collect();
+            let u = PlainSum::of(&map).displacement(&forces);
+            let highest = map.highest();
+            // Weighted by pressure: what the certificate is about.
+            let open: f64 = (forces.iter())
+                .map(|&(i, f)| {
+                    f / force
+                        * (u[i] + highest
+                            - map.heights()[i]
+                            - crate::ledger::approach(&state).unwrap_or(f64::NAN))
+                        .abs()
+                })
+                .sum();
+            ledger.enter(open);
+        }
+    }
+    Ok(())
+}
+
+fn unattainable(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let map = rough_map(2.2, effort.pick(65, 257), 4)?;
+    for method in [Method::Auto, Method::Iterative, Method::SingleLevel] {
+        let model = Bem3d { tolerance: 1e-17, method, ..tight() };
+        for force in [0.1, 1.0, 20.0] {
+            match model.prepare(&watched(&map), 0)?.solve(Load::Force(force)) {
+                Err(Error::NotConverged { best }) => {
+                    let report = &best.report;
+                    ledger.must(report.status != Status::Converged, || format!("{report:?}"));
+                    ledger.must(!report.certificate.meets(1e-17), || format!("{report:?}"));
+                    ledger.enter(report.certificate.worst());
+                }
+                other => {
+                    ledger.must(false, || format!("{method:?}, F {force}: {:?}", other.map(|s| s.report)));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn few_rounds(ledger: &mut Ledger, _: Effort) -> Result<()> {
+    let map = rough_map(2.2, 65, 4)?;
+    let exact = press(ledger, &map, Load::Force(1.0))?;
+    let mut refused = 0;
+    for rounds in 0..12 {
+        let model = Bem3d { rounds, ..tight() };
+        match model.prepare(&watched(&map), 0)?.solve(Load::Force(1.0)) {
+            Ok(state) => {
+                ledger
+                    .must(state.report.certificate.meets(model.tolerance), || format!("{:?}", state.report));
+                ledger.near("k", stiffness(&state)?, stiffness(&exact)?);
+            }
+            Err(Error::NotConverged { best }) => {
+                refused += 1;
+                ledger.must(best.report.status != Status::Converged, || {
+                    format!("{rounds} rounds: {:?}", best.report)
+                });
+                ledger.must(!best.report.certificate.meets(model.tolerance), || {
+                    format!("{rounds} rounds: {} is good enough", best.report.certificate)
+                });
+            }
+            Err(other) => return Err(other),
+        }
+    }
+    ledger.must(refused > 0, || "no limit was ever met: the case tests nothing".to_owned());
+    Ok(())
+}
+
+fn deadline(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let map = rough_map(2.2, effort.pick(65, 129), 4)?;
+    let exact = press(ledger, &map, Load::Force(1.0))?;
+    let mut contact = tight().prepare(&watched(&map), 0)?;
+    let (mut stopped, mut with_state) = (0, 0);
+    for patience in (0..20).chain((20..400).step_by(20)) {
+        let asked = Cell::new(0);
+        let stop = || {
+            asked.set(asked.get() + 1);
+            asked.get() > patience
+        };
+        match contact.solve_until(Load::Force(1.0), &stop) {
+            Err(Error::Stopped { best }) => {
+                stopped += 1;
+                if let Some(best) = best {
+                    with_state += 1;
+                    ledger.must(best.report.status == Status::Stopped, || format!("{:?}", best.report));
+                    ledger.must(best.force.is_finite() && best.approach.is_some(), || format!("{best:?}"));
+                }
+            }
+            Ok(state) => ledger.near("k", stiffness(&state)?, stiffness(&exact)?),
+            Err(other) => return Err(other),
+        }
+        if patience % 7 == 0 {
+            let state = contact.solve(Load::Force(1.0))?;
+            ledger.near("k of the next solve", stiffness(&state)?, stiffness(&exact)?);
+        }
+    }
+    ledger.must(stopped > 0 && with_state > 0, || format!("{stopped} stopped, {with_state} with a state"));
+    Ok(())
+}
+
+fn no_load(ledger: &mut Ledger, _: Effort) -> Result<()> {
+    let rough = || -> Result<Scene> { Ok(Scene::new(Surface::SelfAffine(crate::rough(2.4)?), 1.0)) };
+    let bem = Bem3d { cells: 33, ..tight() };
+    let mdr = Mdr1d::default();
+    let sphere = Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 1.0);
+    let models: [(&dyn ContactModel, Scene); 3] =
+        [(&bem, rough()?), (&mdr, rough()?), (&analytic::Hertz, sphere)];
+    for (model, scene) in models {
+        let mut contact = model.prepare(&scene, 0)?;
+        for load in [Load::Force(0.0), Load::Approach(0.0), Load::Force(-0.0)] {
+            let state = contact.solve(load)?;
+            let numbers = [Some(state.force), state.approach, state.stiffness];
+            ledger.count(numbers.iter().filter(|v| !v.is_some_and(|v| v.abs() <= 0.0)).count());
+            let next = contact.solve(Load::Force(1e-3))?;
+            ledger
+                .must(next.stiffness.is_some_and(|k| k > 0.0), || format!("{} after {load:?}", model.name()));
+        }
+        for value in [-1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for load in [Load::Force(value), Load::Approach(value)] {
+                let refused = matches!(contact.solve(load), Err(Error::Domain { .. }));
+                ledger.count(usize::from(!refused));
+                ledger.must(refused, || format!("{} takes {load:?}", model.name()));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,31 @@
+//! The registry.
+
+mod chance;
+mod few;
+mod limits;
+mod range;
+mod shapes;
+mod surfaces;
+mod ties;
+mod units;
+
+use crate::case::Case;
+
+/// Every hard case, in the order of the table.
+///
+/// ```
+/// assert!(stability::cases().iter().all(|c| !c.why.is_empty() && !c.asserted.is_empty()));
+/// ```
+pub fn cases() -> Vec<Case> {
+    [
+        &few::CASES[..],
+        &ties::CASES,
+        &surfaces::CASES,
+        &shapes::CASES,
+        &range::CASES,
+        &units::CASES,
+        &limits::CASES,
+        &chance::CASES,
+    ]
+    .concat()
+}

@@ -1,0 +1,157 @@
+//! Units and zeros that a caller may choose.
+
+use crate::case::{Case, Effort};
+use crate::ledger::{Ledger, approach, stiffness};
+use crate::maps::{map, rough_map, stretched};
+use crate::press::{tight, watched};
+use contact_model::{ContactModel, ContactState, Error, HeightMap, Load, Result};
+
+/// A handful of roundings on the way into the solver's units and out again, times what a solve makes of them.
+const NEUTRAL: f64 = 1e-11;
+
+pub(super) const CASES: [Case; 5] = [
+    Case {
+        name: "heights moved by 2^20 and -2^40",
+        why: "d - h from raw heights loses every digit; z = h_max - h loses none",
+        asserted: "heights in steps of rms/4096 moved by 2^20 and -2^40: F, d, k and p bit for bit",
+        bound: 0.0,
+        solve: moved,
+    },
+    Case {
+        name: "heights times powers of two",
+        why: "2^500 and 2^-500: squares of heights overflow or vanish",
+        asserted: "F, d, k and p bit for bit after division",
+        bound: 0.0,
+        solve: powers_of_two,
+    },
+    Case {
+        name: "heights of 1e-150 and 1e150",
+        why: "forces of 1e-150, products of heights beyond f64",
+        asserted: "F, d, k of the same map in ordinary units, divided",
+        bound: NEUTRAL,
+        solve: |ledger, effort| neutral(ledger, effort, &[(1.0, 1.0, 1e-150), (1.0, 1.0, 1e150)]),
+    },
+    Case {
+        name: "E* and L of 1e-12 and 1e12",
+        why: "stiffness and force differ by forty decades between scenes",
+        asserted: "F, d, k of the same map with E* = L = 1, divided",
+        bound: NEUTRAL,
+        solve: |ledger, effort| {
+            let all = [(1e-12, 1e-12, 1.0), (1e-12, 1e12, 1.0), (1e12, 1e-12, 1.0), (1e12, 1e12, 1e-9)];
+            neutral(ledger, effort, &all)
+        },
+    },
+    Case {
+        name: "outputs beyond f64",
+        why: "the solve in scaled units is sound, but force or stiffness has no number",
+        asserted: "an error with the quantity (Domain), neither infinity nor 0; what can be held is returned (wrong answers)",
+        bound: 0.0,
+        solve: beyond,
+    },
+];
+
+fn solve(map: &HeightMap, modulus: f64, load: Load) -> Result<ContactState> {
+    let mut scene = watched(map);
+    scene.modulus = modulus;
+    tight().prepare(&scene, 0)?.solve(load)
+}
+
+fn moved(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(33, 129);
+    let drawn = rough_map(2.4, cells, 9)?;
+    let shifted = |offset: f64| {
+        map(cells, 1.0, |x, y| (drawn.heights()[y * cells + x] * 4096.0).round() / 4096.0 + offset)
+    };
+    let here = shifted(0.0)?;
+    for offset in [1_048_576.0, -1_099_511_627_776.0] {
+        let there = shifted(offset)?;
+        for load in [Load::Force(1e-9), Load::Force(0.3), Load::Force(20.0), Load::Approach(1.0)] {
+            let (a, b) = (solve(&here, 1.0, load)?, solve(&there, 1.0, load)?);
+            ledger.same_bits("moved", &a, &b);
+        }
+    }
+    Ok(())
+}
+
+/// A cell of 2^-5 or 2^-7: the units hold one number that is no power of two, so every product is rounded once.
+fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let here = rough_map(2.4, effort.pick(32, 128), 9)?;
+    for exponent in [-500, 500] {
+        let factor = 2_f64.powi(exponent);
+        let there = stretched(&here, 1.0, factor)?;
+        for size in [1e-6, 0.3, 20.0] {
+            for (here_load, there_load) in [
+                (Load::Force(size), Load::Force(size * factor)),
+                (Load::Approach(size), Load::Approach(size * factor)),
+            ] {
+                let (a, b) = (solve(&here, 1.0, here_load)?, solve(&there, 1.0, there_load)?);
+                ledger.same_bits("in other units", &a, &divided(b, factor, factor, 1.0, factor));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn neutral(ledger: &mut Ledger, effort: Effort, scales: &[(f64, f64, f64)]) -> Result<()> {
+    let here = rough_map(2.4, effort.pick(33, 129), 5)?;
+    for &(modulus, lateral, vertical) in scales {
+        let there = stretched(&here, lateral, vertical)?;
+        for size in [1e-6, 0.1, 20.0] {
+            let force = modulus * lateral * vertical;
+            for (here_load, there_load) in [
+                (Load::Force(size), Load::Force(size * force)),
+                (Load::Approach(size), Load::Approach(size * vertical)),
+            ] {
+                let a = solve(&here, 1.0, here_load)?;
+                let b = solve(&there, modulus, there_load)?;
+                ledger
+                    .must(b.report.certificate.meets(tight().tolerance), || b.report.certificate.to_string());
+                let b = divided(b, force, vertical, modulus * lateral, modulus * vertical / lateral);
+                ledger.same(
+                    &format!("{here_load:?} in units of {modulus:e}, {lateral:e}, {vertical:e}"),
+                    &b,
+                    &a,
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn divided(mut state: ContactState, force: f64, height: f64, stiffness: f64, pressure: f64) -> ContactState {
+    state.force /= force;
+    state.approach = state.approach.map(|d| d / height);
+    state.stiffness = state.stiffness.map(|k| k / stiffness);
+    if let Some(p) = state.fields.as_mut().and_then(|f| f.pressure.as_mut()) {
+        for p in p {
+            *p /= pressure;
+        }
+    }
+    state
+}
+
+fn beyond(ledger: &mut Ledger, _: Effort) -> Result<()> {
+    let map = rough_map(2.4, 17, 5)?;
+    // (E*, lateral, vertical): a force of 1e450, of 1e-450; a stiffness of 1e320.
+    for (modulus, lateral, vertical) in
+        [(1e150, 1e150, 1e150), (1e-150, 1e-150, 1e-150), (1e160, 1e160, 1e-160), (1e300, 1e20, 1.0)]
+    {
+        let there = stretched(&map, lateral, vertical)?;
+        let found = solve(&there, modulus, Load::Approach(vertical));
+        let honest = match &found {
+            Err(Error::Domain { value, .. }) => !value.is_finite() || value.abs() <= 0.0,
+            _ => false,
+        };
+        ledger.must(honest, || format!("{modulus:e} {lateral:e} {vertical:e}: {found:?}"));
+        ledger.count(usize::from(!honest));
+    }
+    // The force alone is beyond f64 where the stiffness is not asked for; d and k of a light one are fine.
+    let there = stretched(&map, 1e100, 1e100)?;
+    let state = solve(&there, 1e100, Load::Force(1e295))?;
+    let here = solve(&map, 1.0, Load::Force(1e-5))?;
+    let same = (approach(&state)? / 1e100 / approach(&here)? - 1.0).abs() < NEUTRAL
+        && (stiffness(&state)? / 1e200 / stiffness(&here)? - 1.0).abs() < NEUTRAL;
+    ledger.must(same, || "a light load in units of 1e100".to_owned());
+    ledger.count(usize::from(!same));
+    Ok(())
+}

@@ -1,0 +1,133 @@
+//! What a case found.
+
+use contact_model::{ContactState, Error, Result};
+
+/// Broken assertions that are kept in words.
+const KEPT: usize = 5;
+
+/// Collects what a case finds: the largest deviation, and assertions that do not hold.
+#[derive(Debug, Default)]
+pub struct Ledger {
+    figure: f64,
+    entries: usize,
+    broken: Vec<String>,
+}
+
+impl Ledger {
+    /// Enters a deviation, dimensionless and >= 0. A NaN stays the figure whatever follows.
+    pub fn enter(&mut self, deviation: f64) {
+        self.entries += 1;
+        if deviation.is_nan() || deviation > self.figure {
+            self.figure = deviation;
+        }
+    }
+
+    /// Enters a number of things that differ.
+    pub fn count(&mut self, differing: usize) {
+        self.enter(differing as f64);
+    }
+
+    /// Enters the relative deviation of a number from the exact one.
+    pub fn near(&mut self, what: &str, found: f64, exact: f64) {
+        let deviation = if exact.abs() > 0.0 { ((found - exact) / exact).abs() } else { found.abs() };
+        self.must(deviation.is_finite(), || format!("{what}: {found} beside {exact}"));
+        self.enter(deviation);
+    }
+
+    /// Notes an assertion; `what` says in words what does not hold.
+    pub fn must(&mut self, holds: bool, what: impl FnOnce() -> String) {
+        if !holds && self.broken.len() < KEPT {
+            self.broken.push(what());
+        }
+    }
+
+    /// Enters the deviations of force, approach and stiffness of one state from another; the contact must have as many cells.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] where a state lacks one of them.
+    pub fn same(&mut self, what: &str, found: &ContactState, exact: &ContactState) -> Result<()> {
+        self.near(what, found.force, exact.force);
+        self.near(what, approach(found)?, approach(exact)?);
+        self.near(what, stiffness(found)?, stiffness(exact)?);
+        let cells = [found, exact].map(|s| s.report.contact_cells);
+        self.must(cells[0] == cells[1], || format!("{what}: contact cells {cells:?}"));
+        Ok(())
+    }
+
+    /// Counts which of force, approach, stiffness and pressure differ in any bit.
+    pub fn same_bits(&mut self, what: &str, a: &ContactState, b: &ContactState) {
+        let differing = bits(a).iter().zip(&bits(b)).filter(|(a, b)| a != b).count();
+        let lengths = [a, b].map(|s| bits(s).len());
+        self.must(lengths[0] == lengths[1], || format!("{what}: fields of {lengths:?} numbers"));
+        self.must(differing == 0, || format!("{what}: {differing} numbers differ"));
+        self.count(differing);
+    }
+
+    /// Number of entries so far.
+    pub(crate) fn entries(&self) -> usize {
+        self.entries
+    }
+
+    /// The figure, where it is a number, and what is broken.
+    pub(crate) fn close(self) -> (Option<f64>, Vec<String>) {
+        (Some(self.figure).filter(|f| f.is_finite()), self.broken)
+    }
+}
+
+fn bits(state: &ContactState) -> Vec<u64> {
+    let numbers = [Some(state.force), state.approach, state.stiffness, state.area];
+    let pressure = state.fields.as_ref().and_then(|f| f.pressure.as_deref()).unwrap_or_default();
+    numbers.iter().flatten().chain(pressure).map(|v| v.to_bits()).collect()
+}
+
+/// The approach of a state.
+///
+/// # Errors
+/// [`Error::Shape`] where it has none.
+pub fn approach(state: &ContactState) -> Result<f64> {
+    known("approach", state.approach)
+}
+
+/// The stiffness of a state.
+///
+/// # Errors
+/// [`Error::Shape`] where it has none.
+pub fn stiffness(state: &ContactState) -> Result<f64> {
+    known("stiffness", state.stiffness)
+}
+
+/// The pressure field of a state.
+///
+/// # Errors
+/// [`Error::Shape`] where it has none.
+pub fn pressure(state: &ContactState) -> Result<&[f64]> {
+    known("pressure", state.fields.as_ref().and_then(|f| f.pressure.as_deref()))
+}
+
+fn known<T>(name: &'static str, value: Option<T>) -> Result<T> {
+    value.ok_or(Error::Shape { name: name.into(), found: 0, expected: "what was asked for".into() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_counts_and_nan_is_never_forgotten() {
+        let mut ledger = Ledger::default();
+        for d in [1e-3, 0.5, 1e-4] {
+            ledger.enter(d);
+        }
+        assert_eq!((ledger.figure.to_bits(), ledger.entries()), (0.5_f64.to_bits(), 3));
+        ledger.enter(f64::NAN);
+        ledger.enter(1.0);
+        assert_eq!(ledger.close().0, None);
+    }
+
+    #[test]
+    fn exact_zeros_are_compared_absolutely() {
+        let mut ledger = Ledger::default();
+        ledger.near("x", 1e-3, 0.0);
+        assert_eq!(ledger.close(), (Some(1e-3), vec![]));
+    }
+}

@@ -1,0 +1,51 @@
+//! Hard cases of contact mechanics, each solved for real and judged by a certificate and a physical or exact result.
+//!
+//! # What it computes
+//!
+//! [`cases`] is the registry: what solvers of this field trip over (one cell, ties, full contact, loads over sixteen decades, units at
+//! the ends of f64, misleading warm starts, limits). A [`Case`] says why it is hard and what is asserted; [`Case::run`]
+//! solves it and gives a [`Verdict`]: the largest deviation found ([`Verdict::figure`]), the bound that it must keep, and assertions
+//! that do not hold. That a solver comes back is never an assertion: each case compares with a closed form, a symmetry, a bound of
+//! mechanics or a slow twin.
+//!
+//! # Conventions
+//!
+//! * Figures are relative deviations, or numbers of things that differ where bits are compared (bound 0).
+//! * Every state goes through a witness that shares nothing with the solver but Love's kernel: the contact conditions, the force and the
+//!   stiffness from plain sums over pairs and Gauss's elimination.
+//! * A case that fails, with an error or a panic, is a row like any other; the others still run.
+//!
+//! # How accurate
+//!
+//! The twins are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`] (projected Gauss-Seidel, to rounding) and
+//! [`PlainSum`]. Bounds are stated beside each case with their reason.
+//!
+//! # How fast
+//!
+//! All cases take well under a minute of processor time ([`Effort::Quick`]); [`Effort::Thorough`] has larger grids and takes minutes.
+//!
+//! # What it does not do
+//!
+//! It neither prints nor writes (that is `figures` and `xtask`), and measures no time.
+//!
+//! ```
+//! use stability::{Effort, cases};
+//! let one_cell = cases().into_iter().find(|c| c.name == "one cell").unwrap();
+//! let verdict = one_cell.run(Effort::Quick);
+//! assert!(verdict.passed() && verdict.figure.unwrap() <= one_cell.bound);
+//! ```
+
+mod case;
+mod cases;
+mod enumerate;
+mod ledger;
+mod maps;
+mod plain;
+mod press;
+
+pub use case::{Case, Effort, Status, Verdict, run};
+pub use cases::cases;
+pub use enumerate::{SmallContact, every_contact_set};
+pub use ledger::Ledger;
+pub use maps::{embedded, map, mirrored, rotated, rough, rough_map, scene, stretched, transposed};
+pub use plain::{PlainSum, Relaxed, relaxed};

@@ -1,0 +1,160 @@
+//! Solves with a witness.
+
+use crate::ledger::{Ledger, approach, pressure, stiffness};
+use crate::maps::scene;
+use crate::plain::{PlainSum, relaxed};
+use bem3d::{Bem3d, Method};
+use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact, Result, Scene, Status};
+
+/// Tolerance of the solves.
+pub(crate) const TOLERANCE: f64 = 1e-10;
+/// Two solves of one state at [`TOLERANCE`]: certificates count gaps in rms heights, approaches here are down to a thousandth of that.
+pub(crate) const SAME: f64 = 1e-7;
+/// The approach may be off by so many tolerances of the rms height (`Bem3d::tolerance`).
+const LEFT_OPEN: f64 = 10.0;
+/// The witness may find so many times the tolerance: its sums round differently.
+const WITNESS: f64 = 2.0;
+/// Rounding of sums over a few thousand cells, relative to the largest term.
+const ROUNDING: f64 = 1e-12;
+/// The witness sums over pairs on grids up to this size, and eliminates sets up to that.
+const LARGEST_GRID: usize = 129;
+const LARGEST_SET: usize = 220;
+/// Elimination of a set of that size.
+const ELIMINATED: f64 = 1e-9;
+
+/// The solver that cases are about.
+pub(crate) fn tight() -> Bem3d {
+    Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }
+}
+
+/// A scene of a map with everything that the witness looks at.
+pub(crate) fn watched(map: &HeightMap) -> Scene {
+    let mut scene = scene(map.clone());
+    (scene.outputs.area, scene.outputs.pressure) = (true, true);
+    scene
+}
+
+/// Solves one load from nothing and has the witness look at the state.
+pub(crate) fn press(ledger: &mut Ledger, map: &HeightMap, load: Load) -> Result<ContactState> {
+    press_by(ledger, &tight(), map, load)
+}
+
+/// The same by another method.
+pub(crate) fn press_by(
+    ledger: &mut Ledger,
+    model: &Bem3d,
+    map: &HeightMap,
+    load: Load,
+) -> Result<ContactState> {
+    let mut contact = model.prepare(&watched(map), 0)?;
+    press_again(ledger, &mut *contact, model.tolerance, map, load)
+}
+
+/// The same with a contact that may remember other loads; it must have been prepared with [`watched`].
+pub(crate) fn press_again(
+    ledger: &mut Ledger,
+    contact: &mut dyn PreparedContact,
+    tolerance: f64,
+    map: &HeightMap,
+    load: Load,
+) -> Result<ContactState> {
+    let state = contact.solve(load)?;
+    witness(ledger, map, load, tolerance, &state)?;
+    Ok(state)
+}
+
+/// One load by factors and by iteration, each with its witness; they must agree.
+pub(crate) fn press_both(ledger: &mut Ledger, map: &HeightMap, load: Load) -> Result<ContactState> {
+    let one = press(ledger, map, load)?;
+    let other = press_by(ledger, &Bem3d { method: Method::Iterative, ..tight() }, map, load)?;
+    // What the certificate leaves open in d, in rms heights; and that in F.
+    let k = stiffness(&one)?;
+    let gap = LEFT_OPEN * TOLERANCE * surface_gen::rms_height(map.heights());
+    let off = [
+        (approach(&one)? - approach(&other)?).abs() / (SAME * approach(&one)? + gap),
+        (one.force - other.force).abs() / (SAME * one.force + gap * k),
+        (k / stiffness(&other)? - 1.0).abs() / SAME,
+    ];
+    ledger.must(off.iter().all(|d| *d <= 1.0), || {
+        format!("{load:?}: d, F, k by factors and by iteration differ by {off:?} of what is allowed")
+    });
+    let cells = [&one, &other].map(|s| s.report.contact_cells);
+    ledger.must(cells[0] == cells[1], || format!("{load:?}: contact cells {cells:?}"));
+    Ok(one)
+}
+
+/// Checks a state of modulus 1 against the contact conditions, by plain sums.
+pub(crate) fn witness(
+    ledger: &mut Ledger,
+    map: &HeightMap,
+    load: Load,
+    tolerance: f64,
+    state: &ContactState,
+) -> Result<()> {
+    let report = &state.report;
+    ledger.must(report.status == Status::Converged && report.certificate.meets(tolerance), || {
+        format!("{load:?}: {:?}, {}", report.status, report.certificate)
+    });
+    let (p, d, k) = (pressure(state)?, approach(state)?, stiffness(state)?);
+    let area = map.cell() * map.cell();
+    let forces: Vec<(usize, f64)> =
+        p.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, p)| (i, p * area)).collect();
+    ledger.must(p.iter().all(|p| *p >= 0.0 && p.is_finite()), || format!("{load:?}: a pull"));
+    ledger.must(report.contact_cells == Some(forces.len()), || {
+        format!("{load:?}: {:?} contact cells, {} with pressure", report.contact_cells, forces.len())
+    });
+    let sum: f64 = forces.iter().map(|(_, f)| f).sum();
+    let asked = match load {
+        Load::Force(force) => force,
+        _ => state.force,
+    };
+    for (name, force) in [("force", state.force), ("force asked for", asked)] {
+        let off = (sum / force - 1.0).abs();
+        ledger.must(off <= tolerance.max(ROUNDING), || {
+            format!("{load:?}: {name} {force}, sum of pressures {sum}")
+        });
+    }
+    if map.cells() > LARGEST_GRID {
+        return Ok(());
+    }
+    let plain = PlainSum::of(map);
+    let u = plain.displacement(&forces);
+    let highest = map.highest();
+    let rms = surface_gen::rms_height(map.heights());
+    let unit = if rms > 0.0 { rms } else { d };
+    let slack = WITNESS * tolerance * unit + ROUNDING * d;
+    let gap = |i: usize| u[i] + (highest - map.heights()[i]) - d;
+    let lowest = (0..u.len()).map(gap).fold(f64::INFINITY, f64::min);
+    ledger.must(lowest >= -slack, || format!("{load:?}: a cell penetrates by {}", -lowest / unit));
+    // Shares of the force first: their products with gaps neither overflow nor vanish.
+    let open: f64 = forces.iter().map(|&(i, f)| f / sum * (gap(i) / unit).abs()).sum();
+    ledger.must(open <= slack / unit, || format!("{load:?}: pressure over gaps of {open}"));
+    if forces.len() <= LARGEST_SET {
+        let contact: Vec<usize> = forces.iter().map(|(i, _)| *i).collect();
+        let exact = plain.stiffness(&contact);
+        ledger.must((k / exact - 1.0).abs() <= ELIMINATED, || {
+            format!("{load:?}: k {k} beside {exact} of the same set by elimination")
+        });
+    }
+    Ok(())
+}
+
+/// Compares a state at an approach with the one that relaxation finds: contact set exactly; force and stiffness enter the figure.
+pub(crate) fn against_relaxation(ledger: &mut Ledger, map: &HeightMap, d: f64) -> Result<()> {
+    let state = press_both(ledger, map, Load::Approach(d))?;
+    let slow = relaxed(map, d);
+    let found: Vec<usize> =
+        pressure(&state)?.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, _)| i).collect();
+    ledger.must(found == slow.contact, || {
+        format!("d {d}: {} cells in contact, {} by relaxation", found.len(), slow.contact.len())
+    });
+    ledger.near("force beside relaxation", state.force, slow.force);
+    if slow.contact.len() <= LARGEST_SET {
+        ledger.near(
+            "stiffness beside elimination",
+            stiffness(&state)?,
+            PlainSum::of(map).stiffness(&slow.contact),
+        );
+    }
+    Ok(())
+}

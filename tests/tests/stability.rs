@@ -1,0 +1,19 @@
+//! Every hard case of the registry: solved, witnessed and within its bound.
+
+use stability::{Effort, Verdict};
+
+#[test]
+fn every_hard_case_holds() {
+    let verdicts = stability::run(&stability::cases(), Effort::Quick, &|_| ());
+    for v in &verdicts {
+        println!(
+            "{:<42} {:>10.1e} of {:.0e} {}",
+            v.case.name,
+            v.figure.unwrap_or(f64::NAN),
+            v.case.bound,
+            v.status.as_str()
+        );
+    }
+    let failed: Vec<&Verdict> = verdicts.iter().filter(|v| !v.passed()).collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+}
