@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use contact_model::Boundary;
-use figures::{Bench, Forces, Method, Preset, Request, Surfaces};
+use figures::{Bench, Depth, Forces, Method, Preset, Request, Surfaces};
 use std::path::PathBuf;
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
@@ -83,6 +83,9 @@ pub enum Command {
     /// What an answer costs: work, time, memory and certificate of each solve.
     #[command(after_long_help = BENCH)]
     Bench(BenchArguments),
+    /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and picture).
+    #[command(after_help = EXPAND)]
+    AccuracyCost(AccuracyCost),
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
@@ -103,6 +106,7 @@ impl Command {
             Self::ReproduceFig7(_) => "reproduce-fig7",
             Self::ReproduceAll(_) => "reproduce-all",
             Self::Verify(_) => "verify",
+            Self::AccuracyCost(_) => "accuracy-cost",
             Self::Audit(_) => "audit",
             Self::Bench(_) => "bench",
             Self::CheckReference(_) => "check-reference",
@@ -122,6 +126,7 @@ impl Command {
             }
             Self::Audit(a) => a.solid.fill(&mut request),
             Self::Bench(_) => {}
+            Self::AccuracyCost(a) => request.out = Some(a.out.clone()),
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
         }
         request
@@ -339,6 +344,42 @@ pub struct Audit {
     /// Tolerance of the second look.
     #[arg(long = "audit-tolerance", value_name = "T", default_value_t = 1e-8, allow_hyphen_values = true)]
     pub tight: f64,
+}
+
+/// Sizes of the study of accuracy.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum DepthName {
+    /// Up to 257 cells: a minute or two.
+    Quick,
+    /// Up to 1025 cells: a quarter of an hour.
+    Default,
+    /// Up to 2049 cells, tolerances to 1e-10: hours.
+    Thorough,
+}
+
+/// Flags of the study of accuracy.
+#[derive(Debug, Args)]
+pub struct AccuracyCost {
+    /// How much is solved. One thread: the times are those of each row.
+    #[arg(long, value_enum, default_value = "default")]
+    preset: DepthName,
+    /// Master seed.
+    #[arg(long, default_value_t = figures::SEED)]
+    pub seed: u64,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+impl AccuracyCost {
+    /// How much is solved.
+    pub fn depth(&self) -> Depth {
+        match self.preset {
+            DepthName::Quick => Depth::Quick,
+            DepthName::Default => Depth::Default,
+            DepthName::Thorough => Depth::Thorough,
+        }
+    }
 }
 
 /// Edges of the square.

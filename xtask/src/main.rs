@@ -1,5 +1,5 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `check-reference`.
+//! `accuracy-cost`, `check-reference`.
 //!
 //! Argument parsing, progress and exit codes; the figures are in the crate `figures`.
 //!
@@ -48,6 +48,9 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
         Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
+        Command::AccuracyCost(options) => {
+            vec![figures::accuracy_cost(options.depth(), options.seed, &options.out, &reporter)?]
+        }
         Command::Audit(options) => {
             let (outcome, summary) = figures::audit(&run, options.share, options.tight, &reporter)?;
             println!("{summary}");

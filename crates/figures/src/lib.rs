@@ -35,6 +35,7 @@
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 
+mod accuracy;
 mod all;
 mod arrays;
 mod audit;
@@ -72,6 +73,7 @@ mod tables;
 mod unit;
 mod verify;
 
+pub use accuracy::{Depth, accuracy_cost};
 pub use all::reproduce_all;
 pub use arrays::write_npy;
 pub use audit::audit;

@@ -20,8 +20,17 @@ pub(crate) fn reset_peak_memory() {
 
 /// Largest resident memory of the process, in bytes (Linux).
 pub(crate) fn peak_memory() -> Option<u64> {
+    memory("VmHWM:")
+}
+
+/// Resident memory of the process now, in bytes (Linux).
+pub(crate) fn resident_memory() -> Option<u64> {
+    memory("VmRSS:")
+}
+
+fn memory(field: &str) -> Option<u64> {
     let text = fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let line = text.lines().find_map(|l| l.strip_prefix(field))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kb| 1024 * kb)
 }
 
@@ -36,7 +45,7 @@ mod tests {
         let block: Vec<u64> = (0..1 << 20).collect();
         assert!(std::hint::black_box(&block).iter().sum::<u64>() > 0);
         assert!(cpu_seconds().unwrap() > cpu);
-        assert!(before > 0 && peak_memory().is_some());
+        assert!(before > 0 && peak_memory().is_some() && resident_memory().is_some());
         reset_peak_memory();
     }
 }
