@@ -320,8 +320,32 @@ pub enum Problem {
         /// The largest height by amount.
         value: f64,
     },
+    /// A name whose ending is none of the formats that are written.
+    Ending {
+        /// The ending, shortened.
+        found: String,
+    },
+    /// A field with a number that is not finite.
+    NotFinite {
+        /// Name of the field.
+        field: String,
+        /// Number of the value, from 0, row by row.
+        at: usize,
+        /// The value.
+        value: f64,
+    },
     /// The map was refused.
     Map(contact_model::Error),
+}
+
+impl std::error::Error for Problem {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Quantity { source, .. } => Some(source),
+            Self::Map(source) => Some(source),
+            _ => None,
+        }
+    }
 }
 
 /// Why a text is no number.
@@ -352,9 +376,7 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::System { source, .. } => Some(source),
-            Self::Content { problem: Problem::Quantity { source, .. }, .. } => Some(source),
-            Self::Content { problem: Problem::Map(source), .. } => Some(source),
-            Self::Content { .. } => None,
+            Self::Content { problem, .. } => problem.source(),
         }
     }
 }
@@ -470,6 +492,12 @@ impl fmt::Display for Problem {
             ),
             Self::Overflow { value } => {
                 write!(f, "height {value}: beyond the range of double precision after conversion")
+            }
+            Self::Ending { found } => {
+                write!(f, "the name ends in {found:?}: expected npy, txt, xyz or vti")
+            }
+            Self::NotFinite { field, at, value } => {
+                write!(f, "{field}: value {at} (counted from 0) is {value}: expected finite numbers")
             }
             Self::Map(source) => write!(f, "{source}"),
         }

@@ -3,7 +3,6 @@
 use crate::error::Problem;
 use std::fmt;
 use std::path::Path;
-use std::str::FromStr;
 
 /// A format that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -23,23 +22,6 @@ impl fmt::Display for Format {
             Self::Text => "a text matrix",
             Self::Xyz => "XYZ points",
         })
-    }
-}
-
-impl FromStr for Format {
-    type Err = String;
-
-    /// Reads `npy`, `text` or `xyz`.
-    ///
-    /// # Errors
-    /// What was expected, for other words.
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "npy" => Ok(Self::Npy),
-            "text" => Ok(Self::Text),
-            "xyz" => Ok(Self::Xyz),
-            other => Err(format!("unknown format {other:?}: expected npy, text or xyz")),
-        }
     }
 }
 

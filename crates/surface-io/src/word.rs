@@ -1,0 +1,170 @@
+//! Words of scenes and command lines.
+
+use crate::format::Format;
+use crate::quantity::QuantityError;
+use crate::scan::Decimal;
+use crate::treatment::{Crop, Detrend, Fill};
+use std::fmt;
+use std::str::FromStr;
+
+/// A word that is not one of those expected.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WordError {
+    /// What it should say.
+    pub what: &'static str,
+    /// The word, shortened.
+    pub found: String,
+    /// The words that are known.
+    pub expected: &'static str,
+    /// Why it is no quantity either, where one is allowed.
+    pub quantity: Option<QuantityError>,
+}
+
+impl WordError {
+    fn new(what: &'static str, found: &str, expected: &'static str) -> Self {
+        Self { what, found: found.chars().take(32).collect(), expected, quantity: None }
+    }
+}
+
+impl fmt::Display for WordError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {:?}: expected {}", self.what, self.found, self.expected)?;
+        match &self.quantity {
+            Some(error) => write!(f, " ({error})"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for WordError {}
+
+impl FromStr for Format {
+    type Err = WordError;
+
+    /// Reads `npy`, `text` or `xyz`.
+    ///
+    /// # Errors
+    /// [`WordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, WordError> {
+        match text {
+            "npy" => Ok(Self::Npy),
+            "text" => Ok(Self::Text),
+            "xyz" => Ok(Self::Xyz),
+            other => Err(WordError::new("format", other, "npy, text or xyz")),
+        }
+    }
+}
+
+impl FromStr for Decimal {
+    type Err = WordError;
+
+    /// Reads `point` or `comma`.
+    ///
+    /// # Errors
+    /// [`WordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, WordError> {
+        match text {
+            "point" => Ok(Self::Point),
+            "comma" => Ok(Self::Comma),
+            other => Err(WordError::new("decimal", other, "point or comma")),
+        }
+    }
+}
+
+impl FromStr for Detrend {
+    type Err = WordError;
+
+    /// Reads `none`, `mean`, `plane` or `quadric`.
+    ///
+    /// # Errors
+    /// [`WordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, WordError> {
+        match text {
+            "none" => Ok(Self::Nothing),
+            "mean" => Ok(Self::Mean),
+            "plane" => Ok(Self::Plane),
+            "quadric" => Ok(Self::Quadric),
+            other => Err(WordError::new("detrend", other, "none, mean, plane or quadric")),
+        }
+    }
+}
+
+impl FromStr for Fill {
+    type Err = WordError;
+
+    /// Reads `neighbours`, `plane` or a height such as `-2 um`.
+    ///
+    /// # Errors
+    /// [`WordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, WordError> {
+        match text {
+            "neighbours" => Ok(Self::Neighbours),
+            "plane" => Ok(Self::Plane),
+            other => other.parse().map(Self::Value).map_err(|quantity| {
+                let error = WordError::new("fill", other, "neighbours, plane or a height such as \"-2 um\"");
+                WordError { quantity: Some(quantity), ..error }
+            }),
+        }
+    }
+}
+
+impl FromStr for Crop {
+    type Err = WordError;
+
+    /// Reads `centre`, or row, column and cells a side as in `10,20,256`.
+    ///
+    /// # Errors
+    /// [`WordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, WordError> {
+        if text == "centre" {
+            return Ok(Self::Centre);
+        }
+        let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok(&[row, column, cells]) => Ok(Self::Window { row, column, cells }),
+            _ => Err(WordError::new(
+                "crop",
+                text,
+                "centre, or row, column and cells a side such as \"10,20,256\"",
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_or_named() {
+        assert_eq!("npy".parse(), Ok(Format::Npy));
+        assert_eq!("text".parse(), Ok(Format::Text));
+        assert_eq!("xyz".parse(), Ok(Format::Xyz));
+        assert_eq!("point".parse(), Ok(Decimal::Point));
+        assert_eq!("comma".parse(), Ok(Decimal::Comma));
+        assert_eq!("none".parse(), Ok(Detrend::Nothing));
+        assert_eq!("mean".parse(), Ok(Detrend::Mean));
+        assert_eq!("plane".parse(), Ok(Detrend::Plane));
+        assert_eq!("quadric".parse(), Ok(Detrend::Quadric));
+        assert_eq!("neighbours".parse(), Ok(Fill::Neighbours));
+        assert_eq!("plane".parse(), Ok(Fill::Plane));
+        assert_eq!("-2 um".parse(), Ok(Fill::Value("-2e-6 m".parse().unwrap())));
+        assert_eq!("centre".parse(), Ok(Crop::Centre));
+        assert_eq!("1, 2,3".parse(), Ok(Crop::Window { row: 1, column: 2, cells: 3 }));
+        for (text, error) in [
+            ("hdf5".parse::<Format>().unwrap_err(), "format = \"hdf5\": expected npy, text or xyz"),
+            ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
+            ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane or quadric"),
+            ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, or row"),
+            ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, or row"),
+            (
+                "2 Um".parse::<Fill>().unwrap_err(),
+                "fill = \"2 Um\": expected neighbours, plane or a height such as \"-2 um\" (unknown unit \"Um\": upper and lower case differ, is it um?)",
+            ),
+        ]
+        .map(|(found, expected)| (found.to_string(), expected))
+        {
+            assert!(text.starts_with(error), "{text}");
+        }
+    }
+}
