@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use contact_model::Boundary;
-use figures::{Bench, Depth, Forces, Method, Preset, Request, Surfaces};
+use figures::{Bench, Depth, Forces, Method, Preset, Request, Surfaces, TwoCases};
 use std::path::PathBuf;
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
@@ -86,6 +86,9 @@ pub enum Command {
     /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and picture).
     #[command(after_help = EXPAND)]
     AccuracyCost(AccuracyCost),
+    /// Sec. II's two problems side by side: free and fractal, periodic with a roll-off; with Persson's and Greenwood-Williamson's theories.
+    #[command(after_help = EXPAND)]
+    ReproduceTwoCases(TwoCasesArguments),
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
@@ -107,6 +110,7 @@ impl Command {
             Self::ReproduceAll(_) => "reproduce-all",
             Self::Verify(_) => "verify",
             Self::AccuracyCost(_) => "accuracy-cost",
+            Self::ReproduceTwoCases(_) => "reproduce-two-cases",
             Self::Audit(_) => "audit",
             Self::Bench(_) => "bench",
             Self::CheckReference(_) => "check-reference",
@@ -126,6 +130,7 @@ impl Command {
             }
             Self::Audit(a) => a.solid.fill(&mut request),
             Self::Bench(_) => {}
+            Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),
             Self::AccuracyCost(a) => request.out = Some(a.out.clone()),
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
         }
@@ -379,6 +384,59 @@ impl AccuracyCost {
             DepthName::Default => Depth::Default,
             DepthName::Thorough => Depth::Thorough,
         }
+    }
+}
+
+/// Flags of the two cases.
+#[derive(Debug, Args)]
+pub struct TwoCasesArguments {
+    /// Cells a side.
+    #[arg(long, default_value_t = 512, allow_hyphen_values = true)]
+    cells: usize,
+    /// Surfaces of each case.
+    #[arg(long, default_value_t = 16, allow_hyphen_values = true)]
+    surfaces: usize,
+    /// Fractal dimension.
+    #[arg(long = "df", value_name = "D_F", default_value_t = 2.2, allow_hyphen_values = true)]
+    fractal_dimension: f64,
+    /// Waves a side at which the spectrum rolls off.
+    #[arg(long, value_name = "WAVES", default_value_t = 8.0, allow_hyphen_values = true)]
+    roll_off: f64,
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT.
+    #[arg(long, value_name = "LIST", default_value = "1e-3:20:19", allow_hyphen_values = true)]
+    forces: String,
+    /// Tolerance of every certificate.
+    #[arg(long, default_value_t = 1e-4, allow_hyphen_values = true)]
+    tolerance: f64,
+    /// Master seed.
+    #[arg(long, default_value_t = figures::SEED)]
+    seed: u64,
+    /// Surfaces solved at the same time (default: all cores).
+    #[arg(long, allow_hyphen_values = true)]
+    threads: Option<usize>,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+impl TwoCasesArguments {
+    /// What it asks for.
+    ///
+    /// # Errors
+    /// [`figures::Error::Parameter`] for a list of loads that is none.
+    pub fn study(&self) -> figures::Result<TwoCases> {
+        Ok(TwoCases {
+            cells: self.cells,
+            surfaces: self.surfaces,
+            fractal_dimension: self.fractal_dimension,
+            roll_off: self.roll_off,
+            forces: Forces::parse(&self.forces)?,
+            tolerance: self.tolerance,
+            seed: self.seed,
+            threads: self
+                .threads
+                .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get)),
+        })
     }
 }
 

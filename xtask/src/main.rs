@@ -1,5 +1,5 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `accuracy-cost`, `check-reference`.
+//! `reproduce-two-cases`, `accuracy-cost`, `check-reference`.
 //!
 //! Argument parsing, progress and exit codes; the figures are in the crate `figures`.
 //!
@@ -50,6 +50,9 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
         Command::AccuracyCost(options) => {
             vec![figures::accuracy_cost(options.depth(), options.seed, &options.out, &reporter)?]
+        }
+        Command::ReproduceTwoCases(options) => {
+            vec![figures::two_cases(&options.study()?, &options.out, &reporter)?]
         }
         Command::Audit(options) => {
             let (outcome, summary) = figures::audit(&run, options.share, options.tight, &reporter)?;

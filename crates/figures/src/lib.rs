@@ -23,7 +23,7 @@
 //!
 //! # What it does not do
 //!
-//! No mechanics of its own, no argument parsing (that is `xtask`), no figure that is not in the paper.
+//! No mechanics of its own, no argument parsing (that is `xtask`), no figure beyond the paper's but [`two_cases`] and [`accuracy_cost`].
 //!
 //! ```no_run
 //! use figures::{Preset, Request, Run, Silent, fig2};
@@ -70,6 +70,7 @@ mod session;
 mod store;
 mod sweep;
 mod tables;
+mod two_cases;
 mod unit;
 mod verify;
 
@@ -103,5 +104,6 @@ pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE};
 pub use sample::{FIELDS, FLOOR_CELLS, Sample};
 pub use store::{Store, fnv1a_128};
 pub use sweep::sweep;
+pub use two_cases::{TwoCases, two_cases};
 pub use unit::{FORMAT, Models, Numerics, Unit, UnitResult};
 pub use verify::verify;

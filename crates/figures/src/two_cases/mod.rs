@@ -1,0 +1,403 @@
+//! The two cases of Sec. II side by side: a free fractal square, and a periodic one whose spectrum rolls off.
+
+mod picture;
+mod reading;
+
+use crate::csv_file::{Header, write_csv};
+use crate::error::{Error, Result};
+use crate::files;
+use crate::forces::Forces;
+use crate::outcome::Outcome;
+use crate::progress::Progress;
+use analysis::{Curves, Sample, ensemble};
+use analytic::{GreenwoodWilliamson, Persson};
+use bem3d::Bem3d;
+use contact_model::{Boundary, ContactModel, Load, Scene, SelfAffine, Surface};
+use picture::{draw, table};
+use reading::{claim, summary};
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Instant;
+
+const NAME: &str = "two-cases";
+
+/// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it.
+const SHORTEST: usize = 8;
+
+/// What is solved.
+///
+/// Sec. II of the paper tells two problems apart: fractal up to the size of the system with free edges, where it expects `k ~ F^alpha`, and
+/// a spectrum that ends at a longest wave, of which a periodic patch stands for the rest, where Persson finds `k ~ F`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TwoCases {
+    /// Cells a side.
+    pub cells: usize,
+    /// Surfaces of each case.
+    pub surfaces: usize,
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// Waves a side at the roll-off.
+    pub roll_off: f64,
+    /// Loads F_bar.
+    pub forces: Forces,
+    /// Bound of every certificate.
+    pub tolerance: f64,
+    /// Master seed.
+    pub seed: u64,
+    /// Surfaces solved at the same time, at least 1.
+    pub threads: usize,
+}
+
+/// A boundary and a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Case {
+    boundary: Boundary,
+    rolls_off: bool,
+}
+
+/// The paper's two cases, and the other two that tell boundary and spectrum apart.
+const CASES: [Case; 4] = [
+    Case { boundary: Boundary::Free, rolls_off: false },
+    Case { boundary: Boundary::Free, rolls_off: true },
+    Case { boundary: Boundary::Periodic, rolls_off: false },
+    Case { boundary: Boundary::Periodic, rolls_off: true },
+];
+
+impl Case {
+    fn name(self) -> &'static str {
+        match (self.boundary, self.rolls_off) {
+            (Boundary::Periodic, true) => "periodic, roll-off",
+            (Boundary::Periodic, false) => "periodic, fractal",
+            (_, true) => "free, roll-off",
+            (_, false) => "free, fractal",
+        }
+    }
+
+    fn color(self) -> &'static str {
+        match (self.boundary, self.rolls_off) {
+            (Boundary::Periodic, true) => "#d6731a",
+            (Boundary::Periodic, false) => "#1d918c",
+            (_, true) => "#8c2d5a",
+            (_, false) => "#30126e",
+        }
+    }
+
+    fn scene(self, study: &TwoCases) -> Result<Scene> {
+        let d = study.fractal_dimension;
+        let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model(format!("D_f = {d:?}")))?;
+        let surface = SelfAffine {
+            roll_off: self.rolls_off.then_some(TAU * study.roll_off),
+            short_cutoff: Some(TAU * study.shortest()),
+            ..surface
+        };
+        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+        scene.effects.boundary = self.boundary;
+        scene.validate().map_err(Error::model(format!("the case {}", self.name())))?;
+        Ok(scene)
+    }
+}
+
+impl TwoCases {
+    /// Waves a side at the end of the spectrum.
+    fn shortest(&self) -> f64 {
+        (self.cells / SHORTEST) as f64
+    }
+
+    fn command(&self) -> String {
+        format!(
+            "cargo xtask reproduce-two-cases --cells {} --surfaces {} --df {:?} --roll-off {:?} --forces {} --tolerance {:?} --seed {}",
+            self.cells,
+            self.surfaces,
+            self.fractal_dimension,
+            self.roll_off,
+            self.forces.spec(),
+            self.tolerance,
+            self.seed
+        )
+    }
+
+    fn check(&self) -> Result<()> {
+        if self.threads == 0 {
+            return Err(Error::parameter("threads", 0, "at least one thread"));
+        }
+        if self.surfaces == 0 {
+            return Err(Error::parameter("surfaces", 0, "at least one surface"));
+        }
+        if self.cells < 4 * SHORTEST {
+            return Err(Error::parameter("cells", self.cells, format!("at least {}", 4 * SHORTEST)));
+        }
+        if !(self.roll_off > 1.0 && self.roll_off < self.shortest()) {
+            let expected = format!("between 1 and {} waves a side (cells / {SHORTEST})", self.shortest());
+            return Err(Error::parameter("roll-off", self.roll_off, expected));
+        }
+        Ok(())
+    }
+}
+
+/// One curve: k_bar over F_bar.
+struct Curve {
+    case: Case,
+    model: &'static str,
+    points: Vec<Point>,
+}
+
+struct Point {
+    force_bar: f64,
+    stiffness_bar: f64,
+    standard_error: Option<f64>,
+    surfaces: usize,
+    not_converged: usize,
+    area: Option<f64>,
+    min_contact_cells: Option<usize>,
+}
+
+/// Solves the two cases (and the two mixed ones) with boundary elements, Persson's and Greenwood and Williamson's theories, and
+/// writes `two-cases.csv`, `.svg`, `.png` and `.md` into a directory.
+///
+/// # Errors
+/// [`Error::Parameter`] for numbers that make no sense, what a model refuses, and files that cannot be written.
+pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Result<Outcome> {
+    let start = Instant::now();
+    study.check()?;
+    files::create_directory(out)?;
+    let solved = solve(study, progress)?;
+    let mut outcome = Outcome::new(NAME);
+    let mut curves = Vec::new();
+    for (case, surfaces) in CASES.into_iter().zip(solved) {
+        outcome.not_converged += surfaces.iter().flatten().filter(|s| s.is_none()).count();
+        let samples =
+            surfaces.iter().map(|s| s.iter().map(|s| s.as_ref().map(|s| s.sample)).collect()).collect();
+        let means =
+            Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.name()))?;
+        let curve = mean_curve(case, &means, &surfaces);
+        outcome.claims.extend(claim(study, &curve, &means));
+        curves.push(curve);
+    }
+    for case in CASES.into_iter().filter(|c| c.boundary == Boundary::Periodic) {
+        for model in [&Persson::default() as &dyn ContactModel, &GreenwoodWilliamson::default()] {
+            curves.push(theory(study, case, model)?);
+        }
+    }
+    let header = Header::new(study.command())
+        .with_sources(Bem3d::default().sources())
+        .with_sources(Persson::default().sources())
+        .with_sources(GreenwoodWilliamson::default().sources())
+        .with_note(format!(
+            "spectrum: q^(-2 (H + 1)) from 1 wave a side (fractal) or constant below {:?} waves (roll-off), to {} waves (shortest: {SHORTEST} cells)",
+            study.roll_off,
+            study.shortest()
+        ))
+        .with_note("stiffness: dF/dd of the approach (free), -dF/d(mean gap) (periodic)");
+    let csv = out.join(format!("{NAME}.csv"));
+    write_csv(&csv, &table(&curves)?, &header)?;
+    outcome.files.push(csv.clone());
+    outcome.files.extend(draw(&csv, out)?);
+    let text = out.join(format!("{NAME}.md"));
+    files::write_whole(&text, summary(study, &curves, &outcome.claims).as_bytes())?;
+    outcome.files.push(text);
+    outcome.seconds = start.elapsed().as_secs_f64();
+    Ok(outcome)
+}
+
+/// One converged solve.
+#[derive(Debug, Clone, Copy)]
+struct Solve {
+    sample: Sample,
+    area: f64,
+}
+
+type Solves = Vec<Option<Solve>>;
+
+/// All surfaces of all cases, each under increasing loads; in order, whatever the number of threads.
+fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
+    let units: Vec<(Case, u64)> = CASES
+        .into_iter()
+        .flat_map(|c| (0..study.surfaces).map(move |i| (c, i)))
+        .map(|(c, i)| (c, surface_gen::surface_seed(study.seed, i as u64)))
+        .collect();
+    progress.begin(&format!("{} surfaces of {} cells a side", units.len(), study.cells), units.len() as u64);
+    let results: Vec<OnceLock<Result<Solves>>> = units.iter().map(|_| OnceLock::new()).collect();
+    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let work = || {
+        while let Some(i) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < units.len()) {
+            if failed.load(Ordering::Relaxed) {
+                return;
+            }
+            let (case, seed) = units[i];
+            let result = one(study, case, seed);
+            failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            // Each index is taken once.
+            let _ = results[i].set(result);
+            progress.advance(1, false);
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(study.threads).build().map_err(|e| {
+        Error::parameter("threads", study.threads, format!("threads that the system grants ({e})"))
+    })?;
+    pool.broadcast(|_| work());
+    progress.end();
+    let all = results.into_iter().filter_map(OnceLock::into_inner).collect::<Result<Vec<_>>>()?;
+    Ok(all.chunks(study.surfaces).map(<[_]>::to_vec).collect())
+}
+
+fn one(study: &TwoCases, case: Case, seed: u64) -> Result<Solves> {
+    let mut scene = case.scene(study)?;
+    scene.outputs.area = true;
+    let model = Bem3d { cells: study.cells, tolerance: study.tolerance, ..Bem3d::default() };
+    let what = |force: f64| format!("bem3d ({}, seed {seed}) at F_bar = {force:?}", case.name());
+    let mut contact = model.prepare(&scene, seed).map_err(Error::model(what(0.0)))?;
+    let scales = contact.scales();
+    let forces = study.forces.values().iter();
+    forces
+        .map(|&force_bar| {
+            let load = Load::Force(scales.force(force_bar).map_err(Error::model(what(force_bar)))?);
+            let state = match contact.solve(load) {
+                Ok(state) => state,
+                Err(contact_model::Error::NotConverged { .. }) => return Ok(None),
+                Err(error) => return Err(Error::model(what(force_bar))(error)),
+            };
+            // Full contact of a periodic square has no stiffness.
+            Ok(state.stiffness.zip(state.area).map(|(k, area)| Solve {
+                sample: Sample {
+                    stiffness_bar: scales.stiffness_bar(k),
+                    contact_cells: state.report.contact_cells,
+                },
+                area,
+            }))
+        })
+        .collect()
+}
+
+fn mean_curve(case: Case, means: &Curves, surfaces: &[Solves]) -> Curve {
+    let points = ensemble(means)
+        .into_iter()
+        .enumerate()
+        .filter_map(|(j, p)| {
+            let k = p.stiffness_bar?;
+            let area: Vec<f64> = surfaces.iter().filter_map(|s| s[j].map(|s| s.area)).collect();
+            Some(Point {
+                force_bar: p.force_bar,
+                stiffness_bar: k.mean,
+                standard_error: k.standard_error,
+                surfaces: area.len(),
+                not_converged: p.missing,
+                area: Some(analysis::sum(area.iter().copied()) / area.len() as f64),
+                min_contact_cells: p.min_contact_cells,
+            })
+        })
+        .collect();
+    Curve { case, model: "bem3d", points }
+}
+
+/// A theory where it holds.
+fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curve> {
+    let mut scene = case.scene(study)?;
+    scene.outputs.area = true;
+    let what = || format!("{} ({})", model.name(), case.name());
+    let mut contact = model.prepare(&scene, 0).map_err(Error::model(what()))?;
+    let scales = contact.scales();
+    let mut points = Vec::new();
+    for &force_bar in study.forces.values() {
+        let load = Load::Force(scales.force(force_bar).map_err(Error::model(what()))?);
+        let state = match contact.solve(load) {
+            Ok(state) => state,
+            Err(contact_model::Error::OutOfRange { .. }) => continue,
+            Err(error) => return Err(Error::model(what())(error)),
+        };
+        let Some(k) = state.stiffness else { continue };
+        points.push(Point {
+            force_bar,
+            stiffness_bar: scales.stiffness_bar(k),
+            standard_error: None,
+            surfaces: 0,
+            not_converged: 0,
+            area: state.area,
+            min_contact_cells: None,
+        });
+    }
+    Ok(Curve { case, model: model.name(), points })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reading::{difference, loads_between, proportional, slopes};
+    use super::*;
+    use crate::csv_file::CsvFile;
+    use crate::progress::Silent;
+
+    fn small() -> TwoCases {
+        TwoCases {
+            cells: 64,
+            surfaces: 2,
+            fractal_dimension: 2.2,
+            roll_off: 3.0,
+            forces: Forces::parse("1e-2:10:7").unwrap(),
+            tolerance: 1e-3,
+            seed: 1,
+            threads: 2,
+        }
+    }
+
+    #[test]
+    fn all_cases_and_theories_have_rows() {
+        let dir = tempfile::tempdir().unwrap();
+        let outcome = two_cases(&small(), dir.path(), &Silent).unwrap();
+        assert!(outcome.files.iter().all(|f| f.exists()));
+        let file = CsvFile::read(&dir.path().join("two-cases.csv")).unwrap();
+        let (case, model) = (file.texts("case").unwrap(), file.texts("model").unwrap());
+        for of in CASES {
+            let rows =
+                |name: &str| (0..case.len()).filter(|&i| case[i] == of.name() && model[i] == name).count();
+            assert_eq!(rows("bem3d"), 7, "{}", of.name());
+            assert_eq!(rows("persson") > 0, of.boundary == Boundary::Periodic);
+        }
+        // The largest loads of a periodic square are far stiffer than a free one can be.
+        let k = file.numbers("stiffness_bar").unwrap();
+        assert!(k[6].unwrap() < 1.1 && k[4 * 7 - 1].unwrap() > 3.0);
+    }
+
+    #[test]
+    fn slopes_and_ranges_by_hand() {
+        // k = F from the second load on.
+        let points =
+            [(1.0, 3.0), (10.0, 10.0), (100.0, 100.0), (1000.0, 1000.0), (10000.0, 1e4)].map(|(f, k)| {
+                Point {
+                    force_bar: f,
+                    stiffness_bar: k,
+                    standard_error: None,
+                    surfaces: 1,
+                    not_converged: 0,
+                    area: Some(f / 1e4),
+                    min_contact_cells: None,
+                }
+            });
+        let curve = Curve { case: CASES[3], model: "bem3d", points: points.into() };
+        let slopes = slopes(&curve.points);
+        assert!(slopes[0].is_none() && slopes[4].is_none() && (slopes[2].unwrap() - 1.0).abs() < 1e-12);
+        approx::assert_relative_eq!(proportional(&curve), 1.0, max_relative = 1e-12);
+        let window = loads_between(&curve);
+        approx::assert_relative_eq!(window.min_force_bar, 100.0);
+        approx::assert_relative_eq!(window.max_force_bar, 1000.0);
+        approx::assert_relative_eq!(difference(&curve, &curve).unwrap(), 0.0);
+    }
+
+    #[test]
+    fn nonsense_is_named() {
+        let out = Path::new("never-made");
+        for (study, name) in [
+            (TwoCases { threads: 0, ..small() }, "threads"),
+            (TwoCases { surfaces: 0, ..small() }, "surfaces"),
+            (TwoCases { cells: 9, ..small() }, "cells"),
+            (TwoCases { roll_off: f64::NAN, ..small() }, "roll-off"),
+            (TwoCases { roll_off: 9.0, ..small() }, "roll-off"),
+        ] {
+            let error = two_cases(&study, out, &Silent).unwrap_err().to_string();
+            assert!(error.contains(name), "{error}");
+        }
+        let error =
+            two_cases(&TwoCases { fractal_dimension: 3.5, ..small() }, &std::env::temp_dir(), &Silent);
+        assert!(error.unwrap_err().to_string().contains("3.5"));
+    }
+}
