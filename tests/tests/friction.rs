@@ -4,7 +4,9 @@
 
 use analytic::CattaneoMindlin;
 use approx::assert_relative_eq;
-use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
+use contact_model::{
+    Body, Friction, History, HistoryModel, HistoryState, Load, Pair, Scene, Step, Surface, Tangential,
+};
 use mdr1d::PartialSlip;
 
 /// A root of each, and energies that are small differences near the first turn.
@@ -58,5 +60,107 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
                 );
             }
         }
+    }
+}
+
+/// A sphere, pressed and sheared; both models with a coefficient.
+fn models(coefficient: f64) -> [Box<dyn History>; 2] {
+    let scene = &scene(coefficient);
+    [&CattaneoMindlin as &dyn HistoryModel, &PartialSlip].map(|model| model.prepare(scene, 0).unwrap())
+}
+
+fn scene(coefficient: f64) -> Scene {
+    let body = Body::Elastic { young: 2.0, poisson: 0.3 };
+    let pair = Pair { first: body, second: body };
+    let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, side: 3.0 }, pair).unwrap();
+    scene.effects.friction = Friction::Coulomb { coefficient };
+    scene
+}
+
+/// G*/E* = (2 - 2 nu)/(2 - nu).
+const SHEAR: f64 = 1.4 / 1.7;
+const D: f64 = 0.01;
+
+fn shear(history: &mut dyn History, tangential: Tangential) -> HistoryState {
+    history.advance(Step { time: 0.0, normal: Load::Approach(D), tangential }).unwrap()
+}
+
+#[test]
+fn without_slip_it_is_mindlins_stiffness() {
+    // mu -> infinity: T = 2 G* a u, nothing lost; T/(2 G* a u) = 1 - u G*/(4 mu E* d) + ..., so the difference falls as 1/mu.
+    let u = 1e-3;
+    let deviations = [1e2, 1e3, 1e4].map(|coefficient| {
+        models(coefficient).map(|mut history| {
+            let normal = shear(&mut *history, Tangential::Force(0.0));
+            let state = shear(&mut *history, Tangential::Displacement(u));
+            let tangential = state.tangential.unwrap();
+            let sticking = SHEAR * normal.normal.stiffness.unwrap() * u;
+            assert!(tangential.dissipated >= 0.0 && tangential.dissipated <= sticking * u / coefficient);
+            assert_relative_eq!(
+                tangential.stick_radius.unwrap(),
+                state.contact_radius.unwrap(),
+                max_relative = u * SHEAR / (coefficient * D)
+            );
+            1.0 - tangential.force / sticking
+        })
+    });
+    for (i, coefficient) in [1e2, 1e3, 1e4].into_iter().enumerate() {
+        for deviation in deviations[i] {
+            // Second order of u/(mu d) is left out.
+            let expected = 0.25 * u * SHEAR / (coefficient * D);
+            assert_relative_eq!(deviation, expected, max_relative = 1e-3, epsilon = 1e-12);
+        }
+    }
+}
+
+#[test]
+fn little_friction_is_gross_slip_and_none_is_none() {
+    // mu -> 0: T = mu F for any stroke, and mu F (u - ...) is lost.
+    let u = 1e-3;
+    for coefficient in [1e-3, 1e-6] {
+        for mut history in models(coefficient) {
+            let force = shear(&mut *history, Tangential::Force(0.0)).normal.force;
+            let tangential = shear(&mut *history, Tangential::Displacement(u)).tangential.unwrap();
+            assert_relative_eq!(tangential.force, coefficient * force, max_relative = EXACT);
+            assert!(tangential.stick_radius.unwrap() <= 0.0);
+            let reach = coefficient * D / SHEAR;
+            assert!(tangential.dissipated < tangential.force * u);
+            assert!(tangential.dissipated > tangential.force * (u - reach));
+        }
+    }
+    // The closed form divides by mu and refuses 0; the springs do not.
+    assert!(CattaneoMindlin.prepare(&scene(0.0), 0).is_err());
+    let mut smooth = PartialSlip.prepare(&scene(0.0), 0).unwrap();
+    shear(&mut *smooth, Tangential::Force(0.0));
+    let tangential = shear(&mut *smooth, Tangential::Displacement(u)).tangential.unwrap();
+    assert!(tangential.force.abs() <= 0.0 && tangential.dissipated <= 0.0);
+}
+
+#[test]
+fn work_along_any_path_is_stored_or_lost() {
+    // What friction has lost never falls and never exceeds the work done; after a closed loop of u at T = T the work is the loss.
+    for mut history in models(0.4) {
+        let force = shear(&mut *history, Tangential::Force(0.0)).normal.force;
+        let reach = 0.4 * D / SHEAR;
+        let (mut work, mut lost, mut last) = (0.0, 0.0, [0.0, 0.0]);
+        let pieces = 200;
+        let mut loops = Vec::new();
+        for turn in [0.7, -0.5, 0.9, -0.9, 0.9] {
+            let begin = last[0];
+            for i in 1..=pieces {
+                let u = begin + (turn * reach - begin) * f64::from(i) / f64::from(pieces);
+                let tangential = shear(&mut *history, Tangential::Displacement(u)).tangential.unwrap();
+                work += 0.5 * (tangential.force + last[1]) * (u - last[0]);
+                assert!(tangential.dissipated >= lost - EXACT * force * reach);
+                assert!(tangential.dissipated <= work + 1e-4 * force * reach);
+                assert!(tangential.force.abs() <= 0.4 * force * (1.0 + EXACT));
+                lost = tangential.dissipated;
+                last = [u, tangential.force];
+            }
+            loops.push([work, lost]);
+        }
+        // From 0.9 to 0.9: a closed loop. Trapezia of 200 pieces, second order.
+        let [one, other] = [loops[2], loops[4]];
+        assert_relative_eq!(other[0] - one[0], other[1] - one[1], max_relative = 1e-4);
     }
 }

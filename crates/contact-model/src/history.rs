@@ -72,7 +72,7 @@ pub struct HistoryState {
     pub time: f64,
     /// Its normal part, with the evidence.
     pub normal: ContactState,
-    /// Contact radius, of round contacts.
+    /// Contact radius, of round contacts; of an equivalent profile that of the round contact of the same stiffness, `k/(2 E*)`.
     pub contact_radius: Option<f64>,
     /// Its tangential part, of models with friction.
     pub tangential: Option<TangentialState>,
@@ -85,8 +85,8 @@ pub struct TangentialState {
     pub force: f64,
     /// Tangential displacement.
     pub displacement: f64,
-    /// Radius inside which the traction is below what friction can hold, of round contacts: the contact radius without any slip, 0
-    /// in full slip.
+    /// Radius inside which the traction is below what friction can hold, of round contacts (of an equivalent profile as the contact
+    /// radius): the contact radius without any slip, 0 in full slip.
     pub stick_radius: Option<f64>,
     /// Energy that friction has dissipated since the first step, >= 0.
     pub dissipated: f64,

@@ -40,6 +40,21 @@ pub trait ContactModel: Send + Sync {
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>>;
 }
 
+// What wraps a model takes one that is chosen at run time, too.
+impl<M: ContactModel + ?Sized> ContactModel for &M {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn sources(&self) -> &'static [Source] {
+        (**self).sources()
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
+        (**self).prepare(scene, seed)
+    }
+}
+
 /// A planned contact: solve often. Owns tables, plans and the warm start.
 pub trait PreparedContact: Send {
     /// The scales of this very surface (its own measured rms height).

@@ -1,0 +1,239 @@
+//! Friction and rheology of contacts of any shape, through the profile of a model's own states.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
+
+use analytic::{CattaneoMindlin, Hertz, PowerLaw};
+use approx::assert_relative_eq;
+use bem3d::Bem3d;
+use contact_model::{
+    Body, ContactModel, Effects, Friction, History, HistoryModel, HistoryState, Load, Outputs, Pair,
+    Relaxing, Result, Rheology, Scene, Step, Surface, Tangential,
+};
+use mdr1d::{Equivalent, Viscoelastic};
+use tests::{order, rough};
+
+const MU: f64 = 0.3;
+const SOLID: Rheology = Rheology::StandardSolid { arm: Relaxing { weight: 3.0, time: 2.0 } };
+
+fn pair() -> Pair {
+    Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.5 } }
+}
+
+fn sliding(surface: Surface) -> Scene {
+    let mut scene = Scene::of_pair(surface, pair()).unwrap();
+    scene.effects.friction = Friction::Coulomb { coefficient: MU };
+    scene
+}
+
+fn creeping(surface: Surface) -> Scene {
+    let mut scene = Scene::of_pair(surface, pair()).unwrap();
+    scene.effects.rheology = SOLID;
+    scene.outputs = Outputs::default();
+    scene
+}
+
+fn elastic(scene: &Scene) -> Scene {
+    let outputs = Outputs { stiffness: true, ..Outputs::default() };
+    Scene { effects: Effects::default(), outputs, ..scene.clone() }
+}
+
+fn sphere() -> Surface {
+    Surface::Sphere { radius: 1.0, side: 1.0 }
+}
+
+fn fractal() -> Surface {
+    Surface::SelfAffine(rough(2.3).unwrap())
+}
+
+/// Pressed to d = 0.04 (a = 0.2) and sheared by shares of mu F; both models.
+fn sheared(model: &dyn HistoryModel) -> Vec<HistoryState> {
+    let force = 4.0 / 3.0 * 4.0 * 0.008;
+    let mut history = model.prepare(&sliding(sphere()), 0).unwrap();
+    let path = [0.0, 0.25, 0.5, 0.9, -0.4, 0.6].map(|share| Step {
+        time: 0.0,
+        normal: Load::Force(force),
+        tangential: Tangential::Force(share * MU * force),
+    });
+    history.follow(&path).unwrap()
+}
+
+/// Root mean square relative error of the displacement and of the dissipated energy against Cattaneo, Mindlin and Deresiewicz.
+fn errors(model: &dyn HistoryModel) -> [f64; 2] {
+    let exact = sheared(&CattaneoMindlin);
+    let found = sheared(model);
+    let mut squares = [0.0; 2];
+    for (one, other) in exact.iter().zip(&found).skip(1) {
+        let (one, other) = (one.tangential.unwrap(), other.tangential.unwrap());
+        squares[0] += (other.displacement / one.displacement - 1.0).powi(2);
+        squares[1] += (other.dissipated / one.dissipated - 1.0).powi(2);
+    }
+    squares.map(|square| (square / 5.0).sqrt())
+}
+
+#[test]
+fn a_table_of_hertz_becomes_cattaneo_and_mindlin() {
+    let counts = [4, 8, 16, 32];
+    let all = counts.map(|per_decade| errors(&Equivalent { per_decade, ..Equivalent::new(Hertz) }));
+    for which in [0, 1] {
+        let pairs: Vec<(usize, f64)> =
+            counts.iter().zip(&all).map(|(&n, error)| (n as usize, error[which])).collect();
+        // Fourth order of F, third of x; the slip radius falls between the nodes at random.
+        let found = order(&pairs).unwrap();
+        assert!(found > 3.0, "{found}: {pairs:?}");
+        assert!(pairs[3].1 < 2e-6, "{pairs:?}");
+    }
+}
+
+#[test]
+fn a_sphere_on_cells_becomes_cattaneo_and_mindlin() {
+    let grids = [33, 65, 129];
+    let all = grids.map(|cells| errors(&Equivalent::new(Bem3d { cells, ..Bem3d::default() })));
+    for which in [0, 1] {
+        let pairs: Vec<(usize, f64)> = grids.iter().zip(&all).map(|(&n, error)| (n, error[which])).collect();
+        // The staircase of the edge: slip begins in the outermost springs, which come from k, of first order or better.
+        let found = order(&pairs).unwrap();
+        assert!(found > 1.0, "{found}: {pairs:?}");
+        assert!(pairs[2].1 < 1e-2, "{pairs:?}");
+    }
+}
+
+/// Ciavarella and Jaeger: the tangential force of a stroke u is `mu (F(d) - F(d'))` with `d - d' = u G*/(mu E*)`, the tangential
+/// stiffness G*/E* times that at d'. For any shape: both sides by one model, once through the profile, once directly.
+///
+/// Returns the largest error of the force over mu F, and of the stiffness over k.
+fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, per_decade: u32) -> [f64; 2] {
+    let scene = &sliding(fractal());
+    let mut direct = model.prepare(&elastic(scene), 2).unwrap();
+    let height = direct.scales().height.unwrap();
+    let shear = pair().shear_modulus().unwrap() / pair().modulus().unwrap();
+    let d = depth * height;
+    let mut history = Equivalent { per_decade, ..Equivalent::new(model) }.prepare(scene, 2).unwrap();
+    let top = direct.solve(Load::Approach(d)).unwrap();
+    let mut worst = [0.0_f64; 2];
+    for share in [0.05, 0.3, 0.6, 0.9] {
+        history.restart();
+        history.advance(Step::normal(0.0, Load::Approach(d))).unwrap();
+        let u = share * d * MU / shear;
+        let step = Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::Displacement(u) };
+        let state = history.advance(step).unwrap();
+        assert_eq!(state.normal.force.to_bits(), top.force.to_bits(), "the normal part is the model's own");
+        let tangential = state.tangential.unwrap();
+        let below = direct.solve(Load::Approach((1.0 - share) * d)).unwrap();
+        let force = (tangential.force - MU * (top.force - below.force)) / (MU * top.force);
+        let held = 2.0 * scene.modulus * tangential.stick_radius.unwrap();
+        let stiffness = (held - below.stiffness.unwrap()) / top.stiffness.unwrap();
+        worst = [worst[0].max(force.abs()), worst[1].max(stiffness.abs())];
+    }
+    worst
+}
+
+#[test]
+fn rough_surfaces_slip_as_a_difference_of_normal_contacts() {
+    // On 65 cells k grows by one cell after the other: no order, but the error follows the spacing.
+    let cells = Bem3d { cells: 65, tolerance: 1e-7, ..Bem3d::default() };
+    let [coarse, fine] = [16, 64].map(|n| beside_a_difference_of_normal_contacts(&cells, 1.5, n));
+    assert!(coarse[0] < 2e-3 && coarse[1] < 4e-2, "{coarse:?}");
+    assert!(fine[0] < 0.2 * coarse[0] && fine[1] < coarse[1], "{coarse:?} {fine:?}");
+    // The paper's own law is a power: smooth.
+    let smooth = beside_a_difference_of_normal_contacts(&PowerLaw, 0.1, 16);
+    assert!(smooth[0] < 1e-6 && smooth[1] < 1e-4, "{smooth:?}");
+}
+
+/// A cycle of the tangential displacement.
+fn cycle(history: &mut dyn History, normal: Load, amplitude: f64, pieces: i32) -> Result<(Vec<f64>, f64)> {
+    let mut forces = Vec::new();
+    let (mut work, mut last) = (0.0, (0.0, 0.0));
+    let mut lost = 0.0;
+    for i in 0..=5 * pieces {
+        // 0 -> 1 -> -1 -> 1.
+        let t = f64::from(i) / f64::from(pieces);
+        let u = amplitude
+            * if t <= 1.0 {
+                t
+            } else if t <= 3.0 {
+                2.0 - t
+            } else {
+                t - 4.0
+            };
+        let step = Step { time: 0.0, normal, tangential: Tangential::Displacement(u) };
+        let tangential = history.advance(step)?.tangential.unwrap();
+        if t > 1.0 {
+            work += 0.5 * (tangential.force + last.1) * (u - last.0);
+        } else {
+            lost = tangential.dissipated;
+        }
+        last = (u, tangential.force);
+        forces.push(tangential.force);
+        if i == 5 * pieces {
+            lost = tangential.dissipated - lost;
+        }
+    }
+    Ok((forces, work / lost))
+}
+
+#[test]
+fn what_a_cycle_takes_is_lost_and_the_loop_closes() {
+    let model = Bem3d { cells: 33, ..Bem3d::default() };
+    let mut history = Equivalent::new(model).prepare(&sliding(fractal()), 2).unwrap();
+    let height = history.scales().height.unwrap();
+    let normal = Load::Approach(height);
+    history.advance(Step::normal(0.0, normal)).unwrap();
+    let pieces = 60;
+    let (forces, ratio) = cycle(&mut *history, normal, 0.2 * height, pieces).unwrap();
+    // Trapezia over 60 pieces: second order.
+    assert_relative_eq!(ratio, 1.0, max_relative = 1e-3);
+    let at = |i: i32| forces[usize::try_from(i * pieces).unwrap()];
+    assert_relative_eq!(at(1), -at(3), max_relative = 1e-9);
+    assert_relative_eq!(at(1), at(5), max_relative = 1e-9);
+    // Masing: from a turn on, the first curve twice as large.
+    for i in 0..=pieces {
+        let (turned, first) = (at(1) - forces[(pieces + 2 * i) as usize], forces[i as usize]);
+        assert_relative_eq!(turned, 2.0 * first, max_relative = 1e-9, epsilon = 1e-12 * at(1));
+    }
+}
+
+#[test]
+fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
+    let model = Bem3d { cells: 33, ..Bem3d::default() };
+    let scene = creeping(fractal());
+    let mut history = Equivalent::new(model).prepare(&scene, 2).unwrap();
+    let mut direct = model.prepare(&elastic(&scene), 2).unwrap();
+    let d = history.scales().height.unwrap();
+    let own = direct.solve(Load::Approach(d)).unwrap();
+    for time in [0.0, 0.1, 2.0, 1e6] {
+        let state = history.advance(Step::normal(time, Load::Approach(d))).unwrap();
+        // F(t) = E*(t)/E* F.
+        let modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
+        assert_relative_eq!(state.normal.force, modulus * own.force, max_relative = 1e-9);
+    }
+    // Under a force: glassy at once, relaxed in the end; both are elastic states of the model.
+    history.restart();
+    let force = own.force;
+    for (time, share) in [(0.0, 0.25), (1e6, 1.0)] {
+        let state = history.advance(Step::normal(time, Load::Force(force))).unwrap();
+        let there = direct.solve(Load::Force(share * force)).unwrap();
+        let scale = history.scales().height.unwrap();
+        assert_relative_eq!(
+            state.normal.approach.unwrap(),
+            there.approach.unwrap(),
+            max_relative = 1e-5,
+            epsilon = 1e-5 * scale
+        );
+    }
+}
+
+#[test]
+fn a_table_of_hertz_relaxes_as_the_body() {
+    let scene = creeping(sphere());
+    let path = [(0.5, 0.01), (3.0, 0.012), (3.5, 0.03), (9.0, 0.031)]
+        .map(|(time, d)| Step::normal(time, Load::Approach(d)));
+    let exact = Viscoelastic.prepare(&scene, 0).unwrap().follow(&path).unwrap();
+    let error = |per_decade: u32| {
+        let model = Equivalent { per_decade, ..Equivalent::new(Hertz) };
+        let found = model.prepare(&scene, 0).unwrap().follow(&path).unwrap();
+        let errors = found.iter().zip(&exact).map(|(a, b)| (a.normal.force / b.normal.force - 1.0).abs());
+        errors.fold(0.0, f64::max)
+    };
+    let pairs = [4, 8, 16].map(|n| (n as usize, error(n)));
+    assert!(order(&pairs).unwrap() > 3.0 && pairs[2].1 < 1e-6, "{pairs:?}");
+}
