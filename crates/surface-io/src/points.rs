@@ -12,6 +12,9 @@ use axis::Axis;
 /// Share of the places of a grid that must have a height: a wrong spacing leaves most of them empty.
 const FULL: f64 = 0.5;
 
+/// Deviations from the grid are told from this on, in percent of a cell; below they are roundings.
+const SHOWN: f64 = 0.01;
+
 /// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
 ///
 /// Cost O(n log n) for n points.
@@ -59,7 +62,11 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
             Some(Quantity::of(cell, &unit).map_err(|source| Problem::Quantity { what: "spacing", source })?)
         }
     };
-    let details = format!("{points} points, {}", table.delimiter);
+    let off = 100.0 * x.off.max(y.off);
+    let mut details = format!("{points} points, {}", table.delimiter);
+    if off > SHOWN {
+        details += &format!(", up to {off:.2} % of a cell off their places");
+    }
     Ok(Found { format: Format::Xyz, details, rows, columns, heights, unit, cell })
 }
 

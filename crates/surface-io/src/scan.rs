@@ -252,10 +252,10 @@ impl Scan {
                 range = Some([h.min(low), h.max(high)]);
             }
         }
+        check_unit("unit", declared.unit.as_ref())?;
         let unit = said(unit, declared.unit.clone(), |a, b| {
             a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
         })?;
-        check_unit("unit", unit.as_ref().map(|u| &u.value))?;
         let given = given_cell(declared, columns)?;
         let cell = said(cell, given, |a, b| {
             let close = (a.value() / b.value() - 1.0).abs() <= PRINTED;

@@ -5,8 +5,11 @@ use crate::error::Problem;
 /// Coordinates nearer to each other than this share of their range are one: digits that a program rounded in double precision.
 const SAME: f64 = 1e-9;
 
-/// How far a coordinate may be off its place, in spacings: a quarter leaves no doubt which place is meant.
-const OFF: f64 = 0.25;
+/// How far a coordinate may be off its place, in spacings that were found: coordinates printed with few digits.
+const OFF_FOUND: f64 = 0.1;
+
+/// The same for spacings that were given: a quarter leaves no doubt which place is meant.
+const OFF_GIVEN: f64 = 0.25;
 
 /// Places `origin + i * spacing`, i = 0 .. count.
 #[derive(Debug)]
@@ -17,6 +20,10 @@ pub(super) struct Axis {
     pub(super) spacing: Option<f64>,
     /// A whole number, but perhaps one that no `usize` holds.
     pub(super) count: f64,
+    /// How far a coordinate may be off its place, in spacings.
+    allowed: f64,
+    /// How far one is.
+    pub(super) off: f64,
 }
 
 impl Axis {
@@ -39,9 +46,11 @@ impl Axis {
         if !count.is_finite() {
             return Err(Problem::Overflow { value: span });
         }
-        let axis = Self { name, origin, spacing, count };
+        let allowed = if given.is_some() { OFF_GIVEN } else { OFF_FOUND };
+        let mut axis = Self { name, origin, spacing, count, allowed, off: 0.0 };
         for &value in &values {
-            axis.place(value)?;
+            let place = axis.place(value)?;
+            axis.off = axis.off.max(spacing.map_or(0.0, |s| ((value - origin) / s - place).abs()));
         }
         Ok(axis)
     }
@@ -54,7 +63,7 @@ impl Axis {
     fn place(&self, value: f64) -> Result<f64, Problem> {
         let Some(spacing) = self.spacing else { return Ok(0.0) };
         let place = (value - self.origin) / spacing;
-        if (place - place.round()).abs() <= OFF {
+        if (place - place.round()).abs() <= self.allowed {
             Ok(place.round())
         } else {
             Err(Problem::Irregular { axis: self.name, value, origin: self.origin, spacing })

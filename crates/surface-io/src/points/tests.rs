@@ -1,1 +1,139 @@
+use crate::{Declared, Problem, Scan};
+use proptest::prelude::*;
 
+fn read(text: &str) -> crate::Result<Scan> {
+    Scan::from_bytes("a.xyz", text.as_bytes(), &Declared::default())
+}
+
+fn error(text: &str) -> String {
+    read(text).unwrap_err().to_string()
+}
+
+#[test]
+fn points_in_any_order_with_a_hole() {
+    let scan = read("1 1 4\n0 0 1\n\n1 0 2 # last\n2 0 3\n0 1 nan\n").unwrap();
+    let found = scan.understood();
+    assert_eq!((found.rows, found.columns, found.missing), (2, 3, 2));
+    assert_eq!(found.details, "5 points, spaces between numbers");
+    assert_eq!(found.cell.clone().unwrap().value.to_string(), "1");
+    assert_eq!((scan.height(0, 2), scan.height(1, 1), scan.height(1, 2)), (Some(3.0), Some(4.0), None));
+}
+
+#[test]
+fn printed_digits_do_not_bend_the_grid() {
+    let mut text = String::from("# Lateral units: mm\n# Value units: um\n");
+    for i in 0..10 {
+        for j in 0..10 {
+            text += &format!("{:.2},{:.2},{}\n", -0.5 + f64::from(i) / 3.0, f64::from(j) / 3.0, i + j);
+        }
+    }
+    let scan = read(&text).unwrap();
+    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().missing), (10, 10, 0));
+    approx::assert_relative_eq!(
+        scan.understood().cell.clone().unwrap().value.value(),
+        1e-3 / 3.0,
+        max_relative = 1e-12
+    );
+    assert_eq!(scan.height(3, 7), Some(10.0));
+}
+
+#[test]
+fn noise_needs_a_cell() {
+    // A stage that wanders by a tenth of the step.
+    let mut text = String::new();
+    for k in 0..64_u32 {
+        let noise = |salt: u32| f64::from((k * 37 + salt) % 19) / 95.0 - 0.1;
+        text += &format!("{} {} {k}\n", f64::from(k % 8) + noise(0), f64::from(k / 8) + noise(7));
+    }
+    let complaint = error(&text);
+    assert!(complaint.contains("say cell"), "{complaint}");
+    let declared = Declared { cell: "1".parse().ok(), ..Declared::default() };
+    let scan = Scan::from_bytes("a.xyz", text.as_bytes(), &declared).unwrap();
+    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().missing), (8, 8, 0));
+    assert_eq!(scan.height(7, 7), Some(63.0));
+    assert!(scan.understood().details.contains("% of a cell off their places"));
+    for wrong in ["2", "0.4", "0.001", "1e-300"] {
+        let declared = Declared { cell: wrong.parse().ok(), ..Declared::default() };
+        assert!(Scan::from_bytes("a.xyz", text.as_bytes(), &declared).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn bad_points_are_named() {
+    for (text, expected) in [
+        ("0 0 1\n1 0 2\n0 0 3\n", "points 1 and 3 are both at x = 0, y = 0"),
+        ("0 0 1\n1 0 2\n0 2 3\n1 2 3\n", "spacing 1 along x and 2 along y: expected square cells"),
+        ("0 0 1\n1 0 2\n2.4 0 3\n", "x = 1 is off the grid x = 0 + i * 1.2"),
+        ("0 0 1\n1 1 2\n2 2 3\n3 3 3\n", "4 points on a grid of 4 x 4"),
+        ("0 0 1\n1 nan 2\n", "point 2 has no y"),
+        ("0 0\n1 0\n", "line 1 has 2 values: expected x, y and z"),
+        ("0 0 1\n1e308 0 2\n-1e308 0 1\n", "beyond the range"),
+        ("# Value units: nm\n0 0 1\n", "say lateral_unit"),
+        ("", "no data"),
+    ] {
+        assert!(error(text).contains(expected), "{}: {expected}", error(text));
+    }
+    let declared = Declared { width: "1".parse().ok(), ..Declared::default() };
+    assert!(
+        Scan::from_bytes("a.xyz", b"0 0 1\n", &declared)
+            .unwrap_err()
+            .to_string()
+            .contains("width themselves")
+    );
+    let declared = Declared { lateral_unit: "mm".parse().ok(), ..Declared::default() };
+    let text = b"# Lateral units: um\n0 0 1\n";
+    assert!(matches!(
+        Scan::from_bytes("a.xyz", text, &declared).unwrap_err().problem(),
+        Some(Problem::Contradiction { what: "unit of x and y", .. })
+    ));
+    let declared = Declared { cell: "1 um".parse().ok(), ..Declared::default() };
+    assert!(
+        Scan::from_bytes("a.xyz", b"0 0 1\n", &declared)
+            .unwrap_err()
+            .to_string()
+            .contains("x and y have no unit")
+    );
+}
+
+#[test]
+fn one_point_has_no_spacing() {
+    let scan = read("3 4 5\n").unwrap();
+    assert_eq!((scan.understood().rows, scan.understood().columns), (1, 1));
+    assert_eq!(scan.understood().cell, None);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// A grid comes back whatever its order, origin and spacing, with a third of its points missing.
+    #[test]
+    fn any_regular_grid_is_found(
+        rows in 2..7_usize,
+        columns in 2..7_usize,
+        origin in -1e3..1e3_f64,
+        spacing in 1e-3..1e3_f64,
+        keys in prop::collection::vec(any::<u32>(), 36),
+    ) {
+        let mut kept: Vec<usize> = (0..rows * columns).collect();
+        // The corners stay, so that the range does.
+        kept.retain(|&i| {
+            let (row, column) = (i / columns, i % columns);
+            keys[i] % 3 > 0 || row < 2 || column < 2 || row + 1 == rows || column + 1 == columns
+        });
+        kept.sort_by_key(|&i| keys[i]);
+        let mut text = String::new();
+        for &i in &kept {
+            let at = |k: usize| origin + spacing * k as f64;
+            text += &format!("{} {} {}\n", at(i % columns), at(i / columns), i);
+        }
+        let scan = read(&text).unwrap();
+        prop_assert_eq!((scan.understood().rows, scan.understood().columns), (rows, columns));
+        prop_assert_eq!(scan.understood().missing, rows * columns - kept.len());
+        for i in kept {
+            prop_assert_eq!(scan.height(i / columns, i % columns), Some(i as f64));
+        }
+        let cell = scan.understood().cell.clone().unwrap().value.value();
+        // Coordinates are rounded at the size of the origin.
+        prop_assert!((cell - spacing).abs() <= 1e-12 * (origin.abs() + spacing));
+    }
+}

@@ -1,1 +1,63 @@
+use super::*;
+use crate::{Declared, Scan, Treatment};
+use proptest::prelude::*;
 
+/// The side of a cell is the side over the cells, and the side is read as their product: two roundings.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+fn check(name: &str, map: &HeightMap, metric: Metric, declared: &Declared) {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join(name);
+    write_map(&path, map, metric).unwrap();
+    let read = Scan::read(&path, declared).unwrap().map(&Treatment::default()).unwrap();
+    assert_eq!(read.cells(), map.cells());
+    // Points say their places, whose differences lose digits with the number of cells.
+    assert!((read.side() / map.side() - 1.0).abs() <= ROUNDING * map.cells() as f64, "{name}");
+    for (a, b) in read.heights().iter().zip(map.heights()) {
+        assert_eq!(a.to_bits(), b.to_bits(), "{name}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn every_format_comes_back(
+        cells in 2..8_usize,
+        side in prop::num::f64::POSITIVE.prop_filter("its cell and its square are normal", |s| (1e-150..1e150).contains(s)),
+        values in prop::collection::vec(-1e300..1e300_f64, 64),
+        small in prop::collection::vec(prop::num::f64::NORMAL, 64),
+    ) {
+        let small: Vec<f64> = small.into_iter().map(|v| v % 1e-3).collect();
+        for heights in [values, small] {
+            let map = HeightMap::new(cells, side, heights[..cells * cells].to_vec()).unwrap();
+            let (metres, plain) = (Some("m".parse().unwrap()), Declared::default());
+            for metric in [Metric::Metres, Metric::Unitless] {
+                check("a.txt", &map, metric, &plain);
+                check("a.xyz", &map, metric, &plain);
+            }
+            let cell = Some(crate::Quantity::new(map.cell(), Dimension::LENGTH).unwrap());
+            check("a.npy", &map, Metric::Metres, &Declared { cell, unit: metres, ..plain });
+        }
+    }
+}
+
+#[test]
+fn other_endings_are_named_and_nothing_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let map = HeightMap::new(1, 1.0, vec![0.0]).unwrap();
+    for name in ["a.hdf5", "a", "a.TXT"] {
+        let error = write_map(&dir.path().join(name), &map, Metric::Metres).unwrap_err().to_string();
+        assert!(error.contains("expected npy, txt, xyz or vti"), "{error}");
+    }
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
+    write_map(&dir.path().join("a.vti"), &map, Metric::Metres).unwrap();
+    assert!(std::fs::read_to_string(dir.path().join("a.vti")).unwrap().contains("Name=\"height [m]\""));
+}
+
+#[test]
+fn units_that_are_no_lengths_have_no_metric() {
+    assert_eq!(Metric::of(&"nm".parse().unwrap()), Ok(Metric::Metres));
+    assert_eq!(Metric::of(&Unit::none()), Ok(Metric::Unitless));
+    assert!(Metric::of(&"Pa".parse().unwrap()).is_err());
+}
