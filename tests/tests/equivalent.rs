@@ -133,6 +133,10 @@ fn rough_surfaces_slip_as_a_difference_of_normal_contacts() {
     let cells = Bem3d { cells: 65, tolerance: 1e-7, ..Bem3d::default() };
     let [coarse, fine] = [16, 64].map(|n| beside_a_difference_of_normal_contacts(&cells, 1.5, n));
     assert!(coarse[0] < 2e-3 && coarse[1] < 4e-2, "{coarse:?}");
+    // What the table says of itself bounds the error of the force over mu F.
+    let height = cells.prepare(&elastic(&sliding(fractal())), 2).unwrap().scales().height.unwrap();
+    let profile = Equivalent::new(cells).profile(&sliding(fractal()), 2, 1.5 * height).unwrap();
+    assert!(coarse[0] < profile.doubt(1.5 * height), "{coarse:?} {:e}", profile.doubt(1.5 * height));
     assert!(fine[0] < 0.2 * coarse[0] && fine[1] < coarse[1], "{coarse:?} {fine:?}");
     // The paper's own law is a power: smooth.
     let smooth = beside_a_difference_of_normal_contacts(&PowerLaw, 0.1, 16);
@@ -236,4 +240,55 @@ fn a_table_of_hertz_relaxes_as_the_body() {
     };
     let pairs = [4, 8, 16].map(|n| (n as usize, error(n)));
     assert!(order(&pairs).unwrap() > 3.0 && pairs[2].1 < 1e-6, "{pairs:?}");
+}
+
+#[test]
+fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
+    let model = Bem3d { cells: 16, ..Bem3d::default() };
+    let scene = sliding(Surface::FlatSquare { side: 1.0 });
+    let mut history = Equivalent::new(model).prepare(&scene, 0).unwrap();
+    let state = history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
+    let shear = pair().shear_modulus().unwrap() / pair().modulus().unwrap();
+    // k_x/k_z = (2 - 2 nu)/(2 - nu) = 2/3, until mu F.
+    assert_relative_eq!(shear, 2.0 / 3.0, max_relative = 1e-14);
+    let reach = MU * 1e-3 / (shear * state.normal.stiffness.unwrap());
+    for (share, force) in [(0.5, 0.5), (0.99, 0.99), (1.5, 1.0)] {
+        history.restart();
+        history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
+        let tangential = Tangential::Displacement(share * reach);
+        let step = Step { time: 0.0, normal: Load::Force(1e-3), tangential };
+        let found = history.advance(step).unwrap().tangential.unwrap();
+        // The table's face has the solves' own accuracy.
+        assert_relative_eq!(found.force, force * MU * 1e-3, max_relative = 1e-5);
+        assert_relative_eq!(
+            found.dissipated,
+            MU * 1e-3 * reach * (share - force),
+            max_relative = 1e-4,
+            epsilon = 1e-6 * MU * 1e-3 * reach
+        );
+    }
+}
+
+#[test]
+fn history_in_time_and_in_load_give_the_same_rough_contact() {
+    // A force held constant and the approach that it makes, prescribed: the same forces, to the order of the pieces of the path.
+    let model = Bem3d { cells: 17, tolerance: 1e-9, ..Bem3d::default() };
+    let scene = creeping(fractal());
+    let mut by_force = Equivalent::new(model).prepare(&scene, 2).unwrap();
+    let force = by_force.scales().force(0.1).unwrap();
+    let error = |pieces: u32| {
+        let mut by_force = Equivalent::new(model).prepare(&scene, 2).unwrap();
+        let mut by_approach = Equivalent::new(model).prepare(&scene, 2).unwrap();
+        let mut last = 0.0;
+        for i in 0..=pieces {
+            let time = 4.0 * f64::from(i) / f64::from(pieces);
+            let d =
+                by_force.advance(Step::normal(time, Load::Force(force))).unwrap().normal.approach.unwrap();
+            last = by_approach.advance(Step::normal(time, Load::Approach(d))).unwrap().normal.force;
+        }
+        (last / force - 1.0).abs()
+    };
+    assert!(by_force.advance(Step::normal(0.0, Load::Force(force))).is_ok());
+    let (coarse, fine) = (error(10), error(40));
+    assert!(fine < 0.1 * coarse && fine < 1e-3, "{coarse:e} {fine:e}");
 }

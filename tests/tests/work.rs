@@ -5,10 +5,11 @@
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Body, Conductance, ContactModel, ContactState, Effects, Friction, HistoryModel, Load, Outputs, Pair,
-    Scene, Step, Surface, Work,
+    Body, Boundary, Conductance, ContactModel, ContactState, Effects, Friction, HistoryModel, Load, Outputs,
+    Pair, Scene, Step, Surface, Work,
 };
 use mdr1d::{Equivalent, Mdr1d};
+use std::sync::Arc;
 use tests::rough;
 
 const CELLS: usize = 33;
@@ -110,11 +111,33 @@ fn patches_are_the_area_in_pieces() {
     // Beside the pressure map.
     let pressure = state.fields.unwrap().pressure.unwrap();
     let index: Vec<u32> = (0..).zip(&pressure).filter(|(_, p)| **p > 0.0).map(|(i, _)| i).collect();
-    let sizes = surface_gen::patches(CELLS, &index, contact_model::Boundary::Free);
+    let sizes = surface_gen::patches(CELLS, &index, Boundary::Free);
     assert_eq!(sizes.len(), patches.count());
     let cell = sum / index.len() as f64;
     let largest = sizes.into_iter().max().unwrap() as f64 * cell;
     approx::assert_relative_eq!(patches.areas()[0], largest, max_relative = 1e-12);
+}
+
+#[test]
+fn a_summit_cut_by_the_edges_is_one_patch_where_they_are_one() {
+    // The highest point is in the corner of the square: four quarters, or one summit.
+    let cells = 16;
+    let wave = |i: usize| (std::f64::consts::TAU * (i as f64 + 0.5) / cells as f64).cos();
+    let map = tests::map(cells, 1.0, |x, y| wave(x) + wave(y)).unwrap();
+    let outputs = Outputs { contact_patches: true, ..Outputs::default() };
+    for (boundary, count) in [(Boundary::Free, 4), (Boundary::Periodic, 1)] {
+        let mut scene = Scene { outputs, ..Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0) };
+        scene.effects.boundary = boundary;
+        let state = Bem3d::default().prepare(&scene, 0).unwrap().solve(Load::Force(0.01)).unwrap();
+        let patches = state.patches.unwrap();
+        assert_eq!(patches.count(), count, "{boundary:?}");
+        let cells_in_contact = state.report.contact_cells.unwrap() as f64 / (cells * cells) as f64;
+        approx::assert_relative_eq!(
+            patches.areas()[0] * count as f64,
+            cells_in_contact,
+            max_relative = 1e-12
+        );
+    }
 }
 
 /// A history over a rough surface: the table once, then one solve per step; fields only where asked for, and not for the table.

@@ -5,7 +5,7 @@
 
 use crate::error::{Error, Result};
 use crate::load::Load;
-use crate::model::Source;
+use crate::model::{Source, Stop};
 use crate::scales::Scales;
 use crate::scene::Scene;
 use crate::state::ContactState;
@@ -119,6 +119,17 @@ pub trait History: Send {
     /// [`Error::Domain`] as [`Step::validated`], [`Error::OutOfRange`] for loads beyond what the model holds for (gross slip, a time
     /// from which the contact would shrink), [`Error::Unsupported`] for loads that it does not know.
     fn advance(&mut self, step: Step) -> Result<HistoryState>;
+
+    /// The same, where `stop` may say so on the way: before it begins, and between the solves of a model that needs some.
+    ///
+    /// # Errors
+    /// As [`History::advance`]; [`Error::Stopped`].
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
+        self.advance(step)
+    }
 
     /// Forgets the path: back to no contact at time 0.
     fn restart(&mut self);

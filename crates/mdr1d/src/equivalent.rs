@@ -8,7 +8,8 @@ use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     ContactModel, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Outputs,
-    PreparedContact, Result, Rheology, Scales, Scene, Source, Step, Tangential, TangentialState, Units, Work,
+    PreparedContact, Result, Rheology, Scales, Scene, Source, Step, Stop, Tangential, TangentialState, Units,
+    Work, never,
 };
 use std::sync::Arc;
 
@@ -29,7 +30,7 @@ const NAME: &str = "equivalent";
 ///
 /// The nodes lie on one logarithmic lattice of approaches (in rms heights, in sides for bodies without), so histories share
 /// them; the table begins so many decades below the first load after a [`History::restart`] and follows the loads upwards. Its error falls with the
-/// third (x) and fourth (F) order of the spacing where k(d) is smooth; [`Tabulated::doubt`] is in the report's strategy. A pressure field
+/// third (x) and fourth (F) order of the spacing where k(d) is smooth; [`Tabulated::doubt`] at the step's approach is in the report's strategy. A pressure field
 /// is refused with rheology (M's is that of an elastic body), and so is a stiffness.
 ///
 /// Cost: one solve of M per node (about 49 at the defaults) at the first step, in ascending order, one per further step and per node that it
@@ -77,8 +78,8 @@ impl<M: ContactModel> Equivalent<M> {
         if !(approach.is_finite() && approach > 0.0) {
             return Err(Error::domain("approach", approach, "a finite number > 0"));
         }
-        let (_, node) = normal.solve(Load::Approach(approach))?;
-        normal.reach(node, true)?;
+        let (_, node) = normal.solve(Load::Approach(approach), &never)?;
+        normal.reach(node, true, &never)?;
         Ok(Tabulated::clone(&normal.table))
     }
 
@@ -232,9 +233,9 @@ const NEAR: f64 = 0.25;
 
 impl Normal {
     /// M's state under a load, and the same as a node.
-    fn solve(&mut self, load: Load) -> Result<(ContactState, Node)> {
+    fn solve(&mut self, load: Load, stop: Stop<'_>) -> Result<(ContactState, Node)> {
         let contact = self.full.as_mut().unwrap_or(&mut self.contact);
-        let state = contact.solve(load)?;
+        let state = contact.solve_until(load, stop)?;
         self.spent.add(&state);
         let node = self.node(&state)?;
         Ok((state, node))
@@ -262,7 +263,7 @@ impl Normal {
     }
 
     /// Makes the table reach a state just solved; nodes below the lowest are added before any contact only.
-    fn reach(&mut self, state: Node, fresh: bool) -> Result<()> {
+    fn reach(&mut self, state: Node, fresh: bool, stop: Stop<'_>) -> Result<()> {
         if state.force <= 0.0 {
             return Ok(());
         }
@@ -278,12 +279,12 @@ impl Normal {
             return Ok(());
         }
         if fresh && bottom < self.lowest {
-            let below = self.solved(bottom, self.lowest - 1, unit)?;
+            let below = self.solved(bottom, self.lowest - 1, unit, stop)?;
             self.nodes.splice(0..0, below);
             self.lowest = bottom;
         }
         let next = self.lowest + i32::try_from(self.nodes.len()).unwrap_or(i32::MAX);
-        let above = self.solved(next, top, unit)?;
+        let above = self.solved(next, top, unit, stop)?;
         self.nodes.extend(above);
         if state.approach > deepest {
             self.end = Some(state);
@@ -297,11 +298,12 @@ impl Normal {
     }
 
     /// The nodes at these places of the lattice, in ascending order.
-    fn solved(&mut self, from: i32, to: i32, unit: f64) -> Result<Vec<Node>> {
+    fn solved(&mut self, from: i32, to: i32, unit: f64, stop: Stop<'_>) -> Result<Vec<Node>> {
         let mut nodes = Vec::new();
         for place in from..=to {
             let approach = unit * 10.0_f64.powf(f64::from(place) / self.per_decade);
-            let state = self.contact.solve(Load::Approach(self.units.approach(approach)?))?;
+            let load = Load::Approach(self.units.approach(approach)?);
+            let state = self.contact.solve_until(load, stop)?;
             self.spent.add(&state);
             let node = self.node(&state)?;
             if node.force <= 0.0 {
@@ -313,7 +315,7 @@ impl Normal {
     }
 
     /// M's state as part of a history: its own outputs, what it cost with all nodes, and what it rests on.
-    fn reported(&mut self, mut state: ContactState) -> ContactState {
+    fn reported(&mut self, mut state: ContactState, approach: f64) -> ContactState {
         let Spent { iterations, applications, work } = std::mem::take(&mut self.spent);
         let report = &mut state.report;
         (report.iterations, report.applications, report.work) = (iterations, applications, work);
@@ -321,7 +323,7 @@ impl Normal {
             "{}; g(x) through {} states, doubt {:.1e}",
             report.strategy,
             self.table.nodes(),
-            self.table.doubt()
+            self.table.doubt(approach)
         );
         state.stiffness = state.stiffness.filter(|_| self.outputs.stiffness);
         state
@@ -348,17 +350,21 @@ impl History for Prepared {
     }
 
     fn advance(&mut self, step: Step) -> Result<HistoryState> {
+        self.advance_until(step, &never)
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
         let normal = &mut self.normal;
         match &mut self.effect {
             Effect::Slip { springs, coefficient, time } => {
                 let step = step.validated(*time)?;
-                let (next, state) = slip(normal, springs, *coefficient, step)?;
+                let (next, state) = slip(normal, springs, *coefficient, step, stop)?;
                 (*springs, *time) = (next, step.time);
                 Ok(state)
             }
             Effect::Relax(relaxation) => {
                 let step = step.validated(relaxation.at.time)?;
-                relax(normal, relaxation, step)
+                relax(normal, relaxation, step, stop)
             }
         }
     }
@@ -377,9 +383,10 @@ fn slip(
     springs: &Springs<Arc<Tabulated>>,
     coefficient: f64,
     step: Step,
+    stop: Stop<'_>,
 ) -> Result<(Springs<Arc<Tabulated>>, HistoryState)> {
-    let (state, node) = normal.solve(step.normal)?;
-    normal.reach(node, springs.approach() <= 0.0)?;
+    let (state, node) = normal.solve(step.normal, stop)?;
+    normal.reach(node, springs.approach() <= 0.0, stop)?;
     let springs = springs.on(Arc::clone(&normal.table));
     let units = normal.units;
     // What the table makes of M's force: 1 at a node, and where it is not, forces follow M.
@@ -409,7 +416,7 @@ fn slip(
     };
     let state = HistoryState {
         time: step.time,
-        normal: normal.reported(state),
+        normal: normal.reported(state, node.approach),
         contact_radius: Some(units.approach(node.radius)?),
         tangential: Some(tangential),
     };
@@ -417,7 +424,12 @@ fn slip(
 }
 
 /// Follows a step of a growing viscoelastic contact.
-fn relax(normal: &mut Normal, relaxation: &mut Relaxation, step: Step) -> Result<HistoryState> {
+fn relax(
+    normal: &mut Normal,
+    relaxation: &mut Relaxation,
+    step: Step,
+    stop: Stop<'_>,
+) -> Result<HistoryState> {
     if step.tangential != Tangential::Force(0.0) {
         return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
     }
@@ -425,9 +437,9 @@ fn relax(normal: &mut Normal, relaxation: &mut Relaxation, step: Step) -> Result
     let units = normal.units;
     let mut solved = None;
     let mut press = |load: Load| {
-        let (state, node) = normal.solve(load)?;
+        let (state, node) = normal.solve(load, stop)?;
         solved = Some(state);
-        normal.reach(node, fresh)?;
+        normal.reach(node, fresh, stop)?;
         let Node { approach, force, radius, .. } = node;
         Ok((RoundContact { force, approach, radius }, Arc::clone(&normal.table)))
     };
@@ -463,7 +475,7 @@ fn relax(normal: &mut Normal, relaxation: &mut Relaxation, step: Step) -> Result
     let radius = units.approach(at.contact.radius)?;
     let state = HistoryState {
         time: step.time,
-        normal: normal.reported(state),
+        normal: normal.reported(state, at.contact.approach),
         contact_radius: Some(radius),
         tangential: None,
     };

@@ -34,7 +34,7 @@
 //! plateau is 2 % below that of a rigid square.
 //! One line of 2^20 elements takes milliseconds, and each further load microseconds ([`Bearing`]). A step
 //! of [`PartialSlip`] costs a microsecond by displacement and some twenty by force, of [`Viscoelastic`] a hundred with 16 arms; one of
-//! [`Equivalent`] a solve of its model.
+//! [`Equivalent`] a solve of its model and up to a millisecond.
 //!
 //! # What it does not do
 //!

@@ -126,7 +126,10 @@ impl<P: Shape> Springs<P> {
             return Some(stay);
         }
         let [low, high] = self.reach(approach);
-        let displacement = root::increasing(low, high, |u| self.moved(approach, u).force() - force);
+        let displacement = root::increasing(low, high, |u| {
+            let beyond = self.moved(approach, u).force() - force;
+            if beyond.abs() <= ROUNDING * limit { 0.0 } else { beyond }
+        });
         Some(self.moved(approach, displacement))
     }
 

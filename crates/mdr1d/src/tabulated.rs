@@ -27,8 +27,8 @@ pub struct Tabulated {
     pieces: Vec<Piece>,
     /// Number of states behind it.
     nodes: usize,
-    /// Largest relative change of a force at a state when that state is left out.
-    doubt: f64,
+    /// At every state, the largest change of the force at it or a lower one when that state is left out.
+    doubts: Vec<(f64, f64)>,
 }
 
 /// A state of the contact: lengths in L, the force in E* L^2.
@@ -102,8 +102,12 @@ impl Tabulated {
             }
             last = Some(end);
         }
-        let doubt = nodes.windows(3).map(left_out).fold(0.0, f64::max);
-        Ok(Self { pieces, nodes: nodes.len(), doubt })
+        let mut largest = 0.0_f64;
+        let doubts = nodes.windows(3).map(|part| {
+            largest = largest.max(left_out(part));
+            (part[1].approach, largest)
+        });
+        Ok(Self { pieces, nodes: nodes.len(), doubts: doubts.collect() })
     }
 
     /// Depth g(x) in units of the side; `None` beyond the largest half width that was solved for.
@@ -131,11 +135,15 @@ impl Tabulated {
         self.nodes
     }
 
-    /// Evidence of the tabulation: the largest relative change of the force at a state when that state is left out.
+    /// Evidence of the tabulation at a depth: the largest change of the force at any state up to it when that state is left out, over
+    /// the force at the depth.
     ///
-    /// An upper bound of the error between states, some ten times the error of F for smooth bodies (fourth order, twice the spacing).
-    pub fn doubt(&self) -> f64 {
-        self.doubt
+    /// A bound of the error that the table makes in F, and in a tangential force over mu F: some ten times the error itself for smooth
+    /// bodies (fourth order, twice the spacing).
+    pub fn doubt(&self, depth: f64) -> f64 {
+        let below = self.doubts.partition_point(|(approach, _)| *approach <= depth);
+        let change = below.checked_sub(1).map_or(0.0, |last| self.doubts[last].1);
+        if change > 0.0 { change / self.force(depth) } else { 0.0 }
     }
 
     /// The piece at a depth, and where in it.
@@ -195,12 +203,12 @@ fn between(begin: Node, end: Node, chord: f64) -> Vec<Piece> {
     vec![one, other]
 }
 
-/// Relative change of the force at the second of three states when it is left out.
+/// Change of the force at the second of three states when it is left out.
 fn left_out(nodes: &[Node]) -> f64 {
     let [begin, node, end] = [nodes[0], nodes[1], nodes[2]];
     let chord = (end.force - begin.force) / (2.0 * (end.approach - begin.approach));
-    let without = Tabulated { pieces: between(begin, end, chord), nodes: 2, doubt: 0.0 };
-    (without.force(node.approach) / node.force - 1.0).abs()
+    let without = Tabulated { pieces: between(begin, end, chord), nodes: 2, doubts: Vec::new() };
+    (without.force(node.approach) - node.force).abs()
 }
 
 fn shrinks(name: &'static str, value: f64, min: f64, max: f64) -> Error {

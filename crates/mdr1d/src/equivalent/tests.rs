@@ -218,7 +218,10 @@ impl PreparedContact for ToldContact {
     fn scales(&self) -> Scales {
         Scales { modulus: 1.0, side: 2.0, height: None }
     }
-    fn solve_until(&mut self, load: Load, _: Stop<'_>) -> Result<ContactState> {
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
         self.solves.fetch_add(1, Ordering::Relaxed);
         let d = match load {
             Load::Approach(d) => d,
@@ -248,6 +251,40 @@ fn contacts_that_do_not_grow_are_refused_and_leave_no_trace() {
     let error = contact.advance(Step { normal: Load::Approach(0.008), ..held }).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("grows"), "{error}");
     assert_eq!(contact.advance(held).unwrap().tangential.unwrap(), before);
+}
+
+#[test]
+fn a_stop_between_nodes_leaves_no_trace() {
+    static SOLVES: AtomicUsize = AtomicUsize::new(0);
+    let model = Equivalent::new(Told { factor: |_| 1.0, solves: &SOLVES });
+    let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
+    let step = Step::normal(1.0, Load::Approach(0.01));
+    let stop = || SOLVES.load(Ordering::Relaxed) >= 7;
+    let error = contact.advance_until(step, &stop).unwrap_err();
+    assert!(matches!(error, Error::Stopped { .. }));
+    assert_eq!(SOLVES.load(Ordering::Relaxed), 7);
+    assert!(contact.advance(Step { time: 0.5, ..step }).is_ok(), "the time is still 0");
+}
+
+#[test]
+fn any_units_do() {
+    let run = |length: f64, young: f64| {
+        let pair = Pair { first: Body::Rigid, second: Body::Elastic { young, poisson: 0.5 } };
+        let surface = Surface::Sphere { radius: length, side: 2.0 * length };
+        let mut scene = Scene::of_pair(surface, pair).unwrap();
+        scene.effects.friction = Friction::Coulomb { coefficient: MU };
+        let mut contact = equivalent(8).prepare(&scene, 0).unwrap();
+        let force = 0.01 * (scene.modulus * length) * length;
+        contact.advance(step(force, Tangential::Force(0.0))).unwrap();
+        let state = contact.advance(step(force, Tangential::Force(0.5 * MU * force))).unwrap();
+        [state.contact_radius.unwrap() / length, state.tangential.unwrap().displacement / length]
+    };
+    let here = run(1.0, 0.75);
+    for (length, young) in [(1e-90, 1e90), (1e90, 1e-90), (1e-6, 1e11)] {
+        for (a, b) in run(length, young).into_iter().zip(here) {
+            assert_relative_eq!(a, b, max_relative = 1e-9);
+        }
+    }
 }
 
 #[test]

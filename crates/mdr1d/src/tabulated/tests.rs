@@ -48,7 +48,10 @@ fn bodies_come_back_with_third_and_fourth_order() {
         }
         // Measured: 4^3 and 4^4, less where the worst place moves between the nodes.
         assert!(coarse[0] / fine[0] > 40.0 && coarse[1] / fine[1] > 150.0, "{exponent} {coarse:?} {fine:?}");
-        assert!(coarse[1] < sampled(exact, 8).doubt(), "the doubt is a bound");
+        assert!(
+            coarse[1] < 2.0 * sampled(exact, 8).doubt(0.05),
+            "the doubt is of the size of the error or above it"
+        );
     }
 }
 
