@@ -24,6 +24,24 @@ pub fn write_npy(path: &Path, shape: &[u64], values: &[f64]) -> Result<()> {
     files::write_whole(path, &bytes)
 }
 
+/// Writes a square map of `side` x `side` values as a grey-scale PNG, y upwards: the lowest value is white, the highest black.
+///
+/// # Errors
+/// [`Error::Content`] for values that are no square, [`Error::File`] when it cannot be written.
+pub fn write_grey(path: &Path, side: usize, values: &[f64]) -> Result<()> {
+    if side == 0 || side.checked_mul(side) != Some(values.len()) {
+        return Err(Error::content(path, format!("{} values are no map of {side} x {side}", values.len())));
+    }
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let shade = |v: &f64| {
+        let t = if high > low { ((v - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
+        (255.0 * (1.0 - t)).round() as u8
+    };
+    let pixels: Vec<u8> = values.chunks(side).rev().flatten().map(shade).collect();
+    files::write_whole(path, &encode_grey(path, side, &pixels)?)
+}
+
 /// Grey values of heights, darker = higher, for optimal contrast: the lowest and highest 0.5 % are white and black.
 ///
 /// A map without relief is white. Cost O(n log n).

@@ -91,7 +91,8 @@ fn entry(run: &Run, command: &str, outcomes: &[Outcome]) -> Value {
     })
 }
 
-fn machine() -> Value {
+/// What the computer is, as far as the system tells.
+pub fn machine() -> Value {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let cpu = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
         let line = text.lines().find(|l| l.starts_with("model name"))?;

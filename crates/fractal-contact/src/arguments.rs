@@ -1,0 +1,117 @@
+//! The command line.
+
+use clap::builder::TypedValueParser as _;
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Contact of rough and smooth elastic bodies from a short text file: it says what is pressed, what is asked and which effects count;
+/// only that is computed.
+#[derive(Debug, Parser)]
+#[command(name = "fractal-contact", version, after_long_help = AFTER)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const AFTER: &str = "\
+A scene:
+  # A steel ball on a plate of aluminium: Hertz and boundary elements side by side.
+  [scene]
+  models = [\"hertz\", \"bem3d\"]
+  bodies = [{ young = \"210 GPa\", poisson = 0.3 }, { young = \"70 GPa\", poisson = 0.33 }]
+  force = { from = \"1 N\", to = \"100 N\", count = 5 }
+  [scene.body]
+  kind = \"sphere\"
+  radius = \"10 mm\"
+  side = \"2 mm\"
+  [outputs]
+  stiffness = true
+  [models.bem3d]
+  cells = 129
+
+Examples:
+  fractal-contact plan scene.toml              what will be computed, what not and why, what it will cost
+  fractal-contact run scene.toml               results.csv, manifest.json and what the scene asks for, in out/scene/
+  fractal-contact run scene.toml --out DIR --threads 2
+  fractal-contact info results.csv             also scenes and surfaces
+  fractal-contact surface rough.txt --seed 1 --side '1 mm' --rms-height '1 um'
+  fractal-contact completions bash > /etc/bash_completion.d/fractal-contact
+
+Exit codes: 0 done; 1 error; 2 a mistake in the scene or the arguments; 3 done, but some loads were refused or did not converge; 130 stopped
+by Ctrl-C, with the states so far in the files. The same command goes on where it was stopped.";
+
+const SURFACE: &str = "\
+Examples:
+  fractal-contact surface rough.npy --seed 1
+  fractal-contact surface rough.txt --seed 1 --cells 513 --side '1 mm' --rms-height '1 um' --fractal-dimension 2.2
+
+An NPY file holds heights only: a scene that reads it says `unit` and `cell`. Text and XYZ say them themselves.";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Which models and grids, which effects and outputs and why, accuracy, time and memory to expect.
+    Plan {
+        /// The scene.
+        scene: PathBuf,
+    },
+    /// Computes what the scene asks for.
+    Run {
+        /// The scene.
+        scene: PathBuf,
+        /// Directory of the results [default: out/NAME of the scene].
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Threads; each takes one model on one surface [default: all].
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..).map(usize::from))]
+        threads: Option<usize>,
+        /// Compute again what is stored.
+        #[arg(long)]
+        fresh: bool,
+    },
+    /// What a scene, a surface or a table of results holds.
+    Info {
+        /// A scene (.toml), results (.csv) or a surface (NPY, text matrix, XYZ).
+        file: PathBuf,
+        /// Format of a surface, where its name and content do not tell: npy, text or xyz.
+        #[arg(long)]
+        format: Option<surface_io::Format>,
+        /// Unit of its heights, such as nm.
+        #[arg(long)]
+        unit: Option<surface_io::Unit>,
+        /// Side of one cell, such as "0.5 um".
+        #[arg(long)]
+        cell: Option<surface_io::Quantity>,
+    },
+    /// Draws a self-affine surface into a file: .npy, .txt (text matrix), .xyz or .vti by its ending.
+    #[command(after_help = SURFACE)]
+    Surface {
+        /// The file.
+        file: PathBuf,
+        /// Cells a side.
+        #[arg(long, default_value_t = 257)]
+        cells: usize,
+        /// Side of the square, such as "1 mm", or a plain number.
+        #[arg(long, default_value = "1")]
+        side: String,
+        /// Fractal dimension in [2, 3]; the Hurst exponent is 3 minus it.
+        #[arg(long, default_value_t = 2.4)]
+        fractal_dimension: f64,
+        /// Rms height of the samples, such as "1 um", or a plain number.
+        #[arg(long, default_value = "0.01")]
+        rms_height: String,
+        /// Longer waves have a constant spectrum [default: none].
+        #[arg(long, value_name = "LENGTH")]
+        roll_off_wavelength: Option<String>,
+        /// The shortest wave [default: two cells].
+        #[arg(long, value_name = "LENGTH")]
+        shortest_wavelength: Option<String>,
+        /// The same seed is the same surface, here and in a scene.
+        #[arg(long)]
+        seed: u64,
+    },
+    /// A script that completes arguments in a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+}

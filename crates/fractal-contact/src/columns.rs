@@ -1,0 +1,189 @@
+//! The columns of `results.csv`: those that a scene asks for.
+
+use crate::entries::System;
+use crate::loads::{Prescribed, Request};
+use crate::scene_file::SceneFile;
+use analysis::{Column, Value};
+use contact_model::{Boundary, Conductance, ContactState, Friction, HistoryState, Scales, Status};
+
+/// What a row is made of.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct State {
+    pub model: &'static str,
+    pub surface: usize,
+    pub index: usize,
+    pub asked: f64,
+    pub time: Option<f64>,
+    pub scales: Option<Scales>,
+    pub normal: Option<ContactState>,
+    pub history: Option<HistoryState>,
+    pub mean_gap: Option<f64>,
+    pub status: Option<Status>,
+    /// Why there is no state.
+    pub note: Option<String>,
+}
+
+type Value1 = fn(&State) -> Value;
+
+/// One column: unit in SI, what it holds, where it comes from.
+struct Kind {
+    name: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    value: Value1,
+}
+
+fn normal<T: Into<Value>>(state: &State, pick: impl Fn(&ContactState) -> T) -> Value {
+    state.normal.as_ref().map(pick).into()
+}
+
+fn scaled(state: &State, pick: impl Fn(&ContactState, &Scales) -> Option<f64>) -> Value {
+    state.normal.as_ref().zip(state.scales.as_ref()).and_then(|(n, s)| pick(n, s)).into()
+}
+
+fn tangential(state: &State, pick: impl Fn(&contact_model::TangentialState) -> Option<f64>) -> Value {
+    state.history.as_ref().and_then(|h| h.tangential.as_ref()).and_then(pick).into()
+}
+
+/// The columns of a scene.
+#[allow(clippy::too_many_lines)] // One entry per column, nothing else.
+fn kinds(scene: &SceneFile) -> Vec<Kind> {
+    let kind = |name, unit, meaning, value: Value1| Kind { name, unit, meaning, value };
+    let outputs = &scene.asked.outputs;
+    let rough = scene.relief.is_rough();
+    let mut list = vec![
+        kind("model", "-", "who answers", |s| s.model.into()),
+        kind("surface", "1", "number of the surface, from 0", |s| s.surface.into()),
+        kind("state", "1", "number of the load or step, from 0", |s| s.index.into()),
+    ];
+    match &scene.request {
+        Request::Path(_) => list.push(kind("time", "s", "time at the end of the step", |s| s.time.into())),
+        Request::Loads(loads) => {
+            let (unit, meaning) = match loads.prescribed {
+                Prescribed::Force => ("N", "force asked for"),
+                Prescribed::ForceBar => {
+                    ("1", "F_bar asked for, F/(E* h L) with this surface's measured rms height h")
+                }
+                Prescribed::MeanPressure => ("Pa", "mean pressure asked for, F/L^2"),
+                Prescribed::Approach => ("m", "approach asked for"),
+                Prescribed::MeanGap => ("m", "mean gap asked for"),
+            };
+            list.push(kind("asked", unit, meaning, |s| s.asked.into()));
+        }
+    }
+    list.push(kind("force", "N", "normal force", |s| normal(s, |n| n.force)));
+    if rough {
+        list.push(kind("force_bar", "1", "F/(E* h L)", |s| scaled(s, |n, c| c.force_bar(n.force).ok())));
+    }
+    if scene.effects.boundary == Boundary::Free {
+        list.push(kind("approach", "m", "from first touch of the highest point", |s| {
+            normal(s, |n| n.approach)
+        }));
+    }
+    if scene.asked.mean_gap {
+        list.push(kind("mean_gap", "m", "mean of the gap over the square", |s| s.mean_gap.into()));
+    }
+    if scene.is_history() {
+        list.push(kind("contact_radius", "m", "of a round contact", |s| {
+            s.history.as_ref().and_then(|h| h.contact_radius).into()
+        }));
+    }
+    if scene.effects.friction != Friction::Off {
+        list.push(kind("tangential_force", "N", "tangential force", |s| tangential(s, |t| Some(t.force))));
+        list.push(kind("tangential_displacement", "m", "of the bodies far from the contact", |s| {
+            tangential(s, |t| Some(t.displacement))
+        }));
+        list.push(kind("stick_radius", "m", "inside it nothing slips", |s| {
+            tangential(s, |t| t.stick_radius)
+        }));
+        list.push(kind("dissipated", "J", "energy lost to friction since the first step", |s| {
+            tangential(s, |t| Some(t.dissipated))
+        }));
+    }
+    if outputs.stiffness {
+        list.push(kind("stiffness", "N/m", "dF/dd on the contact set", |s| normal(s, |n| n.stiffness)));
+        list.push(kind("stiffness_bar", "1", "k/(1.1419 E* L)", |s| {
+            scaled(s, |n, c| n.stiffness.map(|k| c.stiffness_bar(k)))
+        }));
+    }
+    if outputs.area {
+        list.push(kind("area", "m^2", "real contact area", |s| normal(s, |n| n.area)));
+        list.push(kind("contact_fraction", "1", "A/L^2", |s| {
+            scaled(s, |n, c| n.area.map(|a| c.contact_fraction(a)))
+        }));
+    }
+    let conductance = match outputs.conductance {
+        Conductance::Off => None,
+        Conductance::Thermal { .. } => Some("W/K"),
+        _ => Some("S"),
+    };
+    if let Some(unit) = conductance {
+        list.push(kind("conductance", unit, "2 k/(E* (rho_1 + rho_2)) (Barber)", |s| {
+            normal(s, |n| n.conductance)
+        }));
+    }
+    if outputs.contact_patches {
+        list.push(kind("patches", "1", "connected contact areas, cells joined by an edge", |s| {
+            normal(s, |n| n.patches.as_ref().map(contact_model::Patches::count))
+        }));
+        list.push(kind("largest_patch", "m^2", "area of the largest", |s| {
+            normal(s, |n| n.patches.as_ref().and_then(|p| p.areas().first().copied()))
+        }));
+    }
+    list.extend([
+        kind("status", "-", "how the solve ended", |s| s.status.map_or("refused", Status::as_str).into()),
+        kind("strategy", "-", "which way the solver took", |s| normal(s, |n| n.report.strategy.clone())),
+        kind("contact_cells", "1", "cells or elements in contact; fewer than 10 are the grid's own", |s| {
+            normal(s, |n| n.report.contact_cells)
+        }),
+        kind("iterations", "1", "of the linear solvers", |s| normal(s, |n| n.report.iterations)),
+        kind("applications", "1", "of the elastic operator", |s| normal(s, |n| n.report.applications)),
+        kind("linear_solves", "1", "linear systems solved", |s| normal(s, |n| n.report.work.linear_solves)),
+        kind("fields", "1", "fields over the grid that the state holds", |s| {
+            normal(s, |n| n.report.work.fields)
+        }),
+        kind("field_bytes", "1", "their bytes", |s| normal(s, |n| n.report.work.bytes)),
+        kind("frank_wolfe", "1", "sum p (g - min g)/(F s)", |s| {
+            normal(s, |n| n.report.certificate.frank_wolfe)
+        }),
+        kind("penetration", "1", "max(0, -min g)/s", |s| normal(s, |n| n.report.certificate.penetration)),
+        kind("complementarity", "1", "sum p |g|/(F s)", |s| {
+            normal(s, |n| n.report.certificate.complementarity)
+        }),
+        kind("load_error", "1", "|F - F_asked|/F_asked", |s| normal(s, |n| n.report.certificate.load_error)),
+    ]);
+    if outputs.needs_stiffness() {
+        list.push(kind("stiffness_error", "1", "estimated relative error of k", |s| {
+            normal(s, |n| n.report.certificate.stiffness_error)
+        }));
+    }
+    list.push(kind("note", "-", "why a model refused a load", |s| s.note.clone().into()));
+    list
+}
+
+/// The columns of a scene with their units.
+pub(crate) fn columns(scene: &SceneFile) -> Vec<Column> {
+    // Without units a dimensional number is in the scene's own: only pure numbers and texts keep theirs.
+    let unit = |unit| match (scene.system, unit) {
+        (System::Si, unit) => unit,
+        (System::None, "1" | "-") => unit,
+        (System::None, _) => "scene",
+    };
+    kinds(scene)
+        .into_iter()
+        .map(|k| Column { name: k.name, unit: unit(k.unit), meaning: k.meaning })
+        .collect()
+}
+
+/// The row of a state.
+pub(crate) fn row(scene: &SceneFile, state: &State) -> Vec<Value> {
+    kinds(scene).iter().map(|k| finite((k.value)(state))).collect()
+}
+
+/// A certificate of a state that was stopped may hold infinities: absent in a table.
+fn finite(value: Value) -> Value {
+    match value {
+        Value::Number(v) if !v.is_finite() => Value::Empty,
+        other => other,
+    }
+}

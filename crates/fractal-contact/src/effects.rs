@@ -1,0 +1,116 @@
+//! `[effects]`: each off unless named.
+
+use crate::entries::{Entries, Entry, Read, System};
+use contact_model::{Adhesion, Boundary, Effects, Friction, PronySeries, Relaxing, Rheology};
+use surface_io::Dimension;
+
+/// An effect of a scene and why it is on or off.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EffectLine {
+    /// Its key in `[effects]`.
+    pub name: &'static str,
+    /// Whether it is simulated.
+    pub on: bool,
+    /// With which numbers, or why not.
+    pub reason: String,
+}
+
+/// All effects of a scene, on or off.
+pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
+    let line = |name, on: bool, value: String, off: &str| EffectLine {
+        name,
+        on,
+        reason: if on { value } else { format!("not named: {off}") },
+    };
+    let boundary = effects.boundary == Boundary::Periodic;
+    let (work, adhesion) = match effects.adhesion {
+        Adhesion::ShortRange { work } => (work, true),
+        _ => (0.0, false),
+    };
+    let (coefficient, friction) = match effects.friction {
+        Friction::Coulomb { coefficient } => (coefficient, true),
+        _ => (0.0, false),
+    };
+    let rheology = effects.rheology != Rheology::Elastic;
+    vec![
+        line(
+            "boundary",
+            boundary,
+            "periodic copies of the square".into(),
+            "an unloaded half-space outside the square",
+        ),
+        line("adhesion", adhesion, format!("short range, work {work} per area"), "no attraction"),
+        line("friction", friction, format!("Coulomb, coefficient {coefficient}"), "no tangential load"),
+        line("rheology", rheology, format!("{:?}", effects.rheology), "elastic"),
+    ]
+}
+
+/// Reads `[effects]`.
+pub(crate) fn read_effects(table: Option<Entries<'_>>, system: System) -> Read<Effects> {
+    let mut effects = Effects::default();
+    let Some(table) = table else { return Ok(effects) };
+    if let Some(entry) = table.find("boundary") {
+        effects.boundary = entry.choice(&[("free", Boundary::Free), ("periodic", Boundary::Periodic)])?;
+    }
+    if let Some(entry) = table.find("adhesion") {
+        let inner = entry.table()?;
+        let work = inner.require("work", "\"50 mJ/m^2\"")?.positive(Dimension::ENERGY_PER_AREA, system)?;
+        inner.finish()?;
+        effects.adhesion = Adhesion::ShortRange { work };
+    }
+    if let Some(entry) = table.find("friction") {
+        let inner = entry.table()?;
+        let coefficient = inner.require("coefficient", "0.3")?.positive_number()?;
+        inner.finish()?;
+        effects.friction = Friction::Coulomb { coefficient };
+    }
+    if let Some(entry) = table.find("rheology") {
+        effects.rheology = read_rheology(&entry, system)?;
+    }
+    table.finish()?;
+    Ok(effects)
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    KelvinVoigt,
+    Maxwell,
+    StandardSolid,
+    Prony,
+}
+
+fn read_rheology(entry: &Entry<'_>, system: System) -> Read<Rheology> {
+    let table = entry.table()?;
+    let words = [
+        ("kelvin_voigt", Kind::KelvinVoigt),
+        ("maxwell", Kind::Maxwell),
+        ("standard_solid", Kind::StandardSolid),
+        ("prony", Kind::Prony),
+    ];
+    let kind = table.require("kind", "\"standard_solid\"")?.choice(&words)?;
+    let viscosity = || table.require("viscosity", "\"1 MPa s\"")?.positive(Dimension::VISCOSITY, system);
+    let arm = |weight: &Entry<'_>, time: &Entry<'_>| -> Read<Relaxing> {
+        Ok(Relaxing { weight: weight.positive_number()?, time: time.positive(Dimension::TIME, system)? })
+    };
+    let rheology = match kind {
+        Kind::KelvinVoigt => Rheology::KelvinVoigt { viscosity: viscosity()? },
+        Kind::Maxwell => Rheology::Maxwell { viscosity: viscosity()? },
+        Kind::StandardSolid => Rheology::StandardSolid {
+            arm: arm(&table.require("weight", "1.0")?, &table.require("time", "\"1 s\"")?)?,
+        },
+        Kind::Prony => {
+            let (weights, times) =
+                (table.require("weights", "[1.0, 0.5]")?, table.require("times", "[\"1 s\", \"10 s\"]")?);
+            let (w, t) = (weights.list(), times.list());
+            if w.len() != t.len() {
+                return Err(times
+                    .trouble(format!("{} weights and {} times", w.len(), t.len()))
+                    .with_help("one relaxation time for each weight"));
+            }
+            let arms = w.iter().zip(&t).map(|(w, t)| arm(w, t)).collect::<Read<Vec<_>>>()?;
+            Rheology::Prony(PronySeries::new(&arms).map_err(|e| weights.trouble(e.to_string()))?)
+        }
+    };
+    table.finish()?;
+    Ok(rheology)
+}

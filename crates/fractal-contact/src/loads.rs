@@ -1,0 +1,257 @@
+//! What is prescribed: loads one by one, or a path.
+
+use crate::entries::{Entries, Entry, Read, System};
+use contact_model::{Load, Scales, Step, Tangential};
+use surface_io::Dimension;
+
+/// Most loads of a range; more are a slip of the finger.
+const MOST: u64 = 10_000;
+
+/// What a list of loads prescribes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Prescribed {
+    /// Normal force F.
+    Force,
+    /// F over E* h L, with the measured rms height of each surface.
+    ForceBar,
+    /// Force over the area of the square.
+    MeanPressure,
+    /// Approach.
+    Approach,
+    /// Mean gap, with periodic boundaries.
+    MeanGap,
+}
+
+impl Prescribed {
+    /// Its key in the file.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::ForceBar => "force_bar",
+            Self::MeanPressure => "mean_pressure",
+            Self::Approach => "approach",
+            Self::MeanGap => "mean_gap",
+        }
+    }
+}
+
+/// Loads, solved one by one in this order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loads {
+    /// What the numbers are.
+    pub prescribed: Prescribed,
+    /// The numbers, in SI or the scene's own units.
+    pub values: Vec<f64>,
+}
+
+impl Loads {
+    /// The load of a number for a surface with these scales.
+    ///
+    /// # Errors
+    /// [`contact_model::Error::Domain`] for a normalised force of a surface without rms height.
+    pub fn load(&self, value: f64, scales: &Scales) -> contact_model::Result<Load> {
+        Ok(match self.prescribed {
+            Prescribed::Force => Load::Force(value),
+            Prescribed::ForceBar => Load::Force(scales.force(value)?),
+            Prescribed::MeanPressure => Load::Force(value * scales.side * scales.side),
+            Prescribed::Approach => Load::Approach(value),
+            Prescribed::MeanGap => Load::MeanGap(value),
+        })
+    }
+}
+
+/// What is asked of the models.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Request {
+    /// States under loads.
+    Loads(Loads),
+    /// States along a path.
+    Path(Vec<Step>),
+}
+
+impl Request {
+    /// Number of states.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Loads(loads) => loads.values.len(),
+            Self::Path(steps) => steps.len(),
+        }
+    }
+}
+
+const KEYS: [&str; 5] = ["force", "force_bar", "mean_pressure", "approach", "mean_gap"];
+
+/// Reads the loads or the path of `[scene]`. `pulls`: loads may be negative (adhesion).
+pub(crate) fn read_request<'a>(
+    scene: &Entries<'a>,
+    system: System,
+    pulls: bool,
+) -> Read<(Request, Entry<'a>)> {
+    let loads = scene.one_of(&KEYS)?;
+    let path = scene.find("path");
+    match (loads, path) {
+        (Some((key, _)), Some(path)) => Err(path
+            .trouble_at_key(format!("`{key}` and `path` are both given in [scene]"))
+            .with_help(format!("loads one by one are `{key}`; a history (friction, rheology) is `path`: keep one of them"))),
+        (None, None) => Err(scene
+            .trouble("nothing is pressed: [scene] has no load")
+            .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history")),
+        (Some((key, entry)), None) => Ok((Request::Loads(read_loads(key, &entry, system, pulls)?), entry)),
+        (None, Some(entry)) => Ok((Request::Path(read_path(&entry, system)?), entry)),
+    }
+}
+
+fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read<Loads> {
+    let (prescribed, dimension) = match key {
+        "force" => (Prescribed::Force, Some(Dimension::FORCE)),
+        "force_bar" => (Prescribed::ForceBar, None),
+        "mean_pressure" => (Prescribed::MeanPressure, Some(Dimension::PRESSURE)),
+        "approach" => (Prescribed::Approach, Some(Dimension::LENGTH)),
+        _ => (Prescribed::MeanGap, Some(Dimension::LENGTH)),
+    };
+    let signed = pulls && matches!(prescribed, Prescribed::Force | Prescribed::Approach);
+    let number = |item: &Entry<'_>| {
+        let value = match dimension {
+            Some(dimension) => item.quantity(dimension, system)?,
+            None => item.number()?,
+        };
+        if value >= 0.0 || signed {
+            return Ok(value);
+        }
+        let help = "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull";
+        Err(item.trouble(format!("the load `{key}` = {} is negative", item.shown())).with_help(help))
+    };
+    let values = if entry.is_table() {
+        let range = entry.table()?;
+        let from = range.require("from", "...")?;
+        let to = range.require("to", "...")?;
+        let count = range.require("count", "9")?;
+        let even =
+            range.find("spacing").map_or(Ok(false), |e| e.choice(&[("log", false), ("linear", true)]))?;
+        range.finish()?;
+        let number_of = count.count(2)?;
+        if number_of > MOST {
+            return Err(count
+                .trouble(format!("{number_of} loads: expected at most {MOST}"))
+                .with_help("ask for fewer"));
+        }
+        let (low, high) = (number(&from)?, number(&to)?);
+        if !even && (low <= 0.0 || high <= 0.0) {
+            return Err(from
+                .trouble(format!(
+                    "a logarithmic range of `{key}` from {} to {} meets zero",
+                    from.shown(),
+                    to.shown()
+                ))
+                .with_help("both ends > 0, or `spacing = \"linear\"`"));
+        }
+        between(low, high, number_of as usize, even)
+    } else {
+        entry.list().iter().map(number).collect::<Read<Vec<f64>>>()?
+    };
+    if values.is_empty() {
+        return Err(entry.trouble(format!("`{key}` is an empty list")).with_help("name at least one load"));
+    }
+    Ok(Loads { prescribed, values })
+}
+
+/// `count` >= 2 numbers with both ends exactly as given.
+fn between(low: f64, high: f64, count: usize, even: bool) -> Vec<f64> {
+    let last = count - 1;
+    let at = |i: usize| {
+        let t = i as f64 / last as f64;
+        match i {
+            0 => low,
+            i if i == last => high,
+            _ if even => low + (high - low) * t,
+            _ => (low.ln() + (high.ln() - low.ln()) * t).exp(),
+        }
+    };
+    (0..count).map(at).collect()
+}
+
+fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
+    if !entry.is_list() {
+        return Err(entry
+            .trouble_at_key("`path` is no list of steps")
+            .with_help("write [[scene.path]] once for each step"));
+    }
+    let mut steps: Vec<Step> = Vec::new();
+    let mut last = Step::normal(0.0, Load::Force(0.0));
+    for item in entry.list() {
+        let table = item.table()?;
+        let time = table.find("time").map_or(Ok(last.time), |e| e.quantity(Dimension::TIME, system))?;
+        let normal = match table.one_of(&["force", "approach"])? {
+            Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
+            Some((_, e)) => Load::Approach(e.quantity(Dimension::LENGTH, system)?),
+            None if steps.is_empty() => {
+                return Err(item
+                    .trouble("the first step of the path has no normal load")
+                    .with_help("give `force` or `approach`"));
+            }
+            None => last.normal,
+        };
+        let tangential = match table.one_of(&["tangential_force", "tangential_displacement"])? {
+            Some(("tangential_force", e)) => Tangential::Force(e.quantity(Dimension::FORCE, system)?),
+            Some((_, e)) => Tangential::Displacement(e.quantity(Dimension::LENGTH, system)?),
+            None => last.tangential,
+        };
+        if steps.is_empty() {
+            last = beginning(normal, tangential);
+        }
+        let pieces = table.find("states").map_or(Ok(1), |e| e.count(1))?.min(MOST);
+        table.finish()?;
+        let end = Step { time, normal, tangential };
+        end.validated(last.time)
+            .map_err(|e| item.trouble(e.to_string()).with_help("times never decrease along a path"))?;
+        for i in 1..=pieces {
+            steps.push(if i == pieces { end } else { part(last, end, i as f64 / pieces as f64) });
+        }
+        last = end;
+    }
+    if steps.is_empty() {
+        return Err(entry
+            .trouble("the path has no step")
+            .with_help("write [[scene.path]] once for each step"));
+    }
+    Ok(steps)
+}
+
+/// No contact and no load, in the words of the first step.
+fn beginning(normal: Load, tangential: Tangential) -> Step {
+    let normal = if let Load::Approach(_) = normal { Load::Approach(0.0) } else { Load::Force(0.0) };
+    let tangential = match tangential {
+        Tangential::Displacement(_) => Tangential::Displacement(0.0),
+        _ => Tangential::Force(0.0),
+    };
+    Step { time: 0.0, normal, tangential }
+}
+
+/// A point of a straight piece; a quantity that is prescribed anew begins at its new value.
+fn part(from: Step, to: Step, t: f64) -> Step {
+    let mix = |a: f64, b: f64| a + (b - a) * t;
+    let normal = match (from.normal, to.normal) {
+        (Load::Force(a), Load::Force(b)) => Load::Force(mix(a, b)),
+        (Load::Approach(a), Load::Approach(b)) => Load::Approach(mix(a, b)),
+        (_, other) => other,
+    };
+    let tangential = match (from.tangential, to.tangential) {
+        (Tangential::Force(a), Tangential::Force(b)) => Tangential::Force(mix(a, b)),
+        (Tangential::Displacement(a), Tangential::Displacement(b)) => Tangential::Displacement(mix(a, b)),
+        (_, other) => other,
+    };
+    Step { time: mix(from.time, to.time), normal, tangential }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_have_their_ends_exactly() {
+        let values = between(1e-6, 20.0, 5, false);
+        assert_eq!((values[0], values[4]), (1e-6, 20.0));
+        approx::assert_relative_eq!(values[1] / values[0], 2e7_f64.powf(0.25), max_relative = 1e-12);
+        assert_eq!(between(1.0, -1.0, 3, true), [1.0, 0.0, -1.0]);
+    }
+}

@@ -1,0 +1,67 @@
+//! A generated surface as a file.
+
+use crate::error::{Error, Result};
+use contact_model::{Amplitude, SelfAffine};
+use std::f64::consts::PI;
+use std::path::Path;
+use surface_io::{Dimension, Metric, Quantity, describe, write_map};
+
+/// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Make {
+    /// Cells a side.
+    pub cells: usize,
+    /// Side of the square.
+    pub side: String,
+    /// Fractal dimension in [2, 3].
+    pub fractal_dimension: f64,
+    /// Rms height.
+    pub rms_height: String,
+    /// Below waves of this length the spectrum is constant.
+    pub roll_off_wavelength: Option<String>,
+    /// The shortest wave.
+    pub shortest_wavelength: Option<String>,
+    /// Surface number 0 of this seed, as in a scene.
+    pub seed: u64,
+}
+
+impl Make {
+    /// Draws the surface, writes it (`.npy`, `.txt`, `.xyz` or `.vti`) and says in a few lines what it is.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Model`] for numbers that make no sense,
+    /// [`Error::Surface`] for another ending or a file that cannot be written.
+    pub fn write(&self, path: &Path) -> Result<String> {
+        let mut units: Option<Dimension> = None;
+        let mut length = |name: &'static str, text: &str| {
+            let wrong = |reason: String| Error::Argument { name, reason };
+            let quantity: Quantity =
+                text.parse().map_err(|e: surface_io::QuantityError| wrong(e.to_string()))?;
+            let dimension = quantity.dimension();
+            let known = *units.get_or_insert(dimension);
+            if dimension != known || !(dimension == Dimension::LENGTH || dimension == Dimension::NONE) {
+                return Err(wrong(format!(
+                    "`{text}`: give all lengths with a unit of length (\"1 mm\"), or none of them"
+                )));
+            }
+            Ok(quantity.value())
+        };
+        let side = length("--side", &self.side)?;
+        let rms = length("--rms-height", &self.rms_height)?;
+        let mut wavenumber = |name, text: &Option<String>| -> Result<Option<f64>> {
+            text.as_deref().map(|t| Ok(2.0 * PI / length(name, t)?)).transpose()
+        };
+        let roll_off = wavenumber("--roll-off-wavelength", &self.roll_off_wavelength)?;
+        let short_cutoff = wavenumber("--shortest-wavelength", &self.shortest_wavelength)?;
+        let metric = if units == Some(Dimension::LENGTH) { Metric::Metres } else { Metric::Unitless };
+        let surface =
+            SelfAffine::new(self.fractal_dimension, side, rms).map_err(Error::model("the surface"))?;
+        let surface = SelfAffine { amplitude: Amplitude::RmsHeight(rms), roll_off, short_cutoff, ..surface };
+        let seed = surface_gen::surface_seed(self.seed, 0);
+        let map =
+            surface_gen::self_affine_map(&surface, self.cells, seed).map_err(Error::model("the surface"))?;
+        write_map(path, &map, metric).map_err(Error::Surface)?;
+        let unit = if metric == Metric::Metres { "m" } else { "none" };
+        Ok(format!("{}\nunit               {unit}\n{}\n", path.display(), describe(&map)))
+    }
+}

@@ -1,0 +1,78 @@
+//! `manifest.json`: the whole scene, what it was run with, what it cost, what to cite.
+
+use crate::error::{Error, Result};
+use crate::plan::{Cost, Plan};
+use crate::run::{Options, Outcome};
+use crate::scene_file::SceneFile;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// Writes it.
+pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: &Outcome) -> Result<PathBuf> {
+    let path = options.out.join("manifest.json");
+    let cite: Vec<Value> = scene
+        .models
+        .iter()
+        .flat_map(|m| {
+            m.model()
+                .sources()
+                .iter()
+                .map(move |s| json!({ "model": m.name(), "citation": s.citation, "what": s.what }))
+        })
+        .collect();
+    let models: Vec<Value> = plan
+        .models
+        .iter()
+        .zip(&outcome.actual)
+        .map(|(planned, (name, actual, bytes))| {
+            json!({
+                "name": name,
+                "grid": planned.grid,
+                "predicted": planned.predicted.as_ref().map(cost),
+                "actual": cost(actual),
+                "field_file_bytes": bytes,
+            })
+        })
+        .collect();
+    let files: Vec<String> =
+        outcome.files.iter().filter_map(|f| Some(f.file_name()?.to_string_lossy().into_owned())).collect();
+    let effects: serde_json::Map<String, Value> =
+        plan.effects.iter().map(|e| (e.name.to_owned(), json!({ "on": e.on, "reason": e.reason }))).collect();
+    let outputs: serde_json::Map<String, Value> =
+        plan.outputs.iter().map(|(name, asked)| ((*name).to_owned(), json!(asked))).collect();
+    let whole = json!({
+        "project": "fractal-contact",
+        "version": env!("CARGO_PKG_VERSION"),
+        "formats": { "scene": crate::unit::FORMAT, "figures": figures::FORMAT, "bem3d": bem3d::FORMAT },
+        "scene": scene.text,
+        "seed": scene.chance.seed,
+        "surfaces": scene.chance.surfaces,
+        "effects": effects,
+        "outputs": outputs,
+        "models": models,
+        "cite": cite,
+        "complete": !outcome.stopped,
+        "states": outcome.states,
+        "failed": outcome.failed,
+        "notes": outcome.notes,
+        "files": files,
+        "threads": options.threads,
+        "wall_seconds": outcome.seconds,
+        "machine": figures::machine(),
+    });
+    let text = serde_json::to_string_pretty(&whole)
+        .map_err(|e| Error::Argument { name: "manifest.json", reason: e.to_string() })?;
+    figures::write_whole(&path, (text + "\n").as_bytes())?;
+    Ok(path)
+}
+
+fn cost(cost: &Cost) -> Value {
+    json!({
+        "seconds": cost.seconds,
+        "memory_bytes": (cost.memory > 0.0).then_some(cost.memory),
+        "applications": cost.applications,
+        "linear_solves": cost.linear_solves,
+        "fields": cost.fields,
+        "field_bytes": cost.field_bytes,
+    })
+}

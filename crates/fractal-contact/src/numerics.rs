@@ -1,0 +1,303 @@
+//! The models by name, and what `[models.NAME]` says about their numerics.
+
+use crate::entries::{Entries, Entry, Read, suggestion};
+use analytic::greenwood_williamson::SummitHeights;
+use analytic::{
+    CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
+};
+use bem3d::{Bem3d, Method};
+use contact_model::{ContactModel, HistoryModel, Source};
+use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
+
+/// A model with its numerics.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Numerics {
+    /// Boundary elements in three dimensions.
+    Bem3d(Bem3d),
+    /// The method of reduction of dimensionality.
+    Mdr1d(Mdr1d),
+    /// A sphere.
+    Hertz,
+    /// Bodies r^n.
+    PowerLawBody,
+    /// Flat faces.
+    FlatPunch,
+    /// A sphere with adhesion.
+    Jkr,
+    /// The paper's fit.
+    PowerLaw,
+    /// Waves.
+    Westergaard,
+    /// Persson's theory.
+    Persson(Persson),
+    /// Independent summits.
+    GreenwoodWilliamson(GreenwoodWilliamson),
+    /// A sphere with friction, a history.
+    CattaneoMindlin,
+    /// Axisymmetric bodies with friction, a history.
+    PartialSlip,
+    /// Axisymmetric viscoelastic bodies, a history.
+    Viscoelastic,
+    /// Friction or rheology of any surface that boundary elements can press, a history.
+    Equivalent(Equivalent<Bem3d>),
+}
+
+/// What `[models.bem3d]` says by default.
+const BEM3D: Bem3d = Bem3d { cells: 257, tolerance: 1e-6, rounds: 200, method: Method::Auto };
+
+/// A model behind one of the two traits.
+#[allow(missing_debug_implementations)] // Trait objects.
+pub enum AnyModel {
+    /// It answers one load, whatever came before.
+    Contact(Box<dyn ContactModel>),
+    /// It follows a path.
+    History(Box<dyn HistoryModel>),
+}
+
+impl AnyModel {
+    /// Its sources.
+    pub fn sources(&self) -> &'static [Source] {
+        match self {
+            Self::Contact(model) => model.sources(),
+            Self::History(model) => model.sources(),
+        }
+    }
+}
+
+impl Numerics {
+    /// Every model with its defaults.
+    pub const ALL: [Self; 14] = [
+        Self::Bem3d(BEM3D),
+        Self::Mdr1d(Mdr1d { elements: 1 << 16 }),
+        Self::Hertz,
+        Self::PowerLawBody,
+        Self::FlatPunch,
+        Self::Jkr,
+        Self::PowerLaw,
+        Self::Westergaard,
+        Self::Persson(Persson { gamma: 0.45 }),
+        Self::GreenwoodWilliamson(GreenwoodWilliamson { heights: SummitHeights::Gaussian }),
+        Self::CattaneoMindlin,
+        Self::PartialSlip,
+        Self::Viscoelastic,
+        Self::Equivalent(Equivalent { model: BEM3D, per_decade: 16, decades: 3 }),
+    ];
+
+    /// The model itself.
+    pub fn model(&self) -> AnyModel {
+        match *self {
+            Self::Bem3d(model) => AnyModel::Contact(Box::new(model)),
+            Self::Mdr1d(model) => AnyModel::Contact(Box::new(model)),
+            Self::Hertz => AnyModel::Contact(Box::new(Hertz)),
+            Self::PowerLawBody => AnyModel::Contact(Box::new(PowerLawBody)),
+            Self::FlatPunch => AnyModel::Contact(Box::new(FlatPunch)),
+            Self::Jkr => AnyModel::Contact(Box::new(Jkr)),
+            Self::PowerLaw => AnyModel::Contact(Box::new(PowerLaw)),
+            Self::Westergaard => AnyModel::Contact(Box::new(Westergaard)),
+            Self::Persson(model) => AnyModel::Contact(Box::new(model)),
+            Self::GreenwoodWilliamson(model) => AnyModel::Contact(Box::new(model)),
+            Self::CattaneoMindlin => AnyModel::History(Box::new(CattaneoMindlin)),
+            Self::PartialSlip => AnyModel::History(Box::new(PartialSlip)),
+            Self::Viscoelastic => AnyModel::History(Box::new(Viscoelastic)),
+            Self::Equivalent(model) => AnyModel::History(Box::new(model)),
+        }
+    }
+
+    /// Its name, the same in code, CSV and README.
+    pub fn name(&self) -> &'static str {
+        match self.model() {
+            AnyModel::Contact(model) => model.name(),
+            AnyModel::History(model) => model.name(),
+        }
+    }
+
+    /// Whether it follows a path rather than answers loads.
+    pub fn is_history(&self) -> bool {
+        matches!(self, Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_))
+    }
+
+    /// Cells a side, elements of a line; 0 for a formula.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Bem3d(model) | Self::Equivalent(Equivalent { model, .. }) => model.cells,
+            Self::Mdr1d(model) => model.elements,
+            _ => 0,
+        }
+    }
+
+    /// The same on a grid of at most these cells or elements.
+    #[must_use]
+    pub fn reduced(self, cells: usize, elements: usize) -> Self {
+        match self {
+            Self::Bem3d(model) => Self::Bem3d(Bem3d { cells: model.cells.min(cells), ..model }),
+            Self::Mdr1d(model) => Self::Mdr1d(Mdr1d { elements: model.elements.min(elements) }),
+            Self::Equivalent(outer) => {
+                let model = Bem3d { cells: outer.model.cells.min(cells), ..outer.model };
+                Self::Equivalent(Equivalent { model, ..outer })
+            }
+            other => other,
+        }
+    }
+
+    /// What one may expect of its numbers, in a sentence; `cells` a side, of models that have them.
+    pub fn accuracy(&self, rough: bool, cells: usize) -> String {
+        match self {
+            Self::Bem3d(model) => format!(
+                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {n} x {n} cells; the cells \
+                 themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
+                model.tolerance,
+                n = cells
+            ),
+            Self::Mdr1d(_) if rough => "exact for its line; against three dimensions 7 to 18 % too stiff near F_bar = 1, exponents as 1/(1+H)".into(),
+            Self::Mdr1d(_) | Self::Hertz | Self::PowerLawBody | Self::Westergaard | Self::Jkr => "exact, to about 1e-13".into(),
+            Self::FlatPunch => "exact for the circle; the square's constant to 1e-6".into(),
+            Self::PowerLaw => "a fit: within the scatter of surfaces, 8 to 28 % at F_bar = 0.086".into(),
+            Self::Persson(_) => "a theory: stiffness within some 10 % while the contact is light, area low by some 15 %".into(),
+            Self::GreenwoodWilliamson(_) => "a theory of independent summits: light loads only, often off by a factor".into(),
+            Self::CattaneoMindlin | Self::PartialSlip => {
+                "exact within Cattaneo's and Mindlin's assumptions (no coupling, slip along the load)".into()
+            }
+            Self::Equivalent(_) => format!(
+                "the normal part is that of bem3d on {n} x {n} cells; tangential results are exact for round contacts, a few per cent off for \
+                 others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
+                 bodies, two to three for rough ones",
+                n = cells
+            ),
+            Self::Viscoelastic => "exact while the contact grows, which is checked; 1e-12".into(),
+        }
+    }
+}
+
+/// The models of a scene in the order named, with the place of each name.
+pub(crate) fn read_models<'a>(
+    scene: &Entries<'a>,
+    options: Option<&Entries<'a>>,
+) -> Read<Vec<(Numerics, Entry<'a>)>> {
+    let entry = scene.require("models", "[\"bem3d\"]")?;
+    let names: Vec<&str> = Numerics::ALL.iter().map(Numerics::name).collect();
+    let mut models: Vec<(Numerics, Entry<'a>)> = Vec::new();
+    for item in entry.list() {
+        let name = item.text()?;
+        let Some(default) = Numerics::ALL.iter().find(|m| m.name() == name) else {
+            return Err(item
+                .trouble(format!("there is no model \"{name}\""))
+                .with_help(suggestion(name, &names)));
+        };
+        if models.iter().any(|(m, _)| m.name() == name) {
+            return Err(item
+                .trouble(format!("the model \"{name}\" is named twice"))
+                .with_help("name it once"));
+        }
+        models.push((*default, item));
+    }
+    if models.is_empty() {
+        return Err(entry.trouble("`models` is empty").with_help(format!("known: {}", names.join(", "))));
+    }
+    let Some(options) = options else { return Ok(models) };
+    for (numerics, _) in &mut models {
+        if let Some(table) = options.table(numerics.name())? {
+            *numerics = configured(*numerics, table)?;
+        }
+    }
+    let used: Vec<&str> = models.iter().map(|(m, _)| m.name()).collect();
+    for key in options.keys() {
+        if !used.contains(&key)
+            && let Some(stray) = options.entry(key)
+        {
+            return Err(stray
+                .trouble_at_key(format!(
+                    "[models.{key}] says how to compute with a model that `models` does not name"
+                ))
+                .with_help(format!(
+                    "remove the table, or name \"{key}\" in `models` (named: {})",
+                    used.join(", ")
+                )));
+        }
+    }
+    Ok(models)
+}
+
+fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
+    if let Some(entry) = table.find("cells") {
+        model.cells = entry.count(1)? as usize;
+    }
+    if let Some(entry) = table.find("tolerance") {
+        model.tolerance = entry.positive_number()?;
+        if model.tolerance >= 1.0 {
+            return Err(entry.trouble("`tolerance` is not below 1").with_help("1e-6 gives six digits"));
+        }
+    }
+    if let Some(entry) = table.find("rounds") {
+        model.rounds = entry.count(1)? as usize;
+    }
+    if let Some(entry) = table.find("method") {
+        let words =
+            [("auto", Method::Auto), ("iterative", Method::Iterative), ("single_level", Method::SingleLevel)];
+        model.method = entry.choice(&words)?;
+    }
+    Ok(model)
+}
+
+fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
+    let result = match numerics {
+        Numerics::Bem3d(model) => Numerics::Bem3d(bem3d_options(model, &table)?),
+        Numerics::Equivalent(mut outer) => {
+            outer.model = bem3d_options(outer.model, &table)?;
+            for (key, most, value) in
+                [("per_decade", 1000, &mut outer.per_decade), ("decades", 12, &mut outer.decades)]
+            {
+                if let Some(entry) = table.find(key) {
+                    let count = entry.count(1)?;
+                    if count > most {
+                        return Err(entry
+                            .trouble(format!("`{key}` = {count}: expected at most {most}"))
+                            .with_help("16 and 3 by default"));
+                    }
+                    *value = count as u32;
+                }
+            }
+            Numerics::Equivalent(outer)
+        }
+        Numerics::Mdr1d(mut model) => {
+            if let Some(entry) = table.find("elements") {
+                model.elements = entry.count(1)? as usize;
+            }
+            Numerics::Mdr1d(model)
+        }
+        Numerics::Persson(mut model) => {
+            if let Some(entry) = table.find("gamma") {
+                model.gamma = entry.positive_number()?;
+            }
+            Numerics::Persson(model)
+        }
+        Numerics::GreenwoodWilliamson(mut model) => {
+            if let Some(entry) = table.find("heights") {
+                let words =
+                    [("gaussian", SummitHeights::Gaussian), ("exponential", SummitHeights::Exponential)];
+                model.heights = entry.choice(&words)?;
+            }
+            Numerics::GreenwoodWilliamson(model)
+        }
+        other => other,
+    };
+    table.finish()?;
+    Ok(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_of_all_models_has_their_defaults() {
+        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default())));
+        assert!(Numerics::ALL.contains(&Numerics::Equivalent(Equivalent::new(Bem3d::default()))));
+        assert!(Numerics::ALL.contains(&Numerics::Mdr1d(Mdr1d::default())));
+        assert!(Numerics::ALL.contains(&Numerics::Persson(Persson::default())));
+        assert!(Numerics::ALL.contains(&Numerics::GreenwoodWilliamson(GreenwoodWilliamson::default())));
+        for numerics in Numerics::ALL {
+            assert_eq!(numerics.is_history(), matches!(numerics.model(), AnyModel::History(_)));
+        }
+    }
+}

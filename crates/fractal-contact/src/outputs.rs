@@ -1,0 +1,134 @@
+//! `[outputs]`: what is not asked for is not computed and not stored.
+
+use crate::entries::{Entries, Entry, Read, System};
+use contact_model::{Conductance, Outputs};
+use surface_io::Dimension;
+
+/// A file format of a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Numbers as float64.
+    Npy,
+    /// A grey-scale picture.
+    Png,
+    /// Image data of VTK, for ParaView.
+    Vti,
+}
+
+impl Format {
+    /// The end of the file's name.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Npy => "npy",
+            Self::Png => "png",
+            Self::Vti => "vti",
+        }
+    }
+}
+
+/// What is asked for: of the models, and as files.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Asked {
+    /// Of the models.
+    pub outputs: Outputs,
+    /// The mean gap of periodic contacts.
+    pub mean_gap: bool,
+    /// Formats of the pressure field.
+    pub pressure: Vec<Format>,
+    /// Formats of the displacement field.
+    pub displacement: Vec<Format>,
+    /// Formats of the gap field.
+    pub gap: Vec<Format>,
+    /// Whether curves are drawn.
+    pub curves: bool,
+}
+
+impl Asked {
+    /// Every output with whether it is asked for.
+    pub fn lines(&self) -> Vec<(&'static str, bool)> {
+        let Outputs { stiffness, area, pressure, displacement, gap, contact_patches, conductance } =
+            self.outputs;
+        vec![
+            ("stiffness", stiffness),
+            ("area", area),
+            ("conductance", conductance != Conductance::Off),
+            ("contact_patches", contact_patches),
+            ("mean_gap", self.mean_gap),
+            ("pressure", pressure),
+            ("displacement", displacement),
+            ("gap", gap),
+            ("curves", self.curves),
+        ]
+    }
+}
+
+/// Reads `[outputs]`.
+pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<Asked> {
+    let mut asked = Asked::default();
+    let Some(table) = table else { return Ok(asked) };
+    let flag = |key: &'static str| table.find(key).map_or(Ok(false), |e| e.flag());
+    let outputs = &mut asked.outputs;
+    outputs.stiffness = flag("stiffness")?;
+    outputs.area = flag("area")?;
+    outputs.contact_patches = flag("contact_patches")?;
+    asked.mean_gap = flag("mean_gap")?;
+    asked.curves = flag("curves")?;
+    let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
+    asked.pressure = formats("pressure")?;
+    asked.displacement = formats("displacement")?;
+    asked.gap = formats("gap")?;
+    if let Some(entry) = table.find("conductance") {
+        asked.outputs.conductance = read_conductance(&entry, system)?;
+    }
+    asked.outputs.pressure = !asked.pressure.is_empty();
+    asked.outputs.displacement = !asked.displacement.is_empty();
+    asked.outputs.gap = !asked.gap.is_empty();
+    table.finish()?;
+    Ok(asked)
+}
+
+/// `["npy", "png"]`, one of them, or `false`.
+fn read_formats(entry: &Entry<'_>) -> Read<Vec<Format>> {
+    if !entry.is_list() && !entry.is_text() {
+        return if entry.flag()? {
+            Err(entry
+                .trouble("a field is asked for without a format")
+                .with_help("name its files: `[\"npy\"]`, `[\"npy\", \"png\", \"vti\"]`"))
+        } else {
+            Ok(Vec::new())
+        };
+    }
+    let mut formats = Vec::new();
+    for item in entry.list() {
+        let format = item.choice(&[("npy", Format::Npy), ("png", Format::Png), ("vti", Format::Vti)])?;
+        if !formats.contains(&format) {
+            formats.push(format);
+        }
+    }
+    Ok(formats)
+}
+
+fn read_conductance(entry: &Entry<'_>, system: System) -> Read<Conductance> {
+    let table = entry.table()?;
+    let electrical =
+        table.require("kind", "\"electrical\"")?.choice(&[("electrical", true), ("thermal", false)])?;
+    let (key, example, dimension) = if electrical {
+        ("resistivities", "[\"1.7e-8 ohm m\", \"1.7e-8 ohm m\"]", Dimension::RESISTIVITY)
+    } else {
+        ("conductivities", "[\"400 W/(m K)\", \"400 W/(m K)\"]", Dimension::THERMAL_CONDUCTIVITY)
+    };
+    let both = table.require(key, example)?;
+    let values = both.list();
+    let [first, second] = &values[..] else {
+        return Err(both
+            .trouble(format!("`{key}` has {} values", values.len()))
+            .with_help(format!("two, one for each body: {example}")));
+    };
+    let (first, second) = (first.positive(dimension, system)?, second.positive(dimension, system)?);
+    table.finish()?;
+    Ok(if electrical {
+        Conductance::Electrical { first, second }
+    } else {
+        Conductance::Thermal { first, second }
+    })
+}

@@ -1,0 +1,66 @@
+//! Curves drawn from the rows of the table.
+
+use crate::error::Result;
+use crate::scene_file::SceneFile;
+use analysis::{Table, Value};
+use figures::{Chart, Curve};
+use std::path::{Path, PathBuf};
+
+/// What is drawn over what: of loads, and of paths.
+const OVER_FORCE: [&str; 5] = ["stiffness", "area", "conductance", "approach", "mean_gap"];
+const OVER_TIME: [&str; 4] = ["force", "approach", "tangential_force", "dissipated"];
+
+/// `curve-Y.svg` and `.png` for every column that the scene asked for.
+pub(crate) fn curves(scene: &SceneFile, table: &Table, out: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    let has = |name: &str| table.columns().iter().any(|c| c.name == name);
+    let mut pairs: Vec<(&str, &str)> = Vec::new();
+    if scene.is_history() {
+        if has("tangential_force") {
+            pairs.push(("tangential_displacement", "tangential_force"));
+        } else {
+            pairs.extend(OVER_TIME.iter().map(|y| ("time", *y)));
+        }
+    } else {
+        pairs.extend(OVER_FORCE.iter().map(|y| ("force", *y)));
+    }
+    for (x, y) in pairs {
+        if has(x) && has(y) {
+            let chart = chart(scene, table, x, y);
+            if chart.curves.iter().any(|c| !c.points.is_empty()) {
+                files.extend(chart.save(out, &format!("curve-{y}"))?);
+            }
+        }
+    }
+    Ok(files)
+}
+
+fn chart(scene: &SceneFile, table: &Table, x: &str, y: &str) -> Chart {
+    let place = |name: &str| table.columns().iter().position(|c| c.name == name);
+    let label = |name: &str| {
+        let unit = place(name).map_or("1", |i| table.columns()[i].unit);
+        let name = name.replace('_', " ");
+        if matches!(unit, "1" | "-" | "scene") { name } else { format!("{name} ({unit})") }
+    };
+    let number = |row: &[Value], name: &str| match place(name).and_then(|i| row.get(i)) {
+        Some(Value::Number(v)) => Some(*v),
+        _ => None,
+    };
+    let curves = scene
+        .models
+        .iter()
+        .map(|m| Curve {
+            label: m.name().into(),
+            points: table
+                .rows()
+                .iter()
+                .filter(|row| matches!(row.first(), Some(Value::Text(name)) if name == m.name()))
+                .filter_map(|row| Some((number(row, x)?, number(row, y)?)))
+                .filter(|(x, y)| scene.is_history() || (*x != 0.0 && *y != 0.0))
+                .collect(),
+            scattered: scene.chance.surfaces > 1,
+        })
+        .collect();
+    let title = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    Chart { title, x_label: label(x), y_label: label(y), curves, logarithmic: !scene.is_history() }
+}

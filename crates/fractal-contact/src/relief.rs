@@ -1,0 +1,245 @@
+//! What carries the relief: `[scene.surface]`, and `[scene.body]` added to it.
+
+use crate::entries::{Entries, Read, System};
+use crate::numerics::Numerics;
+use crate::scan;
+use contact_model::{Amplitude, Error, HeightMap, Result, SelfAffine, Surface};
+use std::f64::consts::PI;
+use std::path::Path;
+use std::sync::Arc;
+use surface_io::Dimension;
+
+/// The relief of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Relief {
+    /// One surface.
+    Plain(Surface),
+    /// A random surface on a body: heights add.
+    Sum {
+        /// The random part.
+        rough: SelfAffine,
+        /// The body.
+        body: Surface,
+    },
+}
+
+impl Relief {
+    /// Side of the square.
+    pub fn side(&self) -> f64 {
+        match self {
+            Self::Plain(surface) => surface.side(),
+            Self::Sum { rough, .. } => rough.side,
+        }
+    }
+
+    /// Whether a seed decides what it looks like.
+    pub fn is_random(&self) -> bool {
+        matches!(self, Self::Plain(Surface::SelfAffine(_)) | Self::Sum { .. })
+    }
+
+    /// Whether it is rough: it has an rms height in which forces can be counted.
+    pub fn is_rough(&self) -> bool {
+        matches!(
+            self,
+            Self::Plain(Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. })
+                | Self::Sum { .. }
+        )
+    }
+
+    /// In a phrase.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Plain(Surface::SelfAffine(s)) => self_affine(s),
+            Self::Plain(Surface::Heights(map)) => {
+                format!("a map of {n} x {n} cells, side {}", map.side(), n = map.cells())
+            }
+            Self::Plain(surface) => format!("{} on a square of side {}", surface.kind(), surface.side()),
+            Self::Sum { rough, body } => format!("{} on {}", self_affine(rough), body.kind()),
+        }
+    }
+
+    /// What a model is given: sums are drawn on the model's own cells.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a sum and a model without cells, and what drawing a surface refuses.
+    pub fn surface(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
+        match self {
+            Self::Plain(surface) => Ok(surface.clone()),
+            Self::Sum { rough, body } => {
+                let (Numerics::Bem3d(model) | Numerics::Equivalent(mdr1d::Equivalent { model, .. })) =
+                    numerics
+                else {
+                    return Err(Error::unsupported(
+                        numerics.name(),
+                        "a rough surface on a body (it takes one or the other)",
+                    ));
+                };
+                let rough = surface_gen::self_affine_map(rough, model.cells, seed)?;
+                Ok(Surface::Heights(Arc::new(add(&rough, body)?)))
+            }
+        }
+    }
+}
+
+fn self_affine(s: &SelfAffine) -> String {
+    let mut text = format!("a self-affine surface, D_f = {}, side {}", s.fractal_dimension(), s.side);
+    if let Amplitude::RmsHeight(h) = s.amplitude {
+        text += &format!(", rms height {h}");
+    }
+    if let Some(q) = s.roll_off {
+        text += &format!(", roll-off at the wavelength {}", 2.0 * PI / q);
+    }
+    if let Some(q) = s.short_cutoff {
+        text += &format!(", shortest wavelength {}", 2.0 * PI / q);
+    }
+    text
+}
+
+/// Heights of a map plus those of a body on the same cells.
+pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
+    let body = surface_gen::height_map(body, map.cells(), 0)?;
+    let heights = map.heights().iter().zip(body.heights()).map(|(a, b)| a + b).collect();
+    HeightMap::new(map.cells(), map.side(), heights)
+}
+
+/// Reads `[scene.surface]` and `[scene.body]`; the text says what was understood of a file.
+pub(crate) fn read_relief(
+    scene: &Entries<'_>,
+    system: System,
+    directory: &Path,
+) -> Read<(Relief, Option<String>)> {
+    let surface = scene.table("surface")?;
+    let body = scene.table("body")?;
+    let Some(surface) = surface else {
+        let Some(body) = body else {
+            return Err(scene
+                .trouble("nothing is pressed: there is neither [scene.surface] nor [scene.body]")
+                .with_help(
+                    "describe one: [scene.surface] with `kind = \"self_affine\"` or \"file\", or [scene.body] with `kind = \"sphere\"`",
+                ));
+        };
+        return Ok((Relief::Plain(read_body(&body, None, system)?), None));
+    };
+    if surface.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == Rough::File {
+        let (map, understood) = scan::read_map(surface, system, directory)?;
+        let map = match body {
+            None => map,
+            Some(body) => {
+                let body = read_body(&body, Some(map.side()), system)?;
+                add(&map, &body).map_err(|e| scene.trouble(e.to_string()))?
+            }
+        };
+        return Ok((Relief::Plain(Surface::Heights(Arc::new(map))), Some(understood)));
+    }
+    let rough = read_self_affine(&surface, system)?;
+    surface.known_only()?;
+    let relief = match body {
+        None => Relief::Plain(Surface::SelfAffine(rough)),
+        Some(body) => Relief::Sum { rough, body: read_body(&body, Some(rough.side), system)? },
+    };
+    Ok((relief, None))
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Rough {
+    SelfAffine,
+    File,
+}
+
+const ROUGH: [(&str, Rough); 2] = [("self_affine", Rough::SelfAffine), ("file", Rough::File)];
+
+fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
+    let length =
+        |key: &'static str| table.find(key).map(|e| e.positive(Dimension::LENGTH, system)).transpose();
+    let side = table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system)?;
+    let hurst = match table.one_of(&["fractal_dimension", "hurst"])? {
+        Some(("hurst", e)) => within(&e, e.number()?, 0.0, 1.0)?,
+        Some((_, e)) => 3.0 - within(&e, e.number()?, 2.0, 3.0)?,
+        None => {
+            return Err(table
+                .trouble("`fractal_dimension` is missing in [scene.surface]")
+                .with_help("add `fractal_dimension = 2.4`, or `hurst = 0.6`"));
+        }
+    };
+    let rms = table.require("rms_height", "\"1 um\"")?.positive(Dimension::LENGTH, system)?;
+    let short = length("shortest_wavelength")?;
+    let long = table.find("roll_off_wavelength");
+    let roll_off = long.as_ref().map(|e| e.positive(Dimension::LENGTH, system)).transpose()?;
+    if let (Some(entry), Some(long), Some(short)) = (&long, roll_off, short)
+        && long < short
+    {
+        return Err(entry
+            .trouble("`roll_off_wavelength` is below `shortest_wavelength`")
+            .with_help("the roll-off is the longest wave of the fractal range"));
+    }
+    let wavenumber = |wavelength: f64| 2.0 * PI / wavelength;
+    Ok(SelfAffine {
+        side,
+        hurst,
+        amplitude: Amplitude::RmsHeight(rms),
+        roll_off: roll_off.map(wavenumber),
+        short_cutoff: short.map(wavenumber),
+    })
+}
+
+fn within(entry: &crate::entries::Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
+    if (low..=high).contains(&value) {
+        Ok(value)
+    } else {
+        Err(entry
+            .trouble(format!("{value} is outside [{low}, {high}]"))
+            .with_help("D_f = 3 - H lies in [2, 3], H in [0, 1]"))
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Sphere,
+    Cone,
+    PowerLaw,
+    FlatCircle,
+    FlatSquare,
+    Sine,
+}
+
+const BODIES: [(&str, Kind); 6] = [
+    ("sphere", Kind::Sphere),
+    ("cone", Kind::Cone),
+    ("power_law", Kind::PowerLaw),
+    ("flat_circle", Kind::FlatCircle),
+    ("flat_square", Kind::FlatSquare),
+    ("sine", Kind::Sine),
+];
+
+/// A body; on a rough surface it has that surface's side.
+fn read_body(table: &Entries<'_>, given: Option<f64>, system: System) -> Read<Surface> {
+    let length = |key: &'static str| table.require(key, "\"1 mm\"")?.positive(Dimension::LENGTH, system);
+    let kind = table.require("kind", "\"sphere\"")?.choice(&BODIES)?;
+    let side = match (given, table.find("side")) {
+        (Some(_), Some(entry)) => {
+            return Err(entry
+                .trouble_at_key("`side` is given for the surface and for the body on it")
+                .with_help("remove it in [scene.body]: the square is that of [scene.surface]"));
+        }
+        (Some(side), None) => side,
+        (None, Some(entry)) => entry.positive(Dimension::LENGTH, system)?,
+        (None, None) => table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system)?,
+    };
+    let surface = match kind {
+        Kind::Sphere => Surface::Sphere { radius: length("radius")?, side },
+        Kind::Cone => Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, side },
+        Kind::PowerLaw => {
+            // Two lengths instead of a coefficient whose unit depends on the exponent.
+            let exponent = table.require("exponent", "4")?.positive_number()?;
+            let (depth, radius) = (length("depth")?, length("radius")?);
+            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, side }
+        }
+        Kind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, side },
+        Kind::FlatSquare => Surface::FlatSquare { side },
+        Kind::Sine => {
+            Surface::Sine { amplitude: length("amplitude")?, wavelength: length("wavelength")?, side }
+        }
+    };
+    table.known_only()?;
+    Ok(surface)
+}

@@ -1,0 +1,255 @@
+//! From a scene to its files.
+
+use crate::columns;
+use crate::error::{Error, Result};
+use crate::manifest;
+use crate::pictures;
+use crate::plan::{Cost, Plan};
+use crate::scene_file::SceneFile;
+use crate::store::Store;
+use crate::unit::{Unit, UnitResult};
+use analysis::{Column, Table, Value};
+use figures::{Header, Progress, write_csv};
+use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// Asked from any thread, between iterations: `true` means stop now.
+pub type Halt<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// Where and how a scene is run; nothing here changes a number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Options {
+    /// Directory of the results.
+    pub out: PathBuf,
+    /// Threads; each takes one model on one surface.
+    pub threads: usize,
+    /// Whether stored results are computed again.
+    pub fresh: bool,
+}
+
+/// What a run gave.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outcome {
+    /// Files, in the order written.
+    pub files: Vec<PathBuf>,
+    /// States in `results.csv`.
+    pub states: usize,
+    /// Loads that were refused or did not reach their tolerance.
+    pub failed: usize,
+    /// The reasons given, each once.
+    pub notes: Vec<String>,
+    /// Whether it was stopped before all loads were answered.
+    pub stopped: bool,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// What each model did: name, cost, bytes of field files. Seconds are of threads, stored ones included.
+    pub actual: Vec<(&'static str, Cost, u64)>,
+}
+
+/// Answers a scene: every model on every surface under every load, and writes what is asked for.
+///
+/// `results.csv` and `manifest.json` always; `patches.csv`, fields and curves where the scene asks for them. Finished models and
+/// surfaces are kept in `OUT/.units` and reused by the next run of the same scene. Where `stop` says so, the states so far are
+/// written and [`Outcome::stopped`] is true.
+///
+/// # Errors
+/// As [`crate::check`]; [`Error::Model`] for what only shows at full size; files that cannot be written.
+pub fn run(
+    scene: &SceneFile,
+    plan: &Plan,
+    options: &Options,
+    progress: &dyn Progress,
+    stop: Halt<'_>,
+) -> Result<Outcome> {
+    let start = Instant::now();
+    let store = Store::open(&options.out, options.fresh)?;
+    let columns = columns::columns(scene);
+    let units: Vec<Unit> = (0..scene.models.len())
+        .flat_map(|model| (0..scene.chance.surfaces).map(move |surface| Unit { model, surface }))
+        .collect();
+    let results = solve_all(scene, &units, &store, options, progress, columns.len(), stop)?;
+    let mut outcome = Outcome { stopped: false, ..Outcome::default() };
+    let mut table = Table::new(title(scene), columns);
+    let mut patches = patches_table(scene);
+    let note = table.columns().iter().position(|c| c.name == "note");
+    for (unit, result) in units.iter().zip(&results) {
+        let Some(result) = result else {
+            outcome.stopped = true;
+            continue;
+        };
+        outcome.stopped |= !result.whole;
+        outcome.failed += result.failed;
+        for row in &result.rows {
+            if let Some(Value::Text(text)) = note.and_then(|i| row.get(i))
+                && !outcome.notes.contains(text)
+            {
+                outcome.notes.push(text.clone());
+            }
+            table.push(row.clone()).map_err(Error::model("a row"))?;
+        }
+        for (state, areas) in &result.patches {
+            for area in areas {
+                let row = vec![
+                    unit.numerics(scene).name().into(),
+                    unit.surface.into(),
+                    (*state).into(),
+                    (*area).into(),
+                ];
+                patches.push(row).map_err(Error::model("a patch"))?;
+            }
+        }
+        outcome.files.extend(result.files.iter().map(|f| options.out.join(f)));
+    }
+    outcome.states = table.rows().len();
+    let header = header(scene);
+    let path = options.out.join("results.csv");
+    write_csv(&path, &table, &header)?;
+    outcome.files.insert(0, path);
+    if scene.asked.outputs.contact_patches {
+        let path = options.out.join("patches.csv");
+        write_csv(&path, &patches, &header)?;
+        outcome.files.push(path);
+    }
+    if scene.asked.curves {
+        outcome.files.extend(pictures::curves(scene, &table, &options.out)?);
+    }
+    outcome.actual = actual(scene, &units, &results, &table);
+    outcome.seconds = start.elapsed().as_secs_f64();
+    outcome.files.push(manifest::write(scene, plan, options, &outcome)?);
+    Ok(outcome)
+}
+
+fn solve_all(
+    scene: &SceneFile,
+    units: &[Unit],
+    store: &Store,
+    options: &Options,
+    progress: &dyn Progress,
+    columns: usize,
+    stop: Halt<'_>,
+) -> Result<Vec<Option<UnitResult>>> {
+    progress.begin(&title(scene), units.iter().map(|u| u.cost(scene)).sum());
+    let mut order: Vec<usize> = (0..units.len()).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(units[i].cost(scene)));
+    let results: Vec<OnceLock<Result<UnitResult>>> = units.iter().map(|_| OnceLock::new()).collect();
+    let next = AtomicUsize::new(0);
+    let failed = AtomicBool::new(false);
+    let halt = || failed.load(Ordering::Relaxed) || stop();
+    let work = || {
+        while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if halt() {
+                return;
+            }
+            let unit = &units[i];
+            let result = match store.load(unit, scene, columns) {
+                Some(stored) => {
+                    progress.advance(unit.cost(scene), true);
+                    Ok(stored)
+                }
+                None => unit.solve(scene, &options.out, &halt).and_then(|result| {
+                    if result.whole {
+                        store.save(unit, scene, &result)?;
+                        progress.advance(unit.cost(scene), false);
+                    }
+                    Ok(result)
+                }),
+            };
+            if result.is_err() {
+                failed.store(true, Ordering::Relaxed);
+            }
+            // Each index is taken once.
+            let _ = results[i].set(result);
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.max(1)).build().map_err(|e| {
+        Error::Argument {
+            name: "--threads",
+            reason: format!("{} threads are not granted ({e})", options.threads),
+        }
+    })?;
+    pool.broadcast(|_| work());
+    progress.end();
+    results.into_iter().map(|r| r.into_inner().transpose()).collect()
+}
+
+/// What the tables are called.
+pub(crate) fn title(scene: &SceneFile) -> String {
+    let name = scene.path.file_stem().map_or_else(|| "scene".into(), |n| n.to_string_lossy().into_owned());
+    format!("{name}: {}", scene.relief.describe())
+}
+
+fn header(scene: &SceneFile) -> Header {
+    let file =
+        scene.path.file_name().map_or_else(|| "scene.toml".into(), |n| n.to_string_lossy().into_owned());
+    let mut header = Header { command: format!("fractal-contact run {file}"), ..Header::default() };
+    for numerics in &scene.models {
+        header = header.with_sources(numerics.model().sources());
+    }
+    if !scene.comment().is_empty() {
+        header = header.with_note(scene.comment());
+    }
+    header = header.with_note(match scene.system {
+        crate::System::Si => "units: SI",
+        crate::System::None => "units: none; lengths, forces and moduli in the scene's own",
+    });
+    header = header.with_note(format!("modulus: {} (E*); side: {}", scene.modulus, scene.relief.side()));
+    for numerics in &scene.models {
+        header = header.with_note(format!("model: {numerics:?}"));
+    }
+    for line in crate::effects::effect_lines(&scene.effects) {
+        header = header.with_note(format!(
+            "effect {}: {} ({})",
+            line.name,
+            if line.on { "on" } else { "off" },
+            line.reason
+        ));
+    }
+    if scene.relief.is_random() {
+        header = header.with_note(format!("seed: {}", scene.chance.seed));
+    }
+    header
+}
+
+fn patches_table(scene: &SceneFile) -> Table {
+    let area = if scene.system == crate::System::Si { "m^2" } else { "scene" };
+    let column = |name, unit, meaning| Column { name, unit, meaning };
+    let columns = vec![
+        column("model", "-", "who answers"),
+        column("surface", "1", "number of the surface, from 0"),
+        column("state", "1", "number of the load, from 0"),
+        column("area", area, "of one connected contact, the largest first"),
+    ];
+    Table::new(format!("{}: connected contact areas", title(scene)), columns)
+}
+
+/// What each model did, summed over its rows.
+fn actual(
+    scene: &SceneFile,
+    units: &[Unit],
+    results: &[Option<UnitResult>],
+    table: &Table,
+) -> Vec<(&'static str, Cost, u64)> {
+    let column = |name: &str| table.columns().iter().position(|c| c.name == name);
+    let places = ["applications", "linear_solves", "fields", "field_bytes"].map(column);
+    let mut list: Vec<(&'static str, Cost, u64)> =
+        scene.models.iter().map(|m| (m.name(), Cost::default(), 0)).collect();
+    for (unit, result) in units.iter().zip(results) {
+        let (Some(result), Some((_, cost, bytes))) = (result, list.get_mut(unit.model)) else { continue };
+        cost.seconds += result.seconds;
+        *bytes += result.bytes;
+        for row in &result.rows {
+            let count = |place: Option<usize>| match place.and_then(|i| row.get(i)) {
+                Some(Value::Count(n)) => *n as f64,
+                _ => 0.0,
+            };
+            let [applications, linear_solves, fields, field_bytes] = places.map(count);
+            cost.applications += applications;
+            cost.linear_solves += linear_solves;
+            cost.fields += fields;
+            cost.field_bytes += field_bytes;
+        }
+    }
+    list
+}

@@ -1,0 +1,113 @@
+//! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
+
+use crate::entries::{Entries, Entry, Read, System};
+use contact_model::HeightMap;
+use std::path::Path;
+use surface_io::{
+    Crop, Decimal, Declared, Detrend, Dimension, Fill, Format, Quantity, Scan, Treatment, Unit,
+};
+
+/// The map, and what was understood of its file.
+pub(crate) fn read_map(table: Entries<'_>, system: System, directory: &Path) -> Read<(HeightMap, String)> {
+    let file = table.require("path", "\"heights.npy\"")?;
+    let path = directory.join(file.text()?);
+    let mut declared = Declared::default();
+    if let Some(entry) = table.find("format") {
+        declared.format =
+            Some(entry.choice(&[("npy", Format::Npy), ("text", Format::Text), ("xyz", Format::Xyz)])?);
+    }
+    let unit = |key: &'static str| -> Read<Option<Unit>> {
+        let Some(entry) = table.find(key) else { return Ok(None) };
+        let unit: Unit = entry.text()?.parse().map_err(|e| {
+            entry.trouble(format!("`{key}`: {e}")).with_help("a unit of length in quotes, such as \"nm\"")
+        })?;
+        Ok(Some(unit))
+    };
+    declared.unit = unit("unit")?;
+    declared.lateral_unit = unit("lateral_unit")?;
+    match table.one_of(&["cell", "width"])? {
+        Some(("cell", entry)) => declared.cell = Some(length(&entry, system)?),
+        Some((_, entry)) => declared.width = Some(length(&entry, system)?),
+        None => {}
+    }
+    if let Some(entry) = table.find("decimal") {
+        declared.decimal = entry.choice(&[("point", Decimal::Point), ("comma", Decimal::Comma)])?;
+    }
+    if let Some(entry) = table.find("missing") {
+        declared.missing = Some(entry.number()?);
+    }
+    if let Some(entry) = table.find("skip_lines") {
+        declared.skip_lines = entry.count(0)? as usize;
+    }
+    let treatment = read_treatment(&table, system)?;
+    table.known_only()?;
+    let wrong = |e: surface_io::Error| {
+        let trouble = file.trouble(e.to_string());
+        if e.problem().is_none() {
+            return trouble.with_help("a relative path counts from the folder of the scene");
+        }
+        trouble.with_help("`format`, `unit`, `cell`, `width`, `crop`, `fill`, `missing` in [scene.surface] say how it is meant")
+    };
+    let scan = Scan::read(&path, &declared).map_err(wrong)?;
+    let understood = scan.understood();
+    let metric = understood.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
+    let map = scan.map(&treatment).map_err(wrong)?;
+    if metric != (system == System::Si) {
+        let (found, scene) = if metric { ("a unit", "none") } else { ("no unit", "units") };
+        return Err(file
+            .trouble(format!("the heights have {found}, but the scene has {scene}"))
+            .with_help("say `unit = \"nm\"` for heights of a scene with units, `unit = \"none\"` with `units = \"none\"`"));
+    }
+    Ok((map, understood.to_string()))
+}
+
+fn length(entry: &Entry<'_>, system: System) -> Read<Quantity> {
+    let value = entry.positive(Dimension::LENGTH, system)?;
+    let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
+    Quantity::new(value, dimension).map_err(|e| entry.trouble(e.to_string()))
+}
+
+fn read_treatment(table: &Entries<'_>, system: System) -> Read<Treatment> {
+    let mut treatment = Treatment::default();
+    if let Some(entry) = table.find("crop") {
+        treatment.crop = Some(if entry.is_table() {
+            let window = entry.table()?;
+            let number =
+                |key: &'static str, least: u64| window.require(key, "0")?.count(least).map(|v| v as usize);
+            let crop = Crop::Window {
+                row: number("row", 0)?,
+                column: number("column", 0)?,
+                cells: number("cells", 1)?,
+            };
+            window.finish()?;
+            crop
+        } else {
+            entry.choice(&[("centre", Crop::Centre)])?
+        });
+    }
+    if let Some(entry) = table.find("fill") {
+        treatment.fill = Some(match entry.as_word() {
+            Some("neighbours") => Fill::Neighbours,
+            Some("plane") => Fill::Plane,
+            _ => {
+                let value = entry.quantity(Dimension::LENGTH, system).map_err(|trouble| {
+                    trouble.with_help("how holes are filled: \"neighbours\", \"plane\" or one height")
+                })?;
+                let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
+                Fill::Value(Quantity::new(value, dimension).map_err(|e| entry.trouble(e.to_string()))?)
+            }
+        });
+    }
+    if let Some(entry) = table.find("detrend") {
+        treatment.detrend = entry.choice(&[
+            ("none", Detrend::Nothing),
+            ("mean", Detrend::Mean),
+            ("plane", Detrend::Plane),
+            ("quadric", Detrend::Quadric),
+        ])?;
+    }
+    if let Some(entry) = table.find("cells") {
+        treatment.cells = Some(entry.count(1)? as usize);
+    }
+    Ok(treatment)
+}

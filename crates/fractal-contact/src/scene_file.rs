@@ -1,0 +1,342 @@
+//! A scene as it stands in a file.
+
+use crate::effects::read_effects;
+use crate::entries::{Entries, Entry, Read, System};
+use crate::error::{Error, Result};
+use crate::loads::{Prescribed, Request, read_request};
+use crate::numerics::{Numerics, read_models};
+use crate::outputs::{Asked, read_outputs};
+use crate::relief::{Relief, read_relief};
+use crate::trouble::Trouble;
+use contact_model::{Adhesion, Body, Boundary, Effects, Friction, Pair, Rheology, Scene};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use surface_io::Dimension;
+
+/// Longest scene; a longer file is something else.
+const LONGEST: u64 = 1 << 20;
+
+/// One question with everything that decides its answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// Where it was read.
+    pub path: PathBuf,
+    /// The file itself.
+    pub text: String,
+    /// Whether numbers carry units; without them results are in the scene's own.
+    pub system: System,
+    /// The models in the order named.
+    pub models: Vec<Numerics>,
+    /// What carries the relief.
+    pub relief: Relief,
+    /// Effective modulus E*.
+    pub modulus: f64,
+    /// Both bodies, where they are named.
+    pub pair: Option<Pair>,
+    /// Effects, off unless named.
+    pub effects: Effects,
+    /// What is asked of the models.
+    pub request: Request,
+    /// What is computed and stored.
+    pub asked: Asked,
+    /// Chance.
+    pub chance: Chance,
+    /// What was understood of the surface's file.
+    pub understood: Option<String>,
+    places: Places,
+}
+
+/// `[chance]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Chance {
+    /// The master seed.
+    pub seed: u64,
+    /// Number of surfaces drawn from it.
+    pub surfaces: usize,
+}
+
+/// Where things stand in the text.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+struct Places {
+    models: Vec<Range<usize>>,
+    outputs: Vec<(&'static str, Range<usize>)>,
+}
+
+impl SceneFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::File`] where it cannot be read, [`Error::Scene`] with the place of the first mistake.
+    pub fn read(path: &Path) -> Result<Self> {
+        let length = std::fs::metadata(path).map_err(Error::file("read", path))?.len();
+        if length > LONGEST {
+            let message = format!("{length} bytes: a scene is a short text of at most {LONGEST}");
+            return Err(Trouble::new(message).with_help("is this the right file?").placed(path, "").into());
+        }
+        let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
+        let Ok(text) = String::from_utf8(bytes) else {
+            let help = "`fractal-contact info FILE` says what a surface or a result holds";
+            return Err(Trouble::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());
+        };
+        Self::parse(path, text)
+    }
+
+    /// Reads a text; `path` is where messages say that it stands, and where its files are looked for.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with the place of the first mistake.
+    ///
+    /// ```
+    /// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\"]\nmodulus = 1\nforce = [0.001, 1]\n\
+    ///             [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n";
+    /// let scene = fractal_contact::SceneFile::parse("hertz.toml".as_ref(), text.into())?;
+    /// assert_eq!(scene.models[0].name(), "hertz");
+    /// assert_eq!(scene.request.count(), 2);
+    /// # Ok::<(), fractal_contact::Error>(())
+    /// ```
+    pub fn parse(path: &Path, text: String) -> Result<Self> {
+        let read = || -> Read<Self> {
+            let document = toml::de::DeTable::parse(&text).map_err(|e| syntax(&e))?;
+            let root = Entries::root(document.get_ref());
+            let scene = read_scene(&root, path.parent().unwrap_or(Path::new("")))?;
+            root.finish()?;
+            Ok(scene)
+        };
+        let mut scene = read().map_err(|trouble| trouble.placed(path, &text))?;
+        scene.path = path.to_owned();
+        scene.text = text;
+        Ok(scene)
+    }
+
+    /// The physics that one model is given for one surface.
+    ///
+    /// # Errors
+    /// As [`Relief::surface`].
+    pub fn scene(&self, numerics: &Numerics, seed: u64) -> contact_model::Result<Scene> {
+        Ok(Scene {
+            surface: self.relief.surface(numerics, seed)?,
+            modulus: self.modulus,
+            pair: self.pair,
+            effects: self.effects,
+            outputs: self.asked.outputs,
+        })
+    }
+
+    /// Seed of surface number `index`, the same that the figures use.
+    pub fn seed(&self, index: usize) -> u64 {
+        surface_gen::surface_seed(self.chance.seed, index as u64)
+    }
+
+    /// A mistake at the name of a model.
+    pub(crate) fn at_model(&self, index: usize, trouble: Trouble) -> Trouble {
+        self.placed(trouble, self.places.models.get(index).cloned())
+    }
+
+    /// A mistake of an output.
+    pub(crate) fn at_output(&self, name: &str, trouble: Trouble) -> Trouble {
+        self.placed(
+            trouble,
+            self.places.outputs.iter().find(|(n, _)| *n == name).map(|(_, span)| span.clone()),
+        )
+    }
+
+    fn placed(&self, trouble: Trouble, span: Option<Range<usize>>) -> Trouble {
+        let trouble = match span {
+            Some(span) => trouble.at(span),
+            None => trouble,
+        };
+        trouble.placed(&self.path, &self.text)
+    }
+
+    /// Whether it needs models that remember.
+    pub fn is_history(&self) -> bool {
+        matches!(self.request, Request::Path(_))
+    }
+
+    /// The comment at the head of the file: what it shows.
+    pub fn comment(&self) -> String {
+        let lines = self.text.lines().take_while(|l| l.starts_with('#'));
+        lines.map(|l| l.trim_start_matches('#').trim()).collect::<Vec<_>>().join(" ")
+    }
+}
+
+fn syntax(error: &toml::de::Error) -> Trouble {
+    let message = error.message().lines().collect::<Vec<_>>().join(", ");
+    let trouble = Trouble::new(message)
+        .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once");
+    match error.span() {
+        Some(span) => trouble.at(span),
+        None => trouble,
+    }
+}
+
+fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
+    let Some(scene) = root.table("scene")? else {
+        return Err(Trouble::new("there is no [scene]").with_help(
+            "a scene begins with [scene]: `models`, `modulus` and a load; `fractal-contact plan --help` shows one",
+        ));
+    };
+    let system = scene
+        .find("units")
+        .map_or(Ok(System::Si), |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
+    let options = root.table("models")?;
+    let models = read_models(&scene, options.as_ref())?;
+    let effects_table = root.table("effects")?;
+    let effects = read_effects(effects_table, system)?;
+    let outputs_table = root.table("outputs")?;
+    let output_places = places(outputs_table.as_ref());
+    let asked = read_outputs(outputs_table, system)?;
+    let (modulus, pair) = read_material(&scene, system)?;
+    let (relief, understood) = read_relief(&scene, system, directory)?;
+    let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
+    let chance = read_chance(root, &scene, &relief)?;
+    scene.finish()?;
+    let places =
+        Places { models: models.iter().map(|(_, entry)| entry.span()).collect(), outputs: output_places };
+    check_request(&request, &request_entry, &relief, &effects)?;
+    check_histories(&models, &request, &request_entry, &effects)?;
+    let models = models.into_iter().map(|(numerics, _)| numerics).collect();
+    Ok(SceneFile {
+        path: PathBuf::new(),
+        text: String::new(),
+        system,
+        models,
+        relief,
+        modulus,
+        pair,
+        effects,
+        request,
+        asked,
+        chance,
+        understood,
+        places,
+    })
+}
+
+fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
+    const NAMES: [&str; 9] = [
+        "stiffness",
+        "area",
+        "conductance",
+        "contact_patches",
+        "mean_gap",
+        "pressure",
+        "displacement",
+        "gap",
+        "curves",
+    ];
+    let Some(table) = table else { return Vec::new() };
+    NAMES.iter().filter_map(|name| Some((*name, table.entry(name)?.key_span()))).collect()
+}
+
+/// E*, from itself or from both bodies.
+fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>)> {
+    match scene.one_of(&["modulus", "bodies"])? {
+        Some(("modulus", entry)) => Ok((entry.positive(Dimension::PRESSURE, system)?, None)),
+        Some((_, entry)) => {
+            let values = entry.list();
+            let [first, second] = &values[..] else {
+                return Err(entry
+                    .trouble(format!("`bodies` names {}", values.len()))
+                    .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
+            };
+            let pair = Pair { first: read_body(first, system)?, second: read_body(second, system)? };
+            let modulus = pair.modulus().map_err(|e| entry.trouble(e.to_string()))?;
+            Ok((modulus, Some(pair)))
+        }
+        None => Err(scene.trouble("[scene] has no material").with_help(
+            "add `modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
+        )),
+    }
+}
+
+fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
+    if entry.is_text() {
+        return entry.choice(&[("rigid", Body::Rigid)]);
+    }
+    let table = entry.table()?;
+    let young = table.require("young", "\"70 GPa\"")?.positive(Dimension::PRESSURE, system)?;
+    let ratio = table.require("poisson", "0.33")?;
+    let poisson = ratio.number()?;
+    table.finish()?;
+    if !(0.0..=0.5).contains(&poisson) {
+        return Err(ratio
+            .trouble(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
+            .with_help("0.5 is incompressible"));
+    }
+    Ok(Body::Elastic { young, poisson })
+}
+
+fn read_chance(root: &Entries<'_>, scene: &Entries<'_>, relief: &Relief) -> Read<Chance> {
+    let Some(table) = root.table("chance")? else {
+        if relief.is_random() {
+            return Err(scene
+                .trouble("the surface is random and no seed is given")
+                .with_help("add [chance] with `seed = 1`: the same seed is the same surface"));
+        }
+        return Ok(Chance { seed: 0, surfaces: 1 });
+    };
+    let seed = table.require("seed", "1")?.count(0)?;
+    let surfaces = table.find("surfaces");
+    if let (Some(entry), false) = (&surfaces, relief.is_random()) {
+        return Err(entry
+            .trouble_at_key("`surfaces` is given, but nothing here is random")
+            .with_help("remove it: there is one surface"));
+    }
+    let surfaces = surfaces.map_or(Ok(1), |e| e.count(1))? as usize;
+    table.finish()?;
+    Ok(Chance { seed, surfaces })
+}
+
+/// Loads that contradict the boundary or the surface.
+fn check_request(request: &Request, entry: &Entry<'_>, relief: &Relief, effects: &Effects) -> Read<()> {
+    let Request::Loads(loads) = request else { return Ok(()) };
+    let periodic = effects.boundary == Boundary::Periodic;
+    match loads.prescribed {
+        Prescribed::Approach if periodic => Err(entry
+            .trouble_at_key("an approach with periodic boundaries: there is no first touch to count from")
+            .with_help(
+                "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
+            )),
+        Prescribed::MeanGap if !periodic => Err(entry
+            .trouble_at_key("a mean gap with free boundaries")
+            .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]")),
+        Prescribed::ForceBar if !relief.is_rough() || matches!(relief, Relief::Sum { .. }) => Err(entry
+            .trouble_at_key(
+                "`force_bar` counts forces in the rms height of a rough surface, which this body has not",
+            )
+            .with_help("prescribe `force` or `approach`")),
+        _ => Ok(()),
+    }
+}
+
+/// Effects that remember need a path and models that follow one.
+fn check_histories(
+    models: &[(Numerics, Entry<'_>)],
+    request: &Request,
+    entry: &Entry<'_>,
+    effects: &Effects,
+) -> Read<()> {
+    let remembers = effects.friction != Friction::Off || effects.rheology != Rheology::Elastic;
+    let path = matches!(request, Request::Path(_));
+    for (numerics, model) in models {
+        if numerics.is_history() && !path {
+            return Err(entry
+                .trouble_at_key(format!("\"{}\" follows a path, and here are loads one by one", numerics.name()))
+                .with_help("write [[scene.path]] with `time`, `force` (or `approach`) and `tangential_force` for each step"));
+        }
+        if !numerics.is_history() && path {
+            let known: Vec<&str> =
+                Numerics::ALL.iter().filter(|m| m.is_history()).map(Numerics::name).collect();
+            return Err(model
+                .trouble(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
+                .with_help(format!("models that follow a path: {}", known.join(", "))));
+        }
+    }
+    if path && !remembers {
+        return Err(entry
+            .trouble_at_key("a path, but no effect that depends on it")
+            .with_help("add `friction` or `rheology` to [effects], or prescribe `force` or `approach`"));
+    }
+    Ok(())
+}

@@ -1,0 +1,150 @@
+//! What is wrong with a scene, shown where it stands.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Longest part of a line that is shown.
+const SHOWN: usize = 100;
+
+/// A mistake in a scene: what, where and how to mend it. Its `Display` is a few lines with the place underlined.
+///
+/// ```
+/// use fractal_contact::Trouble;
+/// let trouble = Trouble::new("`force = -1`: expected a number > 0").at(0..10).with_help("press, do not pull");
+/// assert_eq!(
+///     trouble.placed("a.toml".as_ref(), "force = -1\n").to_string(),
+///     "error: `force = -1`: expected a number > 0\n --> a.toml:1:1\n  |\n1 | force = -1\n  | ^^^^^^^^^^\n  = help: press, do not pull"
+/// );
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Trouble {
+    message: String,
+    span: Option<Range<usize>>,
+    help: Option<String>,
+    place: Option<Place>,
+}
+
+/// Where the text stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Place {
+    path: PathBuf,
+    /// Line and column from 1, the line and how much of it is meant.
+    line: Option<(usize, usize, String, usize)>,
+}
+
+impl Trouble {
+    /// A mistake of the whole file.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), span: None, help: None, place: None }
+    }
+
+    /// At these bytes of the text; a place given before stays.
+    #[must_use]
+    pub fn at(mut self, span: Range<usize>) -> Self {
+        self.span.get_or_insert(span);
+        self
+    }
+
+    /// How to mend it.
+    #[must_use]
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// With the file and its text, so that the place can be shown.
+    #[must_use]
+    pub fn placed(mut self, path: &Path, text: &str) -> Self {
+        let line = self.span.clone().map(|span| excerpt(text, &span));
+        self.place.get_or_insert(Place { path: path.to_owned(), line });
+        self
+    }
+
+    /// What is wrong, without the place.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// Line of the text, from 1, where the mistake has a place.
+    pub fn line(&self) -> Option<usize> {
+        self.place.as_ref()?.line.as_ref().map(|(number, ..)| *number)
+    }
+}
+
+fn excerpt(text: &str, span: &Range<usize>) -> (usize, usize, String, usize) {
+    let mut at = span.start.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let begin = text[..at].rfind('\n').map_or(0, |i| i + 1);
+    let line = text[begin..].lines().next().unwrap_or_default();
+    let number = text[..begin].matches('\n').count() + 1;
+    let column = text[begin..at].chars().count() + 1;
+    let mut end = span.end.clamp(at, begin + line.len().max(at - begin));
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    let width = text[at..end].chars().count().max(1);
+    let shown: String = line.chars().map(|c| if c == '\t' { ' ' } else { c }).collect();
+    (number, column, shown, width)
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "error: {}", self.message)?;
+        let mut indent = 1;
+        if let Some(place) = &self.place {
+            let path = place.path.display();
+            if let Some((number, column, line, width)) = &place.line {
+                let label = number.to_string();
+                indent = label.len();
+                let blank = " ".repeat(indent);
+                // A long line is shown around the place.
+                let first = if column + width > SHOWN { column.saturating_sub(SHOWN / 2) } else { 0 };
+                let part: String = line.chars().skip(first).take(SHOWN).collect();
+                let before = column - 1 - first.min(column - 1);
+                let marks = "^".repeat((*width).min(SHOWN.saturating_sub(before)).max(1));
+                write!(
+                    f,
+                    "\n{blank}--> {path}:{number}:{column}\n{blank} |\n{label} | {}\n{blank} | {}{marks}",
+                    part.trim_end(),
+                    " ".repeat(before)
+                )?;
+            } else {
+                write!(f, "\n --> {path}")?;
+            }
+        }
+        if let Some(help) = &self.help {
+            write!(f, "\n{} = help: {help}", " ".repeat(indent))?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Trouble {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_counted_in_characters() {
+        let text = "a = 1\r\nµ = \"x\"\n";
+        let at = text.find('"').unwrap();
+        let shown = Trouble::new("m").at(at..at + 3).placed("f".as_ref(), text).to_string();
+        assert_eq!(shown, "error: m\n --> f:2:5\n  |\n2 | µ = \"x\"\n  |     ^^^");
+    }
+
+    #[test]
+    fn any_span_of_any_text_is_shown_in_a_few_lines() {
+        for text in ["", "\n", "é", "a\nb", "\n\n", &"x".repeat(5000)] {
+            for start in 0..(text.len() + 2).min(40) {
+                for end in [0, start, start + 1, text.len(), text.len() + 7] {
+                    let shown = Trouble::new("m").at(start..end).placed("f".as_ref(), text).to_string();
+                    assert!(shown.lines().count() <= 6 && shown.lines().all(|l| l.chars().count() < 140));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! One model and one surface under all loads, or along the whole path.
+
+use crate::columns::{self, State};
+use crate::error::{Error, Result};
+use crate::loads::Request;
+use crate::numerics::{AnyModel, Numerics};
+use crate::outputs::Format;
+use crate::relief::Relief;
+use crate::scene_file::SceneFile;
+use analysis::Value;
+use contact_model::{ContactState, Fields, Scene, Step, Stop, Surface};
+use figures::fnv1a_128;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Number of the format of stored units; it changes with anything that changes a row.
+pub(crate) const FORMAT: u32 = 1;
+
+/// One model and one surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unit {
+    /// Which of the scene's models.
+    pub model: usize,
+    /// Number of the surface.
+    pub surface: usize,
+}
+
+/// What it gave.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct UnitResult {
+    pub seconds: f64,
+    /// One row per state.
+    pub rows: Vec<Vec<Value>>,
+    /// Areas of the connected contacts, by number of the state.
+    pub patches: Vec<(usize, Vec<f64>)>,
+    /// Files of fields, relative to the directory of the results.
+    pub files: Vec<PathBuf>,
+    /// Bytes of these files.
+    pub bytes: u64,
+    /// Loads that were stopped short of their tolerance or refused.
+    pub failed: usize,
+    /// Whether all loads were answered.
+    pub whole: bool,
+}
+
+impl Unit {
+    pub fn numerics<'a>(&self, scene: &'a SceneFile) -> &'a Numerics {
+        &scene.models[self.model]
+    }
+
+    /// Everything that decides its numbers.
+    pub fn key(&self, scene: &SceneFile) -> String {
+        let relief = match &scene.relief {
+            Relief::Plain(Surface::Heights(map)) => {
+                let bytes: Vec<u8> = map.heights().iter().flat_map(|h| h.to_le_bytes()).collect();
+                format!("map {} {:?} {:032x}", map.cells(), map.side(), fnv1a_128(&bytes))
+            }
+            other => format!("{other:?}"),
+        };
+        let SceneFile { modulus, pair, effects, request, asked, system, .. } = scene;
+        format!(
+            "format {FORMAT} {} {}\nversion {}\nmodel {:?}\nrelief {relief}\nmodulus {modulus:?}\npair {pair:?}\neffects {effects:?}\n\
+             request {request:?}\noutputs {asked:?} {system:?}\nsurface {}\nseed {}\n",
+            figures::FORMAT,
+            bem3d::FORMAT,
+            env!("CARGO_PKG_VERSION"),
+            self.numerics(scene),
+            self.surface,
+            scene.seed(self.surface),
+        )
+    }
+
+    /// Relative cost, a guess that orders the work and moves the progress bar.
+    pub fn cost(&self, scene: &SceneFile) -> u64 {
+        let numerics = self.numerics(scene);
+        let n = numerics.size() as u64;
+        let states = scene.request.count() as u64;
+        match numerics {
+            Numerics::Bem3d(_) => 10 + n * n * states / 4,
+            Numerics::Equivalent(_) => 10 + n * n * (states + 49) / 4,
+            Numerics::Mdr1d(_) => 10 + n,
+            _ => 10,
+        }
+    }
+
+    /// Answers all loads in their order. A load that a model refuses has its row with the reason, and the others go on.
+    ///
+    /// # Errors
+    /// [`Error::Model`] where the scene cannot be prepared, and files that cannot be written. A stop is no error: the result is
+    /// then not whole.
+    pub fn solve(&self, scene: &SceneFile, out: &Path, stop: Stop<'_>) -> Result<UnitResult> {
+        let start = Instant::now();
+        let numerics = self.numerics(scene);
+        let what = || format!("{}, surface {}", numerics.name(), self.surface);
+        let seed = scene.seed(self.surface);
+        let physics = scene.scene(numerics, seed).map_err(Error::model(what()))?;
+        let mut result = UnitResult { whole: true, ..UnitResult::default() };
+        match (numerics.model(), &scene.request) {
+            (AnyModel::Contact(model), Request::Loads(_)) => {
+                let mut contact = model.prepare(&physics, seed).map_err(Error::model(what()))?;
+                self.loads(scene, contact.as_mut(), out, stop, &mut result)?;
+            }
+            (AnyModel::History(model), Request::Path(steps)) => {
+                let mut contact = model.prepare(&physics, seed).map_err(Error::model(what()))?;
+                self.path(scene, contact.as_mut(), steps, stop, &mut result);
+            }
+            // Reading a scene refuses these.
+            _ => result.whole = false,
+        }
+        result.seconds = start.elapsed().as_secs_f64();
+        Ok(result)
+    }
+
+    fn loads(
+        &self,
+        scene: &SceneFile,
+        contact: &mut dyn contact_model::PreparedContact,
+        out: &Path,
+        stop: Stop<'_>,
+        result: &mut UnitResult,
+    ) -> Result<()> {
+        let Request::Loads(loads) = &scene.request else { return Ok(()) };
+        let scales = contact.scales();
+        for (index, &asked) in loads.values.iter().enumerate() {
+            let mut state = State {
+                model: self.numerics(scene).name(),
+                surface: self.surface,
+                index,
+                asked,
+                scales: Some(scales),
+                ..State::default()
+            };
+            let solve = |contact: &mut dyn contact_model::PreparedContact| {
+                let load = loads.load(asked, &scales)?;
+                let found = contact.solve_until(load, stop)?;
+                let gap = scene.asked.mean_gap.then(|| contact.mean_gap(load)).transpose()?;
+                Ok((found, gap))
+            };
+            match solve(contact) {
+                Ok((mut found, gap)) => {
+                    state.mean_gap = gap;
+                    state.status = Some(found.report.status);
+                    self.keep(scene, &mut found, index, out, result)?;
+                    state.normal = Some(found);
+                }
+                Err(contact_model::Error::Stopped { .. }) => {
+                    result.whole = false;
+                    return Ok(());
+                }
+                Err(contact_model::Error::NotConverged { best }) => {
+                    result.failed += 1;
+                    state.status = Some(best.report.status);
+                    state.normal = Some(ContactState { fields: None, patches: None, ..*best });
+                }
+                Err(other) => {
+                    result.failed += 1;
+                    state.note = Some(other.to_string());
+                }
+            }
+            result.rows.push(columns::row(scene, &state));
+        }
+        Ok(())
+    }
+
+    fn path(
+        &self,
+        scene: &SceneFile,
+        contact: &mut dyn contact_model::History,
+        steps: &[Step],
+        stop: Stop<'_>,
+        result: &mut UnitResult,
+    ) {
+        for (index, step) in steps.iter().enumerate() {
+            let mut state = State {
+                model: self.numerics(scene).name(),
+                surface: self.surface,
+                index,
+                time: Some(step.time),
+                scales: Some(contact.scales()),
+                ..State::default()
+            };
+            let refused = match contact.advance_until(*step, stop) {
+                Ok(found) => {
+                    state.status = Some(found.normal.report.status);
+                    state.normal = Some(found.normal.clone());
+                    state.history = Some(found);
+                    false
+                }
+                Err(contact_model::Error::Stopped { .. }) => {
+                    result.whole = false;
+                    return;
+                }
+                Err(error) => {
+                    state.note = Some(error.to_string());
+                    true
+                }
+            };
+            result.rows.push(columns::row(scene, &state));
+            if refused {
+                // What comes after a step that failed would be another path.
+                result.failed += steps.len() - index;
+                return;
+            }
+        }
+    }
+
+    /// Writes the fields that are asked for and lets go of them.
+    fn keep(
+        &self,
+        scene: &SceneFile,
+        found: &mut ContactState,
+        index: usize,
+        out: &Path,
+        result: &mut UnitResult,
+    ) -> Result<()> {
+        if let Some(patches) = found.patches.as_ref() {
+            result.patches.push((index, patches.areas().to_vec()));
+        }
+        let Some(fields) = found.fields.take() else { return Ok(()) };
+        let Fields { pressure, displacement, gap } = &fields;
+        let asked = &scene.asked;
+        for (name, values, formats) in [
+            ("pressure", pressure, &asked.pressure),
+            ("displacement", displacement, &asked.displacement),
+            ("gap", gap, &asked.gap),
+        ] {
+            let Some(values) = values else { continue };
+            let side = values.len().isqrt();
+            for format in formats {
+                let model = self.numerics(scene).name();
+                let file = format!("{name}-{model}-{}-{index:03}.{}", self.surface, format.extension());
+                let path = out.join(&file);
+                match format {
+                    Format::Npy => figures::write_npy(&path, &[side as u64, side as u64], values)?,
+                    Format::Png => figures::write_grey(&path, side, values)?,
+                    Format::Vti => write_vti(&path, name, scene, side, values)?,
+                }
+                result.bytes += std::fs::metadata(&path).map_err(Error::file("read", &path))?.len();
+                result.files.push(file.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Errors where this model cannot answer the scene at all, found out on a small grid.
+    pub fn probe(&self, scene: &SceneFile) -> contact_model::Result<()> {
+        let reduced = self.numerics(scene).reduced(PROBE_CELLS, PROBE_ELEMENTS);
+        probe(scene, &reduced, *self.numerics(scene) != reduced)
+    }
+}
+
+fn write_vti(path: &Path, name: &str, scene: &SceneFile, side: usize, values: &[f64]) -> Result<()> {
+    let unit = match (scene.system, name) {
+        (crate::System::None, _) => "",
+        (crate::System::Si, "pressure") => "Pa",
+        (crate::System::Si, _) => "m",
+    };
+    let field = surface_io::Field { name, unit, values };
+    let cell = scene.relief.side() / side as f64;
+    let bytes = surface_io::vti(side, cell, &[field], surface_io::Encoding::Base64)
+        .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
+    Ok(figures::write_whole(path, &bytes)?)
+}
+
+/// Grid on which models are asked whether they can answer.
+const PROBE_CELLS: usize = 33;
+const PROBE_ELEMENTS: usize = 1 << 10;
+
+/// Whether a model takes a scene. On a reduced grid only what it does not support counts: numbers may be wrong for the grid's sake.
+pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics, reduced: bool) -> contact_model::Result<()> {
+    let seed = scene.seed(0);
+    let prepare = |physics: &Scene| match numerics.model() {
+        AnyModel::Contact(model) => model.prepare(physics, seed).map(|_| ()),
+        AnyModel::History(model) => model.prepare(physics, seed).map(|_| ()),
+    };
+    match scene.scene(numerics, seed).and_then(|physics| prepare(&physics)) {
+        Err(e @ contact_model::Error::Unsupported { .. }) => Err(e),
+        Err(e) if !reduced => Err(e),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,133 @@
+//! The program itself: exit codes, resume, the same bytes.
+
+use figures::{Progress, Silent};
+use fractal_contact::{Options, Plan, SceneFile, run};
+use std::path::Path;
+use std::process::{Command, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const SCENE: &str = "# Three surfaces by two models.\n[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\"]\nmodulus = 1\n\
+    force_bar = { from = 1e-2, to = 1, count = 3 }\n[scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.7\nrms_height = 0.01\n\
+    [outputs]\nstiffness = true\ncurves = true\n[models.bem3d]\ncells = 33\n[models.mdr1d]\nelements = 1024\n\
+    [chance]\nseed = 7\nsurfaces = 3\n";
+
+fn program(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fractal-contact")).args(arguments).output().unwrap()
+}
+
+fn texts(output: &Output) -> (String, String) {
+    (String::from_utf8(output.stdout.clone()).unwrap(), String::from_utf8(output.stderr.clone()).unwrap())
+}
+
+/// Counts units, and those found on disk.
+#[derive(Default)]
+struct Counter(AtomicUsize, AtomicUsize);
+
+impl Progress for Counter {
+    fn begin(&self, _: &str, _: u64) {}
+    fn advance(&self, _: u64, reused: bool) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        self.1.fetch_add(usize::from(reused), Ordering::Relaxed);
+    }
+    fn end(&self) {}
+}
+
+#[test]
+fn a_stopped_run_goes_on_and_ends_in_the_same_bytes() {
+    let scene = SceneFile::parse(Path::new("three.toml"), SCENE.into()).unwrap();
+    let plan = Plan::new(&scene).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let options = |name: &str, threads| Options { out: dir.path().join(name), threads, fresh: false };
+    let bytes = |name: &str| std::fs::read(dir.path().join(name).join("results.csv")).unwrap();
+    run(&scene, &plan, &options("whole", 1), &Silent, &contact_model::never).unwrap();
+
+    let counter = Counter::default();
+    let stop = || counter.0.load(Ordering::Relaxed) >= 2;
+    let outcome = run(&scene, &plan, &options("parts", 1), &counter, &stop).unwrap();
+    assert!(outcome.stopped && outcome.states >= 6 && outcome.states < 18, "{outcome:?}");
+    let manifest = std::fs::read_to_string(dir.path().join("parts/manifest.json")).unwrap();
+    assert!(manifest.contains("\"complete\": false"));
+
+    let counter = Counter::default();
+    let outcome = run(&scene, &plan, &options("parts", 2), &counter, &contact_model::never).unwrap();
+    assert!(!outcome.stopped && outcome.states == 18);
+    assert_eq!((counter.0.into_inner(), counter.1.into_inner()), (6, 2));
+    assert_eq!(bytes("whole"), bytes("parts"));
+}
+
+#[test]
+fn exit_codes_say_how_it_went() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("good.toml"), SCENE).unwrap();
+    std::fs::write(path("bad.toml"), SCENE.replace("hurst = 0.7", "hurst = 1.7")).unwrap();
+    // The fit of the paper ends at F_bar = 0.086.
+    let beyond = SCENE.replace("\"mdr1d\"", "\"power_law\"").replace("[models.mdr1d]\nelements = 1024\n", "");
+    std::fs::write(path("beyond.toml"), beyond).unwrap();
+    let out = |name: &str| program(&["run", &path(name), "--out", &path("out"), "--threads", "2"]);
+    let good = out("good.toml");
+    assert_eq!(good.status.code(), Some(0), "{}", texts(&good).1);
+    assert!(texts(&good).0.contains("results.csv") && texts(&good).1.contains("predicted"));
+    let bad = out("bad.toml");
+    assert_eq!(bad.status.code(), Some(2));
+    assert!(texts(&bad).1.contains("hurst = 1.7") && texts(&bad).1.contains("^^^"), "{}", texts(&bad).1);
+    let beyond = out("beyond.toml");
+    assert_eq!(beyond.status.code(), Some(3), "{}", texts(&beyond).1);
+    assert!(texts(&beyond).1.contains("is outside [0, 0.086]"));
+    assert_eq!(program(&["run", &path("nowhere.toml")]).status.code(), Some(1));
+}
+
+#[test]
+fn plans_surfaces_results_and_completions_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("a.toml"), SCENE).unwrap();
+    let (plan, _) = texts(&program(&["plan", &path("a.toml")]));
+    for words in [
+        "adhesion   off",
+        "33 x 33 cells",
+        "a line of 1024 elements",
+        "not asked for",
+        "estimate",
+        "of memory",
+    ] {
+        assert!(plan.contains(words), "{words}: {plan}");
+    }
+    for file in ["s.npy", "s.txt", "s.xyz", "s.vti"] {
+        let made = program(&[
+            "surface",
+            &path(file),
+            "--seed",
+            "1",
+            "--cells",
+            "48",
+            "--side",
+            "1 mm",
+            "--rms-height",
+            "1 um",
+        ]);
+        assert!(
+            made.status.success() && texts(&made).0.contains("rms height         1.000000e-6"),
+            "{:?}",
+            texts(&made)
+        );
+    }
+    let (info, _) = texts(&program(&["info", &path("s.txt")]));
+    assert!(info.contains("48") && info.contains("fractal dimension"), "{info}");
+    let (info, _) = texts(&program(&["info", &path("s.npy")]));
+    assert!(info.contains("no map as it is"), "{info}");
+    let (info, _) = texts(&program(&["info", &path("s.npy"), "--unit", "m", "--cell", "1 um"]));
+    assert!(info.contains("rms height         1.000000e-6"), "{info}");
+    program(&["run", &path("a.toml"), "--out", &path("out")]);
+    let (info, _) = texts(&program(&["info", &path("out/results.csv")]));
+    assert!(
+        info.contains("18 rows") && info.contains("column force [scene]") && info.contains("converged"),
+        "{info}"
+    );
+    let mixed = program(&["surface", &path("t.npy"), "--seed", "1", "--side", "1 mm"]);
+    assert!(!mixed.status.success() && texts(&mixed).1.contains("all lengths"), "{:?}", texts(&mixed));
+    let (script, _) = texts(&program(&["completions", "bash"]));
+    assert!(script.contains("fractal-contact"));
+    let (help, _) = texts(&program(&["--help"]));
+    assert!(help.contains("Examples:"));
+}

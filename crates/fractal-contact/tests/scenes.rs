@@ -1,0 +1,107 @@
+//! Every scene of `data/scenes` is run as it stands, and says what its comment promises.
+
+use figures::{CsvFile, Silent};
+use fractal_contact::{Options, Outcome, Plan, SceneFile, run};
+use std::path::{Path, PathBuf};
+
+/// Two exact solutions of one contact, each good to about 1e-12.
+const EXACT: f64 = 1e-9;
+/// Boundary elements of 129 cells a side against a smooth body that spans a third of them: second order of the cell over the contact.
+const CELLS: f64 = 0.02;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes")
+}
+
+fn solved(name: &str) -> (Outcome, CsvFile, tempfile::TempDir) {
+    let scene = SceneFile::read(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
+    let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}"));
+    assert!(!plan.shows.is_empty(), "{name} says nothing");
+    let dir = tempfile::tempdir().unwrap();
+    let options = Options { out: dir.path().into(), threads: 2, fresh: false };
+    let outcome = run(&scene, &plan, &options, &Silent, &contact_model::never)
+        .unwrap_or_else(|e| panic!("{name}: {e}"));
+    let file = CsvFile::read(&dir.path().join("results.csv")).unwrap();
+    assert!(!outcome.stopped && outcome.states > 0);
+    (outcome, file, dir)
+}
+
+/// A column of one model, by state.
+fn column(file: &CsvFile, model: &str, name: &str) -> Vec<f64> {
+    let models = file.texts("model").unwrap();
+    let values = file.numbers(name).unwrap();
+    models.iter().zip(values).filter(|(m, v)| **m == model && v.is_some()).filter_map(|(_, v)| v).collect()
+}
+
+fn assert_close(file: &CsvFile, name: &str, models: [&str; 2], tolerance: f64) {
+    let [a, b] = models.map(|m| column(file, m, name));
+    assert!(!a.is_empty() && a.len() == b.len(), "{name}: {a:?} {b:?}");
+    for (a, b) in a.iter().zip(&b) {
+        approx::assert_relative_eq!(*a, *b, max_relative = tolerance, epsilon = tolerance * 1e-12);
+    }
+}
+
+#[test]
+fn every_scene_is_run_and_named_in_the_readme() {
+    let readme = std::fs::read_to_string(folder().join("README.md")).unwrap();
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder()).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if name.ends_with(".toml") {
+            count += 1;
+            assert!(readme.contains(&format!("`{name}`")), "{name} is not in the README");
+            let (outcome, _, dir) = solved(&name);
+            // The pull-off is meant to be refused, once by each of two models.
+            let allowed = if name == "jkr-pull-off.toml" { 2 } else { 0 };
+            assert_eq!(outcome.failed, allowed, "{name}: {:?}", outcome.notes);
+            let manifest = std::fs::read_to_string(dir.path().join("manifest.json")).unwrap();
+            assert!(manifest.contains("\"complete\": true") && manifest.contains("citation"));
+            for file in &outcome.files {
+                assert!(file.is_file(), "{}", file.display());
+            }
+        }
+    }
+    assert!(count >= 8);
+}
+
+#[test]
+fn a_ball_is_the_same_for_four_models() {
+    let (_, file, _dir) = solved("ball-on-plate.toml");
+    for name in ["approach", "stiffness", "area"] {
+        assert_close(&file, name, ["hertz", "power_law_body"], EXACT);
+        assert_close(&file, name, ["hertz", "mdr1d"], EXACT);
+    }
+    assert_close(&file, "approach", ["hertz", "bem3d"], CELLS);
+    assert_close(&file, "stiffness", ["hertz", "bem3d"], CELLS);
+}
+
+#[test]
+fn adhesion_and_friction_agree_between_closed_forms_and_springs() {
+    let (outcome, file, _dir) = solved("jkr-pull-off.toml");
+    for name in ["force", "stiffness", "area"] {
+        assert_close(&file, name, ["jkr", "mdr1d"], EXACT);
+    }
+    assert!(outcome.notes.iter().all(|n| n.contains("is outside")), "{:?}", outcome.notes);
+    let (_, file, _dir) = solved("cattaneo-mindlin-loop.toml");
+    for name in ["tangential_displacement", "dissipated", "stick_radius"] {
+        assert_close(&file, name, ["cattaneo_mindlin", "mdr1d_partial_slip"], 1e-8);
+    }
+}
+
+#[test]
+fn creep_ends_at_the_relaxed_indentation() {
+    let (_, file, _dir) = solved("viscoelastic-indentation.toml");
+    let d = column(&file, "mdr1d_viscoelastic", "approach");
+    let hertz = |modulus: f64| (3.0 * 2.0 / (4.0 * modulus * 0.01_f64.sqrt())).powf(2.0 / 3.0);
+    // Glassy: E* (1 + 1.5 + 0.8). After 30 s some per cent are left to creep.
+    approx::assert_relative_eq!(d[0], hertz(4e6 * 3.3), max_relative = EXACT);
+    let last = d[d.len() - 1];
+    assert!(last < hertz(4e6) && last > 0.9 * hertz(4e6));
+    assert!(d.windows(2).all(|w| w[1] >= w[0]));
+}
+
+#[test]
+fn a_wave_is_that_of_westergaard() {
+    let (_, file, _dir) = solved("wave.toml");
+    assert_close(&file, "mean_gap", ["westergaard", "bem3d"], CELLS);
+}
