@@ -16,6 +16,8 @@
 //!   Names that end in `_bar` are normalised ([`Scales`] is the only place that does it).
 //! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative derivative of the force in it.
 //! * What depends on the path of the loads (friction, rheology) is a [`History`], taken [`Step`] by step.
+//! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: not asked for, not computed, and the [`Work`] in
+//!   the report shows it.
 //! * `None` means "this model does not claim it" or "not asked for". It is never NaN and never a silent 0.
 //!
 //! ```

@@ -2,7 +2,8 @@ use super::*;
 use crate::{Mdr1d, PartialSlip, Viscoelastic};
 use approx::assert_relative_eq;
 use contact_model::{
-    Adhesion, Body, Conductance, Pair, PronySeries, Relaxing, SelfAffine, SolveReport, Stop, Surface,
+    Adhesion, Body, Conductance, ContactState, Pair, PreparedContact, PronySeries, Relaxing, SelfAffine,
+    SolveReport, Surface,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -356,4 +357,32 @@ fn what_the_wrapper_lacks_is_refused() {
         assert!(matches!(model.prepare(&sliding(sphere()), 0), Err(Error::Domain { .. })));
     }
     assert!(equivalent(8).profile(&sliding(sphere()), 0, 0.0).is_err());
+}
+
+#[test]
+fn a_straight_piece_is_the_sum_of_its_parts() {
+    // Cut anywhere, a path ends in the same state, to what the table knows between its nodes.
+    let run = |cuts: &[f64]| {
+        let mut contact = equivalent(16).prepare(&sliding(rough()), 5).unwrap();
+        let unit = contact.scales().height.unwrap();
+        let mut from = [0.0, 0.0];
+        for corner in [[1.0, 0.05], [1.0, -0.03], [2.0, 0.06], [0.5, 0.01]] {
+            for cut in cuts.iter().chain(&[1.0]) {
+                let [d, u] = [0, 1].map(|i| from[i] + cut * (corner[i] - from[i]));
+                let tangential = Tangential::Displacement(u * unit);
+                contact.advance(Step { time: 0.0, normal: Load::Approach(d * unit), tangential }).unwrap();
+            }
+            from = corner;
+        }
+        let last = Tangential::Displacement(from[1] * unit);
+        let step = Step { time: 0.0, normal: Load::Approach(from[0] * unit), tangential: last };
+        let tangential = contact.advance(step).unwrap().tangential.unwrap();
+        [tangential.force, tangential.dissipated]
+    };
+    let whole = run(&[]);
+    for cuts in [&[0.5][..], &[0.1, 0.7], &[0.01, 0.02, 0.5, 0.99]] {
+        for (a, b) in run(cuts).into_iter().zip(whole) {
+            assert_relative_eq!(a, b, max_relative = 2e-4);
+        }
+    }
 }
