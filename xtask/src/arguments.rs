@@ -29,7 +29,7 @@ Results go to out/ (--out). Finished surfaces are kept in out/.units and reused 
 interruption loses at most the surfaces in flight, and the same command resumes. The same command gives the same bytes of CSV
 for any number of threads; times and the machine are in manifest.json.
 
-Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge or stored numbers differ.";
+Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge, stored numbers differ or a hard case fails.";
 
 const BENCH: &str = "\
 Examples:
@@ -94,6 +94,8 @@ pub enum Command {
     Audit(Audit),
     /// A small fixed run of Figs. 2 and 6 against the numbers in data/reference (for continuous integration).
     CheckReference(Reference),
+    /// Hard cases: why each is hard, what is asserted, the figure reached (stability.csv, stability.md).
+    Stability(StabilityArguments),
 }
 
 impl Command {
@@ -114,6 +116,7 @@ impl Command {
             Self::Audit(_) => "audit",
             Self::Bench(_) => "bench",
             Self::CheckReference(_) => "check-reference",
+            Self::Stability(_) => "stability",
         }
     }
 
@@ -133,6 +136,7 @@ impl Command {
             Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),
             Self::AccuracyCost(a) => request.out = Some(a.out.clone()),
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
+            Self::Stability(a) => request.out = Some(a.out.clone()),
         }
         request
     }
@@ -591,6 +595,17 @@ pub struct Reference {
     pub out: PathBuf,
 }
 
+/// Flags of the hard cases.
+#[derive(Debug, Args)]
+pub struct StabilityArguments {
+    /// Larger grids, more surfaces and loads: minutes instead of seconds.
+    #[arg(long)]
+    pub thorough: bool,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -653,6 +668,7 @@ mod tests {
             "bench --threads -1",
             "bench --method magic",
             "bench --preset paper",
+            "stability --preset quick",
             "reproduce-fig2 --unknown",
             "",
         ] {

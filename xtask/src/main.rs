@@ -1,10 +1,10 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `reproduce-two-cases`, `accuracy-cost`, `check-reference`.
+//! `reproduce-two-cases`, `accuracy-cost`, `check-reference`, `stability`.
 //!
 //! Argument parsing, progress and exit codes; the figures are in the crate `figures`.
 //!
-//! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge or
-//! stored numbers differ.
+//! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
+//! numbers differ or a hard case fails.
 
 mod arguments;
 mod progress;
@@ -31,6 +31,9 @@ fn main() -> ExitCode {
 fn execute(command: Command) -> Result<ExitCode> {
     if let Command::CheckReference(options) = command {
         return check_reference(options.bless, &options.out);
+    }
+    if let Command::Stability(options) = &command {
+        return stability(options.thorough, &options.out);
     }
     if let Command::Bench(options) = &command {
         return bench(options);
@@ -59,7 +62,7 @@ fn execute(command: Command) -> Result<ExitCode> {
             println!("{summary}");
             vec![outcome]
         }
-        Command::Bench(_) | Command::CheckReference(_) => Vec::new(),
+        Command::Bench(_) | Command::CheckReference(_) | Command::Stability(_) => Vec::new(),
     };
     let typed: Vec<String> = std::env::args().skip(1).collect();
     let manifest =
@@ -185,6 +188,25 @@ fn line(fields: &[String; figures::BENCH_COLUMNS.len()]) -> String {
         _ => field(name).to_owned(),
     };
     PRINTED.map(|(name, width)| format!("{:>width$}", short(name))).join(" ")
+}
+
+/// Prints the table of hard cases; one that fails does not stop the others.
+fn stability(thorough: bool, out: &Path) -> Result<ExitCode> {
+    let effort = if thorough { figures::Effort::Thorough } else { figures::Effort::Quick };
+    let (verdicts, files) = figures::hard_cases(&figures::cases(), effort, out, &Reporter::new())?;
+    for v in &verdicts {
+        let figure = v.figure.map_or_else(|| "no figure".to_owned(), |f| format!("{f:.1e}"));
+        println!("{:<6}  {:<38} {figure:>9} of {:.0e}", v.status.as_str(), v.case.name, v.case.bound);
+        println!("        why: {}", v.case.why);
+        println!("        asserted: {}", v.case.asserted);
+        v.broken.iter().for_each(|line| println!("        broken: {line}"));
+    }
+    for file in &files {
+        println!("{}", file.display());
+    }
+    let failed = verdicts.iter().filter(|v| !v.passed()).count();
+    println!("{} of {} hard cases pass", verdicts.len() - failed, verdicts.len());
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }
 
 fn check_reference(bless: bool, out: &Path) -> Result<ExitCode> {
