@@ -87,7 +87,11 @@ fn surfaces_are_taken_or_refused() {
 /// The effects that a model has for a surface.
 fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     let round = !matches!(surface, Surface::SelfAffine(_) | Surface::Line { .. });
-    effect == "adhesion" && (model == "jkr" || (model == "mdr1d" && round))
+    match effect {
+        "boundary" => model == "bem3d",
+        "adhesion" => model == "jkr" || (model == "mdr1d" && round),
+        _ => false,
+    }
 }
 
 /// One of each effect, by a word of its refusal.
