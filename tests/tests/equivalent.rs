@@ -292,3 +292,46 @@ fn history_in_time_and_in_load_give_the_same_rough_contact() {
     let (coarse, fine) = (error(10), error(40));
     assert!(fine < 0.1 * coarse && fine < 1e-3, "{coarse:e} {fine:e}");
 }
+
+/// Surfaces with ties, faces, steps, needles and pits: k(d) jumps or stands still, and a profile is still there.
+#[test]
+fn hard_surfaces_have_profiles() {
+    let cells = 12;
+    let from_middle = |x: usize, y: usize| (x as f64 - 5.5).hypot(y as f64 - 5.5);
+    let reliefs: [&dyn Fn(usize, usize) -> f64; 9] = [
+        &|_, _| 0.0,
+        &|x, _| if x < 6 { 0.0 } else { -0.01 },
+        &|x, y| if (x, y) == (5, 7) { -10.0 } else { 0.0 },
+        &|x, y| if (x, y) == (5, 7) { 1.0 } else { 0.0 },
+        &|x, y| if (x + y) % 2 == 0 { 0.0 } else { -1e-3 },
+        &|x, y| -(((x * 7 + y * 13) % 11) as f64) * 0.01,
+        &|x, y| -(from_middle(x, y) / 2.0).floor() * 0.01,
+        &|x, _| x as f64 * 0.01,
+        &|x, y| 1e-6 * ((x * 31 + y * 17) % 29) as f64,
+    ];
+    let model = Equivalent { per_decade: 8, ..Equivalent::new(Bem3d::default()) };
+    for (which, relief) in reliefs.into_iter().enumerate() {
+        let surface = Surface::Heights(std::sync::Arc::new(tests::map(cells, 1.0, relief).unwrap()));
+        for force in [1e-6, 1e-3, 0.1] {
+            let mut slides = model.prepare(&sliding(surface.clone()), 0).unwrap();
+            for (normal, share) in [(1.0, 0.5), (3.0, -0.9), (2.0, 1.0), (0.0, 0.0), (1.0, 0.3)] {
+                let step = Step {
+                    time: 0.0,
+                    normal: Load::Force(normal * force),
+                    tangential: Tangential::Force(share * MU * normal * force),
+                };
+                let state =
+                    slides.advance(step).unwrap_or_else(|error| panic!("{which} {force} {normal}: {error}"));
+                assert!(state.tangential.unwrap().displacement.is_finite());
+            }
+            let mut creeps = model.prepare(&creeping(surface.clone()), 0).unwrap();
+            let mut last = 0.0;
+            for (time, share) in [(0.0, 1.0), (1.0, 1.0), (10.0, 2.0), (1e3, 2.0)] {
+                let state = creeps.advance(Step::normal(time, Load::Force(share * force))).unwrap();
+                let d = state.normal.approach.unwrap();
+                assert!(d >= last, "{which} {force} {time}");
+                last = d;
+            }
+        }
+    }
+}

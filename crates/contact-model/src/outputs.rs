@@ -44,7 +44,7 @@ impl Outputs {
 /// // A circle of radius 1 (k = 2 E* a) between bodies of resistivity 1: Holm's constriction, Lambda = 2.
 /// let electrical = Conductance::Electrical { first: 1.0, second: 1.0 };
 /// assert_eq!(electrical.of(2.0, 1.0)?, Some(2.0));
-/// // In heat, conductivities of 2 and 2: four times as much... the resistivities are halves.
+/// // In heat, conductivities of 2 (resistivities of 1/2): twice as much.
 /// assert_eq!(Conductance::Thermal { first: 2.0, second: 2.0 }.of(2.0, 1.0)?, Some(4.0));
 /// assert_eq!(Conductance::Off.of(2.0, 1.0)?, None);
 /// # Ok::<(), contact_model::Error>(())
