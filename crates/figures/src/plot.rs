@@ -101,6 +101,12 @@ impl Picture {
         self
     }
 
+    /// The legend in the lower left corner, which falling curves leave free.
+    pub(crate) fn with_legend_at_lower_left(mut self) -> Self {
+        self.corner = LegendPosition::InsideBottomLeft;
+        self
+    }
+
     pub(crate) fn with_size(mut self, width: f64, height: f64) -> Self {
         self.layout = self.layout.with_width(width).with_height(height);
         self

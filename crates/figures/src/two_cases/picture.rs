@@ -79,8 +79,10 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
     let solved = || rows.iter().filter(|r| r.1 == "bem3d").map(|r| r.2);
     let (x, y) = (logarithmic(solved().map(|p| p.0)), logarithmic(solved().map(|p| p.1)));
     let mut picture = Picture::new(x, y, "force  F / (E* h L)", label)
-        .with_title("Free and periodic, fractal and with a roll-off")
-        .with_legend_below();
+        .with_title("Free and periodic, fractal and with a roll-off");
+    if name != NAME {
+        picture = picture.with_legend_at_lower_left();
+    }
     let circle = MarkerShape::Circle;
     for of in CASES {
         let points = |name: &str, floor: bool| -> Vec<(f64, f64)> {
@@ -94,7 +96,7 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
         picture.line(&points("persson", false), of.color(), 1.2, &LineStyle::Dashed);
         picture.line(&points("greenwood_williamson", false), of.color(), 1.2, &LineStyle::Dotted);
     }
-    picture.legend("dashed: Persson; dotted: Greenwood, Williamson", "#444444", Key::Dashed);
+    picture.legend("Persson; dotted: Greenwood, Williamson", "#444444", Key::Dashed);
     if rows.iter().any(|r| r.3) {
         picture.legend("fewer than 10 contact cells", "", Key::Open);
     }
