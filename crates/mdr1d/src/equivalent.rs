@@ -126,7 +126,7 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
         &[
             Source {
                 citation: "V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction, Springer (2015)",
-                what: "springs with Coulomb's limit (Ch. 5), springs that relax (Ch. 7), profiles of contacts of any shape from k(d) (Ch. 10)",
+                what: "springs with Coulomb's limit (Ch. 5), springs that relax (Ch. 7), profiles of contacts of any shape from their k(d)",
             },
             Source {
                 citation: "J. Jaeger, Arch. Appl. Mech. 65, 478 (1995); M. Ciavarella, Int. J. Solids Struct. 35, 2349 (1998)",
