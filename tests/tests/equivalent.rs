@@ -116,7 +116,8 @@ fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, 
         let u = share * d * MU / shear;
         let step = Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::Displacement(u) };
         let state = history.advance(step).unwrap();
-        assert_eq!(state.normal.force.to_bits(), top.force.to_bits(), "the normal part is the model's own");
+        // The normal part is the model's own, to its tolerance: a warm start may differ.
+        assert_relative_eq!(state.normal.force, top.force, max_relative = 1e-6);
         let tangential = state.tangential.unwrap();
         let below = direct.solve(Load::Approach((1.0 - share) * d)).unwrap();
         let force = (tangential.force - MU * (top.force - below.force)) / (MU * top.force);

@@ -20,11 +20,11 @@ const NAME: &str = "equivalent";
 /// Friction or rheology of any surface that a model M can press, rough ones too, through the equivalent profile of M's own k(d).
 ///
 /// M solves the normal problem under the scene's surface with every effect off, once per node of a table, and under each step's load; its
-/// states give a [`Tabulated`] profile, and that the springs of [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with
+/// states give a [`Tabulated`] profile, and this carries the springs of [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with
 /// [`contact_model::Pair`]) or the relaxing ones of [`crate::Viscoelastic`] (any [`Rheology`] while the contact grows). One effect at a time.
 /// M itself never sees it. Outputs of M pass through: area, fields, patches, conductance, each of the step's own contact.
 ///
-/// **The normal part is M's own**, to the last bit, for an elastic material. Tangential results are those of the Cattaneo-Mindlin and
+/// **The normal part is a state that M has solved for this very load**, for an elastic material. Tangential results are those of the Cattaneo-Mindlin and
 /// Ciavarella-Jaeger approximation: exact for round contacts, a few per cent for others. They need a contact that grows
 /// with the load, so that k(d) never falls: checked at every state, [`Error::OutOfRange`] otherwise. Viscoelastic ones are exact for any shape
 /// while the contact grows in time; that is checked as in [`crate::Viscoelastic`]. `contact_radius` and `stick_radius` are those of
