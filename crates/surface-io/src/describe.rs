@@ -27,7 +27,7 @@ pub struct Description {
     pub rms_height: f64,
     /// Root mean square slope from differences of neighbouring cells.
     pub rms_slope: f64,
-    /// Spectrum averaged over rings: (q, C_2D), two-sided, in 1/length and length^4.
+    /// Spectrum averaged over rings 1 to N/2: (q, C_2D), two-sided, in 1/length and length^4.
     pub spectrum: Vec<(f64, f64)>,
     /// Hurst exponent of the spectrum; `None` where too few rings lie in the range of the fit (below 40 cells a side) or the map is flat.
     pub hurst: Option<f64>,
@@ -106,14 +106,21 @@ impl fmt::Display for Description {
                     f,
                     "fractal dimension  {d:.3} (fitted to waves of length {longest:.3e} to {shortest:.3e})"
                 )?;
-                if (2.0..=3.0).contains(&d) {
-                    Ok(())
-                } else {
-                    write!(f, "; outside 2 to 3: not self-affine there")
-                }
+                let outside =
+                    if (2.0..=3.0).contains(&d) { "" } else { "; outside 2 to 3: not self-affine there" };
+                f.write_str(outside)?;
             }
-            None => write!(f, "fractal dimension  not determined: too few waves, or no relief"),
+            None => write!(f, "fractal dimension  not determined: too few waves, or no relief")?,
         }
+        if !self.spectrum.is_empty() {
+            write!(f, "\nspectrum           wavelength, C_2D")?;
+        }
+        // Rings 1, 2, 4, ...: one for each octave.
+        for ring in (0..).map(|k| 1_usize << k).take_while(|&ring| ring <= self.spectrum.len()) {
+            let (q, c) = self.spectrum[ring - 1];
+            write!(f, "\n                   {:.3e}  {c:.3e}", TAU / q)?;
+        }
+        Ok(())
     }
 }
 

@@ -1,5 +1,7 @@
 //! The one error type of this crate: which file, where in it, which value, what to do.
 
+mod shown;
+
 use crate::format::Format;
 use crate::quantity::QuantityError;
 use std::fmt;
@@ -377,129 +379,6 @@ impl std::error::Error for Error {
         match self {
             Self::System { source, .. } => Some(source),
             Self::Content { problem, .. } => problem.source(),
-        }
-    }
-}
-
-impl fmt::Display for Problem {
-    #[allow(clippy::too_many_lines)] // One arm per problem is the plainest table of them.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => write!(f, "no data in it"),
-            Self::NotAFile => write!(f, "not a regular file: its length is needed before it is read"),
-            Self::TooLarge { bytes, largest } => {
-                write!(f, "{bytes} bytes: at most {largest} are read; raise largest_bytes for more")
-            }
-            Self::Foreign { what, remedy } => write!(f, "looks like {what}: {remedy}"),
-            Self::NotOfFormat { said, found } => {
-                write!(f, "said to be {said}, but the content is {found}: correct the name or the format")
-            }
-            Self::Ambiguous { lines } => write!(
-                f,
-                "{lines} lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\""
-            ),
-            Self::Binary { offset, byte } => write!(
-                f,
-                "byte 0x{byte:02x} at offset {offset} does not occur in text: expected numbers as text, or an NPY file"
-            ),
-            Self::Header { offset, expected } => {
-                write!(f, "header of an NPY file, offset {offset}: expected {expected}")
-            }
-            Self::Type { found } => write!(
-                f,
-                "numbers of type {found}: expected float64, float32, float16 or integers; numpy's astype('f8') converts"
-            ),
-            Self::Shape { found } => {
-                write!(f, "an array of {} dimensions {found:?}: expected two, rows and columns", found.len())
-            }
-            Self::Length { rows, columns, expected, found } => {
-                let what = if *expected > u128::from(*found) { "cut short" } else { "more than one array?" };
-                write!(
-                    f,
-                    "{found} bytes after the header: {rows} x {columns} numbers take {expected} ({what})"
-                )
-            }
-            Self::Number { place, text, kind } => {
-                let remedy = match kind {
-                    NumberKind::None => {
-                        "expected a number (comments begin with # or %; skip_lines leaves out a heading)"
-                    }
-                    NumberKind::DecimalComma => "a decimal comma? say decimal = \"comma\"",
-                    NumberKind::Two => {
-                        "two numbers between two delimiters: one delimiter per file, and decimal commas need decimal = \"comma\""
-                    }
-                    NumberKind::TooLarge => "beyond the range of double precision",
-                };
-                write!(f, "{place}: {text:?}: {remedy}")
-            }
-            Self::Infinite { place, value } => {
-                write!(f, "{place}: {value}: expected a finite height; write nan where nothing was measured")
-            }
-            Self::Inexact { place, value } => {
-                write!(f, "{place}: {value} is not a double: convert to float64 and decide what is rounded")
-            }
-            Self::Ragged { line, found, expected, first } => {
-                write!(f, "line {line} has {found} values: expected {expected} as in line {first}")
-            }
-            Self::NotPoints { line, found } => {
-                write!(f, "line {line} has {found} values: expected x, y and z of one point")
-            }
-            Self::Coordinate { axis, point } => {
-                write!(f, "point {point} has no {axis}: expected x, y and z of each point (z may be missing)")
-            }
-            Self::Duplicate { first, second, at: [x, y] } => {
-                write!(
-                    f,
-                    "points {first} and {second} are both at x = {x}, y = {y}: expected one height for each place"
-                )
-            }
-            Self::Irregular { axis, value, origin, spacing } => write!(
-                f,
-                "{axis} = {value} is off the grid {axis} = {origin} + i * {spacing}: expected points of a regular grid; say cell where noise hides the spacing"
-            ),
-            Self::Sparse { points, rows, columns } => write!(
-                f,
-                "{points} points on a grid of {rows} x {columns}: expected heights at half of the places at least; say cell where noise hides the spacing"
-            ),
-            Self::Oblong { dx, dy } => {
-                write!(f, "spacing {dx} along x and {dy} along y: expected square cells; resample it first")
-            }
-            Self::NotSquare { rows, columns } => write!(
-                f,
-                "{rows} rows of {columns}: expected a square map; crop = \"centre\" takes the largest square in the middle, a window takes any other"
-            ),
-            Self::Holes { missing, cells, first } => write!(
-                f,
-                "{missing} of {cells} cells have no height, the first in {first}: say how to fill them: \"neighbours\", \"plane\" or a value"
-            ),
-            Self::AllMissing { cells } => write!(f, "none of the {cells} cells has a height"),
-            Self::Unsaid { what, remedy } => write!(f, "{what} is neither in the file nor given: {remedy}"),
-            Self::Contradiction { what, first, second } => write!(f, "{what}: {first}, but {second}"),
-            Self::Useless { what, reason } => write!(f, "{what} was given: {reason}"),
-            Self::Said { what, value, expected } => write!(f, "{what} = {value}: expected {expected}"),
-            Self::Quantity { what, source } => write!(f, "{what}: {source}"),
-            Self::Crop { from: [row, column], cells, shape: [rows, columns] } => write!(
-                f,
-                "crop of {cells} x {cells} cells from row {row}, column {column}: the map has {rows} rows of {columns}"
-            ),
-            Self::Resample { cells, found } => write!(
-                f,
-                "{cells} cells a side: expected 1 to {found}, the cells of the map; finer cells would be invented"
-            ),
-            Self::Trend { present, unknowns } => write!(
-                f,
-                "a trend of {unknowns} unknowns is not determined by the {present} cells with heights"
-            ),
-            Self::Overflow { value } => {
-                write!(f, "height {value}: beyond the range of double precision after conversion")
-            }
-            Self::Ending { found } => {
-                write!(f, "the name ends in {found:?}: expected npy, txt, xyz or vti")
-            }
-            Self::NotFinite { field, at, value } => {
-                write!(f, "{field}: value {at} (counted from 0) is {value}: expected finite numbers")
-            }
-            Self::Map(source) => write!(f, "{source}"),
         }
     }
 }

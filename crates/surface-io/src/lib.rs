@@ -1,4 +1,64 @@
 //! Surfaces from and to files, and quantities with units.
+//!
+//! Two steps, so that a person can look between them: a [`Scan`] is what a file holds, with holes and in its own unit, and [`Understood`] says what was
+//! taken from it; [`Scan::map`] makes a square [`contact_model::HeightMap`] of it, doing only what a [`Treatment`] names.
+//!
+//! ```
+//! use surface_io::{Crop, Declared, Detrend, Fill, Scan, Treatment, describe};
+//! let file = b"# Width: 3 um\n# Value units: nm\n1 2 3\n4 nan 8\n";
+//! let scan = Scan::from_bytes("a.txt", file, &Declared::default())?;
+//! assert_eq!(scan.understood().missing, 1);
+//! // Neither square nor whole: both are errors until somebody says what to do.
+//! assert!(scan.map(&Treatment::default()).is_err());
+//! let treatment = Treatment { crop: Some(Crop::Centre), fill: Some(Fill::Neighbours), ..Treatment::default() };
+//! let map = scan.map(&treatment)?;
+//! // The hole in the middle column is the mean of its neighbours in the square of the first two columns: 2 and 4.
+//! assert!(map.cells() == 2 && (map.heights()[3] - 3e-9).abs() < 1e-20);
+//! println!("{}", describe(&map));
+//! # Ok::<(), surface_io::Error>(())
+//! ```
+//!
+//! # Nothing is guessed silently
+//!
+//! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`Declared::format`], everything else as a text matrix; three columns without either
+//!   are an error. Other files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
+//! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace. Comments begin with `#` or `%`; of them
+//!   `Width`, `Height`, `Value units` and `Lateral units` count, as Gwyddion's exports and this crate write them. Decimal commas are read when said
+//!   ([`Decimal::Comma`]). An empty place between two delimiters, `nan` and words such as `---` or `BAD` are holes.
+//! * **Points.** In any order; the spacing is the smallest step, refined over the whole range. A point may be off its place by a tenth of a found spacing
+//!   or a quarter of a given one, how far one is is told, two points at one place and a grid more than half empty are errors.
+//! * **NPY.** Two axes of float64, float32, float16 or integers, either byte order, row by row or column by column. An integer that no double holds is an error.
+//! * **Units.** Heights with a unit come out in metres, and the side of a cell must then have one too; without any unit both stay as they are. What is
+//!   given beside what the file says must agree with it within the digits of a header (0.5 %).
+//! * **Holes** are refused without a [`Fill`], infinite heights always, maps that are not square without a [`Crop`].
+//! * Row j is y, column i is x, the first row is y = 0: `heights[j * cells + i]`.
+//!
+//! # Accuracy
+//!
+//! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them ([`Quantity`]); heights of a scan are converted with one
+//! rounding. What is written is read again to the bit ([`text()`], [`xyz`], [`npy`]); the side of a map is a product of the cells and may lose
+//! a last digit. Trends are exact to 1e-13 of the range of the heights, filled holes to 1e-10.
+//!
+//! # Hostile files
+//!
+//! Readers never panic, and hold at most 24 bytes for each byte of the file (a map without digits: single zeros on a half-empty grid; 1 for NPY, about 2
+//! for text) besides 100 kB. Sizes that a header claims are compared with the length of the file before anything is allocated, and
+//! files beyond [`Declared::largest_bytes`] are not read. `tests/hostile.rs` counts.
+//!
+//! # Speed
+//!
+//! On one core of a busy machine of the 2020s a map of 1024 x 1024 cells is read from NPY in 0.02 s, from text in 0.12 s and from points in 0.45 s, written in
+//! 0.02, 0.2 and 0.5 s (VTI 0.07 s), and described in 0.03 s. [`Fill::Neighbours`] takes as many sweeps over the holes as the largest one is wide.
+//!
+//! # Writing
+//!
+//! [`write_map`] by the name's ending; [`npy`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or
+//! not at all.
+//!
+//! # What it does not do
+//!
+//! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers, filters, maps that are not square or have oblong cells.
+
 mod describe;
 mod error;
 pub mod files;

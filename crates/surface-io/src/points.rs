@@ -63,10 +63,9 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
         }
     };
     let off = 100.0 * x.off.max(y.off);
-    let mut details = format!("{points} points, {}", table.delimiter);
-    if off > SHOWN {
-        details += &format!(", up to {off:.2} % of a cell off their places");
-    }
+    let off =
+        if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
+    let details = format!("{points} points, {}{off}", table.delimiter);
     Ok(Found { format: Format::Xyz, details, rows, columns, heights, unit, cell })
 }
 

@@ -106,6 +106,8 @@ pub struct Understood {
     pub missing: usize,
     /// Lowest and highest height in the file's unit; `None` where all are missing.
     pub range: Option<[f64; 2]>,
+    /// Root mean square of the heights about their mean in the file's unit; `None` where all are missing.
+    pub rms_height: Option<f64>,
 }
 
 impl Understood {
@@ -127,9 +129,11 @@ impl fmt::Display for Understood {
             Some(unit) => writeln!(f, "heights  in {} ({})", unit.value, unit.by)?,
             None => writeln!(f, "heights  unit not said")?,
         }
-        match self.range {
-            Some([low, high]) => writeln!(f, "range    {low} to {high}")?,
-            None => writeln!(f, "range    none")?,
+        match (self.range, self.rms_height) {
+            (Some([low, high]), Some(rms)) => {
+                writeln!(f, "range    {low:e} to {high:e}, rms about the mean {rms:.4e}")?;
+            }
+            _ => writeln!(f, "range    none")?,
         }
         write!(f, "missing  {} of {} cells", self.missing, self.rows * self.columns)?;
         if self.missing > 0 { write!(f, " ({:.3} %)", 100.0 * self.missing_share()) } else { Ok(()) }
@@ -263,7 +267,9 @@ impl Scan {
                 .then_some(())
                 .ok_or_else(|| contradiction("side of a cell", a, b))
         })?;
-        let understood = Understood { format, details, rows, columns, cell, unit, missing, range };
+        let rms_height = range.map(|range| rms(&heights, columns, missing, range));
+        let understood =
+            Understood { format, details, rows, columns, cell, unit, missing, range, rms_height };
         Ok(Self { path: path.to_owned(), understood, heights })
     }
 
@@ -287,6 +293,23 @@ impl Scan {
     pub(crate) fn heights(&self) -> &[f64] {
         &self.heights
     }
+}
+
+/// Rms height about the mean of what is measured: about the middle of the range and in units of half of it, so that nothing overflows; summed row by
+/// row, so that rounding grows with the side only.
+fn rms(heights: &[f64], columns: usize, missing: usize, [low, high]: [f64; 2]) -> f64 {
+    let (middle, unit) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
+    if unit <= 0.0 {
+        return 0.0;
+    }
+    let present = (heights.len() - missing) as f64;
+    let mean_of = |f: &dyn Fn(f64) -> f64| {
+        let row =
+            |row: &[f64]| row.iter().filter(|h| !h.is_nan()).map(|h| f((h - middle) / unit)).sum::<f64>();
+        heights.chunks_exact(columns).map(row).sum::<f64>() / present
+    };
+    let mean = mean_of(&|h| h);
+    unit * mean_of(&|h| (h - mean).powi(2)).sqrt()
 }
 
 /// Headers print lengths with three digits or more: half of the last one.

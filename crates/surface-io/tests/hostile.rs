@@ -1,7 +1,10 @@
 //! Readers under files that nobody meant well: they never panic and never allocate more than a stated multiple of the file.
+
+#![allow(clippy::unwrap_used)] // Tests, as a whole.
 #![allow(unsafe_code)] // A global allocator that counts is unsafe by its nature; it hands everything to the system's.
 
 use proptest::prelude::*;
+use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use surface_io::{Crop, Decimal, Declared, Detrend, Fill, Format, Scan, Treatment};
@@ -119,7 +122,11 @@ fn valid(which: usize) -> Vec<u8> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig {
+        cases: 1000,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn random_bytes(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
@@ -203,13 +210,13 @@ fn real_files_stay_below_the_multiple() {
     let npy = surface_io::npy(&[n, n], &heights).unwrap();
     let holes = vec![b","[0]; n];
     let commas = std::iter::repeat_n([&b"1"[..], &holes, b"\n"].concat(), n).collect::<Vec<_>>().concat();
-    let short: String = (0..n * n).map(|i| format!("{} {} 1\n", i % n, i / n)).collect();
+    let short: Vec<String> = (0..n * n).map(|i| format!("{} {} 1\n", i % n, i / n)).collect();
     for (name, bytes, multiple) in [
         ("a.npy", npy, 2),
         ("a.txt", surface_io::text(&map, surface_io::Metric::Metres).into_bytes(), 3),
         ("a.xyz", surface_io::xyz(&map, surface_io::Metric::Metres).into_bytes(), 5),
         ("a.txt", commas, 10),
-        ("a.xyz", short.into_bytes(), 10),
+        ("a.xyz", short.concat().into_bytes(), 10),
     ] {
         let (scan, held) = most_held(|| Scan::from_bytes(name, &bytes, &Declared::default()));
         assert!(scan.is_ok(), "{scan:?}");

@@ -1,5 +1,6 @@
 use crate::{Declared, Problem, Scan};
 use proptest::prelude::*;
+use std::fmt::Write as _;
 
 fn read(text: &str) -> crate::Result<Scan> {
     Scan::from_bytes("a.xyz", text.as_bytes(), &Declared::default())
@@ -24,7 +25,7 @@ fn printed_digits_do_not_bend_the_grid() {
     let mut text = String::from("# Lateral units: mm\n# Value units: um\n");
     for i in 0..10 {
         for j in 0..10 {
-            text += &format!("{:.2},{:.2},{}\n", -0.5 + f64::from(i) / 3.0, f64::from(j) / 3.0, i + j);
+            writeln!(text, "{:.2},{:.2},{}", -0.5 + f64::from(i) / 3.0, f64::from(j) / 3.0, i + j).unwrap();
         }
     }
     let scan = read(&text).unwrap();
@@ -43,7 +44,7 @@ fn noise_needs_a_cell() {
     let mut text = String::new();
     for k in 0..64_u32 {
         let noise = |salt: u32| f64::from((k * 37 + salt) % 19) / 95.0 - 0.1;
-        text += &format!("{} {} {k}\n", f64::from(k % 8) + noise(0), f64::from(k / 8) + noise(7));
+        writeln!(text, "{} {} {k}", f64::from(k % 8) + noise(0), f64::from(k / 8) + noise(7)).unwrap();
     }
     let complaint = error(&text);
     assert!(complaint.contains("say cell"), "{complaint}");
@@ -124,7 +125,7 @@ proptest! {
         let mut text = String::new();
         for &i in &kept {
             let at = |k: usize| origin + spacing * k as f64;
-            text += &format!("{} {} {}\n", at(i % columns), at(i / columns), i);
+            writeln!(text, "{} {} {}", at(i % columns), at(i / columns), i).unwrap();
         }
         let scan = read(&text).unwrap();
         prop_assert_eq!((scan.understood().rows, scan.understood().columns), (rows, columns));

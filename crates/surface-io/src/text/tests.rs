@@ -55,6 +55,12 @@ fn holes_are_counted() {
     let declared = Declared { missing: Some(-9999.0), ..Declared::default() };
     let scan = Scan::from_bytes("a.txt", b"1 -9999\n3 4\n", &declared).unwrap();
     assert_eq!((scan.understood().missing, scan.height(0, 1), scan.height(0, 0)), (1, None, Some(1.0)));
+    // Heights 1, 3, 4 about their mean 8/3: squares 25/9, 1/9 and 16/9, mean 14/9.
+    approx::assert_relative_eq!(
+        scan.understood().rms_height.unwrap(),
+        (14.0_f64 / 9.0).sqrt(),
+        max_relative = 1e-15
+    );
     let shown = scan.understood().to_string();
     assert!(shown.contains("missing  1 of 4 cells (25.000 %)") && shown.contains("unit not said"), "{shown}");
 }

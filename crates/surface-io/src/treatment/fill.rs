@@ -6,11 +6,12 @@ const TOLERANCE: f64 = 1e-12;
 /// Fills every NaN so that it is the mean of its neighbours; at least one height must be measured.
 ///
 /// Conjugate gradients on the graph Laplacian of the missing cells, which is positive definite because the grid is connected. Cost O(m) for each of about as
-/// many iterations as the largest hole is wide; memory 7 numbers for each of the m missing cells and one for every cell.
+/// many iterations as the largest hole is wide; memory 9 numbers for each of the m missing cells and one for every cell.
 pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
-    const MEASURED: usize = usize::MAX;
     let missing: Vec<usize> = (0..heights.len()).filter(|&i| heights[i].is_nan()).collect();
-    let mut number = vec![MEASURED; heights.len()];
+    // What is measured has the number behind the last: a place of the vectors that stays 0.
+    let measured = missing.len();
+    let mut number = vec![measured; heights.len()];
     for (k, &i) in missing.iter().enumerate() {
         number[i] = k;
     }
@@ -22,9 +23,9 @@ pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
             (column > 0).then(|| i - 1),
             (column + 1 < cells).then(|| i + 1),
         ]
-        .into_iter()
-        .flatten()
     };
+    let inner: Vec<[usize; 4]> =
+        missing.iter().map(|&i| neighbours(i).map(|j| j.map_or(measured, |j| number[j]))).collect();
     // Heights about the middle of the measured ones and in units of half their range, so that nothing overflows.
     let (low, high) = heights
         .iter()
@@ -32,16 +33,16 @@ pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &h| (a.min(h), b.max(h)));
     let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
     let unit = if half > 0.0 { half } else { 1.0 };
-    let degree: Vec<f64> = missing.iter().map(|&i| neighbours(i).count() as f64).collect();
+    let degree: Vec<f64> = missing.iter().map(|&i| neighbours(i).iter().flatten().count() as f64).collect();
     let apply = |x: &[f64], y: &mut [f64]| {
-        for (k, &i) in missing.iter().enumerate() {
-            let inner: f64 = neighbours(i).filter(|&j| number[j] != MEASURED).map(|j| x[number[j]]).sum();
-            y[k] = degree[k] * x[k] - inner;
+        for (k, around) in inner.iter().enumerate() {
+            y[k] = degree[k] * x[k] - around.iter().map(|&j| x[j]).sum::<f64>();
         }
     };
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let rim = |i: usize| {
-        neighbours(i).filter(|&j| number[j] == MEASURED).map(|j| (heights[j] - middle) / unit).sum::<f64>()
+        let rim = neighbours(i).into_iter().flatten().filter(|&j| number[j] == measured);
+        rim.map(|j| (heights[j] - middle) / unit).sum::<f64>()
     };
     let mut x = vec![0.0; missing.len()];
     let mut residual: Vec<f64> = missing.iter().map(|&i| rim(i)).collect();
@@ -49,6 +50,7 @@ pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
     let preconditioned = |r: &[f64]| r.iter().zip(&degree).map(|(r, d)| r / d).collect::<Vec<f64>>();
     let mut z = preconditioned(&residual);
     let mut direction = z.clone();
+    direction.push(0.0);
     let mut image = vec![0.0; missing.len()];
     let mut energy = dot(&residual, &z);
     let first = energy;
