@@ -114,9 +114,9 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
         let Ok(mut table) = table.lock() else { return Ok(()) };
         if table.rows.is_empty() {
-            println!("{}", PRINTED.map(|(name, width)| format!("{name:>width$}")).join(" "));
+            println!("{}", printed(row).map(|(name, width)| format!("{name:>width$}")).join(" "));
         }
-        println!("{}", line(&row.fields()?));
+        println!("{}", line(row)?);
         table.rows.push(row.clone());
         csv.as_deref().map_or(Ok(()), |path| table.write(path))
     })?;
@@ -178,16 +178,26 @@ const PRINTED: [(&str, usize); 16] = [
     ("strategy", 8),
 ];
 
-fn line(fields: &[String; figures::BENCH_COLUMNS.len()]) -> String {
+/// [`PRINTED`] with the mean gap in the place of the approach where the square repeats itself.
+fn printed(row: &BenchRow) -> [(&'static str, usize); PRINTED.len()] {
+    let replace = |(name, width)| match name {
+        "approach_over_h" if row.mean_gap.is_some() => ("mean_gap_over_h", width),
+        _ => (name, width),
+    };
+    PRINTED.map(replace)
+}
+
+fn line(row: &BenchRow) -> Result<String> {
+    let fields = row.fields()?;
     let field =
         |name: &str| figures::BENCH_COLUMNS.iter().position(|c| *c == name).map_or("", |i| &fields[i]);
     let short = |name: &str| match (name, field(name).parse::<f64>()) {
-        ("approach_over_h" | "stiffness_bar", Ok(v)) => format!("{v:.10}"),
+        ("approach_over_h" | "mean_gap_over_h" | "stiffness_bar", Ok(v)) => format!("{v:.10}"),
         ("frank_wolfe" | "stiffness_error" | "force_bar", Ok(v)) => format!("{v:.2e}"),
         ("seconds" | "cpu_seconds", Ok(v)) => format!("{v:.4}"),
         _ => field(name).to_owned(),
     };
-    PRINTED.map(|(name, width)| format!("{:>width$}", short(name))).join(" ")
+    Ok(printed(row).map(|(name, width)| format!("{:>width$}", short(name))).join(" "))
 }
 
 /// Prints the table of hard cases; one that fails does not stop the others.
