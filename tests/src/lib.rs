@@ -29,8 +29,8 @@ pub use deviation::{Deviation, Prescribed, deviation};
 pub use order::order;
 pub use problem::{Case, Problem, problems};
 pub use stability::{
-    SmallContact, embedded, every_contact_set, map, mirrored, rotated, rough, rough_map, scene, stretched,
-    transposed,
+    SmallContact, embedded, every_contact_set, map, mirrored, relief, rotated, rough, rough_map, scene,
+    stretched, transposed,
 };
 
 /// The examples of README.md are tests too.

@@ -1,34 +1,15 @@
 //! Any order of loads on any map: a solver that remembers gives what a fresh one gives.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
-use contact_model::{ContactModel, HeightMap, Load};
+use contact_model::{ContactModel, Load};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use tests::{map, rough_map, scene};
+use tests::{relief, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-9;
 /// The certificate bounds gaps weighted by pressure; the approach is one weighted by the tangent's pressure, up to ten times that.
 const SAME: f64 = 2e-8;
-
-/// Reliefs that solvers have tripped over, of `cells` x `cells` and drawn from numbers in [0, 1).
-fn relief(kind: u8, cells: usize, noise: &[f64]) -> HeightMap {
-    let at = |x: usize, y: usize| noise[(y * cells + x) % noise.len()];
-    map(cells, 1.0, |x, y| match kind {
-        // White noise; the same in steps; stripes; a tilted plane; a few spikes; one sharp summit; heights over twenty decades.
-        0 => at(x, y),
-        1 => (4.0 * at(x, y)).floor(),
-        2 => ((x / 2 + y / 3) % 2) as f64,
-        3 => 0.1 * x as f64 + 0.03 * y as f64,
-        4 if at(x, y) < 0.02 => 1.0,
-        4 => 0.01 * at(x, y),
-        5 => -(x as f64 - 0.5 * cells as f64).hypot(y as f64 - cells as f64 / 3.0),
-        _ => at(x, y).powi(20),
-    })
-    .unwrap()
-}
 
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::with_cases(150) })]
@@ -40,7 +21,7 @@ proptest! {
         // Logarithm of the load over the rms height, and whether it is a force.
         loads in prop::collection::vec((-8.0_f64..3.0, any::<bool>()), 1..6),
     ) {
-        let map = if kind == 7 && cells > 2 { rough_map(2.6, cells, seed).unwrap() } else { relief(kind, cells, &noise) };
+        let map = if kind == 7 && cells > 2 { rough_map(2.6, cells, seed).unwrap() } else { relief(kind, cells, &noise).unwrap() };
         let rms = surface_gen::rms_height(map.heights());
         let unit = if rms > 0.0 { rms } else { 1.0 };
         let scene = scene(map);

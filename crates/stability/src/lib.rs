@@ -47,5 +47,5 @@ pub use case::{Case, Effort, Status, Verdict, run};
 pub use cases::cases;
 pub use enumerate::{SmallContact, every_contact_set};
 pub use ledger::Ledger;
-pub use maps::{embedded, map, mirrored, rotated, rough, rough_map, scene, stretched, transposed};
+pub use maps::{embedded, map, mirrored, relief, rotated, rough, rough_map, scene, stretched, transposed};
 pub use plain::{PlainSum, Relaxed, relaxed};

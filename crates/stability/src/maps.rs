@@ -33,6 +33,28 @@ pub fn rough_map(fractal_dimension: f64, cells: usize, seed: u64) -> Result<Heig
     surface_gen::self_affine_map(&rough(fractal_dimension)?, cells, seed)
 }
 
+/// Reliefs that solvers have tripped over, of `cells` x `cells` and drawn from numbers in [0, 1): white noise (0), the same in steps (1),
+/// stripes (2), a tilted plane (3), a few spikes (4), one sharp summit (5), heights over twenty decades (any other kind).
+///
+/// # Errors
+/// Those of [`HeightMap::new`].
+///
+/// # Panics
+/// For no numbers at all.
+pub fn relief(kind: u8, cells: usize, noise: &[f64]) -> Result<HeightMap> {
+    let at = |x: usize, y: usize| noise[(y * cells + x) % noise.len()];
+    map(cells, 1.0, |x, y| match kind {
+        0 => at(x, y),
+        1 => (4.0 * at(x, y)).floor(),
+        2 => ((x / 2 + y / 3) % 2) as f64,
+        3 => 0.1 * x as f64 + 0.03 * y as f64,
+        4 if at(x, y) < 0.02 => 1.0,
+        4 => 0.01 * at(x, y),
+        5 => -(x as f64 - 0.5 * cells as f64).hypot(y as f64 - cells as f64 / 3.0),
+        _ => at(x, y).powi(20),
+    })
+}
+
 /// The map with x reversed.
 ///
 /// # Errors

@@ -75,8 +75,9 @@ pub(super) const CASES: [Case; 8] = [
 ];
 
 fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
-    let quick = [31, 61, 64, 65, 67];
-    let thorough = [31, 61, 64, 65, 67, 97, 127, 128, 129];
+    // 34 and 66: even 2 (N - 2) is a good length, so that one that is too short is not rounded up to one that is long enough.
+    let quick = [31, 34, 61, 64, 65, 66, 67];
+    let thorough = [31, 34, 61, 64, 65, 66, 67, 97, 127, 128, 129];
     let sizes: &[usize] = effort.pick(&quick, &thorough);
     for &cells in sizes {
         let rough = rough_map(2.5, cells, 2)?;
