@@ -54,11 +54,13 @@ impl Chart {
         let x = axis(&|| points().map(|p| p.0).collect());
         let y = axis(&|| points().map(|p| p.1).collect());
         let mut picture = Picture::new(x, y, &self.x_label, &self.y_label).with_title(&self.title);
-        for (curve, color) in self.curves.iter().zip(COLORS.iter().cycle()) {
+        for (i, (curve, color)) in self.curves.iter().zip(COLORS.iter().cycle()).enumerate() {
+            // Earlier curves are wider, so that they show where later ones lie on them.
+            let above = (self.curves.len() - 1 - i).min(4) as f64;
             if !curve.scattered {
-                picture.line(&curve.points, color, 1.6, &LineStyle::Solid);
+                picture.line(&curve.points, color, 1.6 + 1.8 * above, &LineStyle::Solid);
             }
-            picture.points(&curve.points, color, 3.2, Mark::Solid(MarkerShape::Circle));
+            picture.points(&curve.points, color, 2.6 + 1.5 * above, Mark::Solid(MarkerShape::Circle));
             picture.legend(
                 &curve.label,
                 color,

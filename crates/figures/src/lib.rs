@@ -100,6 +100,7 @@ pub use hard_cases::hard_cases;
 pub use laws::{Law, laws};
 pub use manifest::{machine, write_manifest};
 pub use measured::{Measured, Series, measure_1d, measure_3d};
+pub use meters::{peak_memory, reset_peak_memory};
 pub use npy::read_map;
 pub use outcome::Outcome;
 pub use progress::{Progress, Silent};

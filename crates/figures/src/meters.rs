@@ -13,13 +13,13 @@ pub(crate) fn cpu_seconds() -> Option<f64> {
 }
 
 /// Lets [`peak_memory`] count from here where the system allows it; else it goes on counting from the start of the process.
-pub(crate) fn reset_peak_memory() {
+pub fn reset_peak_memory() {
     // 5: the peak becomes what is resident now (proc(5), clear_refs).
     let _ = fs::write("/proc/self/clear_refs", "5");
 }
 
 /// Largest resident memory of the process, in bytes (Linux).
-pub(crate) fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     memory("VmHWM:")
 }
 

@@ -44,6 +44,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// Whether it is a mistake in a scene.
+    pub fn is_scene(&self) -> bool {
+        matches!(self, Self::Scene(_))
+    }
+
     pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { action, path, source }

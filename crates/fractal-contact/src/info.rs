@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::plan::Plan;
 use crate::scene_file::SceneFile;
+use std::f64::consts::TAU;
 use std::path::Path;
 use surface_io::{Declared, Scan, Treatment, describe};
 
@@ -59,9 +60,30 @@ fn surface(path: &Path, declared: &Declared) -> Result<String> {
     let scan = Scan::read(path, declared).map_err(Error::Surface)?;
     let mut text = format!("{}\n", scan.understood());
     match scan.map(&Treatment::default()) {
-        Ok(map) => text += &format!("\n{}\n", describe(&map)),
+        Ok(map) => {
+            let description = describe(&map);
+            text += &format!("\n{description}\n{}", spectrum(&description.spectrum));
+        }
         // What stands in the way of a map is part of the answer.
         Err(error) => text += &format!("\nno map as it is: {error}\n"),
     }
     Ok(text)
+}
+
+/// A few rings of a spectrum, evenly spaced in the logarithm.
+fn spectrum(rings: &[(f64, f64)]) -> String {
+    const SHOWN: usize = 9;
+    let Some(last) = rings.len().checked_sub(1) else { return String::new() };
+    let mut text = "spectrum           wavelength, C_2D (length^4)\n".to_owned();
+    let mut shown = usize::MAX;
+    for i in 0..SHOWN {
+        let at = ((rings.len() as f64).powf(i as f64 / (SHOWN - 1) as f64) - 1.0).round() as usize;
+        let at = at.min(last);
+        if at != shown {
+            let (q, c) = rings[at];
+            text += &format!("                   {:.4e}, {c:.4e}\n", TAU / q);
+            shown = at;
+        }
+    }
+    text
 }

@@ -93,11 +93,14 @@ fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
     .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
     let outcome =
         run(&scene, &plan, options, &reporter::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
-    if let Some(predicted) = plan.predicted() {
-        eprintln!("predicted  {predicted}");
+    for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
+        if let Some(predicted) = &planned.predicted {
+            eprintln!("{name}\n  predicted  {predicted}");
+        }
+        eprintln!("  actual     {actual}, {bytes} bytes of field files");
     }
-    for (name, actual, bytes) in &outcome.actual {
-        eprintln!("{name:10} {actual}, {bytes} bytes of field files");
+    if let Some(peak) = outcome.peak_memory {
+        eprintln!("memory       {} MB at the peak, the program itself included", peak / 1_000_000);
     }
     for note in &outcome.notes {
         eprintln!("note: {note}");

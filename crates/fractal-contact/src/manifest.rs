@@ -58,6 +58,7 @@ pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: 
         "files": files,
         "threads": options.threads,
         "wall_seconds": outcome.seconds,
+        "peak_memory_bytes": outcome.peak_memory,
         "machine": figures::machine(),
     });
     let text = serde_json::to_string_pretty(&whole)

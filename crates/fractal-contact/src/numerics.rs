@@ -9,6 +9,14 @@ use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, HistoryModel, Source};
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 
+/// Largest grids: 54 GB for a light load, 4 GB for a line.
+const MOST_CELLS: usize = 1 << 15;
+const MOST_ELEMENTS: usize = 1 << 28;
+
+/// Grid on which models are asked whether they can answer.
+const PROBE_CELLS: usize = 33;
+const PROBE_ELEMENTS: usize = 1 << 10;
+
 /// A model with its numerics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -140,14 +148,19 @@ impl Numerics {
         }
     }
 
+    /// The same on a grid that is only asked whether it can answer.
+    #[must_use]
+    pub(crate) fn probe(&self) -> Self {
+        self.reduced(PROBE_CELLS, PROBE_ELEMENTS)
+    }
+
     /// What one may expect of its numbers, in a sentence; `cells` a side, of models that have them.
     pub fn accuracy(&self, rough: bool, cells: usize) -> String {
         match self {
             Self::Bem3d(model) => format!(
-                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {n} x {n} cells; the cells \
+                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {cells} x {cells} cells; the cells \
                  themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
-                model.tolerance,
-                n = cells
+                model.tolerance
             ),
             Self::Mdr1d(_) if rough => "exact for its line; against three dimensions 7 to 18 % too stiff near F_bar = 1, exponents as 1/(1+H)".into(),
             Self::Mdr1d(_) | Self::Hertz | Self::PowerLawBody | Self::Westergaard | Self::Jkr => "exact, to about 1e-13".into(),
@@ -159,10 +172,9 @@ impl Numerics {
                 "exact within Cattaneo's and Mindlin's assumptions (no coupling, slip along the load)".into()
             }
             Self::Equivalent(_) => format!(
-                "the normal part is that of bem3d on {n} x {n} cells; tangential results are exact for round contacts, a few per cent off for \
+                "the normal part is that of bem3d on {cells} x {cells} cells; tangential results are exact for round contacts, a few per cent off for \
                  others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
-                 bodies, two to three for rough ones",
-                n = cells
+                 bodies, two to three for rough ones"
             ),
             Self::Viscoelastic => "exact while the contact grows, which is checked; 1e-12".into(),
         }
@@ -218,9 +230,19 @@ pub(crate) fn read_models<'a>(
     Ok(models)
 }
 
+/// A count from 1 that memory can hold.
+fn at_most(entry: &Entry<'_>, most: usize, help: &str) -> Read<usize> {
+    let count = entry.count(1)?;
+    if count <= most as u64 {
+        Ok(count as usize)
+    } else {
+        Err(entry.trouble(format!("{count}: expected at most {most}")).with_help(help))
+    }
+}
+
 fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
     if let Some(entry) = table.find("cells") {
-        model.cells = entry.count(1)? as usize;
+        model.cells = at_most(&entry, MOST_CELLS, "a light load takes 50 bytes a cell")?;
     }
     if let Some(entry) = table.find("tolerance") {
         model.tolerance = entry.positive_number()?;
@@ -261,7 +283,7 @@ fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
         }
         Numerics::Mdr1d(mut model) => {
             if let Some(entry) = table.find("elements") {
-                model.elements = entry.count(1)? as usize;
+                model.elements = at_most(&entry, MOST_ELEMENTS, "the paper has 2^20")?;
             }
             Numerics::Mdr1d(model)
         }

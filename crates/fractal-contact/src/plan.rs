@@ -1,33 +1,14 @@
 //! What will be computed, what will not and why, and what it will cost.
 
+use crate::calibration;
 use crate::effects::{EffectLine, effect_lines};
-use crate::error::{Error, Result};
-use crate::loads::Request;
-use crate::numerics::{AnyModel, Numerics};
-use crate::outputs::Asked;
+use crate::error::Result;
+use crate::numerics::Numerics;
 use crate::scene_file::SceneFile;
 use crate::trouble::Trouble;
 use crate::unit::{Unit, probe};
 use contact_model::Surface;
 use std::fmt;
-use std::time::{Duration, Instant};
-
-/// Cells a side, and elements, of the solves that the cost is predicted from.
-const CALIBRATION_CELLS: usize = 65;
-/// A large grid is predicted from a quarter of its cells a side, at most these.
-const LARGEST_CALIBRATION: usize = 257;
-const CALIBRATION_ELEMENTS: usize = 1 << 12;
-const WARM_CELLS: usize = 17;
-/// Loads solved for it at most, spread over those asked for.
-const CALIBRATION_LOADS: usize = 4;
-/// It stops by itself after this time.
-const CALIBRATION_TIME: Duration = Duration::from_secs(3);
-/// Time of one load over cells a side: N^1.9 to N^2.6 as measured by `cargo xtask bench --scaling`.
-const TIME_EXPONENT: f64 = 2.3;
-/// Applications of the operator over cells a side, as measured by the same.
-const APPLICATIONS_EXPONENT: f64 = 0.3;
-/// Memory of one solve of bem3d per cell of the grid, in bytes: heights, tables, transforms of the bounding box when contact fills it.
-const BYTES_PER_CELL: f64 = 250.0;
 
 /// What a run costs, or will cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -87,7 +68,7 @@ pub struct Plan {
 /// Checks that every model can answer the scene, on small grids.
 ///
 /// # Errors
-/// [`Error::Scene`] at the name of the first model that cannot, with those that can.
+/// [`crate::Error::Scene`] at the name of the first model that cannot, with those that can.
 pub fn check(scene: &SceneFile) -> Result<()> {
     for model in 0..scene.models.len() {
         let unit = Unit { model, surface: 0 };
@@ -107,7 +88,7 @@ fn refused(scene: &SceneFile, error: &contact_model::Error) -> Trouble {
     let able: Vec<&str> = Numerics::ALL
         .iter()
         .filter(|m| m.is_history() == scene.is_history())
-        .map(|m| m.reduced(CALIBRATION_CELLS, CALIBRATION_ELEMENTS))
+        .map(Numerics::probe)
         .filter(|m| probe(scene, m, true).is_ok())
         .map(|m| m.name())
         .collect();
@@ -160,7 +141,7 @@ impl Plan {
     pub fn calibrated(scene: &SceneFile) -> Result<Self> {
         let mut plan = Self::new(scene)?;
         for (numerics, model) in scene.models.iter().zip(&mut plan.models) {
-            model.predicted = Some(predict(scene, numerics));
+            model.predicted = Some(calibration::predict(scene, numerics));
         }
         Ok(plan)
     }
@@ -193,113 +174,11 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
 }
 
 /// Cells a side: a given map brings its own.
-fn cells(scene: &SceneFile, numerics: &Numerics) -> usize {
+pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> usize {
     match &scene.relief {
         crate::Relief::Plain(Surface::Heights(map)) => map.cells(),
         _ => numerics.size(),
     }
-}
-
-/// Time and work of a small twin, scaled. What a small grid refuses is not predicted: its run will tell.
-fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
-    let coarse = (cells(scene, numerics) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);
-    let small = numerics.reduced(coarse, CALIBRATION_ELEMENTS);
-    // Code and memory that are touched for the first time are no part of what grows with N.
-    let warm = numerics.reduced(WARM_CELLS, CALIBRATION_ELEMENTS);
-    let _ = small_solves(scene, &warm, WARM_CELLS, &contact_model::never);
-    let asked = scene.request.count();
-    let total = (asked * scene.chance.surfaces) as f64;
-    let begin = Instant::now();
-    let stop = || begin.elapsed() > CALIBRATION_TIME;
-    let (solved, size) = small_solves(scene, &small, coarse, &stop).unwrap_or_default();
-    let mut cost = Cost { seconds: begin.elapsed().as_secs_f64(), ..solved.cost };
-    let n = cells(scene, numerics) as f64;
-    let per_state = total / (solved.states.max(1)) as f64;
-    let (time, applications) = match numerics {
-        Numerics::Bem3d(_) | Numerics::Equivalent(_) if size > 0 => {
-            let ratio = n / size as f64;
-            (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
-        }
-        Numerics::Mdr1d(m) => (m.elements as f64 / small.size().max(1) as f64, 1.0),
-        _ => (1.0, 1.0),
-    };
-    let surfaces = scene.chance.surfaces as f64;
-    // A line is sorted once, whatever the loads.
-    cost.seconds *= time * if matches!(numerics, Numerics::Mdr1d(_)) { surfaces } else { per_state };
-    cost.applications *= applications * per_state;
-    cost.linear_solves *= per_state;
-    cost.fields *= per_state;
-    let outputs = &scene.asked.outputs;
-    if let Numerics::Bem3d(_) | Numerics::Equivalent(_) = numerics {
-        let fields =
-            [outputs.pressure, outputs.displacement, outputs.gap].iter().filter(|f| **f).count() as f64;
-        cost.fields = fields * total;
-        cost.field_bytes = cost.fields * n * n * 8.0;
-        cost.memory = n * n * (BYTES_PER_CELL + 8.0 * fields);
-    }
-    cost
-}
-
-#[derive(Default)]
-struct Solved {
-    states: usize,
-    cost: Cost,
-}
-
-/// A few of the loads on a small grid; the second number is its cells a side.
-fn small_solves(
-    scene: &SceneFile,
-    numerics: &Numerics,
-    coarse: usize,
-    stop: &dyn Fn() -> bool,
-) -> contact_model::Result<(Solved, usize)> {
-    let seed = scene.seed(0);
-    let mut physics = scene.scene(numerics, seed)?;
-    let mut size = numerics.size();
-    if let Surface::Heights(map) = &physics.surface {
-        size = map.cells().min(coarse);
-        if map.cells() > coarse {
-            physics.surface = Surface::Heights(std::sync::Arc::new(thinned(map, coarse)?));
-        }
-    }
-    let mut solved = Solved::default();
-    match (numerics.model(), &scene.request) {
-        (AnyModel::Contact(model), Request::Loads(loads)) => {
-            let mut contact = model.prepare(&physics, seed)?;
-            let scales = contact.scales();
-            let count = loads.values.len();
-            let used = count.min(CALIBRATION_LOADS);
-            for i in 0..used {
-                let asked = loads.values[i * (count - 1) / (used - 1).max(1)];
-                let Ok(state) = loads.load(asked, &scales).and_then(|load| contact.solve_until(load, stop))
-                else {
-                    continue;
-                };
-                solved.states += 1;
-                solved.cost.applications += state.report.applications as f64;
-                solved.cost.linear_solves += state.report.work.linear_solves as f64;
-            }
-        }
-        (AnyModel::History(model), Request::Path(steps)) => {
-            let mut contact = model.prepare(&physics, seed)?;
-            for step in steps {
-                if stop() || contact.advance(*step).is_err() {
-                    break;
-                }
-                solved.states += 1;
-            }
-        }
-        _ => {}
-    }
-    Ok((solved, size))
-}
-
-/// Every so many-th cell of a map.
-fn thinned(map: &contact_model::HeightMap, m: usize) -> contact_model::Result<contact_model::HeightMap> {
-    let n = map.cells();
-    let at = |i: usize| i * n / m;
-    let heights = (0..m * m).map(|i| map.heights()[at(i / m) * n + at(i % m)]).collect();
-    contact_model::HeightMap::new(m, map.side(), heights)
 }
 
 /// A time in words.
@@ -385,23 +264,10 @@ impl fmt::Display for Plan {
             }
             writeln!(
                 f,
-                " (from small solves on this machine, scaled as N^{TIME_EXPONENT}: within a factor of three)"
+                " (from small solves on this machine, scaled as N^{}: within a factor of three)",
+                calibration::TIME_EXPONENT
             )?;
         }
         Ok(())
-    }
-}
-
-impl Asked {
-    /// Whether any file besides the tables is asked for.
-    pub fn any_field_file(&self) -> bool {
-        !(self.pressure.is_empty() && self.displacement.is_empty() && self.gap.is_empty())
-    }
-}
-
-impl Error {
-    /// Whether it is a mistake in a scene.
-    pub fn is_scene(&self) -> bool {
-        matches!(self, Self::Scene(_))
     }
 }

@@ -121,7 +121,7 @@ pub(crate) fn read_relief(
         return Ok((Relief::Plain(read_body(&body, None, system)?), None));
     };
     if surface.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == Rough::File {
-        let (map, understood) = scan::read_map(surface, system, directory)?;
+        let (map, understood) = scan::read_map(&surface, system, directory)?;
         let map = match body {
             None => map,
             Some(body) => {

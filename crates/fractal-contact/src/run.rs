@@ -44,6 +44,8 @@ pub struct Outcome {
     pub stopped: bool,
     /// Wall-clock seconds.
     pub seconds: f64,
+    /// Largest resident memory of the process while it ran, bytes, where the system tells.
+    pub peak_memory: Option<u64>,
     /// What each model did: name, cost, bytes of field files. Seconds are of threads, stored ones included.
     pub actual: Vec<(&'static str, Cost, u64)>,
 }
@@ -64,6 +66,7 @@ pub fn run(
     stop: Halt<'_>,
 ) -> Result<Outcome> {
     let start = Instant::now();
+    figures::reset_peak_memory();
     let store = Store::open(&options.out, options.fresh)?;
     let columns = columns::columns(scene);
     let units: Vec<Unit> = (0..scene.models.len())
@@ -116,6 +119,7 @@ pub fn run(
         outcome.files.extend(pictures::curves(scene, &table, &options.out)?);
     }
     outcome.actual = actual(scene, &units, &results, &table);
+    outcome.peak_memory = figures::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
     outcome.files.push(manifest::write(scene, plan, options, &outcome)?);
     Ok(outcome)

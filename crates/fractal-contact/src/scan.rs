@@ -8,7 +8,7 @@ use surface_io::{
 };
 
 /// The map, and what was understood of its file.
-pub(crate) fn read_map(table: Entries<'_>, system: System, directory: &Path) -> Read<(HeightMap, String)> {
+pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) -> Read<(HeightMap, String)> {
     let file = table.require("path", "\"heights.npy\"")?;
     let path = directory.join(file.text()?);
     let mut declared = Declared::default();
@@ -39,7 +39,7 @@ pub(crate) fn read_map(table: Entries<'_>, system: System, directory: &Path) -> 
     if let Some(entry) = table.find("skip_lines") {
         declared.skip_lines = entry.count(0)? as usize;
     }
-    let treatment = read_treatment(&table, system)?;
+    let treatment = read_treatment(table, system)?;
     table.known_only()?;
     let wrong = |e: surface_io::Error| {
         let trouble = file.trouble(e.to_string());

@@ -8,7 +8,7 @@ use crate::numerics::{Numerics, read_models};
 use crate::outputs::{Asked, read_outputs};
 use crate::relief::{Relief, read_relief};
 use crate::trouble::Trouble;
-use contact_model::{Adhesion, Body, Boundary, Effects, Friction, Pair, Rheology, Scene};
+use contact_model::{Adhesion, Body, Boundary, Effects, Friction, Pair, Rheology, Scene, Surface};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use surface_io::Dimension;
@@ -103,7 +103,7 @@ impl SceneFile {
             Ok(scene)
         };
         let mut scene = read().map_err(|trouble| trouble.placed(path, &text))?;
-        scene.path = path.to_owned();
+        path.clone_into(&mut scene.path);
         scene.text = text;
         Ok(scene)
     }
@@ -188,6 +188,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let asked = read_outputs(outputs_table, system)?;
     let (modulus, pair) = read_material(&scene, system)?;
     let (relief, understood) = read_relief(&scene, system, directory)?;
+    check_cells(options.as_ref(), &relief)?;
     let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
     let chance = read_chance(root, &scene, &relief)?;
     scene.finish()?;
@@ -286,6 +287,20 @@ fn read_chance(root: &Entries<'_>, scene: &Entries<'_>, relief: &Relief) -> Read
     let surfaces = surfaces.map_or(Ok(1), |e| e.count(1))? as usize;
     table.finish()?;
     Ok(Chance { seed, surfaces })
+}
+
+/// A map brings its own cells.
+fn check_cells(options: Option<&Entries<'_>>, relief: &Relief) -> Read<()> {
+    let (Some(options), Relief::Plain(Surface::Heights(map))) = (options, relief) else { return Ok(()) };
+    for model in ["bem3d", "equivalent"] {
+        let Some(table) = options.entry(model) else { continue };
+        if let Some(cells) = table.table()?.entry("cells") {
+            return Err(cells
+                .trouble_at_key(format!("`cells` is given, but the map brings its own {}", map.cells()))
+                .with_help("remove it here; `cells` in [scene.surface] averages the map over larger cells"));
+        }
+    }
+    Ok(())
 }
 
 /// Loads that contradict the boundary or the surface.

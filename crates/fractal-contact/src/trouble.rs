@@ -22,7 +22,7 @@ pub struct Trouble {
     message: String,
     span: Option<Range<usize>>,
     help: Option<String>,
-    place: Option<Place>,
+    place: Option<Box<Place>>,
 }
 
 /// Where the text stands.
@@ -57,7 +57,7 @@ impl Trouble {
     #[must_use]
     pub fn placed(mut self, path: &Path, text: &str) -> Self {
         let line = self.span.clone().map(|span| excerpt(text, &span));
-        self.place.get_or_insert(Place { path: path.to_owned(), line });
+        self.place.get_or_insert(Box::new(Place { path: path.to_owned(), line }));
         self
     }
 

@@ -244,7 +244,7 @@ impl Unit {
 
     /// Errors where this model cannot answer the scene at all, found out on a small grid.
     pub fn probe(&self, scene: &SceneFile) -> contact_model::Result<()> {
-        let reduced = self.numerics(scene).reduced(PROBE_CELLS, PROBE_ELEMENTS);
+        let reduced = self.numerics(scene).probe();
         probe(scene, &reduced, *self.numerics(scene) != reduced)
     }
 }
@@ -261,10 +261,6 @@ fn write_vti(path: &Path, name: &str, scene: &SceneFile, side: usize, values: &[
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
     Ok(figures::write_whole(path, &bytes)?)
 }
-
-/// Grid on which models are asked whether they can answer.
-const PROBE_CELLS: usize = 33;
-const PROBE_ELEMENTS: usize = 1 << 10;
 
 /// Whether a model takes a scene. On a reduced grid only what it does not support counts: numbers may be wrong for the grid's sake.
 pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics, reduced: bool) -> contact_model::Result<()> {

@@ -1,5 +1,7 @@
 //! The program itself: exit codes, resume, the same bytes.
 
+#![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
+
 use figures::{Progress, Silent};
 use fractal_contact::{Options, Plan, SceneFile, run};
 use std::path::Path;
@@ -114,6 +116,7 @@ fn plans_surfaces_results_and_completions_are_told() {
     }
     let (info, _) = texts(&program(&["info", &path("s.txt")]));
     assert!(info.contains("48") && info.contains("fractal dimension"), "{info}");
+    assert!(info.contains("spectrum"), "{info}");
     let (info, _) = texts(&program(&["info", &path("s.npy")]));
     assert!(info.contains("no map as it is"), "{info}");
     let (info, _) = texts(&program(&["info", &path("s.npy"), "--unit", "m", "--cell", "1 um"]));
@@ -130,4 +133,31 @@ fn plans_surfaces_results_and_completions_are_told() {
     assert!(script.contains("fractal-contact"));
     let (help, _) = texts(&program(&["--help"]));
     assert!(help.contains("Examples:"));
+}
+
+/// Ctrl-C, as the shell sends it.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_the_states_so_far() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    // Far more surfaces than can be solved before the signal comes.
+    std::fs::write(path("long.toml"), SCENE.replace("surfaces = 3", "surfaces = 100000")).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_fractal-contact"))
+        .args(["run", &path("long.toml"), "--out", &path("out"), "--threads", "1"])
+        .stderr(std::process::Stdio::null())
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let units = dir.path().join("out/.units");
+    let finished = || std::fs::read_dir(&units).map_or(0, Iterator::count);
+    while finished() < 3 && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let file = figures::CsvFile::read(&dir.path().join("out/results.csv")).unwrap();
+    assert!(file.rows.len() >= 9);
+    assert!(std::fs::read_to_string(path("out/manifest.json")).unwrap().contains("\"complete\": false"));
 }

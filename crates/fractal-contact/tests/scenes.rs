@@ -1,5 +1,7 @@
 //! Every scene of `data/scenes` is run as it stands, and says what its comment promises.
 
+#![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
+
 use figures::{CsvFile, Silent};
 use fractal_contact::{Options, Outcome, Plan, SceneFile, run};
 use std::path::{Path, PathBuf};
@@ -46,8 +48,9 @@ fn every_scene_is_run_and_named_in_the_readme() {
     let readme = std::fs::read_to_string(folder().join("README.md")).unwrap();
     let mut count = 0;
     for entry in std::fs::read_dir(folder()).unwrap() {
-        let name = entry.unwrap().file_name().into_string().unwrap();
-        if name.ends_with(".toml") {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if path.extension().is_some_and(|e| e == "toml") {
             count += 1;
             assert!(readme.contains(&format!("`{name}`")), "{name} is not in the README");
             let (outcome, _, dir) = solved(&name);

@@ -1,0 +1,137 @@
+//! The cost of a run, predicted from small solves of the same kind.
+
+use crate::loads::Request;
+use crate::numerics::{AnyModel, Numerics};
+use crate::plan::{Cost, cells};
+use crate::scene_file::SceneFile;
+use contact_model::Surface;
+use std::time::{Duration, Instant};
+
+/// Cells a side, and elements, of the solves that the cost is predicted from.
+const CALIBRATION_CELLS: usize = 65;
+/// A large grid is predicted from a quarter of its cells a side, at most these.
+const LARGEST_CALIBRATION: usize = 257;
+const CALIBRATION_ELEMENTS: usize = 1 << 12;
+const WARM_CELLS: usize = 17;
+/// Loads solved for it at most, spread over those asked for.
+const CALIBRATION_LOADS: usize = 4;
+/// It stops by itself after this time.
+const CALIBRATION_TIME: Duration = Duration::from_secs(3);
+/// Time of one load over cells a side: N^1.9 to N^2.6 as measured by `cargo xtask bench --scaling`.
+pub(crate) const TIME_EXPONENT: f64 = 2.3;
+/// Applications of the operator over cells a side, as measured by the same.
+const APPLICATIONS_EXPONENT: f64 = 0.3;
+/// Memory of one solve of bem3d, bytes per cell of the grid: what light loads take, and how much more contact that fills the grid takes;
+/// the box around a contact of a share `s` of the cells fills about `6 s` of it. Read off `peak_memory_bytes` in `data/bench/scaling.csv`.
+const LIGHT_BYTES: f64 = 50.0;
+const FILLED_BYTES: f64 = 150.0;
+const BOX_OVER_CONTACT: f64 = 6.0;
+
+/// Time and work of a small twin, scaled. What a small grid refuses is not predicted: its run will tell.
+pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
+    let coarse = (cells(scene, numerics) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);
+    let small = numerics.reduced(coarse, CALIBRATION_ELEMENTS);
+    // Code and memory that are touched for the first time are no part of what grows with N.
+    let warm = numerics.reduced(WARM_CELLS, CALIBRATION_ELEMENTS);
+    let _ = small_solves(scene, &warm, WARM_CELLS, &contact_model::never);
+    let asked = scene.request.count();
+    let total = (asked * scene.chance.surfaces) as f64;
+    let begin = Instant::now();
+    let stop = || begin.elapsed() > CALIBRATION_TIME;
+    let (solved, size) = small_solves(scene, &small, coarse, &stop).unwrap_or_default();
+    let mut cost = Cost { seconds: begin.elapsed().as_secs_f64(), ..solved.cost };
+    let n = cells(scene, numerics) as f64;
+    let per_state = total / (solved.states.max(1)) as f64;
+    let (time, applications) = match numerics {
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) if size > 0 => {
+            let ratio = n / size as f64;
+            (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
+        }
+        Numerics::Mdr1d(m) => (m.elements as f64 / small.size().max(1) as f64, 1.0),
+        _ => (1.0, 1.0),
+    };
+    let surfaces = scene.chance.surfaces as f64;
+    // A line is sorted once, whatever the loads.
+    cost.seconds *= time * if matches!(numerics, Numerics::Mdr1d(_)) { surfaces } else { per_state };
+    cost.applications *= applications * per_state;
+    cost.linear_solves *= per_state;
+    cost.fields *= per_state;
+    let outputs = &scene.asked.outputs;
+    if let Numerics::Bem3d(_) | Numerics::Equivalent(_) = numerics {
+        let fields =
+            [outputs.pressure, outputs.displacement, outputs.gap].iter().filter(|f| **f).count() as f64;
+        cost.fields = fields * total;
+        cost.field_bytes = cost.fields * n * n * 8.0;
+        let filled = (BOX_OVER_CONTACT * solved.filled).min(1.0);
+        cost.memory = n * n * (LIGHT_BYTES + FILLED_BYTES * filled + 8.0 * fields);
+    }
+    cost
+}
+
+#[derive(Default)]
+struct Solved {
+    states: usize,
+    /// Largest share of the cells in contact.
+    filled: f64,
+    cost: Cost,
+}
+
+/// A few of the loads on a small grid; the second number is its cells a side.
+fn small_solves(
+    scene: &SceneFile,
+    numerics: &Numerics,
+    coarse: usize,
+    stop: &dyn Fn() -> bool,
+) -> contact_model::Result<(Solved, usize)> {
+    let seed = scene.seed(0);
+    let mut physics = scene.scene(numerics, seed)?;
+    let mut size = numerics.size();
+    if let Surface::Heights(map) = &physics.surface {
+        size = map.cells().min(coarse);
+        if map.cells() > coarse {
+            physics.surface = Surface::Heights(std::sync::Arc::new(thinned(map, coarse)?));
+        }
+    }
+    let mut solved = Solved::default();
+    match (numerics.model(), &scene.request) {
+        (AnyModel::Contact(model), Request::Loads(loads)) => {
+            let mut contact = model.prepare(&physics, seed)?;
+            let scales = contact.scales();
+            let count = loads.values.len();
+            let used = count.min(CALIBRATION_LOADS);
+            for i in 0..used {
+                let asked = loads.values[i * (count - 1) / (used - 1).max(1)];
+                let Ok(state) = loads.load(asked, &scales).and_then(|load| contact.solve_until(load, stop))
+                else {
+                    continue;
+                };
+                solved.states += 1;
+                let contact = state.report.contact_cells.unwrap_or(0) as f64;
+                solved.filled = solved.filled.max(contact / (size * size).max(1) as f64);
+                solved.cost.applications += state.report.applications as f64;
+                solved.cost.linear_solves += state.report.work.linear_solves as f64;
+            }
+        }
+        (AnyModel::History(model), Request::Path(steps)) => {
+            let mut contact = model.prepare(&physics, seed)?;
+            for step in steps {
+                let Ok(state) = contact.advance_until(*step, stop) else { break };
+                solved.states += 1;
+                let cells = state.normal.report.contact_cells.unwrap_or(0) as f64;
+                solved.filled = solved.filled.max(cells / (size * size).max(1) as f64);
+                solved.cost.applications += state.normal.report.applications as f64;
+                solved.cost.linear_solves += state.normal.report.work.linear_solves as f64;
+            }
+        }
+        _ => {}
+    }
+    Ok((solved, size))
+}
+
+/// Every so many-th cell of a map.
+fn thinned(map: &contact_model::HeightMap, m: usize) -> contact_model::Result<contact_model::HeightMap> {
+    let n = map.cells();
+    let at = |i: usize| i * n / m;
+    let heights = (0..m * m).map(|i| map.heights()[at(i / m) * n + at(i % m)]).collect();
+    contact_model::HeightMap::new(m, map.side(), heights)
+}
