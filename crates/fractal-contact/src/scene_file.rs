@@ -63,6 +63,38 @@ struct Places {
 }
 
 impl SceneFile {
+    /// A scene built in code, in any consistent units: no effects, no outputs, one surface of seed 0. Messages then have no line.
+    ///
+    /// ```
+    /// use contact_model::Surface;
+    /// use fractal_contact::{Loads, Numerics, Plan, Prescribed, Relief, Request, SceneFile};
+    /// let body = Relief::Plain(Surface::Sphere { radius: 1.0, side: 4.0 });
+    /// let loads = Request::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
+    /// let mut scene = SceneFile::new(vec![Numerics::Hertz], body, 1.0, loads);
+    /// scene.asked.outputs.stiffness = true;
+    /// assert!(Plan::new(&scene).is_ok());
+    /// // A closed form has no pressure field.
+    /// scene.asked.outputs.pressure = true;
+    /// assert!(Plan::new(&scene).is_err());
+    /// ```
+    pub fn new(models: Vec<Numerics>, relief: Relief, modulus: f64, request: Request) -> Self {
+        Self {
+            path: PathBuf::new(),
+            text: String::new(),
+            system: System::None,
+            models,
+            relief,
+            modulus,
+            pair: None,
+            effects: Effects::default(),
+            request,
+            asked: Asked::default(),
+            chance: Chance { seed: 0, surfaces: 1 },
+            understood: None,
+            places: Places::default(),
+        }
+    }
+
     /// Reads a file.
     ///
     /// # Errors
@@ -145,7 +177,7 @@ impl SceneFile {
             Some(span) => trouble.at(span),
             None => trouble,
         };
-        trouble.placed(&self.path, &self.text)
+        if self.text.is_empty() { trouble } else { trouble.placed(&self.path, &self.text) }
     }
 
     /// Whether it needs models that remember.
@@ -173,7 +205,7 @@ fn syntax(error: &toml::de::Error) -> Trouble {
 fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let Some(scene) = root.table("scene")? else {
         return Err(Trouble::new("there is no [scene]").with_help(
-            "a scene begins with [scene]: `models`, `modulus` and a load; `fractal-contact plan --help` shows one",
+            "a scene begins with [scene]: `models`, `modulus` and a load; `fractal-contact --help` shows one",
         ));
     };
     let system = scene

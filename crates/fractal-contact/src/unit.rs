@@ -104,8 +104,17 @@ impl Unit {
                 let mut contact = model.prepare(&physics, seed).map_err(Error::model(what()))?;
                 self.path(scene, contact.as_mut(), steps, stop, &mut result);
             }
-            // Reading a scene refuses these.
-            _ => result.whole = false,
+            // Reading a scene refuses these; one built in code may have them.
+            (AnyModel::Contact(model), Request::Path(_)) => {
+                let refused =
+                    contact_model::Error::unsupported(model.name(), "a path: it answers loads one by one");
+                return Err(Error::model(what())(refused));
+            }
+            (AnyModel::History(model), Request::Loads(_)) => {
+                let refused =
+                    contact_model::Error::unsupported(model.name(), "loads one by one: it follows a path");
+                return Err(Error::model(what())(refused));
+            }
         }
         result.seconds = start.elapsed().as_secs_f64();
         Ok(result)
