@@ -1,18 +1,16 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
 //! `reproduce-two-cases`, `accuracy-cost`, `check-reference`, `stability`.
 //!
-//! Argument parsing, progress and exit codes; the figures are in the crate `figures`.
+//! Argument parsing and exit codes; the figures are in the crate `figures`.
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
 //! numbers differ or a hard case fails.
 
 mod arguments;
-mod progress;
 
 use arguments::{Arguments, BenchArguments, Command};
 use clap::Parser as _;
-use figures::{BenchRow, Outcome, Result, Run};
-use progress::Reporter;
+use figures::{BenchRow, Outcome, Reporter, Result, Run};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Mutex;

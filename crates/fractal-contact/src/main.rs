@@ -1,7 +1,6 @@
 //! The program: arguments, progress, Ctrl-C and exit codes; no science.
 
 mod arguments;
-mod reporter;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
@@ -92,7 +91,7 @@ fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
     })
     .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
     let outcome =
-        run(&scene, &plan, options, &reporter::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
+        run(&scene, &plan, options, &figures::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
     for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
         if let Some(predicted) = &planned.predicted {
             eprintln!("{name}\n  predicted  {predicted}");

@@ -125,6 +125,11 @@ impl Numerics {
         matches!(self, Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_))
     }
 
+    /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version has to be compared.
+    pub fn is_stored(&self) -> bool {
+        self.size() > 0
+    }
+
     /// Cells a side, elements of a line; 0 for a formula.
     pub fn size(&self) -> usize {
         match self {

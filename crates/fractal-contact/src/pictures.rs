@@ -27,12 +27,18 @@ pub(crate) fn curves(scene: &SceneFile, table: &Table, out: &Path) -> Result<Vec
     for (x, y) in pairs {
         if has(x) && has(y) {
             let chart = chart(scene, table, x, y);
-            if chart.curves.iter().any(|c| !c.points.is_empty()) {
+            if chart.curves.iter().any(|c| varies(&c.points)) {
                 files.extend(chart.save(out, &format!("curve-{y}"))?);
             }
         }
     }
     Ok(files)
+}
+
+/// A constant, such as a force that is held, is no picture.
+fn varies(points: &[(f64, f64)]) -> bool {
+    let Some(first) = points.first() else { return false };
+    points.len() == 1 || points.iter().any(|p| p.1.total_cmp(&first.1).is_ne())
 }
 
 fn chart(scene: &SceneFile, table: &Table, x: &str, y: &str) -> Chart {

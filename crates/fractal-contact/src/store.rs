@@ -30,7 +30,7 @@ impl Store {
 
     /// The stored result of this very unit; damaged, foreign or without its files it is as good as absent.
     pub fn load(&self, unit: &Unit, scene: &SceneFile, columns: usize) -> Option<UnitResult> {
-        if self.fresh {
+        if self.fresh || !unit.numerics(scene).is_stored() {
             return None;
         }
         let key = unit.key(scene);
@@ -39,6 +39,9 @@ impl Store {
     }
 
     pub fn save(&self, unit: &Unit, scene: &SceneFile, result: &UnitResult) -> Result<()> {
+        if !unit.numerics(scene).is_stored() {
+            return Ok(());
+        }
         let key = unit.key(scene);
         Ok(write_whole(&self.path(&key), format(&key, result).as_bytes())?)
     }

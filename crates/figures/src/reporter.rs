@@ -1,6 +1,6 @@
-//! A bar with the time left on a terminal, plain lines otherwise.
+//! What a run tells on standard error: a bar with the time left on a terminal, plain lines otherwise.
 
-use figures::Progress;
+use crate::progress::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal as _;
 use std::sync::Mutex;
@@ -9,12 +9,14 @@ use std::time::{Duration, Instant};
 /// Without a terminal, at most one line in this time.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// Tells on standard error how far a run is.
+/// Tells on standard error how far a run is: for programs.
+#[derive(Debug)]
 pub struct Reporter {
     terminal: bool,
     stage: Mutex<Stage>,
 }
 
+#[derive(Debug)]
 struct Stage {
     bar: ProgressBar,
     total: u64,
@@ -23,6 +25,12 @@ struct Stage {
     reused: usize,
     begun: Instant,
     told: Instant,
+}
+
+impl Default for Reporter {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Reporter {
