@@ -96,6 +96,18 @@ pub enum Problem {
         /// Largest length allowed.
         largest: u64,
     },
+    /// The file ended before the length that the system gave for it: somebody else writes it.
+    Changed {
+        /// Length at the beginning, in bytes.
+        expected: u64,
+        /// Bytes that could be read.
+        found: u64,
+    },
+    /// The memory for its numbers cannot be had.
+    Memory {
+        /// Bytes asked for.
+        bytes: u128,
+    },
     /// Another kind of file.
     Foreign {
         /// What it looks like.
@@ -195,14 +207,14 @@ pub enum Problem {
     Coordinate {
         /// `x` or `y`.
         axis: char,
-        /// Number of the point, from 1.
-        point: usize,
+        /// Line, from 1.
+        line: usize,
     },
     /// Two points at one place of the grid.
     Duplicate {
-        /// First point of that place, from 1.
+        /// Line of the first of them, from 1.
         first: usize,
-        /// Second one.
+        /// Line of the second one.
         second: usize,
         /// Their coordinates.
         at: [f64; 2],
@@ -287,7 +299,16 @@ pub enum Problem {
         /// What was expected.
         expected: &'static str,
     },
-    /// A quantity that was said or is written in the file makes no sense.
+    /// The comment of a text says a unit that heights or coordinates do not have.
+    Heading {
+        /// Line, from 1.
+        line: usize,
+        /// What it says, such as `value units`.
+        key: String,
+        /// Why.
+        source: QuantityError,
+    },
+    /// A quantity that was said makes no sense.
     Quantity {
         /// What.
         what: &'static str,
@@ -343,7 +364,7 @@ pub enum Problem {
 impl std::error::Error for Problem {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::Quantity { source, .. } => Some(source),
+            Self::Quantity { source, .. } | Self::Heading { source, .. } => Some(source),
             Self::Map(source) => Some(source),
             _ => None,
         }

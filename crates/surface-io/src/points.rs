@@ -20,7 +20,7 @@ const SHOWN: f64 = 0.01;
 /// Cost O(n log n) for n points.
 pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem> {
     if table.columns != 3 {
-        return Err(Problem::NotPoints { line: table.first_line, found: table.columns });
+        return Err(Problem::NotPoints { line: table.first_line(), found: table.columns });
     }
     if declared.width.is_some() {
         let reason = "points say their width themselves; give cell where noise hides the spacing";
@@ -34,7 +34,7 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
     let axis = |name, at: usize| {
         let along = table.values.iter().skip(at).step_by(3).copied();
         if let Some(point) = along.clone().position(|v: f64| v.is_nan()) {
-            return Err(Problem::Coordinate { axis: name, point: point + 1 });
+            return Err(Problem::Coordinate { axis: name, line: table.lines[point] as usize });
         }
         Axis::find(name, along.collect(), spacing)
     };
@@ -45,14 +45,15 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
     let (rows, columns) = (y.count as usize, x.count as usize);
     let cell = common(&x, &y)?;
     let mut heights = vec![f64::NAN; rows * columns];
+    // Lines that are taken; 0 is none.
     let mut taken = vec![0_u32; rows * columns];
     for (i, point) in table.values.chunks_exact(3).enumerate() {
         let at = y.index(point[1])? * columns + x.index(point[0])?;
         if taken[at] > 0 {
-            let first = taken[at] as usize;
-            return Err(Problem::Duplicate { first, second: i + 1, at: [point[0], point[1]] });
+            let [first, second] = [taken[at], table.lines[i]].map(|line| line as usize);
+            return Err(Problem::Duplicate { first, second, at: [point[0], point[1]] });
         }
-        taken[at] = i as u32 + 1;
+        taken[at] = table.lines[i];
         heights[at] = point[2];
     }
     let cell = match (declared.cell, cell) {

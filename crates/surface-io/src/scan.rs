@@ -170,11 +170,12 @@ impl Scan {
     /// # Errors
     /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the file or contradicts what is declared.
     pub fn read(path: &Path, declared: &Declared) -> Result<Self> {
-        let file = File::open(path).map_err(Error::system("open", path))?;
-        let about = file.metadata().map_err(Error::system("read", path))?;
+        // Looked at before it is opened: opening a pipe waits for a writer.
+        let about = std::fs::metadata(path).map_err(Error::system("open", path))?;
         if !about.is_file() {
             return Err(Error::content(path)(Problem::NotAFile));
         }
+        let file = File::open(path).map_err(Error::system("open", path))?;
         Self::from_reader(path, BufReader::new(file), about.len(), declared)
     }
 
@@ -212,9 +213,15 @@ impl Scan {
         let found = if format == Some(Format::Npy) {
             npy::read(path, &mut reader, length, declared)?
         } else {
-            let mut bytes = Vec::with_capacity(length as usize);
+            let mut bytes = Vec::new();
+            let refused = |_| content(path)(Problem::Memory { bytes: length.into() });
+            bytes.try_reserve_exact(length as usize).map_err(refused)?;
             // A file that grows while it is read is cut at its length.
             reader.take(length).read_to_end(&mut bytes).map_err(Error::system("read", path))?;
+            if bytes.len() as u64 != length {
+                let found = bytes.len() as u64;
+                return Err(content(path)(Problem::Changed { expected: length, found }));
+            }
             let table = text::Table::read(&bytes, declared).map_err(content(path))?;
             let format = match format {
                 Some(format) => format,

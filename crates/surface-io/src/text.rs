@@ -63,8 +63,8 @@ pub(crate) struct Table {
     pub(crate) values: Vec<f64>,
     pub(crate) delimiter: Delimiter,
     pub(crate) heading: Heading,
-    /// Number of the first line of data, from 1.
-    pub(crate) first_line: usize,
+    /// Numbers of the lines of data, from 1.
+    pub(crate) lines: Vec<u32>,
 }
 
 /// A mark that some editors put before UTF-8.
@@ -75,12 +75,17 @@ impl Table {
         self.values.len() / self.columns
     }
 
+    /// Number of the first line of data, from 1.
+    pub(crate) fn first_line(&self) -> usize {
+        self.lines.first().map_or(1, |&line| line as usize)
+    }
+
     /// Reads all lines.
     ///
-    /// Memory: at most 8 bytes for each byte of the text (a hole between two commas).
+    /// Memory: at most 8 bytes for each byte of the text (a hole between two commas), and 4 for each line.
     pub(crate) fn read(bytes: &[u8], declared: &Declared) -> Result<Self, Problem> {
-        let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
         check_text(bytes)?;
+        let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
         let mut table: Option<Self> = None;
         let mut heading = Heading::default();
         let numbers = Numbers { decimal: declared.decimal };
@@ -91,7 +96,7 @@ impl Table {
             };
             if data.trim_ascii().is_empty() {
                 if let Some(comment) = comment {
-                    heading.read(comment);
+                    heading.read(comment, i + 1)?;
                 }
                 continue;
             }
@@ -102,7 +107,7 @@ impl Table {
                     values: Vec::new(),
                     delimiter,
                     heading: Heading::default(),
-                    first_line: i + 1,
+                    lines: Vec::new(),
                 });
             }
             if let Some(table) = &mut table {
@@ -137,14 +142,18 @@ impl Table {
             }
         }
         let found = self.values.len() - before;
+        // Files of more than 2^32 lines are beyond what is read by default.
+        self.lines.push(line as u32);
         if self.columns == 0 {
             self.columns = found;
             // All lines at once, and never more than there can be values in these bytes.
             let lines = all.split(|&b| b == b'\n').count();
             let most = (all.len() + 1).min(found.saturating_mul(lines));
-            self.values.reserve_exact(most - before.min(most));
+            let refused = |_| Problem::Memory { bytes: 8 * most as u128 };
+            self.values.try_reserve_exact(most - before.min(most)).map_err(refused)?;
+            self.lines.try_reserve_exact(lines).map_err(refused)?;
         } else if found != self.columns {
-            let (expected, first) = (self.columns, self.first_line);
+            let (expected, first) = (self.columns, self.first_line());
             return Err(Problem::Ragged { line, found, expected, first });
         }
         Ok(())

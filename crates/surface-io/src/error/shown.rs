@@ -12,6 +12,12 @@ impl fmt::Display for Problem {
             Self::TooLarge { bytes, largest } => {
                 write!(f, "{bytes} bytes: at most {largest} are read; raise largest_bytes for more")
             }
+            Self::Changed { expected, found } => {
+                write!(f, "ended after {found} of {expected} bytes: is it being written? read it again later")
+            }
+            Self::Memory { bytes } => {
+                write!(f, "no memory for its numbers, {bytes} bytes: crop or average it on a larger machine")
+            }
             Self::Foreign { what, remedy } => write!(f, "looks like {what}: {remedy}"),
             Self::NotOfFormat { said, found } => {
                 write!(f, "said to be {said}, but the content is {found}: correct the name or the format")
@@ -66,13 +72,13 @@ impl fmt::Display for Problem {
             Self::NotPoints { line, found } => {
                 write!(f, "line {line} has {found} values: expected x, y and z of one point")
             }
-            Self::Coordinate { axis, point } => {
-                write!(f, "point {point} has no {axis}: expected x, y and z of each point (z may be missing)")
+            Self::Coordinate { axis, line } => {
+                write!(f, "line {line} has no {axis}: expected x, y and z of a point (z may be missing)")
             }
             Self::Duplicate { first, second, at: [x, y] } => {
                 write!(
                     f,
-                    "points {first} and {second} are both at x = {x}, y = {y}: expected one height for each place"
+                    "the points of lines {first} and {second} are both at x = {x}, y = {y}: expected one height for each place"
                 )
             }
             Self::Irregular { axis, value, origin, spacing } => write!(
@@ -99,6 +105,9 @@ impl fmt::Display for Problem {
             Self::Contradiction { what, first, second } => write!(f, "{what}: {first}, but {second}"),
             Self::Useless { what, reason } => write!(f, "{what} was given: {reason}"),
             Self::Said { what, value, expected } => write!(f, "{what} = {value}: expected {expected}"),
+            Self::Heading { line, key, source } => {
+                write!(f, "line {line}, {key}: {source}; skip_lines leaves out a header")
+            }
             Self::Quantity { what, source } => write!(f, "{what}: {source}"),
             Self::Crop { from: [row, column], cells, shape: [rows, columns] } => write!(
                 f,

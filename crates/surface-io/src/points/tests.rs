@@ -62,11 +62,11 @@ fn noise_needs_a_cell() {
 #[test]
 fn bad_points_are_named() {
     for (text, expected) in [
-        ("0 0 1\n1 0 2\n0 0 3\n", "points 1 and 3 are both at x = 0, y = 0"),
+        ("0 0 1\n1 0 2\n0 0 3\n", "the points of lines 1 and 3 are both at x = 0, y = 0"),
         ("0 0 1\n1 0 2\n0 2 3\n1 2 3\n", "spacing 1 along x and 2 along y: expected square cells"),
         ("0 0 1\n1 0 2\n2.4 0 3\n", "x = 1 is off the grid x = 0 + i * 1.2"),
         ("0 0 1\n1 1 2\n2 2 3\n3 3 3\n", "4 points on a grid of 4 x 4"),
-        ("0 0 1\n1 nan 2\n", "point 2 has no y"),
+        ("0 0 1\n1 nan 2\n", "line 2 has no y"),
         ("0 0\n1 0\n", "line 1 has 2 values: expected x, y and z"),
         ("0 0 1\n1e308 0 2\n-1e308 0 1\n", "beyond the range"),
         ("# Value units: nm\n0 0 1\n", "say lateral_unit"),

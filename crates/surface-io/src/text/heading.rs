@@ -1,6 +1,7 @@
 //! What comments say: `# Width: 10 um`, `# Height: 10 um`, `# Value units: m`, as Gwyddion exports them and this crate writes them.
 
-use crate::quantity::{Dimension, Quantity, Unit};
+use crate::error::Problem;
+use crate::quantity::{Dimension, Quantity, QuantityError, Unit};
 
 /// The statements that count; everything else is a comment.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -20,21 +21,29 @@ const LONGEST: usize = 200;
 
 impl Heading {
     /// Takes what a comment says; the first statement of a kind counts.
-    pub(super) fn read(&mut self, comment: &[u8]) {
+    ///
+    /// Width and height are words of everyday and count where they are lengths; units count or are an error.
+    pub(super) fn read(&mut self, comment: &[u8], line: usize) -> Result<(), Problem> {
         if comment.len() > LONGEST {
-            return;
+            return Ok(());
         }
         // Files of older programs write the micro sign in Latin-1, whose bytes are the first 256 characters.
         let latin = || comment.iter().map(|&b| char::from(b)).collect();
         let text: String = std::str::from_utf8(comment).map_or_else(|_| latin(), str::to_owned);
-        let Some((key, value)) = text.split_once(':') else { return };
-        match key.trim().to_ascii_lowercase().as_str() {
+        let Some((key, value)) = text.split_once(':') else { return Ok(()) };
+        let key = key.trim().to_ascii_lowercase();
+        match key.as_str() {
             "width" => self.width = self.width.or_else(|| length(value)),
             "height" => self.height = self.height.or_else(|| length(value)),
-            "value units" => self.unit = self.unit.take().or_else(|| unit(value)),
-            "lateral units" => self.lateral_unit = self.lateral_unit.take().or_else(|| unit(value)),
+            "value units" | "lateral units" if !value.trim().is_empty() => {
+                let unit =
+                    unit(value).map_err(|source| Problem::Heading { line, key: key.clone(), source })?;
+                let said = if key == "value units" { &mut self.unit } else { &mut self.lateral_unit };
+                said.get_or_insert(unit);
+            }
             _ => {}
         }
+        Ok(())
     }
 
     /// Lengths without a unit count only where the heights are said to have none: elsewhere they are numbers of pixels.
@@ -50,10 +59,12 @@ fn length(text: &str) -> Option<Quantity> {
     (known && quantity.value() > 0.0).then_some(quantity)
 }
 
-fn unit(text: &str) -> Option<Unit> {
-    if text.trim().is_empty() {
-        return None;
+fn unit(text: &str) -> Result<Unit, QuantityError> {
+    let unit: Unit = text.parse()?;
+    if unit.dimension() == Dimension::LENGTH || unit == Unit::none() {
+        Ok(unit)
+    } else {
+        let (text, found) = (unit.to_string(), unit.dimension());
+        Err(QuantityError::Dimension { text, found, expected: Dimension::LENGTH })
     }
-    let unit: Unit = text.parse().ok()?;
-    (unit.dimension() == Dimension::LENGTH || unit == Unit::none()).then_some(unit)
 }

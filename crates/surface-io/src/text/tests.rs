@@ -81,6 +81,20 @@ fn what_a_heading_says_counts() {
     assert_eq!(read(b"# Width: 512 px\n1 2\n3 4\n").unwrap().understood().cell, None);
     let plain = read(b"# Width: 3\n# Value units: none\n1 2\n3 4\n").unwrap();
     assert_eq!(plain.understood().cell.clone().unwrap().value.to_string(), "1.5");
+    for (text, expected) in [
+        (
+            "# c\n# Value units: V\n1\n",
+            "a.txt: line 2, value units: V is a quantity in m^2 kg s^-3 A^-1: expected a length, such as \"1 mm\"; skip_lines leaves out a header",
+        ),
+        (
+            "# Lateral units: Nm\n1\n",
+            "a.txt: line 1, lateral units: unknown unit \"Nm\": upper and lower case differ, is it nm?; skip_lines",
+        ),
+    ] {
+        let error = read(text.as_bytes()).unwrap_err().to_string();
+        assert!(error.starts_with(expected), "{error}");
+    }
+    assert_eq!(read(b"# Value units:\n1\n").unwrap().understood().unit, None);
     assert!(matches!(problem(b"# Width: 3 um\n# Height: 2 um\n1 2\n3 4\n"), Problem::Oblong { .. }));
 }
 
