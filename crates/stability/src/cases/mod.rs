@@ -3,6 +3,7 @@
 mod chance;
 mod few;
 mod limits;
+mod periodic;
 mod range;
 mod shapes;
 mod surfaces;
@@ -24,6 +25,7 @@ pub fn cases() -> Vec<Case> {
         &shapes::CASES,
         &range::CASES,
         &units::CASES,
+        &periodic::CASES,
         &limits::CASES,
         &chance::CASES,
     ]

@@ -10,7 +10,7 @@ pub(super) const CASES: [Case; 5] = [
     Case {
         name: "1 to 99.99 % contact",
         why: "restarted iterations stall between 50 and 95 %; near 100 % a few holes decide",
-        asserted: "k_i dd <= dF <= k_(i+1) dd between neighbours (F is convex), k below full contact's (excess over F)",
+        asserted: "k_i dd <= dF <= k_(i+1) dd between neighbours: F is convex with slope k, which never falls (excess over F)",
         bound: 1e-8,
         solve: fractions,
     },
@@ -32,7 +32,7 @@ pub(super) const CASES: [Case; 5] = [
         name: "loads a million times the relief",
         why: "gaps left are a millionth of the approach, less than single precision sees",
         asserted: "full contact with its k; d - F/k is the load-free constant sum q z/k of the same surface",
-        bound: 1e-6,
+        bound: 1e-4,
         solve: far_beyond,
     },
     Case {
@@ -45,67 +45,49 @@ pub(super) const CASES: [Case; 5] = [
 ];
 
 fn fractions(ledger: &mut Ledger, effort: Effort) -> Result<()> {
-    // 65 x 65: the last load leaves one cell of 4225 open, 99.976 %; 129 x 129: 99.994 %.
-    let cells = effort.pick(65, 129);
+    // 101 x 101: with one cell open 99.990 % are in contact; 129 x 129: 99.994 %.
+    let cells = effort.pick(101, 129);
+    let all = cells * cells;
+    let count = |state: &ContactState| state.report.contact_cells.unwrap_or(0);
     for fractal_dimension in [2.0, 2.6] {
         let map = rough_map(fractal_dimension, cells, 2)?;
         let mut contact = tight().prepare(&watched(&map), 0)?;
-        let all = cells * cells;
-        let mut solve = |ledger: &mut Ledger, d: f64| {
-            press_again(ledger, &mut *contact, tight().tolerance, &map, Load::Approach(d))
-        };
-        let count = |state: &ContactState| state.report.contact_cells.unwrap_or(0);
-        // The approach at which the last cell closes, by bisection between neighbours of it.
-        let (mut low, mut high) = (1.0, 1.0);
-        let mut last = solve(ledger, high)?;
-        while count(&last) < all {
-            (low, high) = (high, 2.0 * high);
-            last = solve(ledger, high)?;
+        let mut high = 1.0;
+        while count(&contact.solve(Load::Approach(high))?) < all {
+            high *= 2.0;
         }
-        let plateau = stiffness(&last)?;
-        let mut open = None;
-        for _ in 0..30 {
-            let middle = f64::midpoint(low, high);
-            let state = solve(ledger, middle)?;
-            match all - count(&state) {
-                0 => high = middle,
-                1 => {
-                    open = Some(state);
+        // The approach of a number of cells, by bisection: the number never falls.
+        let wanted: Vec<usize> = [0.01, 0.1, 0.5, 0.9, 0.99]
+            .iter()
+            .map(|f| (f * all as f64) as usize)
+            .chain([all - 1, all])
+            .collect();
+        let mut points: Vec<(f64, f64, f64)> = Vec::new();
+        for &cells_wanted in &wanted {
+            let near = if cells_wanted < all - 1 { all / 200 } else { 0 };
+            let (mut low, mut above) = (0.0, high);
+            let mut found = contact.solve(Load::Approach(high))?;
+            for _ in 0..40 {
+                if count(&found).abs_diff(cells_wanted) <= near {
                     break;
                 }
-                _ => low = middle,
+                let middle = f64::midpoint(low, above);
+                found = contact.solve(Load::Approach(middle))?;
+                if count(&found) < cells_wanted { low = middle } else { above = middle }
             }
+            ledger.must(count(&found).abs_diff(cells_wanted) <= near, || {
+                format!("D_f {fractal_dimension}: {} cells where {cells_wanted} were wanted", count(&found))
+            });
+            let load = Load::Approach(approach(&found)?);
+            let state = press(ledger, &map, load)?;
+            ledger.must(count(&state) == count(&found), || format!("{load:?}: {} cells", count(&state)));
+            points.push((approach(&state)?, state.force, stiffness(&state)?));
         }
-        let mut states = Vec::new();
-        for fraction in [0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99, 0.999] {
-            // The approach of a fraction: close enough by a few secants of a monotone function.
-            let (mut low, mut high) = (0.0, high);
-            let mut state = None;
-            for _ in 0..5 {
-                let middle = f64::midpoint(low, high);
-                let found = solve(ledger, middle)?;
-                if (count(&found) as f64) < fraction * all as f64 {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-                state = Some(found);
-            }
-            states.extend(state);
-        }
-        ledger.must(open.is_some(), || format!("D_f {fractal_dimension}: no state with one open cell"));
-        states.extend(open);
-        states.push(last);
-        let mut points = Vec::new();
-        for state in &states {
-            points.push((approach(state)?, state.force, stiffness(state)?));
-        }
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         for pair in points.windows(2) {
             let [(d0, f0, k0), (d1, f1, k1)] = [pair[0], pair[1]];
             let (step, rise) = (d1 - d0, f1 - f0);
             ledger.enter((k0 * step - rise).max(rise - k1 * step).max(0.0) / f1);
-            ledger.must(k1 <= plateau * (1.0 + SAME), || format!("k {k1} above {plateau}"));
+            ledger.must(k1 >= k0, || format!("k falls from {k0} to {k1}"));
         }
     }
     Ok(())
