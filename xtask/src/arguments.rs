@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use contact_model::Boundary;
-use figures::{Bench, Depth, Forces, Method, Preset, Request, Surfaces, TwoCases};
+use figures::{Bench, Depth, Forces, Method, Needs, Preset, Request, Surfaces, TwoCases, Wish};
 use std::path::PathBuf;
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
@@ -21,6 +21,7 @@ Examples:
   cargo xtask reproduce-all --preset quick            everything, coarse
   cargo xtask reproduce-fig2 --cells 513 --surfaces 20 --fractal-dimensions 2.0,2.4
   cargo xtask reproduce-fig6 --forces 1e-9:20:60      60 loads, logarithmic, both ends in
+  cargo xtask reproduce-fig2 --accuracy 5% --forces 0.1,1,20   the cheapest settings for that, or what ten minutes buy
   cargo xtask verify                                  one line per claim of the paper
   cargo xtask reproduce-fig2 --preset paper           2049 cells, 60 surfaces: stop and resume at will
   cargo xtask reproduce-fig2 --preset extended --over data/figures/paper/fig2.csv   16385 cells, light loads
@@ -86,6 +87,9 @@ pub enum Command {
     /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and picture).
     #[command(after_help = EXPAND)]
     AccuracyCost(AccuracyCost),
+    /// Whether error budgets are honest: random surfaces, loads, grids and tolerances against references (budget-check.csv).
+    #[command(after_help = EXPAND)]
+    BudgetCheck(BudgetCheck),
     /// Sec. II's two problems side by side: free and fractal, periodic with a roll-off; with Persson's and Greenwood-Williamson's theories.
     #[command(after_help = EXPAND)]
     ReproduceTwoCases(TwoCasesArguments),
@@ -112,12 +116,26 @@ impl Command {
             Self::ReproduceAll(_) => "reproduce-all",
             Self::Verify(_) => "verify",
             Self::AccuracyCost(_) => "accuracy-cost",
+            Self::BudgetCheck(_) => "budget-check",
             Self::ReproduceTwoCases(_) => "reproduce-two-cases",
             Self::Audit(_) => "audit",
             Self::Bench(_) => "bench",
             Self::CheckReference(_) => "check-reference",
             Self::Stability(_) => "stability",
         }
+    }
+
+    /// The accuracy that a figure is asked for, and which ensembles it needs.
+    pub fn wish(&self) -> Option<(Needs, Wish)> {
+        let (solve, solid, line) = match self {
+            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, true, false),
+            Self::ReproduceFig6(a) => (&a.solve, false, true),
+            Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
+                (&a.solve, true, true)
+            }
+            _ => return None,
+        };
+        solve.wish().map(|wish| (Needs { solid, line }, wish))
     }
 
     /// What it asks for.
@@ -133,6 +151,7 @@ impl Command {
             }
             Self::Audit(a) => a.solid.fill(&mut request),
             Self::Bench(_) => {}
+            Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),
             Self::AccuracyCost(a) => request.out = Some(a.out.clone()),
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
@@ -197,17 +216,53 @@ pub struct Solve {
     /// Ignore stored units and solve everything again.
     #[arg(long)]
     fresh: bool,
+    /// Choose grid, tolerance and number of surfaces so that each mean k_bar above the one-cell floor is known to this (95 % half-width):
+    /// a share or per cent, such as 0.02 or 2%. A pilot of small grids runs first.
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    accuracy: Option<f64>,
+    /// Most time that --accuracy may choose, such as 90s, 10min, 2h.
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "10min", requires = "accuracy", allow_hyphen_values = true)]
+    budget: f64,
     /// Draw the curves of another run's fig2.csv or fig6.csv underneath (Figs. 2 and 6).
     #[arg(long, value_name = "FILE.csv")]
     over: Option<PathBuf>,
 }
 
 impl Solve {
+    fn wish(&self) -> Option<Wish> {
+        self.accuracy.map(|accuracy| Wish { accuracy, seconds: self.budget })
+    }
+
     fn fill(&self, request: &mut Request) {
         request.forces.clone_from(&self.forces);
         request.threads = Some(self.threads);
         request.fresh = self.fresh;
         request.over.clone_from(&self.over);
+    }
+}
+
+/// A share: `0.02` or `2%`.
+fn share(text: &str) -> Result<f64, String> {
+    let (digits, unit) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
+    let value = digits.trim().parse::<f64>().map_err(|e| e.to_string())? / unit;
+    if value > 0.0 && value < 1.0 {
+        Ok(value)
+    } else {
+        Err("expected a share between 0 and 1, such as 0.02 or 2%".into())
+    }
+}
+
+/// A time: `90s`, `10min`, `2h`; a bare number is seconds.
+fn seconds(text: &str) -> Result<f64, String> {
+    let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
+    let (digits, unit) = (units.iter())
+        .find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))
+        .unwrap_or((text, 1.0));
+    let value = unit * digits.trim().parse::<f64>().map_err(|e| e.to_string())?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("expected a time such as 90s, 10min or 2h".into())
     }
 }
 
@@ -389,6 +444,23 @@ impl AccuracyCost {
             DepthName::Thorough => Depth::Thorough,
         }
     }
+}
+
+/// Flags of the check of error budgets.
+#[derive(Debug, Args)]
+pub struct BudgetCheck {
+    /// Random cases.
+    #[arg(long, value_name = "COUNT", default_value_t = 100)]
+    pub cases: usize,
+    /// Master seed.
+    #[arg(long, default_value_t = figures::SEED)]
+    pub seed: u64,
+    /// Threads; 0 is one per core. Changes no byte of the CSV.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
 }
 
 /// Flags of the two cases.
@@ -707,6 +779,33 @@ mod tests {
         // Values that the words allow and the bench refuses.
         for line in ["bench --forces -1", "bench --forces 1:2"] {
             assert!(bench(line).bench().unwrap_err().to_string().starts_with("--forces"), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_wish_is_a_share_and_a_time() {
+        let wish = |line: &str| parse(line).unwrap().command.wish();
+        let (needs, asked) = wish("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
+        assert_eq!(
+            (needs, asked),
+            (Needs { solid: true, line: false }, Wish { accuracy: 0.01, seconds: 7200.0 })
+        );
+        let (needs, asked) = wish("verify --accuracy 0.05").unwrap();
+        assert_eq!(
+            (needs, asked),
+            (Needs { solid: true, line: true }, Wish { accuracy: 0.05, seconds: 600.0 })
+        );
+        assert!(wish("reproduce-fig6").is_none() && wish("bench").is_none());
+        for line in [
+            "reproduce-fig2 --accuracy 0",
+            "reproduce-fig2 --accuracy 100%",
+            "reproduce-fig2 --accuracy many",
+            "reproduce-fig2 --accuracy 1% --budget 0s",
+            "reproduce-fig2 --accuracy 1% --budget 5d",
+            "reproduce-fig2 --budget 5s",
+            "reproduce-fig1 --accuracy 1%",
+        ] {
+            assert!(parse(line).is_err(), "{line}");
         }
     }
 

@@ -1,10 +1,10 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `reproduce-two-cases`, `accuracy-cost`, `check-reference`, `stability`.
+//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `check-reference`, `stability`.
 //!
 //! Argument parsing and exit codes; the figures are in the crate `figures`.
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
-//! numbers differ or a hard case fails.
+//! numbers differ, a hard case fails or error budgets do not hold.
 
 mod arguments;
 
@@ -37,9 +37,18 @@ fn execute(command: Command) -> Result<ExitCode> {
         return bench(options);
     }
     let name = command.name();
-    let run = Run::new(&command.request())?;
     let reporter = Reporter::new();
-    let outcomes = match command {
+    let wish = command.wish();
+    let run = match wish {
+        Some((needs, wish)) => {
+            let plan = figures::plan(&command.request(), needs, wish, &reporter)?;
+            plan.lines.iter().for_each(|line| println!("{line}"));
+            plan.run
+        }
+        None => Run::new(&command.request())?,
+    };
+    let mut dishonest = false;
+    let mut outcomes = match command {
         Command::ReproduceFig1(_) => vec![figures::fig1(&run, &reporter)?],
         Command::ReproduceFig2(_) => vec![figures::fig2(&run, &reporter)?],
         Command::ReproduceFig3(_) => vec![figures::fig3(&run, &reporter)?],
@@ -55,6 +64,13 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceTwoCases(options) => {
             vec![figures::two_cases(&options.study()?, &options.out, &reporter)?]
         }
+        Command::BudgetCheck(options) => {
+            let (outcome, honesty) =
+                figures::budget_check(options.cases, options.seed, run.threads, &run.out, &reporter)?;
+            println!("{honesty}");
+            dishonest = !honesty.holds();
+            vec![outcome]
+        }
         Command::Audit(options) => {
             let (outcome, summary) = figures::audit(&run, options.share, options.tight, &reporter)?;
             println!("{summary}");
@@ -62,10 +78,16 @@ fn execute(command: Command) -> Result<ExitCode> {
         }
         Command::Bench(_) | Command::CheckReference(_) | Command::Stability(_) => Vec::new(),
     };
+    if let Some((needs, _)) = wish
+        && outcomes.iter().all(|o| o.reached.is_empty())
+    {
+        outcomes.push(figures::state_budgets(&run, needs.solid, needs.line, &reporter)?);
+    }
     let typed: Vec<String> = std::env::args().skip(1).collect();
     let manifest =
         figures::write_manifest(&run, name, &format!("cargo xtask {}", typed.join(" ")), &outcomes)?;
-    Ok(report(&outcomes, &manifest))
+    let code = report(&outcomes, &manifest);
+    Ok(if dishonest { ExitCode::from(3) } else { code })
 }
 
 /// Prints what was made and what the paper says to it.
@@ -76,6 +98,9 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
         }
     }
     println!("{}", manifest.display());
+    for line in outcomes.iter().flat_map(|o| &o.reached) {
+        println!("{line}");
+    }
     let verified = outcomes.iter().find(|o| o.name == "verify");
     let claims = verified.map_or_else(
         || {

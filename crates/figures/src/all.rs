@@ -1,5 +1,6 @@
 //! All seven figures and the verification, each ensemble solved once.
 
+use crate::curves;
 use crate::error::Result;
 use crate::measured::{measure_1d, measure_3d};
 use crate::outcome::Outcome;
@@ -17,11 +18,13 @@ pub fn reproduce_all(run: &Run, progress: &dyn Progress) -> Result<Vec<Outcome>>
     let session = Session::open(run)?;
     let solid = measure_3d(run, &session.store, progress)?;
     let mut two = fig2::write(run, &solid)?;
+    two.add_budget(curves::budget("fig2", &curves::FLAGS_3D, run, &solid, &session.store, progress)?);
     two.claims = claims::curves_3d(&solid);
     outcomes.insert(1, session.close(two)?);
     let session = Session::open(run)?;
     let line = measure_1d(run, &session.store, progress)?;
     let mut six = fig6::write(run, &line)?;
+    six.add_budget(curves::budget("fig6", &curves::FLAGS_1D, run, &line, &session.store, progress)?);
     six.claims = claims::curves_1d(&line);
     outcomes.push(session.close(six)?);
     for write in [fig3::write, fig7::write, verify::write] {

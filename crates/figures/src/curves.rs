@@ -1,10 +1,13 @@
 //! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
 
+use crate::budget;
 use crate::csv_file::{CsvFile, Header, write_csv};
 use crate::error::Result;
 use crate::measured::Measured;
 use crate::plot::{Axis, Key, Mark, Picture, color, logarithmic};
+use crate::progress::Progress;
 use crate::run::{Flag, Run, list};
+use crate::store::Store;
 use crate::tables;
 use kuva::plot::line::LineStyle;
 use kuva::plot::scatter::MarkerShape;
@@ -60,6 +63,23 @@ pub(crate) fn write(
     let mut files = vec![csv.clone(), samples];
     files.extend(draw(name, title, &csv, run.over.as_deref(), &run.out)?);
     Ok(files)
+}
+
+/// Writes `name-budget.csv`; its path, and to what k is known.
+pub(crate) fn budget(
+    name: &'static str,
+    flags: &[Flag],
+    run: &Run,
+    measured: &Measured,
+    store: &Store,
+    progress: &dyn Progress,
+) -> Result<(PathBuf, String)> {
+    let twins = budget::measure_twins(run, measured, store, progress)?;
+    let all = budget::budgets(measured, twins.as_ref());
+    let header = describe(Header::new(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
+    let path = run.out.join(format!("{name}-budget.csv"));
+    budget::write(&path, measured, &all, header)?;
+    Ok((path, format!("{name}: {}", budget::reached(&all))))
 }
 
 /// The curves of a CSV file: (D_f, points with their floor mark).

@@ -11,7 +11,7 @@ use crate::session::Session;
 
 use crate::curves::FLAGS_1D as FLAGS;
 
-/// Solves the 1D ensemble and writes `fig6.csv`, `fig6-samples.csv`, `fig6.svg`, `fig6.png`.
+/// Solves the 1D ensemble and writes `fig6.csv`, `fig6-samples.csv`, `fig6-budget.csv`, `fig6.svg`, `fig6.png`.
 ///
 /// Source: Fig. 6 of the paper (2^20 elements, 500 lines).
 ///
@@ -21,6 +21,7 @@ pub fn fig6(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     let session = Session::open(run)?;
     let measured = measure_1d(run, &session.store, progress)?;
     let mut outcome = write(run, &measured)?;
+    outcome.add_budget(curves::budget("fig6", &FLAGS, run, &measured, &session.store, progress)?);
     outcome.claims = claims::curves_1d(&measured);
     session.close(outcome)
 }

@@ -49,7 +49,7 @@ pub fn measure_1d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<M
     measure(numerics, run.lines, run.forces_1d.values(), run, store, progress)
 }
 
-fn measure(
+pub(crate) fn measure(
     numerics: Numerics,
     surfaces: usize,
     forces: &[f64],

@@ -14,6 +14,8 @@ pub struct Outcome {
     pub claims: Vec<Claim>,
     /// Solves that did not meet their tolerance; they are in the samples and left out of every mean.
     pub not_converged: usize,
+    /// One line each: to what the numbers are known.
+    pub reached: Vec<String>,
     /// Wall-clock seconds of this command.
     pub seconds: f64,
     /// Seconds of all 3D units together, whenever they were solved.
@@ -25,5 +27,11 @@ pub struct Outcome {
 impl Outcome {
     pub(crate) fn new(name: &'static str) -> Self {
         Self { name, ..Self::default() }
+    }
+
+    /// A file of budgets and what it says in one line.
+    pub(crate) fn add_budget(&mut self, (path, reached): (PathBuf, String)) {
+        self.files.push(path);
+        self.reached.push(reached);
     }
 }

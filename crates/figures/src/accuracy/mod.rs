@@ -4,9 +4,11 @@
 //! each answer is off and what it took. References are exact answers, or the limit of fine grids at the tightest tolerance,
 //! extrapolated where the observed order is established; each comes with its uncertainty, and no error is reported below it.
 
+mod check;
 mod limit;
 mod means;
 mod picture;
+mod plan;
 mod pressure;
 mod problem;
 mod row;
@@ -14,6 +16,8 @@ mod study;
 mod table;
 mod text;
 
+pub use check::{Honesty, budget_check};
+pub use plan::{Needs, Plan, Wish, plan};
 pub use study::Depth;
 
 use crate::csv_file::{Header, write_csv};
