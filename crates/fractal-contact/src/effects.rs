@@ -41,8 +41,22 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
         ),
         line("adhesion", adhesion, format!("short range, work {work} per area"), "no attraction"),
         line("friction", friction, format!("Coulomb, coefficient {coefficient}"), "no tangential load"),
-        line("rheology", rheology, format!("{:?}", effects.rheology), "elastic"),
+        line("rheology", rheology, rheology_words(&effects.rheology), "elastic"),
     ]
+}
+
+fn rheology_words(rheology: &Rheology) -> String {
+    let arms = |arms: &[Relaxing]| {
+        let list: Vec<String> = arms.iter().map(|a| format!("weight {} time {}", a.weight, a.time)).collect();
+        list.join(", ")
+    };
+    match rheology {
+        Rheology::KelvinVoigt { viscosity } => format!("Kelvin-Voigt, viscosity {viscosity}"),
+        Rheology::Maxwell { viscosity } => format!("Maxwell, viscosity {viscosity}"),
+        Rheology::StandardSolid { arm } => format!("standard solid, {}", arms(&[*arm])),
+        Rheology::Prony(series) => format!("Prony series, {}", arms(series.arms())),
+        other => format!("{other:?}"),
+    }
 }
 
 /// Reads `[effects]`.

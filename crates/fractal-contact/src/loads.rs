@@ -199,7 +199,15 @@ fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
         if steps.is_empty() {
             last = beginning(normal, tangential);
         }
-        let pieces = table.find("states").map_or(Ok(1), |e| e.count(1))?.min(MOST);
+        let states = table.find("states");
+        let pieces = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
+        if let Some(entry) = states
+            && pieces.saturating_add(steps.len() as u64) > MOST
+        {
+            return Err(entry
+                .trouble(format!("{pieces} states: expected at most {MOST} along the whole path"))
+                .with_help("a step is exact however long it is: states in between are for looking at"));
+        }
         table.finish()?;
         let end = Step { time, normal, tangential };
         end.validated(last.time)

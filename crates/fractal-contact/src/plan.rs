@@ -85,11 +85,14 @@ pub fn check(scene: &SceneFile) -> Result<()> {
 }
 
 fn refused(scene: &SceneFile, error: &contact_model::Error) -> Trouble {
+    if !matches!(error, contact_model::Error::Unsupported { .. }) {
+        return Trouble::new(error.to_string()).with_help("check the numbers of [scene] and of the model");
+    }
     let able: Vec<&str> = Numerics::ALL
         .iter()
         .filter(|m| m.is_history() == scene.is_history())
         .map(Numerics::probe)
-        .filter(|m| probe(scene, m, true).is_ok())
+        .filter(|m| probe(scene, m).is_ok())
         .map(|m| m.name())
         .collect();
     let help = if able.is_empty() {

@@ -16,6 +16,9 @@ use surface_io::Dimension;
 /// Longest scene; a longer file is something else.
 const LONGEST: u64 = 1 << 20;
 
+/// Most surfaces of a scene.
+const MOST_SURFACES: u64 = 1_000_000;
+
 /// One question with everything that decides its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
@@ -316,9 +319,14 @@ fn read_chance(root: &Entries<'_>, scene: &Entries<'_>, relief: &Relief) -> Read
             .trouble_at_key("`surfaces` is given, but nothing here is random")
             .with_help("remove it: there is one surface"));
     }
-    let surfaces = surfaces.map_or(Ok(1), |e| e.count(1))? as usize;
+    let count = surfaces.as_ref().map_or(Ok(1), |e| e.count(1))?;
+    if let (Some(entry), true) = (&surfaces, count > MOST_SURFACES) {
+        return Err(entry
+            .trouble(format!("{count} surfaces: expected at most {MOST_SURFACES}"))
+            .with_help("the mean of 1000 surfaces is good to a per cent"));
+    }
     table.finish()?;
-    Ok(Chance { seed, surfaces })
+    Ok(Chance { seed, surfaces: count as usize })
 }
 
 /// A map brings its own cells.

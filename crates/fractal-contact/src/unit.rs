@@ -251,10 +251,15 @@ impl Unit {
         Ok(())
     }
 
-    /// Errors where this model cannot answer the scene at all, found out on a small grid.
+    /// Errors where this model cannot answer the scene, found out on a small grid; what that grid refuses for its own sake is asked of the
+    /// full one.
     pub fn probe(&self, scene: &SceneFile) -> contact_model::Result<()> {
-        let reduced = self.numerics(scene).probe();
-        probe(scene, &reduced, *self.numerics(scene) != reduced)
+        let numerics = self.numerics(scene);
+        match probe(scene, &numerics.probe()) {
+            Ok(()) => Ok(()),
+            Err(error @ contact_model::Error::Unsupported { .. }) => Err(error),
+            Err(_) => probe(scene, numerics),
+        }
     }
 }
 
@@ -271,16 +276,12 @@ fn write_vti(path: &Path, name: &str, scene: &SceneFile, side: usize, values: &[
     Ok(figures::write_whole(path, &bytes)?)
 }
 
-/// Whether a model takes a scene. On a reduced grid only what it does not support counts: numbers may be wrong for the grid's sake.
-pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics, reduced: bool) -> contact_model::Result<()> {
+/// Whether a model takes a scene.
+pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics) -> contact_model::Result<()> {
     let seed = scene.seed(0);
-    let prepare = |physics: &Scene| match numerics.model() {
-        AnyModel::Contact(model) => model.prepare(physics, seed).map(|_| ()),
-        AnyModel::History(model) => model.prepare(physics, seed).map(|_| ()),
-    };
-    match scene.scene(numerics, seed).and_then(|physics| prepare(&physics)) {
-        Err(e @ contact_model::Error::Unsupported { .. }) => Err(e),
-        Err(e) if !reduced => Err(e),
-        _ => Ok(()),
+    let physics: Scene = scene.scene(numerics, seed)?;
+    match numerics.model() {
+        AnyModel::Contact(model) => model.prepare(&physics, seed).map(|_| ()),
+        AnyModel::History(model) => model.prepare(&physics, seed).map(|_| ()),
     }
 }
