@@ -1,6 +1,7 @@
 //! `[effects]`: each off unless named.
 
 use crate::entries::{Entries, Entry, Read, System};
+use crate::words::number;
 use contact_model::{Adhesion, Boundary, Effects, Friction, PronySeries, Relaxing, Rheology};
 use surface_io::Dimension;
 
@@ -39,7 +40,7 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
             "periodic copies of the square".into(),
             "an unloaded half-space outside the square",
         ),
-        line("adhesion", adhesion, format!("short range, work {work} per area"), "no attraction"),
+        line("adhesion", adhesion, format!("short range, work {} per area", number(work)), "no attraction"),
         line("friction", friction, format!("Coulomb, coefficient {coefficient}"), "no tangential load"),
         line("rheology", rheology, rheology_words(&effects.rheology), "elastic"),
     ]
@@ -47,12 +48,13 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
 
 fn rheology_words(rheology: &Rheology) -> String {
     let arms = |arms: &[Relaxing]| {
-        let list: Vec<String> = arms.iter().map(|a| format!("weight {} time {}", a.weight, a.time)).collect();
+        let list: Vec<String> =
+            arms.iter().map(|a| format!("weight {} time {}", number(a.weight), number(a.time))).collect();
         list.join(", ")
     };
     match rheology {
-        Rheology::KelvinVoigt { viscosity } => format!("Kelvin-Voigt, viscosity {viscosity}"),
-        Rheology::Maxwell { viscosity } => format!("Maxwell, viscosity {viscosity}"),
+        Rheology::KelvinVoigt { viscosity } => format!("Kelvin-Voigt, viscosity {}", number(*viscosity)),
+        Rheology::Maxwell { viscosity } => format!("Maxwell, viscosity {}", number(*viscosity)),
         Rheology::StandardSolid { arm } => format!("standard solid, {}", arms(&[*arm])),
         Rheology::Prony(series) => format!("Prony series, {}", arms(series.arms())),
         other => format!("{other:?}"),

@@ -75,6 +75,7 @@ mod scene_file;
 mod store;
 mod trouble;
 mod unit;
+mod words;
 
 pub use effects::{EffectLine, effect_lines};
 pub use entries::System;

@@ -179,7 +179,7 @@ impl Numerics {
             Self::Equivalent(_) => format!(
                 "the normal part is that of bem3d on {cells} x {cells} cells; tangential results are exact for round contacts, a few per cent off for \
                  others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
-                 bodies, two to three for rough ones"
+                 bodies, about two for rough ones (its doubt is in `strategy`)"
             ),
             Self::Viscoelastic => "exact while the contact grows, which is checked; 1e-12".into(),
         }

@@ -7,6 +7,7 @@ use crate::numerics::Numerics;
 use crate::scene_file::SceneFile;
 use crate::trouble::Trouble;
 use crate::unit::{Unit, probe};
+use crate::words::{memory, number, time};
 use contact_model::Surface;
 use std::fmt;
 
@@ -184,27 +185,6 @@ pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> usize {
     }
 }
 
-/// A time in words.
-pub(crate) fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 1e-3 => "under 1 ms".into(),
-        s if s < 1.0 => format!("{:.0} ms", 1e3 * s),
-        s if s < 120.0 => format!("{s:.1} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
-/// A number of bytes in words.
-pub(crate) fn memory(bytes: f64) -> String {
-    match bytes {
-        b if b < 1e3 => format!("{b:.0} bytes"),
-        b if b < 1e6 => format!("{:.0} kB", b / 1e3),
-        b if b < 1e9 => format!("{:.0} MB", b / 1e6),
-        b => format!("{:.1} GB", b / 1e9),
-    }
-}
-
 impl fmt::Display for Cost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
@@ -232,7 +212,7 @@ impl fmt::Display for Plan {
         for line in self.understood.iter().flat_map(|u| u.lines()) {
             writeln!(f, "          {line}")?;
         }
-        writeln!(f, "modulus   {} (E*)", self.modulus)?;
+        writeln!(f, "modulus   {} (E*)", number(self.modulus))?;
         writeln!(f, "units     {}", self.units)?;
         writeln!(f, "states    {} on each of {} surface(s)", self.states, self.surfaces)?;
         writeln!(f, "\neffects")?;

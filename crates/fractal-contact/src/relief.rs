@@ -3,6 +3,7 @@
 use crate::entries::{Entries, Read, System};
 use crate::numerics::Numerics;
 use crate::scan;
+use crate::words::number;
 use contact_model::{Amplitude, Error, HeightMap, Result, SelfAffine, Surface};
 use std::f64::consts::PI;
 use std::path::Path;
@@ -51,9 +52,11 @@ impl Relief {
         match self {
             Self::Plain(Surface::SelfAffine(s)) => self_affine(s),
             Self::Plain(Surface::Heights(map)) => {
-                format!("a map of {n} x {n} cells, side {}", map.side(), n = map.cells())
+                format!("a map of {n} x {n} cells, side {}", number(map.side()), n = map.cells())
             }
-            Self::Plain(surface) => format!("{} on a square of side {}", surface.kind(), surface.side()),
+            Self::Plain(surface) => {
+                format!("{} on a square of side {}", surface.kind(), number(surface.side()))
+            }
             Self::Sum { rough, body } => format!("{} on {}", self_affine(rough), body.kind()),
         }
     }
@@ -82,15 +85,15 @@ impl Relief {
 }
 
 fn self_affine(s: &SelfAffine) -> String {
-    let mut text = format!("a self-affine surface, D_f = {}, side {}", s.fractal_dimension(), s.side);
+    let mut text = format!("a self-affine surface, D_f = {}, side {}", s.fractal_dimension(), number(s.side));
     if let Amplitude::RmsHeight(h) = s.amplitude {
-        text += &format!(", rms height {h}");
+        text += &format!(", rms height {}", number(h));
     }
     if let Some(q) = s.roll_off {
-        text += &format!(", roll-off at the wavelength {}", 2.0 * PI / q);
+        text += &format!(", roll-off at the wavelength {}", number(2.0 * PI / q));
     }
     if let Some(q) = s.short_cutoff {
-        text += &format!(", shortest wavelength {}", 2.0 * PI / q);
+        text += &format!(", shortest wavelength {}", number(2.0 * PI / q));
     }
     text
 }

@@ -198,7 +198,7 @@ fn header(scene: &SceneFile) -> Header {
         crate::System::Si => "units: SI",
         crate::System::None => "units: none; lengths, forces and moduli in the scene's own",
     });
-    header = header.with_note(format!("modulus: {} (E*); side: {}", scene.modulus, scene.relief.side()));
+    header = header.with_note(format!("modulus: {:?} (E*); side: {:?}", scene.modulus, scene.relief.side()));
     for numerics in &scene.models {
         header = header.with_note(format!("model: {numerics:?}"));
     }
