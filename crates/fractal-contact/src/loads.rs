@@ -163,7 +163,8 @@ fn between(low: f64, high: f64, count: usize, even: bool) -> Vec<f64> {
         match i {
             0 => low,
             i if i == last => high,
-            _ if even => low + (high - low) * t,
+            // So that a range through 0 meets it exactly.
+            _ if even => (low * (last - i) as f64 + high * i as f64) / last as f64,
             _ => (low.ln() + (high.ln() - low.ln()) * t).exp(),
         }
     };

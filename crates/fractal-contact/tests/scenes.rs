@@ -104,6 +104,35 @@ fn creep_ends_at_the_relaxed_indentation() {
 }
 
 #[test]
+fn a_rough_ball_becomes_the_smooth_one() {
+    let (_, file, _dir) = solved("rough-sphere.toml");
+    let [force, area, stiffness] = ["force", "area", "stiffness"].map(|name| column(&file, "bem3d", name));
+    let share = |i: usize| {
+        let radius = (0.75 * force[i] * 0.01 / 60e9_f64).cbrt();
+        (area[i] / (std::f64::consts::PI * radius * radius), stiffness[i] / (2.0 * 60e9 * radius))
+    };
+    let (light, heavy) = (share(0), share(force.len() - 1));
+    assert!(light.0 < 0.2 && light.1 < 0.5 && heavy.0 > 0.7 && heavy.1 > 0.9, "{light:?} {heavy:?}");
+    assert!((0..force.len()).all(|i| share(i).0 < share(i).1), "the stiffness is there before the area");
+}
+
+#[test]
+fn theories_are_where_the_scene_says() {
+    let (_, file, _dir) = solved("periodic-theories.toml");
+    let of = |model: &str, name: &str| column(&file, model, name);
+    let (force, k) = (of("bem3d", "force"), of("bem3d", "stiffness"));
+    let last = force.len() - 1;
+    let slope = (k[last] / k[0]).ln() / (force[last] / force[0]).ln();
+    assert!((0.9..1.0).contains(&slope), "{slope}");
+    let ratios = |model: &str, name: &str| -> Vec<f64> {
+        of("bem3d", name).iter().zip(of(model, name)).map(|(solved, theory)| solved / theory).collect()
+    };
+    assert!(ratios("persson", "stiffness").iter().all(|r| (1.0..1.55).contains(r)));
+    assert!(ratios("persson", "area").iter().all(|r| (1.4..1.9).contains(r)));
+    assert!(ratios("greenwood_williamson", "area").iter().all(|r| (1.0..1.4).contains(r)));
+}
+
+#[test]
 fn a_wave_is_that_of_westergaard() {
     let (_, file, _dir) = solved("wave.toml");
     assert_close(&file, "mean_gap", ["westergaard", "bem3d"], CELLS);
