@@ -130,6 +130,38 @@ fn bins_change_nothing() {
     }
 }
 
+/// A ramp that falls by 1/8 from one element to the next: heights and sums of them are exact.
+fn ramp(elements: usize) -> Line {
+    line((0..elements).map(|i| 700.0 - i as f64 / 8.0).collect())
+}
+
+#[test]
+fn bins_share_a_ramp_evenly() {
+    // Work, not time: a load sorts one bin, and none holds more than its share whatever the offset, the relief and the remainder.
+    for (bins, rest) in [(8, 3), (5, 300), (1, 7)] {
+        let elements = bins * ELEMENTS_PER_BIN + rest;
+        let bearing = Bearing::new(&ramp(elements));
+        assert_eq!(bearing.elements(), elements);
+        assert_eq!(bearing.bins.len(), bins);
+        let largest = bearing.bins.iter().map(|bin| bin.end - bin.start).max().unwrap();
+        assert!(largest <= elements / bins + 2, "{largest} of {elements} elements in one of {bins} bins");
+    }
+}
+
+#[test]
+fn a_kink_between_two_bins_is_one_state_by_force_and_by_approach() {
+    // With z_i = i/8 and dx = 1/4, S(z_i) = i (i + 1)/16: element i touches at d = z_i without force, wherever its bin begins.
+    let mut bearing = Bearing::new(&ramp(4 * ELEMENTS_PER_BIN));
+    let firsts: Vec<usize> = bearing.bins.iter().map(|bin| bin.start).collect();
+    assert_eq!(firsts.len(), 4);
+    for &i in &firsts {
+        let (d, force) = (i as f64 / 8.0, (i * (i + 1)) as f64 / 64.0);
+        let expected = Support { force, approach: d, stiffness: 0.25 * i as f64, elements: i };
+        assert_eq!(bearing.press(Load::Approach(d), 1.0).unwrap(), expected);
+        assert_eq!(bearing.press(Load::Force(force), 1.0).unwrap(), expected);
+    }
+}
+
 #[test]
 fn earlier_loads_change_no_bit() {
     let line = long_line(20_000);
