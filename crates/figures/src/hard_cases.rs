@@ -61,7 +61,7 @@ fn markdown(verdicts: &[Verdict], effort: Effort) -> String {
     let passed = verdicts.iter().filter(|v| v.passed()).count();
     let mut text = format!(
         "# Hard cases\n\n{passed} of {} pass{}. A figure is the largest relative deviation from what is asserted, or the number of things that \
-         differ where the bound is 0; every state has its certificate and a witness by plain sums besides.\n\n\
+         differ where the bound is 0; every state meets its tolerance, and most have a witness by plain sums besides.\n\n\
          | case | why it is hard | what is asserted | figure reached | bound | |\n|---|---|---|---|---|---|\n",
         verdicts.len(),
         effort.pick("", ", thorough")
@@ -100,6 +100,8 @@ mod tests {
         assert_eq!(csv.columns, ["case", "why", "asserted", "figure", "bound", "status"]);
         assert_eq!(csv.texts("case").unwrap(), cases.iter().map(|c| c.name).collect::<Vec<_>>());
         assert_eq!(csv.texts("status").unwrap(), ["passed"; 3]);
+        assert_eq!(csv.numbers("figure").unwrap(), verdicts.iter().map(|v| v.figure).collect::<Vec<_>>());
+        assert_eq!(csv.numbers("bound").unwrap(), cases.iter().map(|c| Some(c.bound)).collect::<Vec<_>>());
         assert!(csv.comments.contains(&"command: cargo xtask stability".to_owned()));
         let text = std::fs::read_to_string(&files[1]).unwrap();
         assert!(text.contains("3 of 3 pass.") && text.contains("| one cell |"), "{text}");

@@ -11,8 +11,8 @@
 //! # Conventions
 //!
 //! * Figures are relative deviations, or numbers of things that differ where bits are compared (bound 0).
-//! * Every state goes through a witness that shares nothing with the solver but Love's kernel: the contact conditions, the force and the
-//!   stiffness from plain sums over pairs and Gauss's elimination.
+//! * Besides its certificate a state has a witness that shares nothing with the solver but Love's kernel: the contact conditions and the
+//!   force from plain sums over pairs (free boundaries, modulus 1, up to 129 cells a side), the stiffness by Gauss's elimination (up to 220 cells).
 //! * A case that fails, with an error or a panic, is a row like any other; the others still run.
 //!
 //! # How accurate
@@ -46,6 +46,5 @@ mod press;
 pub use case::{Case, Effort, Status, Verdict, run};
 pub use cases::cases;
 pub use enumerate::{SmallContact, every_contact_set};
-pub use ledger::Ledger;
 pub use maps::{embedded, map, mirrored, relief, rotated, rough, rough_map, scene, stretched, transposed};
 pub use plain::{PlainSum, Relaxed, relaxed};
