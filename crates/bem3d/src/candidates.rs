@@ -67,6 +67,22 @@ mod tests {
         for d in [0.5, 0.1, 4.0, 1.0, 0.0] {
             let expected: Vec<u32> = (0..9).filter(|&i| z[i as usize] < d).collect();
             assert_eq!(candidates.below(d).index(), expected, "d = {d}");
+            for count in 0..9 {
+                assert_eq!(candidates.more_than(count, d), expected.len() > count, "{count} at d = {d}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_grid_is_scanned_for_twice_the_approach_in_any_unit() {
+        // Work: a path of loads up to twice the first one is served from the list, and the list holds no more.
+        for unit in [2f64.powi(-40), 1.0, 2f64.powi(40)] {
+            let z = (0..16).map(|i| f64::from(i) * unit).collect();
+            let mut candidates = Candidates::new(4, Arc::new(z));
+            assert_eq!(candidates.below(3.0 * unit).len(), 3);
+            assert_eq!(candidates.list.len(), 6, "z = 6 is not below twice 3");
+            assert_eq!(candidates.below(6.0 * unit).len(), 6);
+            assert_eq!(candidates.list.len(), 6, "no second scan");
         }
     }
 }

@@ -149,5 +149,12 @@ mod tests {
         assert_eq!(set.carry(&part, &[1.0, 2.0, 3.0]), [1.0, 0.0, 2.0, 3.0]);
         assert_eq!(part.carry(&set, &[1.0, 9.0, 2.0, 3.0]), [1.0, 2.0, 3.0]);
         assert_eq!(CellSet::new(4, vec![]).window(), None);
+        let low = CellSet::new(4, vec![9, 14]);
+        assert_eq!(low.window(), Some(Window { x: 1, y: 2, width: 2, height: 2 }));
+        assert_eq!(
+            (set.window_cells(), low.window_cells(), CellSet::new(4, vec![]).window_cells()),
+            (12, 4, 0)
+        );
+        assert!(!low.is_empty() && CellSet::new(4, vec![]).is_empty());
     }
 }

@@ -60,5 +60,6 @@ mod tests {
     fn nothing_pressed_is_only_penetration() {
         let e = measure(&[0.0, 0.0], &[-1.0, 2.0], 4.0);
         assert_relative_eq!(e.worst(), 0.25, max_relative = 1e-14);
+        assert_relative_eq!(e.deepest, 1.0, max_relative = 1e-14);
     }
 }
