@@ -321,6 +321,118 @@ mod tests {
         assert_eq!(operators.applications, 1, "the preconditioner is not an application of K");
     }
 
+    fn window(x: usize, y: usize, width: usize, height: usize) -> Window {
+        Window { x, y, width, height }
+    }
+
+    #[test]
+    fn a_plan_serves_what_lies_inside_it() {
+        // Columns 2 to 11, rows 3 to 10.
+        let planned = window(2, 3, 10, 8);
+        for inside in [planned, window(3, 4, 9, 7), window(11, 10, 1, 1)] {
+            assert!(holds(planned, inside), "{inside:?}");
+        }
+        // One side sticks out at a time.
+        for outside in [window(1, 3, 3, 3), window(2, 2, 3, 3), window(11, 3, 2, 1), window(2, 10, 1, 2)] {
+            assert!(!holds(planned, outside), "{outside:?}");
+            assert!(!fits(planned, outside), "{outside:?}");
+        }
+        // Kept for six tenths of its area, not for half of it.
+        let planned = window(0, 0, 10, 10);
+        assert!(!wasteful(planned, window(0, 0, 10, 6)) && fits(planned, window(0, 0, 10, 6)));
+        assert!(wasteful(planned, window(0, 0, 10, 5)) && !fits(planned, window(0, 0, 10, 5)));
+    }
+
+    #[test]
+    fn the_window_of_two_sets_is_the_smallest_that_holds_both() {
+        let one = |x: u32, y: u32| CellSet::new(12, vec![y * 12 + x]);
+        assert_eq!(union(&one(3, 9), &one(7, 4)), window(3, 4, 5, 6));
+        assert_eq!(union(&one(7, 4), &CellSet::new(12, vec![])), window(7, 4, 1, 1));
+    }
+
+    #[test]
+    fn applications_are_counted_and_empty_sets_are_free() {
+        let side = 64;
+        let mut operators = Operators::new(Table::shared(side, Boundary::Free));
+        let (all, none) = (set(side, &[true]), CellSet::new(side, vec![]));
+        let p = pressure(all.len());
+        for (sources, p, targets) in [(&none, &[][..], &all), (&all, &p[..], &none)] {
+            let mut u = vec![1.0; targets.len()];
+            operators.fast(sources, p, targets, &mut u);
+            assert!(u.iter().all(|&u| u == 0.0));
+            assert!(operators.exact(sources, p, targets).iter().all(|&u| u == 0.0));
+        }
+        assert_eq!(operators.applications, 0);
+        // A few cells never pay for a transform of the grid.
+        let few = CellSet::new(side, vec![0, 65, 4095]);
+        operators.exact(&few, &[1.0, 2.0, 3.0], &few);
+        assert!(operators.exact.is_none() && operators.applications == 1);
+        operators.exact(&all, &p, &all);
+        assert!(operators.exact.is_some() && operators.applications == 2);
+        operators.exact_rows(side, |_, row| row.fill(1.0), |_, _| {});
+        operators.fast_rows(side, |_, row| row.fill(1.0), |_, _| {});
+        operators.fast(&all, &p, &all, &mut vec![0.0; p.len()]);
+        assert_eq!(operators.applications, 5);
+    }
+
+    /// A state of which only the contact set counts.
+    fn state(contact: &CellSet, q: Option<Vec<f64>>) -> crate::active_set::Solved {
+        let look = crate::active_set::Look {
+            checked: contact.clone(),
+            p: Vec::new(),
+            gap: Vec::new(),
+            evidence: crate::certificate::Evidence::default(),
+        };
+        let (contact, status) = (contact.clone(), contact_model::Status::Converged);
+        crate::active_set::Solved { contact, p: Vec::new(), d: 0.0, q, look, steps: 0, status }
+    }
+
+    #[test]
+    fn two_levels_follow_the_sets_and_are_kept_where_they_fit() {
+        // Two windows apart from each other that want the same split: a plan of one is wrong for the other.
+        /// Interpolation of order 6 at a reach of 6 (see `lattice`).
+        const INTERPOLATED: f64 = 1e-4;
+        let side = 800;
+        let scattered = |columns: std::ops::Range<u32>| {
+            let index =
+                (0..(side * side) as u32).step_by(311).filter(|i| columns.contains(&(i % side as u32)));
+            CellSet::new(side, index.collect())
+        };
+        let (left, right, part) = (scattered(0..390), scattered(410..800), scattered(0..380));
+        let table = Table::shared(side, Boundary::Free);
+        let mut operators = Operators::new(Arc::clone(&table));
+        let plan = |operators: &Operators| operators.two_level.as_ref().map(|o| (o.window(), o.split()));
+        let mut plans = Vec::new();
+        for cells in [&left, &right, &left, &part] {
+            let p = pressure(cells.len());
+            let (mut exact, mut fast) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+            direct::apply(&table, cells, &p, cells, &mut exact);
+            operators.fast(cells, &p, cells, &mut fast);
+            let error: Vec<f64> = exact.iter().zip(&fast).map(|(a, b)| a - b).collect();
+            assert!(largest(&error) <= INTERPOLATED * largest(&exact), "{}", largest(&error));
+            assert!(operators.describe(&state(cells, None)).starts_with("two levels, spacing"));
+            plans.push(plan(&operators).unwrap());
+        }
+        assert_eq!(plans[0].1, plans[1].1, "this test is about one split on two windows");
+        assert_eq!(plans[2].0, left.window().unwrap());
+        // Work: a slightly smaller window keeps the plan.
+        assert!(part.window() != left.window());
+        assert_eq!(plans[3], plans[2]);
+    }
+
+    #[test]
+    fn what_was_used_is_said() {
+        let side = 64;
+        let mut operators = Operators::new(Table::shared(side, Boundary::Free));
+        let (all, few) = (set(side, &[true]), CellSet::new(side, vec![0, 4095]));
+        operators.fast(&few, &[1.0, 1.0], &few, &mut [0.0; 2]);
+        assert_eq!(operators.describe(&state(&few, None)), "direct 2");
+        assert_eq!(operators.describe(&state(&few, Some(vec![1.0; 2]))), "dense 2");
+        operators.fast(&all, &pressure(all.len()), &all, &mut vec![0.0; all.len()]);
+        // 2 (64 - 1) = 126 has a factor 7; 128 is the next good length.
+        assert_eq!(operators.describe(&state(&all, None)), "fft 128 x 128, f32 in f64");
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig { cases: 24, rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
 

@@ -145,3 +145,108 @@ impl<T> Kept<T> {
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cells::CellSet;
+    use crate::operator::direct;
+    use approx::assert_relative_eq;
+    use std::cell::Cell;
+
+    /// Rounding of transforms of a few hundred points.
+    const DOUBLE: f64 = 1e-13;
+    /// Single precision of the inverse.
+    const SINGLE: f64 = 1e-5;
+
+    fn all(side: usize) -> CellSet {
+        CellSet::new(side, (0..(side * side) as u32).collect())
+    }
+
+    #[test]
+    fn surfaces_of_one_grid_share_a_table() {
+        let [free, again, periodic] =
+            [Boundary::Free, Boundary::Free, Boundary::Periodic].map(|b| Table::shared(37, b));
+        assert!(Arc::ptr_eq(&free, &again));
+        assert!(!Arc::ptr_eq(&free, &periodic) && !Arc::ptr_eq(&free, &Table::shared(38, Boundary::Free)));
+        assert_eq!((free.boundary(), periodic.boundary()), (Boundary::Free, Boundary::Periodic));
+        assert!(Arc::ptr_eq(&periodic, &Table::shared(37, Boundary::Periodic)));
+        assert_eq!(format!("{free:?}"), "Table(37 cells, Free)");
+    }
+
+    #[test]
+    fn uniform_pressure_sinks_a_periodic_square_by_its_shift_alone() {
+        // Zero mean plus c: u = c N^2 everywhere, by pairs and by a transform. 6 and 16 are lengths of a transform, 7 is not.
+        for side in [6, 7, 16] {
+            let table = Table::shared(side, Boundary::Periodic);
+            assert_relative_eq!(table.shift(), 2.0 / side as f64);
+            let (cells, p) = (all(side), vec![1.0; side * side]);
+            let Some(window) = cells.window() else { unreachable!() };
+            let lengths = table.lengths(window);
+            if side == 7 {
+                assert_eq!(lengths, Lengths::free(window));
+            } else {
+                assert_eq!(lengths, Lengths { x: side, y: side }, "the period itself");
+            }
+            let (mut pairs, mut transform) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+            direct::apply(&table, &cells, &p, &cells, &mut pairs);
+            Convolution::new(window, lengths, table.symbol_f64(lengths)).apply(
+                &cells,
+                &p,
+                &cells,
+                &mut transform,
+            );
+            for (a, b) in pairs.iter().zip(&transform) {
+                assert_relative_eq!(*a, 2.0 * side as f64, max_relative = DOUBLE);
+                assert_relative_eq!(*b, 2.0 * side as f64, max_relative = DOUBLE);
+            }
+        }
+        let free = Table::shared(6, Boundary::Free);
+        assert!(free.shift() == 0.0);
+        let window = Window { x: 0, y: 0, width: 6, height: 6 };
+        assert_eq!(free.lengths(window), Lengths { x: 10, y: 10 });
+    }
+
+    #[test]
+    fn the_inverse_is_one_over_the_eigenvalue_of_a_wave() {
+        // The checkerboard on a torus of 16 cells: the smallest eigenvalue, which the floor of the inverse must not touch.
+        let side = 16;
+        let table = Table::shared(side, Boundary::Free);
+        let cells = all(side);
+        let Some(window) = cells.window() else { unreachable!() };
+        let lengths = Lengths::torus(window);
+        assert_eq!(lengths, Lengths { x: side, y: side });
+        let board: Vec<f64> =
+            (0..side * side).map(|k| if (k + k / side) % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let lag = |x: usize| x.min(side - x);
+        let eigenvalue: f64 =
+            (0..side * side).map(|k| board[k] * influence(lag(k % side), lag(k / side))).sum();
+        assert!((eigenvalue / crate::love::SMALLEST_EIGENVALUE - 1.0).abs() < 0.01, "{eigenvalue}");
+        let mut back = vec![0.0; board.len()];
+        Convolution::<f32>::new(window, lengths, table.inverse_symbol(lengths))
+            .apply(&cells, &board, &cells, &mut back);
+        for (b, p) in back.iter().zip(&board) {
+            assert_relative_eq!(*b, p / eigenvalue, max_relative = SINGLE);
+        }
+    }
+
+    #[test]
+    fn the_oldest_symbols_are_dropped_where_they_fill_the_memory() {
+        let mut kept = Kept::<u8>::default();
+        let made = Cell::new(0);
+        let mut get = |x: usize, count: usize| {
+            kept.get(Lengths { x, y: 2 }, || {
+                made.set(made.get() + 1);
+                Arc::new(vec![0; count])
+            });
+            made.get()
+        };
+        assert_eq!((get(2, KEPT / 2), get(4, KEPT / 2)), (1, 2));
+        assert_eq!((get(2, 0), get(4, 0)), (2, 2), "what just fits is kept");
+        assert_eq!(get(6, 1), 3);
+        assert_eq!((get(4, 0), get(6, 0)), (3, 3), "one too much: only the oldest went");
+        assert_eq!((get(2, KEPT + 1), get(2, 0)), (4, 4), "the last one stays whatever its size");
+        assert_eq!(get(6, 1), 5);
+        assert!(KEPT >= 2049 * 2049, "a grid of 2049 cells a side finds its symbol again");
+    }
+}
