@@ -417,6 +417,9 @@ pub fn with(set: &CellSet, other: &CellSet) -> CellSet {
 }
 
 #[cfg(test)]
+mod decisions;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
@@ -560,6 +563,8 @@ mod tests {
             prop_assert_eq!(exact.status, Status::Converged);
             prop_assert_eq!(iterated.status, Status::Converged);
             prop_assert!((exact.d - iterated.d).abs() <= 1e-8 * (1.0 + exact.d));
+            // A single cell is solved by its guess.
+            prop_assert!(side == 1 || (exact.q.is_some() && iterated.q.is_none() && iterated.steps > 0));
             if exact.q.is_some() {
                 prop_assert!(exact.look.evidence.worst() <= 1e-12 * (1.0 + exact.d));
             }
