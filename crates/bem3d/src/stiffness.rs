@@ -258,6 +258,9 @@ pub fn factored(problem: &mut Problem, state: &Solved, q: Vec<f64>) -> Stiffness
 }
 
 #[cfg(test)]
+mod evidence;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::active_set::{self, Guess, Limits, Target};
