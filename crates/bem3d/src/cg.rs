@@ -189,6 +189,9 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
+mod stops;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::operator::{Table, dense::Factor};
