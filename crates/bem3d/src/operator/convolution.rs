@@ -450,10 +450,47 @@ mod tests {
     }
 
     #[test]
+    fn single_precision_serves_pressures_of_any_size() {
+        // Powers of two out of the range of f32 change no bit.
+        let side = 6;
+        let cells = CellSet::new(side, (0..36).collect());
+        let window = Window { x: 0, y: 0, width: side, height: side };
+        let lengths = Lengths::free(window);
+        let symbol = Symbol::of_kernel(lengths, crate::love::influence);
+        let mut operator = Convolution::<f32>::new(window, lengths, Convolution::<f32>::scaled(&symbol));
+        assert!(format!("{operator:?}").starts_with("Convolution<f32>(Window"));
+        let mut displacement = |unit: f64| {
+            let p: Vec<f64> = (0..36).map(|k| unit * (1.0 + f64::from(k % 5))).collect();
+            let mut u = vec![0.0; 36];
+            operator.apply(&cells, &p, &cells, &mut u);
+            u
+        };
+        let expected = displacement(1.0);
+        assert!(expected.iter().all(|u| u.is_finite() && *u > 0.0));
+        for exponent in [-300, -140, 140, 300] {
+            let unit = 2f64.powi(exponent);
+            let scaled: Vec<f64> = displacement(unit).iter().map(|u| u / unit).collect();
+            assert_eq!(scaled, expected, "2^{exponent}");
+        }
+        assert!(displacement(0.0).iter().all(|&u| u == 0.0));
+    }
+
+    #[test]
+    fn empty_rows_cost_nothing() {
+        // Cells in rows 5 and 7 of the grid, the second and the last of a window that begins at row 4.
+        let set = CellSet::new(8, vec![41, 42, 63]);
+        let rows = Rows::new(&set, 4, 4);
+        assert_eq!([0, 1, 2, 3].map(|y| rows.holds(y)), [false, true, false, true]);
+        assert_eq!([0, 1, 2, 3].map(|y| rows.span(y)), [0..0, 0..2, 0..0, 2..3]);
+        assert_eq!(runs(7, |i| i != 2 && i != 3), [0..2, 4..7]);
+    }
+
+    #[test]
     fn symbol_is_the_cosine_sum() {
         let lengths = Lengths { x: 6, y: 4 };
         let kernel = |x: usize, y: usize| 1.0 / (1.0 + x as f64 + 2.0 * y as f64);
         let symbol = Symbol::of_kernel(lengths, kernel);
+        assert_eq!(symbol.values.len(), 4 * 3);
         let angle = |k: usize, x: usize, l: usize| std::f64::consts::TAU * (k * x) as f64 / l as f64;
         for kx in 0..=3 {
             for ky in 0..=2 {

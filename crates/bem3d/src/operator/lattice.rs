@@ -221,6 +221,7 @@ fn lagrange(t: f64, order: usize) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::operator::{Table, direct};
+    use approx::assert_relative_eq;
     use contact_model::Boundary;
 
     const SIDE: usize = 200;
@@ -244,6 +245,67 @@ mod tests {
         TwoLevel::new(set.window().unwrap(), split).apply(&set, &p, &set, &mut fast);
         let scale = exact.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
         exact.iter().zip(&fast).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale
+    }
+
+    #[test]
+    fn the_smooth_kernel_is_the_far_field_to_sixth_order_at_the_radius() {
+        // A radius so small that the term 1/(24 r^3) is a fair part of it.
+        let radius = 2.0;
+        let far = |r: f64| 1.0 / r + 1.0 / (24.0 * r.powi(3));
+        for r in [2.0, 2.5, 40.0] {
+            assert_relative_eq!(smooth(r, radius), far(r), max_relative = 1e-15);
+        }
+        for t in [0.99, 0.97, 0.9] {
+            // Taylor in s = t^2 - 1: the first coefficients left out are 0.226 and 2.93 of s^6.
+            let (s, r) = (t * t - 1.0_f64, t * radius);
+            let left_out = far(r) - smooth(r, radius);
+            let first = s.powi(6) * (0.225_585_937_5 / radius + 2.932_617_187_5 / (24.0 * radius.powi(3)));
+            assert!((left_out / first - 1.0).abs() < 1.5 * s.abs() + 1e-4, "{t}: {left_out} {first}");
+        }
+        // At the origin s = -1: the sums of (1, 1/2, 3/8, 5/16, 35/128, 63/256) and of (1, 3/2, 15/8, 35/16, 315/128, 693/256).
+        let origin = 2.707_031_25 / radius + 11.730_468_75 / (24.0 * radius.powi(3));
+        assert_relative_eq!(smooth(0.0, radius), origin, max_relative = 1e-15);
+    }
+
+    #[test]
+    fn interpolation_is_centred() {
+        let expect = |t: f64, weights: &[f64]| {
+            for (found, expected) in lagrange(t, weights.len()).iter().zip(weights) {
+                assert_relative_eq!(found, expected, epsilon = 1e-15, max_relative = 1e-14);
+            }
+        };
+        // Midway between the middle nodes: 9/16 of each and -1/16 of the outer ones.
+        expect(0.5, &[-0.0625, 0.5625, 0.5625, -0.0625]);
+        expect(0.25, &[0.75, 0.25]);
+        expect(0.0, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_window_anywhere_has_the_nodes_that_its_cells_interpolate_from() {
+        // Spacing 4: cells 9 to 14 lie between nodes 2 and 4, cells 4 to 7 between 1 and 2; order 6 takes four nodes more than that.
+        let split = Split { spacing: 4, reach: 6, order: 6 };
+        assert_eq!(
+            split.lattice(Window { x: 9, y: 4, width: 6, height: 4 }),
+            Window { x: 2, y: 1, width: 7, height: 6 }
+        );
+        // Wherever the cells lie, the lattice lies under them.
+        let moved = |by: u32| {
+            let place = |i: u32| by + 7 * (i % 9) + SIDE as u32 * (by + 11 * (i / 9));
+            let set = CellSet::new(SIDE, (0..45).map(place).collect());
+            let p: Vec<f64> = (0..set.len()).map(|k| 1.0 + (k as f64).sin()).collect();
+            (set, p)
+        };
+        for by in [0, 5, 60] {
+            let (set, p) = moved(by);
+            let (mut exact, mut fast) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+            direct::apply(&Table::shared(SIDE, Boundary::Free), &set, &p, &set, &mut exact);
+            let mut operator = TwoLevel::new(set.window().unwrap(), split);
+            operator.apply(&set, &p, &set, &mut fast);
+            for (a, b) in exact.iter().zip(&fast) {
+                assert_relative_eq!(a, b, max_relative = 1e-3);
+            }
+            assert!(format!("{operator:?}").starts_with("TwoLevel(Window"));
+        }
     }
 
     #[test]

@@ -175,6 +175,24 @@ mod tests {
     }
 
     #[test]
+    fn sine_over_its_argument_on_both_sides_of_its_series() {
+        for x in [1e-8, 9e-5, -9e-5, 1.1e-4, 0.5, PI / 2.0] {
+            assert_relative_eq!(sinc(x), f64::sin(x) / x, max_relative = 1e-15);
+        }
+        assert_relative_eq!(sinc(0.0), 1.0);
+    }
+
+    #[test]
+    fn alternating_sums_of_the_textbook() {
+        // ln 2 = 1 - 1/2 + 1/3 - .. and pi/4 = 1 - 1/3 + 1/5 - ..
+        let sum = |step: f64| -> f64 {
+            alternating().iter().enumerate().map(|(k, w)| w / (step * k as f64 + 1.0)).sum()
+        };
+        assert_relative_eq!(sum(1.0), 2.0_f64.ln(), max_relative = 1e-15);
+        assert_relative_eq!(sum(2.0), PI / 4.0, max_relative = 1e-15);
+    }
+
+    #[test]
     fn polynomials_say_what_the_sums_say() {
         let weights = alternating();
         for (qx, qy) in [(0.0, 0.0), (PI, 0.0), (0.3, 3.0), (PI, PI), (1e-3, 2.0), (2.2, 1.1)] {
