@@ -58,9 +58,9 @@ impl Chart {
             // Earlier curves are wider, so that they show where later ones lie on them.
             let above = (self.curves.len() - 1 - i).min(4) as f64;
             if !curve.scattered {
-                picture.line(&curve.points, color, 1.6 + 1.8 * above, &LineStyle::Solid);
+                picture.line(&curve.points, color, 1.4 + 1.1 * above, &LineStyle::Solid);
             }
-            picture.points(&curve.points, color, 2.6 + 1.5 * above, Mark::Solid(MarkerShape::Circle));
+            picture.points(&curve.points, color, 2.6 + 1.1 * above, Mark::Solid(MarkerShape::Circle));
             picture.legend(
                 &curve.label,
                 color,
