@@ -86,3 +86,15 @@ impl std::error::Error for Error {
         }
     }
 }
+
+impl From<surface_io::Error> for Error {
+    fn from(error: surface_io::Error) -> Self {
+        match error {
+            surface_io::Error::System { action, path, source } => Self::File { action, path, source },
+            surface_io::Error::Content { path, problem } => {
+                Self::Content { path, reason: problem.to_string() }
+            }
+            other => Self::Content { path: std::path::PathBuf::new(), reason: other.to_string() },
+        }
+    }
+}
