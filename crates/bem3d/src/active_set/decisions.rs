@@ -271,3 +271,20 @@ fn a_guess_promises_the_cells_that_it_makes_penetrate() {
     let guess = Guess { set: CellSet::new(side, vec![0, 1, 2]), p: vec![100.0; 3], d: 0.1 };
     assert_eq!(promised(&mut problem, &guess), 3);
 }
+
+#[test]
+fn no_force_from_nothing_and_no_cell_lost_in_a_union() {
+    // No pressure cannot be brought to a force, and stays none.
+    let mut none = [0.0; 3];
+    rescale(&mut none, 5.0);
+    assert!(none.iter().all(|&p| p == 0.0));
+    let set = |index: &[u32]| CellSet::new(8, index.to_vec());
+    for (a, b, union) in [
+        (&[1, 4][..], &[4, 9, 60][..], &[1, 4, 9, 60][..]),
+        (&[5, 7], &[], &[5, 7]),
+        (&[], &[5, 7], &[5, 7]),
+        (&[8, 9], &[1], &[1, 8, 9]),
+    ] {
+        assert_eq!(with(&set(a), &set(b)).index(), union);
+    }
+}

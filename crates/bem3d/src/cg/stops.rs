@@ -101,7 +101,8 @@ fn the_eigenvalue_bounds_the_energy_by_hand() {
     assert_relative_eq!(found, 5.0 / SMALLEST_EIGENVALUE, max_relative = 1e-14);
     // The checkerboard on a full grid comes close to its eigenvalue, the smallest one.
     let all = CellSet::new(SIDE, (0..(SIDE * SIDE) as u32).collect());
-    let board: Vec<f64> = (0..all.len()).map(|k| if (k + k / SIDE) % 2 == 0 { 1.0 } else { -1.0 }).collect();
+    let board: Vec<f64> =
+        (0..all.len()).map(|k| if (k + k / SIDE).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
     let u = operators().exact(&all, &board, &all);
     let eigenvalue = dot(&board, &u) / dot(&board, &board);
     assert!((1.0..1.1).contains(&(eigenvalue / SMALLEST_EIGENVALUE)), "{eigenvalue}");
