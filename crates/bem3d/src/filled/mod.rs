@@ -213,3 +213,6 @@ impl Ground for Filled<'_> {
         Solved { p: on(&contact, p), contact, d: seen.d, q: None, look, steps, status }
     }
 }
+
+#[cfg(test)]
+mod looks;
