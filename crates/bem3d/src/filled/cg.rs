@@ -230,3 +230,6 @@ fn magnitude(a: &[f32]) -> f32 {
     }
     lanes.iter().chain(rest).fold(0.0, |m, a| m.max(a.abs()))
 }
+
+#[cfg(test)]
+mod stops;
