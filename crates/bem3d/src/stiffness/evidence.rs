@@ -115,7 +115,8 @@ fn a_good_guess_costs_no_step_and_a_cold_start_a_few() {
         let mut problem = flat(side);
         let cold = way(&mut problem, &state, None, 1e-4, &never);
         let (cold_work, steps) = (problem.operators.applications, cold.steps);
-        // Counts, not times.
+        // Counts, not times: one correction reaches what is asked, and one look says so.
+        assert_eq!(cold_work, steps + 1);
         assert!((3..=8).contains(&steps) && cold_work <= 10, "{steps} steps, {cold_work} applications");
         let tight = way(&mut problem, &state, Some(cold.q), TIGHT, &never);
         assert!(tight.steps > 0);
