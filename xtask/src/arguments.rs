@@ -433,6 +433,9 @@ pub struct AccuracyCost {
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    /// Solve nothing: draw the picture and write the text again from the tables in --out.
+    #[arg(long)]
+    pub redraw: bool,
 }
 
 impl AccuracyCost {

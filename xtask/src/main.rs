@@ -43,7 +43,11 @@ fn execute(command: Command) -> Result<ExitCode> {
         Some((needs, wish)) => {
             let plan = figures::plan(&command.request(), needs, wish, &reporter)?;
             plan.lines.iter().for_each(|line| println!("{line}"));
-            plan.run
+            let told = plan.lines.len();
+            let settled = figures::settle(plan, needs, wish, &reporter)?;
+            settled.lines.iter().skip(told).for_each(|line| println!("{line}"));
+            // What was solved a moment ago is not solved again.
+            Run { fresh: false, ..settled.run }
         }
         None => Run::new(&command.request())?,
     };
@@ -58,6 +62,7 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
         Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
+        Command::AccuracyCost(options) if options.redraw => vec![figures::redraw_accuracy(&options.out)?],
         Command::AccuracyCost(options) => {
             vec![figures::accuracy_cost(options.depth(), options.seed, &options.out, &reporter)?]
         }

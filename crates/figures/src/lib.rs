@@ -78,7 +78,9 @@ mod two_cases;
 mod unit;
 mod verify;
 
-pub use accuracy::{Depth, Honesty, Needs, Plan, Wish, accuracy_cost, budget_check, plan};
+pub use accuracy::{
+    Depth, Honesty, Needs, Plan, Wish, accuracy_cost, budget_check, plan, redraw_accuracy, settle,
+};
 pub use all::reproduce_all;
 pub use arrays::{write_grey, write_npy};
 pub use audit::audit;

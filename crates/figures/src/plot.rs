@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use kuva::backend::png::PngBackend;
 use kuva::backend::svg::SvgBackend;
+use kuva::plot::annotations::TextAnnotation;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::line::{LinePlot, LineStyle};
 use kuva::plot::scatter::{MarkerShape, ScatterPlot};
@@ -158,6 +159,12 @@ impl Picture {
             let [_, (low, high)] = self.range;
             self.line(&[(x, (y - e).max(low)), (x, (y + e).min(high))], color, 1.2, &LineStyle::Solid);
         }
+    }
+
+    /// Words at a place.
+    pub(crate) fn note(&mut self, text: &str, (x, y): (f64, f64)) {
+        let note = TextAnnotation::new(text, x, y).with_color("#777777").with_font_size(13);
+        self.layout.annotations.push(note);
     }
 
     /// A legend line; points and lines do not make one by themselves.

@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
 use figures::{
-    CsvFile, Error, Progress, Request, Run, Silent, Verdict, fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify,
+    CsvFile, Error, Needs, Progress, Request, Run, Silent, Verdict, Wish, fig1, fig2, fig3, fig4, fig5, fig6,
+    fig7, verify,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -182,4 +183,58 @@ fn an_unwritable_directory_is_named_and_nothing_is_left() {
     let error = fig6(&run(&file.join("out")), &Silent).unwrap_err();
     assert!(matches!(error, Error::File { .. }) && error.to_string().contains("taken"), "{error}");
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn means_have_budgets_where_there_is_a_coarser_twin() {
+    let dir = tempfile::tempdir().unwrap();
+    let request = Request {
+        cells: Some(65),
+        surfaces: Some(3),
+        forces: Some("1,20".to_owned()),
+        fractal_dimensions: Some(vec![2.4]),
+        ..request(dir.path())
+    };
+    let run = Run::new(&request).unwrap();
+    let outcome = fig2(&run, &Silent).unwrap();
+    assert!(outcome.reached[0].starts_with("fig2: accuracy reached"), "{:?}", outcome.reached);
+    let file = CsvFile::read(&dir.path().join("fig2-budget.csv")).unwrap();
+    let (width, ensemble) = (file.numbers("half_width").unwrap(), file.numbers("ensemble").unwrap());
+    let (algebraic, grid) = (file.numbers("algebraic").unwrap(), file.numbers("discretisation").unwrap());
+    assert_eq!(width.len(), 2);
+    for j in 0..2 {
+        let sum = algebraic[j].unwrap() + grid[j].unwrap().hypot(ensemble[j].unwrap());
+        approx::assert_relative_eq!(width[j].unwrap(), sum, max_relative = 1e-12);
+    }
+    // No twin, no claim.
+    let coarse = Run { cells: 17, ..run };
+    assert!(fig2(&coarse, &Silent).unwrap().reached[0].contains("unknown"));
+}
+
+#[test]
+fn a_wish_is_met_or_refused_with_its_price() {
+    let dir = tempfile::tempdir().unwrap();
+    let request = Request {
+        forces: Some("1,20".to_owned()),
+        fractal_dimensions: Some(vec![2.0]),
+        out: Some(dir.path().to_owned()),
+        threads: Some(1),
+        ..Request::default()
+    };
+    let needs = Needs { solid: true, line: false };
+    let plan = |accuracy, seconds| figures::plan(&request, needs, Wish { accuracy, seconds }, &Silent);
+    let planned = plan(0.1, 600.0).unwrap();
+    assert!(planned.accuracy <= 0.1 && planned.run.surfaces >= 2, "{:?}", planned.lines);
+    let wish = Wish { accuracy: 0.1, seconds: 600.0 };
+    let settled = figures::settle(planned, needs, wish, &Silent).unwrap();
+    let counter = Counter::default();
+    fig2(&settled.run, &counter).unwrap();
+    assert_eq!(counter.units.into_inner(), counter.reused.into_inner());
+    let file = CsvFile::read(&dir.path().join("fig2-budget.csv")).unwrap();
+    assert!(file.numbers("relative").unwrap().iter().all(|r| r.unwrap() <= 0.1));
+    let refused = plan(1e-4, 60.0).unwrap_err().to_string();
+    assert!(refused.starts_with("--accuracy 0.010 %") && refused.contains("the budget buys"), "{refused}");
+    let given = Request { cells: Some(65), ..request };
+    let refused = figures::plan(&given, needs, Wish { accuracy: 0.1, seconds: 1.0 }, &Silent).unwrap_err();
+    assert!(refused.to_string().starts_with("--cells 65"), "{refused}");
 }

@@ -117,7 +117,7 @@ fn at_load(
         row.reference_error = Some(reference.relative());
         if matches!(way, Way::Solid { .. }) {
             // The same surfaces on every grid: their scatter is common and not an error of the grid.
-            row.errors[0] = Some(distance.hypot(own.unwrap_or(0.0)));
+            row.errors[0] = Some(distance.hypot(own.unwrap_or(0.0)).max(reference.relative()));
             let (algebraic, discretisation) = (Some(TOLERANCE), Some(distance));
             row.parts = Parts { algebraic, discretisation, ensemble: Some(sixty), model: None };
         } else {

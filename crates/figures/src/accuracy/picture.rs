@@ -13,7 +13,7 @@ const NEUTRAL: &str = "#777777";
 /// Seconds shown: from a formula to the finest grids.
 const SECONDS: (f64, f64) = (1e-5, 1e2);
 /// Errors shown.
-const ERRORS: (f64, f64) = (1e-5, 1.0);
+const ERRORS: (f64, f64) = (1e-4, 1.0);
 /// What one may want to know k to.
 pub(crate) const WISHES: [f64; 3] = [0.1, 0.01, 0.001];
 
@@ -80,7 +80,7 @@ pub(crate) fn read(csv: &Path) -> Result<Vec<Point>> {
 }
 
 /// Different values, increasing.
-fn values(points: &[Point], of: impl Fn(&Point) -> Option<f64>) -> Vec<f64> {
+pub(crate) fn values(points: &[Point], of: impl Fn(&Point) -> Option<f64>) -> Vec<f64> {
     let mut all: Vec<f64> = points.iter().filter_map(of).collect();
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| a.total_cmp(b).is_eq());
@@ -116,6 +116,7 @@ fn panel(points: &[Point], family: &str, load: f64, dimensions: &[f64], title: &
     let mut picture = Picture::new(x, y, "processor seconds", "relative error of k").with_title(title);
     for wish in WISHES {
         picture.line(&[(SECONDS.0, wish), (SECONDS.1, wish)], "#bbbbbb", 1.0, &LineStyle::Dashed);
+        picture.note(&format!("{} %", 100.0 * wish), (SECONDS.1 / 5.0, wish * 1.15));
     }
     let here = |p: &&Point, family: &str, d: f64| {
         p.family == family && same(p.force_bar, Some(load)) && same(p.fractal_dimension, Some(d))
@@ -132,7 +133,10 @@ fn panel(points: &[Point], family: &str, load: f64, dimensions: &[f64], title: &
         let mut at: Vec<(f64, f64)> = front.iter().filter_map(|p| place(p)).collect();
         at.sort_by(|a, b| a.0.total_cmp(&b.0));
         picture.line(&at, &color, 1.6, &LineStyle::Solid);
-        picture.points(&at, &color, 3.6, Mark::Solid(MarkerShape::Circle));
+        for p in &front {
+            let at: Vec<(f64, f64)> = place(p).into_iter().collect();
+            picture.points(&at, &color, mark_size(p.size), Mark::Solid(MarkerShape::Circle));
+        }
         if family != "spectrum" {
             continue;
         }
@@ -148,23 +152,25 @@ fn panel(points: &[Point], family: &str, load: f64, dimensions: &[f64], title: &
     picture
 }
 
+/// Finer grids have larger marks.
+fn mark_size(cells: Option<f64>) -> f64 {
+    2.4 + 0.9 * (cells.unwrap_or(64.0) / 64.0).log2().max(0.0)
+}
+
 fn legend(dimensions: &[f64]) -> Vec<LegendEntry> {
+    // The library's box is too narrow for its own words: spaces that do not break widen it.
     let entry = |label: String, color: &str, shape| LegendEntry {
-        label,
+        label: label + &"\u{a0}".repeat(6),
         color: color.to_owned(),
         shape,
         dasharray: None,
     };
     let mut all: Vec<LegendEntry> = dimensions
         .iter()
-        .map(|d| entry(format!("bem3d, D_f = {d:?}"), &color(*d), LegendShape::Marker(MarkerShape::Circle)))
+        .map(|d| entry(format!("3D, D_f = {d:?}"), &color(*d), LegendShape::Marker(MarkerShape::Circle)))
         .collect();
-    all.push(entry(
-        "mdr1d for the mean of surfaces".to_owned(),
-        NEUTRAL,
-        LegendShape::Marker(MarkerShape::Square),
-    ));
-    all.push(entry("Eq. 12 for that mean".to_owned(), NEUTRAL, LegendShape::Marker(MarkerShape::Cross)));
+    all.push(entry("1D, mean".to_owned(), NEUTRAL, LegendShape::Marker(MarkerShape::Square)));
+    all.push(entry("Eq. 12, mean".to_owned(), NEUTRAL, LegendShape::Marker(MarkerShape::Cross)));
     all.push(entry("rigid square".to_owned(), NEUTRAL, LegendShape::Marker(MarkerShape::Triangle)));
     all
 }

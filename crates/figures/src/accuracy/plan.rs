@@ -2,10 +2,10 @@
 //!
 //! The choice rests on counts and on compiled-in costs, never on a clock: the same wish gives the same settings.
 
-use crate::budget;
+use crate::budget::{self, Budgeted};
 use crate::error::{Error, Result};
 use crate::files;
-use crate::measured::{Measured, Series, measure};
+use crate::measured::{Measured, Series, measure, measure_1d, measure_3d};
 use crate::progress::Progress;
 use crate::run::{Request, Run};
 use crate::sample::FLOOR_CELLS;
@@ -144,6 +144,58 @@ pub fn plan(request: &Request, needs: Needs, wish: Wish, progress: &dyn Progress
         pilots.push(Pilot::new(run, numerics, forces, PILOT_LINES, &store, progress)?);
     }
     choose(run, &pilots, wish)
+}
+
+/// Solves what a plan chose and adds surfaces until the wish is met, as far as the budget goes: the pilot predicts, the run decides.
+///
+/// The units are stored with the run, so that the figure itself solves nothing again.
+///
+/// # Errors
+/// What the solver refuses.
+pub fn settle(mut plan: Plan, needs: Needs, wish: Wish, progress: &dyn Progress) -> Result<Plan> {
+    let store = Store::open(&plan.run.out, false)?;
+    let mut spent = plan.seconds;
+    loop {
+        let mut more = false;
+        for solid in [true, false].into_iter().filter(|solid| if *solid { needs.solid } else { needs.line }) {
+            let run = &plan.run;
+            let measured =
+                if solid { measure_3d(run, &store, progress)? } else { measure_1d(run, &store, progress)? };
+            let twins = budget::measure_twins(run, &measured, &store, progress)?;
+            let all = budget::budgets(&measured, twins.as_ref());
+            let count = if solid { run.surfaces } else { run.lines };
+            let wanted = surfaces_wanted(&all, wish.accuracy, count);
+            let seconds = plan.seconds * (wanted - count as f64) / count as f64;
+            if wanted > count as f64 && wanted <= MOST_SURFACES && spent + seconds <= wish.seconds {
+                spent += seconds;
+                plan.lines.push(format!(
+                    "{}: {wanted} instead of {count}, for rows that scatter more",
+                    measured.numerics.name()
+                ));
+                *(if solid { &mut plan.run.surfaces } else { &mut plan.run.lines }) = wanted as usize;
+                more = true;
+            }
+        }
+        if !more {
+            return Ok(plan);
+        }
+    }
+}
+
+/// Surfaces that bring every mean above the floor within a wish, a tenth more than the scatter found asks for; no more than there are
+/// where all are within, or where the rest is not a matter of their number.
+fn surfaces_wanted(all: &[Budgeted], wish: f64, count: usize) -> f64 {
+    let open = all
+        .iter()
+        .filter(|b| b.force_bar.is_some() && !b.below_floor && b.relative().is_some_and(|r| r > wish));
+    let factors = open.map(|b| {
+        let (grid, ensemble) = (b.budget.discretisation.unwrap_or(0.0), b.budget.ensemble.unwrap_or(0.0));
+        let room = (wish * b.value - b.budget.algebraic).powi(2) - grid * grid;
+        if room > 0.0 { 1.1 * ensemble * ensemble / room } else { 1.0 }
+    });
+    let factor = factors.fold(1.0, f64::max);
+    // Every round adds at least one surface, or ends.
+    if factor > 1.0 { (factor * count as f64).ceil().max(count as f64 + 1.0) } else { count as f64 }
 }
 
 fn choose(run: &Run, pilots: &[Pilot], wish: Wish) -> Result<Plan> {
@@ -434,6 +486,24 @@ mod tests {
         let wish = Wish { accuracy: 1e-3, seconds: 60.0 };
         let refused = choose(&run, &pilots, wish).unwrap_err().to_string();
         assert!(refused.starts_with("--accuracy 0.100 %") && refused.contains("budget buys"), "{refused}");
+    }
+
+    #[test]
+    fn surfaces_are_added_where_their_scatter_is_the_reason() {
+        let row = |grid, ensemble, below_floor| Budgeted {
+            quantity: "stiffness_bar",
+            fractal_dimension: 2.0,
+            force_bar: Some(1.0),
+            value: 2.0,
+            budget: budget::Budget { algebraic: 0.0, discretisation: Some(grid), ensemble: Some(ensemble) },
+            below_floor,
+        };
+        // Twice the wish, from the scatter alone: four times the surfaces and a tenth.
+        assert_relative_eq!(surfaces_wanted(&[row(0.0, 0.4, false)], 0.1, 10), 44.0);
+        // Within the wish, on the floor, or a matter of the grid.
+        for other in [row(0.0, 0.1, false), row(0.0, 9.0, true), row(0.3, 0.4, false)] {
+            assert_relative_eq!(surfaces_wanted(&[other], 0.1, 10), 10.0);
+        }
     }
 
     #[test]

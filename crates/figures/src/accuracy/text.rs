@@ -1,6 +1,6 @@
 //! The text: what it takes, when less is enough, which part dominates. Written from the tables.
 
-use super::picture::{Point, WISHES, read};
+use super::picture::{Point, WISHES, read, values};
 use crate::csv_file::CsvFile;
 use crate::error::Result;
 use std::path::Path;
@@ -21,6 +21,7 @@ pub(crate) fn text(csv: &Path, order: &Path) -> Result<String> {
          ![Relative error of k over processor seconds](accuracy-cost.png)\n\n",
         command.unwrap_or_default()
     );
+    text += &short(&points);
     text += &takes(&points);
     text += &less(&points);
     text += &parts(&points, &orders);
@@ -34,6 +35,7 @@ fn percent(v: f64) -> String {
         _ if v >= 10.0 => format!("{v:.0} %"),
         _ if v >= 1.0 => format!("{v:.1} %"),
         _ if v >= 0.01 => format!("{v:.2} %"),
+        _ if v <= 0.0 => "0".to_owned(),
         _ => format!("{v:.0e} %"),
     }
 }
@@ -69,11 +71,76 @@ fn label(p: &Point) -> String {
     }
 }
 
+/// The cheapest row in three dimensions within an error that every finer grid keeps too: a lucky grid between worse ones is no way.
+fn cheapest<'a>(points: &'a [Point], problem: &Point, wish: f64) -> Option<&'a Point> {
+    let solid = || points.iter().filter(|p| p.same_problem(problem) && p.model == "bem3d");
+    let within = |p: &Point| p.error.is_some_and(|e| e <= wish);
+    // On each grid the row at the tightest tolerance differs from itself by nothing.
+    let tight = |p: &Point| p.algebraic.is_some_and(|a| a <= 0.0);
+    let kept = |size: Option<f64>| solid().all(|p| p.size <= size || !tight(p) || within(p));
+    solid()
+        .filter(|p| p.seconds.is_some() && within(p) && kept(p.size))
+        .min_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)))
+}
+
+/// The picture in a few sentences.
+fn short(points: &[Point]) -> String {
+    let mut text = String::new();
+    for (family, words) in [
+        ("band", "One surface whose waves the grids resolve"),
+        ("spectrum", "One fractal surface, waves to the end of each grid"),
+    ] {
+        let all = problems(points, family);
+        let told = WISHES.map(|wish| {
+            let mut found: Vec<&Point> = all.iter().filter_map(|p| cheapest(points, p, wish)).collect();
+            found.sort_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)));
+            let count = format!(
+                "k within {} % for {} of {} surfaces and loads",
+                100.0 * wish,
+                found.len(),
+                all.len()
+            );
+            match (found.first(), found.last()) {
+                (Some(first), Some(last)) => {
+                    let finest = found.iter().filter_map(|p| p.size).fold(0.0, f64::max);
+                    let times = format!("{} to {}", seconds(first.seconds), seconds(last.seconds));
+                    format!("{count} in {times}, at most {finest:.0} cells a side")
+                }
+                _ => count,
+            }
+        });
+        text += &format!("- {words}: {}.\n", told.join("; "));
+    }
+    let means = problems(points, "mean");
+    for (model, words) in
+        [("mdr1d", "The 1D reduction"), ("power_law", "Eq. 12"), ("plateau", "The rigid square")]
+    {
+        let of = |problem: &&&Point| {
+            let row = points.iter().rfind(|p| p.same_problem(problem) && p.model == model)?;
+            Some((row.force_bar?, row.error?))
+        };
+        let found: Vec<(f64, f64)> = means.iter().filter_map(|p| of(&p)).collect();
+        let (mut loads, mut told) = (values(points, |p| p.force_bar), Vec::new());
+        loads.retain(|f| found.iter().any(|e| e.0.total_cmp(f).is_eq()));
+        for load in loads {
+            let errors: Vec<f64> =
+                found.iter().filter(|e| e.0.total_cmp(&load).is_eq()).map(|e| e.1).collect();
+            let (low, high) =
+                errors.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), e| (a.min(*e), b.max(*e)));
+            told.push(format!("{} to {} at F_bar = {load:?}", percent(low), percent(high)));
+        }
+        if !told.is_empty() {
+            text += &format!("- {words} has the mean of k over surfaces to {}.\n", told.join(", "));
+        }
+    }
+    text + "\n"
+}
+
 fn takes(points: &[Point]) -> String {
     let mut text = "## What it takes\n\nThe cheapest way in three dimensions to k of one surface within 10 %, 1 % and 0.1 %: cells a \
         side, tolerance, seconds. *Resolved*: the shortest wave is at least 16 cells long on the coarsest grid. *Fractal*: waves to the \
-        end of each grid, error against the limit of fine grids. Every finer grid of the study is within the same error. A dash: not reached with these \
-        sizes.\n\n\
+        end of each grid, error against the limit of fine grids. Every finer grid of \
+        the study keeps the same error. A dash: not reached with these sizes.\n\n\
         | surface | D_f | F_bar | 10 % | 1 % | 0.1 % | limit known to |\n|---|---|---|---|---|---|---|\n"
         .to_owned();
     for (family, word) in
@@ -81,25 +148,7 @@ fn takes(points: &[Point]) -> String {
     {
         for problem in problems(points, family) {
             let cells = WISHES.map(|wish| {
-                // A lucky grid between worse ones is no way to an accuracy.
-                let lucky = |size: Option<f64>| {
-                    points.iter().any(|p| {
-                        p.same_problem(problem)
-                            && p.model == "bem3d"
-                            && p.size > size
-                            && p.algebraic.is_some_and(|a| a <= 0.0)
-                            && p.error.is_some_and(|e| e > wish)
-                    })
-                };
-                let near = |p: &&Point| {
-                    p.same_problem(problem)
-                        && p.model == "bem3d"
-                        && p.seconds.is_some()
-                        && p.error.is_some_and(|e| e <= wish)
-                        && !lucky(p.size)
-                };
-                let seconds_of = |p: &Point| p.seconds.unwrap_or(0.0);
-                let best = points.iter().filter(near).min_by(|a, b| seconds_of(a).total_cmp(&seconds_of(b)));
+                let best = cheapest(points, problem, wish);
                 best.map_or_else(
                     || "-".to_owned(),
                     |p| {
