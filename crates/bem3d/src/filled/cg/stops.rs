@@ -86,6 +86,13 @@ fn it_reaches_the_factored_solution() {
         let request = Request { fixed_sum, reduction: 1e-5, ..endless(60) };
         let done = correct(&mut operators, SIDE, &mut v, request, &never);
         assert_eq!(operators.solves, before + 1);
+        // Eight times the gap asks for eight times the pressure, to the last bit, in as many steps.
+        let mut eight = loaded();
+        for r in &mut eight.r {
+            *r *= 8.0;
+        }
+        assert_eq!(correct(&mut operators, SIDE, &mut eight, request, &never).steps, done.steps);
+        assert!(eight.x.iter().zip(&v.x).all(|(a, b)| (a - 8.0 * b).abs() <= 0.0));
         // Work, not time: the preconditioner makes the number of steps small.
         assert!(done.steps <= 25, "{} steps", done.steps);
         let shift = if fixed_sum { w.iter().sum::<f64>() / q.iter().sum::<f64>() } else { 0.0 };
