@@ -6,14 +6,16 @@ use crate::files;
 use crate::forces::Forces;
 use crate::meters::{cpu_seconds, peak_memory, reset_peak_memory};
 use crate::npy::read_map;
+use crate::pieces::pieces;
 use crate::sample::number;
+use crate::sweep::collect;
 use bem3d::{Bem3d, Method};
 use contact_model::{
     Boundary, ContactModel, ContactState, Load, PreparedContact, Scales, Scene, SelfAffine, Stop, Surface,
+    never,
 };
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What is measured.
@@ -189,30 +191,12 @@ pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) ->
     if let Some(directory) = &bench.pressure {
         files::create_directory(directory)?;
     }
-    let rows: Vec<OnceLock<Vec<BenchRow>>> = series.iter().map(|_| OnceLock::new()).collect();
-    let failure: OnceLock<Error> = OnceLock::new();
-    let next = AtomicUsize::new(0);
-    let work = || {
-        while let Some(i) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < series.len()) {
-            if failure.get().is_some() {
-                return;
-            }
-            // Each index is taken once; of several failures the first is the reason.
-            let _ = match series[i].run(bench, &|| failure.get().is_some(), found) {
-                Ok(found) => rows[i].set(found).is_ok(),
-                Err(error) => failure.set(error).is_ok(),
-            };
-        }
-    };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(bench.threads).build().map_err(|e| {
-        Error::parameter("threads", bench.threads, format!("threads that the system grants ({e})"))
-    })?;
-    // A loop per thread, as in a sweep: a thread that waits inside a row begins no other row, which its time would then contain.
-    pool.broadcast(|_| work());
-    match failure.into_inner() {
-        Some(error) => Err(error),
-        None => Ok(rows.into_iter().filter_map(OnceLock::into_inner).flatten().collect()),
-    }
+    let order: Vec<usize> = (0..series.len()).collect();
+    let done =
+        pieces(bench.threads, &order, &never, |i, stop| series[i].run(bench, stop, found)).map_err(|e| {
+            Error::parameter("threads", bench.threads, format!("threads that the system grants ({e})"))
+        })?;
+    Ok(collect(done)?.into_iter().flatten().collect())
 }
 
 fn series(bench: &Bench) -> Result<Vec<Series>> {

@@ -9,10 +9,8 @@ use crate::scene_file::SceneFile;
 use crate::store::Store;
 use crate::unit::{Unit, UnitResult};
 use analysis::{Column, Table, Value};
-use figures::{Header, Progress, write_csv};
+use figures::{Header, Progress, largest_first, pieces, write_csv};
 use std::path::PathBuf;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// Asked from any thread, between iterations: `true` means stop now.
@@ -135,47 +133,26 @@ fn solve_all(
     stop: Halt<'_>,
 ) -> Result<Vec<Option<UnitResult>>> {
     progress.begin(&title(scene), units.iter().map(|u| u.cost(scene)).sum());
-    let mut order: Vec<usize> = (0..units.len()).collect();
-    order.sort_by_key(|&i| std::cmp::Reverse(units[i].cost(scene)));
-    let results: Vec<OnceLock<Result<UnitResult>>> = units.iter().map(|_| OnceLock::new()).collect();
-    let next = AtomicUsize::new(0);
-    let failed = AtomicBool::new(false);
-    let halt = || failed.load(Ordering::Relaxed) || stop();
-    let work = || {
-        while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if halt() {
-                return;
-            }
-            let unit = &units[i];
-            let result = match store.load(unit, scene, columns) {
-                Some(stored) => {
-                    progress.advance(unit.cost(scene), true);
-                    Ok(stored)
-                }
-                None => unit.solve(scene, &options.out, &halt).and_then(|result| {
-                    if result.whole {
-                        store.save(unit, scene, &result)?;
-                        progress.advance(unit.cost(scene), false);
-                    }
-                    Ok(result)
-                }),
-            };
-            if result.is_err() {
-                failed.store(true, Ordering::Relaxed);
-            }
-            // Each index is taken once.
-            let _ = results[i].set(result);
+    let order = largest_first(units.len(), |i| units[i].cost(scene));
+    let done = pieces(options.threads, &order, stop, |i, halt| {
+        let unit = &units[i];
+        if let Some(stored) = store.load(unit, scene, columns) {
+            progress.advance(unit.cost(scene), true);
+            return Ok(stored);
         }
-    };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.max(1)).build().map_err(|e| {
-        Error::Argument {
-            name: "--threads",
-            reason: format!("{} threads are not granted ({e})", options.threads),
+        let result = unit.solve(scene, &options.out, halt)?;
+        if result.whole {
+            store.save(unit, scene, &result)?;
+            progress.advance(unit.cost(scene), false);
         }
+        Ok(result)
+    })
+    .map_err(|e| Error::Argument {
+        name: "--threads",
+        reason: format!("{} threads are not granted ({e})", options.threads),
     })?;
-    pool.broadcast(|_| work());
     progress.end();
-    results.into_iter().map(|r| r.into_inner().transpose()).collect()
+    done.into_iter().map(Option::transpose).collect()
 }
 
 /// What the tables are called.

@@ -8,17 +8,17 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::forces::Forces;
 use crate::outcome::Outcome;
+use crate::pieces::pieces;
 use crate::progress::Progress;
+use crate::sweep::collect;
 use analysis::{Curves, Sample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
-use contact_model::{Boundary, ContactModel, Load, Scene, SelfAffine, Surface};
+use contact_model::{Boundary, ContactModel, Load, Scene, SelfAffine, Stop, Surface, never};
 use picture::{draw, table};
 use reading::{claim, summary};
 use std::f64::consts::TAU;
 use std::path::Path;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 const NAME: &str = "two-cases";
@@ -148,7 +148,7 @@ struct Point {
     stiffness_bar: f64,
     standard_error: Option<f64>,
     surfaces: usize,
-    not_converged: usize,
+    left_out: usize,
     area: Option<f64>,
     min_contact_cells: Option<usize>,
 }
@@ -166,9 +166,9 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     let mut outcome = Outcome::new(NAME);
     let mut curves = Vec::new();
     for (case, surfaces) in CASES.into_iter().zip(solved) {
-        outcome.not_converged += surfaces.iter().flatten().filter(|s| s.is_none()).count();
-        let samples =
-            surfaces.iter().map(|s| s.iter().map(|s| s.as_ref().map(|s| s.sample)).collect()).collect();
+        outcome.not_converged +=
+            surfaces.iter().flatten().filter(|s| matches!(s, Solve::NotConverged)).count();
+        let samples = surfaces.iter().map(|s| s.iter().map(|s| s.sample().map(|s| s.0)).collect()).collect();
         let means =
             Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.name()))?;
         let curve = mean_curve(case, &means, &surfaces);
@@ -201,14 +201,27 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     Ok(outcome)
 }
 
-/// One converged solve.
+/// What one solve gave.
 #[derive(Debug, Clone, Copy)]
-struct Solve {
-    sample: Sample,
-    area: f64,
+enum Solve {
+    /// A stiffness and the share of the square in contact.
+    Sample(Sample, f64),
+    /// Full contact of a periodic square, which has no stiffness.
+    FullContact,
+    /// It missed its tolerance.
+    NotConverged,
 }
 
-type Solves = Vec<Option<Solve>>;
+impl Solve {
+    fn sample(self) -> Option<(Sample, f64)> {
+        match self {
+            Self::Sample(sample, area) => Some((sample, area)),
+            Self::FullContact | Self::NotConverged => None,
+        }
+    }
+}
+
+type Solves = Vec<Solve>;
 
 /// All surfaces of all cases, each under increasing loads; in order, whatever the number of threads.
 fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
@@ -218,31 +231,20 @@ fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> 
         .map(|(c, i)| (c, surface_gen::surface_seed(study.seed, i as u64)))
         .collect();
     progress.begin(&format!("{} surfaces of {} cells a side", units.len(), study.cells), units.len() as u64);
-    let results: Vec<OnceLock<Result<Solves>>> = units.iter().map(|_| OnceLock::new()).collect();
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let work = || {
-        while let Some(i) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < units.len()) {
-            if failed.load(Ordering::Relaxed) {
-                return;
-            }
-            let (case, seed) = units[i];
-            let result = one(study, case, seed);
-            failed.fetch_or(result.is_err(), Ordering::Relaxed);
-            // Each index is taken once.
-            let _ = results[i].set(result);
-            progress.advance(1, false);
-        }
-    };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(study.threads).build().map_err(|e| {
+    let order: Vec<usize> = (0..units.len()).collect();
+    let done = pieces(study.threads, &order, &never, |i, stop| {
+        let solves = one(study, units[i].0, units[i].1, stop)?;
+        progress.advance(1, false);
+        Ok(solves)
+    })
+    .map_err(|e| {
         Error::parameter("threads", study.threads, format!("threads that the system grants ({e})"))
     })?;
-    pool.broadcast(|_| work());
     progress.end();
-    let all = results.into_iter().filter_map(OnceLock::into_inner).collect::<Result<Vec<_>>>()?;
-    Ok(all.chunks(study.surfaces).map(<[_]>::to_vec).collect())
+    Ok(collect(done)?.chunks(study.surfaces).map(<[_]>::to_vec).collect())
 }
 
-fn one(study: &TwoCases, case: Case, seed: u64) -> Result<Solves> {
+fn one(study: &TwoCases, case: Case, seed: u64, stop: Stop<'_>) -> Result<Solves> {
     let mut scene = case.scene(study)?;
     scene.outputs.area = true;
     let model = Bem3d { cells: study.cells, tolerance: study.tolerance, ..Bem3d::default() };
@@ -253,19 +255,18 @@ fn one(study: &TwoCases, case: Case, seed: u64) -> Result<Solves> {
     forces
         .map(|&force_bar| {
             let load = Load::Force(scales.force(force_bar).map_err(Error::model(what(force_bar)))?);
-            let state = match contact.solve(load) {
+            let state = match contact.solve_until(load, stop) {
                 Ok(state) => state,
-                Err(contact_model::Error::NotConverged { .. }) => return Ok(None),
+                Err(contact_model::Error::NotConverged { .. }) => return Ok(Solve::NotConverged),
                 Err(error) => return Err(Error::model(what(force_bar))(error)),
             };
-            // Full contact of a periodic square has no stiffness.
-            Ok(state.stiffness.zip(state.area).map(|(k, area)| Solve {
-                sample: Sample {
-                    stiffness_bar: scales.stiffness_bar(k),
-                    contact_cells: state.report.contact_cells,
-                },
-                area,
-            }))
+            let contact_cells = state.report.contact_cells;
+            Ok(match state.stiffness.zip(state.area) {
+                Some((k, area)) => {
+                    Solve::Sample(Sample { stiffness_bar: scales.stiffness_bar(k), contact_cells }, area)
+                }
+                None => Solve::FullContact,
+            })
         })
         .collect()
 }
@@ -276,13 +277,13 @@ fn mean_curve(case: Case, means: &Curves, surfaces: &[Solves]) -> Curve {
         .enumerate()
         .filter_map(|(j, p)| {
             let k = p.stiffness_bar?;
-            let area: Vec<f64> = surfaces.iter().filter_map(|s| s[j].map(|s| s.area)).collect();
+            let area: Vec<f64> = surfaces.iter().filter_map(|s| s[j].sample().map(|s| s.1)).collect();
             Some(Point {
                 force_bar: p.force_bar,
                 stiffness_bar: k.mean,
                 standard_error: k.standard_error,
                 surfaces: area.len(),
-                not_converged: p.missing,
+                left_out: p.missing,
                 area: Some(analysis::sum(area.iter().copied()) / area.len() as f64),
                 min_contact_cells: p.min_contact_cells,
             })
@@ -312,7 +313,7 @@ fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curv
             stiffness_bar: scales.stiffness_bar(k),
             standard_error: None,
             surfaces: 0,
-            not_converged: 0,
+            left_out: 0,
             area: state.area,
             min_contact_cells: None,
         });
@@ -368,7 +369,7 @@ mod tests {
                     stiffness_bar: k,
                     standard_error: None,
                     surfaces: 1,
-                    not_converged: 0,
+                    left_out: 0,
                     area: Some(f / 1e4),
                     min_contact_cells: None,
                 }

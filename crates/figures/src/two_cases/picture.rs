@@ -50,7 +50,7 @@ pub(super) fn table(curves: &[Curve]) -> Result<Table> {
                 (PAPER_STIFFNESS_FACTOR * point.stiffness_bar / point.force_bar).into(),
                 point.area.into(),
                 point.surfaces.into(),
-                point.not_converged.into(),
+                point.left_out.into(),
                 point.min_contact_cells.map_or(Value::Empty, Into::into),
                 point.min_contact_cells.is_some_and(|n| n < FLOOR_CELLS).into(),
             ];

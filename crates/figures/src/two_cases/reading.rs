@@ -130,13 +130,7 @@ pub(super) fn summary(study: &TwoCases, curves: &[Curve], claims: &[Claim]) -> S
             text.push_str(&format!("| {} | {} | {difference:.3} |\n", theory.case.name(), theory.model));
         }
     }
-    text.push_str(
-        "\nHow to read it (default run). At small loads the boundary does not matter: with either, k follows the power law of a single highest region, and a \
-         patch with a roll-off does so too until many of its longest waves touch (a finite patch is not yet the infinite surface of the theory). Above \
-         that only the periodic surface with a roll-off has a range of loads with k proportional to F; the free square saturates at k_bar = 1 there, \
-         and without a roll-off the slope of the periodic surface passes through 1 on its way to full contact, where k grows without limit. That supports \
-         the authors for the spectrum: no roll-off, no proportionality. The boundary alone makes no difference to the power law.\n\n```\n",
-    );
+    text.push_str("\n```\n");
     text.push_str(&plain(claims));
     text.push_str("```\n");
     text
