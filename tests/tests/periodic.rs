@@ -13,7 +13,8 @@ use std::sync::Arc;
 
 const AMPLITUDE: f64 = 0.01;
 
-/// Relative error of k times the cells a side, at most: half a cell at each of the two edges, magnified near full contact.
+/// Relative error of k times the cells a side, at most. Half a cell too much or too little at both edges changes k of a contact of the
+/// width c by `pi cot(pi c/2)/ln(1/r)` over the cells a side: 4.6, 4.0 and 7.0 for r = 0.05, 0.3 and 0.8.
 const FIRST_ORDER: f64 = 6.0;
 /// Grids of the convergence study.
 const CELLS: [usize; 4] = [32, 64, 128, 256];

@@ -3,7 +3,7 @@
 //! A mean pressure on every copy would sink an infinite half-space without limit; displacements are counted from their mean, which
 //! leaves a kernel of zero mean. That kernel is no inverse M-matrix, and cells outside `z < d` may penetrate. Adding a constant c to
 //! it changes neither the pressure under a given force nor the gap, only where the plane is counted from (`d + c F`), and with [`shift`] every
-//! entry is positive, so that all that holds for the free kernel holds again (PERFORMANCE.md's remark; `tests/periodic.rs`).
+//! entry is positive, so that what the elimination and the candidates of the free kernel rely on holds again (`tests/tests/periodic.rs` checks the results).
 
 use super::convolution::{Lengths, Symbol};
 use std::f64::consts::{PI, TAU};
