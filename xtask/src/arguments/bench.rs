@@ -1,0 +1,164 @@
+//! Flags of the bench.
+
+use clap::{Args, ValueEnum};
+use contact_model::Boundary;
+use figures::{Bench, Forces, Method, Surfaces};
+use std::path::PathBuf;
+
+pub(super) const HELP: &str = "\
+Examples:
+  cargo xtask bench --surface heights.npy --sweep 1e-6:20:20 --tolerance 1e-8     one map, 20 loads
+  cargo xtask bench --cells 257,513,1025 --fractal-dimensions 2.4 --forces 0.1,1 --cold
+  cargo xtask bench --scaling                           cost over cells and over force, with slopes
+  cargo xtask bench --cells 513 --forces 1e-6:20:23 --csv cost.csv --plot cost.svg
+
+`seconds` is wall-clock time of everything that a row took: transforms and tables, coarse grids, every look with the exact operator,
+pressure and stiffness; not the reading and writing of files. The first row of a series (a surface at a tolerance) includes drawing or
+scaling the surface; with --cold every row does. `cpu_seconds` is processor time of the row's thread, `peak_memory_bytes` the most
+that the process held during the row, maps and all; both are empty where the system does not tell.
+
+Loads are solved and printed from the smallest up, whatever their order; the rows of the file stand in the order asked for. The file is
+whole all along: an interruption keeps the rows so far. A load that does not converge has its row with its status and the certificate
+of the best state, and the others go on.
+
+Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge.";
+
+/// Edges of the square.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum BoundaryName {
+    /// Nothing presses outside the square.
+    Free,
+    /// The square repeats.
+    Periodic,
+}
+
+/// How linear systems are solved.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum MethodName {
+    /// The cheapest way for each set.
+    Auto,
+    /// No factors.
+    Iterative,
+    /// No factors, no two-level sums, no coarse grids.
+    SingleLevel,
+}
+
+/// Flags of the bench.
+#[derive(Debug, Args)]
+pub struct BenchArguments {
+    /// A square NPY map of real numbers, taken as it is (L = E* = 1, F_bar by its measured rms height).
+    #[arg(long, value_name = "FILE.npy", conflicts_with_all = ["cells", "fractal_dimensions", "seed"])]
+    surface: Option<PathBuf>,
+    /// Cells a side of generated surfaces, separated by commas [default: 257,513,1025].
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    cells: Option<Vec<usize>>,
+    /// Fractal dimensions of generated surfaces, separated by commas.
+    #[arg(
+        long,
+        visible_alias = "df",
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "2.0,2.4,2.8"
+    )]
+    fractal_dimensions: Vec<f64>,
+    /// Seed of generated surfaces.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    #[arg(
+        long,
+        visible_alias = "sweep",
+        value_name = "LIST",
+        allow_hyphen_values = true,
+        default_value = "1e-4,1e-2,0.1,1,20"
+    )]
+    forces: String,
+    /// Edges of the square.
+    #[arg(long, value_enum, default_value = "free")]
+    boundary: BoundaryName,
+    /// Tolerances, separated by commas: bound of the certificate and of the error of k.
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        default_value = "1e-6"
+    )]
+    tolerance: Vec<f64>,
+    /// How linear systems are solved.
+    #[arg(long, value_enum, default_value = "auto")]
+    method: MethodName,
+    /// Prepare anew for every load.
+    #[arg(long)]
+    cold: bool,
+    /// Cost as the work grows: 257 to 4097 cells and every load from nothing unless said otherwise, table and pictures in
+    /// out/bench-scaling.* unless named.
+    #[arg(long, conflicts_with = "surface")]
+    scaling: bool,
+    /// Series (surface and tolerance) solved at the same time; one solve runs on one thread.
+    #[arg(long, default_value_t = 1)]
+    threads: usize,
+    /// Write the pressure of every row as NPY into this directory.
+    #[arg(long, value_name = "DIR")]
+    pressure: Option<PathBuf>,
+    /// Write the table; it is whole all along.
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+    /// Draw seconds over cells and over force from the table (SVG and PNG), and print the slopes of seconds and iterations.
+    #[arg(long, value_name = "FILE.svg", requires = "csv")]
+    plot: Option<PathBuf>,
+}
+
+/// Sizes of generated surfaces.
+const CELLS: [usize; 3] = [257, 513, 1025];
+/// Sizes that show how cost grows.
+pub(super) const SCALING_CELLS: [usize; 5] = [257, 513, 1025, 2049, 4097];
+/// Where its table goes.
+pub(super) const SCALING_CSV: &str = "out/bench-scaling.csv";
+
+impl BenchArguments {
+    /// Table and picture.
+    pub fn files(&self) -> (Option<PathBuf>, Option<PathBuf>) {
+        if !self.scaling {
+            return (self.csv.clone(), self.plot.clone());
+        }
+        let csv = self.csv.clone().unwrap_or_else(|| SCALING_CSV.into());
+        let plot = self.plot.clone().unwrap_or_else(|| csv.with_extension("svg"));
+        (Some(csv), Some(plot))
+    }
+
+    /// What it asks for.
+    ///
+    /// # Errors
+    /// [`figures::Error::Parameter`] naming the value that makes no sense.
+    pub fn bench(&self) -> figures::Result<Bench> {
+        let surfaces = match &self.surface {
+            Some(path) => Surfaces::File(path.clone()),
+            None => Surfaces::SelfAffine {
+                cells: self
+                    .cells
+                    .clone()
+                    .unwrap_or_else(|| if self.scaling { SCALING_CELLS.to_vec() } else { CELLS.to_vec() }),
+                fractal_dimensions: self.fractal_dimensions.clone(),
+                seed: self.seed,
+            },
+        };
+        Ok(Bench {
+            surfaces,
+            forces: Forces::parse(&self.forces)?,
+            tolerances: self.tolerance.clone(),
+            boundary: match self.boundary {
+                BoundaryName::Free => Boundary::Free,
+                BoundaryName::Periodic => Boundary::Periodic,
+            },
+            method: match self.method {
+                MethodName::Auto => Method::Auto,
+                MethodName::Iterative => Method::Iterative,
+                MethodName::SingleLevel => Method::SingleLevel,
+            },
+            cold: self.cold || self.scaling,
+            threads: self.threads,
+            pressure: self.pressure.clone(),
+        })
+    }
+}

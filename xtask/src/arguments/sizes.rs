@@ -1,0 +1,241 @@
+//! Flags that the figures share: sizes, what to solve, where to write.
+
+use clap::{Args, ValueEnum};
+use figures::{Preset, Request, Wish};
+use std::path::PathBuf;
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum PresetName {
+    /// Well under a minute: 129 cells, 8 surfaces, 2^16 elements, 40 lines.
+    Quick,
+    /// A few minutes: 513 cells, 40 surfaces, 2^18 elements, 200 lines.
+    Default,
+    /// The paper's sizes: 2049 cells, 60 surfaces, 2^20 elements, 500 lines; tolerance 1e-3.
+    Paper,
+    /// Beyond the paper: 16385 cells, 4 surfaces, light loads; tolerance 1e-3, 5 GB for each thread.
+    Extended,
+}
+
+/// Flags of every figure.
+#[derive(Debug, Args)]
+pub struct Common {
+    /// Sizes to start from; the other flags override them.
+    #[arg(long, value_enum, default_value = "default")]
+    preset: PresetName,
+    /// Fractal dimensions in [2, 3], separated by commas, such as 2.0,2.2.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    fractal_dimensions: Option<Vec<f64>>,
+    /// Master seed: surface number i is the same for every fractal dimension and resolution.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+impl Common {
+    pub(super) fn fill(&self, request: &mut Request) {
+        request.preset = match self.preset {
+            PresetName::Quick => Preset::Quick,
+            PresetName::Default => Preset::Default,
+            PresetName::Paper => Preset::Paper,
+            PresetName::Extended => Preset::Extended,
+        };
+        request.fractal_dimensions.clone_from(&self.fractal_dimensions);
+        request.seed = self.seed;
+        request.out = Some(self.out.clone());
+    }
+}
+
+/// Flags of everything that is solved.
+#[derive(Debug, Args)]
+pub struct Solve {
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    forces: Option<String>,
+    /// Threads; 0 is one per core. Changes no byte of a CSV.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Ignore stored units and solve everything again.
+    #[arg(long)]
+    fresh: bool,
+    /// Choose grid, tolerance and number of surfaces so that each mean k_bar above the one-cell floor is known to this (95 % half-width):
+    /// a share or per cent, such as 0.02 or 2%. A pilot of small grids runs first.
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    accuracy: Option<f64>,
+    /// Most time that --accuracy may choose, such as 90s, 10min, 2h.
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "10min", requires = "accuracy", allow_hyphen_values = true)]
+    budget: f64,
+    /// Draw the curves of another run's fig2.csv or fig6.csv underneath (Figs. 2 and 6).
+    #[arg(long, value_name = "FILE.csv")]
+    over: Option<PathBuf>,
+}
+
+impl Solve {
+    pub(super) fn wish(&self) -> Option<Wish> {
+        self.accuracy.map(|accuracy| Wish { accuracy, seconds: self.budget })
+    }
+
+    pub(super) fn fill(&self, request: &mut Request) {
+        request.forces.clone_from(&self.forces);
+        request.threads = Some(self.threads);
+        request.fresh = self.fresh;
+        request.over.clone_from(&self.over);
+    }
+}
+
+/// A share: `0.02` or `2%`.
+fn share(text: &str) -> Result<f64, String> {
+    let (digits, unit) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
+    let value = digits.trim().parse::<f64>().map_err(|e| e.to_string())? / unit;
+    if value > 0.0 && value < 1.0 {
+        Ok(value)
+    } else {
+        Err("expected a share between 0 and 1, such as 0.02 or 2%".into())
+    }
+}
+
+/// A time: `90s`, `10min`, `2h`; a bare number is seconds.
+fn seconds(text: &str) -> Result<f64, String> {
+    let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
+    let (digits, unit) = (units.iter())
+        .find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))
+        .unwrap_or((text, 1.0));
+    let value = unit * digits.trim().parse::<f64>().map_err(|e| e.to_string())?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("expected a time such as 90s, 10min or 2h".into())
+    }
+}
+
+/// Size of the 3D ensemble.
+#[derive(Debug, Args)]
+pub struct SolidSize {
+    /// Cells a side of each surface, N (any number from 3; the paper has 2049).
+    #[arg(long, value_name = "N")]
+    cells: Option<usize>,
+    /// Surfaces per fractal dimension (the paper has 60).
+    #[arg(long, value_name = "COUNT")]
+    surfaces: Option<usize>,
+    /// Tolerance of the 3D solver: bound of the certificate and of the error of k.
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+}
+
+impl SolidSize {
+    pub(super) fn fill(&self, request: &mut Request) {
+        (request.cells, request.surfaces, request.tolerance) = (self.cells, self.surfaces, self.tolerance);
+    }
+}
+
+/// Size of the 1D ensemble.
+#[derive(Debug, Args)]
+pub struct LineSize {
+    /// Elements of each line (the paper has 2^20 = 1048576).
+    #[arg(long, value_name = "N")]
+    elements: Option<usize>,
+    /// Lines per fractal dimension (the paper has 500).
+    #[arg(long, value_name = "COUNT")]
+    lines: Option<usize>,
+}
+
+impl LineSize {
+    pub(super) fn fill(&self, request: &mut Request) {
+        (request.elements, request.lines) = (self.elements, self.lines);
+    }
+}
+
+/// Flags of Fig. 1.
+#[derive(Debug, Args)]
+pub struct Maps {
+    #[command(flatten)]
+    common: Common,
+    /// Cells a side of each map (the paper has 2049).
+    #[arg(long, value_name = "N")]
+    cells: Option<usize>,
+}
+
+impl Maps {
+    pub(super) fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        request.cells = self.cells;
+    }
+}
+
+/// Flags of Fig. 5.
+#[derive(Debug, Args)]
+pub struct Lines {
+    #[command(flatten)]
+    common: Common,
+    /// Elements of each line (the paper has 2^20 = 1048576).
+    #[arg(long, value_name = "N")]
+    elements: Option<usize>,
+}
+
+impl Lines {
+    pub(super) fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        request.elements = self.elements;
+    }
+}
+
+/// Flags of Figs. 2 and 4.
+#[derive(Debug, Args)]
+pub struct Solid {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    size: SolidSize,
+    #[command(flatten)]
+    pub(super) solve: Solve,
+}
+
+impl Solid {
+    pub(super) fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        self.size.fill(request);
+        self.solve.fill(request);
+    }
+}
+
+/// Flags of Fig. 6.
+#[derive(Debug, Args)]
+pub struct Reduced {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    size: LineSize,
+    #[command(flatten)]
+    pub(super) solve: Solve,
+}
+
+impl Reduced {
+    pub(super) fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        self.size.fill(request);
+        self.solve.fill(request);
+    }
+}
+
+/// Flags of everything that needs both models.
+#[derive(Debug, Args)]
+pub struct Both {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    solid: SolidSize,
+    #[command(flatten)]
+    line: LineSize,
+    #[command(flatten)]
+    pub(super) solve: Solve,
+}
+
+impl Both {
+    pub(super) fn fill(&self, request: &mut Request) {
+        self.common.fill(request);
+        self.solid.fill(request);
+        self.line.fill(request);
+        self.solve.fill(request);
+    }
+}

@@ -1,0 +1,150 @@
+//! Flags of the commands beside the paper's figures.
+
+use super::sizes::Solid;
+use clap::{Args, ValueEnum};
+use figures::{Depth, Forces, TwoCases};
+use std::path::PathBuf;
+
+/// Flags of the second look.
+#[derive(Debug, Args)]
+pub struct Audit {
+    #[command(flatten)]
+    pub(super) solid: Solid,
+    /// Share of all solves.
+    #[arg(long, default_value_t = 0.01, allow_hyphen_values = true)]
+    pub share: f64,
+    /// Tolerance of the second look.
+    #[arg(long = "audit-tolerance", value_name = "T", default_value_t = 1e-8, allow_hyphen_values = true)]
+    pub tight: f64,
+}
+
+/// Sizes of the study of accuracy.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum DepthName {
+    /// Up to 257 cells: a minute or two.
+    Quick,
+    /// Up to 1025 cells: a quarter of an hour.
+    Default,
+    /// Up to 2049 cells, tolerances to 1e-10: hours.
+    Thorough,
+}
+
+/// Flags of the study of accuracy.
+#[derive(Debug, Args)]
+pub struct AccuracyCost {
+    /// How much is solved. One thread: the times are those of each row.
+    #[arg(long, value_enum, default_value = "default")]
+    preset: DepthName,
+    /// Master seed.
+    #[arg(long, default_value_t = figures::SEED)]
+    pub seed: u64,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Solve nothing: draw the picture and write the text again from the tables in --out.
+    #[arg(long)]
+    pub redraw: bool,
+}
+
+impl AccuracyCost {
+    /// How much is solved.
+    pub fn depth(&self) -> Depth {
+        match self.preset {
+            DepthName::Quick => Depth::Quick,
+            DepthName::Default => Depth::Default,
+            DepthName::Thorough => Depth::Thorough,
+        }
+    }
+}
+
+/// Flags of the check of error budgets.
+#[derive(Debug, Args)]
+pub struct BudgetCheck {
+    /// Random cases.
+    #[arg(long, value_name = "COUNT", default_value_t = 100)]
+    pub cases: usize,
+    /// Master seed.
+    #[arg(long, default_value_t = figures::SEED)]
+    pub seed: u64,
+    /// Threads; 0 is one per core. Changes no byte of the CSV.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+/// Flags of the two cases.
+#[derive(Debug, Args)]
+pub struct TwoCasesArguments {
+    /// Cells a side.
+    #[arg(long, default_value_t = 512, allow_hyphen_values = true)]
+    cells: usize,
+    /// Surfaces of each case.
+    #[arg(long, default_value_t = 16, allow_hyphen_values = true)]
+    surfaces: usize,
+    /// Fractal dimension.
+    #[arg(long = "df", value_name = "D_F", default_value_t = 2.2, allow_hyphen_values = true)]
+    fractal_dimension: f64,
+    /// Waves a side at which the spectrum rolls off.
+    #[arg(long, value_name = "WAVES", default_value_t = 8.0, allow_hyphen_values = true)]
+    roll_off: f64,
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT.
+    #[arg(long, value_name = "LIST", default_value = "1e-3:20:19", allow_hyphen_values = true)]
+    forces: String,
+    /// Tolerance of every certificate.
+    #[arg(long, default_value_t = 1e-4, allow_hyphen_values = true)]
+    tolerance: f64,
+    /// Master seed.
+    #[arg(long, default_value_t = figures::SEED)]
+    seed: u64,
+    /// Surfaces solved at the same time (default: all cores).
+    #[arg(long, allow_hyphen_values = true)]
+    threads: Option<usize>,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+impl TwoCasesArguments {
+    /// What it asks for.
+    ///
+    /// # Errors
+    /// [`figures::Error::Parameter`] for a list of loads that is none.
+    pub fn study(&self) -> figures::Result<TwoCases> {
+        Ok(TwoCases {
+            cells: self.cells,
+            surfaces: self.surfaces,
+            fractal_dimension: self.fractal_dimension,
+            roll_off: self.roll_off,
+            forces: Forces::parse(&self.forces)?,
+            tolerance: self.tolerance,
+            seed: self.seed,
+            threads: self
+                .threads
+                .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get)),
+        })
+    }
+}
+
+/// Flags of the comparison with stored numbers.
+#[derive(Debug, Args)]
+pub struct Reference {
+    /// Store the numbers of this run as the new reference.
+    #[arg(long)]
+    pub bless: bool,
+    /// Directory of the results; the run works in its folder reference/.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+/// Flags of the hard cases.
+#[derive(Debug, Args)]
+pub struct StabilityArguments {
+    /// Larger grids, more surfaces and loads: minutes instead of seconds.
+    #[arg(long)]
+    pub thorough: bool,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
