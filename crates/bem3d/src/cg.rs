@@ -31,6 +31,8 @@ pub struct Request {
     pub steps: usize,
     /// Use the spectral preconditioner.
     pub precondition: bool,
+    /// Whether the kernel is exact at every lag, or only at most ([`Operators::correcting`]).
+    pub exact: bool,
 }
 
 /// A correction and what it took.
@@ -75,7 +77,7 @@ pub fn correct(
         if steps == 0 {
             direction.copy_from_slice(&z);
         }
-        operators.fast(set, &direction, set, &mut kt);
+        operators.correcting(set, &direction, &mut kt, request.exact);
         let curvature = dot(&direction, &kt);
         if curvature.is_nan() || curvature <= 0.0 {
             break; // Below what single precision can resolve.
@@ -223,6 +225,7 @@ mod tests {
                     floor: 0.0,
                     steps: 200,
                     precondition,
+                    exact: true,
                 };
                 let got = correct(&mut operators, &set, &r, request, &never);
                 // With a fixed sum the approach takes up the rest: x = w - (sum w / sum q) q.

@@ -17,12 +17,18 @@ use std::sync::Arc;
 /// A load this many times the last one begins cold: the last state says little about it.
 const WARM_RANGE: f64 = 30.0;
 
-/// Times that the contact set is settled further for the sake of the stiffness, and by how much each time.
+/// Times that the contact set is settled further for the sake of the stiffness, and by how much each time: its error falls with the
+/// certificate.
 const TIGHTENINGS: usize = 5;
-const TIGHTER: f64 = 0.1;
+const TIGHTER: f64 = 0.5;
+const TIGHTEST: f64 = 0.1;
+/// Share of the tolerance that is aimed at.
+const ENOUGH: f64 = 0.7;
 
 /// A stiffness is solved again when its magnification turns out so many times the one that was expected.
 const MISJUDGED: f64 = 1.5;
+/// How far the mean tangent between two loads is led on beyond the last tangent: at half way, where it holds, it would be twice as far.
+const LED_ON: f64 = 1.5;
 /// Name of the model.
 const NAME: &str = "bem3d";
 
@@ -145,6 +151,19 @@ impl Last {
             Target::Approach(d) => d / self.d,
         }
     }
+
+    /// A guess of q at a state from the last one and the way between them; on the way down the last q alone.
+    fn tangent_at(&self, solved: &Solved) -> Option<Vec<f64>> {
+        let mut q = solved.contact.carry(&self.contact, &self.tangent.as_ref()?.0);
+        let way = solved.d - self.d;
+        if way > 0.0 {
+            let before = solved.contact.carry(&self.contact, &self.p);
+            for ((q, p), before) in q.iter_mut().zip(&solved.p).zip(&before) {
+                *q += LED_ON * ((p - before) / way - *q);
+            }
+        }
+        Some(q)
+    }
 }
 
 impl Prepared {
@@ -203,10 +222,7 @@ impl Prepared {
         }
         let known = self.last.as_ref().and_then(|last| last.tangent.as_ref());
         let mut expected = known.map_or(1.0, |&(_, k)| self.magnification(k));
-        let mut guess = guess.or_else(|| {
-            let last = self.last.as_ref()?;
-            last.tangent.as_ref().map(|(q, _)| solved.contact.carry(&last.contact, q))
-        });
+        let mut guess = guess.or_else(|| self.last.as_ref()?.tangent_at(solved));
         let mut steps = 0;
         loop {
             let tolerance = self.options.tolerance / expected;
@@ -246,7 +262,9 @@ impl Prepared {
                 break;
             }
             // The state may be better than it was asked to be: begin there.
-            limits.tolerance = TIGHTER * limits.tolerance.min(solved.look.evidence.worst());
+            let share = ENOUGH * self.options.tolerance / self.stiffness_error(&tangent);
+            limits.tolerance =
+                share.clamp(TIGHTEST, TIGHTER) * limits.tolerance.min(solved.look.evidence.worst());
             let guess = Guess { set: solved.contact.clone(), p: solved.p.clone(), d: solved.d };
             let steps = solved.steps + tangent.steps;
             let next = active_set::solve(&mut self.problem, target, guess, limits, stop);
@@ -451,7 +469,8 @@ impl Prepared {
     fn remember(&mut self, solved: Solved, tangent: Option<Stiffness>) {
         let Solved { contact, p, d, .. } = solved;
         let force = p.iter().sum();
-        self.last = Some(Last { force, tangent: tangent.map(|t| (t.q, t.value)), contact, p, d });
+        let tangent = tangent.map(|t| (t.q, t.value));
+        self.last = Some(Last { contact, p, d, force, tangent });
     }
 }
 

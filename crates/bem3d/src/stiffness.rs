@@ -3,6 +3,7 @@
 use crate::active_set::{Problem, Solved};
 use crate::cells::CellSet;
 use crate::cg::{self, Energy, Request, TORUS};
+use crate::filled::runs::{self, Runs};
 use crate::filled::{self, Arrays};
 use crate::{love, strategy};
 use contact_model::Stop;
@@ -58,7 +59,7 @@ pub fn solve(
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Stiffness {
-    if strategy::fills(state.contact.len(), problem.side) {
+    if strategy::fills(&state.contact) {
         return filled(problem, state, guess.as_deref(), tolerance, stop);
     }
     on_lists(problem, state, guess, tolerance, stop)
@@ -112,6 +113,7 @@ pub fn on_lists(
             floor: 0.0,
             steps: STEPS,
             precondition: spectral,
+            exact: true,
         };
         let correction = cg::correct(&mut problem.operators, contact, &r, request, stop);
         steps += correction.steps;
@@ -134,46 +136,39 @@ fn filled(
     let Problem { operators, arrays, side, .. } = problem;
     let side = *side;
     arrays.reserve(side);
-    let Arrays { p: q, gap: v, vectors, .. } = arrays;
+    let Arrays { vectors, .. } = arrays;
     let ambiguous = penetrating(state);
-    vectors.mask.fill(0.0);
-    for &i in state.contact.index() {
-        vectors.mask[i as usize] = 1.0;
-    }
-    match guess {
-        Some(guess) => Arrays::spread(&state.contact, guess, q),
-        None => q.fill(0.0),
-    }
-    let row = |y: usize| y * side..(y + 1) * side;
+    let doubtful = Runs::of(&ambiguous);
+    let mut at_ambiguous = vec![0.0; ambiguous.len()];
+    vectors.take(side, runs::marks(&state.contact));
+    let n = state.contact.len();
+    let mut q = guess.map_or_else(|| vec![0.0; n], <[f64]>::to_vec);
+    let mut r = vec![1.0; n];
     let mut fresh = guess.is_none();
     let mut best = Stiffness::unknown();
     let (mut steps, mut unimproved) = (0, 0);
     for round in 0..ROUNDS {
-        let (mut sum, mut rq, mut unit) = (0.0, 0.0, 0.0f64);
-        if fresh {
-            v.fill(0.0);
-            unit = 1.0;
-        } else {
-            let mask = &vectors.mask;
+        if !fresh {
+            let set = &vectors.set;
             operators.exact_rows(
                 side,
-                |y, out| out.copy_from_slice(&q[row(y)]),
+                |y, out| set.spread(y, &q, out),
                 |y, u| {
-                    v[row(y)].copy_from_slice(u);
-                    for ((&u, &q), &mask) in u.iter().zip(&q[row(y)]).zip(&mask[row(y)]) {
-                        let r = f64::from(mask) * (1.0 - u);
-                        sum += q;
-                        rq += r * q;
-                        unit = unit.max(r.abs());
-                    }
+                    set.collect(y, u, &mut r);
+                    doubtful.collect(y, u, &mut at_ambiguous);
                 },
             );
+            for r in &mut r {
+                *r = 1.0 - *r;
+            }
         }
+        let (sum, rq): (f64, f64) = (q.iter().sum(), cg::dot(&r, &q));
+        let unit = r.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
         if unit <= 0.0 {
             break;
         }
-        for ((r, &mask), &v) in vectors.r.iter_mut().zip(&vectors.mask).zip(&*v) {
-            *r = mask * ((1.0 - v) / unit) as f32;
+        for (out, r) in vectors.r.iter_mut().zip(&r) {
+            *out = (r / unit) as f32;
         }
         let last = round + 1 == ROUNDS || unimproved > 2;
         let square = unit * unit;
@@ -183,18 +178,15 @@ fn filled(
             energy: Some(Energy { share: AIM * tolerance, base: (sum + rq) / square }),
             floor: 0.0,
             steps: if last { 0 } else { STEPS },
+            exact: true,
         };
-        let done = filled::cg::correct(operators, side, vectors, request, stop);
+        let done = filled::cg::correct(operators, vectors, request, stop);
         if !fresh {
             let (ritz, error) = bounds(sum, rq, TORUS * done.start.max(0.0) * square);
             unimproved = if error < 0.9 * best.solve_error { 0 } else { unimproved + 1 };
             if error < best.solve_error {
-                let on = |set: &CellSet, values: &[f64]| -> Vec<f64> {
-                    set.index().iter().map(|&i| values[i as usize]).collect()
-                };
-                let q = on(&state.contact, q);
-                let set_error = set_error(state, on(&ambiguous, v).into_iter(), &q) / ritz;
-                best = Stiffness { value: ritz, solve_error: error, set_error, q, steps };
+                let set_error = set_error(state, at_ambiguous.iter().copied(), &q) / ritz;
+                best = Stiffness { value: ritz, solve_error: error, set_error, q: q.clone(), steps };
             }
             if error <= SHARE * tolerance || last || stop() {
                 break;

@@ -32,8 +32,11 @@ const FACTORS: f64 = 2.5;
 pub const LARGEST_FACTOR: usize = 6000;
 /// Sets up to this size are always factored: the result is exact and costs a millisecond or two.
 const ALWAYS_FACTORED: usize = 256;
-/// From one contact cell in so many of the grid on, arrays over the grid are cheaper than lists of cells.
-const FILLED: usize = 22;
+/// From one contact cell in so many of the grid on, runs of cells with extended residuals take half the steps of lists, which makes up for
+/// transforms of the whole grid ...
+const FILLED: usize = 200;
+/// ... unless the window of the contact is smaller than this share of it.
+const WINDOW: f64 = 0.6;
 /// Where one cell in so many will touch, no tangent is followed far.
 const FILLING: f64 = 10.0;
 /// Where one cell in so many will touch, the cells that a tangent promises are counted before it is followed ...
@@ -128,9 +131,12 @@ pub fn dense_is_cheaper(n: usize, lengths: Lengths) -> bool {
     n <= ALWAYS_FACTORED || (n <= LARGEST_FACTOR && factor <= iterate)
 }
 
-/// Whether the contact fills the grid so far that arrays are cheaper than lists.
-pub fn fills(contact: usize, side: usize) -> bool {
-    contact > LARGEST_FACTOR && contact * FILLED >= side * side
+/// Whether the contact fills the grid so far that runs of cells over the whole grid are cheaper than lists in a window.
+pub fn fills(contact: &CellSet) -> bool {
+    let cells = contact.side() * contact.side();
+    contact.len() > LARGEST_FACTOR
+        && contact.len() * FILLED >= cells
+        && contact.window_cells() as f64 >= WINDOW * cells as f64
 }
 
 /// Whether a load that is `ratio` times the last one begins on coarse grids although a state is known.
@@ -198,8 +204,12 @@ mod tests {
 
     #[test]
     fn arrays_are_for_contact_that_fills_the_grid() {
-        assert!(!fills(LARGEST_FACTOR, 60), "small sets are factored");
-        assert!(fills(2049 * 2049 / 10, 2049) && !fills(2049 * 2049 / 100, 2049));
+        let full = |side: usize| CellSet::new(side, (0..(side * side) as u32).collect());
+        assert!(!fills(&full(77)) && fills(&full(78)), "small sets are factored");
+        assert!(fills(&every(100)) && !fills(&every(300)));
+        // A window of little more than half of the grid is cheaper by itself.
+        let rows = |count: u32| CellSet::new(2049, (0..2049 * count).collect());
+        assert!(fills(&rows(1300)) && !fills(&rows(1100)));
     }
 
     #[test]

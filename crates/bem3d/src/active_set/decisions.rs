@@ -135,8 +135,8 @@ fn a_rough_look_follows_a_large_error_that_single_precision_can_see() {
 fn gradients_are_asked_for_half_of_what_is_wanted() {
     let limits = Limits { tolerance: 1e-3, height: Some(5.0), ..TIGHT };
     let reduction = |error| request(Target::Force(1.0), limits, seen(error)).reduction;
-    assert_relative_eq!(reduction(1e-2), 0.05);
-    assert_relative_eq!(reduction(EARLY), 0.025);
+    assert_relative_eq!(reduction(4e-3), 0.125);
+    assert_relative_eq!(reduction(EARLY), REDUCTION.0);
     assert_relative_eq!(reduction(1.01 * EARLY), EARLY_REDUCTION);
     assert_relative_eq!(reduction(1e-3), REDUCTION.1);
     let tight = Limits { tolerance: 1e-9, height: None, ..limits };

@@ -22,7 +22,7 @@ fn right(n: usize, unit: f64) -> Vec<f64> {
 
 /// Nothing but the number of steps ends it.
 fn endless(precondition: bool, steps: usize) -> Request {
-    Request { fixed_sum: false, reduction: 0.0, energy: None, floor: 0.0, steps, precondition }
+    Request { fixed_sum: false, reduction: 0.0, energy: None, floor: 0.0, steps, precondition, exact: true }
 }
 
 /// The correction after each of the first steps, with the residual that it leaves.

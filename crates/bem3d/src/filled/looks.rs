@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::active_set::Problem;
+use crate::cells::CellSet;
 use crate::certificate::measure;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
@@ -34,11 +35,22 @@ fn ground<'a>(problem: &'a mut Problem, target: Target, guess: &Guess, height: O
     Filled::new(candidates, operators, arrays, target, guess, limits(height))
 }
 
+/// Pressure on the contact set, over the whole grid.
+fn pressed(filled: &Filled) -> Vec<f64> {
+    let mut p = vec![0.0; SIDE * SIDE];
+    for (&i, &value) in filled.now.set.cells().index().iter().zip(&filled.now.p) {
+        p[i as usize] = value;
+    }
+    p
+}
+
 /// Pressure brought to a force, and `K p + z`, by plain sums.
 fn plain(guess: &Guess, force: Option<f64>) -> (Vec<f64>, Vec<f64>) {
     let (problem, _) = bowl();
     let mut p = vec![0.0; SIDE * SIDE];
-    Arrays::spread(&guess.set, &guess.p, &mut p);
+    for (&i, &value) in guess.set.index().iter().zip(&guess.p) {
+        p[i as usize] = value;
+    }
     let sum: f64 = p.iter().sum();
     let factor = force.map_or(1.0, |force| force / sum);
     for p in &mut p {
@@ -113,18 +125,19 @@ fn without_pressure_the_relief_itself_is_seen() {
 #[test]
 fn a_cell_joins_when_it_penetrates_by_more_than_the_noise() {
     let (mut problem, guess) = bowl();
-    let mut filled = ground(&mut problem, Target::Force(1.0), &guess, None);
+    let corner = Guess { set: CellSet::new(SIDE, vec![0]), p: vec![1.0], ..guess };
+    let mut filled = ground(&mut problem, Target::Force(1.0), &corner, None);
     let seen = filled.look(false);
     filled.residual = 0.25;
-    filled.arrays.p.fill(0.0);
-    filled.arrays.gap.fill(1.0);
-    filled.arrays.p[0] = 1.0;
-    (filled.arrays.gap[1], filled.arrays.gap[2]) = (-0.25, -0.26);
+    // The gap is counted from a reference that lies half a unit below the plane.
+    filled.reference = filled.d - 0.5;
+    filled.arrays.gap.fill(1.5);
+    (filled.arrays.gap[1], filled.arrays.gap[2]) = (0.25, 0.24);
     let mut steps = 0;
     filled.improve(seen, &mut steps, &never);
     assert!(steps > 0);
-    assert!(filled.arrays.vectors.mask.iter().take(4).eq(&[1.0, 0.0, 1.0, 0.0]));
-    assert!(filled.arrays.p[3..].iter().all(|&p| p == 0.0));
+    assert_eq!(filled.arrays.vectors.set.cells().index(), [0, 2]);
+    assert!(pressed(&filled)[3..].iter().all(|&p| p == 0.0));
 }
 
 #[test]
@@ -139,7 +152,10 @@ fn the_kept_pressure_is_returned_with_what_presses_and_what_penetrates() {
     let mut filled = ground(&mut problem, target, &guess, None);
     let first = filled.look(false);
     filled.keep();
-    filled.arrays.p.fill(0.0);
+    // A round that has lost most of the pressure.
+    let lost = Pressed { set: Runs::of(&CellSet::new(SIDE, vec![5])), p: vec![1e-3] };
+    filled.best = std::mem::replace(&mut filled.now, lost);
+    filled.now_is_best = false;
     let last = filled.look(false);
     let solved = filled.finish(Status::Stagnated, Some(first), last, 5);
     assert_eq!((solved.contact.index(), solved.steps), (guess.set.index(), 5));
@@ -148,4 +164,29 @@ fn the_kept_pressure_is_returned_with_what_presses_and_what_penetrates() {
     assert!(expected.len() > guess.set.len() && expected.len() < SIDE * SIDE);
     assert_eq!(solved.look.checked.index(), expected);
     assert_relative_eq!(solved.look.evidence.deepest, first.evidence.deepest);
+    for (k, &i) in expected.iter().enumerate() {
+        assert_relative_eq!(solved.look.p[k], p[i as usize]);
+        assert_relative_eq!(solved.look.gap[k], lifted[i as usize] - d, epsilon = 1e-6);
+    }
+}
+
+#[test]
+fn the_best_pressure_survives_the_rounds_that_follow() {
+    let (mut problem, guess) = bowl();
+    let mut filled = ground(&mut problem, Target::Force(3.0), &guess, Some(1.0));
+    let first = filled.look(false);
+    filled.keep();
+    let kept = pressed(&filled);
+    for rounds in 1..3 {
+        filled.improve(first, &mut 0, &never);
+        filled.look(false);
+        assert!(pressed(&filled).iter().zip(&kept).any(|(a, b)| (a - b).abs() > 1e-6), "round {rounds}");
+    }
+    let last = filled.look(false);
+    let solved = filled.finish(Status::Stagnated, Some(first), last, 0);
+    let expected: Vec<f64> = kept.into_iter().filter(|&p| p > 0.0).collect();
+    assert_eq!(solved.p.len(), expected.len());
+    for (p, expected) in solved.p.iter().zip(&expected) {
+        assert_relative_eq!(p, expected, max_relative = 1e-14);
+    }
 }

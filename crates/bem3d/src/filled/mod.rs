@@ -1,29 +1,30 @@
-//! Contact that fills the grid: the same iteration on arrays over the whole grid instead of lists of cells.
+//! Contact that fills the grid: the same iteration on runs of cells instead of lists.
 //!
-//! Lists cost a look-up a cell and a fresh allocation a step, as much as the transforms where most cells touch. Here every update runs
-//! row by row in order, the vectors of the iteration are single precision, and nothing is allocated between loads.
+//! Lists cost a look-up a cell and a fresh allocation a step, as much as the transforms where many cells touch. Here vectors on the contact
+//! are copied into the rows of the transforms run by run, those of the iteration are single precision, and of the rest of the grid nothing
+//! is kept but the gap.
 
 pub mod cg;
 mod extension;
+pub mod runs;
 
 use crate::active_set::{Ground, Guess, Limits, Look, Seen, Solved, Target};
 use crate::candidates::Candidates;
-use crate::cells::CellSet;
 use crate::certificate::Evidence;
 use crate::operator::Operators;
 use crate::operator::convolution::Real;
 use contact_model::{Status, Stop};
+use runs::Runs;
 
-/// Arrays over the grid, kept from load to load.
+/// Accumulators side by side in a minimum over a row.
+const LANES: usize = 8;
+
+/// Room for one load, kept from load to load.
 #[derive(Debug, Default)]
 pub struct Arrays {
     side: usize,
-    /// Pressure, 0 outside the contact set; in the tangent problem q.
-    pub p: Vec<f64>,
-    /// Gap; in the tangent problem K q.
-    pub gap: Vec<f64>,
-    /// The best pressure so far.
-    best: Vec<f64>,
+    /// `u + z` less a reference near the approach, on the whole grid.
+    gap: Vec<f32>,
     /// Vectors of conjugate gradients.
     pub vectors: cg::Vectors,
 }
@@ -31,32 +32,48 @@ pub struct Arrays {
 impl Arrays {
     /// Makes room for a grid.
     pub fn reserve(&mut self, side: usize) {
-        let cells = side * side;
         if self.side != side {
-            let vectors = cg::Vectors::new(side);
-            *self = Self { side, p: vec![0.0; cells], gap: vec![0.0; cells], best: Vec::new(), vectors };
+            *self = Self { side, gap: vec![0.0; side * side], vectors: cg::Vectors::new(side) };
         }
-    }
-
-    /// Writes values on a set into an array of zeros.
-    pub fn spread(set: &CellSet, values: &[f64], array: &mut [f64]) {
-        array.fill(0.0);
-        for (&i, &value) in set.index().iter().zip(values) {
-            array[i as usize] = value;
-        }
+        self.vectors.weights.clear();
     }
 }
 
-/// One load on arrays.
+/// One load on runs.
 pub struct Filled<'a> {
     candidates: &'a Candidates,
     operators: &'a mut Operators,
     arrays: &'a mut Arrays,
     target: Target,
     limits: Limits,
+    /// The contact set, positive pressure on it, and `u + z` there.
+    now: Pressed,
+    lifted: Vec<f64>,
+    /// The best pressure so far, unless it is the present one.
+    best: Pressed,
+    now_is_best: bool,
     d: f64,
-    /// Root mean square and largest magnitude of the gap on contact cells.
+    /// What the gap is counted from.
+    reference: f64,
+    /// Root mean square of the gap on contact cells.
     residual: f64,
+}
+
+/// Positive pressure on a set.
+#[derive(Debug, Default)]
+struct Pressed {
+    set: Runs,
+    p: Vec<f64>,
+}
+
+impl Pressed {
+    /// Takes the cells with positive pressure of a set.
+    fn take(&mut self, set: &Runs, p: &[f64]) {
+        self.set.positive(set, p);
+        self.p.clear();
+        self.p.reserve(self.set.len());
+        self.p.extend(p.iter().filter(|&&p| p > 0.0));
+    }
 }
 
 impl<'a> Filled<'a> {
@@ -70,50 +87,66 @@ impl<'a> Filled<'a> {
         limits: Limits,
     ) -> Self {
         arrays.reserve(guess.set.side());
-        Arrays::spread(&guess.set, &guess.p, &mut arrays.p);
-        Self { candidates, operators, arrays, target, limits, d: guess.d, residual: 0.0 }
+        let mut now = Pressed::default();
+        now.take(&Runs::of(&guess.set), &guess.p);
+        Self {
+            candidates,
+            operators,
+            arrays,
+            target,
+            limits,
+            now,
+            lifted: Vec::new(),
+            best: Pressed::default(),
+            now_is_best: false,
+            d: guess.d,
+            reference: guess.d,
+            residual: 0.0,
+        }
     }
 
-    /// `gap = K p + z`; returns the mean of it weighted by the pressure and its minimum.
-    fn displace(&mut self, rough: bool) -> (f64, f64) {
-        let side = self.arrays.side;
-        let (z, p, gap) = (self.candidates.z(), &self.arrays.p, &mut self.arrays.gap);
-        let force: f64 = p.iter().sum();
+    /// `u + z` everywhere; returns the mean of it weighted by the pressure and its minimum.
+    fn displace(&mut self, force: f64, rough: bool) -> (f64, f64) {
+        let (side, reference) = (self.arrays.side, self.reference);
+        let (z, Pressed { set, p }, gap) = (self.candidates.z(), &self.now, &mut self.arrays.gap);
+        let (lifted, mut row) = (&mut self.lifted, vec![0.0; side]);
+        lifted.resize(p.len(), 0.0);
         let (mut mean, mut lowest) = (0.0, f64::INFINITY);
-        let row = |y: usize| y * side..(y + 1) * side;
-        let mut finish = |y: usize, gap: &mut [f64]| {
-            for ((gap, &z), &p) in gap.iter_mut().zip(&z[row(y)]).zip(&p[row(y)]) {
-                *gap += z;
-                lowest = gap.min(lowest);
-                mean += p / force * *gap;
+        // `row` holds the displacement of row y.
+        let mut finish = |y: usize, row: &mut [f64]| {
+            let cells = y * side..(y + 1) * side;
+            for (value, z) in row.iter_mut().zip(&z[cells.clone()]) {
+                *value += z;
+            }
+            lowest = minimum(row).min(lowest);
+            set.collect(y, row, lifted);
+            let values = set.span(y);
+            mean += p[values.clone()].iter().zip(&lifted[values]).map(|(p, v)| p / force * v).sum::<f64>();
+            for (gap, value) in gap[cells].iter_mut().zip(&*row) {
+                *gap = (value - reference) as f32;
             }
         };
         if rough {
             let unit = f32::unit(p.iter().fold(0.0, |m: f64, &p| m.max(p)));
             let scale = unit.recip();
+            let single: Vec<f32> = p.iter().map(|p| (p * scale) as f32).collect();
             self.operators.fast_rows(
                 side,
-                |y, out| {
-                    for (out, &p) in out.iter_mut().zip(&p[row(y)]) {
-                        *out = (p * scale) as f32;
-                    }
-                },
+                |y, out| set.spread(y, &single, out),
                 |y, u| {
-                    let gap = &mut gap[row(y)];
-                    for (gap, &u) in gap.iter_mut().zip(u) {
-                        *gap = f64::from(u) * unit;
+                    for (value, &u) in row.iter_mut().zip(u) {
+                        *value = f64::from(u) * unit;
                     }
-                    finish(y, gap);
+                    finish(y, &mut row);
                 },
             );
         } else {
             self.operators.exact_rows(
                 side,
-                |y, out| out.copy_from_slice(&p[row(y)]),
+                |y, out| set.spread(y, p, out),
                 |y, u| {
-                    let gap = &mut gap[row(y)];
-                    gap.copy_from_slice(u);
-                    finish(y, gap);
+                    row.copy_from_slice(u);
+                    finish(y, &mut row);
                 },
             );
         }
@@ -121,31 +154,41 @@ impl<'a> Filled<'a> {
     }
 }
 
+/// Smallest number of a row.
+fn minimum(row: &[f64]) -> f64 {
+    let (chunks, rest) = row.as_chunks::<LANES>();
+    let mut lanes = [f64::INFINITY; LANES];
+    for chunk in chunks {
+        for (lane, &value) in lanes.iter_mut().zip(chunk) {
+            *lane = if value < *lane { value } else { *lane };
+        }
+    }
+    lanes.iter().chain(rest).fold(f64::INFINITY, |m, &v| m.min(v))
+}
+
 impl Ground for Filled<'_> {
     fn look(&mut self, rough: bool) -> Seen {
         if let Target::Force(force) = self.target {
-            crate::active_set::rescale(&mut self.arrays.p, force);
+            crate::active_set::rescale(&mut self.now.p, force);
         }
-        let (mean, lowest) = self.displace(rough);
+        let force: f64 = self.now.p.iter().sum();
+        self.reference = self.d;
+        let (mean, lowest) = self.displace(force, rough);
         self.d = match self.target {
             Target::Force(_) => mean,
             Target::Approach(asked) => asked,
         };
         let (d, lowest) = (self.d, lowest - self.d);
         let s = self.limits.height.unwrap_or(d);
-        let force: f64 = self.arrays.p.iter().sum();
-        let (mut weighted, mut duality, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);
-        for (&p, gap) in self.arrays.p.iter().zip(&mut self.arrays.gap) {
-            *gap -= d;
-            if p > 0.0 {
-                let share = p / force;
-                weighted += share * gap.abs();
-                duality += share * (*gap - lowest);
-                square += (*gap / d).powi(2);
-                count += 1.0;
-            }
+        let (mut weighted, mut duality, mut square) = (0.0, 0.0, 0.0);
+        for (&p, lifted) in self.now.p.iter().zip(&self.lifted) {
+            let (share, gap) = (p / force, lifted - d);
+            weighted += share * gap.abs();
+            duality += share * (gap - lowest);
+            square += (gap / d).powi(2);
         }
-        self.residual = if count > 0.0 { d * f64::sqrt(square / count) } else { 0.0 };
+        let count = self.now.p.len();
+        self.residual = if count > 0 { d * f64::sqrt(square / count as f64) } else { 0.0 };
         let deepest = (-lowest).max(0.0);
         let evidence = Evidence {
             frank_wolfe: duality / s,
@@ -158,59 +201,96 @@ impl Ground for Filled<'_> {
     }
 
     fn improve(&mut self, seen: Seen, steps: &mut usize, stop: Stop<'_>) {
-        let noise = crate::active_set::NOISE * self.residual;
-        let Arrays { p, gap, vectors, side, .. } = &mut *self.arrays;
-        let mut unit = 0.0f64;
-        for ((mask, &p), &gap) in vectors.mask.iter_mut().zip(&*p).zip(&*gap) {
-            let inside = p > 0.0 || gap < -noise;
-            *mask = f32::from(u8::from(inside));
-            unit = unit.max(if inside { gap.abs() } else { 0.0 });
+        let Arrays { gap, vectors, side, .. } = &mut *self.arrays;
+        let Pressed { set, p } = &self.now;
+        let (side, shift) = (*side, self.d - self.reference);
+        let threshold = (shift - crate::active_set::NOISE * self.residual) as f32;
+        vectors.take(side, |y, marks| {
+            for (mark, &gap) in marks.iter_mut().zip(&gap[y * side..]) {
+                *mark = gap < threshold;
+            }
+            set.fill(y, true, marks);
+        });
+        let cg::Vectors { set: wider, r, .. } = vectors;
+        let mut unit = 0.0f32;
+        for y in 0..side {
+            wider.collect(y, &gap[y * side..(y + 1) * side], r);
+            for r in &mut r[wider.span(y)] {
+                *r = (shift - f64::from(*r)) as f32;
+                unit = unit.max(r.abs());
+            }
         }
         if unit <= 0.0 {
             return;
         }
-        for ((r, &mask), &gap) in vectors.r.iter_mut().zip(&vectors.mask).zip(&*gap) {
-            *r = mask * (-gap / unit) as f32;
+        for r in r {
+            *r /= unit;
         }
         let asked = crate::active_set::request(self.target, self.limits, seen);
+        let unit = f64::from(unit);
         let request = cg::Request {
             fixed_sum: asked.fixed_sum,
             reduction: asked.reduction,
             energy: None,
             floor: asked.floor / unit,
             steps: asked.steps,
+            exact: asked.exact,
         };
-        *steps += cg::correct(self.operators, *side, vectors, request, stop).steps;
-        for ((p, &x), &mask) in p.iter_mut().zip(&vectors.x).zip(&vectors.mask) {
-            *p = if mask > 0.0 { (*p + unit * f64::from(x)).max(0.0) } else { 0.0 };
+        *steps += cg::correct(self.operators, vectors, request, stop).steps;
+        // What the look has seen is no longer needed: its place takes the new pressure.
+        let pressure = &mut self.lifted;
+        vectors.set.carry_to(set, p, pressure);
+        for (p, &x) in pressure.iter_mut().zip(&vectors.x) {
+            *p += unit * f64::from(x);
         }
+        if std::mem::take(&mut self.now_is_best) {
+            std::mem::swap(&mut self.now, &mut self.best);
+        }
+        self.now.take(&vectors.set, pressure);
     }
 
     fn keep(&mut self) {
-        self.arrays.best.clone_from(&self.arrays.p);
+        self.now_is_best = true;
     }
 
     fn finish(mut self, status: Status, best: Option<Seen>, last: Seen, steps: usize) -> Solved {
         let mut seen = last;
         if best.is_some() {
-            self.arrays.p.clone_from(&self.arrays.best);
+            if !self.now_is_best {
+                self.now = std::mem::take(&mut self.best);
+            }
             seen = self.look(false);
         }
-        let side = self.arrays.side;
-        let (p, gap) = (&self.arrays.p, &self.arrays.gap);
-        let pick = |keep: &dyn Fn(usize) -> bool| {
-            // Counted first: a list that grows by doubling costs twice the memory.
-            let mut list = Vec::with_capacity((0..side * side).filter(|&i| keep(i)).count());
-            list.extend((0..side * side).filter(|&i| keep(i)).map(|i| i as u32));
-            CellSet::new(side, list)
-        };
+        let Self { now: Pressed { set, p }, arrays, lifted, d, reference, .. } = self;
+        let (side, gap) = (arrays.side, &arrays.gap);
+        let open = (d - reference) as f32;
         // What the stiffness asks about: cells that press and cells that penetrate.
-        let (checked, contact) = (pick(&|i| p[i] > 0.0 || gap[i] < 0.0), pick(&|i| p[i] > 0.0));
-        let on = |set: &CellSet, values: &[f64]| {
-            set.index().iter().map(|&i| values[i as usize]).collect::<Vec<_>>()
+        let touched = Runs::marked(side, |y, marks| {
+            for (mark, &gap) in marks.iter_mut().zip(&gap[y * side..]) {
+                *mark = gap < open;
+            }
+            set.fill(y, true, marks);
+        });
+        let mut values = vec![0.0; touched.len()];
+        let mut row = vec![0.0; side];
+        for y in 0..side {
+            for (value, &gap) in row.iter_mut().zip(&gap[y * side..]) {
+                *value = f64::from(gap) + (reference - d);
+            }
+            for (columns, at) in set.row(y) {
+                for (value, lifted) in row[columns].iter_mut().zip(&lifted[at]) {
+                    *value = lifted - d;
+                }
+            }
+            touched.collect(y, &row, &mut values);
+        }
+        let look = Look {
+            p: touched.carry(&set, &p),
+            gap: values,
+            evidence: seen.evidence,
+            checked: touched.cells(),
         };
-        let look = Look { p: on(&checked, p), gap: on(&checked, gap), evidence: seen.evidence, checked };
-        Solved { p: on(&contact, p), contact, d: seen.d, q: None, look, steps, status }
+        Solved { p, contact: set.cells(), d: seen.d, q: None, look, steps, status }
     }
 }
 

@@ -8,12 +8,15 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Rows that are laid down together: eight complex numbers in single precision are one cache line.
-const TILE: usize = 8;
+/// Rows that are laid down together: 32 complex numbers in single precision are four cache lines, next to each other in each column.
+const TILE: usize = 32;
 /// Bytes of a cache line.
 const LINE: usize = 64;
 /// Columns at a distance of a multiple of so many numbers would fall into the same few lines of the cache.
 const ALIASED: usize = 64;
+
+/// Length of a wrapped transform, as a multiple of the window.
+const WRAPPED: f64 = 1.5;
 
 /// Floating point of a convolution: f64, or f32 inside an iteration that is certified in f64.
 pub trait Real: FftNum + Default {
@@ -69,6 +72,14 @@ impl Lengths {
     pub fn free(window: Window) -> Self {
         let exact = |n: usize| good_length((2 * n.saturating_sub(1)).max(2));
         Self { x: exact(window.width), y: exact(window.height) }
+    }
+
+    /// Good lengths for most lags: those up to [`WRAPPED`] half times the window are exact, farther ones take the shorter way round.
+    ///
+    /// Positive definite: the kernel's symbol falls as 1 / q, what the kink half way round adds as 1 / q^2, less from the first wave on.
+    pub fn wrapped(self, window: Window) -> Self {
+        let wrap = |n: usize, exact: usize| good_length((WRAPPED * n as f64) as usize - 1).min(exact);
+        Self { x: wrap(window.width, self.x), y: wrap(window.height, self.y) }
     }
 
     /// Shortest good lengths of a torus that holds the window once.

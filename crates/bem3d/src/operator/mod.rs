@@ -28,6 +28,7 @@ pub struct Operators {
     fast: Option<Convolution<f32>>,
     two_level: Option<TwoLevel>,
     inverse: Option<Convolution<f32>>,
+    wrapped: Option<Convolution<f32>>,
     /// Applications of K so far, all precisions together.
     pub applications: usize,
     /// Linear systems so far: factors and runs of conjugate gradients.
@@ -49,6 +50,7 @@ impl Operators {
             fast: None,
             two_level: None,
             inverse: None,
+            wrapped: None,
             applications: 0,
             solves: 0,
             two_levels: free,
@@ -84,6 +86,18 @@ impl Operators {
 
     /// `u = K p` to five digits or more, for use inside an iteration that is checked with [`Self::exact`].
     pub fn fast(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
+        self.single(sources, p, targets, u, true);
+    }
+
+    /// `u = K p` on one set for corrections: as [`Self::fast`] where `exact`, else by a transform, where one is used, on a torus too small
+    /// for the farthest lags ([`Lengths::wrapped`]).
+    ///
+    /// A correction has next to no sum, and what the far lags lack is seen by the look that follows. Half the cost.
+    pub fn correcting(&mut self, set: &CellSet, p: &[f64], u: &mut [f64], exact: bool) {
+        self.single(set, p, set, u, exact);
+    }
+
+    fn single(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64], exact: bool) {
         if sources.is_empty() || targets.is_empty() {
             return u.fill(0.0);
         }
@@ -103,15 +117,19 @@ impl Operators {
                 let operator = self.two_level.get_or_insert_with(|| TwoLevel::new(window, split));
                 operator.apply(sources, p, targets, u);
             }
-            Choice::Fft => {
-                let operator = planned(&mut self.fast, window, &self.table, |t, w| {
-                    let lengths = t.lengths(w);
-                    Convolution::new(w, lengths, t.symbol_f32(lengths))
-                });
-                operator.apply(sources, p, targets, u);
-            }
+            Choice::Fft => self.transform(window, exact).apply(sources, p, targets, u),
         }
         self.last = Some(choice);
+    }
+
+    /// The single-precision transform of a window, exact or wrapped.
+    fn transform(&mut self, window: Window, exact: bool) -> &mut Convolution<f32> {
+        let slot = if exact { &mut self.fast } else { &mut self.wrapped };
+        planned(slot, window, &self.table, |table, window| {
+            let lengths = table.lengths(window);
+            let lengths = if exact { lengths } else { lengths.wrapped(window) };
+            Convolution::new(window, lengths, table.symbol_f32(lengths))
+        })
     }
 
     /// `u = K p` in double precision over the whole grid: `fill` writes row y, `take` reads row y of the result.
@@ -136,13 +154,20 @@ impl Operators {
         fill: impl FnMut(usize, &mut [f32]),
         take: impl FnMut(usize, &[f32]),
     ) {
+        self.correcting_rows(side, true, fill, take);
+    }
+
+    /// [`Self::correcting`] over the whole grid.
+    pub fn correcting_rows(
+        &mut self,
+        side: usize,
+        exact: bool,
+        fill: impl FnMut(usize, &mut [f32]),
+        take: impl FnMut(usize, &[f32]),
+    ) {
         self.applications += 1;
         self.last = Some(Choice::Fft);
-        let operator = planned(&mut self.fast, whole(side), &self.table, |t, w| {
-            let lengths = t.lengths(w);
-            Convolution::new(w, lengths, t.symbol_f32(lengths))
-        });
-        operator.rows(|_| true, fill, |_| true, take);
+        self.transform(whole(side), exact).rows(|_| true, fill, |_| true, take);
     }
 
     /// [`Self::inverse`] over the whole grid.
@@ -178,7 +203,7 @@ impl Operators {
         if solved.q.is_some() {
             return format!("dense {}", solved.contact.len());
         }
-        match (self.last, &self.fast) {
+        match (self.last, self.fast.as_ref().or(self.wrapped.as_ref())) {
             (Some(Choice::Fft), Some(fast)) => {
                 format!("fft {} x {}, f32 in f64", fast.lengths().x, fast.lengths().y)
             }
@@ -319,6 +344,40 @@ mod tests {
         let error: Vec<f64> = back.iter().zip(&p).map(|(a, b)| a - b).collect();
         assert!(largest(&error) < 0.05, "{}", largest(&error));
         assert_eq!(operators.applications, 1, "the preconditioner is not an application of K");
+    }
+
+    #[test]
+    fn a_wrapped_transform_is_exact_up_to_three_quarters_of_the_window_and_positive_definite() {
+        let side = 48;
+        let mut operators = Operators::new(Table::shared(side, Boundary::Free));
+        let all = set(side, &[true]);
+        let lengths = Lengths::free(all.window().unwrap()).wrapped(all.window().unwrap());
+        assert_eq!((lengths.x, lengths.y), (72, 72));
+        let symbol = operators.table.symbol_f64(lengths);
+        assert!(symbol.iter().all(|&s| s > 0.0));
+        // One pressed cell in a corner: u is the kernel itself; what is farther than half way round is what is nearer.
+        let mut p = vec![0.0; all.len()];
+        p[0] = 1.0;
+        let mut u = vec![0.0; all.len()];
+        operators.two_levels = false;
+        operators.transform(whole(side), false).apply(&all, &p, &all, &mut u);
+        for (k, u) in u.iter().enumerate() {
+            let near = |lag: usize| lag.min(72 - lag);
+            let expected = crate::love::influence(near(k % side), near(k / side));
+            assert_relative_eq!(*u, expected, max_relative = SINGLE, epsilon = SINGLE);
+        }
+        // Corrections without a sum: what is missing is small. A plain one: it is not.
+        let wave: Vec<f64> = (0..all.len()).map(|k| (k as f64 * 0.37).sin()).collect();
+        let mean = wave.iter().sum::<f64>() / wave.len() as f64;
+        let without_sum: Vec<f64> = wave.iter().map(|w| w - mean).collect();
+        let mut lacks = |p: &[f64]| {
+            let (mut wrapped, mut exact) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+            operators.transform(whole(side), false).apply(&all, p, &all, &mut wrapped);
+            operators.transform(whole(side), true).apply(&all, p, &all, &mut exact);
+            let difference: Vec<f64> = wrapped.iter().zip(&exact).map(|(a, b)| a - b).collect();
+            largest(&difference) / largest(&exact)
+        };
+        assert!(lacks(&without_sum) < 0.02 && lacks(&vec![1.0; all.len()]) > 0.02);
     }
 
     fn window(x: usize, y: usize, width: usize, height: usize) -> Window {
