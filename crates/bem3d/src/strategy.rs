@@ -34,7 +34,7 @@ pub const LARGEST_FACTOR: usize = 6000;
 const ALWAYS_FACTORED: usize = 256;
 /// From one contact cell in so many of the grid on, runs of cells with extended residuals take half the steps of lists, which makes up for
 /// transforms of the whole grid ...
-const FILLED: usize = 200;
+const FILLED: usize = 300;
 /// ... unless the window of the contact is smaller than this share of it.
 const WINDOW: f64 = 0.6;
 /// Where one cell in so many will touch, no tangent is followed far.
@@ -206,7 +206,7 @@ mod tests {
     fn arrays_are_for_contact_that_fills_the_grid() {
         let full = |side: usize| CellSet::new(side, (0..(side * side) as u32).collect());
         assert!(!fills(&full(77)) && fills(&full(78)), "small sets are factored");
-        assert!(fills(&every(100)) && !fills(&every(300)));
+        assert!(fills(&every(FILLED - 10)) && !fills(&every(FILLED + 10)));
         // A window of little more than half of the grid is cheaper by itself.
         let rows = |count: u32| CellSet::new(2049, (0..2049 * count).collect());
         assert!(fills(&rows(1300)) && !fills(&rows(1100)));
