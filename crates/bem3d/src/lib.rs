@@ -37,10 +37,11 @@
 //! coarser grids), the cells that would penetrate are a superset of the contact set; solving on it and dropping the cells
 //! in tension leads to it. Small sets are factored (`operator::dense`), and pressure and stiffness come from one factor. Larger
 //! ones take preconditioned conjugate gradients between looks at the exact gap in double precision: on lists of cells (`cg`), or on
-//! arrays over the grid where contact fills it (`filled`). The preconditioner there extends the residual into the gaps between contacts
+//! runs of cells where contact fills the grid (`filled`). The preconditioner there extends the residual into the gaps between contacts
 //! and applies the inverse of K on a torus: `E' B E >= (K_CC)^-1` for every extension E, and the better it follows the displacement, the
 //! sharper. The same inequality bounds the error of k. Inside the iteration the operator is a sum over pairs, a two-level sum (smooth
-//! far field on a lattice, close pairs exactly) or a single-precision FFT on the bounding box, whichever is cheaper (`strategy`);
+//! far field on a lattice, close pairs exactly) or a single-precision FFT on the bounding box, whichever is cheaper (`strategy`), for
+//! corrections of the pressure on a torus too short for the farthest lags;
 //! looks that certify are exact sums or double-precision transforms.
 //!
 //! # How accurate
