@@ -135,6 +135,14 @@ pub struct Look {
     pub evidence: Evidence,
 }
 
+impl Look {
+    /// Largest gap, of either sign, on cells that press.
+    pub fn left_over(&self) -> f64 {
+        let on_contact = self.gap.iter().zip(&self.p).filter(|&(_, &p)| p > 0.0);
+        on_contact.map(|(g, _)| g.abs()).fold(0.0, f64::max)
+    }
+}
+
 /// What a look says about how to go on.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen {

@@ -76,7 +76,7 @@ pub fn on_lists(
     let contact = &state.contact;
     let n = contact.len();
     let spectral = strategy::precondition(n, contact.window_cells());
-    let ambiguous = penetrating(state);
+    let ambiguous = undecided(state);
     let targets = crate::active_set::with(contact, &ambiguous);
     let mut q = guess.unwrap_or_else(|| vec![0.0; n]);
     let mut v = vec![0.0; targets.len()];
@@ -137,7 +137,7 @@ fn filled(
     let side = *side;
     arrays.reserve(side);
     let Arrays { vectors, .. } = arrays;
-    let ambiguous = penetrating(state);
+    let ambiguous = undecided(state);
     let doubtful = Runs::of(&ambiguous);
     let mut at_ambiguous = vec![0.0; ambiguous.len()];
     vectors.take(side, runs::marks(&state.contact));
@@ -207,16 +207,20 @@ fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
     (ritz, (sum + rq + energy - ritz).max(0.0) / ritz)
 }
 
-/// Cells outside the contact set whose gap is negative within the tolerance: they may belong to it.
-fn penetrating(state: &Solved) -> CellSet {
+/// Cells outside the contact set that may belong to it: their gap is negative or below what the gap that is left on the contact can change.
+///
+/// Where K on the contact set is an inverse M-matrix, the displacement of an open cell follows those of the contact with positive weights
+/// whose sum is below 1: no open gap changes by more than the largest one on the contact.
+fn undecided(state: &Solved) -> CellSet {
     let look = &state.look;
-    look.checked.filter(|k| look.p[k] <= 0.0 && look.gap[k] < 0.0)
+    let margin = look.left_over();
+    look.checked.filter(|k| look.p[k] <= 0.0 && look.gap[k] < margin)
 }
 
 /// Change of k if the undecided cells changed sides.
 ///
 /// Adding cell j adds `(1 - (Kq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
-/// takes away `q_j^2 / (K^-1)_jj`, at most `q_j^2 K_jj`. Undecided are the cells that penetrate and those whose pressure
+/// takes away `q_j^2 / (K^-1)_jj`, at most `q_j^2 K_jj`. Undecided are the cells of [`undecided`] and those whose pressure
 /// is below what their own residual gap can change. `tests/honest.rs` compares the sum of both parts with true errors.
 fn set_error(state: &Solved, at_ambiguous: impl Iterator<Item = f64>, q: &[f64]) -> f64 {
     let added: f64 = at_ambiguous.map(|v| (1.0 - v).powi(2)).sum::<f64>() / love::SMALLEST_EIGENVALUE;
@@ -236,7 +240,7 @@ fn set_error(state: &Solved, at_ambiguous: impl Iterator<Item = f64>, q: &[f64])
 
 /// The stiffness of a factored set: q is exact up to rounding, one more look at its residual says how far.
 pub fn factored(problem: &mut Problem, state: &Solved, q: Vec<f64>) -> Stiffness {
-    let ambiguous = penetrating(state);
+    let ambiguous = undecided(state);
     let targets = crate::active_set::with(&state.contact, &ambiguous);
     let v = problem.operators.exact(&state.contact, &q, &targets);
     let r: Vec<f64> = targets.positions(&state.contact).iter().map(|&k| 1.0 - v[k as usize]).collect();

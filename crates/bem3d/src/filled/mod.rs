@@ -263,8 +263,9 @@ impl Ground for Filled<'_> {
         }
         let Self { now: Pressed { set, p }, arrays, lifted, d, reference, .. } = self;
         let (side, gap) = (arrays.side, &arrays.gap);
-        let open = (d - reference) as f32;
-        // What the stiffness asks about: cells that press and cells that penetrate.
+        let left_over = lifted.iter().map(|lifted| (lifted - d).abs()).fold(0.0, f64::max);
+        let open = (d - reference + left_over) as f32;
+        // What the stiffness asks about: cells that press, and cells that penetrate or might.
         let touched = Runs::marked(side, |y, marks| {
             for (mark, &gap) in marks.iter_mut().zip(&gap[y * side..]) {
                 *mark = gap < open;

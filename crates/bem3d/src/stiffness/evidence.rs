@@ -55,9 +55,16 @@ fn both_parts_of_the_error_add_up() {
 
 #[test]
 fn undecided_cells_by_hand() {
-    // Pressed, penetrating, touching, open.
-    let touch = state(2, vec![1.0, 0.0, 0.0, 0.0], vec![-1.0, -1.0, 0.0, 1.0]);
-    assert_eq!(penetrating(&touch).index(), [1]);
+    // Pressed with a gap of 0.5 left; penetrating, touching, open by less than that, open.
+    let touch = state(
+        3,
+        vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        vec![-0.5, -1.0, 0.0, 0.4, 0.5, 2.0, 2.0, 2.0, 2.0],
+    );
+    assert_eq!(undecided(&touch).index(), [1, 2, 3]);
+    // A solution without any gap on the contact leaves those that penetrate.
+    let exact = state(2, vec![1.0, 0.0, 0.0, 0.0], vec![0.0, -1e-9, 0.0, 1e-9]);
+    assert_eq!(undecided(&exact).index(), [1]);
     // The second pressed cell carries less than its gap of 0.4 may change; the first far more.
     let eigenvalue = love::SMALLEST_EIGENVALUE;
     let doubtful = |p: f64| state(2, vec![3.0, 0.0, p, 0.0], vec![0.01, -0.2, 0.4, 1.0]);
