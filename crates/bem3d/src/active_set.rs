@@ -188,8 +188,7 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
 
 fn iterate(mut ground: impl Ground, limits: Limits, stop: Stop<'_>) -> Solved {
     let mut best: Option<Seen> = None;
-    let (mut steps, mut round, mut since_best) = (0, 0, 0);
-    let mut rough = false;
+    let (mut steps, mut round, mut since_best, mut rough) = (0, 0, 0, false);
     loop {
         let seen = ground.look(rough);
         let error = seen.evidence.worst();

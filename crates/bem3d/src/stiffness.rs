@@ -210,7 +210,7 @@ fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
 /// Cells outside the contact set that may belong to it: their gap is negative or below what the gap that is left on the contact can change.
 ///
 /// Where K on the contact set is an inverse M-matrix, the displacement of an open cell follows those of the contact with positive weights
-/// whose sum is below 1: no open gap changes by more than the largest one on the contact.
+/// whose sum is below 1, the rest follows the plane: no open gap changes by more than the largest one on the contact.
 fn undecided(state: &Solved) -> CellSet {
     let look = &state.look;
     let margin = look.left_over();

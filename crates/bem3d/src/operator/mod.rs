@@ -92,7 +92,8 @@ impl Operators {
     /// `u = K p` on one set for corrections: as [`Self::fast`] where `exact`, else by a transform, where one is used, on a torus too small
     /// for the farthest lags ([`Lengths::wrapped`]).
     ///
-    /// A correction has next to no sum, and what the far lags lack is seen by the look that follows. Half the cost.
+    /// At a prescribed force a correction has no sum, so that the far lags count for little; what they lack is seen by the look that
+    /// follows in any case. Half the cost.
     pub fn correcting(&mut self, set: &CellSet, p: &[f64], u: &mut [f64], exact: bool) {
         self.single(set, p, set, u, exact);
     }
