@@ -136,10 +136,9 @@ pub struct Look {
 }
 
 impl Look {
-    /// Largest gap, of either sign, on cells that press.
-    pub fn left_over(&self) -> f64 {
-        let on_contact = self.gap.iter().zip(&self.p).filter(|&(_, &p)| p > 0.0);
-        on_contact.map(|(g, _)| g.abs()).fold(0.0, f64::max)
+    /// Cells outside the contact set that may belong to it: their gap is negative or below what it can still change.
+    pub fn undecided(&self) -> CellSet {
+        crate::margin::undecided(&self.checked, &self.p, &self.gap)
     }
 }
 
@@ -181,7 +180,9 @@ pub trait Ground {
 pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
     if strategy::fills(&guess.set) {
         let Problem { candidates, operators, arrays, .. } = problem;
-        return iterate(Filled::new(candidates, operators, arrays, target, &guess, limits), limits, stop);
+        let filled = Filled::new(candidates, operators, arrays, target, &guess, limits);
+        drop(guess); // Copied; it is as large as the contact.
+        return iterate(filled, limits, stop);
     }
     iterate(Listed::new(problem, target, guess, limits), limits, stop)
 }

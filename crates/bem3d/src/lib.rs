@@ -70,6 +70,7 @@ mod certificate;
 mod cg;
 mod filled;
 pub mod love;
+mod margin;
 mod model;
 mod operator;
 #[doc(hidden)]

@@ -153,7 +153,7 @@ impl Last {
     }
 
     /// A guess of q at a state from the last one and the way between them; on the way down the last q alone.
-    fn tangent_at(&self, solved: &Solved) -> Option<Vec<f64>> {
+    fn tangent_at(self, solved: &Solved) -> Option<Vec<f64>> {
         let mut q = solved.contact.carry(&self.contact, &self.tangent.as_ref()?.0);
         let way = solved.d - self.d;
         if way > 0.0 {
@@ -216,13 +216,18 @@ impl Prepared {
         seed::cold(&mut self.problem, target, limits, stop)
     }
 
-    fn tangent(&mut self, solved: &Solved, guess: Option<Vec<f64>>, stop: Stop<'_>) -> Stiffness {
+    /// The stiffness of a state from a guess of q and of k.
+    fn tangent(
+        &mut self,
+        solved: &Solved,
+        mut guess: Option<Vec<f64>>,
+        k: Option<f64>,
+        stop: Stop<'_>,
+    ) -> Stiffness {
         if let Some(q) = solved.q.clone() {
             return stiffness::factored(&mut self.problem, solved, q);
         }
-        let known = self.last.as_ref().and_then(|last| last.tangent.as_ref());
-        let mut expected = known.map_or(1.0, |&(_, k)| self.magnification(k));
-        let mut guess = guess.or_else(|| self.last.as_ref()?.tangent_at(solved));
+        let mut expected = k.map_or(1.0, |k| self.magnification(k));
         let mut steps = 0;
         loop {
             let tolerance = self.options.tolerance / expected;
@@ -253,7 +258,11 @@ impl Prepared {
         if full || !self.outputs.needs_stiffness() {
             return (solved, None);
         }
-        let mut tangent = self.tangent(&solved, None, stop);
+        // The last state is not needed any more, and as large as the contact.
+        let last = self.last.take();
+        let k = last.as_ref().and_then(|last| last.tangent.as_ref()).map(|&(_, k)| k);
+        let q = last.and_then(|last| last.tangent_at(&solved));
+        let mut tangent = self.tangent(&solved, q, k, stop);
         for _ in 0..TIGHTENINGS {
             if solved.status != Status::Converged
                 || self.stiffness_error(&tangent) <= self.options.tolerance
@@ -277,7 +286,7 @@ impl Prepared {
             let status = if converged { Status::Converged } else { next.status };
             let q = next.contact.carry(&solved.contact, &tangent.q);
             solved = Solved { status, steps: next.steps + steps, ..next };
-            tangent = self.tangent(&solved, Some(q), stop);
+            tangent = self.tangent(&solved, Some(q), k, stop);
         }
         (solved, Some(tangent))
     }

@@ -1,7 +1,6 @@
 //! The incremental stiffness on a given contact set: one linear solve, two-sided bounds.
 
 use crate::active_set::{Problem, Solved};
-use crate::cells::CellSet;
 use crate::cg::{self, Energy, Request, TORUS};
 use crate::filled::runs::{self, Runs};
 use crate::filled::{self, Arrays};
@@ -60,7 +59,7 @@ pub fn solve(
     stop: Stop<'_>,
 ) -> Stiffness {
     if strategy::fills(&state.contact) {
-        return filled(problem, state, guess.as_deref(), tolerance, stop);
+        return filled(problem, state, guess, tolerance, stop);
     }
     on_lists(problem, state, guess, tolerance, stop)
 }
@@ -76,7 +75,7 @@ pub fn on_lists(
     let contact = &state.contact;
     let n = contact.len();
     let spectral = strategy::precondition(n, contact.window_cells());
-    let ambiguous = undecided(state);
+    let ambiguous = state.look.undecided();
     let targets = crate::active_set::with(contact, &ambiguous);
     let mut q = guess.unwrap_or_else(|| vec![0.0; n]);
     let mut v = vec![0.0; targets.len()];
@@ -129,7 +128,7 @@ pub fn on_lists(
 fn filled(
     problem: &mut Problem,
     state: &Solved,
-    guess: Option<&[f64]>,
+    guess: Option<Vec<f64>>,
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Stiffness {
@@ -137,14 +136,14 @@ fn filled(
     let side = *side;
     arrays.reserve(side);
     let Arrays { vectors, .. } = arrays;
-    let ambiguous = undecided(state);
+    let ambiguous = state.look.undecided();
     let doubtful = Runs::of(&ambiguous);
     let mut at_ambiguous = vec![0.0; ambiguous.len()];
     vectors.take(side, runs::marks(&state.contact));
     let n = state.contact.len();
-    let mut q = guess.map_or_else(|| vec![0.0; n], <[f64]>::to_vec);
-    let mut r = vec![1.0; n];
     let mut fresh = guess.is_none();
+    let mut q = guess.unwrap_or_else(|| vec![0.0; n]);
+    let mut r = vec![1.0; n];
     let mut best = Stiffness::unknown();
     let (mut steps, mut unimproved) = (0, 0);
     for round in 0..ROUNDS {
@@ -207,20 +206,10 @@ fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
     (ritz, (sum + rq + energy - ritz).max(0.0) / ritz)
 }
 
-/// Cells outside the contact set that may belong to it: their gap is negative or below what the gap that is left on the contact can change.
-///
-/// Where K on the contact set is an inverse M-matrix, the displacement of an open cell follows those of the contact with positive weights
-/// whose sum is below 1, the rest follows the plane: no open gap changes by more than the largest one on the contact.
-fn undecided(state: &Solved) -> CellSet {
-    let look = &state.look;
-    let margin = look.left_over();
-    look.checked.filter(|k| look.p[k] <= 0.0 && look.gap[k] < margin)
-}
-
 /// Change of k if the undecided cells changed sides.
 ///
 /// Adding cell j adds `(1 - (Kq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
-/// takes away `q_j^2 / (K^-1)_jj`, at most `q_j^2 K_jj`. Undecided are the cells of [`undecided`] and those whose pressure
+/// takes away `q_j^2 / (K^-1)_jj`, at most `q_j^2 K_jj`. Undecided are the cells of [`crate::active_set::Look::undecided`] and those whose pressure
 /// is below what their own residual gap can change. `tests/honest.rs` compares the sum of both parts with true errors.
 fn set_error(state: &Solved, at_ambiguous: impl Iterator<Item = f64>, q: &[f64]) -> f64 {
     let added: f64 = at_ambiguous.map(|v| (1.0 - v).powi(2)).sum::<f64>() / love::SMALLEST_EIGENVALUE;
@@ -240,7 +229,7 @@ fn set_error(state: &Solved, at_ambiguous: impl Iterator<Item = f64>, q: &[f64])
 
 /// The stiffness of a factored set: q is exact up to rounding, one more look at its residual says how far.
 pub fn factored(problem: &mut Problem, state: &Solved, q: Vec<f64>) -> Stiffness {
-    let ambiguous = undecided(state);
+    let ambiguous = state.look.undecided();
     let targets = crate::active_set::with(&state.contact, &ambiguous);
     let v = problem.operators.exact(&state.contact, &q, &targets);
     let r: Vec<f64> = targets.positions(&state.contact).iter().map(|&k| 1.0 - v[k as usize]).collect();
@@ -260,6 +249,7 @@ mod evidence;
 mod tests {
     use super::*;
     use crate::active_set::{self, Guess, Limits, Target};
+    use crate::cells::CellSet;
     use approx::assert_relative_eq;
     use contact_model::never;
     use std::sync::Arc;

@@ -159,10 +159,9 @@ fn the_kept_pressure_is_returned_with_what_presses_and_what_penetrates() {
     let last = filled.look(false);
     let solved = filled.finish(Status::Stagnated, Some(first), last, 5);
     assert_eq!((solved.contact.index(), solved.steps), (guess.set.index(), 5));
-    // What the gap left on the contact can move may penetrate.
+    // What the gap left on the contact can move may penetrate; the grid is so small that all of it is near.
     let left_over =
         p.iter().zip(&lifted).filter(|&(&p, _)| p > 0.0).map(|(_, l)| (l - d).abs()).fold(0.0, f64::max);
-    assert_relative_eq!(solved.look.left_over(), left_over, max_relative = DOUBLE);
     let may = |i: usize| p[i] > 0.0 || lifted[i] < d + left_over;
     let expected: Vec<u32> = (0..(SIDE * SIDE) as u32).filter(|&i| may(i as usize)).collect();
     assert!(expected.len() > guess.set.len());

@@ -11,6 +11,7 @@ pub mod runs;
 use crate::active_set::{Ground, Guess, Limits, Look, Seen, Solved, Target};
 use crate::candidates::Candidates;
 use crate::certificate::Evidence;
+use crate::margin::Margin;
 use crate::operator::Operators;
 use crate::operator::convolution::Real;
 use contact_model::{Status, Stop};
@@ -263,12 +264,20 @@ impl Ground for Filled<'_> {
         }
         let Self { now: Pressed { set, p }, arrays, lifted, d, reference, .. } = self;
         let (side, gap) = (arrays.side, &arrays.gap);
-        let left_over = lifted.iter().map(|lifted| (lifted - d).abs()).fold(0.0, f64::max);
-        let open = (d - reference + left_over) as f32;
+        let mut margin = Margin::new(side);
+        for (y, columns, at) in (0..side).flat_map(|y| set.row(y).map(move |(columns, at)| (y, columns, at)))
+        {
+            margin.leave(y, columns, lifted[at].iter().map(|lifted| lifted - d));
+        }
+        let (margin, zero) = (margin.bounds(), d - reference);
         // What the stiffness asks about: cells that press, and cells that penetrate or might.
         let touched = Runs::marked(side, |y, marks| {
-            for (mark, &gap) in marks.iter_mut().zip(&gap[y * side..]) {
-                *mark = gap < open;
+            let gap = &gap[y * side..];
+            for (columns, bound) in margin.row(y, side) {
+                let open = (zero + bound) as f32;
+                for (mark, &gap) in marks[columns.clone()].iter_mut().zip(&gap[columns]) {
+                    *mark = gap < open;
+                }
             }
             set.fill(y, true, marks);
         });

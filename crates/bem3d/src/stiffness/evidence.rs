@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::active_set::Look;
+use crate::cells::CellSet;
 use crate::certificate::Evidence;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, Status, never};
@@ -16,9 +17,8 @@ const SINGLE: f64 = 1e-4;
 type Way = fn(&mut Problem, &Solved, Option<Vec<f64>>, f64, Stop<'_>) -> Stiffness;
 
 /// The two iterations.
-const ITERATIONS: [Way; 2] = [on_lists, |problem, state, guess, tolerance, stop| {
-    filled(problem, state, guess.as_deref(), tolerance, stop)
-}];
+const ITERATIONS: [Way; 2] =
+    [on_lists, |problem, state, guess, tolerance, stop| filled(problem, state, guess, tolerance, stop)];
 
 /// By factorisation; neither guess nor tolerance matter.
 const FACTORED: Way = |problem, state, _, _, _| {
@@ -61,10 +61,10 @@ fn undecided_cells_by_hand() {
         vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         vec![-0.5, -1.0, 0.0, 0.4, 0.5, 2.0, 2.0, 2.0, 2.0],
     );
-    assert_eq!(undecided(&touch).index(), [1, 2, 3]);
+    assert_eq!(touch.look.undecided().index(), [1, 2, 3]);
     // A solution without any gap on the contact leaves those that penetrate.
     let exact = state(2, vec![1.0, 0.0, 0.0, 0.0], vec![0.0, -1e-9, 0.0, 1e-9]);
-    assert_eq!(undecided(&exact).index(), [1]);
+    assert_eq!(exact.look.undecided().index(), [1]);
     // The second pressed cell carries less than its gap of 0.4 may change; the first far more.
     let eigenvalue = love::SMALLEST_EIGENVALUE;
     let doubtful = |p: f64| state(2, vec![3.0, 0.0, p, 0.0], vec![0.01, -0.2, 0.4, 1.0]);
