@@ -101,6 +101,8 @@ pub struct Guess {
     pub p: Vec<f64>,
     /// Approach that belongs to it, rather too large than too small.
     pub d: f64,
+    /// Whether it is known to be far off: then single precision is enough for the first look.
+    pub far: bool,
 }
 
 /// A solved state.
@@ -178,20 +180,53 @@ pub trait Ground {
 ///
 /// Cost: 20 to 60 applications of K for four digits, a few factorisations for a small set.
 pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
+    problem.arrays.left = None;
+    let start = Start { known: None, rough: guess.far };
     if strategy::fills(&guess.set) {
         let Problem { candidates, operators, arrays, .. } = problem;
         let filled = Filled::new(candidates, operators, arrays, target, &guess, limits);
         drop(guess); // Copied; it is as large as the contact.
-        return iterate(filled, limits, stop);
+        return iterate(filled, start, limits, stop);
     }
-    iterate(Listed::new(problem, target, guess, limits), limits, stop)
+    iterate(Listed::new(problem, target, guess, limits), start, limits, stop)
 }
 
-fn iterate(mut ground: impl Ground, limits: Limits, stop: Stop<'_>) -> Solved {
+/// Goes on from the state that this problem solved last, to a tighter tolerance: what it has seen need not be looked at again.
+pub fn resume(
+    problem: &mut Problem,
+    target: Target,
+    solved: &Solved,
+    limits: Limits,
+    stop: Stop<'_>,
+) -> Solved {
+    let seen =
+        Seen { evidence: solved.look.evidence, complete: true, d: solved.d, factored: solved.q.is_some() };
+    let start = Start { known: Some(seen), rough: false };
+    if let Some(left) = problem.arrays.left.take() {
+        let Problem { candidates, operators, arrays, .. } = problem;
+        let filled = Filled::resumed(candidates, operators, arrays, target, (solved, left), limits);
+        return iterate(filled, start, limits, stop);
+    }
+    let Solved { contact, p, d, q, look, .. } = solved.clone();
+    let mut ground = Listed::new(problem, target, Guess { set: contact, p, d, far: false }, limits);
+    (ground.now.q, ground.look, ground.reach) = (q, look, REACH * d);
+    iterate(ground, start, limits, stop)
+}
+
+/// How an iteration begins.
+#[derive(Debug, Clone, Copy, Default)]
+struct Start {
+    /// A look at the first state, where there has been one.
+    known: Option<Seen>,
+    /// Whether the first look is rough.
+    rough: bool,
+}
+
+fn iterate(mut ground: impl Ground, mut start: Start, limits: Limits, stop: Stop<'_>) -> Solved {
     let mut best: Option<Seen> = None;
-    let (mut steps, mut round, mut since_best, mut rough) = (0, 0, 0, false);
+    let (mut steps, mut round, mut since_best, mut rough) = (0, 0, 0, start.rough);
     loop {
-        let seen = ground.look(rough);
+        let seen = start.known.take().unwrap_or_else(|| ground.look(rough));
         let error = seen.evidence.worst();
         let settled = !seen.factored || seen.evidence.deepest <= FACTOR_ROUNDING * seen.d;
         let status = if seen.complete && settled && error <= limits.tolerance {
@@ -453,7 +488,7 @@ mod tests {
             Target::Force(f) => f * 4.0,
             Target::Approach(d) => d,
         };
-        Guess { set: CellSet::new(side, (0..n as u32).collect()), p: vec![1.0; n], d }
+        Guess { set: CellSet::new(side, (0..n as u32).collect()), p: vec![1.0; n], d, far: false }
     }
 
     /// Reproducible rough gaps, lowest 0.
@@ -477,11 +512,11 @@ mod tests {
         let mut on_lists = problem(side, z.to_vec());
         let guess = everything(side, target);
         let lists = Listed::new(&mut on_lists, target, guess.clone(), limits(false));
-        let lists = iterate(lists, limits(false), &never);
+        let lists = iterate(lists, Start::default(), limits(false), &never);
         let mut on_arrays = problem(side, z.to_vec());
         let Problem { candidates, operators, arrays, .. } = &mut on_arrays;
         let filled = Filled::new(candidates, operators, arrays, target, &guess, limits(false));
-        [lists, iterate(filled, limits(false), &never)]
+        [lists, iterate(filled, Start::default(), limits(false), &never)]
     }
 
     #[test]
@@ -518,6 +553,43 @@ mod tests {
         assert_relative_eq!(arrays.value, lists.value, max_relative = 1e-8);
         assert!(arrays.solve_error <= 1e-8 && arrays.solve_error > 0.0);
         assert_relative_eq!(arrays.set_error, lists.set_error, epsilon = 1e-8);
+    }
+
+    #[test]
+    fn a_state_taken_up_again_is_not_looked_at_again() {
+        let loose = Limits { tolerance: 1e-2, ..limits(false) };
+        for (side, force, fills) in [(31, 2.0, false), (96, 4000.0, true)] {
+            let target = Target::Force(force);
+            let [again, resumed] = [false, true].map(|resumed| {
+                let mut problem = problem(side, rough(side, 4));
+                let solved = solve(&mut problem, target, everything(side, target), loose, &never);
+                assert_eq!((solved.status, problem.arrays.left.is_some()), (Status::Converged, fills));
+                let before = problem.operators.applications;
+                let tight = if resumed {
+                    resume(&mut problem, target, &solved, limits(false), &never)
+                } else {
+                    let guess = Guess { set: solved.contact, p: solved.p, d: solved.d, far: false };
+                    solve(&mut problem, target, guess, limits(false), &never)
+                };
+                assert_eq!(tight.status, Status::Converged);
+                (tight, problem.operators.applications - before)
+            });
+            assert_eq!(resumed.1 + 1, again.1, "one look less");
+            assert_eq!(resumed.0.contact.index(), again.0.contact.index());
+            assert_relative_eq!(resumed.0.d, again.0.d, max_relative = 1e-8);
+            // Stopped at once, it is the state that it was.
+            let mut problem = problem(side, rough(side, 4));
+            let solved = solve(&mut problem, target, everything(side, target), loose, &never);
+            let same = resume(&mut problem, target, &solved, limits(false), &|| true);
+            assert_eq!((same.status, same.steps), (Status::Stopped, 0));
+            assert_eq!(same.contact.index(), solved.contact.index());
+            assert_relative_eq!(same.d, solved.d, max_relative = 1e-12);
+            assert_relative_eq!(
+                same.look.evidence.worst(),
+                solved.look.evidence.worst(),
+                max_relative = 1e-9
+            );
+        }
     }
 
     #[test]

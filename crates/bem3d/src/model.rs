@@ -274,9 +274,8 @@ impl Prepared {
             let share = ENOUGH * self.options.tolerance / self.stiffness_error(&tangent);
             limits.tolerance =
                 share.clamp(TIGHTEST, TIGHTER) * limits.tolerance.min(solved.look.evidence.worst());
-            let guess = Guess { set: solved.contact.clone(), p: solved.p.clone(), d: solved.d };
             let steps = solved.steps + tangent.steps;
-            let next = active_set::solve(&mut self.problem, target, guess, limits, stop);
+            let next = active_set::resume(&mut self.problem, target, &solved, limits, stop);
             if next.look.evidence.worst() >= solved.look.evidence.worst() {
                 solved.steps += next.steps;
                 break;
@@ -505,7 +504,7 @@ fn predict(last: &Last, target: Target) -> Option<Guess> {
         return None;
     }
     let p = pressure.into_iter().filter(|&p| p > 0.0).collect();
-    Some(Guess { set, p, d: d.max(f64::MIN_POSITIVE) })
+    Some(Guess { set, p, d: d.max(f64::MIN_POSITIVE), far: false })
 }
 
 /// A load in scaled units, unless no f64 holds it.

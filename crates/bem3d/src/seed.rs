@@ -65,7 +65,7 @@ fn uniform(set: CellSet, target: Target, reach: f64) -> Guess {
         // Any positive value: the first round sees the true gap.
         Target::Approach(d) => d / (love::influence(0, 0) * set.len() as f64),
     };
-    Guess { p: vec![pressure; set.len()], set, d: reach }
+    Guess { p: vec![pressure; set.len()], set, d: reach, far: false }
 }
 
 /// The highest cell, its gap and the largest gap.
@@ -122,7 +122,7 @@ fn prolong(problem: &Problem, coarse: &Problem, contact: &CellSet, p: &[f64], d:
             }
         }
     }
-    Guess { set: CellSet::new(fine, index), p: pressure, d }
+    Guess { set: CellSet::new(fine, index), p: pressure, d, far: true }
 }
 
 #[cfg(test)]

@@ -258,8 +258,12 @@ mod tests {
     fn flat(side: usize, dense: bool) -> (Problem, Solved) {
         let n = side * side;
         let mut problem = Problem::new(side, Arc::new(vec![0.0; n]), contact_model::Boundary::Free);
-        let guess =
-            Guess { set: CellSet::new(side, (0..n as u32).collect()), p: vec![1.0; n], d: 4.0 * n as f64 };
+        let guess = Guess {
+            set: CellSet::new(side, (0..n as u32).collect()),
+            p: vec![1.0; n],
+            d: 4.0 * n as f64,
+            far: false,
+        };
         let limits = Limits { tolerance: 1e-9, height: None, rounds: 100, dense };
         let solved = active_set::solve(&mut problem, Target::Force(1.0), guess, limits, &never);
         (problem, solved)

@@ -56,7 +56,7 @@ impl Ground for Scripted<'_> {
 
 fn run(script: &[Seen], limits: Limits) -> (Solved, Asked) {
     let asked = RefCell::default();
-    let solved = iterate(Scripted { script, asked: &asked }, limits, &never);
+    let solved = iterate(Scripted { script, asked: &asked }, Start::default(), limits, &never);
     (solved, asked.into_inner())
 }
 
@@ -170,7 +170,7 @@ fn summit() -> Problem {
 }
 
 fn one(cell: u32, d: f64) -> Guess {
-    Guess { set: CellSet::new(8, vec![cell]), p: vec![1.0], d }
+    Guess { set: CellSet::new(8, vec![cell]), p: vec![1.0], d, far: false }
 }
 
 const FORCE: Target = Target::Force(1.0);
@@ -260,15 +260,15 @@ fn a_guess_promises_the_cells_that_it_makes_penetrate() {
     for d in [0.9, 1.3, 2.0] {
         let expected =
             (0..64).filter(|&i| crate::love::influence(i % 8, i / 8) + z[i] < d && z[i] < d).count();
-        let guess = Guess { set: CellSet::new(side, vec![0]), p: vec![1.0], d };
+        let guess = Guess { set: CellSet::new(side, vec![0]), p: vec![1.0], d, far: false };
         assert!(expected > 1);
         assert_eq!(promised(&mut problem, &guess), expected, "d = {d}");
     }
     // Without pressure the cells below the plane penetrate; one at its height does not: z = 1/8 holds for cells 1 and 8.
-    let guess = Guess { set: CellSet::new(side, vec![1]), p: vec![0.0], d: 0.125 };
+    let guess = Guess { set: CellSet::new(side, vec![1]), p: vec![0.0], d: 0.125, far: false };
     assert_eq!(promised(&mut problem, &guess), 1);
     // At least the guess itself.
-    let guess = Guess { set: CellSet::new(side, vec![0, 1, 2]), p: vec![100.0; 3], d: 0.1 };
+    let guess = Guess { set: CellSet::new(side, vec![0, 1, 2]), p: vec![100.0; 3], d: 0.1, far: false };
     assert_eq!(promised(&mut problem, &guess), 3);
 }
 

@@ -26,7 +26,7 @@ fn bowl() -> (Problem, Guess) {
         .collect();
     let cells: Vec<u32> = (0..(SIDE * SIDE) as u32).filter(|&i| z[i as usize] < 0.8).collect();
     let p = (0..cells.len()).map(|k| 0.2 + (k % 4) as f64 / 10.0).collect();
-    let guess = Guess { set: CellSet::new(SIDE, cells), p, d: 1.0 };
+    let guess = Guess { set: CellSet::new(SIDE, cells), p, d: 1.0, far: false };
     (Problem::new(SIDE, Arc::new(z), Boundary::Free), guess)
 }
 

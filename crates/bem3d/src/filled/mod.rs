@@ -26,15 +26,24 @@ pub struct Arrays {
     side: usize,
     /// `u + z` less a reference near the approach, on the whole grid.
     gap: Vec<f32>,
+    /// What goes with it, where it is that of a finished state.
+    pub left: Option<Left>,
     /// Vectors of conjugate gradients.
     pub vectors: cg::Vectors,
+}
+
+/// What the gap of a finished state was counted from, and its root mean square on contact cells.
+#[derive(Debug, Clone, Copy)]
+pub struct Left {
+    reference: f64,
+    residual: f64,
 }
 
 impl Arrays {
     /// Makes room for a grid.
     pub fn reserve(&mut self, side: usize) {
         if self.side != side {
-            *self = Self { side, gap: vec![0.0; side * side], vectors: cg::Vectors::new(side) };
+            *self = Self { side, gap: vec![0.0; side * side], left: None, vectors: cg::Vectors::new(side) };
         }
         self.vectors.weights.clear();
     }
@@ -104,6 +113,20 @@ impl<'a> Filled<'a> {
             reference: guess.d,
             residual: 0.0,
         }
+    }
+
+    /// Goes on from the state that these arrays hold the gap of.
+    pub fn resumed(
+        candidates: &'a Candidates,
+        operators: &'a mut Operators,
+        arrays: &'a mut Arrays,
+        target: Target,
+        (solved, left): (&Solved, Left),
+        limits: Limits,
+    ) -> Self {
+        let guess = Guess { set: solved.contact.clone(), p: solved.p.clone(), d: solved.d, far: false };
+        let Left { reference, residual } = left;
+        Self { reference, residual, ..Self::new(candidates, operators, arrays, target, &guess, limits) }
     }
 
     /// `u + z` everywhere; returns the mean of it weighted by the pressure and its minimum.
@@ -261,6 +284,11 @@ impl Ground for Filled<'_> {
                 self.now = std::mem::take(&mut self.best);
             }
             seen = self.look(false);
+        } else if self.lifted.len() != self.now.p.len() {
+            seen = self.look(false); // Stopped before the first look.
+        }
+        if seen.complete {
+            self.arrays.left = Some(Left { reference: self.reference, residual: self.residual });
         }
         let Self { now: Pressed { set, p }, arrays, lifted, d, reference, .. } = self;
         let (side, gap) = (arrays.side, &arrays.gap);
