@@ -83,4 +83,4 @@ pub use model::{Bem3d, Method};
 
 /// Number of the solver's format. It changes with anything that can change a result beyond its tolerance, so that stored
 /// results of other versions are not mixed with new ones.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
