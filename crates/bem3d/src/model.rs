@@ -1,5 +1,6 @@
 //! The boundary-element model behind the common traits.
 
+mod last;
 mod mean_gap;
 
 use crate::active_set::{self, Guess, Limits, Problem, Solved, Target};
@@ -11,11 +12,9 @@ use contact_model::{
     Boundary, Certificate, ContactModel, ContactState, Effects, Error, Fields, HeightMap, Load, Outputs,
     Patches, PreparedContact, Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units, Work,
 };
+use last::Last;
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-/// A load this many times the last one begins cold: the last state says little about it.
-const WARM_RANGE: f64 = 30.0;
 
 /// Times that the contact set is settled further for the sake of the stiffness, and by how much each time: its error falls with the
 /// certificate.
@@ -27,8 +26,6 @@ const ENOUGH: f64 = 0.7;
 
 /// A stiffness is solved again when its magnification turns out so many times the one that was expected.
 const MISJUDGED: f64 = 1.5;
-/// How far the mean tangent between two loads is led on beyond the last tangent: at half way, where it holds, it would be twice as far.
-const LED_ON: f64 = 1.5;
 /// Name of the model.
 const NAME: &str = "bem3d";
 
@@ -132,40 +129,6 @@ struct Prepared {
     gap: Option<(Load, f64)>,
 }
 
-/// The state solved last, from which the next is predicted.
-#[derive(Debug)]
-struct Last {
-    contact: CellSet,
-    p: Vec<f64>,
-    d: f64,
-    force: f64,
-    /// q and its sum, where known.
-    tangent: Option<(Vec<f64>, f64)>,
-}
-
-impl Last {
-    /// How many times the last load is asked for.
-    fn ratio(&self, target: Target) -> f64 {
-        match target {
-            Target::Force(force) => force / self.force,
-            Target::Approach(d) => d / self.d,
-        }
-    }
-
-    /// A guess of q at a state from the last one and the way between them; on the way down the last q alone.
-    fn tangent_at(self, solved: &Solved) -> Option<Vec<f64>> {
-        let mut q = solved.contact.carry(&self.contact, &self.tangent.as_ref()?.0);
-        let way = solved.d - self.d;
-        if way > 0.0 {
-            let before = solved.contact.carry(&self.contact, &self.p);
-            for ((q, p), before) in q.iter_mut().zip(&solved.p).zip(&before) {
-                *q += LED_ON * ((p - before) / way - *q);
-            }
-        }
-        Some(q)
-    }
-}
-
 impl Prepared {
     fn new(options: Bem3d, scene: &Scene, map: &HeightMap, has_rms: bool) -> Result<Self> {
         let highest = map.highest();
@@ -202,7 +165,7 @@ impl Prepared {
     /// The guess for a target: the tangent at the last state, or a cold start.
     fn guess(&mut self, target: Target, limits: Limits, stop: Stop<'_>) -> Guess {
         if let Some(last) = &self.last
-            && let Some(guess) = predict(last, target)
+            && let Some(guess) = last.predict(target)
         {
             let problem = &mut self.problem;
             if !problem.levels {
@@ -480,31 +443,6 @@ impl Prepared {
         let tangent = tangent.map(|t| (t.q, t.value));
         self.last = Some(Last { contact, p, d, force, tangent });
     }
-}
-
-/// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load, so that the predicted
-/// approach is an upper bound and every new contact cell lies below it. Where no stiffness was asked for, the pressure is scaled.
-fn predict(last: &Last, target: Target) -> Option<Guess> {
-    let ratio = last.ratio(target);
-    if !(1.0 / WARM_RANGE..=WARM_RANGE).contains(&ratio) {
-        return None;
-    }
-    let (pressure, d): (Vec<f64>, f64) = if let Some((q, k)) = &last.tangent {
-        let step = match target {
-            Target::Force(force) => (force - last.force) / k,
-            Target::Approach(d) => d - last.d,
-        };
-        let pressure = last.p.iter().zip(q).map(|(p, q)| p + step * q).collect();
-        (pressure, last.d + step.max(0.0))
-    } else {
-        (last.p.iter().map(|p| ratio * p).collect(), last.d * ratio.max(1.0))
-    };
-    let set = last.contact.filter(|k| pressure[k] > 0.0);
-    if set.is_empty() {
-        return None;
-    }
-    let p = pressure.into_iter().filter(|&p| p > 0.0).collect();
-    Some(Guess { set, p, d: d.max(f64::MIN_POSITIVE), far: false })
 }
 
 /// A load in scaled units, unless no f64 holds it.
