@@ -130,13 +130,13 @@ mod tests {
 
     #[test]
     fn undecided_by_hand() {
-        let checked = CellSet::new(200, vec![0, 1, 31, 20_100, 20_101, 30_000]);
+        let checked = CellSet::new(200, vec![0, 1, 31, 4190, 4191, 30_000]);
         let p = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
-        // Left over: 0.8 in the first corner, 0.1 in the middle.
+        // Left over: 0.8 in the first corner, 0.1 at column 190 of row 20.
         let gap = [-0.8, 0.79, 0.81, 0.1, 0.21, -1e-9];
         assert_eq!(undecided(&checked, &p, &gap).index(), [1, 30_000]);
         let near = [-0.8, 0.79, 0.81, 0.1, 0.19, -1e-9];
-        assert_eq!(undecided(&checked, &p, &near).index(), [1, 20_101, 30_000]);
+        assert_eq!(undecided(&checked, &p, &near).index(), [1, 4191, 30_000]);
     }
 
     /// Change of all open gaps when the gaps left on the contact are made zero.

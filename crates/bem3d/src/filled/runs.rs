@@ -225,7 +225,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn runs_are_the_list(side in 1usize..9, picks in proptest::collection::vec(any::<bool>(), 1..90), other in 1usize..5) {
+        fn runs_are_the_list(side in 1usize..20, picks in proptest::collection::vec(any::<bool>(), 1..90), other in 1usize..5) {
             let list = |step: usize| {
                 let index = (0..side * side).filter(|i| picks[i * step % picks.len()]).map(|i| i as u32);
                 CellSet::new(side, index.collect())
@@ -244,6 +244,12 @@ mod tests {
             let (odd, expected) = (odd.cells(), a.filter(|k| k % 2 == 1));
             prop_assert_eq!(odd.index(), expected.index());
             for y in 0..side {
+                let row: Vec<f32> = (0..side).map(|x| 1.0 + x as f32).collect();
+                let (mut sum, mut read) = (vec![0.5; runs.len()], vec![0.0; runs.len()]);
+                runs.add(y, &row, &mut sum);
+                runs.collect(y, &row, &mut read);
+                let expected: Vec<f32> = read.iter().map(|read| 0.5 + read).collect();
+                prop_assert_eq!(sum, expected);
                 let span = runs.span(y);
                 prop_assert_eq!(span.clone().count(), runs.row(y).map(|(columns, _)| columns.len()).sum::<usize>());
                 prop_assert!(runs.row(y).flat_map(|(_, at)| at).eq(span));

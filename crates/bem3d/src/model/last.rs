@@ -130,9 +130,10 @@ mod tests {
             k.solve_error
         });
         assert!(led < 0.5 * carried, "{led} {carried}");
-        // On the way down there is no better guess than the tangent at the larger load.
+        // Without a way, or on the way down, there is no better guess than the tangent at the larger load.
         let back = last(&states[1]).tangent_at(&states[0].0).unwrap();
         assert_eq!(back, states[0].0.contact.carry(&solved.contact, &states[1].1));
+        assert_eq!(last(&states[1]).tangent_at(solved).unwrap(), states[1].1);
     }
 
     #[test]
@@ -150,6 +151,15 @@ mod tests {
         let down = bare.predict(Target::Force(50.0)).unwrap();
         assert_relative_eq!(down.d, bare.d);
         assert_relative_eq!(down.p[7], 0.5 * bare.p[7], max_relative = 1e-6);
+        let up = bare.predict(Target::Force(200.0)).unwrap();
+        assert_relative_eq!(up.d, 2.0 * bare.d, max_relative = 1e-6);
+        assert_relative_eq!(bare.ratio(Target::Approach(2.0 * bare.d)), 2.0);
+        // What does not press is not guessed to.
+        let mut p = bare.p.clone();
+        p[7] = 0.0;
+        let lifted = Last { p, ..last(&states[0]) };
+        let guess = Last { tangent: None, ..lifted }.predict(Target::Force(100.0)).unwrap();
+        assert_eq!((guess.set.len(), guess.p.len()), (bare.p.len() - 1, bare.p.len() - 1));
         for far in [3.3, 3001.0] {
             assert!(bare.predict(Target::Force(far)).is_none(), "thirty times away is far");
         }
