@@ -17,8 +17,7 @@ const SINGLE: f64 = 1e-4;
 type Way = fn(&mut Problem, &Solved, Option<Vec<f64>>, f64, Stop<'_>) -> Stiffness;
 
 /// The two iterations.
-const ITERATIONS: [Way; 2] =
-    [on_lists, |problem, state, guess, tolerance, stop| filled(problem, state, guess, tolerance, stop)];
+const ITERATIONS: [Way; 2] = [on_lists, filled];
 
 /// By factorisation; neither guess nor tolerance matter.
 const FACTORED: Way = |problem, state, _, _, _| {
