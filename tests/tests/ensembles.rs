@@ -24,10 +24,10 @@ fn curves(model: &dyn ContactModel, fractal_dimension: f64) -> Curves {
     let scene = Scene::new(Surface::SelfAffine(rough(fractal_dimension).unwrap()), 1.0);
     let row = |index: u64| {
         let mut contact = model.prepare(&scene, surface_seed(5, index)).unwrap();
-        let scales = contact.scales();
+        let normalisation = contact.normalisation();
         let sample = |force_bar: f64| {
-            let state = contact.solve(Load::Force(scales.force(force_bar).unwrap())).unwrap();
-            let stiffness_bar = scales.stiffness_bar(state.stiffness.unwrap());
+            let state = contact.solve(Load::Force(normalisation.force(force_bar).unwrap())).unwrap();
+            let stiffness_bar = normalisation.stiffness_bar(state.stiffness.unwrap());
             Some(Sample { stiffness_bar, contact_cells: state.report.contact_cells })
         };
         FORCES.map(sample).to_vec()
@@ -67,7 +67,7 @@ fn the_line_ends_at_its_own_plateau() {
         let scene = Scene::new(Surface::SelfAffine(rough(fractal_dimension).unwrap()), 1.0);
         let mut contact = Mdr1d { elements: 4096 }.prepare(&scene, 1).unwrap();
         let state = contact.solve(Load::Force(1e3)).unwrap();
-        let plateau = contact.scales().stiffness_bar(state.stiffness.unwrap());
+        let plateau = contact.normalisation().stiffness_bar(state.stiffness.unwrap());
         // (2/sqrt(pi))/1.1419, four digits.
         approx::assert_relative_eq!(plateau, 0.9882, max_relative = 1e-4);
         approx::assert_relative_eq!(

@@ -104,7 +104,7 @@ fn a_sphere_on_cells_becomes_cattaneo_and_mindlin() {
 fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, per_decade: u32) -> [f64; 2] {
     let scene = &sliding(fractal());
     let mut direct = model.prepare(&elastic(scene), 2).unwrap();
-    let height = direct.scales().height.unwrap();
+    let height = direct.normalisation().height.unwrap();
     let shear = pair().shear_modulus().unwrap() / pair().modulus().unwrap();
     let d = depth * height;
     let mut history = Equivalent { per_decade, ..Equivalent::new(model) }.prepare(scene, 2).unwrap();
@@ -135,7 +135,7 @@ fn rough_surfaces_slip_as_a_difference_of_normal_contacts() {
     let [coarse, fine] = [16, 64].map(|n| beside_a_difference_of_normal_contacts(&cells, 1.5, n));
     assert!(coarse[0] < 2e-3 && coarse[1] < 4e-2, "{coarse:?}");
     // What the table says of itself bounds the error of the force over mu F.
-    let height = cells.prepare(&elastic(&sliding(fractal())), 2).unwrap().scales().height.unwrap();
+    let height = cells.prepare(&elastic(&sliding(fractal())), 2).unwrap().normalisation().height.unwrap();
     let profile = Equivalent::new(cells).profile(&sliding(fractal()), 2, 1.5 * height).unwrap();
     assert!(coarse[0] < profile.doubt(1.5 * height), "{coarse:?} {:e}", profile.doubt(1.5 * height));
     assert!(fine[0] < 0.2 * coarse[0] && fine[1] < coarse[1], "{coarse:?} {fine:?}");
@@ -180,7 +180,7 @@ fn cycle(history: &mut dyn History, normal: Load, amplitude: f64, pieces: i32) -
 fn what_a_cycle_takes_is_lost_and_the_loop_closes() {
     let model = Bem3d { cells: 33, ..Bem3d::default() };
     let mut history = Equivalent::new(model).prepare(&sliding(fractal()), 2).unwrap();
-    let height = history.scales().height.unwrap();
+    let height = history.normalisation().height.unwrap();
     let normal = Load::Approach(height);
     history.advance(Step::normal(0.0, normal)).unwrap();
     let pieces = 60;
@@ -203,7 +203,7 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
     let scene = creeping(fractal());
     let mut history = Equivalent::new(model).prepare(&scene, 2).unwrap();
     let mut direct = model.prepare(&elastic(&scene), 2).unwrap();
-    let d = history.scales().height.unwrap();
+    let d = history.normalisation().height.unwrap();
     let own = direct.solve(Load::Approach(d)).unwrap();
     for time in [0.0, 0.1, 2.0, 1e6] {
         let state = history.advance(Step::normal(time, Load::Approach(d))).unwrap();
@@ -217,7 +217,7 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
     for (time, share) in [(0.0, 0.25), (1e6, 1.0)] {
         let state = history.advance(Step::normal(time, Load::Force(force))).unwrap();
         let there = direct.solve(Load::Force(share * force)).unwrap();
-        let scale = history.scales().height.unwrap();
+        let scale = history.normalisation().height.unwrap();
         assert_relative_eq!(
             state.normal.approach.unwrap(),
             there.approach.unwrap(),
@@ -276,7 +276,7 @@ fn history_in_time_and_in_load_give_the_same_rough_contact() {
     let model = Bem3d { cells: 17, tolerance: 1e-9, ..Bem3d::default() };
     let scene = creeping(fractal());
     let mut by_force = Equivalent::new(model).prepare(&scene, 2).unwrap();
-    let force = by_force.scales().force(0.1).unwrap();
+    let force = by_force.normalisation().force(0.1).unwrap();
     let error = |pieces: u32| {
         let mut by_force = Equivalent::new(model).prepare(&scene, 2).unwrap();
         let mut by_approach = Equivalent::new(model).prepare(&scene, 2).unwrap();

@@ -1,4 +1,4 @@
-//! dlnk/dlnF = 1/(1 + n) for `z = c r^n`, n standing for H: solver, scales, curves and fit together.
+//! dlnk/dlnF = 1/(1 + n) for `z = c r^n`, n standing for H: solver, normalisation, curves and fit together.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
@@ -11,7 +11,7 @@ use mdr1d::Mdr1d;
 fn exponent(model: &dyn ContactModel, n: f64, least: f64) -> f64 {
     let scene = Scene::new(Surface::PowerLaw { coefficient: 0.05, exponent: n, side: 1.0 }, 1.0);
     let mut contact = model.prepare(&scene, 0).unwrap();
-    let scales = contact.scales();
+    let normalisation = contact.normalisation();
     // A body has no rms height: F_bar counts in E* L^2. The largest contact radius is 0.4 L.
     let largest = exact_force(n, 0.4);
     let force: Vec<f64> = (0..12).map(|i| largest * least.powf(f64::from(11 - i) / 11.0)).collect();
@@ -20,7 +20,7 @@ fn exponent(model: &dyn ContactModel, n: f64, least: f64) -> f64 {
         .map(|&f| {
             let state = contact.solve(Load::Force(f)).unwrap();
             Some(Sample {
-                stiffness_bar: scales.stiffness_bar(state.stiffness.unwrap()),
+                stiffness_bar: normalisation.stiffness_bar(state.stiffness.unwrap()),
                 contact_cells: state.report.contact_cells,
             })
         })

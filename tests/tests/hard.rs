@@ -61,7 +61,7 @@ fn flat_maps_of_any_size() {
                 assert_relative_eq!(state.area.unwrap(), 1.0, max_relative = 1e-12);
             }
             let contact = Bem3d::default().prepare(&scene(flat), 0).unwrap();
-            assert!(matches!(contact.scales().force_bar(1.0), Err(Error::Domain { .. })));
+            assert!(matches!(contact.normalisation().force_bar(1.0), Err(Error::Domain { .. })));
         }
     }
 }
@@ -174,7 +174,7 @@ fn no_load_is_no_contact() {
     ];
     for (model, scene) in models {
         let mut contact = model.prepare(&scene, 0).unwrap();
-        let small = contact.scales().modulus * 1e-3;
+        let small = contact.normalisation().modulus * 1e-3;
         for load in [Load::Force(0.0), Load::Approach(0.0), Load::Force(-0.0)] {
             let state = contact.solve(load).unwrap();
             let numbers = [state.force, state.approach.unwrap(), state.stiffness.unwrap()];

@@ -48,15 +48,15 @@ fn prepared() -> Box<dyn PreparedContact> {
 }
 
 fn press(contact: &mut dyn PreparedContact, row: &Row) -> ContactState {
-    let force = contact.scales().force(row.force_bar).unwrap();
+    let force = contact.normalisation().force(row.force_bar).unwrap();
     contact.solve(Load::Force(force)).unwrap()
 }
 
 fn agree(contact: &dyn PreparedContact, state: &ContactState, row: &Row) {
-    let scales = contact.scales();
-    let approach = scales.approach_over_h(state.approach.unwrap()).unwrap();
+    let normalisation = contact.normalisation();
+    let approach = normalisation.approach_over_h(state.approach.unwrap()).unwrap();
     assert_relative_eq!(approach, row.approach_over_h, max_relative = AGREEMENT);
-    let stiffness = scales.stiffness_bar(state.stiffness.unwrap());
+    let stiffness = normalisation.stiffness_bar(state.stiffness.unwrap());
     assert_relative_eq!(stiffness, row.stiffness_bar, max_relative = AGREEMENT);
     assert_eq!(state.report.contact_cells, Some(row.contact_cells), "F_bar {}", row.force_bar);
 }

@@ -96,11 +96,11 @@ fn the_force_is_the_integral_of_the_stiffness() {
 fn one_cell_is_the_floor() {
     for cells in [3, 16, 33, 65] {
         let mut contact = prepared(2.6, cells, 8);
-        let scales = contact.scales();
+        let normalisation = contact.normalisation();
         let state = contact.solve(Load::Force(1e-12)).unwrap();
         assert_eq!(state.report.contact_cells, Some(1));
         // 0.891106989/1.1419, six digits.
-        let floor = scales.stiffness_bar(state.stiffness.unwrap()) * cells as f64;
+        let floor = normalisation.stiffness_bar(state.stiffness.unwrap()) * cells as f64;
         assert_relative_eq!(floor, 0.780_372, max_relative = 1e-6);
         assert_relative_eq!(state.approach.unwrap(), 1e-12 / state.stiffness.unwrap(), max_relative = 1e-12);
     }

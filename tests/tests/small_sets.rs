@@ -49,7 +49,7 @@ fn full_contact_between_the_table_and_the_continuum() {
     assert_relative_eq!(square(128, Method::Auto), formula, max_relative = FORMULA);
 }
 
-/// The plateau of a correct N x N code in the paper's units, above its 1.
+/// The plateau of a correct N x N code in the paper's nondimensional, above its 1.
 #[test]
 fn plateaus_in_the_units_of_the_paper() {
     for (cells, plateau) in [(129, 1.00642), (257, 1.00775)] {

@@ -1,4 +1,4 @@
-//! Scaling and symmetry: the same contact in other units, turned, mirrored, zoomed.
+//! Scaling and symmetry: the same contact in other nondimensional, turned, mirrored, zoomed.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
@@ -149,7 +149,7 @@ fn the_frame_does_not_matter() {
         let (mut small, mut large) = (model.prepare(&small, 0).unwrap(), model.prepare(&large, 0).unwrap());
         let (a, b) = (small.solve(Load::Approach(d)).unwrap(), large.solve(Load::Approach(d)).unwrap());
         assert_same(&a, &b);
-        let (at, bt) = (small.scales(), large.scales());
+        let (at, bt) = (small.normalisation(), large.normalisation());
         let heights = bt.height.unwrap() / at.height.unwrap();
         assert_relative_eq!(
             at.stiffness_bar(a.stiffness.unwrap()),

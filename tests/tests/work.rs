@@ -27,7 +27,7 @@ fn scene(outputs: Outputs) -> Scene {
 
 fn press(model: &dyn ContactModel, scene: &Scene) -> ContactState {
     let mut contact = model.prepare(scene, 3).unwrap();
-    let force = contact.scales().force(0.3).unwrap();
+    let force = contact.normalisation().force(0.3).unwrap();
     contact.solve(Load::Force(force)).unwrap()
 }
 
@@ -151,7 +151,7 @@ fn a_history_pays_for_its_table_once() {
     let model = Equivalent { per_decade: 4, decades: 2, model: model(Method::Auto) };
     let run = |outputs: Outputs| {
         let mut contact = model.prepare(&Scene { outputs, ..scene.clone() }, 3).unwrap();
-        let force = contact.scales().force(0.3).unwrap();
+        let force = contact.normalisation().force(0.3).unwrap();
         let step = Step::normal(0.0, Load::Force(force));
         [contact.advance(step).unwrap(), contact.advance(step).unwrap()].map(|state| counts(&state.normal))
     };

@@ -195,7 +195,7 @@ const PRINTED: [(&str, usize); 16] = [
     ("approach_over_h", 16),
     ("stiffness_bar", 14),
     ("contact_cells", 13),
-    ("frank_wolfe", 11),
+    ("duality_gap", 11),
     ("stiffness_error", 15),
     ("iterations", 10),
     ("applications", 12),
@@ -221,7 +221,7 @@ fn line(row: &BenchRow) -> Result<String> {
         |name: &str| figures::BENCH_COLUMNS.iter().position(|c| *c == name).map_or("", |i| &fields[i]);
     let short = |name: &str| match (name, field(name).parse::<f64>()) {
         ("approach_over_h" | "mean_gap_over_h" | "stiffness_bar", Ok(v)) => format!("{v:.10}"),
-        ("frank_wolfe" | "stiffness_error" | "force_bar", Ok(v)) => format!("{v:.2e}"),
+        ("duality_gap" | "stiffness_error" | "force_bar", Ok(v)) => format!("{v:.2e}"),
         ("seconds" | "cpu_seconds", Ok(v)) => format!("{v:.4}"),
         _ => field(name).to_owned(),
     };

@@ -4,8 +4,9 @@ use crate::closed::ROUNDED_UP;
 use crate::hertz::Hertz;
 use crate::memory::{Curve, Goal, held, lost, reached};
 use contact_model::{
-    Adhesion, Boundary, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Outputs,
-    PreparedContact, Result, Rheology, Scales, Scene, Source, Step, Surface, Tangential, TangentialState,
+    Adhesion, Boundary, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState,
+    Normalisation, Outputs, PreparedContact, Result, Rheology, Scene, Source, Step, Surface, Tangential,
+    TangentialState,
 };
 
 const NAME: &str = "cattaneo_mindlin";
@@ -223,7 +224,7 @@ impl Prepared {
     /// The state under the normal load, with its contact radius.
     fn press(&mut self, step: &Step) -> Result<(ContactState, Option<Sphere>)> {
         let mut state = self.normal.solve(step.normal)?;
-        let radius = 0.5 * state.stiffness.unwrap_or(0.0) / self.normal.scales().modulus;
+        let radius = 0.5 * state.stiffness.unwrap_or(0.0) / self.normal.normalisation().modulus;
         if !self.outputs.stiffness {
             state.stiffness = None;
             state.report.certificate.stiffness_error = None;
@@ -238,8 +239,8 @@ impl Prepared {
 }
 
 impl History for Prepared {
-    fn scales(&self) -> Scales {
-        self.normal.scales()
+    fn normalisation(&self) -> Normalisation {
+        self.normal.normalisation()
     }
 
     fn advance(&mut self, step: Step) -> Result<HistoryState> {

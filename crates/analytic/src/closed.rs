@@ -1,10 +1,11 @@
 //! What all closed forms share: a law in units of its own becomes a [`PreparedContact`].
 
 use contact_model::{
-    ContactState, Error, Load, Outputs, PreparedContact, Result, Scales, Scene, SolveReport, Stop, Units,
+    ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene,
+    SolveReport, Stop,
 };
 
-/// A closed form between force, approach and stiffness, in the [`Units`] of its [`Closed`]; loads are positive.
+/// A closed form between force, approach and stiffness, in the [`Nondimensionalisation`] of its [`Closed`]; loads are positive.
 pub(crate) trait Law: Send {
     /// State at a force.
     fn at_force(&self, force: f64) -> Result<Point>;
@@ -22,12 +23,12 @@ pub(crate) struct Point {
     pub area: Option<f64>,
 }
 
-/// A law with its scales and what is asked of it.
+/// A law with its normalisation and what is asked of it.
 pub(crate) struct Closed<L> {
     pub model: &'static str,
     pub law: L,
-    pub units: Units,
-    pub scales: Scales,
+    pub nondimensional: Nondimensionalisation,
+    pub normalisation: Normalisation,
     pub outputs: Outputs,
     /// For [`SolveReport::strategy`].
     pub strategy: &'static str,
@@ -36,18 +37,18 @@ pub(crate) struct Closed<L> {
 }
 
 impl<L: Law> PreparedContact for Closed<L> {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         if stop() {
             return Err(Error::Stopped { best: None });
         }
-        let units = self.units;
+        let nondimensional = self.nondimensional;
         let (asked, value) = match load.validated()? {
-            Load::Force(force) => (force, units.force_in(force)),
-            Load::Approach(approach) => (approach, units.approach_in(approach)),
+            Load::Force(force) => (force, nondimensional.force_in(force)),
+            Load::Approach(approach) => (approach, nondimensional.approach_in(approach)),
             _ => return Err(Error::unsupported(self.model, format!("the load {load:?}"))),
         };
         let point = if asked <= 0.0 {
@@ -69,12 +70,13 @@ impl<L: Law> PreparedContact for Closed<L> {
             }
         }
         let (force, approach) = match load {
-            Load::Force(force) => (force, units.approach(point.approach)?),
-            _ => (units.force(point.force)?, asked),
+            Load::Force(force) => (force, nondimensional.approach(point.approach)?),
+            _ => (nondimensional.force(point.force)?, asked),
         };
         let stiffness =
-            self.outputs.needs_stiffness().then(|| units.stiffness(point.stiffness)).transpose()?;
-        let area = point.area.filter(|_| self.outputs.area).map(|area| units.area(area)).transpose()?;
+            self.outputs.needs_stiffness().then(|| nondimensional.stiffness(point.stiffness)).transpose()?;
+        let area =
+            point.area.filter(|_| self.outputs.area).map(|area| nondimensional.area(area)).transpose()?;
         let mut report = SolveReport::exact(self.strategy);
         report.certificate.stiffness_error = stiffness.map(|_| self.stiffness_error);
         ContactState {
@@ -87,7 +89,7 @@ impl<L: Law> PreparedContact for Closed<L> {
             fields: None,
             report,
         }
-        .completed(&self.outputs, self.scales.modulus)
+        .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 
@@ -115,13 +117,13 @@ pub(crate) fn refuse_fields(scene: &Scene, model: &'static str) -> Result<()> {
     Ok(())
 }
 
-/// Units and scales of a body without rms height: everything is counted in the side of the square.
+/// Units and normalisation of a body without rms height: everything is counted in the side of the square.
 ///
 /// # Errors
 /// [`Error::Domain`] for a modulus or side that no unit can be.
-pub(crate) fn of_body(scene: &Scene) -> Result<(Units, Scales)> {
+pub(crate) fn of_body(scene: &Scene) -> Result<(Nondimensionalisation, Normalisation)> {
     let (modulus, side) = (scene.modulus, scene.surface.side());
-    Ok((Units::new(modulus, side, side)?, Scales { modulus, side, height: None }))
+    Ok((Nondimensionalisation::new(modulus, side, side)?, Normalisation { modulus, side, height: None }))
 }
 
 /// Errors where a round contact (radius in units of the side) has left the square, beyond which the half-space is free.

@@ -65,12 +65,12 @@ impl ContactModel for FlatPunch {
             }
             ref other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        let (units, scales) = closed::of_body(scene)?;
+        let (nondimensional, normalisation) = closed::of_body(scene)?;
         Ok(Box::new(Closed {
             model: NAME,
             law,
-            units,
-            scales,
+            nondimensional,
+            normalisation,
             outputs: scene.outputs,
             strategy,
             stiffness_error,
@@ -135,7 +135,7 @@ mod tests {
         assert_relative_eq!(s.area.unwrap(), 9.0, max_relative = ROUNDING);
         assert!(s.report.certificate.stiffness_error.unwrap() > 8e-7);
         // The continuum plateau of k_bar.
-        let k_bar = FlatPunch.prepare(&scene, 0).unwrap().scales().stiffness_bar(s.stiffness.unwrap());
+        let k_bar = FlatPunch.prepare(&scene, 0).unwrap().normalisation().stiffness_bar(s.stiffness.unwrap());
         assert_relative_eq!(k_bar, 1.152_298 / PAPER_STIFFNESS_FACTOR, max_relative = ROUNDING);
         assert_relative_eq!(k_bar, 1.0091, max_relative = 1e-4);
         check_curve(&FlatPunch, &scene, 0.1);

@@ -4,7 +4,10 @@ use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::quadrature::Gauss;
 use crate::root;
 use crate::spectrum::Spectrum;
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scales, Scene, Source, Surface, Units};
+use contact_model::{
+    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Source,
+    Surface,
+};
 use std::f64::consts::PI;
 
 const NAME: &str = "greenwood_williamson";
@@ -123,8 +126,8 @@ impl ContactModel for GreenwoodWilliamson {
         Ok(Box::new(Periodic {
             model: NAME,
             law: Law { summits: Summits::scaled(&spectrum), heights: self.heights, gauss: Gauss::new() },
-            units: Units::new(modulus, side, height)?,
-            scales: Scales { modulus, side, height: Some(height) },
+            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
+            normalisation: Normalisation { modulus, side, height: Some(height) },
             outputs: scene.outputs,
             strategy: "integral over independent summits (Greenwood, Williamson; McCool)",
         }))

@@ -39,12 +39,12 @@ impl ContactModel for Hertz {
         let Surface::Sphere { radius, side } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
-        let (units, scales) = closed::of_body(scene)?;
+        let (nondimensional, normalisation) = closed::of_body(scene)?;
         Ok(Box::new(Closed {
             model: NAME,
             law: Sphere { radius: radius / side, side },
-            units,
-            scales,
+            nondimensional,
+            normalisation,
             outputs: scene.outputs,
             strategy: "closed form (Hertz)",
             stiffness_error: 0.0,

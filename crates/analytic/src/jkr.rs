@@ -2,8 +2,8 @@
 
 use crate::closed;
 use contact_model::{
-    Adhesion, ContactModel, ContactState, Effects, Error, Load, Outputs, PreparedContact, Result, Scales,
-    Scene, SolveReport, Source, Stop, Surface, Units,
+    Adhesion, ContactModel, ContactState, Effects, Error, Load, Nondimensionalisation, Normalisation,
+    Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop, Surface,
 };
 use std::f64::consts::PI;
 
@@ -60,9 +60,9 @@ impl ContactModel for Jkr {
             Adhesion::ShortRange { work } => work,
             other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
         };
-        let (_, scales) = closed::of_body(scene)?;
+        let (_, normalisation) = closed::of_body(scene)?;
         let sphere = Sphere::new(radius, scene.modulus, work)?;
-        Ok(Box::new(Prepared { sphere, largest: 0.5 * side / radius, scales, outputs: scene.outputs }))
+        Ok(Box::new(Prepared { sphere, largest: 0.5 * side / radius, normalisation, outputs: scene.outputs }))
     }
 }
 
@@ -79,7 +79,7 @@ impl ContactModel for Jkr {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
     /// Lengths in R, moduli in E*.
-    units: Units,
+    nondimensional: Nondimensionalisation,
     /// `w / (E* R)`.
     work: f64,
 }
@@ -101,10 +101,10 @@ impl Sphere {
     /// # Errors
     /// [`Error::Domain`] for a number that makes no sense, or a `w / (E* R)` that no `f64` holds.
     pub fn new(radius: f64, modulus: f64, work: f64) -> Result<Self> {
-        let units = Units::new(modulus, radius, radius)?;
+        let nondimensional = Nondimensionalisation::new(modulus, radius, radius)?;
         let scaled = work / modulus / radius;
         if scaled.is_finite() && (scaled > 0.0 || (scaled >= 0.0 && work <= 0.0)) {
-            Ok(Self { units, work: scaled })
+            Ok(Self { nondimensional, work: scaled })
         } else {
             Err(Error::domain(
                 "work of adhesion",
@@ -120,7 +120,7 @@ impl Sphere {
     /// [`Error::Domain`] for a radius that is negative or not finite, or a force that no `f64` holds.
     pub fn force(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
-        signed(self.force_of(a), |force| self.units.force(force))
+        signed(self.force_of(a), |force| self.nondimensional.force(force))
     }
 
     /// `d = a^2/R - sqrt(2 pi w a/E*)` at a contact radius a.
@@ -129,7 +129,7 @@ impl Sphere {
     /// As [`Sphere::force`].
     pub fn approach(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
-        signed(self.approach_of(a), |approach| self.units.approach(approach))
+        signed(self.approach_of(a), |approach| self.nondimensional.approach(approach))
     }
 
     /// `dF/dd` along the equilibrium curve: positive where a prescribed force holds the contact, negative where only a prescribed
@@ -147,7 +147,7 @@ impl Sphere {
             let expected = "beyond that of the pull-off under prescribed approach";
             return Err(Error::domain("contact radius", contact_radius, expected));
         }
-        signed(2.0 * a * (1.0 - b) / (1.0 - b / 3.0), |slope| self.units.stiffness(slope))
+        signed(2.0 * a * (1.0 - b) / (1.0 - b / 3.0), |slope| self.nondimensional.stiffness(slope))
     }
 
     /// Contact radius at a force: `a^3 = 3 R/(4 E*) (sqrt(F + F_a) + sqrt(F_a))^2` with `F_a = 3/2 pi w R`.
@@ -160,7 +160,7 @@ impl Sphere {
         if !force.is_finite() {
             return Err(Error::domain("force", force, "a finite number"));
         }
-        self.units.approach(self.at_force(force)?)
+        self.nondimensional.approach(self.at_force(force)?)
     }
 
     /// Contact radius at an approach: the larger root of `d = a^2/R - sqrt(2 pi w a/E*)`.
@@ -171,7 +171,7 @@ impl Sphere {
         if !approach.is_finite() {
             return Err(Error::domain("approach", approach, "a finite number"));
         }
-        self.units.approach(self.at_approach(approach)?)
+        self.nondimensional.approach(self.at_approach(approach)?)
     }
 
     /// Pull-off under a prescribed force: `F = -3/2 pi w R` at `a^3 = 9 pi w R^2/(8 E*)`.
@@ -192,15 +192,15 @@ impl Sphere {
 
     fn pull_off(&self, radius: f64, force: f64) -> Result<PullOff> {
         Ok(PullOff {
-            force: signed(force, |force| self.units.force(force))?,
-            approach: signed(self.approach_of(radius), |approach| self.units.approach(approach))?,
-            radius: self.units.approach(radius)?,
+            force: signed(force, |force| self.nondimensional.force(force))?,
+            approach: signed(self.approach_of(radius), |approach| self.nondimensional.approach(approach))?,
+            radius: self.nondimensional.approach(radius)?,
         })
     }
 
     fn radius_in(&self, contact_radius: f64) -> Result<f64> {
         if contact_radius.is_finite() && contact_radius >= 0.0 {
-            Ok(self.units.length_in(contact_radius))
+            Ok(self.nondimensional.length_in(contact_radius))
         } else {
             Err(Error::domain("contact radius", contact_radius, "a finite number >= 0"))
         }
@@ -224,7 +224,7 @@ impl Sphere {
     /// Contact radius in R at a force.
     fn at_force(&self, force: f64) -> Result<f64> {
         let pull_off = 1.5 * PI * self.work;
-        let scaled = self.units.force_in(force.abs()).copysign(force);
+        let scaled = self.nondimensional.force_in(force.abs()).copysign(force);
         if scaled < -pull_off * closed::ROUNDED_UP {
             return Err(Error::OutOfRange {
                 name: "force (the contact pulls off under a prescribed force)".into(),
@@ -243,7 +243,7 @@ impl Sphere {
     fn at_approach(&self, approach: f64) -> Result<f64> {
         /// Descents stop at rounding after at most 60 halvings and a few steps; this is never reached.
         const MOST_STEPS: usize = 200;
-        let d = self.units.approach_in(approach);
+        let d = self.nondimensional.approach_in(approach);
         let c = (2.0 * PI * self.work).sqrt();
         let fold = self.smallest_radius();
         let least = -0.75 * c * fold.sqrt();
@@ -284,20 +284,20 @@ struct Prepared {
     sphere: Sphere,
     /// Half the side over R.
     largest: f64,
-    scales: Scales,
+    normalisation: Normalisation,
     outputs: Outputs,
 }
 
 impl PreparedContact for Prepared {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         if stop() {
             return Err(Error::Stopped { best: None });
         }
-        let (sphere, units) = (&self.sphere, self.sphere.units);
+        let (sphere, nondimensional) = (&self.sphere, self.sphere.nondimensional);
         let (a, asked) = match load.validated_with_adhesion()? {
             Load::Force(force) => (sphere.at_force(force)?, force),
             Load::Approach(approach) => (sphere.at_approach(approach)?, approach),
@@ -307,17 +307,18 @@ impl PreparedContact for Prepared {
             return Err(Error::domain("contact radius over R", a, "a number within the range of f64"));
         }
         if a > self.largest * closed::ROUNDED_UP {
-            let (max, value) = (0.5 * self.scales.side, a * units.approach(1.0)?);
+            let (max, value) = (0.5 * self.normalisation.side, a * nondimensional.approach(1.0)?);
             return Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max });
         }
         let (force, approach) = match load {
             Load::Force(force) => {
-                (force, signed(sphere.approach_of(a), |approach| units.approach(approach))?)
+                (force, signed(sphere.approach_of(a), |approach| nondimensional.approach(approach))?)
             }
-            _ => (signed(sphere.force_of(a), |force| units.force(force))?, asked),
+            _ => (signed(sphere.force_of(a), |force| nondimensional.force(force))?, asked),
         };
-        let stiffness = self.outputs.needs_stiffness().then(|| units.stiffness(2.0 * a)).transpose()?;
-        let area = self.outputs.area.then(|| units.area(PI * a * a)).transpose()?;
+        let stiffness =
+            self.outputs.needs_stiffness().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
+        let area = self.outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
         let mut report = SolveReport::exact("closed form (JKR)");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
         ContactState {
@@ -330,7 +331,7 @@ impl PreparedContact for Prepared {
             fields: None,
             report,
         }
-        .completed(&self.outputs, self.scales.modulus)
+        .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 
@@ -419,9 +420,9 @@ mod tests {
     fn one_contact_in_any_units() {
         let one = pressed(&Jkr, &scene(4.0, 1.0, 1.0, 0.01), Load::Force(-0.04)).unwrap();
         for (modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-            let units = Units::new(modulus, length, length).unwrap();
+            let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
             let scene = scene(4.0 * length, modulus, length, 0.01 * (modulus * length));
-            let here = pressed(&Jkr, &scene, Load::Force(-units.force(0.04).unwrap())).unwrap();
+            let here = pressed(&Jkr, &scene, Load::Force(-nondimensional.force(0.04).unwrap())).unwrap();
             assert_relative_eq!(
                 here.approach.unwrap() / length,
                 one.approach.unwrap(),

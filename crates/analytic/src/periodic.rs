@@ -2,8 +2,8 @@
 
 use crate::closed;
 use contact_model::{
-    Boundary, ContactState, Effects, Error, Load, Outputs, PreparedContact, Result, Scales, Scene,
-    SolveReport, Stop, Units,
+    Boundary, ContactState, Effects, Error, Load, Nondimensionalisation, Normalisation, Outputs,
+    PreparedContact, Result, Scene, SolveReport, Stop,
 };
 
 /// A theory of a periodic contact in the mean pressure p, in units of `E* h / L`: h is the unit of heights of its [`Periodic`].
@@ -24,12 +24,12 @@ pub(crate) trait PeriodicLaw: Send {
     }
 }
 
-/// A periodic law with its scales and what is asked of it.
+/// A periodic law with its normalisation and what is asked of it.
 pub(crate) struct Periodic<L> {
     pub model: &'static str,
     pub law: L,
-    pub units: Units,
-    pub scales: Scales,
+    pub nondimensional: Nondimensionalisation,
+    pub normalisation: Normalisation,
     pub outputs: Outputs,
     /// For [`SolveReport::strategy`].
     pub strategy: &'static str,
@@ -39,8 +39,8 @@ impl<L: PeriodicLaw> Periodic<L> {
     /// The mean pressure under a load, in units.
     fn press(&self, load: Load) -> Result<f64> {
         let (asked, pressure) = match load.validated()? {
-            Load::Force(force) => (force > 0.0, self.units.force_in(force)),
-            Load::MeanGap(gap) => (false, self.law.pressure(self.units.approach_in(gap))?),
+            Load::Force(force) => (force > 0.0, self.nondimensional.force_in(force)),
+            Load::MeanGap(gap) => (false, self.law.pressure(self.nondimensional.approach_in(gap))?),
             Load::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
                 return Err(Error::unsupported(self.model, what));
@@ -59,8 +59,8 @@ impl<L: PeriodicLaw> Periodic<L> {
 }
 
 impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
@@ -69,17 +69,21 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
         }
         let pressure = self.press(load)?;
         let or_none = |f: &dyn Fn(f64) -> Result<f64>| if pressure > 0.0 { f(pressure) } else { Ok(0.0) };
-        let units = self.units;
+        let nondimensional = self.nondimensional;
         let force = match load {
             Load::Force(force) => force,
-            _ => units.force(pressure)?,
+            _ => nondimensional.force(pressure)?,
         };
         let stiffness = self
             .outputs
             .needs_stiffness()
-            .then(|| units.stiffness(or_none(&|p| self.law.stiffness(p))?))
+            .then(|| nondimensional.stiffness(or_none(&|p| self.law.stiffness(p))?))
             .transpose()?;
-        let area = self.outputs.area.then(|| units.area(or_none(&|p| self.law.fraction(p))?)).transpose()?;
+        let area = self
+            .outputs
+            .area
+            .then(|| nondimensional.area(or_none(&|p| self.law.fraction(p))?))
+            .transpose()?;
         let mut report = SolveReport::exact(self.strategy);
         report.certificate.stiffness_error = stiffness.map(|_| self.law.stiffness_error());
         ContactState {
@@ -92,14 +96,14 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
             fields: None,
             report,
         }
-        .completed(&self.outputs, self.scales.modulus)
+        .completed(&self.outputs, self.normalisation.modulus)
     }
 
     fn mean_gap(&mut self, load: Load) -> Result<f64> {
         let pressure = self.press(load)?;
         match load {
             Load::MeanGap(gap) => Ok(gap),
-            _ => self.units.approach(self.law.gap(pressure)?),
+            _ => self.nondimensional.approach(self.law.gap(pressure)?),
         }
     }
 }

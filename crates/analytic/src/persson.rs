@@ -5,7 +5,10 @@ use crate::quadrature::Gauss;
 use crate::root;
 use crate::special::{erf, exponential_integral, exponential_integral_of_square};
 use crate::spectrum::Spectrum;
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scales, Scene, Source, Surface, Units};
+use contact_model::{
+    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Source,
+    Surface,
+};
 use std::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 
 const NAME: &str = "persson";
@@ -81,8 +84,8 @@ impl ContactModel for Persson {
         Ok(Box::new(Periodic {
             model: NAME,
             law: Law::new(&spectrum, self.checked()?),
-            units: Units::new(modulus, side, height)?,
-            scales: Scales { modulus, side, height: Some(height) },
+            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
+            normalisation: Normalisation { modulus, side, height: Some(height) },
             outputs: scene.outputs,
             strategy: "integral over the spectrum (Persson)",
         }))

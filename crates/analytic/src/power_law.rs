@@ -2,8 +2,8 @@
 
 use crate::closed::{self, Closed, Law, Point, ROUNDED_UP};
 use contact_model::{
-    Amplitude, ContactModel, Error, PAPER_STIFFNESS_FACTOR, PreparedContact, Result, Scales, Scene, Source,
-    Surface, Units,
+    Amplitude, ContactModel, Error, Nondimensionalisation, Normalisation, PAPER_STIFFNESS_FACTOR,
+    PreparedContact, Result, Scene, Source, Surface,
 };
 
 const NAME: &str = "power_law";
@@ -157,8 +157,8 @@ impl ContactModel for PowerLaw {
         Ok(Box::new(Closed {
             model: NAME,
             law: Fit::new(surface.fractal_dimension()),
-            units: Units::new(modulus, side, height)?,
-            scales: Scales { modulus, side, height: Some(height) },
+            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
+            normalisation: Normalisation { modulus, side, height: Some(height) },
             outputs: scene.outputs,
             strategy: "closed form (Eq. 12)",
             stiffness_error: 0.0,
@@ -166,7 +166,7 @@ impl ContactModel for PowerLaw {
     }
 }
 
-/// Eq. 12 in its own units: force in `E* h L` (F_bar), approach in h, stiffness in `E* L`.
+/// Eq. 12 in its own nondimensional: force in `E* h L` (F_bar), approach in h, stiffness in `E* L`.
 struct Fit {
     alpha: f64,
     /// `1.1419 zeta`.
@@ -255,7 +255,7 @@ mod tests {
     fn out_of_range_and_bad_values() {
         let scene = Scene::new(surface(2.3, 1.0), 1.0);
         let mut contact = PowerLaw.prepare(&scene, 0).unwrap();
-        let end = contact.scales().force(F_BAR_UL).unwrap();
+        let end = contact.normalisation().force(F_BAR_UL).unwrap();
         assert!(contact.solve(Load::Force(end)).is_ok());
         assert!(matches!(contact.solve(Load::Force(1.01 * end)), Err(Error::OutOfRange { .. })));
         assert!(matches!(contact.solve(Load::Approach(1.0)), Err(Error::OutOfRange { .. })));
@@ -281,12 +281,12 @@ mod tests {
         #[test]
         fn curve_and_collapse(df in 2.0_f64..3.0, force_bar in 1e-7_f64..0.08) {
             let scene = Scene::new(surface(df, 1.0), 1.0);
-            let scales = PowerLaw.prepare(&scene, 0).unwrap().scales();
-            let s = pressed(&PowerLaw, &scene, Load::Force(scales.force(force_bar).unwrap())).unwrap();
+            let normalisation = PowerLaw.prepare(&scene, 0).unwrap().normalisation();
+            let s = pressed(&PowerLaw, &scene, Load::Force(normalisation.force(force_bar).unwrap())).unwrap();
             check_curve(&PowerLaw, &scene, s.approach.unwrap());
             scale_invariant(&PowerLaw, |length| surface(df, length), s.approach.unwrap(), 1e-13);
             // Fig. 4 of Eq. 12 is the identity.
-            let tilde = force_tilde(scales.stiffness_bar(s.stiffness.unwrap()), df).unwrap();
+            let tilde = force_tilde(normalisation.stiffness_bar(s.stiffness.unwrap()), df).unwrap();
             assert_relative_eq!(tilde, force_bar, max_relative = 1e-13);
         }
     }

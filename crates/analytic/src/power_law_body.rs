@@ -63,12 +63,12 @@ impl ContactModel for PowerLawBody {
                 "a number within the range of f64",
             ));
         }
-        let (units, scales) = closed::of_body(scene)?;
+        let (nondimensional, normalisation) = closed::of_body(scene)?;
         Ok(Box::new(Closed {
             model: NAME,
-            law: Body { exponent, depth, side: scales.side },
-            units,
-            scales,
+            law: Body { exponent, depth, side: normalisation.side },
+            nondimensional,
+            normalisation,
             outputs: scene.outputs,
             strategy: "closed form (Galin)",
             stiffness_error: 0.0,

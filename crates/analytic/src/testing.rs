@@ -1,7 +1,7 @@
 //! Checks that every closed form passes (tests only).
 
 use approx::assert_relative_eq;
-use contact_model::{ContactModel, ContactState, Load, Result, Scene, Surface, Units};
+use contact_model::{ContactModel, ContactState, Load, Nondimensionalisation, Result, Scene, Surface};
 
 /// Digits to which the reference values are printed.
 pub(crate) const PRINTED: f64 = 1e-10;
@@ -54,9 +54,9 @@ pub(crate) fn scale_invariant(
     for (modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
         let scene = Scene::new(surface(length), modulus);
         let s = pressed(model, &scene, Load::Approach(d * length)).unwrap();
-        let units = Units::new(modulus, length, length).unwrap();
-        assert_relative_eq!(s.force, units.force(one.force).unwrap(), max_relative = tolerance);
-        let k = units.stiffness(one.stiffness.unwrap()).unwrap();
+        let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
+        assert_relative_eq!(s.force, nondimensional.force(one.force).unwrap(), max_relative = tolerance);
+        let k = nondimensional.stiffness(one.stiffness.unwrap()).unwrap();
         assert_relative_eq!(s.stiffness.unwrap(), k, max_relative = tolerance);
     }
 }

@@ -3,7 +3,10 @@
 use crate::closed::ROUNDED_UP;
 use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::root;
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scales, Scene, Source, Surface, Units};
+use contact_model::{
+    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Source,
+    Surface,
+};
 use std::f64::consts::{PI, SQRT_2};
 
 const NAME: &str = "westergaard";
@@ -17,8 +20,8 @@ const WHOLE_WAVES: f64 = 1e-9;
 /// ln(1/r))`. From `p*` on the contact is full: the area is that of the square, the mean gap 0, and there is no finite stiffness;
 /// asking for it is [`Error::OutOfRange`]. A mean gap beyond D is no contact.
 ///
-/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves on the side. The rms height of the
-/// scales is D/sqrt(2).
+/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves on the side. The rms height of its
+/// normalisation is D/sqrt(2).
 ///
 /// ```
 /// use analytic::Westergaard;
@@ -69,8 +72,8 @@ impl ContactModel for Westergaard {
         Ok(Box::new(Periodic {
             model: NAME,
             law: Wave { full: PI * whole },
-            units: Units::new(modulus, side, height)?,
-            scales: Scales { modulus, side, height: Some(height / SQRT_2) },
+            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
+            normalisation: Normalisation { modulus, side, height: Some(height / SQRT_2) },
             outputs: scene.outputs,
             strategy: "closed form (Westergaard)",
         }))

@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn StdError>> {
     scene.outputs.area = true;
     let start = Instant::now();
     let mut prepared = model.prepare(&scene, seed)?;
-    let scales = prepared.scales();
+    let normalisation = prepared.normalisation();
     println!("prepared in {:.3} s", start.elapsed().as_secs_f64());
     println!(
         "force_bar approach_over_h stiffness_bar cells steps applications seconds strategy status certificate"
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn StdError>> {
     for force in forces.split(',') {
         let force_bar: f64 = force.parse()?;
         let start = Instant::now();
-        let state = match prepared.solve(Load::Force(scales.force(force_bar)?)) {
+        let state = match prepared.solve(Load::Force(normalisation.force(force_bar)?)) {
             Ok(state) => state,
             Err(Error::NotConverged { best }) => *best,
             Err(error) => return Err(error.into()),
@@ -37,8 +37,8 @@ fn main() -> Result<(), Box<dyn StdError>> {
         let report = &state.report;
         println!(
             "{force_bar:.3e} {:.12} {:.12} {} {} {} {:.3} {} {} {}",
-            scales.approach_over_h(state.approach.unwrap_or(0.0))?,
-            scales.stiffness_bar(state.stiffness.unwrap_or(0.0)),
+            normalisation.approach_over_h(state.approach.unwrap_or(0.0))?,
+            normalisation.stiffness_bar(state.stiffness.unwrap_or(0.0)),
             report.contact_cells.unwrap_or(0),
             report.iterations,
             report.applications,

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Evidence {
     /// `sum p (g - min g) / (F s)`.
-    pub frank_wolfe: f64,
+    pub duality_gap: f64,
     /// `max(0, -min g) / s`.
     pub penetration: f64,
     /// `sum p |g| / (F s)`.
@@ -16,7 +16,7 @@ pub struct Evidence {
 impl Evidence {
     /// The largest of the relative numbers.
     pub fn worst(&self) -> f64 {
-        self.frank_wolfe.max(self.penetration).max(self.complementarity)
+        self.duality_gap.max(self.penetration).max(self.complementarity)
     }
 }
 
@@ -38,7 +38,7 @@ pub fn measure(p: &[f64], gap: &[f64], s: f64) -> Evidence {
         weighted += share * g.abs();
         duality += share * (g - lowest);
     }
-    Evidence { frank_wolfe: duality / s, penetration: deepest / s, complementarity: weighted / s, deepest }
+    Evidence { duality_gap: duality / s, penetration: deepest / s, complementarity: weighted / s, deepest }
 }
 
 #[cfg(test)]
@@ -50,7 +50,7 @@ mod tests {
     fn by_hand() {
         // p = (2, 1, 0), gap (0.1, -0.2, 0.5), s = 2: force 3, lowest -0.2.
         let e = measure(&[2.0, 1.0, 0.0], &[0.1, -0.2, 0.5], 2.0);
-        assert_relative_eq!(e.frank_wolfe, (2.0 * 0.3) / 6.0, max_relative = 1e-14);
+        assert_relative_eq!(e.duality_gap, (2.0 * 0.3) / 6.0, max_relative = 1e-14);
         assert_relative_eq!(e.complementarity, 0.4 / 6.0, max_relative = 1e-14);
         assert_relative_eq!(e.penetration, 0.1, max_relative = 1e-14);
         assert_relative_eq!(e.worst(), 0.1, max_relative = 1e-14);

@@ -18,9 +18,9 @@
 //! let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0)?); // D_f, side, rms height
 //! let model = Bem3d { cells: 65, tolerance: 1e-6, ..Bem3d::default() };
 //! let mut contact = model.prepare(&Scene::new(surface, 1.0), 7)?;
-//! let scales = contact.scales();
-//! let state = contact.solve(Load::Force(scales.force(1.0)?))?;
-//! let k_bar = scales.stiffness_bar(state.stiffness.unwrap());
+//! let normalisation = contact.normalisation();
+//! let state = contact.solve(Load::Force(normalisation.force(1.0)?))?;
+//! let k_bar = normalisation.stiffness_bar(state.stiffness.unwrap());
 //! assert!(k_bar > 0.4 && k_bar < 1.0);
 //! assert!(state.report.certificate.meets(1e-6));
 //! # Ok::<(), contact_model::Error>(())

@@ -9,8 +9,9 @@ use crate::seed;
 use crate::stiffness::{self, Stiffness};
 use crate::strategy;
 use contact_model::{
-    Boundary, Certificate, ContactModel, ContactState, Effects, Error, Fields, HeightMap, Load, Outputs,
-    Patches, PreparedContact, Result, Scales, Scene, SolveReport, Source, Status, Stop, Surface, Units, Work,
+    Boundary, Certificate, ContactModel, ContactState, Effects, Error, Fields, HeightMap, Load,
+    Nondimensionalisation, Normalisation, Outputs, Patches, PreparedContact, Result, Scene, SolveReport,
+    Source, Status, Stop, Surface, Work,
 };
 use last::Last;
 use std::f64::consts::PI;
@@ -118,10 +119,10 @@ struct Prepared {
     options: Bem3d,
     outputs: Outputs,
     problem: Problem,
-    units: Units,
+    nondimensional: Nondimensionalisation,
     /// Unit of lengths normal to the surface: the rms height where there is one.
     height: f64,
-    scales: Scales,
+    normalisation: Normalisation,
     /// Mean of z.
     mean: f64,
     last: Option<Last>,
@@ -139,19 +140,20 @@ impl Prepared {
         for z in &mut z {
             *z /= height;
         }
-        let units = Units::new(scene.modulus, map.cell(), height)?;
+        let nondimensional = Nondimensionalisation::new(scene.modulus, map.cell(), height)?;
         let mean = z.iter().sum::<f64>() / z.len() as f64;
         let mut problem = Problem::new(map.cells(), Arc::new(z), scene.effects.boundary);
         problem.levels = options.method != Method::SingleLevel;
         problem.operators.two_levels &= problem.levels;
-        let scales = Scales { modulus: scene.modulus, side: map.side(), height: has_rms.then_some(rms) };
+        let normalisation =
+            Normalisation { modulus: scene.modulus, side: map.side(), height: has_rms.then_some(rms) };
         Ok(Self {
             options,
             outputs: scene.outputs,
             problem,
-            units,
+            nondimensional,
             height,
-            scales,
+            normalisation,
             mean,
             last: None,
             gap: None,
@@ -263,7 +265,7 @@ impl Prepared {
         let force: f64 = solved.p.iter().sum();
         let periodic = self.is_periodic();
         let certificate = Certificate {
-            frank_wolfe: solved.look.evidence.frank_wolfe,
+            duality_gap: solved.look.evidence.duality_gap,
             penetration: solved.look.evidence.penetration,
             complementarity: solved.look.evidence.complementarity,
             load_error,
@@ -287,19 +289,23 @@ impl Prepared {
             certificate,
         };
         let state = ContactState {
-            force: self.units.force(PI * force)?,
-            approach: if periodic { None } else { Some(self.units.approach(solved.d)?) },
+            force: self.nondimensional.force(PI * force)?,
+            approach: if periodic { None } else { Some(self.nondimensional.approach(solved.d)?) },
             stiffness: match &tangent {
-                Some(t) => Some(self.units.stiffness(PI * t.value * self.magnification(t.value))?),
+                Some(t) => Some(self.nondimensional.stiffness(PI * t.value * self.magnification(t.value))?),
                 None => None,
             },
-            area: if self.outputs.area { Some(self.units.area(solved.contact.len() as f64)?) } else { None },
+            area: if self.outputs.area {
+                Some(self.nondimensional.area(solved.contact.len() as f64)?)
+            } else {
+                None
+            },
             conductance: None,
             patches: self.patches(&solved.contact)?,
             fields,
             report,
         }
-        .completed(&self.outputs, self.scales.modulus)?;
+        .completed(&self.outputs, self.normalisation.modulus)?;
         if status == Status::Converged {
             self.remember(solved, tangent);
             Ok(state)
@@ -319,7 +325,7 @@ impl Prepared {
         if self.outputs.pressure {
             let mut p = vec![0.0; count];
             for (&i, &value) in solved.contact.index().iter().zip(&solved.p) {
-                p[i as usize] = self.units.pressure(PI * value)?;
+                p[i as usize] = self.nondimensional.pressure(PI * value)?;
             }
             fields.pressure = Some(p);
         }
@@ -347,7 +353,8 @@ impl Prepared {
         }
         let boundary = self.problem.operators.table().boundary();
         let sizes = surface_gen::patches(self.problem.side, contact.index(), boundary);
-        let areas = sizes.into_iter().map(|size| self.units.area(size as f64)).collect::<Result<_>>()?;
+        let areas =
+            sizes.into_iter().map(|size| self.nondimensional.area(size as f64)).collect::<Result<_>>()?;
         Ok(Some(Patches::new(areas)))
     }
 
@@ -378,19 +385,20 @@ impl Prepared {
 }
 
 impl PreparedContact for Prepared {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         self.gap = None;
         let target = match load.validated()? {
-            Load::Force(f) => Target::Force(scaled("force", f, self.units.force_in(f) / PI)?),
+            Load::Force(f) => Target::Force(scaled("force", f, self.nondimensional.force_in(f) / PI)?),
             Load::Approach(d) if !self.is_periodic() => {
-                Target::Approach(scaled("approach", d, self.units.approach_in(d))?)
+                Target::Approach(scaled("approach", d, self.nondimensional.approach_in(d))?)
             }
             Load::MeanGap(gap) if self.is_periodic() => {
-                let state = self.press_to(scaled("mean gap", gap, self.units.approach_in(gap))?, stop)?;
+                let state =
+                    self.press_to(scaled("mean gap", gap, self.nondimensional.approach_in(gap))?, stop)?;
                 self.gap = Some((load, gap));
                 return Ok(state);
             }
@@ -401,13 +409,13 @@ impl PreparedContact for Prepared {
             other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
         };
         if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
-            self.gap = Some((load, self.units.approach(self.mean)?));
-            return self.untouched().completed(&self.outputs, self.scales.modulus);
+            self.gap = Some((load, self.nondimensional.approach(self.mean)?));
+            return self.untouched().completed(&self.outputs, self.normalisation.modulus);
         }
         self.problem.operators.applications = 0;
         self.problem.operators.solves = 0;
         let (solved, tangent) = self.settle(target, self.limits(), stop);
-        self.gap = Some((load, self.units.approach(self.gap_of(&solved))?));
+        self.gap = Some((load, self.nondimensional.approach(self.gap_of(&solved))?));
         let miss = match target {
             Target::Force(asked) => ((solved.p.iter().sum::<f64>() - asked) / asked).abs(),
             Target::Approach(_) => 0.0,
@@ -430,7 +438,11 @@ impl Prepared {
     fn limits(&self) -> Limits {
         Limits {
             tolerance: self.options.tolerance,
-            height: self.scales.height.filter(|&h| h > 0.0).map(|h| self.units.approach_in(h)),
+            height: self
+                .normalisation
+                .height
+                .filter(|&h| h > 0.0)
+                .map(|h| self.nondimensional.approach_in(h)),
             rounds: self.options.rounds,
             dense: self.options.method == Method::Auto,
         }
@@ -445,12 +457,12 @@ impl Prepared {
     }
 }
 
-/// A load in scaled units, unless no f64 holds it.
+/// A load in scaled nondimensional, unless no f64 holds it.
 fn scaled(name: &'static str, value: f64, result: f64) -> Result<f64> {
     if result.is_finite() && (result > 0.0 || value <= 0.0) {
         Ok(result)
     } else {
-        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
+        Err(Error::domain(name, value, "a load nearer to the normalisation of the surface"))
     }
 }
 

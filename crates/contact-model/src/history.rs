@@ -6,7 +6,7 @@
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::model::{Source, Stop};
-use crate::scales::Scales;
+use crate::normalisation::Normalisation;
 use crate::scene::Scene;
 use crate::state::ContactState;
 
@@ -110,8 +110,8 @@ pub trait HistoryModel: Send + Sync {
 
 /// A planned contact that remembers its path.
 pub trait History: Send {
-    /// The scales of this very surface.
-    fn scales(&self) -> Scales;
+    /// The normalisation of this very surface.
+    fn normalisation(&self) -> Normalisation;
 
     /// Goes to the end of the next step. **A step that fails leaves the history as it was before.**
     ///

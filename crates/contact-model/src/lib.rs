@@ -12,8 +12,8 @@
 //! * The approach `d` is counted **from first touch of the highest point**, not from the mean plane. At `F = 0`, `d = 0` and
 //!   `k = 0`.
 //! * Pressure is compressive and non-negative; stiffness is `k = dF/dd`.
-//! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
-//!   Names that end in `_bar` are normalised ([`Scales`] is the only place that does it).
+//! * Nondimensionalisation are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
+//!   Names that end in `_bar` are normalised ([`Normalisation`] is the only place that does it).
 //! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative derivative of the force in it.
 //! * What depends on the path of the loads (friction, rheology) is a [`History`], taken [`Step`] by step.
 //! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: not asked for, not computed, and the [`Work`] in
@@ -21,10 +21,10 @@
 //! * `None` means "this model does not claim it" or "not asked for". It is never NaN and never a silent 0.
 //!
 //! ```
-//! use contact_model::{Load, Scales};
+//! use contact_model::{Load, Normalisation};
 //! // A force of 0.01 on a square of side 1, modulus 1, rms height 0.5 is F_bar = 0.02 (Eq. 10).
-//! let scales = Scales { modulus: 1.0, side: 1.0, height: Some(0.5) };
-//! assert_eq!(scales.force_bar(0.01)?, 0.02);
+//! let normalisation = Normalisation { modulus: 1.0, side: 1.0, height: Some(0.5) };
+//! assert_eq!(normalisation.force_bar(0.01)?, 0.02);
 //! assert!(Load::Force(-1.0).validated().is_err());
 //! # Ok::<(), contact_model::Error>(())
 //! ```
@@ -34,14 +34,14 @@ mod grid;
 mod history;
 mod load;
 mod model;
+mod nondimensionalisation;
+mod normalisation;
 mod outputs;
 mod pair;
 mod patches;
 mod rheology;
-mod scales;
 mod scene;
 mod state;
-mod units;
 mod work;
 
 pub use error::{Error, Result};
@@ -49,12 +49,12 @@ pub use grid::{HeightMap, Line};
 pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use load::Load;
 pub use model::{ContactModel, PreparedContact, Source, Stop, never};
+pub use nondimensionalisation::Nondimensionalisation;
+pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
 pub use outputs::{Conductance, Outputs};
 pub use pair::{Body, Pair};
 pub use patches::Patches;
 pub use rheology::{PronySeries, Relaxing, Rheology};
-pub use scales::{PAPER_STIFFNESS_FACTOR, Scales};
 pub use scene::{Adhesion, Amplitude, Boundary, Effects, Friction, Scene, SelfAffine, Surface, line_length};
 pub use state::{Certificate, ContactState, Fields, SolveReport, Status};
-pub use units::Units;
 pub use work::Work;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::load::Load;
-use crate::scales::Scales;
+use crate::normalisation::Normalisation;
 use crate::scene::Scene;
 use crate::state::ContactState;
 
@@ -57,8 +57,8 @@ impl<M: ContactModel + ?Sized> ContactModel for &M {
 
 /// A planned contact: solve often. Owns tables, plans and the warm start.
 pub trait PreparedContact: Send {
-    /// The scales of this very surface (its own measured rms height).
-    fn scales(&self) -> Scales;
+    /// The normalisation of this very surface (its own measured rms height).
+    fn normalisation(&self) -> Normalisation;
 
     /// Solves for one load; `stop` is polled between iterations.
     ///

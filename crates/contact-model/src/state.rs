@@ -120,8 +120,8 @@ impl Status {
 /// met when every one of them is at most `t` ([`Certificate::meets`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
-    /// `sum p (g - min g) / (F s)`: the duality gap.
-    pub frank_wolfe: f64,
+    /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form.
+    pub duality_gap: f64,
     /// `max(0, -min g) / s`.
     pub penetration: f64,
     /// `sum p |g| / (F s)`.
@@ -141,7 +141,7 @@ impl Certificate {
     /// The largest of the numbers; NaN if one of them is.
     pub fn worst(&self) -> f64 {
         [
-            self.frank_wolfe,
+            self.duality_gap,
             self.penetration,
             self.complementarity,
             self.load_error,
@@ -156,8 +156,8 @@ impl fmt::Display for Certificate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "frank_wolfe {:.1e}, penetration {:.1e}, complementarity {:.1e}, load_error {:.1e}",
-            self.frank_wolfe, self.penetration, self.complementarity, self.load_error
+            "duality_gap {:.1e}, penetration {:.1e}, complementarity {:.1e}, load_error {:.1e}",
+            self.duality_gap, self.penetration, self.complementarity, self.load_error
         )?;
         if let Some(e) = self.stiffness_error {
             write!(f, ", stiffness_error {e:.1e}")?;

@@ -11,8 +11,8 @@ use crate::sample::number;
 use crate::sweep::collect;
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Boundary, ContactModel, ContactState, Load, PreparedContact, Scales, Scene, SelfAffine, Stop, Surface,
-    never,
+    Boundary, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine, Stop,
+    Surface, never,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -72,8 +72,8 @@ pub struct BenchRow {
     pub state: ContactState,
     /// Mean gap, where the square repeats itself.
     pub mean_gap: Option<f64>,
-    /// Scales of this surface.
-    pub scales: Scales,
+    /// Normalisation of this surface.
+    pub normalisation: Normalisation,
     /// Wall-clock seconds: the first row of a prepared contact includes preparing it.
     pub seconds: f64,
     /// Seconds of the processor on this thread, where the platform tells.
@@ -93,7 +93,7 @@ pub const BENCH_COLUMNS: [&str; 25] = [
     "stiffness_bar",
     "contact_cells",
     "penetration",
-    "frank_wolfe",
+    "duality_gap",
     "iterations",
     "applications",
     "seconds",
@@ -124,12 +124,12 @@ impl BenchRow {
         let certificate = &report.certificate;
         let text = |v: Option<f64>| v.map(number).unwrap_or_default();
         let approach = match self.state.approach {
-            Some(d) if self.scales.height.is_some_and(|h| h > 0.0) => {
-                Some(self.scales.approach_over_h(d).map_err(Error::model("approach"))?)
+            Some(d) if self.normalisation.height.is_some_and(|h| h > 0.0) => {
+                Some(self.normalisation.approach_over_h(d).map_err(Error::model("approach"))?)
             }
             _ => None,
         };
-        let mean_gap = match (self.mean_gap, self.scales.height) {
+        let mean_gap = match (self.mean_gap, self.normalisation.height) {
             (Some(gap), Some(h)) if h > 0.0 => Some(gap / h),
             _ => None,
         };
@@ -137,10 +137,10 @@ impl BenchRow {
             self.cells.to_string(),
             number(self.force_bar),
             text(approach),
-            text(self.state.stiffness.map(|k| self.scales.stiffness_bar(k))),
+            text(self.state.stiffness.map(|k| self.normalisation.stiffness_bar(k))),
             report.contact_cells.map(|n| n.to_string()).unwrap_or_default(),
             number(certificate.penetration),
-            number(certificate.frank_wolfe),
+            number(certificate.duality_gap),
             report.iterations.to_string(),
             report.applications.to_string(),
             number(self.seconds),
@@ -256,9 +256,9 @@ impl Series {
                 Some(prepared) => prepared,
                 none => none.insert(self.prepare()?),
             };
-            let scales = prepared.scales();
+            let normalisation = prepared.normalisation();
             let what = || format!("bem3d on {} at F_bar = {force_bar:?}", self.surface);
-            let load = Load::Force(scales.force(force_bar).map_err(Error::model(what()))?);
+            let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what()))?);
             let state = match prepared.solve_until(load, stop) {
                 Err(contact_model::Error::NotConverged { best }) => *best,
                 other => other.map_err(Error::model(what()))?,
@@ -277,7 +277,7 @@ impl Series {
                 tolerance: self.model.tolerance,
                 state,
                 mean_gap,
-                scales,
+                normalisation,
                 seconds,
                 cpu_seconds: cpu.zip(cpu_seconds()).map(|(a, b)| b - a),
                 peak_memory: peak_memory(),
@@ -369,7 +369,7 @@ mod tests {
         let path = dir.path().join("bench.csv");
         write_bench(&path, &rows).unwrap();
         let text = fs::read_to_string(&path).unwrap();
-        assert!(text.starts_with("cells,force_bar,approach_over_h,stiffness_bar,contact_cells,penetration,frank_wolfe,iterations,applications,seconds,strategy,status,"));
+        assert!(text.starts_with("cells,force_bar,approach_over_h,stiffness_bar,contact_cells,penetration,duality_gap,iterations,applications,seconds,strategy,status,"));
         assert_eq!(text.lines().count(), 3);
         assert_eq!(fs::read_dir(pressure).unwrap().count(), 2);
     }

@@ -1,6 +1,6 @@
 //! One surface under one load: what is kept of a state.
 
-use contact_model::{Certificate, ContactState, Result, Scales};
+use contact_model::{Certificate, ContactState, Normalisation, Result};
 
 /// Fewer contact cells than this are the one-cell floor of a grid: kept, marked, left out of fits and lines.
 pub const FLOOR_CELLS: usize = 10;
@@ -39,16 +39,16 @@ impl Sample {
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] when the surface has no relief to normalise by.
-    pub fn new(force_bar: f64, state: &ContactState, scales: &Scales) -> Result<Self> {
+    pub fn new(force_bar: f64, state: &ContactState, normalisation: &Normalisation) -> Result<Self> {
         let report = &state.report;
         Ok(Self {
             force_bar,
             force: state.force,
-            approach_over_h: state.approach.map(|d| scales.approach_over_h(d)).transpose()?,
-            stiffness_bar: state.stiffness.map(|k| scales.stiffness_bar(k)),
-            contact_fraction: state.area.map(|a| scales.contact_fraction(a)),
+            approach_over_h: state.approach.map(|d| normalisation.approach_over_h(d)).transpose()?,
+            stiffness_bar: state.stiffness.map(|k| normalisation.stiffness_bar(k)),
+            contact_fraction: state.area.map(|a| normalisation.contact_fraction(a)),
             contact_cells: report.contact_cells,
-            contact_length: state.stiffness.map(|k| scales.contact_length(k) / scales.side),
+            contact_length: state.stiffness.map(|k| normalisation.contact_length(k) / normalisation.side),
             iterations: report.iterations,
             applications: report.applications,
             status: report.status.as_str().to_owned(),
@@ -81,7 +81,7 @@ pub const FIELDS: [&str; 16] = [
     "applications",
     "status",
     "strategy",
-    "frank_wolfe",
+    "duality_gap",
     "penetration",
     "complementarity",
     "load_error",
@@ -105,7 +105,7 @@ impl Sample {
             self.applications.to_string(),
             self.status.clone(),
             self.strategy.clone(),
-            number(c.frank_wolfe),
+            number(c.duality_gap),
             number(c.penetration),
             number(c.complementarity),
             number(c.load_error),
@@ -139,7 +139,7 @@ impl Sample {
             status: at(9)?.to_owned(),
             strategy: at(10)?.to_owned(),
             certificate: Certificate {
-                frank_wolfe: real(11)?,
+                duality_gap: real(11)?,
                 penetration: real(12)?,
                 complementarity: real(13)?,
                 load_error: real(14)?,
@@ -171,7 +171,7 @@ pub(crate) mod tests {
             applications: 4,
             status: "converged".into(),
             strategy: "fft 4 x 4, \"f64\"".into(),
-            certificate: Certificate { frank_wolfe: 1e-9, stiffness_error: Some(1e-7), ..Default::default() },
+            certificate: Certificate { duality_gap: 1e-9, stiffness_error: Some(1e-7), ..Default::default() },
         }
     }
 

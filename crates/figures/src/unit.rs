@@ -10,7 +10,7 @@ use std::time::Instant;
 
 /// Number of the format of stored units. Raise it when the numbers of `surface-gen` or `mdr1d`, or the fields of a [`Sample`],
 /// change; `bem3d` has its own number, which enters the key too.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// Numerics of a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -185,17 +185,17 @@ impl Unit {
         scene.outputs = Outputs { stiffness: true, area, ..Outputs::default() };
         let solve = || {
             let mut contact = model.prepare(&scene, self.seed)?;
-            let scales = contact.scales();
+            let normalisation = contact.normalisation();
             let mut samples = Vec::with_capacity(self.forces.len());
             for &force_bar in self.forces.iter() {
-                let load = Load::Force(scales.force(force_bar)?);
+                let load = Load::Force(normalisation.force(force_bar)?);
                 let state = match contact.solve_until(load, stop) {
                     Err(contact_model::Error::NotConverged { best }) => *best,
                     other => other?,
                 };
-                samples.push(Sample::new(force_bar, &state, &scales)?);
+                samples.push(Sample::new(force_bar, &state, &normalisation)?);
             }
-            Ok((scales.rms_height()?, samples))
+            Ok((normalisation.rms_height()?, samples))
         };
         let (rms_height, samples) = solve().map_err(|e| Error::model(what())(e))?;
         Ok(UnitResult { rms_height, seconds: start.elapsed().as_secs_f64(), samples })
@@ -206,8 +206,8 @@ impl Unit {
 mod tests {
     use super::*;
     use contact_model::{
-        Certificate, ContactState, PreparedContact, Result as ModelResult, Scales, SolveReport, Source,
-        Status,
+        Certificate, ContactState, Normalisation, PreparedContact, Result as ModelResult, SolveReport,
+        Source, Status,
     };
 
     /// k = sqrt(F); gives up above F = 1.
@@ -227,13 +227,13 @@ mod tests {
     }
 
     impl PreparedContact for TiredContact {
-        fn scales(&self) -> Scales {
-            Scales { modulus: 1.0, side: 1.0, height: Some(2.0) }
+        fn normalisation(&self) -> Normalisation {
+            Normalisation { modulus: 1.0, side: 1.0, height: Some(2.0) }
         }
         fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelResult<ContactState> {
             let Load::Force(force) = load else { panic!("units prescribe forces") };
             let mut report = SolveReport::exact("closed form");
-            report.certificate = Certificate { frank_wolfe: 0.5, ..Default::default() };
+            report.certificate = Certificate { duality_gap: 0.5, ..Default::default() };
             let stiffness = Some(force.sqrt());
             let mut state = ContactState {
                 force,

@@ -96,12 +96,13 @@ fn small_solves(
     match (numerics.model(), &scene.request) {
         (AnyModel::Contact(model), Request::Loads(loads)) => {
             let mut contact = model.prepare(&physics, seed)?;
-            let scales = contact.scales();
+            let normalisation = contact.normalisation();
             let count = loads.values.len();
             let used = count.min(CALIBRATION_LOADS);
             for i in 0..used {
                 let asked = loads.values[i * (count - 1) / (used - 1).max(1)];
-                let Ok(state) = loads.load(asked, &scales).and_then(|load| contact.solve_until(load, stop))
+                let Ok(state) =
+                    loads.load(asked, &normalisation).and_then(|load| contact.solve_until(load, stop))
                 else {
                     continue;
                 };

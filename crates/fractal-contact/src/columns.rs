@@ -4,7 +4,7 @@ use crate::entries::System;
 use crate::loads::{Prescribed, Request};
 use crate::scene_file::SceneFile;
 use analysis::{Column, Value};
-use contact_model::{Boundary, Conductance, ContactState, Friction, HistoryState, Scales, Status};
+use contact_model::{Boundary, Conductance, ContactState, Friction, HistoryState, Normalisation, Status};
 
 /// What a row is made of.
 #[derive(Debug, Clone, Default)]
@@ -14,7 +14,7 @@ pub(crate) struct State {
     pub index: usize,
     pub asked: f64,
     pub time: Option<f64>,
-    pub scales: Option<Scales>,
+    pub normalisation: Option<Normalisation>,
     pub normal: Option<ContactState>,
     pub history: Option<HistoryState>,
     pub mean_gap: Option<f64>,
@@ -37,8 +37,8 @@ fn normal<T: Into<Value>>(state: &State, pick: impl Fn(&ContactState) -> T) -> V
     state.normal.as_ref().map(pick).into()
 }
 
-fn scaled(state: &State, pick: impl Fn(&ContactState, &Scales) -> Option<f64>) -> Value {
-    state.normal.as_ref().zip(state.scales.as_ref()).and_then(|(n, s)| pick(n, s)).into()
+fn scaled(state: &State, pick: impl Fn(&ContactState, &Normalisation) -> Option<f64>) -> Value {
+    state.normal.as_ref().zip(state.normalisation.as_ref()).and_then(|(n, s)| pick(n, s)).into()
 }
 
 fn tangential(state: &State, pick: impl Fn(&contact_model::TangentialState) -> Option<f64>) -> Value {
@@ -143,8 +143,8 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
             normal(s, |n| n.report.work.fields)
         }),
         kind("field_bytes", "1", "their bytes", |s| normal(s, |n| n.report.work.bytes)),
-        kind("frank_wolfe", "1", "sum p (g - min g)/(F s)", |s| {
-            normal(s, |n| n.report.certificate.frank_wolfe)
+        kind("duality_gap", "1", "sum p (g - min g)/(F s)", |s| {
+            normal(s, |n| n.report.certificate.duality_gap)
         }),
         kind("penetration", "1", "max(0, -min g)/s", |s| normal(s, |n| n.report.certificate.penetration)),
         kind("complementarity", "1", "sum p |g|/(F s)", |s| {

@@ -1,7 +1,7 @@
 //! What is prescribed: loads one by one, or a path.
 
 use crate::entries::{Entries, Entry, Read, System};
-use contact_model::{Load, Scales, Step, Tangential};
+use contact_model::{Load, Normalisation, Step, Tangential};
 use surface_io::Dimension;
 
 /// Most loads of a range; more are a slip of the finger.
@@ -45,15 +45,15 @@ pub struct Loads {
 }
 
 impl Loads {
-    /// The load of a number for a surface with these scales.
+    /// The load of a number for a surface with this normalisation.
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] for a normalised force of a surface without rms height.
-    pub fn load(&self, value: f64, scales: &Scales) -> contact_model::Result<Load> {
+    pub fn load(&self, value: f64, normalisation: &Normalisation) -> contact_model::Result<Load> {
         Ok(match self.prescribed {
             Prescribed::Force => Load::Force(value),
-            Prescribed::ForceBar => Load::Force(scales.force(value)?),
-            Prescribed::MeanPressure => Load::Force(value * scales.side * scales.side),
+            Prescribed::ForceBar => Load::Force(normalisation.force(value)?),
+            Prescribed::MeanPressure => Load::Force(value * normalisation.side * normalisation.side),
             Prescribed::Approach => Load::Approach(value),
             Prescribed::MeanGap => Load::MeanGap(value),
         })

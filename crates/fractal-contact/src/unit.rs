@@ -129,18 +129,18 @@ impl Unit {
         result: &mut UnitResult,
     ) -> Result<()> {
         let Request::Loads(loads) = &scene.request else { return Ok(()) };
-        let scales = contact.scales();
+        let normalisation = contact.normalisation();
         for (index, &asked) in loads.values.iter().enumerate() {
             let mut state = State {
                 model: self.numerics(scene).name(),
                 surface: self.surface,
                 index,
                 asked,
-                scales: Some(scales),
+                normalisation: Some(normalisation),
                 ..State::default()
             };
             let solve = |contact: &mut dyn contact_model::PreparedContact| {
-                let load = loads.load(asked, &scales)?;
+                let load = loads.load(asked, &normalisation)?;
                 let found = contact.solve_until(load, stop)?;
                 let gap = scene.asked.mean_gap.then(|| contact.mean_gap(load)).transpose()?;
                 Ok((found, gap))
@@ -185,7 +185,7 @@ impl Unit {
                 surface: self.surface,
                 index,
                 time: Some(step.time),
-                scales: Some(contact.scales()),
+                normalisation: Some(contact.normalisation()),
                 ..State::default()
             };
             let refused = match contact.advance_until(*step, stop) {

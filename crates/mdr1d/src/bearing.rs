@@ -1,6 +1,6 @@
 //! A line on independent springs: force, approach and stiffness at any load, exactly.
 
-use contact_model::{Error, Line, Load, Result, Units};
+use contact_model::{Error, Line, Load, Nondimensionalisation, Result};
 
 /// Elements per bin: small enough that sorting one bin costs microseconds, large enough that the bins stay in cache.
 const ELEMENTS_PER_BIN: usize = 512;
@@ -136,23 +136,23 @@ impl Bearing {
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn press(&mut self, load: Load, modulus: f64) -> Result<Support> {
-        let units = Units::new(modulus, self.element, 1.0)?;
+        let nondimensional = Nondimensionalisation::new(modulus, self.element, 1.0)?;
         let (force, approach, elements) = match load.validated()? {
             Load::Approach(d) => {
                 let (sum, elements) = self.at_approach(d);
-                (units.force(sum)?, d, elements)
+                (nondimensional.force(sum)?, d, elements)
             }
             Load::Force(force) => {
-                let sum = units.force_in(force);
+                let sum = nondimensional.force_in(force);
                 if force > 0.0 && sum <= 0.0 {
                     return Err(Error::domain("approach", 0.0, "a number within the range of f64"));
                 }
                 let (approach, elements) = self.at_sum(sum);
-                (force, units.approach(approach)?, elements)
+                (force, nondimensional.approach(approach)?, elements)
             }
             _ => return Err(Error::unsupported("mdr1d", format!("the load {load:?}"))),
         };
-        let stiffness = units.stiffness(elements as f64)?;
+        let stiffness = nondimensional.stiffness(elements as f64)?;
         Ok(Support { force, approach, stiffness, elements })
     }
 

@@ -10,8 +10,8 @@ use crate::relaxation::{Relaxation, check_pair};
 use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
-    ContactModel, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Outputs, Result,
-    Rheology, Scales, Scene, Source, Step, Stop, Tangential, TangentialState, never,
+    ContactModel, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Normalisation,
+    Outputs, Result, Rheology, Scene, Source, Step, Stop, Tangential, TangentialState, never,
 };
 use std::sync::Arc;
 
@@ -192,8 +192,8 @@ struct Prepared {
 }
 
 impl History for Prepared {
-    fn scales(&self) -> Scales {
-        self.normal.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normal.normalisation
     }
 
     fn advance(&mut self, step: Step) -> Result<HistoryState> {
@@ -235,17 +235,17 @@ fn slip(
     let (state, node) = normal.solve(step.normal, stop)?;
     normal.reach(node, springs.approach() <= 0.0, stop)?;
     let springs = springs.on(Arc::clone(&normal.table));
-    let units = normal.units;
+    let nondimensional = normal.nondimensional;
     // What the table makes of M's force: 1 at a node, and where it is not, forces follow M.
     let own = springs.normal_force(node.approach);
     let ratio = if own > 0.0 { node.force / own } else { 1.0 };
     let next = match step.tangential {
         Tangential::Force(force) => {
-            let scaled = units.force_in(force.abs()).copysign(force);
+            let scaled = nondimensional.force_in(force.abs()).copysign(force);
             let held = springs.held(node.approach, coefficient * own, scaled / ratio);
             held.ok_or_else(|| slips(force, coefficient * state.force))?
         }
-        Tangential::Displacement(u) => springs.moved(node.approach, units.length_in(u)),
+        Tangential::Displacement(u) => springs.moved(node.approach, nondimensional.length_in(u)),
         other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
     };
     let tangential = TangentialState {
@@ -255,16 +255,16 @@ fn slip(
         },
         displacement: match step.tangential {
             Tangential::Displacement(u) => u,
-            _ => units.approach(next.displacement().abs())?.copysign(next.displacement()),
+            _ => nondimensional.approach(next.displacement().abs())?.copysign(next.displacement()),
         },
-        stick_radius: Some(units.approach(next.stick_radius())?),
+        stick_radius: Some(nondimensional.approach(next.stick_radius())?),
         // E* L^3: a force times a length.
-        dissipated: units.approach(units.force(next.dissipated())?)?,
+        dissipated: nondimensional.approach(nondimensional.force(next.dissipated())?)?,
     };
     let state = HistoryState {
         time: step.time,
         normal: normal.reported(state, node.approach),
-        contact_radius: Some(units.approach(node.radius)?),
+        contact_radius: Some(nondimensional.approach(node.radius)?),
         tangential: Some(tangential),
     };
     Ok((next, state))
@@ -281,7 +281,7 @@ fn relax(
         return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
     }
     let fresh = relaxation.at.contact.approach <= 0.0;
-    let units = normal.units;
+    let nondimensional = normal.nondimensional;
     let mut solved = None;
     let mut press = |load: Load| {
         let (state, node) = normal.solve(load, stop)?;
@@ -291,12 +291,12 @@ fn relax(
         Ok((RoundContact { force, approach, radius }, Arc::clone(&normal.table)))
     };
     let at = match step.normal {
-        Load::Force(force) => relaxation.by_force(step.time, units.force_in(force), |load| {
-            Ok(press(Load::Force(units.force(load)?))?.0)
+        Load::Force(force) => relaxation.by_force(step.time, nondimensional.force_in(force), |load| {
+            Ok(press(Load::Force(nondimensional.force(load)?))?.0)
         })?,
         Load::Approach(approach) => {
-            relaxation.by_approach(step.time, units.approach_in(approach), |approach| {
-                press(Load::Approach(units.approach(approach)?))
+            relaxation.by_approach(step.time, nondimensional.approach_in(approach), |approach| {
+                press(Load::Approach(nondimensional.approach(approach)?))
             })?
         }
         other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
@@ -311,15 +311,15 @@ fn relax(
     }
     state.force = match step.normal {
         Load::Force(force) => force,
-        _ => units.force(at.memory.force)?,
+        _ => nondimensional.force(at.memory.force)?,
     };
     state.approach = Some(match step.normal {
         Load::Approach(approach) => approach,
-        _ => units.approach(at.contact.approach)?,
+        _ => nondimensional.approach(at.contact.approach)?,
     });
     let certificate = &mut state.report.certificate;
     certificate.load_error = certificate.load_error.max(at.residual);
-    let radius = units.approach(at.contact.radius)?;
+    let radius = nondimensional.approach(at.contact.radius)?;
     let state = HistoryState {
         time: step.time,
         normal: normal.reported(state, at.contact.approach),

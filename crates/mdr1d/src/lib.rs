@@ -25,7 +25,7 @@
 //! is `{z < d}`: an element that touches without force is outside, and `F = 0` means `d = 0` and `k = 0`
 //! (with adhesion it means the adhered contact). A line stands for a square
 //! of side L and has the length `L_1D = 2 L / sqrt(pi)`; `F_bar` and `k_bar` are counted with that L and with the line's own
-//! measured rms height ([`contact_model::Scales`]).
+//! measured rms height ([`contact_model::Normalisation`]).
 //!
 //! # Accuracy and speed
 //!

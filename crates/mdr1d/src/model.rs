@@ -4,8 +4,8 @@ use crate::adhesion::{Adhesive, Failure};
 use crate::axisymmetric::{Profile, RoundContact, check_radius};
 use crate::bearing::Bearing;
 use contact_model::{
-    Adhesion, ContactModel, ContactState, Effects, Error, Line, Load, Outputs, PreparedContact, Result,
-    Scales, Scene, SelfAffine, SolveReport, Source, Stop, Surface, Units,
+    Adhesion, ContactModel, ContactState, Effects, Error, Line, Load, Nondimensionalisation, Normalisation,
+    Outputs, PreparedContact, Result, Scene, SelfAffine, SolveReport, Source, Stop, Surface,
 };
 use std::sync::{Arc, Mutex};
 use surface_gen::LineGenerator;
@@ -76,10 +76,10 @@ impl ContactModel for Mdr1d {
         }
         let (side, modulus) = (scene.surface.side(), scene.modulus);
         if let Some(profile) = Profile::new(&scene.surface)? {
-            let units = Units::new(modulus, side, side)?;
-            let scales = Scales { modulus, side, height: None };
+            let nondimensional = Nondimensionalisation::new(modulus, side, side)?;
+            let normalisation = Normalisation { modulus, side, height: None };
             let adhesive = adhesive(profile, scene)?;
-            return Ok(Box::new(Body { profile, adhesive, units, scales, outputs }));
+            return Ok(Box::new(Body { profile, adhesive, nondimensional, normalisation, outputs }));
         }
         if scene.effects.adhesion != Adhesion::Off {
             let what = format!(
@@ -177,7 +177,7 @@ impl ContactModel for Ensemble {
 /// A rough line.
 struct Rough {
     bearing: Bearing,
-    scales: Scales,
+    normalisation: Normalisation,
     outputs: Outputs,
     /// Where its memory goes in the end.
     home: Option<Arc<Mutex<Vec<Bearing>>>>,
@@ -186,8 +186,8 @@ struct Rough {
 impl Rough {
     fn new(bearing: Bearing, line: &Line, side: f64, modulus: f64, outputs: Outputs) -> Self {
         let height = surface_gen::rms_height(line.heights());
-        let scales = Scales { modulus, side, height: Some(height) };
-        Self { bearing, scales, outputs, home: None }
+        let normalisation = Normalisation { modulus, side, height: Some(height) };
+        Self { bearing, normalisation, outputs, home: None }
     }
 }
 
@@ -200,15 +200,15 @@ impl Drop for Rough {
 }
 
 impl PreparedContact for Rough {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         if stop() {
             return Err(Error::Stopped { best: None });
         }
-        let support = self.bearing.press(load, self.scales.modulus)?;
+        let support = self.bearing.press(load, self.normalisation.modulus)?;
         let mut report =
             SolveReport::exact(format!("order statistics of {} elements", self.bearing.elements()));
         report.contact_cells = Some(support.elements);
@@ -223,7 +223,7 @@ impl PreparedContact for Rough {
             fields: None,
             report,
         }
-        .completed(&self.outputs, self.scales.modulus)
+        .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 
@@ -248,8 +248,8 @@ fn adhesive(profile: Profile, scene: &Scene) -> Result<Option<Adhesive>> {
 struct Body {
     profile: Profile,
     adhesive: Option<Adhesive>,
-    units: Units,
-    scales: Scales,
+    nondimensional: Nondimensionalisation,
+    normalisation: Normalisation,
     outputs: Outputs,
 }
 
@@ -257,9 +257,11 @@ impl Body {
     /// The state under a load >= 0, and whether it has to be a contact.
     fn press(&self, load: Load) -> Result<(RoundContact, bool)> {
         match load.validated()? {
-            Load::Force(force) => Ok((self.profile.at_force(self.units.force_in(force)), force > 0.0)),
+            Load::Force(force) => {
+                Ok((self.profile.at_force(self.nondimensional.force_in(force)), force > 0.0))
+            }
             Load::Approach(approach) => {
-                Ok((self.profile.at_approach(self.units.approach_in(approach)), approach > 0.0))
+                Ok((self.profile.at_approach(self.nondimensional.approach_in(approach)), approach > 0.0))
             }
             _ => Err(Error::unsupported(NAME, format!("the load {load:?}"))),
         }
@@ -267,20 +269,20 @@ impl Body {
 
     /// The adhered state under a load of either sign, and whether it has to be a contact.
     fn adhere(&self, adhesive: Adhesive, load: Load) -> Result<(RoundContact, bool)> {
-        let units = self.units;
+        let nondimensional = self.nondimensional;
         let (found, name, value, smallest): (_, _, _, &dyn Fn(f64) -> Result<f64>) =
             match load.validated_with_adhesion()? {
                 Load::Force(force) => (
-                    adhesive.at_force(units.force_in(force.abs()).copysign(force)),
+                    adhesive.at_force(nondimensional.force_in(force.abs()).copysign(force)),
                     "force (the contact pulls off under a prescribed force)",
                     force,
-                    &|least| units.force(least),
+                    &|least| nondimensional.force(least),
                 ),
                 Load::Approach(approach) => (
-                    adhesive.at_approach(units.approach_in(approach)),
+                    adhesive.at_approach(nondimensional.approach_in(approach)),
                     "approach (the contact pulls off under a prescribed approach)",
                     approach,
-                    &|least| units.approach(least),
+                    &|least| nondimensional.approach(least),
                 ),
                 _ => return Err(Error::unsupported(NAME, format!("the load {load:?}"))),
             };
@@ -298,20 +300,20 @@ impl Body {
 }
 
 impl PreparedContact for Body {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         if stop() {
             return Err(Error::Stopped { best: None });
         }
-        let units = self.units;
+        let nondimensional = self.nondimensional;
         let (contact, touches) = match self.adhesive {
             Some(adhesive) => self.adhere(adhesive, load)?,
             None => self.press(load)?,
         };
-        check_radius(contact.radius, self.scales.side)?;
+        check_radius(contact.radius, self.normalisation.side)?;
         if touches && contact.radius <= 0.0 {
             return Err(out_of_f64(contact.radius));
         }
@@ -319,14 +321,17 @@ impl PreparedContact for Body {
         if touches && self.adhesive.is_none() && (contact.approach <= 0.0 || contact.force <= 0.0) {
             return Err(out_of_f64(contact.radius));
         }
-        let approach = units.approach(contact.approach.abs())?.copysign(contact.approach);
+        let approach = nondimensional.approach(contact.approach.abs())?.copysign(contact.approach);
         let force = match load {
             Load::Force(force) => force,
-            _ => units.force(contact.force.abs())?.copysign(contact.force),
+            _ => nondimensional.force(contact.force.abs())?.copysign(contact.force),
         };
-        let stiffness =
-            self.outputs.needs_stiffness().then(|| units.stiffness(contact.stiffness())).transpose()?;
-        let area = self.outputs.area.then(|| units.area(contact.area())).transpose()?;
+        let stiffness = self
+            .outputs
+            .needs_stiffness()
+            .then(|| nondimensional.stiffness(contact.stiffness()))
+            .transpose()?;
+        let area = self.outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("closed form of the profile g(x)");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
         ContactState {
@@ -339,7 +344,7 @@ impl PreparedContact for Body {
             fields: None,
             report,
         }
-        .completed(&self.outputs, self.scales.modulus)
+        .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 

@@ -3,8 +3,8 @@
 use crate::axisymmetric::{Profile, check_radius};
 use crate::slip::Springs;
 use contact_model::{
-    ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Outputs, Result,
-    Scales, Scene, SolveReport, Source, Step, Tangential, TangentialState, Units,
+    ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Nondimensionalisation,
+    Normalisation, Outputs, Result, Scene, SolveReport, Source, Step, Tangential, TangentialState,
 };
 
 const NAME: &str = "mdr1d_partial_slip";
@@ -83,8 +83,8 @@ impl HistoryModel for PartialSlip {
         let (side, modulus) = (scene.surface.side(), scene.modulus);
         Ok(Box::new(Prepared {
             profile,
-            units: Units::new(modulus, side, side)?,
-            scales: Scales { modulus, side, height: None },
+            nondimensional: Nondimensionalisation::new(modulus, side, side)?,
+            normalisation: Normalisation { modulus, side, height: None },
             outputs: scene.outputs,
             coefficient,
             time: 0.0,
@@ -95,8 +95,8 @@ impl HistoryModel for PartialSlip {
 
 struct Prepared {
     profile: Profile,
-    units: Units,
-    scales: Scales,
+    nondimensional: Nondimensionalisation,
+    normalisation: Normalisation,
     outputs: Outputs,
     coefficient: f64,
     time: f64,
@@ -114,47 +114,54 @@ impl Prepared {
     }
 
     fn force(&self, scaled: f64) -> Result<f64> {
-        Ok(self.units.force(scaled.abs())?.copysign(scaled))
+        Ok(self.nondimensional.force(scaled.abs())?.copysign(scaled))
     }
 }
 
 impl History for Prepared {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn advance(&mut self, step: Step) -> Result<HistoryState> {
         let step = step.validated(self.time)?;
-        let units = self.units;
+        let nondimensional = self.nondimensional;
         let (contact, loaded) = match step.normal {
-            Load::Force(force) => (self.profile.at_force(units.force_in(force)), force > 0.0),
+            Load::Force(force) => (self.profile.at_force(nondimensional.force_in(force)), force > 0.0),
             Load::Approach(approach) => {
-                (self.profile.at_approach(units.approach_in(approach)), approach > 0.0)
+                (self.profile.at_approach(nondimensional.approach_in(approach)), approach > 0.0)
             }
             other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
         };
-        check_radius(contact.radius, self.scales.side)?;
+        check_radius(contact.radius, self.normalisation.side)?;
         if loaded && (contact.radius <= 0.0 || contact.approach <= 0.0 || contact.force <= 0.0) {
             let expected = "a number within the range of f64";
             return Err(Error::domain("contact radius over side", contact.radius, expected));
         }
         let springs = match step.tangential {
             Tangential::Force(force) => {
-                let scaled = units.force_in(force.abs()).copysign(force);
+                let scaled = nondimensional.force_in(force.abs()).copysign(force);
                 self.reach(contact.approach, contact.force, scaled)?
             }
-            Tangential::Displacement(u) => self.springs.moved(contact.approach, units.length_in(u)),
+            Tangential::Displacement(u) => self.springs.moved(contact.approach, nondimensional.length_in(u)),
             other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
         };
-        let radius = units.approach(contact.radius)?;
-        let stiffness =
-            self.outputs.needs_stiffness().then(|| units.stiffness(contact.stiffness())).transpose()?;
-        let area = self.outputs.area.then(|| units.area(contact.area())).transpose()?;
+        let radius = nondimensional.approach(contact.radius)?;
+        let stiffness = self
+            .outputs
+            .needs_stiffness()
+            .then(|| nondimensional.stiffness(contact.stiffness()))
+            .transpose()?;
+        let area = self.outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("springs of the profile g(x), a polygon in g");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
         let normal = ContactState {
-            force: if let Load::Force(force) = step.normal { force } else { units.force(contact.force)? },
-            approach: Some(units.approach(contact.approach)?),
+            force: if let Load::Force(force) = step.normal {
+                force
+            } else {
+                nondimensional.force(contact.force)?
+            },
+            approach: Some(nondimensional.approach(contact.approach)?),
             stiffness,
             area,
             conductance: None,
@@ -162,7 +169,7 @@ impl History for Prepared {
             fields: None,
             report,
         }
-        .completed(&self.outputs, self.scales.modulus)?;
+        .completed(&self.outputs, self.normalisation.modulus)?;
         let displacement = springs.displacement();
         let tangential = TangentialState {
             force: match step.tangential {
@@ -171,11 +178,11 @@ impl History for Prepared {
             },
             displacement: match step.tangential {
                 Tangential::Displacement(u) => u,
-                _ => units.approach(displacement.abs())?.copysign(displacement),
+                _ => nondimensional.approach(displacement.abs())?.copysign(displacement),
             },
-            stick_radius: Some(units.approach(springs.stick_radius())?),
+            stick_radius: Some(nondimensional.approach(springs.stick_radius())?),
             // E* L^3: a force times a length.
-            dissipated: units.approach(units.force(springs.dissipated())?)?,
+            dissipated: nondimensional.approach(nondimensional.force(springs.dissipated())?)?,
         };
         (self.time, self.springs) = (step.time, springs);
         Ok(HistoryState {

@@ -4,8 +4,8 @@ use crate::axisymmetric::{Profile, check_radius};
 use crate::material::Material;
 use crate::relaxation::{Relaxation, check_pair};
 use contact_model::{
-    ContactState, Effects, Error, History, HistoryModel, HistoryState, Load, Outputs, Result, Rheology,
-    Scales, Scene, SolveReport, Source, Step, Tangential, Units,
+    ContactState, Effects, Error, History, HistoryModel, HistoryState, Load, Nondimensionalisation,
+    Normalisation, Outputs, Result, Rheology, Scene, SolveReport, Source, Step, Tangential,
 };
 
 const NAME: &str = "mdr1d_viscoelastic";
@@ -88,8 +88,8 @@ impl HistoryModel for Viscoelastic {
         let (side, modulus) = (scene.surface.side(), scene.modulus);
         Ok(Box::new(Prepared {
             profile,
-            units: Units::new(modulus, side, side)?,
-            scales: Scales { modulus, side, height: None },
+            nondimensional: Nondimensionalisation::new(modulus, side, side)?,
+            normalisation: Normalisation { modulus, side, height: None },
             outputs: scene.outputs,
             relaxation: Relaxation::new(material, NAME),
         }))
@@ -98,15 +98,15 @@ impl HistoryModel for Viscoelastic {
 
 struct Prepared {
     profile: Profile,
-    units: Units,
-    scales: Scales,
+    nondimensional: Nondimensionalisation,
+    normalisation: Normalisation,
     outputs: Outputs,
     relaxation: Relaxation,
 }
 
 impl History for Prepared {
-    fn scales(&self) -> Scales {
-        self.scales
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
     }
 
     fn advance(&mut self, step: Step) -> Result<HistoryState> {
@@ -114,42 +114,42 @@ impl History for Prepared {
         if step.tangential != Tangential::Force(0.0) {
             return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
         }
-        let (units, profile) = (self.units, self.profile);
+        let (nondimensional, profile) = (self.nondimensional, self.profile);
         let at = match step.normal {
             Load::Force(force) => {
                 let press = |force| Ok(profile.at_force(force));
-                self.relaxation.by_force(step.time, units.force_in(force), press)?
+                self.relaxation.by_force(step.time, nondimensional.force_in(force), press)?
             }
             Load::Approach(approach) => {
                 let press = |approach| Ok((profile.at_approach(approach), profile));
-                self.relaxation.by_approach(step.time, units.approach_in(approach), press)?
+                self.relaxation.by_approach(step.time, nondimensional.approach_in(approach), press)?
             }
             other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
         };
-        check_radius(at.contact.radius, self.scales.side)?;
+        check_radius(at.contact.radius, self.normalisation.side)?;
         for value in [at.memory.force, at.memory.load, at.contact.approach] {
             if !value.is_finite() {
                 return Err(Error::domain("state in units of side and modulus", value, "a finite number"));
             }
         }
-        let radius = units.approach(at.contact.radius)?;
+        let radius = nondimensional.approach(at.contact.radius)?;
         let mut report = SolveReport::exact("Boltzmann's integral over the profile g(x)");
         report.certificate.load_error = at.residual;
         let normal = ContactState {
             force: match step.normal {
                 Load::Force(force) => force,
-                _ => units.force(at.memory.force)?,
+                _ => nondimensional.force(at.memory.force)?,
             },
             approach: Some(match step.normal {
                 Load::Approach(approach) => approach,
-                _ => units.approach(at.contact.approach)?,
+                _ => nondimensional.approach(at.contact.approach)?,
             }),
             stiffness: None,
-            area: self.outputs.area.then(|| units.area(at.contact.area())).transpose()?,
+            area: self.outputs.area.then(|| nondimensional.area(at.contact.area())).transpose()?,
             conductance: self
                 .outputs
                 .conductance
-                .of(units.stiffness(at.contact.stiffness())?, self.scales.modulus)?,
+                .of(nondimensional.stiffness(at.contact.stiffness())?, self.normalisation.modulus)?,
             patches: None,
             fields: None,
             report,

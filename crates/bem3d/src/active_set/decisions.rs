@@ -11,7 +11,7 @@ const TIGHT: Limits = Limits { tolerance: 1e-6, height: Some(1.0), rounds: 100, 
 
 /// A complete look with this certificate at an approach of 1.
 fn seen(error: f64) -> Seen {
-    let evidence = Evidence { frank_wolfe: error, ..Evidence::default() };
+    let evidence = Evidence { duality_gap: error, ..Evidence::default() };
     Seen { evidence, complete: true, d: 1.0, factored: false }
 }
 
@@ -102,7 +102,7 @@ fn the_better_of_best_and_last_is_returned() {
         assert_relative_eq!(solved.d, expected);
     }
     // What has converged is returned although an unsettled look before it had a smaller certificate.
-    let evidence = Evidence { frank_wolfe: 1e-8, deepest: 1.0, ..Evidence::default() };
+    let evidence = Evidence { duality_gap: 1e-8, deepest: 1.0, ..Evidence::default() };
     let unsettled = Seen { evidence, factored: true, ..at(1.0, 0.0) };
     let (solved, asked) = run(&[unsettled, at(2.0, 1e-7)], limits);
     assert_eq!((solved.status, asked.kept), (Status::Converged, vec![0]));

@@ -89,7 +89,7 @@ fn a_look_measures_what_plain_sums_measure() {
             assert!(seen.complete && !seen.factored);
             assert_relative_eq!(seen.d, d, max_relative = DOUBLE);
             for (found, expected) in [
-                (seen.evidence.frank_wolfe, expected.frank_wolfe),
+                (seen.evidence.duality_gap, expected.duality_gap),
                 (seen.evidence.penetration, expected.penetration),
                 (seen.evidence.complementarity, expected.complementarity),
                 (seen.evidence.deepest, expected.deepest),

@@ -215,7 +215,7 @@ impl Ground for Filled<'_> {
         self.residual = if count > 0 { d * f64::sqrt(square / count as f64) } else { 0.0 };
         let deepest = (-lowest).max(0.0);
         let evidence = Evidence {
-            frank_wolfe: duality / s,
+            duality_gap: duality / s,
             penetration: deepest / s,
             complementarity: weighted / s,
             deepest,

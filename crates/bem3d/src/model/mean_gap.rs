@@ -31,7 +31,7 @@ impl Prepared {
     /// falls about linearly with ln F. It is met to the tolerance, in rms heights.
     pub(super) fn press_to(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
         if asked >= self.mean {
-            return self.untouched().completed(&self.outputs, self.scales.modulus);
+            return self.untouched().completed(&self.outputs, self.normalisation.modulus);
         }
         if asked <= 0.0 {
             let name = "mean gap (at 0 every force from that of full contact on would do)".into();
@@ -39,7 +39,7 @@ impl Prepared {
                 name,
                 value: 0.0,
                 min: 0.0,
-                max: self.units.approach(self.mean)?,
+                max: self.nondimensional.approach(self.mean)?,
             });
         }
         self.problem.operators.applications = 0;
@@ -82,7 +82,7 @@ impl Prepared {
             };
         }
         let name = "mean gap".into();
-        let asked = self.units.approach(asked)?;
-        Err(Error::OutOfRange { name, value: asked, min: 0.0, max: self.units.approach(self.mean)? })
+        let asked = self.nondimensional.approach(asked)?;
+        Err(Error::OutOfRange { name, value: asked, min: 0.0, max: self.nondimensional.approach(self.mean)? })
     }
 }

@@ -137,11 +137,11 @@ pub(crate) fn measure(
             Err(contact_model::Error::NotConverged { best }) => *best,
             other => other?,
         };
-        Ok((state, contact.scales()))
+        Ok((state, contact.normalisation()))
     })();
     let seconds = cpu_seconds().zip(start).map(|(end, start)| end - start);
     let bytes = peak_memory().zip(before).map(|(peak, before)| peak.saturating_sub(before));
-    let (state, scales) = match found {
+    let (state, normalisation) = match found {
         Err(contact_model::Error::OutOfRange { .. } | contact_model::Error::Unsupported { .. }) => {
             return Ok(None);
         }
@@ -149,9 +149,9 @@ pub(crate) fn measure(
     };
     let ContactState { approach, stiffness, area, fields, report, .. } = state;
     Ok(Some(Answer {
-        stiffness: stiffness.map(|k| k / (scales.modulus * scales.side)),
+        stiffness: stiffness.map(|k| k / (normalisation.modulus * normalisation.side)),
         approach,
-        area: area.map(|a| scales.contact_fraction(a)),
+        area: area.map(|a| normalisation.contact_fraction(a)),
         pressure: fields.and_then(|f| f.pressure),
         contact_cells: report.contact_cells,
         cpu_seconds: seconds,

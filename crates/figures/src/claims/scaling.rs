@@ -75,7 +75,7 @@ fn vertical(model: &dyn ContactModel) -> Result<Vec<Claim>> {
             None,
             ALLOWED,
             format!(
-                "the strict scaling before Eq. 8 (heights x {c}, E* x {modulus}; d scales as the heights); allowed: ten times the solver's tolerance"
+                "the strict scaling before Eq. 8 (heights x {c}, E* x {modulus}; d normalisation as the heights); allowed: ten times the solver's tolerance"
             ),
         ),
         Claim::compare(

@@ -250,11 +250,11 @@ fn one(study: &TwoCases, case: Case, seed: u64, stop: Stop<'_>) -> Result<Solves
     let model = Bem3d { cells: study.cells, tolerance: study.tolerance, ..Bem3d::default() };
     let what = |force: f64| format!("bem3d ({}, seed {seed}) at F_bar = {force:?}", case.name());
     let mut contact = model.prepare(&scene, seed).map_err(Error::model(what(0.0)))?;
-    let scales = contact.scales();
+    let normalisation = contact.normalisation();
     let forces = study.forces.values().iter();
     forces
         .map(|&force_bar| {
-            let load = Load::Force(scales.force(force_bar).map_err(Error::model(what(force_bar)))?);
+            let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what(force_bar)))?);
             let state = match contact.solve_until(load, stop) {
                 Ok(state) => state,
                 Err(contact_model::Error::NotConverged { .. }) => return Ok(Solve::NotConverged),
@@ -262,9 +262,10 @@ fn one(study: &TwoCases, case: Case, seed: u64, stop: Stop<'_>) -> Result<Solves
             };
             let contact_cells = state.report.contact_cells;
             Ok(match state.stiffness.zip(state.area) {
-                Some((k, area)) => {
-                    Solve::Sample(Sample { stiffness_bar: scales.stiffness_bar(k), contact_cells }, area)
-                }
+                Some((k, area)) => Solve::Sample(
+                    Sample { stiffness_bar: normalisation.stiffness_bar(k), contact_cells },
+                    area,
+                ),
                 None => Solve::FullContact,
             })
         })
@@ -298,10 +299,10 @@ fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curv
     scene.outputs.area = true;
     let what = || format!("{} ({})", model.name(), case.name());
     let mut contact = model.prepare(&scene, 0).map_err(Error::model(what()))?;
-    let scales = contact.scales();
+    let normalisation = contact.normalisation();
     let mut points = Vec::new();
     for &force_bar in study.forces.values() {
-        let load = Load::Force(scales.force(force_bar).map_err(Error::model(what()))?);
+        let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what()))?);
         let state = match contact.solve(load) {
             Ok(state) => state,
             Err(contact_model::Error::OutOfRange { .. }) => continue,
@@ -310,7 +311,7 @@ fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curv
         let Some(k) = state.stiffness else { continue };
         points.push(Point {
             force_bar,
-            stiffness_bar: scales.stiffness_bar(k),
+            stiffness_bar: normalisation.stiffness_bar(k),
             standard_error: None,
             surfaces: 0,
             left_out: 0,

@@ -200,7 +200,10 @@ fn extreme_units() {
         let mut bearing = Bearing::new(&line);
         let s = bearing.press(Load::Approach(0.3 * vertical), modulus).unwrap();
         // Scaling by a power of ten rounds every height: a few units in the last place of the relief, over d.
-        let expected = Units::new(modulus, horizontal, vertical).unwrap().force(reference.force).unwrap();
+        let expected = Nondimensionalisation::new(modulus, horizontal, vertical)
+            .unwrap()
+            .force(reference.force)
+            .unwrap();
         assert_relative_eq!(s.force, expected, max_relative = 1e-13);
         assert_eq!(s.elements, reference.elements);
         let back = bearing.press(Load::Force(s.force), modulus).unwrap();

@@ -2,7 +2,10 @@
 
 use super::NAME;
 use crate::tabulated::{Node, Tabulated};
-use contact_model::{ContactState, Error, Load, Outputs, PreparedContact, Result, Scales, Stop, Units, Work};
+use contact_model::{
+    ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Stop,
+    Work,
+};
 use std::sync::Arc;
 
 /// The elastic contact of M and the profile that its states give; lengths in L, forces in E* L^2.
@@ -10,9 +13,9 @@ pub(super) struct Normal {
     contact: Box<dyn PreparedContact>,
     /// The same with fields and patches, for the steps themselves.
     full: Option<Box<dyn PreparedContact>>,
-    pub scales: Scales,
+    pub normalisation: Normalisation,
     outputs: Outputs,
-    pub units: Units,
+    pub nondimensional: Nondimensionalisation,
     /// Rms height, 0 without one.
     height: f64,
     per_decade: f64,
@@ -56,15 +59,16 @@ impl Normal {
         per_decade: f64,
         span: i32,
     ) -> Result<Self> {
-        let scales = contact.scales();
-        let units = Units::new(scales.modulus, scales.side, scales.side)?;
+        let normalisation = contact.normalisation();
+        let nondimensional =
+            Nondimensionalisation::new(normalisation.modulus, normalisation.side, normalisation.side)?;
         Ok(Self {
             contact,
             full,
-            scales,
+            normalisation,
             outputs,
-            units,
-            height: scales.height.map_or(0.0, |height| units.approach_in(height)),
+            nondimensional,
+            height: normalisation.height.map_or(0.0, |height| nondimensional.approach_in(height)),
             per_decade,
             span,
             lowest: 0,
@@ -92,10 +96,13 @@ impl Normal {
         let (Some(approach), Some(stiffness)) = (state.approach, state.stiffness) else {
             return Err(Error::unsupported(NAME, "a model without approach and stiffness"));
         };
-        let units = self.units;
-        let unit = units.stiffness(1.0)?;
-        let (approach, force, radius) =
-            (units.approach_in(approach), units.force_in(state.force), 0.5 * (stiffness / unit));
+        let nondimensional = self.nondimensional;
+        let unit = nondimensional.stiffness(1.0)?;
+        let (approach, force, radius) = (
+            nondimensional.approach_in(approach),
+            nondimensional.force_in(state.force),
+            0.5 * (stiffness / unit),
+        );
         if force > 0.0 && !(approach > 0.0 && radius > 0.0 && radius.is_finite() && approach.is_finite()) {
             return Err(Error::domain("approach over side", approach, "a number within the range of f64"));
         }
@@ -145,7 +152,7 @@ impl Normal {
         let mut nodes = Vec::new();
         for place in from..=to {
             let approach = unit * 10.0_f64.powf(f64::from(place) / self.per_decade);
-            let load = Load::Approach(self.units.approach(approach)?);
+            let load = Load::Approach(self.nondimensional.approach(approach)?);
             let state = self.contact.solve_until(load, stop)?;
             self.spent.add(&state);
             let node = self.node(&state)?;
@@ -173,6 +180,6 @@ impl Normal {
     }
 
     pub fn signed(&self, force: f64) -> Result<f64> {
-        Ok(self.units.force(force.abs())?.copysign(force))
+        Ok(self.nondimensional.force(force.abs())?.copysign(force))
     }
 }

@@ -141,9 +141,9 @@ fn the_normal_part_is_the_models_own() {
     let elastic = Scene { effects: Effects::default(), ..scene.clone() };
     let mut own = model.prepare(&elastic, 5).unwrap();
     let mut contact = Equivalent::new(model).prepare(&scene, 5).unwrap();
-    assert_eq!(own.scales(), contact.scales());
+    assert_eq!(own.normalisation(), contact.normalisation());
     for normal in [1e-3, 4e-3, 2e-3, 0.0, 1e-2] {
-        let normal = contact.scales().force(normal).unwrap();
+        let normal = contact.normalisation().force(normal).unwrap();
         let state = contact.advance(step(normal, Tangential::Force(0.3 * MU * normal))).unwrap().normal;
         let there = own.solve(Load::Force(normal)).unwrap();
         assert_eq!(
@@ -161,7 +161,7 @@ fn limits_of_friction_on_a_rough_surface() {
         let mut scene = sliding(rough());
         scene.effects.friction = Friction::Coulomb { coefficient };
         let mut contact = equivalent(16).prepare(&scene, 5).unwrap();
-        let normal = contact.scales().force(0.05).unwrap();
+        let normal = contact.normalisation().force(0.05).unwrap();
         let first = contact.advance(step(normal, Tangential::Force(0.0))).unwrap();
         let then = contact.advance(Step { time: 0.0, normal: Load::Force(normal), tangential });
         (first.normal, then)
@@ -216,8 +216,8 @@ impl ContactModel for Told {
 }
 
 impl PreparedContact for ToldContact {
-    fn scales(&self) -> Scales {
-        Scales { modulus: 1.0, side: 2.0, height: None }
+    fn normalisation(&self) -> Normalisation {
+        Normalisation { modulus: 1.0, side: 2.0, height: None }
     }
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         if stop() {
@@ -316,7 +316,7 @@ fn nodes_are_solved_once() {
 #[test]
 fn growth_in_time_is_checked() {
     let mut contact = equivalent(8).prepare(&creeping(rough(), SOLID), 3).unwrap();
-    let unit = contact.scales().height.unwrap();
+    let unit = contact.normalisation().height.unwrap();
     let state = contact.advance(Step::normal(1.0, Load::Approach(unit))).unwrap();
     let error = contact.advance(Step::normal(2.0, Load::Approach(0.9 * unit))).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { max, .. } if (max - 1.0).abs() < 1e-12), "{error}");
@@ -329,7 +329,7 @@ fn growth_in_time_is_checked() {
     // Creep of a fluid goes on beyond every table that was there before.
     let mut contact =
         equivalent(8).prepare(&creeping(rough(), Rheology::Maxwell { viscosity: 1.0 }), 3).unwrap();
-    let force = contact.scales().force(1e-3).unwrap();
+    let force = contact.normalisation().force(1e-3).unwrap();
     let depths = [0.0, 1.0, 100.0, 1e4]
         .map(|t| contact.advance(Step::normal(t, Load::Force(force))).unwrap().normal.approach.unwrap());
     assert!(depths.windows(2).all(|d| d[1] > d[0]), "{depths:?}");
@@ -364,7 +364,7 @@ fn a_straight_piece_is_the_sum_of_its_parts() {
     // Cut anywhere, a path ends in the same state, to what the table knows between its nodes.
     let run = |cuts: &[f64]| {
         let mut contact = equivalent(16).prepare(&sliding(rough()), 5).unwrap();
-        let unit = contact.scales().height.unwrap();
+        let unit = contact.normalisation().height.unwrap();
         let mut from = [0.0, 0.0];
         for corner in [[1.0, 0.05], [1.0, -0.03], [2.0, 0.06], [0.5, 0.01]] {
             for cut in cuts.iter().chain(&[1.0]) {

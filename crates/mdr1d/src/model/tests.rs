@@ -27,9 +27,9 @@ fn prepare(scene: &Scene, seed: u64) -> Box<dyn PreparedContact> {
 #[test]
 fn a_rough_line_claims_force_approach_and_stiffness() {
     let mut contact = prepare(&scene(rough(2.4)), 1);
-    let scales = contact.scales();
-    assert_relative_eq!(scales.rms_height().unwrap(), 0.1, max_relative = 1e-12);
-    let s = contact.solve(Load::Force(scales.force(0.086).unwrap())).unwrap();
+    let normalisation = contact.normalisation();
+    assert_relative_eq!(normalisation.rms_height().unwrap(), 0.1, max_relative = 1e-12);
+    let s = contact.solve(Load::Force(normalisation.force(0.086).unwrap())).unwrap();
     assert!(s.area.is_none() && s.fields.is_none() && s.approach.is_some());
     let cells = s.report.contact_cells.unwrap();
     assert!(cells > 10 && cells < 1 << 12);
@@ -39,8 +39,8 @@ fn a_rough_line_claims_force_approach_and_stiffness() {
         max_relative = ROUNDING
     );
     // The plateau of the paper's Eq. 18: k_bar = 1.128379 / 1.1419.
-    let s = contact.solve(Load::Force(scales.force(1e3).unwrap())).unwrap();
-    assert_relative_eq!(scales.stiffness_bar(s.stiffness.unwrap()), 0.988_159, max_relative = 1e-6);
+    let s = contact.solve(Load::Force(normalisation.force(1e3).unwrap())).unwrap();
+    assert_relative_eq!(normalisation.stiffness_bar(s.stiffness.unwrap()), 0.988_159, max_relative = 1e-6);
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn bodies_in_three_dimensions() {
         Surface::FlatCircle { radius: 0.2, side },
     ] {
         let mut contact = prepare(&asking_for_area(surface), 0);
-        assert!(contact.scales().height.is_none());
+        assert!(contact.normalisation().height.is_none());
         let s = contact.solve(Load::Force(1e-3)).unwrap();
         let radius = s.stiffness.unwrap() / (2.0 * modulus);
         assert_relative_eq!(s.area.unwrap(), std::f64::consts::PI * radius * radius, max_relative = ROUNDING);
@@ -91,7 +91,7 @@ fn hertz_in_any_units() {
     // F = 1e-3 E* R^2 is a = 0.090856 R, whatever E* and R are.
     for (modulus, radius) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
         let scene = Scene::new(Surface::Sphere { radius, side: radius }, modulus);
-        let force = Units::new(modulus, radius, radius).unwrap().force(1e-3).unwrap();
+        let force = Nondimensionalisation::new(modulus, radius, radius).unwrap().force(1e-3).unwrap();
         let s = prepare(&scene, 0).solve(Load::Force(force)).unwrap();
         assert_relative_eq!(
             s.stiffness.unwrap() / modulus / radius,
@@ -151,7 +151,7 @@ fn an_ensemble_gives_the_same_bits_with_memory_used_before() {
             let [a, b] = [&mut kept, &mut fresh].map(|c| c.solve(Load::Force(force)).unwrap());
             assert_eq!((a.approach, a.stiffness), (b.approach, b.stiffness));
         }
-        assert_eq!(kept.scales(), fresh.scales());
+        assert_eq!(kept.normalisation(), fresh.normalisation());
     }
     // Another surface is none of its own, and an area is refused as ever.
     let other = Scene::new(Surface::SelfAffine(SelfAffine::new(2.0, 1.0, 1.0).unwrap()), 2.0);
@@ -174,8 +174,8 @@ fn adhesion_of_a_sphere_behind_the_trait() {
             2.0 * 0.520_939_707_9,
             max_relative = 1e-9
         );
-        let units = Units::new(modulus, length, length).unwrap();
-        let pull_off = -units.force(0.015 * std::f64::consts::PI).unwrap();
+        let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
+        let pull_off = -nondimensional.force(0.015 * std::f64::consts::PI).unwrap();
         assert!(contact.solve(Load::Force(0.999 * pull_off)).is_ok());
         let e = contact.solve(Load::Force(1.001 * pull_off)).unwrap_err();
         let Error::OutOfRange { min, ref name, .. } = e else { panic!("{e}") };

@@ -116,8 +116,8 @@ fn in_any_units() {
         scene.effects.rheology = SOLID;
         scene.outputs.stiffness = false;
         let mut contact = Viscoelastic.prepare(&scene, 0).unwrap();
-        let units = Units::new(modulus, length, length).unwrap();
-        let force = units.force(1e-3).unwrap();
+        let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
+        let force = nondimensional.force(1e-3).unwrap();
         contact.advance(Step::normal(1.0, Load::Force(force))).unwrap().normal.approach.unwrap() / length
     };
     for (length, modulus) in [(1e-150, 1e150), (1e150, 1e-150), (1e-3, 1e6)] {

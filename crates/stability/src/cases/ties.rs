@@ -79,7 +79,7 @@ fn flat_maps(ledger: &mut Ledger, _: Effort) -> Result<()> {
                 }
             }
             let contact = tight().prepare(&crate::scene(flat), 0)?;
-            ledger.must(contact.scales().force_bar(1.0).is_err(), || "F_bar of a flat map".to_owned());
+            ledger.must(contact.normalisation().force_bar(1.0).is_err(), || "F_bar of a flat map".to_owned());
         }
     }
     Ok(())

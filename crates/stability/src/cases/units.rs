@@ -1,4 +1,4 @@
-//! Units and zeros that a caller may choose.
+//! Nondimensionalisation and zeros that a caller may choose.
 
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, stiffness};
@@ -27,7 +27,7 @@ pub(super) const CASES: [Case; 5] = [
     Case {
         name: "heights of 1e-150 and 1e150",
         why: "forces of 1e-150, products of heights beyond f64",
-        asserted: "F, d, k of the same map in ordinary units, divided",
+        asserted: "F, d, k of the same map in ordinary nondimensional, divided",
         bound: NEUTRAL,
         solve: |ledger, effort| neutral(ledger, effort, &[(1.0, 1.0, 1e-150), (1.0, 1.0, 1e150)]),
     },
@@ -92,9 +92,9 @@ fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-fn neutral(ledger: &mut Ledger, effort: Effort, scales: &[(f64, f64, f64)]) -> Result<()> {
+fn neutral(ledger: &mut Ledger, effort: Effort, normalisation: &[(f64, f64, f64)]) -> Result<()> {
     let here = rough_map(2.4, effort.pick(33, 129), 5)?;
-    for &(modulus, lateral, vertical) in scales {
+    for &(modulus, lateral, vertical) in normalisation {
         let there = stretched(&here, lateral, vertical)?;
         for size in [1e-6, 0.1, 20.0] {
             let force = modulus * lateral * vertical;

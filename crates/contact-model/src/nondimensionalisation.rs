@@ -8,25 +8,25 @@ use crate::error::{Error, Result, positive};
 /// order that neither overflows nor underflows on the way, so a scene in units of 1e-150 or 1e150 loses nothing; only a result
 /// that no `f64` can hold is an error.
 ///
-/// This is arithmetic for solvers. The normalised quantities that are reported (`F_bar`, `k_bar`) belong to [`crate::Scales`].
+/// This is arithmetic for solvers. The normalised quantities that are reported (`F_bar`, `k_bar`) belong to [`crate::Normalisation`].
 ///
 /// ```
-/// use contact_model::Units;
-/// let units = Units::new(1e150, 1e-150, 1e-150)?;
+/// use contact_model::Nondimensionalisation;
+/// let nondimensional = Nondimensionalisation::new(1e150, 1e-150, 1e-150)?;
 /// // A sphere of radius 2 lengths pressed 0.02 deep, solved in numbers near 1: k = 2 a.
 /// let a: f64 = (0.02_f64 * 2.0).sqrt();
-/// assert!((units.stiffness(2.0 * a)? - 0.4).abs() < 1e-15);
-/// assert!(Units::new(1e300, 1e300, 1.0)?.stiffness(1.0).is_err());
+/// assert!((nondimensional.stiffness(2.0 * a)? - 0.4).abs() < 1e-15);
+/// assert!(Nondimensionalisation::new(1e300, 1e300, 1.0)?.stiffness(1.0).is_err());
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Units {
+pub struct Nondimensionalisation {
     modulus: f64,
     length: f64,
     height: f64,
 }
 
-impl Units {
+impl Nondimensionalisation {
     /// Units of modulus, horizontal length and vertical height.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ impl Units {
     /// `value height`, an approach.
     ///
     /// # Errors
-    /// As [`Units::force`].
+    /// As [`Nondimensionalisation::force`].
     pub fn approach(self, value: f64) -> Result<f64> {
         held("approach", value, value * self.height)
     }
@@ -79,7 +79,7 @@ impl Units {
     /// `value E* length`, a stiffness.
     ///
     /// # Errors
-    /// As [`Units::force`].
+    /// As [`Nondimensionalisation::force`].
     pub fn stiffness(self, value: f64) -> Result<f64> {
         held("stiffness", value, product([value, self.modulus, self.length]))
     }
@@ -87,7 +87,7 @@ impl Units {
     /// `value E* height / length`, a pressure.
     ///
     /// # Errors
-    /// As [`Units::force`].
+    /// As [`Nondimensionalisation::force`].
     pub fn pressure(self, value: f64) -> Result<f64> {
         held("pressure", value, product([value, self.modulus, self.height, self.length.recip()]))
     }
@@ -95,7 +95,7 @@ impl Units {
     /// `value length^2`, an area.
     ///
     /// # Errors
-    /// As [`Units::force`].
+    /// As [`Nondimensionalisation::force`].
     pub fn area(self, value: f64) -> Result<f64> {
         held("area", value, product([value, self.length, self.length]))
     }
@@ -140,22 +140,29 @@ mod tests {
         for (modulus, length) in
             [(1.0, 1.0), (1e-150, 1e150), (1e150, 1e-150), (1e10, 1e-150), (1e-10, 1e150)]
         {
-            let units = Units::new(modulus, length, length).unwrap();
+            let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
             for value in [1e-12, 0.37, 1e6] {
-                let force = units.force(value).unwrap();
-                assert_relative_eq!(units.force_in(force), value, max_relative = ROUNDING);
+                let force = nondimensional.force(value).unwrap();
+                assert_relative_eq!(nondimensional.force_in(force), value, max_relative = ROUNDING);
             }
         }
     }
 
     #[test]
     fn what_no_number_holds_is_an_error() {
-        let units = Units::new(1e150, 1e150, 1e150).unwrap();
-        assert!(units.force(1.0).is_err() && units.stiffness(1.0).is_ok() && units.area(1e10).is_err());
-        let units = Units::new(1e-150, 1e-150, 1e-150).unwrap();
-        let e = units.force(1.0).unwrap_err().to_string();
+        let nondimensional = Nondimensionalisation::new(1e150, 1e150, 1e150).unwrap();
+        assert!(
+            nondimensional.force(1.0).is_err()
+                && nondimensional.stiffness(1.0).is_ok()
+                && nondimensional.area(1e10).is_err()
+        );
+        let nondimensional = Nondimensionalisation::new(1e-150, 1e-150, 1e-150).unwrap();
+        let e = nondimensional.force(1.0).unwrap_err().to_string();
         assert!(e.starts_with("force = 0: expected"), "{e}");
-        assert!(units.force(0.0).is_ok_and(|f| f <= 0.0));
-        assert!(Units::new(0.0, 1.0, 1.0).is_err() && Units::new(1.0, 1e-310, 1.0).is_err());
+        assert!(nondimensional.force(0.0).is_ok_and(|f| f <= 0.0));
+        assert!(
+            Nondimensionalisation::new(0.0, 1.0, 1.0).is_err()
+                && Nondimensionalisation::new(1.0, 1e-310, 1.0).is_err()
+        );
     }
 }

@@ -8,9 +8,9 @@ use crate::error::{Error, Result};
 /// `k_bar` is 1.0091. It stays the unit because Eq. 8 defines `k_bar` with it.
 pub const PAPER_STIFFNESS_FACTOR: f64 = 1.1419;
 
-/// Scales of one surface: what turns forces and stiffnesses into `F_bar` and `k_bar`.
+/// Normalisation of one surface: what turns forces and stiffnesses into `F_bar` and `k_bar`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scales {
+pub struct Normalisation {
     /// Effective modulus E* (force per length squared).
     pub modulus: f64,
     /// Side L = sqrt(A0) of the apparent contact square (also for the 1D line that stands for it).
@@ -19,7 +19,7 @@ pub struct Scales {
     pub height: Option<f64>,
 }
 
-impl Scales {
+impl Normalisation {
     /// `F_bar = F / (E* h L)` (Eq. 10), dimensionless.
     ///
     /// # Errors
@@ -28,10 +28,10 @@ impl Scales {
         Ok(force / self.force_unit()?)
     }
 
-    /// `F = F_bar E* h L`: the inverse of [`Scales::force_bar`].
+    /// `F = F_bar E* h L`: the inverse of [`Normalisation::force_bar`].
     ///
     /// # Errors
-    /// As [`Scales::force_bar`].
+    /// As [`Normalisation::force_bar`].
     pub fn force(&self, force_bar: f64) -> Result<f64> {
         Ok(force_bar * self.force_unit()?)
     }
@@ -49,7 +49,7 @@ impl Scales {
     /// `d / h`, dimensionless.
     ///
     /// # Errors
-    /// As [`Scales::force_bar`].
+    /// As [`Normalisation::force_bar`].
     pub fn approach_over_h(&self, approach: f64) -> Result<f64> {
         Ok(approach / self.rms_height()?)
     }
@@ -83,15 +83,15 @@ mod tests {
 
     #[test]
     fn a_flat_map_has_no_force_bar() {
-        let s = Scales { modulus: 1.0, side: 1.0, height: Some(0.0) };
+        let s = Normalisation { modulus: 1.0, side: 1.0, height: Some(0.0) };
         assert!(s.force_bar(1.0).is_err());
-        assert!(Scales { height: None, ..s }.force_bar(1.0).is_err());
+        assert!(Normalisation { height: None, ..s }.force_bar(1.0).is_err());
     }
 
     #[test]
     fn one_cell_alone_in_k_bar() {
         // data/paper/VALUES.md: one cell of an N x N grid is k_bar = 0.780372 / N.
-        let s = Scales { modulus: 2.0, side: 3.0, height: Some(1.0) };
+        let s = Normalisation { modulus: 2.0, side: 3.0, height: Some(1.0) };
         let k = 0.891_106_989 * 2.0 * 3.0 / 2049.0;
         approx::assert_relative_eq!(s.stiffness_bar(k), 0.780_372 / 2049.0, max_relative = 1e-6);
     }
