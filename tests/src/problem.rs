@@ -55,23 +55,23 @@ const RADII: [f64; 6] = [0.263, 0.291, 0.317, 0.349, 0.377, 0.411];
 /// # Errors
 /// None with the numbers written here; those of [`analytic::power_law_body::kappa`] in general.
 pub fn problems() -> Result<Vec<Problem>> {
-    let power = |coefficient, exponent| Surface::PowerLaw { coefficient, exponent, side: SIDE };
+    let power = |coefficient, exponent| Surface::PowerLaw { coefficient, exponent, size: SIDE.into() };
     Ok(vec![
-        round("sphere", Box::new(Hertz), &Surface::Sphere { radius: 5.0, side: SIDE }, 2.0, 0.1)?,
-        round("cone", Box::new(PowerLawBody), &Surface::Cone { slope: 0.1, side: SIDE }, 1.0, 0.1)?,
+        round("sphere", Box::new(Hertz), &Surface::Sphere { radius: 5.0, size: SIDE.into() }, 2.0, 0.1)?,
+        round("cone", Box::new(PowerLawBody), &Surface::Cone { slope: 0.1, size: SIDE.into() }, 1.0, 0.1)?,
         round("power law n = 1/2", Box::new(PowerLawBody), &power(0.2, 0.5), 0.5, 0.2)?,
         round("power law n = 3", Box::new(PowerLawBody), &power(0.05, 3.0), 3.0, 0.05)?,
         Problem {
             name: "flat circle",
             theory: Box::new(FlatPunch),
             cases: (RADII.iter())
-                .map(|r| case(Surface::FlatCircle { radius: r * SIDE, side: SIDE }, 0.01))
+                .map(|r| case(Surface::FlatCircle { radius: r * SIDE, size: SIDE.into() }, 0.01))
                 .collect(),
         },
         Problem {
             name: "flat square",
             theory: Box::new(FlatPunch),
-            cases: vec![case(Surface::FlatSquare { side: SIDE }, 0.01)],
+            cases: vec![case(Surface::Flat { size: SIDE.into() }, 0.01)],
         },
     ])
 }

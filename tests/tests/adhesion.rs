@@ -11,7 +11,7 @@ use mdr1d::Mdr1d;
 const EXACT: f64 = 1e-12;
 
 fn press(model: &dyn ContactModel, work: f64, load: Load) -> ContactState {
-    let mut scene = Scene::new(Surface::Sphere { radius: 1.3, side: 2.0 }, 0.7);
+    let mut scene = Scene::new(Surface::Sphere { radius: 1.3, size: 2.0.into() }, 0.7);
     scene.effects.adhesion = Adhesion::ShortRange { work };
     scene.outputs.area = true;
     model.prepare(&scene, 0).unwrap().solve(load).unwrap()

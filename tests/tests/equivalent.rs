@@ -38,7 +38,7 @@ fn elastic(scene: &Scene) -> Scene {
 }
 
 fn sphere() -> Surface {
-    Surface::Sphere { radius: 1.0, side: 1.0 }
+    Surface::Sphere { radius: 1.0, size: 1.0.into() }
 }
 
 fn fractal() -> Surface {
@@ -246,7 +246,7 @@ fn a_table_of_hertz_relaxes_as_the_body() {
 #[test]
 fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
     let model = Bem3d { cells: 16, ..Bem3d::default() };
-    let scene = sliding(Surface::FlatSquare { side: 1.0 });
+    let scene = sliding(Surface::Flat { size: 1.0.into() });
     let mut history = Equivalent::new(model).prepare(&scene, 0).unwrap();
     let state = history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
     let shear = pair().shear_modulus().unwrap() / pair().modulus().unwrap();

@@ -121,7 +121,7 @@ fn exact_models_are_exact_where_they_accept() {
 #[test]
 fn hertz_by_its_printed_numbers() {
     use contact_model::{Load, Scene, Surface};
-    let scene = Scene::new(Surface::Sphere { radius: 1.0, side: 0.25 }, 1.0);
+    let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 0.25.into() }, 1.0);
     // Second and first order at 92 cells across the contact (see TABLE).
     let model = Bem3d { cells: 127, tolerance: 1e-8, ..Bem3d::default() };
     let state = model.prepare(&scene, 0).unwrap().solve(Load::Force(1e-3)).unwrap();

@@ -9,7 +9,7 @@ use mdr1d::Mdr1d;
 
 /// Fits one model's answers at forces over a decade and a half.
 fn exponent(model: &dyn ContactModel, n: f64, least: f64) -> f64 {
-    let scene = Scene::new(Surface::PowerLaw { coefficient: 0.05, exponent: n, side: 1.0 }, 1.0);
+    let scene = Scene::new(Surface::PowerLaw { coefficient: 0.05, exponent: n, size: 1.0.into() }, 1.0);
     let mut contact = model.prepare(&scene, 0).unwrap();
     let normalisation = contact.normalisation();
     // A body has no rms height: F_bar counts in E* L^2. The largest contact radius is 0.4 L.

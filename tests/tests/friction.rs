@@ -21,7 +21,7 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
         Pair { first: Body::Rigid, second: rubber },
         Pair { first: steel, second: rubber },
     ] {
-        let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, side: 3.0 }, pair).unwrap();
+        let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair).unwrap();
         scene.effects.friction = Friction::Coulomb { coefficient: 0.35 };
         let models: [&dyn HistoryModel; 2] = [&CattaneoMindlin, &PartialSlip];
         let [mut closed, mut springs] = models.map(|model| model.prepare(&scene, 0).unwrap());
@@ -72,7 +72,7 @@ fn models(coefficient: f64) -> [Box<dyn History>; 2] {
 fn scene(coefficient: f64) -> Scene {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };
     let pair = Pair { first: body, second: body };
-    let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, side: 3.0 }, pair).unwrap();
+    let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair).unwrap();
     scene.effects.friction = Friction::Coulomb { coefficient };
     scene
 }

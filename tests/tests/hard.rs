@@ -33,7 +33,7 @@ fn press(map: &HeightMap, load: Load) -> ContactState {
 
 /// `k/(E* L)` of full contact of N x N cells.
 fn full(cells: usize) -> f64 {
-    let flat = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+    let flat = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     let model = Bem3d { cells, tolerance: TOLERANCE, ..Bem3d::default() };
     model.prepare(&flat, 0).unwrap().solve(Load::Approach(1.0)).unwrap().stiffness.unwrap()
 }
@@ -170,7 +170,7 @@ fn no_load_is_no_contact() {
     let models: [(&dyn ContactModel, Scene); 3] = [
         (&Bem3d { cells: 33, ..Bem3d::default() }, Scene::new(Surface::SelfAffine(rough(2.4).unwrap()), 1.0)),
         (&Mdr1d::default(), Scene::new(Surface::SelfAffine(rough(2.4).unwrap()), 1.0)),
-        (&analytic::Hertz, Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 1.0)),
+        (&analytic::Hertz, Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0)),
     ];
     for (model, scene) in models {
         let mut contact = model.prepare(&scene, 0).unwrap();
@@ -287,7 +287,7 @@ fn heights_that_are_no_numbers_are_refused_with_their_place() {
         assert!(matches!(Bem3d::default().prepare(&scene, 0), Err(Error::Domain { .. })));
     }
     let none = Bem3d { cells: 0, ..Bem3d::default() };
-    for surface in [Surface::FlatSquare { side: 1.0 }, Surface::SelfAffine(rough_surface())] {
+    for surface in [Surface::Flat { size: 1.0.into() }, Surface::SelfAffine(rough_surface())] {
         assert!(matches!(none.prepare(&Scene::new(surface, 1.0), 0), Err(Error::Domain { .. })));
     }
 }

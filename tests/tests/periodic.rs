@@ -31,7 +31,7 @@ fn model(cells: usize, tolerance: f64) -> Bem3d {
 }
 
 fn wave() -> Scene {
-    periodic(Surface::Sine { amplitude: AMPLITUDE, wavelength: 1.0, side: 1.0 })
+    periodic(Surface::Sine { amplitude: AMPLITUDE, wavelength: 1.0, size: 1.0.into() })
 }
 
 /// `D cos(2 pi x) cos(2 pi y)` on the unit square.
@@ -203,7 +203,7 @@ fn what_a_periodic_square_takes_and_refuses() {
     assert!(matches!(free.mean_gap(Load::Force(1.0)), Err(Error::Unsupported { .. })));
     assert!(matches!(free.solve(Load::MeanGap(1.0)), Err(Error::Unsupported { .. })));
     // Flat: full contact at once, and no stiffness to speak of.
-    let flat = periodic(Surface::FlatSquare { side: 1.0 });
+    let flat = periodic(Surface::Flat { size: 1.0.into() });
     for cells in [1, 2, 7] {
         let state = model(cells, 1e-8).prepare(&flat, 0).unwrap().solve(Load::Force(1.0)).unwrap();
         assert!(state.stiffness.is_none() && state.report.certificate.stiffness_error.is_none());

@@ -20,13 +20,13 @@ fn surfaces() -> [Surface; 9] {
     [
         Surface::SelfAffine(rough(2.4).unwrap()),
         Surface::Heights(Arc::new(map(3, 1.0, |x, y| (x + 2 * y) as f64).unwrap())),
-        Surface::Line { line, side: 1.0 },
-        Surface::Sphere { radius: 1.0, side: 1.0 },
-        Surface::Cone { slope: 0.1, side: 1.0 },
-        Surface::PowerLaw { coefficient: 0.1, exponent: 1.5, side: 1.0 },
-        Surface::FlatCircle { radius: 0.3, side: 1.0 },
-        Surface::FlatSquare { side: 1.0 },
-        Surface::Sine { amplitude: 0.1, wavelength: 0.5, side: 1.0 },
+        Surface::Line { line, size: 1.0.into() },
+        Surface::Sphere { radius: 1.0, size: 1.0.into() },
+        Surface::Cone { slope: 0.1, size: 1.0.into() },
+        Surface::PowerLaw { coefficient: 0.1, exponent: 1.5, size: 1.0.into() },
+        Surface::FlatCircle { radius: 0.3, size: 1.0.into() },
+        Surface::Flat { size: 1.0.into() },
+        Surface::Sine { amplitude: 0.1, wavelength: 0.5, size: 1.0.into() },
     ]
 }
 
@@ -129,7 +129,7 @@ fn periodic_theories() {
     let mut with_cutoff = rough(2.4).unwrap();
     with_cutoff.short_cutoff = Some(32.0 * std::f64::consts::TAU);
     let random = Surface::SelfAffine(with_cutoff);
-    let sine = Surface::Sine { amplitude: 0.1, wavelength: 0.5, side: 1.0 };
+    let sine = Surface::Sine { amplitude: 0.1, wavelength: 0.5, size: 1.0.into() };
     let models: [(&dyn ContactModel, &Surface); 3] =
         [(&Persson::default(), &random), (&GreenwoodWilliamson::default(), &random), (&Westergaard, &sine)];
     for (model, surface) in models {

@@ -30,7 +30,7 @@ fn series() -> Rheology {
 }
 
 fn sphere() -> Surface {
-    Surface::Sphere { radius: 1.0, side: 2.0 }
+    Surface::Sphere { radius: 1.0, size: 2.0.into() }
 }
 
 /// E* of the relaxed body times this is what an elastic sphere carries.
@@ -107,7 +107,7 @@ fn work_lies_between_the_relaxed_and_the_glassy_energy() {
 #[test]
 fn a_face_answers_linearly() {
     // Without growth Boltzmann's superposition holds in d itself: the force of a sum of histories is the sum of the forces.
-    let punch = Surface::FlatCircle { radius: 0.3, side: 2.0 };
+    let punch = Surface::FlatCircle { radius: 0.3, size: 2.0.into() };
     let times = [0.0, 0.3, 1.0, 5.0, 40.0];
     let (one, other) = ([1e-3, 2e-3, 2e-3, 5e-3, 5e-3], [0.0, 4e-3, 7e-3, 7e-3, 9e-3]);
     let models: [Box<dyn HistoryModel>; 2] =

@@ -32,7 +32,7 @@ fn sweep(contact: &mut dyn PreparedContact, loads: impl IntoIterator<Item = Load
 
 #[test]
 fn no_state_exceeds_the_plateau_of_its_grid() {
-    let flat = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+    let flat = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     for cells in [33, 65] {
         let plateau =
             model(cells).prepare(&flat, 0).unwrap().solve(Load::Force(1.0)).unwrap().stiffness.unwrap();

@@ -18,7 +18,7 @@ fn stiffness(model: &Bem3d, scene: &Scene, approach: f64) -> f64 {
 
 fn square(cells: usize, method: Method) -> f64 {
     let model = Bem3d { cells, tolerance: 1e-10, method, ..Bem3d::default() };
-    stiffness(&model, &Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0), 1.0)
+    stiffness(&model, &Scene::new(Surface::Flat { size: 1.0.into() }, 1.0), 1.0)
 }
 
 #[test]

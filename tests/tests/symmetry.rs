@@ -35,7 +35,7 @@ fn assert_same(a: &ContactState, b: &ContactState) {
 /// A line of the heights of a map's rows, for the one-dimensional model.
 fn line(of: &HeightMap, lateral: f64, vertical: f64) -> Surface {
     let heights = of.heights().iter().map(|h| h * vertical).collect();
-    Surface::Line { line: Arc::new(Line::new(lateral, heights).unwrap()), side: lateral }
+    Surface::Line { line: Arc::new(Line::new(lateral, heights).unwrap()), size: lateral.into() }
 }
 
 #[test]
@@ -174,7 +174,9 @@ fn rough_map_value(x: usize, y: usize) -> f64 {
 #[test]
 fn the_zoom_argument() {
     for n in [0.5, 0.8, 1.0] {
-        let body = |side: f64| Scene::new(Surface::PowerLaw { coefficient: 0.1, exponent: n, side }, 1.0);
+        let body = |side: f64| {
+            Scene::new(Surface::PowerLaw { coefficient: 0.1, exponent: n, size: side.into() }, 1.0)
+        };
         let bem = Bem3d { cells: CELLS, tolerance: TOLERANCE, ..Bem3d::default() };
         let models: [&dyn ContactModel; 2] = [&bem, &Mdr1d::default()];
         for model in models {

@@ -87,7 +87,7 @@ fn each_output_adds_its_own_work_and_no_other() {
 #[test]
 fn formulas_and_lines_do_no_such_work() {
     let outputs = Outputs { stiffness: true, conductance: GRAPHITE, ..Outputs::default() };
-    let sphere = Scene { outputs, ..Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 1.0) };
+    let sphere = Scene { outputs, ..Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0) };
     for (model, scene) in [
         (&Hertz as &dyn ContactModel, sphere.clone()),
         (&Mdr1d::default(), sphere),

@@ -28,7 +28,7 @@ const NAME: &str = "cattaneo_mindlin";
 /// use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
-/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, side: 2.0 }, pair)?;
+/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
 /// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
 /// let mut contact = CattaneoMindlin.prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260.
@@ -313,7 +313,7 @@ mod tests {
 
     fn scene(mu: f64) -> Scene {
         let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 0.75, poisson: 0.5 } };
-        let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, side: 2.0 }, pair).unwrap();
+        let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair).unwrap();
         scene.effects.friction = Friction::Coulomb { coefficient: mu };
         scene
     }
@@ -432,7 +432,7 @@ mod tests {
         let mut sticky = scene(MU);
         sticky.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
         assert!(matches!(refused(&sticky), Error::Unsupported { .. }));
-        let cone = Scene { surface: Surface::Cone { slope: 0.1, side: 1.0 }, ..scene(MU) };
+        let cone = Scene { surface: Surface::Cone { slope: 0.1, size: 1.0.into() }, ..scene(MU) };
         assert!(matches!(refused(&cone), Error::Unsupported { .. }));
         assert!(matches!(refused(&scene(0.0)), Error::Domain { .. }));
         assert!(Sphere::new(1.0, 0.5, 0.0, 1.0).is_err());

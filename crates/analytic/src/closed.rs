@@ -123,7 +123,10 @@ pub(crate) fn refuse_fields(scene: &Scene, model: &'static str) -> Result<()> {
 /// [`Error::Domain`] for a modulus or side that no unit can be.
 pub(crate) fn of_body(scene: &Scene) -> Result<(Nondimensionalisation, Normalisation)> {
     let (modulus, side) = (scene.modulus, scene.surface.side());
-    Ok((Nondimensionalisation::new(modulus, side, side)?, Normalisation { modulus, side, height: None }))
+    Ok((
+        Nondimensionalisation::new(modulus, side, side)?,
+        Normalisation { modulus, length: side, height: None },
+    ))
 }
 
 /// Errors where a round contact (radius in units of the side) has left the square, beyond which the half-space is free.

@@ -17,13 +17,13 @@ pub const SQUARE_STIFFNESS_UNCERTAINTY: f64 = 1e-6;
 
 /// A rigid flat punch: `F = k d`, with `k = 2 E* a` for a circle of radius a and `k = 1.152298(1) E* L` for a square of side L.
 ///
-/// Takes [`Surface::FlatCircle`] (exact) and [`Surface::FlatSquare`] (with the stated uncertainty in the report). The area is that
+/// Takes [`Surface::FlatCircle`] (exact) and [`Surface::Flat`] (with the stated uncertainty in the report). The area is that
 /// of the face.
 ///
 /// ```
 /// use analytic::FlatPunch;
 /// use contact_model::{ContactModel, Load, Scene, Surface};
-/// let scene = Scene::new(Surface::FlatCircle { radius: 0.25, side: 1.0 }, 2.0);
+/// let scene = Scene::new(Surface::FlatCircle { radius: 0.25, size: 1.0.into() }, 2.0);
 /// let state = FlatPunch.prepare(&scene, 0)?.solve(Load::Force(0.5))?;
 /// assert_eq!((state.stiffness, state.approach), (Some(1.0), Some(0.5)));
 /// # Ok::<(), contact_model::Error>(())
@@ -53,13 +53,13 @@ impl ContactModel for FlatPunch {
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::check(scene, NAME)?;
         let (law, strategy, stiffness_error) = match scene.surface {
-            Surface::FlatCircle { radius, side } => {
+            Surface::FlatCircle { radius, size } => {
                 let radius = radius / side;
                 closed::within_square(radius, side)?;
                 let law = Face { stiffness: 2.0 * radius, area: PI * radius * radius };
                 (law, "closed form (Boussinesq)", 0.0)
             }
-            Surface::FlatSquare { .. } => {
+            Surface::Flat { .. } => {
                 let law = Face { stiffness: SQUARE_STIFFNESS, area: 1.0 };
                 (law, "converged constant of the square", SQUARE_STIFFNESS_UNCERTAINTY / SQUARE_STIFFNESS)
             }
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn square() {
-        let surface = |side| Surface::FlatSquare { side };
+        let surface = |side| Surface::Flat { size: side.into() };
         let scene = Scene::new(surface(3.0), 2.0);
         let s = pressed(&FlatPunch, &scene, Load::Approach(0.1)).unwrap();
         assert_relative_eq!(s.stiffness.unwrap(), 1.152_298 * 6.0, max_relative = ROUNDING);
@@ -144,14 +144,14 @@ mod tests {
 
     #[test]
     fn circle() {
-        let surface = |side| Surface::FlatCircle { radius: 0.3 * side, side };
+        let surface = |side| Surface::FlatCircle { radius: 0.3 * side, size: side.into() };
         let scene = Scene::new(surface(1.0), 2.0);
         let s = pressed(&FlatPunch, &scene, Load::Force(0.6)).unwrap();
         assert_relative_eq!(s.approach.unwrap(), 0.5, max_relative = ROUNDING);
         assert_relative_eq!(s.area.unwrap(), PI * 0.09, max_relative = ROUNDING);
         check_curve(&FlatPunch, &scene, 0.1);
         scale_invariant(&FlatPunch, surface, 0.1, ROUNDING);
-        let wide = Scene::new(Surface::FlatCircle { radius: 0.6, side: 1.0 }, 1.0);
+        let wide = Scene::new(Surface::FlatCircle { radius: 0.6, size: 1.0.into() }, 1.0);
         assert!(matches!(FlatPunch.prepare(&wide, 0), Err(Error::OutOfRange { .. })));
         assert!(pressure(1.0, 0.5, 0.5).is_err() && pressure(1.0, 0.5, 0.6).unwrap() <= 0.0);
     }

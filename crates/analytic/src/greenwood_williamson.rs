@@ -127,7 +127,7 @@ impl ContactModel for GreenwoodWilliamson {
             model: NAME,
             law: Law { summits: Summits::scaled(&spectrum), heights: self.heights, gauss: Gauss::new() },
             nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, side, height: Some(height) },
+            normalisation: Normalisation { modulus, length: side, height: Some(height) },
             outputs: scene.outputs,
             strategy: "integral over independent summits (Greenwood, Williamson; McCool)",
         }))

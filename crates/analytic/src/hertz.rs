@@ -13,7 +13,7 @@ const NAME: &str = "hertz";
 /// ```
 /// use analytic::Hertz;
 /// use contact_model::{ContactModel, Load, Scene, Surface};
-/// let scene = Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 3.0);
+/// let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 3.0);
 /// // d = 0.01: a = 0.1, F = (4/3) E* a^3 = 0.004.
 /// let state = Hertz.prepare(&scene, 0)?.solve(Load::Approach(0.01))?;
 /// assert!((state.force - 0.004).abs() < 1e-15);
@@ -36,7 +36,7 @@ impl ContactModel for Hertz {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::check(scene, NAME)?;
-        let Surface::Sphere { radius, side } = scene.surface else {
+        let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
         let (nondimensional, normalisation) = closed::of_body(scene)?;
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn reference_numbers() {
-        let scene = Scene::new(Surface::Sphere { radius: 1.0, side: 4.0 }, 1.0);
+        let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 4.0.into() }, 1.0);
         let one = pressed(&Hertz, &scene, Load::Force(1.0)).unwrap();
         let a = one.stiffness.unwrap() / 2.0;
         assert_relative_eq!(a, 0.908_560_296_416, max_relative = PRINTED);
@@ -135,10 +135,10 @@ mod tests {
 
     #[test]
     fn the_square_is_the_limit() {
-        let scene = Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 1.0);
+        let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
         assert!(pressed(&Hertz, &scene, Load::Approach(0.25)).is_ok());
         assert!(matches!(pressed(&Hertz, &scene, Load::Approach(0.26)), Err(Error::OutOfRange { .. })));
-        let cone = Scene::new(Surface::Cone { slope: 1.0, side: 1.0 }, 1.0);
+        let cone = Scene::new(Surface::Cone { slope: 1.0, size: 1.0.into() }, 1.0);
         assert!(matches!(Hertz.prepare(&cone, 0), Err(Error::Unsupported { .. })));
     }
 
@@ -147,7 +147,7 @@ mod tests {
 
         #[test]
         fn curve(radius in 0.1_f64..10.0, d in 1e-8_f64..1e-2, modulus in 0.1_f64..10.0) {
-            let surface = |length: f64| Surface::Sphere { radius: radius * length, side: length };
+            let surface = |length: f64| Surface::Sphere { radius: radius * length, size: length.into() };
             check_curve(&Hertz, &Scene::new(surface(1.0), modulus), d);
             scale_invariant(&Hertz, surface, d, ROUNDING);
         }

@@ -23,7 +23,7 @@ const NAME: &str = "jkr";
 /// ```
 /// use analytic::Jkr;
 /// use contact_model::{Adhesion, ContactModel, Load, Scene, Surface};
-/// let mut scene = Scene::new(Surface::Sphere { radius: 1.0, side: 4.0 }, 1.0);
+/// let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 4.0.into() }, 1.0);
 /// scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 };
 /// let mut contact = Jkr.prepare(&scene, 0)?;
 /// // At no load a^3 = 9 pi w R^2 / (2 E*): a = 0.5209397, d = a^2/(3 R).
@@ -52,7 +52,7 @@ impl ContactModel for Jkr {
         scene.validate()?;
         Effects { adhesion: Adhesion::Off, ..scene.effects }.refuse(NAME)?;
         closed::refuse_fields(scene, NAME)?;
-        let Surface::Sphere { radius, side } = scene.surface else {
+        let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
         let work = match scene.effects.adhesion {
@@ -344,7 +344,7 @@ mod tests {
     use proptest::test_runner::RngSeed;
 
     fn scene(side: f64, modulus: f64, radius: f64, work: f64) -> Scene {
-        let mut scene = Scene::new(Surface::Sphere { radius, side }, modulus);
+        let mut scene = Scene::new(Surface::Sphere { radius, size: side.into() }, modulus);
         scene.effects.adhesion = Adhesion::ShortRange { work };
         scene
     }
@@ -394,13 +394,13 @@ mod tests {
         let mut scene = scene(4.0, 1.0, 1.0, 0.01);
         scene.effects.boundary = contact_model::Boundary::Periodic;
         assert!(matches!(Jkr.prepare(&scene, 0), Err(Error::Unsupported { .. })));
-        let cone = Scene::new(Surface::Cone { slope: 1.0, side: 1.0 }, 1.0);
+        let cone = Scene::new(Surface::Cone { slope: 1.0, size: 1.0.into() }, 1.0);
         assert!(matches!(Jkr.prepare(&cone, 0), Err(Error::Unsupported { .. })));
     }
 
     #[test]
     fn without_adhesion_it_is_hertz() {
-        let bare = Scene::new(Surface::Sphere { radius: 1.3, side: 1.0 }, 2.0);
+        let bare = Scene::new(Surface::Sphere { radius: 1.3, size: 1.0.into() }, 2.0);
         for load in [Load::Force(1e-3), Load::Approach(0.01), Load::Force(0.0), Load::Approach(0.0)] {
             let hertz = pressed(&crate::Hertz, &bare, load).unwrap();
             let here = pressed(&Jkr, &scene(1.0, 2.0, 1.3, 0.0), load).unwrap();

@@ -85,7 +85,7 @@ impl ContactModel for Persson {
             model: NAME,
             law: Law::new(&spectrum, self.checked()?),
             nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, side, height: Some(height) },
+            normalisation: Normalisation { modulus, length: side, height: Some(height) },
             outputs: scene.outputs,
             strategy: "integral over the spectrum (Persson)",
         }))

@@ -158,7 +158,7 @@ impl ContactModel for PowerLaw {
             model: NAME,
             law: Fit::new(surface.fractal_dimension()),
             nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, side, height: Some(height) },
+            normalisation: Normalisation { modulus, length: side, height: Some(height) },
             outputs: scene.outputs,
             strategy: "closed form (Eq. 12)",
             stiffness_error: 0.0,

@@ -16,7 +16,7 @@ const NAME: &str = "power_law_body";
 /// use analytic::PowerLawBody;
 /// use contact_model::{ContactModel, Load, Scene, Surface};
 /// // A cone of slope 0.1 pressed by d = 0.1: a = 2 / pi, F = d a = 0.0636619772.
-/// let scene = Scene::new(Surface::Cone { slope: 0.1, side: 2.0 }, 1.0);
+/// let scene = Scene::new(Surface::Cone { slope: 0.1, size: 2.0.into() }, 1.0);
 /// let state = PowerLawBody.prepare(&scene, 0)?.solve(Load::Approach(0.1))?;
 /// assert!((state.force - 0.0636619772).abs() < 1e-10);
 /// # Ok::<(), contact_model::Error>(())
@@ -46,13 +46,13 @@ impl ContactModel for PowerLawBody {
         closed::check(scene, NAME)?;
         // c L^(n - 1), the depth at r = L over L.
         let (exponent, depth) = match scene.surface {
-            Surface::PowerLaw { coefficient, exponent, side } => {
+            Surface::PowerLaw { coefficient, exponent, size } => {
                 // In two halves: the product may be moderate where L^(n - 1) alone overflows.
                 let half = side.powf(0.5 * (exponent - 1.0));
                 (exponent, coefficient * half * half)
             }
             Surface::Cone { slope, .. } => (1.0, slope),
-            Surface::Sphere { radius, side } => (2.0, 0.5 * (side / radius)),
+            Surface::Sphere { radius, size } => (2.0, 0.5 * (side / radius)),
             ref other => return Err(Error::unsupported(NAME, other.kind())),
         };
         let depth = kappa(exponent)? * depth;
@@ -156,11 +156,11 @@ mod tests {
 
     #[test]
     fn cone_and_sphere() {
-        let cone = Scene::new(Surface::Cone { slope: 0.1, side: 2.0 }, 1.0);
+        let cone = Scene::new(Surface::Cone { slope: 0.1, size: 2.0.into() }, 1.0);
         let s = pressed(&PowerLawBody, &cone, Load::Approach(0.1)).unwrap();
         assert_relative_eq!(s.stiffness.unwrap(), 4.0 / PI, max_relative = POWER_ROUNDING);
         assert_relative_eq!(s.force, 0.063_661_977_2, max_relative = 1e-9);
-        let sphere = Scene::new(Surface::Sphere { radius: 1.3, side: 1.0 }, 2.0);
+        let sphere = Scene::new(Surface::Sphere { radius: 1.3, size: 1.0.into() }, 2.0);
         let here = pressed(&PowerLawBody, &sphere, Load::Force(0.01)).unwrap();
         let hertz = pressed(&crate::Hertz, &sphere, Load::Force(0.01)).unwrap();
         assert_relative_eq!(here.approach.unwrap(), hertz.approach.unwrap(), max_relative = POWER_ROUNDING);
@@ -169,9 +169,9 @@ mod tests {
 
     #[test]
     fn bad_bodies() {
-        let steep = Surface::PowerLaw { coefficient: 1e300, exponent: 3.0, side: 1e150 };
+        let steep = Surface::PowerLaw { coefficient: 1e300, exponent: 3.0, size: 1e150.into() };
         assert!(matches!(PowerLawBody.prepare(&Scene::new(steep, 1.0), 0), Err(Error::Domain { .. })));
-        let square = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        let square = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
         assert!(matches!(PowerLawBody.prepare(&square, 0), Err(Error::Unsupported { .. })));
     }
 
@@ -181,7 +181,7 @@ mod tests {
         #[test]
         fn curve_and_exponent(n in 0.1_f64..6.0, c in 0.05_f64..5.0, a in 1e-2_f64..0.4) {
             let d = kappa(n).unwrap() * c * a.powf(n);
-            let surface = |length: f64| Surface::PowerLaw { coefficient: c * length.powf(1.0 - n), exponent: n, side: length };
+            let surface = |length: f64| Surface::PowerLaw { coefficient: c * length.powf(1.0 - n), exponent: n, size: length.into() };
             let scene = Scene::new(surface(1.0), 1.5);
             check_curve(&PowerLawBody, &scene, d);
             // The coefficient itself, c L^(1 - n), leaves f64 for larger n; at extreme lengths powf rounds it.

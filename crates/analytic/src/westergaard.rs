@@ -26,7 +26,7 @@ const WHOLE_WAVES: f64 = 1e-9;
 /// ```
 /// use analytic::Westergaard;
 /// use contact_model::{Boundary, ContactModel, Load, Scene, Surface};
-/// let surface = Surface::Sine { amplitude: 0.01, wavelength: 1.0, side: 1.0 };
+/// let surface = Surface::Sine { amplitude: 0.01, wavelength: 1.0, size: 1.0.into() };
 /// let mut scene = Scene::new(surface, 1.0);
 /// scene.effects.boundary = Boundary::Periodic;
 /// scene.outputs.area = true;
@@ -54,7 +54,7 @@ impl ContactModel for Westergaard {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         periodic::check(scene, NAME)?;
-        let Surface::Sine { amplitude, wavelength, side } = scene.surface else {
+        let Surface::Sine { amplitude, wavelength, size } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
         // A wave of negative amplitude is the same wave, shifted.
@@ -73,7 +73,7 @@ impl ContactModel for Westergaard {
             model: NAME,
             law: Wave { full: PI * whole },
             nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, side, height: Some(height / SQRT_2) },
+            normalisation: Normalisation { modulus, length: side, height: Some(height / SQRT_2) },
             outputs: scene.outputs,
             strategy: "closed form (Westergaard)",
         }))
@@ -243,7 +243,7 @@ mod tests {
     use proptest::test_runner::RngSeed;
 
     fn scene(amplitude: f64, wavelength: f64, side: f64, modulus: f64) -> Scene {
-        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, side }, modulus);
+        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size: side.into() }, modulus);
         scene.effects.boundary = Boundary::Periodic;
         scene.outputs.area = true;
         scene
@@ -278,11 +278,11 @@ mod tests {
 
     #[test]
     fn what_is_not_a_periodic_wave_is_refused() {
-        let free = Scene::new(Surface::Sine { amplitude: 0.01, wavelength: 0.5, side: 1.0 }, 1.0);
+        let free = Scene::new(Surface::Sine { amplitude: 0.01, wavelength: 0.5, size: 1.0.into() }, 1.0);
         assert!(matches!(Westergaard.prepare(&free, 0), Err(Error::Unsupported { .. })));
         assert!(matches!(Westergaard.prepare(&scene(0.01, 0.4, 1.0, 1.0), 0), Err(Error::Domain { .. })));
         let mut sphere = scene(0.01, 0.5, 1.0, 1.0);
-        sphere.surface = Surface::Sphere { radius: 1.0, side: 1.0 };
+        sphere.surface = Surface::Sphere { radius: 1.0, size: 1.0.into() };
         assert!(matches!(Westergaard.prepare(&sphere, 0), Err(Error::Unsupported { .. })));
     }
 

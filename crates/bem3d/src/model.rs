@@ -37,7 +37,7 @@ const NAME: &str = "bem3d";
 /// use contact_model::{ContactModel, Load, Scene, Surface};
 /// // Two cells a side, all four in contact: k = 0.993186221 E* L (data/paper/VALUES.md).
 /// let model = Bem3d { cells: 2, ..Bem3d::default() };
-/// let scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+/// let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
 /// let state = model.prepare(&scene, 0)?.solve(Load::Force(1.0))?;
 /// assert!((state.stiffness.unwrap() - 0.993186221).abs() < 1e-9);
 /// # Ok::<(), contact_model::Error>(())
@@ -146,7 +146,7 @@ impl Prepared {
         problem.levels = options.method != Method::SingleLevel;
         problem.operators.two_levels &= problem.levels;
         let normalisation =
-            Normalisation { modulus: scene.modulus, side: map.side(), height: has_rms.then_some(rms) };
+            Normalisation { modulus: scene.modulus, length: map.side(), height: has_rms.then_some(rms) };
         Ok(Self {
             options,
             outputs: scene.outputs,
@@ -490,7 +490,7 @@ mod tests {
 
     #[test]
     fn a_field_counts_as_work() {
-        let scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
         let with = Scene { outputs: Outputs { gap: true, ..scene.outputs }, ..scene.clone() };
         let model = Bem3d { cells: 8, ..Bem3d::default() };
         let work =

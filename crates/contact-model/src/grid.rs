@@ -1,63 +1,275 @@
-//! Sampled surfaces: a square map of cells and a line of elements.
+//! Sampled surfaces: a rectangular map of cells and a line of elements.
 
 use crate::error::{Error, Result, positive};
 
-/// Heights on a square of `cells` x `cells` square cells, row-major (`heights[iy * cells + ix]`), finite by construction.
+/// Largest ratio of the sides of a cell. Beyond it the influence coefficients lose too many digits, and no instrument samples like that.
+const LARGEST_CELL_ASPECT: f64 = 1e4;
+
+/// Sides of a rectangle: Lx along x and Ly along y, in one length unit.
 ///
-/// Cell (ix, iy) covers `[ix, ix + 1] x [iy, iy + 1]` in units of the cell size `side / cells`.
+/// ```
+/// use contact_model::Size;
+/// let size = Size { x: 4.0, y: 1.0 };
+/// assert_eq!((size.length(), size.area()), (2.0, 4.0));
+/// assert_eq!(Size::from(3.0), Size { x: 3.0, y: 3.0 });
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Size {
+    /// Lx.
+    pub x: f64,
+    /// Ly.
+    pub y: f64,
+}
+
+impl Size {
+    /// `L = sqrt(Lx Ly)`, the length in `F_bar` and `k_bar`; the side of a square to the last bit.
+    pub fn length(self) -> f64 {
+        geometric_mean(self.x, self.y)
+    }
+
+    /// Nominal contact area `A0 = Lx Ly`.
+    pub fn area(self) -> f64 {
+        self.x * self.y
+    }
+
+    /// Whether both sides are the same.
+    pub fn is_square(self) -> bool {
+        self.x.to_bits() == self.y.to_bits()
+    }
+
+    /// Shorter side.
+    pub fn shorter(self) -> f64 {
+        self.x.min(self.y)
+    }
+
+    /// Checks both sides.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a side that is not positive and finite: `side` where both are the same, else `side along x` or `along y`.
+    pub fn validate(self) -> Result<()> {
+        if self.is_square() {
+            return positive("side", self.x).map(|_| ());
+        }
+        positive("side along x", self.x)?;
+        positive("side along y", self.y).map(|_| ())
+    }
+}
+
+/// A square.
+impl From<f64> for Size {
+    fn from(side: f64) -> Self {
+        Self { x: side, y: side }
+    }
+}
+
+/// `[Lx, Ly]`.
+impl From<[f64; 2]> for Size {
+    fn from([x, y]: [f64; 2]) -> Self {
+        Self { x, y }
+    }
+}
+
+/// Number of cells of a grid: columns along x, rows along y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cells {
+    /// Number of columns.
+    pub columns: usize,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+impl Cells {
+    /// The grid with this number of columns whose cells are nearest to squares.
+    ///
+    /// ```
+    /// use contact_model::{Cells, Size};
+    /// assert_eq!(Cells::nearly_square(64, Size { x: 4.0, y: 3.0 }), Cells { columns: 64, rows: 48 });
+    /// assert_eq!(Cells::nearly_square(64, Size::from(0.1)), Cells::from(64));
+    /// ```
+    pub fn nearly_square(columns: usize, size: Size) -> Self {
+        let rows =
+            if size.is_square() { columns } else { (columns as f64 * (size.y / size.x)).round() as usize };
+        Self { columns, rows: rows.max(usize::from(columns > 0)) }
+    }
+
+    /// Columns times rows, unless no `usize` holds it.
+    pub fn checked_count(self) -> Option<usize> {
+        self.columns.checked_mul(self.rows)
+    }
+}
+
+/// As many rows as columns.
+impl From<usize> for Cells {
+    fn from(cells: usize) -> Self {
+        Self { columns: cells, rows: cells }
+    }
+}
+
+/// `[columns, rows]`.
+impl From<[usize; 2]> for Cells {
+    fn from([columns, rows]: [usize; 2]) -> Self {
+        Self { columns, rows }
+    }
+}
+
+/// Heights on a rectangle of equal cells, row-major (`heights[iy * columns + ix]`: rows along y, as NPY arrays `[row, column]`).
+///
+/// Cell (ix, iy) covers `[ix, ix + 1] dx x [iy, iy + 1] dy`. Heights are finite, or minus infinity at undefined points, which cannot touch;
+/// at least one point is defined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightMap {
-    cells: usize,
-    side: f64,
+    cells: Cells,
+    size: Size,
     heights: Vec<f64>,
+    undefined: usize,
 }
 
 impl HeightMap {
-    /// Takes `cells * cells` heights on a square of the given side (same length unit).
+    /// Takes `columns * rows` finite heights on a rectangle of the given size (same length unit). A single number for the cells or the
+    /// size makes it a square.
     ///
     /// # Errors
-    /// [`Error::Domain`] for `cells = 0`, a side that is not positive, a height that is NaN or infinite or a relief
-    /// (highest minus lowest) that overflows; [`Error::Shape`] when the number of heights is not `cells^2`.
-    pub fn new(cells: usize, side: f64, heights: Vec<f64>) -> Result<Self> {
-        if cells == 0 {
-            return Err(Error::domain("cells", 0.0, "at least 1 cell a side"));
-        }
-        positive("side", side)?;
-        if cells.checked_mul(cells) != Some(heights.len()) {
-            return Err(Error::Shape {
-                name: "heights".into(),
-                found: heights.len(),
-                expected: format!("{cells} x {cells} (a square map)").into(),
-            });
-        }
-        check_heights(&heights, |i| format!("heights[{}, {}]", i / cells, i % cells))?;
-        Ok(Self { cells, side, heights })
+    /// [`Error::Domain`] for no columns or rows, a side that is not positive, cells whose sides differ by more than 1e4, a height that is
+    /// NaN or infinite or a relief (highest minus lowest) that overflows; [`Error::Shape`] when the number of heights is not that of the cells.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// let map = HeightMap::new([3, 2], [6.0, 1.0], vec![0.0; 6])?;
+    /// assert_eq!((map.columns(), map.rows(), map.dx(), map.dy()), (3, 2, 2.0, 0.5));
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn new(cells: impl Into<Cells>, size: impl Into<Size>, heights: Vec<f64>) -> Result<Self> {
+        let (cells, size) = checked_grid(cells.into(), size.into(), heights.len())?;
+        check_heights(&heights, |i| place(cells, i))?;
+        Ok(Self { cells, size, heights, undefined: 0 })
     }
 
-    /// Number of cells a side, N.
-    pub fn cells(&self) -> usize {
+    /// The same from heights that are NaN at undefined points, which cannot touch.
+    ///
+    /// # Errors
+    /// As [`HeightMap::new`], but for NaN; [`Error::Domain`] when no point is defined.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// let map = HeightMap::with_undefined(2, 1.0, vec![0.5, f64::NAN, 0.25, 0.0])?;
+    /// assert_eq!((map.undefined(), map.defined().count(), map.highest()), (1, 3, 0.5));
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn with_undefined(
+        cells: impl Into<Cells>,
+        size: impl Into<Size>,
+        mut heights: Vec<f64>,
+    ) -> Result<Self> {
+        let (cells, size) = checked_grid(cells.into(), size.into(), heights.len())?;
+        let mut undefined = 0;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (i, h) in heights.iter_mut().enumerate() {
+            if h.is_nan() {
+                (*h, undefined) = (f64::NEG_INFINITY, undefined + 1);
+            } else if h.is_finite() {
+                (low, high) = (low.min(*h), high.max(*h));
+            } else {
+                return Err(Error::domain(
+                    place(cells, i),
+                    *h,
+                    "a finite height, or NaN at an undefined point",
+                ));
+            }
+        }
+        if undefined == heights.len() {
+            return Err(Error::domain(
+                "defined points",
+                0.0,
+                "at least 1 (every height of the map is undefined)",
+            ));
+        }
+        check_relief(low, high)?;
+        Ok(Self { cells, size, heights, undefined })
+    }
+
+    /// Numbers of columns and rows.
+    pub fn cells(&self) -> Cells {
         self.cells
     }
 
-    /// Side of the square, L.
-    pub fn side(&self) -> f64 {
-        self.side
+    /// Number of columns, along x.
+    pub fn columns(&self) -> usize {
+        self.cells.columns
     }
 
-    /// Side of one cell, `h_c = L / N`.
-    pub fn cell(&self) -> f64 {
-        self.side / self.cells as f64
+    /// Number of rows, along y.
+    pub fn rows(&self) -> usize {
+        self.cells.rows
     }
 
-    /// The heights, row-major.
+    /// Sides of the rectangle.
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// `L = sqrt(Lx Ly)`.
+    pub fn length(&self) -> f64 {
+        self.size.length()
+    }
+
+    /// Side of one cell along x, `Lx / columns`.
+    pub fn dx(&self) -> f64 {
+        self.size.x / self.cells.columns as f64
+    }
+
+    /// Side of one cell along y, `Ly / rows`.
+    pub fn dy(&self) -> f64 {
+        self.size.y / self.cells.rows as f64
+    }
+
+    /// The heights, row-major; minus infinity at undefined points.
     pub fn heights(&self) -> &[f64] {
         &self.heights
+    }
+
+    /// The heights of the defined points, in order.
+    pub fn defined(&self) -> impl Iterator<Item = f64> + Clone + '_ {
+        self.heights.iter().copied().filter(|h| h.is_finite())
+    }
+
+    /// Number of undefined points.
+    pub fn undefined(&self) -> usize {
+        self.undefined
     }
 
     /// Highest value.
     pub fn highest(&self) -> f64 {
         highest(&self.heights)
     }
+}
+
+/// `sqrt(a b)` without overflow on the way; a itself where both are the same.
+fn geometric_mean(a: f64, b: f64) -> f64 {
+    if a.to_bits() == b.to_bits() { a } else { a.sqrt() * b.sqrt() }
+}
+
+fn place(cells: Cells, i: usize) -> String {
+    format!("heights[{}, {}]", i / cells.columns, i % cells.columns)
+}
+
+fn checked_grid(cells: Cells, size: Size, heights: usize) -> Result<(Cells, Size)> {
+    let Cells { columns, rows } = cells;
+    for (name, count) in [("columns", columns), ("rows", rows)] {
+        if count == 0 {
+            return Err(Error::domain(name, 0.0, "at least 1"));
+        }
+    }
+    size.validate()?;
+    if cells.checked_count() != Some(heights) {
+        let expected = format!("{rows} rows x {columns} columns").into();
+        return Err(Error::Shape { name: "heights".into(), found: heights, expected });
+    }
+    let aspect = (size.x / columns as f64) / (size.y / rows as f64);
+    if !(1.0 / LARGEST_CELL_ASPECT..=LARGEST_CELL_ASPECT).contains(&aspect) {
+        let expected = format!("between 1/{LARGEST_CELL_ASPECT} and {LARGEST_CELL_ASPECT}");
+        return Err(Error::domain("dx / dy (ratio of the sides of a cell)", aspect, expected));
+    }
+    Ok((cells, size))
 }
 
 /// Heights of `n` equal elements along a line of the given length, finite by construction.
@@ -121,10 +333,15 @@ fn check_heights(heights: &[f64], place: impl Fn(usize) -> String) -> Result<()>
         low = low.min(h);
         high = high.max(h);
     }
-    if !(high - low).is_finite() {
-        return Err(Error::domain("relief (highest minus lowest height)", high - low, "a finite number"));
+    check_relief(low, high)
+}
+
+fn check_relief(low: f64, high: f64) -> Result<()> {
+    if (high - low).is_finite() {
+        Ok(())
+    } else {
+        Err(Error::domain("relief (highest minus lowest height)", high - low, "a finite number"))
     }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -136,11 +353,23 @@ mod tests {
         let e = HeightMap::new(2, 1.0, vec![0.0, 1.0, f64::NAN, 0.0]).unwrap_err();
         assert_eq!(e.to_string(), "heights[1, 0] = NaN: expected a finite height");
         let e = HeightMap::new(2, 1.0, vec![0.0; 3]).unwrap_err();
-        assert_eq!(e.to_string(), "heights has 3 values: expected 2 x 2 (a square map)");
+        assert_eq!(e.to_string(), "heights has 3 values: expected 2 rows x 2 columns");
         assert!(HeightMap::new(0, 1.0, vec![]).is_err());
         assert!(HeightMap::new(1, 0.0, vec![0.0]).is_err());
         assert!(HeightMap::new(1, f64::INFINITY, vec![0.0]).is_err());
         assert!(HeightMap::new(usize::MAX, 1.0, vec![]).is_err());
+        for (cells, size) in
+            [([0, 3], [1.0, 1.0]), ([2, 2], [-1.0, 1.0]), ([2, 2], [1.0, 1e9]), ([2, 2], [1e9, 1.0])]
+        {
+            let heights = vec![0.0; cells[0] * cells[1]];
+            assert!(HeightMap::new(cells, size, heights).is_err(), "{cells:?} {size:?}");
+        }
+        let e = HeightMap::with_undefined(2, 1.0, vec![f64::NAN; 4]).unwrap_err();
+        assert_eq!(
+            e.to_string(),
+            "defined points = 0: expected at least 1 (every height of the map is undefined)"
+        );
+        assert!(HeightMap::with_undefined(2, 1.0, vec![0.0, f64::NAN, f64::INFINITY, 0.0]).is_err());
         assert!(Line::new(1.0, vec![1e308, -1e308]).is_err());
         assert!(Line::new(1.0, vec![]).is_err());
     }

@@ -23,7 +23,7 @@
 //! ```
 //! use contact_model::{Load, Normalisation};
 //! // A force of 0.01 on a square of side 1, modulus 1, rms height 0.5 is F_bar = 0.02 (Eq. 10).
-//! let normalisation = Normalisation { modulus: 1.0, side: 1.0, height: Some(0.5) };
+//! let normalisation = Normalisation { modulus: 1.0, length: 1.0, height: Some(0.5) };
 //! assert_eq!(normalisation.force_bar(0.01)?, 0.02);
 //! assert!(Load::Force(-1.0).validated().is_err());
 //! # Ok::<(), contact_model::Error>(())
@@ -45,7 +45,7 @@ mod state;
 mod work;
 
 pub use error::{Error, Result};
-pub use grid::{HeightMap, Line};
+pub use grid::{Cells, HeightMap, Line, Size};
 pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use load::Load;
 pub use model::{ContactModel, PreparedContact, Source, Stop, never};

@@ -13,8 +13,8 @@ pub const PAPER_STIFFNESS_FACTOR: f64 = 1.1419;
 pub struct Normalisation {
     /// Effective modulus E* (force per length squared).
     pub modulus: f64,
-    /// Side L = sqrt(A0) of the apparent contact square (also for the 1D line that stands for it).
-    pub side: f64,
+    /// `L = sqrt(Lx Ly)` of the nominal contact area: the side of a square (also for the 1D line that stands for it).
+    pub length: f64,
     /// Measured rms height of this surface; `None` for a body without one (a sphere, a punch).
     pub height: Option<f64>,
 }
@@ -38,7 +38,7 @@ impl Normalisation {
 
     /// `k_bar = k / (1.1419 E* L)` (Eq. 8), dimensionless.
     pub fn stiffness_bar(&self, stiffness: f64) -> f64 {
-        stiffness / (PAPER_STIFFNESS_FACTOR * self.modulus * self.side)
+        stiffness / (PAPER_STIFFNESS_FACTOR * self.modulus * self.length)
     }
 
     /// Contact length `k / E*` (Eq. 1), a length.
@@ -56,7 +56,7 @@ impl Normalisation {
 
     /// `A / A0`, dimensionless.
     pub fn contact_fraction(&self, area: f64) -> f64 {
-        area / (self.side * self.side)
+        area / (self.length * self.length)
     }
 
     /// The rms height where the surface has one that can be divided by.
@@ -73,7 +73,7 @@ impl Normalisation {
     }
 
     fn force_unit(&self) -> Result<f64> {
-        Ok(self.modulus * self.rms_height()? * self.side)
+        Ok(self.modulus * self.rms_height()? * self.length)
     }
 }
 
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_flat_map_has_no_force_bar() {
-        let s = Normalisation { modulus: 1.0, side: 1.0, height: Some(0.0) };
+        let s = Normalisation { modulus: 1.0, length: 1.0, height: Some(0.0) };
         assert!(s.force_bar(1.0).is_err());
         assert!(Normalisation { height: None, ..s }.force_bar(1.0).is_err());
     }
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn one_cell_alone_in_k_bar() {
         // data/paper/VALUES.md: one cell of an N x N grid is k_bar = 0.780372 / N.
-        let s = Normalisation { modulus: 2.0, side: 3.0, height: Some(1.0) };
+        let s = Normalisation { modulus: 2.0, length: 3.0, height: Some(1.0) };
         let k = 0.891_106_989 * 2.0 * 3.0 / 2049.0;
         approx::assert_relative_eq!(s.stiffness_bar(k), 0.780_372 / 2049.0, max_relative = 1e-6);
     }

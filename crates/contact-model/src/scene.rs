@@ -1,7 +1,7 @@
 //! Physics: what is pressed, which effects count, what is asked.
 
 use crate::error::{Error, Result, non_negative, positive};
-use crate::grid::{HeightMap, Line};
+use crate::grid::{HeightMap, Line, Size};
 use crate::outputs::Outputs;
 use crate::pair::Pair;
 use crate::rheology::Rheology;
@@ -40,7 +40,7 @@ impl Scene {
     /// ```
     /// use contact_model::{Body, Pair, Scene, Surface};
     /// let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.5 } };
-    /// assert_eq!(Scene::of_pair(Surface::Sphere { radius: 1.0, side: 1.0 }, pair)?.modulus, 4.0);
+    /// assert_eq!(Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?.modulus, 4.0);
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn of_pair(surface: Surface, pair: Pair) -> Result<Self> {
@@ -73,7 +73,7 @@ impl Scene {
     }
 }
 
-/// What carries the relief. Axisymmetric bodies sit in the middle of the square, apex up.
+/// What carries the relief. Axisymmetric bodies sit in the middle of the rectangle, apex up.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Surface {
@@ -81,26 +81,26 @@ pub enum Surface {
     SelfAffine(SelfAffine),
     /// A given map.
     Heights(Arc<HeightMap>),
-    /// A given line (for one-dimensional models), standing for a square of side `side`.
+    /// A given line (for one-dimensional models), standing for a rectangle.
     Line {
         /// The line.
         line: Arc<Line>,
-        /// Side L of the square that it stands for.
-        side: f64,
+        /// Sides of the rectangle that it stands for.
+        size: Size,
     },
     /// Paraboloid `z = r^2 / (2 R)`: Hertz's sphere.
     Sphere {
         /// Radius of curvature R.
         radius: f64,
-        /// Side of the square.
-        side: f64,
+        /// Sides of the rectangle.
+        size: Size,
     },
     /// Cone `z = slope r`.
     Cone {
         /// Slope.
         slope: f64,
-        /// Side of the square.
-        side: f64,
+        /// Sides of the rectangle.
+        size: Size,
     },
     /// Power-law body `z = coefficient r^exponent`.
     PowerLaw {
@@ -108,20 +108,20 @@ pub enum Surface {
         coefficient: f64,
         /// Exponent n > 0.
         exponent: f64,
-        /// Side of the square.
-        side: f64,
+        /// Sides of the rectangle.
+        size: Size,
     },
     /// A flat circular punch of the given radius; outside it nothing can touch.
     FlatCircle {
         /// Radius a of the face.
         radius: f64,
-        /// Side of the square.
-        side: f64,
+        /// Sides of the rectangle.
+        size: Size,
     },
-    /// A flat square: the whole square touches at once.
-    FlatSquare {
-        /// Side of the square.
-        side: f64,
+    /// A flat rectangle: all of it touches at once.
+    Flat {
+        /// Sides of the rectangle.
+        size: Size,
     },
     /// `h = amplitude cos(2 pi x / wavelength)`, waves along x.
     Sine {
@@ -129,24 +129,24 @@ pub enum Surface {
         amplitude: f64,
         /// Wavelength.
         wavelength: f64,
-        /// Side of the square.
-        side: f64,
+        /// Sides of the rectangle.
+        size: Size,
     },
 }
 
 impl Surface {
-    /// Side L of the apparent contact square.
-    pub fn side(&self) -> f64 {
+    /// Sides of the nominal contact area.
+    pub fn size(&self) -> Size {
         match self {
-            Self::SelfAffine(s) => s.side,
-            Self::Heights(m) => m.side(),
-            Self::Line { side, .. }
-            | Self::Sphere { side, .. }
-            | Self::Cone { side, .. }
-            | Self::PowerLaw { side, .. }
-            | Self::FlatCircle { side, .. }
-            | Self::FlatSquare { side }
-            | Self::Sine { side, .. } => *side,
+            Self::SelfAffine(s) => s.size,
+            Self::Heights(m) => m.size(),
+            Self::Line { size, .. }
+            | Self::Sphere { size, .. }
+            | Self::Cone { size, .. }
+            | Self::PowerLaw { size, .. }
+            | Self::FlatCircle { size, .. }
+            | Self::Flat { size }
+            | Self::Sine { size, .. } => *size,
         }
     }
 
@@ -160,7 +160,7 @@ impl Surface {
             Self::Cone { .. } => "a cone",
             Self::PowerLaw { .. } => "a power-law body",
             Self::FlatCircle { .. } => "a flat circular punch",
-            Self::FlatSquare { .. } => "a flat square",
+            Self::Flat { .. } => "a flat square",
             Self::Sine { .. } => "a sinusoidal surface",
         }
     }
@@ -170,7 +170,7 @@ impl Surface {
     /// # Errors
     /// [`Error::Domain`] with the first value that makes no sense.
     pub fn validate(&self) -> Result<()> {
-        positive("side", self.side())?;
+        self.size().validate()?;
         match *self {
             Self::SelfAffine(ref s) => s.validate()?,
             Self::Sphere { radius, .. } | Self::FlatCircle { radius, .. } => {
@@ -187,17 +187,17 @@ impl Surface {
                 positive("amplitude", amplitude)?;
                 positive("wavelength", wavelength)?;
             }
-            Self::Heights(_) | Self::Line { .. } | Self::FlatSquare { .. } => {}
+            Self::Heights(_) | Self::Line { .. } | Self::Flat { .. } => {}
         }
         Ok(())
     }
 }
 
-/// A self-affine surface: `C_2D(q) ~ q^(-2 (H + 1))` from the longest wave of the square to the grid's shortest (Eqs. 3, 4).
+/// A self-affine surface: `C_2D(q) ~ q^(-2 (H + 1))` from the longest wave to the grid's shortest (Eqs. 3, 4).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffine {
-    /// Side L of the square; a line that stands for it has the length [`line_length`].
-    pub side: f64,
+    /// Sides of the rectangle; a line that stands for it has the length [`line_length`] of `sqrt(Lx Ly)`.
+    pub size: Size,
     /// Hurst exponent in [0, 1]; the fractal dimension is `3 - hurst`.
     pub hurst: f64,
     /// What fixes the vertical scale.
@@ -213,7 +213,7 @@ pub struct SelfAffine {
 pub enum Amplitude {
     /// The rms height of the sampled surface, exactly, at any resolution (the paper's choice: F_bar is counted in it).
     RmsHeight(f64),
-    /// The constant `C_2D(q_0)` at the longest wave `q_0 = 2 pi / L` (length^4): finer grids add waves and leave the long ones alone.
+    /// The constant `C_2D(q_0)` at `q_0 = 2 pi / L`, `L = sqrt(Lx Ly)` (length^4): finer grids add waves and leave the long ones alone.
     /// In one dimension `C_1D = pi q C_2D` (Eq. 17).
     Spectrum(f64),
 }
@@ -223,13 +223,13 @@ impl SelfAffine {
     ///
     /// # Errors
     /// [`Error::Domain`] for a fractal dimension outside [2, 3] or a side or height that is not positive.
-    pub fn new(fractal_dimension: f64, side: f64, rms_height: f64) -> Result<Self> {
+    pub fn new(fractal_dimension: f64, size: impl Into<Size>, rms_height: f64) -> Result<Self> {
         if !(2.0..=3.0).contains(&fractal_dimension) {
             return Err(Error::domain("fractal_dimension", fractal_dimension, "a number in [2, 3]"));
         }
         let amplitude = Amplitude::RmsHeight(rms_height);
         let hurst = 3.0 - fractal_dimension;
-        let surface = Self { side, hurst, amplitude, roll_off: None, short_cutoff: None };
+        let surface = Self { size: size.into(), hurst, amplitude, roll_off: None, short_cutoff: None };
         surface.validate()?;
         Ok(surface)
     }
@@ -244,7 +244,7 @@ impl SelfAffine {
     /// # Errors
     /// [`Error::Domain`] with the first value that makes no sense.
     pub fn validate(&self) -> Result<()> {
-        positive("side", self.side)?;
+        self.size.validate()?;
         if !(0.0..=1.0).contains(&self.hurst) {
             return Err(Error::domain("hurst", self.hurst, "a number in [0, 1]"));
         }
@@ -387,7 +387,7 @@ mod tests {
 
     #[test]
     fn effects_are_refused_by_name() {
-        let mut scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        let mut scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
         assert!(scene.refuse_effects("m").is_ok());
         scene.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
         let text = scene.refuse_effects("m").unwrap_err().to_string();
@@ -398,7 +398,7 @@ mod tests {
 
     #[test]
     fn effects_and_bodies_are_checked() {
-        let mut scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        let mut scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
         for effects in [
             Effects { adhesion: Adhesion::ShortRange { work: -0.1 }, ..Effects::default() },
             Effects { friction: Friction::Coulomb { coefficient: f64::INFINITY }, ..Effects::default() },
@@ -409,7 +409,7 @@ mod tests {
         }
         let second = Body::Elastic { young: 2.0, poisson: 0.0 };
         let mut scene =
-            Scene::of_pair(Surface::FlatSquare { side: 1.0 }, Pair { first: Body::Rigid, second }).unwrap();
+            Scene::of_pair(Surface::Flat { size: 1.0.into() }, Pair { first: Body::Rigid, second }).unwrap();
         assert!(scene.validate().is_ok());
         scene.modulus = 2.1;
         let text = scene.validate().unwrap_err().to_string();

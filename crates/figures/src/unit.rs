@@ -228,7 +228,7 @@ mod tests {
 
     impl PreparedContact for TiredContact {
         fn normalisation(&self) -> Normalisation {
-            Normalisation { modulus: 1.0, side: 1.0, height: Some(2.0) }
+            Normalisation { modulus: 1.0, length: 1.0, height: Some(2.0) }
         }
         fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelResult<ContactState> {
             let Load::Force(force) = load else { panic!("units prescribe forces") };

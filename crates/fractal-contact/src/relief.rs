@@ -201,7 +201,7 @@ enum Kind {
     Cone,
     PowerLaw,
     FlatCircle,
-    FlatSquare,
+    Flat,
     Sine,
 }
 
@@ -210,7 +210,7 @@ const BODIES: [(&str, Kind); 6] = [
     ("cone", Kind::Cone),
     ("power_law", Kind::PowerLaw),
     ("flat_circle", Kind::FlatCircle),
-    ("flat_square", Kind::FlatSquare),
+    ("flat_square", Kind::Flat),
     ("sine", Kind::Sine),
 ];
 
@@ -229,19 +229,23 @@ fn read_body(table: &Entries<'_>, given: Option<f64>, system: System) -> Read<Su
         (None, None) => table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system)?,
     };
     let surface = match kind {
-        Kind::Sphere => Surface::Sphere { radius: length("radius")?, side },
-        Kind::Cone => Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, side },
+        Kind::Sphere => Surface::Sphere { radius: length("radius")?, size: side.into() },
+        Kind::Cone => {
+            Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size: side.into() }
+        }
         Kind::PowerLaw => {
             // Two lengths instead of a coefficient whose unit depends on the exponent.
             let exponent = table.require("exponent", "4")?.positive_number()?;
             let (depth, radius) = (length("depth")?, length("radius")?);
-            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, side }
+            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size: side.into() }
         }
-        Kind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, side },
-        Kind::FlatSquare => Surface::FlatSquare { side },
-        Kind::Sine => {
-            Surface::Sine { amplitude: length("amplitude")?, wavelength: length("wavelength")?, side }
-        }
+        Kind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, size: side.into() },
+        Kind::Flat => Surface::Flat { size: side.into() },
+        Kind::Sine => Surface::Sine {
+            amplitude: length("amplitude")?,
+            wavelength: length("wavelength")?,
+            size: side.into(),
+        },
     };
     table.known_only()?;
     Ok(surface)

@@ -71,7 +71,7 @@ impl SceneFile {
     /// ```
     /// use contact_model::Surface;
     /// use fractal_contact::{Loads, Numerics, Plan, Prescribed, Relief, Request, SceneFile};
-    /// let body = Relief::Plain(Surface::Sphere { radius: 1.0, side: 4.0 });
+    /// let body = Relief::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
     /// let loads = Request::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
     /// let mut scene = SceneFile::new(vec![Numerics::Hertz], body, 1.0, loads);
     /// scene.asked.outputs.stiffness = true;

@@ -165,11 +165,11 @@ mod tests {
     }
 
     fn sphere(work: f64) -> Adhesive {
-        adhesive(&Surface::Sphere { radius: 1.0, side: 1.0 }, work)
+        adhesive(&Surface::Sphere { radius: 1.0, size: 1.0.into() }, work)
     }
 
     fn power(coefficient: f64, exponent: f64, work: f64) -> Adhesive {
-        adhesive(&Surface::PowerLaw { coefficient, exponent, side: 1.0 }, work)
+        adhesive(&Surface::PowerLaw { coefficient, exponent, size: 1.0.into() }, work)
     }
 
     /// JKR in closed form, with E* = R = 1.
@@ -211,13 +211,13 @@ mod tests {
     fn a_cone_and_a_flat_punch() {
         // Cone (Maugis and Barquins 1981): F = (pi/2) E* tan a^2 - sqrt(8 pi w E* a^3), so the pull-off is at sqrt(a) = 3 c/(2 s).
         let (work, slope) = (1e-3, 0.2);
-        let cone = adhesive(&Surface::Cone { slope, side: 1.0 }, work);
+        let cone = adhesive(&Surface::Cone { slope, size: 1.0.into() }, work);
         let Err(Failure::PullsOff { smallest }) = cone.at_force(-1.0) else { panic!("it holds") };
         let (c, s) = ((2.0 * PI * work).sqrt(), PI / 2.0 * slope);
         let a = (1.5 * c / s).powi(2);
         assert_relative_eq!(smallest, s * a * a - 2.0 * c * a.powf(1.5), max_relative = 1e-12);
         // Kendall: F = -sqrt(8 pi w E* a^3).
-        let punch = adhesive(&Surface::FlatCircle { radius: 0.1, side: 1.0 }, work);
+        let punch = adhesive(&Surface::FlatCircle { radius: 0.1, size: 1.0.into() }, work);
         let Err(Failure::PullsOff { smallest }) = punch.at_force(-1.0) else { panic!("it holds") };
         assert_relative_eq!(smallest, -(8.0 * PI * work * 1e-3).sqrt(), max_relative = ROUNDING);
         let state = punch.at_approach(-0.01).unwrap();

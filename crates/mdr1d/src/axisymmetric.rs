@@ -56,7 +56,7 @@ impl Profile {
     /// use contact_model::Surface;
     /// use mdr1d::Profile;
     /// // A paraboloid r^2/2 has kappa_2 = 2: g = x^2.
-    /// let g = Profile::new(&Surface::Sphere { radius: 1.0, side: 1.0 })?.expect("a sphere is axisymmetric");
+    /// let g = Profile::new(&Surface::Sphere { radius: 1.0, size: 1.0.into() })?.expect("a sphere is axisymmetric");
     /// assert!((g.depth(0.5).expect("inside") - 0.25).abs() < 1e-14);
     /// # Ok::<(), contact_model::Error>(())
     /// ```
@@ -75,14 +75,14 @@ impl Profile {
             }
         };
         match *surface {
-            Surface::Sphere { radius, side } => power(2.0, 0.5 * (side / radius)),
+            Surface::Sphere { radius, size } => power(2.0, 0.5 * (side / radius)),
             Surface::Cone { slope, .. } => power(1.0, slope),
-            Surface::PowerLaw { coefficient, exponent, side } => {
+            Surface::PowerLaw { coefficient, exponent, size } => {
                 // L^(n-1) in two halves: the product may be moderate where the power alone overflows.
                 let half = side.powf(0.5 * (exponent - 1.0));
                 power(exponent, coefficient * half * half)
             }
-            Surface::FlatCircle { radius, side } => {
+            Surface::FlatCircle { radius, size } => {
                 let radius = radius / side;
                 check_radius(radius, side)?;
                 Ok(Some(Self::Flat { radius }))

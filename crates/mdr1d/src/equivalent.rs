@@ -44,7 +44,7 @@ const NAME: &str = "equivalent";
 /// use mdr1d::{Equivalent, Mdr1d};
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
-/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, side: 2.0 }, pair)?;
+/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
 /// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
 /// let mut contact = Equivalent::new(Mdr1d::default()).prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260 (Cattaneo, Mindlin).

@@ -77,7 +77,7 @@ impl ContactModel for Mdr1d {
         let (side, modulus) = (scene.surface.side(), scene.modulus);
         if let Some(profile) = Profile::new(&scene.surface)? {
             let nondimensional = Nondimensionalisation::new(modulus, side, side)?;
-            let normalisation = Normalisation { modulus, side, height: None };
+            let normalisation = Normalisation { modulus, length: side, height: None };
             let adhesive = adhesive(profile, scene)?;
             return Ok(Box::new(Body { profile, adhesive, nondimensional, normalisation, outputs }));
         }
@@ -186,7 +186,7 @@ struct Rough {
 impl Rough {
     fn new(bearing: Bearing, line: &Line, side: f64, modulus: f64, outputs: Outputs) -> Self {
         let height = surface_gen::rms_height(line.heights());
-        let normalisation = Normalisation { modulus, side, height: Some(height) };
+        let normalisation = Normalisation { modulus, length: side, height: Some(height) };
         Self { bearing, normalisation, outputs, home: None }
     }
 }

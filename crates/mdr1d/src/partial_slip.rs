@@ -26,7 +26,7 @@ const NAME: &str = "mdr1d_partial_slip";
 /// use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
-/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, side: 2.0 }, pair)?;
+/// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
 /// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
 /// let mut contact = mdr1d::PartialSlip.prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260 (Cattaneo, Mindlin).
@@ -84,7 +84,7 @@ impl HistoryModel for PartialSlip {
         Ok(Box::new(Prepared {
             profile,
             nondimensional: Nondimensionalisation::new(modulus, side, side)?,
-            normalisation: Normalisation { modulus, side, height: None },
+            normalisation: Normalisation { modulus, length: side, height: None },
             outputs: scene.outputs,
             coefficient,
             time: 0.0,

@@ -15,7 +15,7 @@ use contact_model::{Error, Result};
 /// use contact_model::{Scene, Surface};
 /// use mdr1d::{Equivalent, Mdr1d};
 /// // A sphere, from its own states: g = x^2/R.
-/// let scene = Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 1.0);
+/// let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
 /// let profile = Equivalent::new(Mdr1d::default()).profile(&scene, 0, 0.04)?;
 /// assert!((profile.depth(0.1).expect("touched") - 0.01).abs() < 1e-6);
 /// assert!((profile.half_width(0.01) - 0.1).abs() < 1e-5);

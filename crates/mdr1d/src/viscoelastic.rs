@@ -31,7 +31,7 @@ const NAME: &str = "mdr1d_viscoelastic";
 /// use contact_model::{HistoryModel, Load, Rheology, Scene, Step, Surface};
 /// use mdr1d::Viscoelastic;
 /// // Kelvin-Voigt under a flat-ended cylinder: d = F/(8 G a) (1 - exp(-G t/eta)), with G = 1 (E* = 4), eta = 2, a = 0.5, F = 1.
-/// let mut scene = Scene::new(Surface::FlatCircle { radius: 0.5, side: 2.0 }, 4.0);
+/// let mut scene = Scene::new(Surface::FlatCircle { radius: 0.5, size: 2.0.into() }, 4.0);
 /// scene.effects.rheology = Rheology::KelvinVoigt { viscosity: 2.0 };
 /// scene.outputs.stiffness = false;
 /// let mut contact = Viscoelastic.prepare(&scene, 0)?;
@@ -89,7 +89,7 @@ impl HistoryModel for Viscoelastic {
         Ok(Box::new(Prepared {
             profile,
             nondimensional: Nondimensionalisation::new(modulus, side, side)?,
-            normalisation: Normalisation { modulus, side, height: None },
+            normalisation: Normalisation { modulus, length: side, height: None },
             outputs: scene.outputs,
             relaxation: Relaxation::new(material, NAME),
         }))

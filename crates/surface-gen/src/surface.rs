@@ -22,7 +22,7 @@ const NAME: &str = "surface-gen";
 /// ```
 /// use contact_model::Surface;
 /// // The corner cell's centre is at r^2 = 2 (1/3)^2 from the apex: r^2 / (2 R) = 1/9.
-/// let map = surface_gen::height_map(&Surface::Sphere { radius: 1.0, side: 1.0 }, 3, 0)?;
+/// let map = surface_gen::height_map(&Surface::Sphere { radius: 1.0, size: 1.0.into() }, 3, 0)?;
 /// assert!((map.heights()[0] + 1.0 / 9.0).abs() < 1e-15);
 /// assert!(map.heights()[4] == 0.0);
 /// # Ok::<(), contact_model::Error>(())
@@ -39,14 +39,14 @@ pub fn height_map(surface: &Surface, cells: usize, seed: u64) -> Result<Arc<Heig
                 expected: format!("{cells} x {cells}, the cells asked for (maps are not resampled)").into(),
             });
         }
-        Surface::Sphere { radius, side } => axisymmetric(cells, side, |r| 0.5 * r * (r / radius))?,
-        Surface::Cone { slope, side } => axisymmetric(cells, side, |r| slope * r)?,
-        Surface::PowerLaw { coefficient, exponent, side } => {
+        Surface::Sphere { radius, size } => axisymmetric(cells, side, |r| 0.5 * r * (r / radius))?,
+        Surface::Cone { slope, size } => axisymmetric(cells, side, |r| slope * r)?,
+        Surface::PowerLaw { coefficient, exponent, size } => {
             axisymmetric(cells, side, |r| coefficient * r.powf(exponent))?
         }
-        Surface::FlatCircle { radius, side } => flat_circle(cells, side, radius)?,
-        Surface::FlatSquare { side } => flat_square(cells, side)?,
-        Surface::Sine { amplitude, wavelength, side } => sine(cells, side, amplitude, wavelength)?,
+        Surface::FlatCircle { radius, size } => flat_circle(cells, side, radius)?,
+        Surface::Flat { size } => flat_square(cells, side)?,
+        Surface::Sine { amplitude, wavelength, size } => sine(cells, side, amplitude, wavelength)?,
         _ => return Err(Error::unsupported(NAME, format!("{} as a map", surface.kind()))),
     };
     Ok(Arc::new(map))
@@ -62,7 +62,7 @@ pub fn height_map(surface: &Surface, cells: usize, seed: u64) -> Result<Arc<Heig
 /// use contact_model::{SelfAffine, Surface};
 /// let surface = Surface::SelfAffine(SelfAffine::new(2.0, 1.0, 1.0)?);
 /// assert_eq!(surface_gen::line(&surface, 64, 0)?.elements(), 64);
-/// assert!(surface_gen::line(&Surface::FlatSquare { side: 1.0 }, 64, 0).is_err());
+/// assert!(surface_gen::line(&Surface::Flat { size: 1.0.into() }, 64, 0).is_err());
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn line(surface: &Surface, elements: usize, seed: u64) -> Result<Arc<Line>> {
@@ -94,17 +94,21 @@ mod tests {
     fn axisymmetric_bodies_at_known_points() {
         // Cell (0, 1) of 4 on a side of 4: r = sqrt(1.5^2 + 0.5^2) = sqrt(2.5).
         let at = |surface: Surface| height_map(&surface, 4, 0).unwrap().heights()[4];
-        assert_relative_eq!(at(Surface::Sphere { radius: 5.0, side: 4.0 }), -0.25, max_relative = ROUNDING);
-        let cone = at(Surface::Cone { slope: 0.1, side: 4.0 });
+        assert_relative_eq!(
+            at(Surface::Sphere { radius: 5.0, size: 4.0.into() }),
+            -0.25,
+            max_relative = ROUNDING
+        );
+        let cone = at(Surface::Cone { slope: 0.1, size: 4.0.into() });
         assert_relative_eq!(cone, -0.1 * 2.5_f64.sqrt(), max_relative = ROUNDING);
-        let power = at(Surface::PowerLaw { coefficient: 2.0, exponent: 4.0, side: 4.0 });
+        let power = at(Surface::PowerLaw { coefficient: 2.0, exponent: 4.0, size: 4.0.into() });
         assert_relative_eq!(power, -12.5, max_relative = ROUNDING);
     }
 
     #[test]
     fn bodies_have_the_symmetries_of_the_square() {
         for n in [1, 2, 5, 8] {
-            let surface = Surface::PowerLaw { coefficient: 0.3, exponent: 0.7, side: 0.37 };
+            let surface = Surface::PowerLaw { coefficient: 0.3, exponent: 0.7, size: 0.37.into() };
             let map = height_map(&surface, n, 0).unwrap();
             let h = |ix: usize, iy: usize| map.heights()[iy * n + ix].to_bits();
             for iy in 0..n {
@@ -118,31 +122,32 @@ mod tests {
 
     #[test]
     fn a_cone_has_its_slope() {
-        let map = height_map(&Surface::Cone { slope: 0.2, side: 3.0 }, 301, 0).unwrap();
+        let map = height_map(&Surface::Cone { slope: 0.2, size: 3.0.into() }, 301, 0).unwrap();
         assert_relative_eq!(rms_slope_differences(&map), 0.2, max_relative = 2e-3); // second order, but for the apex
     }
 
     #[test]
     fn a_punch_covers_its_face() {
-        let punch = |radius| height_map(&Surface::FlatCircle { radius, side: 2.0 }, 100, 0);
+        let punch = |radius| height_map(&Surface::FlatCircle { radius, size: 2.0.into() }, 100, 0);
         let map = punch(0.9).unwrap();
         let inside = map.heights().iter().filter(|&&h| h >= 0.0).count();
         assert_relative_eq!(inside as f64 / 1e4, PI * 0.81 / 4.0, max_relative = 5e-3); // lattice points in a circle
         assert_relative_eq!(map.heights()[0], -2000.0);
         assert!(punch(1.01).is_err() && punch(0.013).is_err() && punch(0.0142).is_ok());
-        let one = height_map(&Surface::FlatCircle { radius: 1e-9, side: 2.0 }, 3, 0).unwrap();
+        let one = height_map(&Surface::FlatCircle { radius: 1e-9, size: 2.0.into() }, 3, 0).unwrap();
         assert_eq!(one.heights().iter().filter(|&&h| h >= 0.0).count(), 1);
     }
 
     #[test]
     fn sine_and_flat() {
-        let sine = |wavelength| height_map(&Surface::Sine { amplitude: 2.0, wavelength, side: 1.0 }, 8, 0);
+        let sine =
+            |wavelength| height_map(&Surface::Sine { amplitude: 2.0, wavelength, size: 1.0.into() }, 8, 0);
         let map = sine(0.5).unwrap();
         for (ix, h) in map.heights()[16..24].iter().enumerate() {
             assert_abs_diff_eq!(*h, 2.0 * (4.0 * PI * (ix as f64 + 0.5) / 8.0).cos(), epsilon = ROUNDING);
         }
         assert!(sine(0.25).is_ok() && sine(0.24).is_err());
-        let flat = height_map(&Surface::FlatSquare { side: 1.0 }, 3, 0).unwrap();
+        let flat = height_map(&Surface::Flat { size: 1.0.into() }, 3, 0).unwrap();
         assert!(flat.heights().iter().all(|&h| h.abs() <= 0.0));
     }
 
@@ -155,7 +160,7 @@ mod tests {
         assert!(matches!(line(&surface, 3, 0), Err(Error::Unsupported { .. })));
 
         let given = Arc::new(Line::new(1.0, vec![0.0; 5]).unwrap());
-        let surface = Surface::Line { line: Arc::clone(&given), side: 1.0 };
+        let surface = Surface::Line { line: Arc::clone(&given), size: 1.0.into() };
         assert!(Arc::ptr_eq(&line(&surface, 5, 0).unwrap(), &given));
         assert!(matches!(line(&surface, 4, 0), Err(Error::Shape { found: 5, .. })));
         let e = height_map(&surface, 5, 0).unwrap_err();
@@ -174,19 +179,21 @@ mod tests {
     fn bad_numbers_are_errors() {
         let side = 1.0;
         for surface in [
-            Surface::Sphere { radius: 0.0, side },
-            Surface::Cone { slope: f64::NAN, side },
-            Surface::PowerLaw { coefficient: 1.0, exponent: -1.0, side },
-            Surface::FlatCircle { radius: f64::INFINITY, side },
-            Surface::FlatSquare { side: 0.0 },
-            Surface::Sine { amplitude: 0.0, wavelength: 1.0, side },
-            Surface::Sphere { radius: 1e-300, side: 1e200 },
+            Surface::Sphere { radius: 0.0, size: side.into() },
+            Surface::Cone { slope: f64::NAN, size: side.into() },
+            Surface::PowerLaw { coefficient: 1.0, exponent: -1.0, size: side.into() },
+            Surface::FlatCircle { radius: f64::INFINITY, size: side.into() },
+            Surface::Flat { size: 0.0.into() },
+            Surface::Sine { amplitude: 0.0, wavelength: 1.0, size: side.into() },
+            Surface::Sphere { radius: 1e-300, size: 1e200.into() },
         ] {
             assert!(matches!(height_map(&surface, 4, 0), Err(Error::Domain { .. })), "{surface:?}");
         }
-        assert!(height_map(&Surface::FlatSquare { side }, 0, 0).is_err());
-        assert!(height_map(&Surface::FlatSquare { side }, usize::MAX, 0).is_err());
-        assert!(height_map(&Surface::FlatCircle { radius: 0.1, side }, 0, 0).is_err());
-        assert!(height_map(&Surface::Sine { amplitude: 1.0, wavelength: 1.0, side }, 0, 0).is_err());
+        assert!(height_map(&Surface::Flat { size: side.into() }, 0, 0).is_err());
+        assert!(height_map(&Surface::Flat { size: side.into() }, usize::MAX, 0).is_err());
+        assert!(height_map(&Surface::FlatCircle { radius: 0.1, size: side.into() }, 0, 0).is_err());
+        assert!(
+            height_map(&Surface::Sine { amplitude: 1.0, wavelength: 1.0, size: side.into() }, 0, 0).is_err()
+        );
     }
 }

@@ -101,7 +101,7 @@ impl Problem {
     }
 
     fn sphere() -> Self {
-        let surface = Surface::Sphere { radius: 1.0, side: 1.0 };
+        let surface = Surface::Sphere { radius: 1.0, size: 1.0.into() };
         // F = (4/3) E* a^3 / R.
         let load = Load::Force(4.0 / 3.0 * RADIUS.powi(3));
         let scene = Scene::new(surface, 1.0);
@@ -109,7 +109,7 @@ impl Problem {
     }
 
     fn square() -> Self {
-        let scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+        let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
         Self {
             family: Family::Square,
             fractal_dimension: None,
@@ -151,7 +151,7 @@ impl Problem {
         if self.family == Family::Square {
             let line =
                 Line::new(line_length(1.0), vec![0.0; elements]).map_err(Error::model("a flat line"))?;
-            scene.surface = Surface::Line { line: Arc::new(line), side: 1.0 };
+            scene.surface = Surface::Line { line: Arc::new(line), size: 1.0.into() };
             scene.outputs.area = false;
         }
         Ok(scene)

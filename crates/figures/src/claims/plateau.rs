@@ -15,7 +15,7 @@ const GRIDS: [usize; 2] = [64, 128];
 /// k/(E* L) of a rigid square of N x N cells, all in contact.
 fn square(cells: usize) -> Result<f64> {
     let model = Bem3d { cells, tolerance: 1e-9, ..Bem3d::default() };
-    let scene = Scene::new(Surface::FlatSquare { side: 1.0 }, 1.0);
+    let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     model
         .prepare(&scene, 0)
         .and_then(|mut contact| contact.solve(Load::Force(1.0)))

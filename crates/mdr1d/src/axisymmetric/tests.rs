@@ -16,7 +16,7 @@ fn profile(surface: &Surface) -> Profile {
 }
 
 fn power(coefficient: f64, exponent: f64) -> Profile {
-    profile(&Surface::PowerLaw { coefficient, exponent, side: 1.0 })
+    profile(&Surface::PowerLaw { coefficient, exponent, size: 1.0.into() })
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn kappa_obeys_its_recurrences() {
 #[test]
 fn hertz_in_numbers() {
     // E* = R = L = 1 (the radius at F = 1 leaves that square; the profile itself does not know).
-    let sphere = profile(&Surface::Sphere { radius: 1.0, side: 1.0 });
+    let sphere = profile(&Surface::Sphere { radius: 1.0, size: 1.0.into() });
     let one = sphere.at_force(1.0);
     assert_relative_eq!(one.radius, 0.908_560_296_416, max_relative = PRINTED);
     assert_relative_eq!(one.approach, 0.825_481_812_224, max_relative = PRINTED);
@@ -77,10 +77,10 @@ fn hertz_in_numbers() {
 
 #[test]
 fn cone_and_circle_in_numbers() {
-    let cone = profile(&Surface::Cone { slope: 0.1, side: 1.0 }).at_approach(0.1);
+    let cone = profile(&Surface::Cone { slope: 0.1, size: 1.0.into() }).at_approach(0.1);
     assert_relative_eq!(cone.radius, 2.0 / PI, max_relative = ROUNDING);
     assert_relative_eq!(cone.force, 0.063_661_977_2, max_relative = 1e-9);
-    let punch = profile(&Surface::FlatCircle { radius: 0.3, side: 1.0 }).at_force(0.06);
+    let punch = profile(&Surface::FlatCircle { radius: 0.3, size: 1.0.into() }).at_force(0.06);
     assert_relative_eq!(punch.approach, 0.1, max_relative = ROUNDING);
     assert_relative_eq!(punch.stiffness(), 0.6, max_relative = ROUNDING);
 }
@@ -118,17 +118,17 @@ fn the_discretised_profile_converges_with_its_order() {
 
 #[test]
 fn bad_bodies() {
-    let wide = Surface::FlatCircle { radius: 0.6, side: 1.0 };
+    let wide = Surface::FlatCircle { radius: 0.6, size: 1.0.into() };
     assert!(matches!(Profile::new(&wide), Err(Error::OutOfRange { .. })));
-    let steep = Surface::PowerLaw { coefficient: 1e300, exponent: 3.0, side: 1e150 };
+    let steep = Surface::PowerLaw { coefficient: 1e300, exponent: 3.0, size: 1e150.into() };
     assert!(matches!(Profile::new(&steep), Err(Error::Domain { .. })));
-    assert!(Profile::new(&Surface::Cone { slope: 0.0, side: 1.0 }).is_err());
-    assert!(Profile::new(&Surface::FlatSquare { side: 1.0 }).unwrap().is_none());
+    assert!(Profile::new(&Surface::Cone { slope: 0.0, size: 1.0.into() }).is_err());
+    assert!(Profile::new(&Surface::Flat { size: 1.0.into() }).unwrap().is_none());
     assert!(kappa(-1e300).is_err() && kappa(f64::NAN).is_err());
     assert!(power(1.0, 1.0).line(0.5, 10).is_err());
     assert!(Profile::Flat { radius: 0.1 }.line(0.5, 11).is_err());
     // L^(n - 1) = 1e350 alone overflows; the body does not.
-    let tall = Surface::PowerLaw { coefficient: 1e-300, exponent: 8.0, side: 1e50 };
+    let tall = Surface::PowerLaw { coefficient: 1e-300, exponent: 8.0, size: 1e50.into() };
     assert!(Profile::new(&tall).is_ok());
 }
 

@@ -14,7 +14,7 @@ fn rubber() -> Pair {
 }
 
 fn sphere() -> Surface {
-    Surface::Sphere { radius: 1.0, side: 2.0 }
+    Surface::Sphere { radius: 1.0, size: 2.0.into() }
 }
 
 fn rough() -> Surface {
@@ -85,7 +85,7 @@ fn difference(surface: &Surface, per_decade: u32) -> [f64; 4] {
 
 #[test]
 fn springs_of_a_table_converge_to_those_of_the_body() {
-    for surface in [sphere(), Surface::PowerLaw { coefficient: 1.0, exponent: 0.7, side: 2.0 }] {
+    for surface in [sphere(), Surface::PowerLaw { coefficient: 1.0, exponent: 0.7, size: 2.0.into() }] {
         let (coarse, fine) = (difference(&surface, 6), difference(&surface, 24));
         // Third order would be 64; the stick radius is x itself, and its worst place moves between the nodes.
         for (coarse, fine) in coarse.iter().zip(&fine).skip(1) {
@@ -93,7 +93,10 @@ fn springs_of_a_table_converge_to_those_of_the_body() {
         }
     }
     // A cone and a punch are met exactly.
-    for surface in [Surface::Cone { slope: 0.3, side: 2.0 }, Surface::FlatCircle { radius: 0.3, side: 2.0 }] {
+    for surface in [
+        Surface::Cone { slope: 0.3, size: 2.0.into() },
+        Surface::FlatCircle { radius: 0.3, size: 2.0.into() },
+    ] {
         let error = difference(&surface, 6);
         assert!(error.iter().all(|error| *error < 1e-8), "{error:?}");
     }
@@ -217,7 +220,7 @@ impl ContactModel for Told {
 
 impl PreparedContact for ToldContact {
     fn normalisation(&self) -> Normalisation {
-        Normalisation { modulus: 1.0, side: 2.0, height: None }
+        Normalisation { modulus: 1.0, length: 2.0, height: None }
     }
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         if stop() {
@@ -271,7 +274,7 @@ fn a_stop_between_nodes_leaves_no_trace() {
 fn any_units_do() {
     let run = |length: f64, young: f64| {
         let pair = Pair { first: Body::Rigid, second: Body::Elastic { young, poisson: 0.5 } };
-        let surface = Surface::Sphere { radius: length, side: 2.0 * length };
+        let surface = Surface::Sphere { radius: length, size: 2.0 * length.into() };
         let mut scene = Scene::of_pair(surface, pair).unwrap();
         scene.effects.friction = Friction::Coulomb { coefficient: MU };
         let mut contact = equivalent(8).prepare(&scene, 0).unwrap();
@@ -340,7 +343,7 @@ fn what_the_wrapper_lacks_is_refused() {
     let refused = |scene: &Scene| matches!(equivalent(8).prepare(scene, 0), Err(Error::Unsupported { .. }));
     assert!(refused(&Scene::of_pair(sphere(), rubber()).unwrap()));
     assert!(refused(&Scene { pair: None, ..sliding(sphere()) }));
-    assert!(refused(&sliding(Surface::FlatSquare { side: 1.0 })), "what M refuses");
+    assert!(refused(&sliding(Surface::Flat { size: 1.0.into() })), "what M refuses");
     let mut scene = sliding(sphere());
     scene.effects.rheology = SOLID;
     assert!(refused(&scene));

@@ -52,7 +52,7 @@ fn seeds_matter_and_a_given_line_is_the_same() {
     assert_eq!(first, prepare(&drawn, 1).solve(load).unwrap());
     assert_ne!(first, prepare(&drawn, 2).solve(load).unwrap());
     let line = Arc::new(surface_gen::self_affine_line(&surface, 1 << 12, 1).unwrap());
-    let given = scene(Surface::Line { line, side: 1.0 });
+    let given = scene(Surface::Line { line, size: 1.0.into() });
     assert_eq!(first, prepare(&given, 99).solve(load).unwrap());
 }
 
@@ -61,7 +61,7 @@ fn what_is_not_asked_is_not_there() {
     let mut silent = scene(rough(2.0));
     silent.outputs.stiffness = false;
     assert!(prepare(&silent, 0).solve(Load::Force(1.0)).unwrap().stiffness.is_none());
-    let sphere = scene(Surface::Sphere { radius: 1.0, side: 1.0 });
+    let sphere = scene(Surface::Sphere { radius: 1.0, size: 1.0.into() });
     assert!(prepare(&sphere, 0).solve(Load::Force(1e-3)).unwrap().area.is_none());
 }
 
@@ -69,10 +69,10 @@ fn what_is_not_asked_is_not_there() {
 fn bodies_in_three_dimensions() {
     let (modulus, side) = (2.0, 1.0);
     for surface in [
-        Surface::Sphere { radius: 3.0, side },
-        Surface::Cone { slope: 0.2, side },
-        Surface::PowerLaw { coefficient: 0.7, exponent: 0.6, side },
-        Surface::FlatCircle { radius: 0.2, side },
+        Surface::Sphere { radius: 3.0, size: side.into() },
+        Surface::Cone { slope: 0.2, size: side.into() },
+        Surface::PowerLaw { coefficient: 0.7, exponent: 0.6, size: side.into() },
+        Surface::FlatCircle { radius: 0.2, size: side.into() },
     ] {
         let mut contact = prepare(&asking_for_area(surface), 0);
         assert!(contact.normalisation().height.is_none());
@@ -90,7 +90,7 @@ fn bodies_in_three_dimensions() {
 fn hertz_in_any_units() {
     // F = 1e-3 E* R^2 is a = 0.090856 R, whatever E* and R are.
     for (modulus, radius) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-        let scene = Scene::new(Surface::Sphere { radius, side: radius }, modulus);
+        let scene = Scene::new(Surface::Sphere { radius, size: radius.into() }, modulus);
         let force = Nondimensionalisation::new(modulus, radius, radius).unwrap().force(1e-3).unwrap();
         let s = prepare(&scene, 0).solve(Load::Force(force)).unwrap();
         assert_relative_eq!(
@@ -104,7 +104,7 @@ fn hertz_in_any_units() {
 
 #[test]
 fn a_contact_that_leaves_the_square_is_refused() {
-    let mut contact = prepare(&scene(Surface::Sphere { radius: 1.0, side: 1.0 }), 0);
+    let mut contact = prepare(&scene(Surface::Sphere { radius: 1.0, size: 1.0.into() }), 0);
     assert!(contact.solve(Load::Approach(0.25)).is_ok());
     let e = contact.solve(Load::Approach(0.36)).unwrap_err();
     assert!(matches!(e, Error::OutOfRange { value, max, .. } if value > 0.59 && max < 0.51), "{e}");
@@ -117,8 +117,8 @@ fn what_the_model_lacks_is_refused() {
     let model = Mdr1d::default();
     let refused = |scene: &Scene| matches!(model.prepare(scene, 0), Err(Error::Unsupported { .. }));
     assert!(refused(&asking_for_area(rough(2.0))));
-    assert!(refused(&scene(Surface::FlatSquare { side: 1.0 })));
-    assert!(refused(&scene(Surface::Sine { amplitude: 0.1, wavelength: 1.0, side: 1.0 })));
+    assert!(refused(&scene(Surface::Flat { size: 1.0.into() })));
+    assert!(refused(&scene(Surface::Sine { amplitude: 0.1, wavelength: 1.0, size: 1.0.into() })));
     let map = Arc::new(HeightMap::new(2, 1.0, vec![0.0; 4]).unwrap());
     assert!(refused(&scene(Surface::Heights(map))));
     for effects in [
@@ -128,7 +128,7 @@ fn what_the_model_lacks_is_refused() {
         assert!(refused(&Scene { effects, ..scene(rough(2.0)) }));
     }
     for field in 0..3 {
-        let mut scene = scene(Surface::Sphere { radius: 1.0, side: 1.0 });
+        let mut scene = scene(Surface::Sphere { radius: 1.0, size: 1.0.into() });
         scene.outputs.pressure = field == 0;
         scene.outputs.displacement = field == 1;
         scene.outputs.gap = field == 2;
@@ -165,7 +165,7 @@ fn an_ensemble_gives_the_same_bits_with_memory_used_before() {
 fn adhesion_of_a_sphere_behind_the_trait() {
     // data/paper/VALUES.md: E* = R = 1, w = 0.01. In other units too.
     for (modulus, length) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-        let mut scene = Scene::new(Surface::Sphere { radius: length, side: 2.0 * length }, modulus);
+        let mut scene = Scene::new(Surface::Sphere { radius: length, size: 2.0 * length.into() }, modulus);
         scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 * (modulus * length) };
         let mut contact = prepare(&scene, 0);
         let s = contact.solve(Load::Force(0.0)).unwrap();
@@ -194,9 +194,11 @@ fn adhesion_where_the_rule_has_no_radius_is_refused() {
     };
     let line = Arc::new(Line::new(1.0, vec![0.0, 0.1]).unwrap());
     let map = Arc::new(HeightMap::new(2, 1.0, vec![0.0; 4]).unwrap());
-    for surface in [rough(2.2), Surface::Line { line, side: 1.0 }, Surface::Heights(map)] {
+    for surface in [rough(2.2), Surface::Line { line, size: 1.0.into() }, Surface::Heights(map)] {
         let text = refusal(surface);
         assert!(text.contains("adhesion") && text.contains("round contact"), "{text}");
     }
-    assert!(refusal(Surface::PowerLaw { coefficient: 1.0, exponent: 0.5, side: 1.0 }).contains("exponent"));
+    assert!(
+        refusal(Surface::PowerLaw { coefficient: 1.0, exponent: 0.5, size: 1.0.into() }).contains("exponent")
+    );
 }

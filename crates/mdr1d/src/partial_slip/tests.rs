@@ -13,7 +13,7 @@ fn scene(surface: Surface, mu: f64) -> Scene {
 }
 
 fn sphere(length: f64) -> Surface {
-    Surface::Sphere { radius: length, side: 2.0 * length }
+    Surface::Sphere { radius: length, size: 2.0 * length.into() }
 }
 
 fn step(normal: f64, tangential: Tangential) -> Step {
@@ -50,9 +50,9 @@ fn reference_numbers_in_any_units() {
 fn force_and_displacement_drive_the_same_path() {
     for surface in [
         sphere(1.0),
-        Surface::Cone { slope: 0.3, side: 2.0 },
-        Surface::PowerLaw { coefficient: 1.0, exponent: 0.6, side: 2.0 },
-        Surface::FlatCircle { radius: 0.3, side: 2.0 },
+        Surface::Cone { slope: 0.3, size: 2.0.into() },
+        Surface::PowerLaw { coefficient: 1.0, exponent: 0.6, size: 2.0.into() },
+        Surface::FlatCircle { radius: 0.3, size: 2.0.into() },
     ] {
         let scene = scene(surface, 0.3);
         let (mut by_force, mut by_displacement) =
@@ -112,7 +112,7 @@ fn limits_and_failures() {
 fn what_the_model_lacks_is_refused() {
     let refused = |scene: &Scene| matches!(PartialSlip.prepare(scene, 0), Err(Error::Unsupported { .. }));
     let rough = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.1).unwrap());
-    assert!(refused(&scene(rough, 0.1)) && refused(&scene(Surface::FlatSquare { side: 1.0 }, 0.1)));
+    assert!(refused(&scene(rough, 0.1)) && refused(&scene(Surface::Flat { size: 1.0.into() }, 0.1)));
     assert!(refused(&Scene { pair: None, ..scene(sphere(1.0), 0.1) }));
     let mut other = scene(sphere(1.0), 0.1);
     other.effects.adhesion = Adhesion::ShortRange { work: 0.1 };

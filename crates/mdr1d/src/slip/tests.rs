@@ -15,11 +15,11 @@ fn profile(surface: &Surface) -> Profile {
 }
 
 fn sphere() -> Profile {
-    profile(&Surface::Sphere { radius: 1.0, side: 1.0 })
+    profile(&Surface::Sphere { radius: 1.0, size: 1.0.into() })
 }
 
 fn power(exponent: f64) -> Profile {
-    profile(&Surface::PowerLaw { coefficient: 0.5, exponent, side: 1.0 })
+    profile(&Surface::PowerLaw { coefficient: 0.5, exponent, size: 1.0.into() })
 }
 
 fn springs(profile: Profile) -> Springs<Profile> {
@@ -87,7 +87,7 @@ fn first_loading_is_cattaneo_and_mindlin() {
 #[test]
 fn without_slip_the_springs_are_a_stiffness() {
     for profile in
-        [sphere(), power(0.7), power(1.0), profile(&Surface::FlatCircle { radius: 0.2, side: 1.0 })]
+        [sphere(), power(0.7), power(1.0), profile(&Surface::FlatCircle { radius: 0.2, size: 1.0.into() })]
     {
         let pressed = Springs::new(profile, 1e9, SHEAR).moved(0.02, 0.0);
         let a = profile.at_approach(0.02).radius;
@@ -118,7 +118,7 @@ fn oblique_loading_sticks_below_the_friction_angle() {
 
 #[test]
 fn a_flat_punch_slips_as_a_whole() {
-    let punch = profile(&Surface::FlatCircle { radius: 0.2, side: 1.0 });
+    let punch = profile(&Surface::FlatCircle { radius: 0.2, size: 1.0.into() });
     let pressed = springs(punch).moved(0.01, 0.0);
     let reach = MU / SHEAR * 0.01;
     let held = pressed.moved(0.01, 0.99 * reach);

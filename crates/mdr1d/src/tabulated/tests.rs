@@ -10,7 +10,7 @@ use std::sync::Arc;
 const ROUNDING: f64 = 1e-8;
 
 fn power(exponent: f64) -> Profile {
-    Profile::new(&Surface::PowerLaw { coefficient: 0.5, exponent, side: 1.0 }).unwrap().unwrap()
+    Profile::new(&Surface::PowerLaw { coefficient: 0.5, exponent, size: 1.0.into() }).unwrap().unwrap()
 }
 
 fn node(profile: Profile, approach: f64) -> Node {
@@ -70,7 +70,7 @@ fn depth_inverts_half_width() {
 
 #[test]
 fn a_flat_face_is_a_flat_face() {
-    let punch = Profile::new(&Surface::FlatCircle { radius: 0.2, side: 1.0 }).unwrap().unwrap();
+    let punch = Profile::new(&Surface::FlatCircle { radius: 0.2, size: 1.0.into() }).unwrap().unwrap();
     let table = sampled(punch, 4);
     assert_relative_eq!(table.half_width(1e-9), 0.2, max_relative = ROUNDING);
     assert_abs_diff_eq!(table.depth(0.1).unwrap(), 0.0);

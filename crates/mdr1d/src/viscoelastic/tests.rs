@@ -16,7 +16,7 @@ fn scene(surface: Surface, rheology: Rheology) -> Scene {
 }
 
 fn sphere() -> Surface {
-    Surface::Sphere { radius: 1.0, side: 2.0 }
+    Surface::Sphere { radius: 1.0, size: 2.0.into() }
 }
 
 #[allow(clippy::large_types_passed_by_value)]
@@ -68,7 +68,8 @@ fn steps_of_the_force_creep_as_the_compliance() {
     }
     // Maxwell under a cone: J = 1 + t/tau, d a E* = F J with a = 2 d/(pi slope).
     let slope = 0.1;
-    let mut contact = prepare(Surface::Cone { slope, side: 2.0 }, Rheology::Maxwell { viscosity: 2.0 });
+    let mut contact =
+        prepare(Surface::Cone { slope, size: 2.0.into() }, Rheology::Maxwell { viscosity: 2.0 });
     for time in [0.0, 0.5, 7.0] {
         let expected = (1e-3 / 4.0 * (1.0 + time / 2.0) * std::f64::consts::PI * slope / 2.0).sqrt();
         assert_relative_eq!(approach(&mut *contact, time, 1e-3), expected, max_relative = ROUNDING);
@@ -79,7 +80,7 @@ fn steps_of_the_force_creep_as_the_compliance() {
 fn ramps_in_closed_form() {
     // Cone, d = v t, Phi = 2 d^2/(pi slope): Maxwell gives E* (4 v^2/(pi slope)) (tau t - tau^2 (1 - exp(-t/tau))).
     let (slope, v, tau) = (0.1, 1e-3, 2.0);
-    let cone = Surface::Cone { slope, side: 2.0 };
+    let cone = Surface::Cone { slope, size: 2.0.into() };
     let factor = 2.0 / (std::f64::consts::PI * slope);
     for time in [1e-4, 0.1, 2.0, 50.0_f64] {
         let mut contact = prepare(cone.clone(), Rheology::Maxwell { viscosity: 2.0 });
@@ -111,7 +112,7 @@ fn ramps_in_closed_form() {
 #[test]
 fn in_any_units() {
     let run = |length: f64, modulus: f64| {
-        let surface = Surface::Sphere { radius: length, side: 2.0 * length };
+        let surface = Surface::Sphere { radius: length, size: 2.0 * length.into() };
         let mut scene = Scene::new(surface, modulus);
         scene.effects.rheology = SOLID;
         scene.outputs.stiffness = false;
@@ -179,7 +180,7 @@ fn single_springs_converge_to_it() {
     let arm = Relaxing { weight: 3.0, time: 2.0 };
     let path = [(0.5, 0.01), (3.0, 0.012), (3.5, 0.03)];
     for exponent in [1.0, 2.0, 3.0] {
-        let surface = Surface::PowerLaw { coefficient: 0.5, exponent, side: 1.0 };
+        let surface = Surface::PowerLaw { coefficient: 0.5, exponent, size: 1.0.into() };
         let profile = Profile::new(&surface).unwrap().unwrap();
         let mut scene = Scene::new(surface, 1.0);
         scene.effects.rheology = Rheology::StandardSolid { arm };
@@ -234,7 +235,7 @@ proptest! {
     #[test]
     fn pieces_of_a_step_add_up(n in 0.5_f64..4.0, arms in series(), cut in 0.01_f64..0.99, log in -3.0_f64..3.0) {
         let rheology = Rheology::Prony(PronySeries::new(&arms).unwrap());
-        let body = Surface::PowerLaw { coefficient: 0.5, exponent: n, side: 2.0 };
+        let body = Surface::PowerLaw { coefficient: 0.5, exponent: n, size: 2.0.into() };
         let (mut whole, mut cuts) = (prepare(body.clone(), rheology), prepare(body, rheology));
         let duration = 10.0_f64.powf(log);
         let (mut time, mut d) = (0.0, 0.0);

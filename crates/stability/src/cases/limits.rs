@@ -178,7 +178,8 @@ fn long_sums(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     // z_i = i/n: F = E* dx sum (d - z_i) over the m elements with z_i < d.
     let heights = (0..count).map(|i| -(i as f64) / count as f64).collect();
     let line = Arc::new(Line::new(1.0, heights)?);
-    let mut contact = Mdr1d::default().prepare(&Scene::new(Surface::Line { line, side: 1.0 }, 1.0), 0)?;
+    let mut contact =
+        Mdr1d::default().prepare(&Scene::new(Surface::Line { line, size: 1.0.into() }, 1.0), 0)?;
     let n = count as f64;
     for d in [0.25, 1.0, 3.0] {
         let state = contact.solve(Load::Approach(d))?;
@@ -327,7 +328,7 @@ fn no_load(ledger: &mut Ledger, _: Effort) -> Result<()> {
     let rough = || -> Result<Scene> { Ok(Scene::new(Surface::SelfAffine(crate::rough(2.4)?), 1.0)) };
     let bem = Bem3d { cells: 33, ..tight() };
     let mdr = Mdr1d::default();
-    let sphere = Scene::new(Surface::Sphere { radius: 1.0, side: 1.0 }, 1.0);
+    let sphere = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
     let models: [(&dyn ContactModel, Scene); 3] =
         [(&bem, rough()?), (&mdr, rough()?), (&analytic::Hertz, sphere)];
     for (model, scene) in models {

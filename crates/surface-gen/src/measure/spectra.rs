@@ -77,7 +77,7 @@ fn waves(map: &HeightMap, mut visit: impl FnMut(u64, f64, f64)) -> f64 {
 /// ```
 /// use contact_model::Surface;
 /// // h = 0.1 cos(2 pi x): h' has the amplitude 0.2 pi, its rms is 0.2 pi / sqrt(2).
-/// let sine = Surface::Sine { amplitude: 0.1, wavelength: 1.0, side: 1.0 };
+/// let sine = Surface::Sine { amplitude: 0.1, wavelength: 1.0, size: 1.0.into() };
 /// let slope = surface_gen::rms_slope(&*surface_gen::height_map(&sine, 16, 0)?);
 /// assert!((slope - 0.4442882938158366).abs() < 1e-14);
 /// # Ok::<(), contact_model::Error>(())
@@ -98,7 +98,7 @@ pub fn rms_slope(map: &HeightMap) -> f64 {
 /// ```
 /// use contact_model::Surface;
 /// // One wave along x of amplitude 0.2: two of the 4 waves (+-1, 0), (0, +-1) and 4 of (+-1, +-1) of ring 1 carry 0.01 each.
-/// let sine = Surface::Sine { amplitude: 0.2, wavelength: 1.0, side: 1.0 };
+/// let sine = Surface::Sine { amplitude: 0.2, wavelength: 1.0, size: 1.0.into() };
 /// let spectrum = surface_gen::radial_spectrum(&*surface_gen::height_map(&sine, 16, 0)?);
 /// let tau = std::f64::consts::TAU;
 /// assert!((spectrum[0].1 * tau * tau - 2.0 * 0.01 / 8.0).abs() < 1e-15);
