@@ -44,7 +44,7 @@ fn check(map: &HeightMap, cells: &[usize], load: Load) {
             max_relative = ROUNDING
         );
         assert_relative_eq!(state.stiffness.unwrap(), one.stiffness, max_relative = ROUNDING);
-        let area = map.cell() * map.cell();
+        let area = map.dx() * map.dx();
         for (&i, exact) in one.contact.iter().zip(&one.forces) {
             assert_relative_eq!(pressure[i] * area, exact, epsilon = force, max_relative = ROUNDING);
         }

@@ -65,7 +65,7 @@ fn any_load(map: &HeightMap, exponent: f64, is_force: bool) -> Load {
 /// Force per cell and displacement.
 fn fields(map: &HeightMap, state: &ContactState) -> (Vec<f64>, Vec<f64>) {
     let fields = state.fields.clone().unwrap();
-    let area = map.cell() * map.cell();
+    let area = map.dx() * map.dx();
     (fields.pressure.unwrap().iter().map(|p| p * area).collect(), fields.displacement.unwrap())
 }
 
@@ -109,10 +109,10 @@ proptest! {
         let (here, turned) = (solve(&drawn, load), turn(&drawn));
         let there = solve(&turned, load);
         assert_same(&drawn, &here, &there);
-        let field = |of: &ContactState| HeightMap::new(drawn.cells(), 1.0, of.fields.clone().unwrap().pressure.unwrap()).unwrap();
+        let field = |of: &ContactState| HeightMap::new(drawn.columns(), 1.0, of.fields.clone().unwrap().pressure.unwrap()).unwrap();
         let (expected, found) = (turn(&field(&here)), field(&there));
         // A gap left by the certificate, times the stiffness of a cell over its area.
-        let slack = SAME * (unit(&drawn) / drawn.cell() * 2.0 + found.highest());
+        let slack = SAME * (unit(&drawn) / drawn.dx() * 2.0 + found.highest());
         for (a, b) in expected.heights().iter().zip(found.heights()) {
             prop_assert!((a - b).abs() <= slack, "{a} {b} of {}", found.highest());
         }
@@ -124,7 +124,7 @@ proptest! {
         let step = 2_f64.powi(-16);
         let at = |offset: f64| {
             let h = drawn.heights();
-            map(drawn.cells(), 1.0, |x, y| (h[y * drawn.cells() + x] / step).round() * step + offset).unwrap()
+            map(drawn.columns(), 1.0, |x, y| (h[y * drawn.columns() + x] / step).round() * step + offset).unwrap()
         };
         let load = any_load(&drawn, exponent, is_force);
         prop_assert_eq!(solve(&at(0.0), load), solve(&at(steps as f64 * step), load));
@@ -150,7 +150,7 @@ proptest! {
                 prop_assert!(k1 >= k0 * (1.0 - SAME), "k falls from {} to {}", k0, k1);
                 prop_assert!(rise >= k0 * step - gap * k1 && rise <= k1 * step + gap * k1, "{} {} {}", k0, rise / step, k1);
                 // A cell may leave only if it was never surely in.
-                let surely = SAME * unit(&drawn) * drawn.cell();
+                let surely = SAME * unit(&drawn) * drawn.dx();
                 prop_assert!(old_forces.iter().zip(&forces).all(|(old, new)| *old <= surely || *new > 0.0));
                 if contact(&drawn, &old) == contact(&drawn, &state) {
                     prop_assert!((rise - k1 * step).abs() <= gap * k1, "quotient {} beside k {}", rise / step, k1);
@@ -172,7 +172,7 @@ proptest! {
     /// Maxwell and Betti: what one state's pressure does on the other's displacement is mutual.
     #[test]
     fn reciprocity(one in any_map(), noise in prop::collection::vec(0.0_f64..1.0, 400), exponents in (-3.0_f64..1.5, -3.0_f64..1.5)) {
-        let other = relief(0, one.cells(), &noise).unwrap();
+        let other = relief(0, one.columns(), &noise).unwrap();
         let [a, b] = [(&one, exponents.0), (&other, exponents.1)]
             .map(|(map, exponent)| fields(map, &solve(map, any_load(map, exponent, true))));
         let (there, back) = (dot(&a.0, &b.1), dot(&b.0, &a.1));
@@ -184,7 +184,7 @@ proptest! {
     fn a_higher_surface_carries_more(
         drawn in any_map(), raise in prop::collection::vec(0.0_f64..1.0, 400), exponent in -4.0_f64..1.5,
     ) {
-        let (cells, highest) = (drawn.cells(), drawn.highest());
+        let (cells, highest) = (drawn.columns(), drawn.highest());
         let higher = map(cells, 1.0, |x, y| {
             let (h, r) = (drawn.heights()[y * cells + x], raise[y * cells + x]);
             // A third of the cells, part of the way to the summit.
@@ -202,7 +202,7 @@ proptest! {
     /// enclose the rough one. k is between that of a cell of the contact and that of the rectangle around it, and no more than the sum of cells.
     #[test]
     fn bounds_of_barber(drawn in any_map(), exponent in -6.0_f64..2.0) {
-        let (cells, load) = (drawn.cells(), any_load(&drawn, exponent, true));
+        let (cells, load) = (drawn.columns(), any_load(&drawn, exponent, true));
         let state = solve(&drawn, load);
         let plain = PlainSum::of(&drawn);
         let square = plain.stiffness(&(0..cells * cells).collect::<Vec<_>>());

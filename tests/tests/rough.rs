@@ -136,7 +136,7 @@ fn the_fields_satisfy_the_contact_conditions() {
         let fields = state.fields.unwrap();
         let [p, u, g] = [fields.pressure, fields.displacement, fields.gap].map(Option::unwrap);
         let d = state.approach.unwrap();
-        let area = map.cell() * map.cell();
+        let area = map.dx() * map.dx();
         assert_relative_eq!(p.iter().sum::<f64>() * area, force, max_relative = 1e-12);
         let touching = p.iter().filter(|p| **p > 0.0).count();
         assert_eq!(state.report.contact_cells, Some(touching));
@@ -145,7 +145,7 @@ fn the_fields_satisfy_the_contact_conditions() {
         // The displacement by the plain sum over pairs.
         let sum = |i: usize| -> f64 {
             let k = |j: usize| bem3d::love::influence((i % 33).abs_diff(j % 33), (i / 33).abs_diff(j / 33));
-            (0..p.len()).map(|j| k(j) * p[j]).sum::<f64>() * map.cell() / std::f64::consts::PI
+            (0..p.len()).map(|j| k(j) * p[j]).sum::<f64>() * map.dx() / std::f64::consts::PI
         };
         for i in 0..p.len() {
             assert!(p[i] >= 0.0 && g[i] >= -TOLERANCE);
@@ -173,7 +173,7 @@ fn the_work_is_the_elastic_energy() {
     let last = with_fields(map.clone(), Load::Approach(5.0));
     let fields = last.fields.unwrap();
     let [p, u] = [fields.pressure, fields.displacement].map(Option::unwrap);
-    let area = map.cell() * map.cell();
+    let area = map.dx() * map.dx();
     let highest = map.highest();
     let elastic = 0.5 * area * p.iter().zip(&u).map(|(p, u)| p * u).sum::<f64>();
     let relief = area * p.iter().zip(map.heights()).map(|(p, h)| p * (highest - h)).sum::<f64>();

@@ -74,7 +74,7 @@ fn two_cells() {
                 continue;
             }
             let map = faces(cells, 1.0, |x, y| pair.contains(&(x, y)));
-            let cell = map.cell();
+            let cell = map.dx();
             let scene = scene(map);
             for method in [Method::Auto, Method::Iterative] {
                 let model = Bem3d { tolerance: 1e-12, method, ..Bem3d::default() };

@@ -2,7 +2,7 @@
 
 use contact_model::{
     ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene,
-    SolveReport, Stop,
+    Size, SolveReport, Stop,
 };
 
 /// A closed form between force, approach and stiffness, in the [`Nondimensionalisation`] of its [`Closed`]; loads are positive.
@@ -117,25 +117,26 @@ pub(crate) fn refuse_fields(scene: &Scene, model: &'static str) -> Result<()> {
     Ok(())
 }
 
-/// Units and normalisation of a body without rms height: everything is counted in the side of the square.
+/// Units and normalisation of a body without rms height: everything is counted in `L = sqrt(Lx Ly)`.
 ///
 /// # Errors
-/// [`Error::Domain`] for a modulus or side that no unit can be.
+/// [`Error::Domain`] for a modulus or length that no unit can be.
 pub(crate) fn of_body(scene: &Scene) -> Result<(Nondimensionalisation, Normalisation)> {
-    let (modulus, side) = (scene.modulus, scene.surface.side());
+    let (modulus, length) = (scene.modulus, scene.surface.size().length());
     Ok((
-        Nondimensionalisation::new(modulus, side, side)?,
-        Normalisation { modulus, length: side, height: None },
+        Nondimensionalisation::new(modulus, length, length)?,
+        Normalisation { modulus, length, height: None },
     ))
 }
 
-/// Errors where a round contact (radius in units of the side) has left the square, beyond which the half-space is free.
-pub(crate) fn within_square(radius: f64, side: f64) -> Result<()> {
-    if radius <= 0.5 * ROUNDED_UP {
+/// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is free.
+pub(crate) fn within(radius: f64, size: Size) -> Result<()> {
+    let (length, shorter) = (size.length(), size.shorter());
+    if radius <= 0.5 * (shorter / length) * ROUNDED_UP {
         Ok(())
     } else {
-        let value = radius * side;
-        Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max: 0.5 * side })
+        let value = radius * length;
+        Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max: 0.5 * shorter })
     }
 }
 

@@ -54,10 +54,13 @@ impl ContactModel for FlatPunch {
         closed::check(scene, NAME)?;
         let (law, strategy, stiffness_error) = match scene.surface {
             Surface::FlatCircle { radius, size } => {
-                let radius = radius / side;
-                closed::within_square(radius, side)?;
+                let radius = radius / size.length();
+                closed::within(radius, size)?;
                 let law = Face { stiffness: 2.0 * radius, area: PI * radius * radius };
                 (law, "closed form (Boussinesq)", 0.0)
+            }
+            Surface::Flat { size } if !size.is_square() => {
+                return Err(Error::unsupported(NAME, "a flat rectangle: the constant is that of a square"));
             }
             Surface::Flat { .. } => {
                 let law = Face { stiffness: SQUARE_STIFFNESS, area: 1.0 };
@@ -78,7 +81,7 @@ impl ContactModel for FlatPunch {
     }
 }
 
-/// Stiffness and area of the face, in units of the side.
+/// Stiffness and area of the face, in units of L.
 struct Face {
     stiffness: f64,
     area: f64,
@@ -128,7 +131,7 @@ mod tests {
 
     #[test]
     fn square() {
-        let surface = |side| Surface::Flat { size: side.into() };
+        let surface = |side: f64| Surface::Flat { size: side.into() };
         let scene = Scene::new(surface(3.0), 2.0);
         let s = pressed(&FlatPunch, &scene, Load::Approach(0.1)).unwrap();
         assert_relative_eq!(s.stiffness.unwrap(), 1.152_298 * 6.0, max_relative = ROUNDING);
@@ -144,7 +147,7 @@ mod tests {
 
     #[test]
     fn circle() {
-        let surface = |side| Surface::FlatCircle { radius: 0.3 * side, size: side.into() };
+        let surface = |side: f64| Surface::FlatCircle { radius: 0.3 * side, size: side.into() };
         let scene = Scene::new(surface(1.0), 2.0);
         let s = pressed(&FlatPunch, &scene, Load::Force(0.6)).unwrap();
         assert_relative_eq!(s.approach.unwrap(), 0.5, max_relative = ROUNDING);

@@ -122,12 +122,12 @@ impl ContactModel for GreenwoodWilliamson {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
         let spectrum = Spectrum::new(surface)?;
-        let (modulus, side, height) = (scene.modulus, surface.side, spectrum.rms_height());
+        let (modulus, length, height) = (scene.modulus, surface.size.length(), spectrum.rms_height());
         Ok(Box::new(Periodic {
             model: NAME,
             law: Law { summits: Summits::scaled(&spectrum), heights: self.heights, gauss: Gauss::new() },
-            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, length: side, height: Some(height) },
+            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
+            normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
             strategy: "integral over independent summits (Greenwood, Williamson; McCool)",
         }))
@@ -317,7 +317,7 @@ mod tests {
         let spectrum = Spectrum::new(&one).unwrap();
         let here = Summits::new(&spectrum);
         let mut scaled = one;
-        scaled.side = 1e3;
+        scaled.size = 1e3.into();
         scaled.amplitude = contact_model::Amplitude::RmsHeight(10.0);
         scaled.roll_off = scaled.roll_off.map(|q| q * 1e-3);
         scaled.short_cutoff = scaled.short_cutoff.map(|q| q * 1e-3);

@@ -1,14 +1,14 @@
 //! Hertz: a sphere (paraboloid `z = r^2 / (2 R)`).
 
 use crate::closed::{self, Closed, Law, Point};
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Source, Surface};
+use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
 use std::f64::consts::PI;
 
 const NAME: &str = "hertz";
 
 /// Hertz's contact of a sphere: `a^3 = 3 F R / (4 E*)`, `d = a^2 / R`, `k = 2 E* a`, `A = pi a^2`.
 ///
-/// Takes [`Surface::Sphere`]; a contact radius beyond half the side is [`Error::OutOfRange`].
+/// Takes [`Surface::Sphere`]; a contact radius beyond half the shorter side is [`Error::OutOfRange`].
 ///
 /// ```
 /// use analytic::Hertz;
@@ -42,7 +42,7 @@ impl ContactModel for Hertz {
         let (nondimensional, normalisation) = closed::of_body(scene)?;
         Ok(Box::new(Closed {
             model: NAME,
-            law: Sphere { radius: radius / side, side },
+            law: Sphere { radius: radius / size.length(), size },
             nondimensional,
             normalisation,
             outputs: scene.outputs,
@@ -52,15 +52,15 @@ impl ContactModel for Hertz {
     }
 }
 
-/// `radius` in units of `side`.
+/// `radius` in units of `L = size.length()`.
 struct Sphere {
     radius: f64,
-    side: f64,
+    size: Size,
 }
 
 impl Sphere {
     fn point(&self, force: f64, approach: f64, contact: f64) -> Result<Point> {
-        closed::within_square(contact, self.side)?;
+        closed::within(contact, self.size)?;
         Ok(Point { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
     }
 }

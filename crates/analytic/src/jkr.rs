@@ -3,7 +3,7 @@
 use crate::closed;
 use contact_model::{
     Adhesion, ContactModel, ContactState, Effects, Error, Load, Nondimensionalisation, Normalisation,
-    Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop, Surface,
+    Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface,
 };
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ const NAME: &str = "jkr";
 /// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be negative, and no load means
 /// the adhered contact, not an empty one. (Bodies that approach each other jump into this contact at d = 0.) A force below `-3/2 pi
 /// w R` or an approach below that of `F = -5/6 pi w R` is [`Error::OutOfRange`], named a pull-off: the smallest admissible load is
-/// in the error. So is a contact radius beyond half the side.
+/// in the error. So is a contact radius beyond half the shorter side.
 ///
 /// The stiffness is that of the contact set, `k = 2 E* a`: what an oscillation too small to move the edge sees, and what a
 /// conductance follows from. The slope of the equilibrium curve, where the edge moves, is [`Sphere::slope`].
@@ -62,7 +62,13 @@ impl ContactModel for Jkr {
         };
         let (_, normalisation) = closed::of_body(scene)?;
         let sphere = Sphere::new(radius, scene.modulus, work)?;
-        Ok(Box::new(Prepared { sphere, largest: 0.5 * side / radius, normalisation, outputs: scene.outputs }))
+        Ok(Box::new(Prepared {
+            sphere,
+            largest: 0.5 * size.shorter() / radius,
+            size,
+            normalisation,
+            outputs: scene.outputs,
+        }))
     }
 }
 
@@ -282,8 +288,9 @@ fn signed(value: f64, convert: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 
 struct Prepared {
     sphere: Sphere,
-    /// Half the side over R.
+    /// Half the shorter side over R.
     largest: f64,
+    size: Size,
     normalisation: Normalisation,
     outputs: Outputs,
 }
@@ -307,7 +314,7 @@ impl PreparedContact for Prepared {
             return Err(Error::domain("contact radius over R", a, "a number within the range of f64"));
         }
         if a > self.largest * closed::ROUNDED_UP {
-            let (max, value) = (0.5 * self.normalisation.side, a * nondimensional.approach(1.0)?);
+            let (max, value) = (0.5 * self.size.shorter(), a * nondimensional.approach(1.0)?);
             return Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max });
         }
         let (force, approach) = match load {

@@ -80,12 +80,12 @@ impl ContactModel for Persson {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
         let spectrum = Spectrum::new(surface)?;
-        let (modulus, side, height) = (scene.modulus, surface.side, spectrum.rms_height());
+        let (modulus, length, height) = (scene.modulus, surface.size.length(), spectrum.rms_height());
         Ok(Box::new(Periodic {
             model: NAME,
             law: Law::new(&spectrum, self.checked()?),
-            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, length: side, height: Some(height) },
+            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
+            normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
             strategy: "integral over the spectrum (Persson)",
         }))

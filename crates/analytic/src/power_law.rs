@@ -153,12 +153,12 @@ impl ContactModel for PowerLaw {
         if scene.outputs.area {
             return Err(Error::unsupported(NAME, "the area"));
         }
-        let (modulus, side) = (scene.modulus, surface.side);
+        let (modulus, length) = (scene.modulus, surface.size.length());
         Ok(Box::new(Closed {
             model: NAME,
             law: Fit::new(surface.fractal_dimension()),
-            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, length: side, height: Some(height) },
+            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
+            normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
             strategy: "closed form (Eq. 12)",
             stiffness_error: 0.0,

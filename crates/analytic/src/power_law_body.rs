@@ -2,7 +2,7 @@
 
 use crate::closed::{self, Closed, Law, Point};
 use crate::gamma::half_step_ratio;
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Source, Surface};
+use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
 use std::f64::consts::PI;
 
 const NAME: &str = "power_law_body";
@@ -10,7 +10,7 @@ const NAME: &str = "power_law_body";
 /// A power-law body: `d = kappa_n c a^n`, `F = 2 E* d a n / (n + 1)`, `k = 2 E* a`, `A = pi a^2` ([`kappa`]).
 ///
 /// Then `d ln k / d ln F = 1 / (n + 1)` exactly, at any load. Takes [`Surface::PowerLaw`], [`Surface::Cone`] (n = 1) and
-/// [`Surface::Sphere`] (n = 2); a contact radius beyond half the side is [`Error::OutOfRange`].
+/// [`Surface::Sphere`] (n = 2); a contact radius beyond half the shorter side is [`Error::OutOfRange`].
 ///
 /// ```
 /// use analytic::PowerLawBody;
@@ -48,11 +48,11 @@ impl ContactModel for PowerLawBody {
         let (exponent, depth) = match scene.surface {
             Surface::PowerLaw { coefficient, exponent, size } => {
                 // In two halves: the product may be moderate where L^(n - 1) alone overflows.
-                let half = side.powf(0.5 * (exponent - 1.0));
+                let half = size.length().powf(0.5 * (exponent - 1.0));
                 (exponent, coefficient * half * half)
             }
             Surface::Cone { slope, .. } => (1.0, slope),
-            Surface::Sphere { radius, size } => (2.0, 0.5 * (side / radius)),
+            Surface::Sphere { radius, size } => (2.0, 0.5 * (size.length() / radius)),
             ref other => return Err(Error::unsupported(NAME, other.kind())),
         };
         let depth = kappa(exponent)? * depth;
@@ -66,7 +66,7 @@ impl ContactModel for PowerLawBody {
         let (nondimensional, normalisation) = closed::of_body(scene)?;
         Ok(Box::new(Closed {
             model: NAME,
-            law: Body { exponent, depth, side: normalisation.side },
+            law: Body { exponent, depth, size: scene.surface.size() },
             nondimensional,
             normalisation,
             outputs: scene.outputs,
@@ -94,11 +94,11 @@ pub fn kappa(exponent: f64) -> Result<f64> {
     }
 }
 
-/// `d = depth a^exponent` in units of `side`.
+/// `d = depth a^exponent` in units of `L = size.length()`.
 struct Body {
     exponent: f64,
     depth: f64,
-    side: f64,
+    size: Size,
 }
 
 impl Body {
@@ -108,7 +108,7 @@ impl Body {
     }
 
     fn point(&self, force: f64, approach: f64, contact: f64) -> Result<Point> {
-        closed::within_square(contact, self.side)?;
+        closed::within(contact, self.size)?;
         Ok(Point { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
     }
 }

@@ -51,7 +51,7 @@ impl Spectrum {
             let expected = "a given one: without it slope and curvature belong to a grid";
             return Err(Error::domain("short_cutoff", f64::INFINITY, expected));
         };
-        let side = surface.side;
+        let side = surface.size.length();
         let high = cutoff * side;
         if !(high.is_finite() && high > TAU) {
             return Err(Error::domain("short_cutoff times side", high, "a finite number > 2 pi"));
@@ -179,7 +179,7 @@ pub(crate) mod tests {
     /// A surface of side 1 and rms height 1 with q_1/q_0 = `range`.
     pub(crate) fn surface(hurst: f64, roll_off: Option<f64>, range: f64) -> SelfAffine {
         SelfAffine {
-            side: 1.0,
+            size: 1.0.into(),
             hurst,
             amplitude: Amplitude::RmsHeight(1.0),
             roll_off: roll_off.map(|ratio| ratio * TAU),
@@ -253,7 +253,7 @@ pub(crate) mod tests {
         let one = Spectrum::new(&surface(0.7, Some(3.0), 50.0)).unwrap();
         for length in [1e-150, 1e150] {
             let mut scaled = surface(0.7, Some(3.0), 50.0);
-            scaled.side = length;
+            scaled.size = length.into();
             scaled.amplitude = Amplitude::RmsHeight(length);
             scaled.roll_off = scaled.roll_off.map(|q| q / length);
             scaled.short_cutoff = scaled.short_cutoff.map(|q| q / length);

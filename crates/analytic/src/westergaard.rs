@@ -11,7 +11,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 const NAME: &str = "westergaard";
 
-/// How far the side may be from a whole number of waves: both may have been rounded on their way through a file.
+/// How far the side along x may be from a whole number of waves: both may have been rounded on their way through a file.
 const WHOLE_WAVES: f64 = 1e-9;
 
 /// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat: closes at the mean pressure `p* = pi E* D/w`.
@@ -20,7 +20,7 @@ const WHOLE_WAVES: f64 = 1e-9;
 /// ln(1/r))`. From `p*` on the contact is full: the area is that of the square, the mean gap 0, and there is no finite stiffness;
 /// asking for it is [`Error::OutOfRange`]. A mean gap beyond D is no contact.
 ///
-/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves on the side. The rms height of its
+/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves along x. The rms height of its
 /// normalisation is D/sqrt(2).
 ///
 /// ```
@@ -59,21 +59,21 @@ impl ContactModel for Westergaard {
         };
         // A wave of negative amplitude is the same wave, shifted.
         let height = amplitude.abs();
-        let waves = side / wavelength;
+        let waves = size.x / wavelength;
         let whole = waves.round();
         if !(whole >= 1.0 && (waves - whole).abs() <= WHOLE_WAVES * whole) {
             return Err(Error::domain(
-                "side over wavelength",
+                "side along x over wavelength",
                 waves,
                 "a whole number of waves with periodic boundaries",
             ));
         }
-        let modulus = scene.modulus;
+        let (modulus, length) = (scene.modulus, size.length());
         Ok(Box::new(Periodic {
             model: NAME,
-            law: Wave { full: PI * whole },
-            nondimensional: Nondimensionalisation::new(modulus, side, height)?,
-            normalisation: Normalisation { modulus, length: side, height: Some(height / SQRT_2) },
+            law: Wave { full: PI * whole * (length / size.x) },
+            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
+            normalisation: Normalisation { modulus, length, height: Some(height / SQRT_2) },
             outputs: scene.outputs,
             strategy: "closed form (Westergaard)",
         }))

@@ -132,6 +132,12 @@ struct Prepared {
 
 impl Prepared {
     fn new(options: Bem3d, scene: &Scene, map: &HeightMap, has_rms: bool) -> Result<Self> {
+        if map.rows() != map.columns() || !map.size().is_square() {
+            return Err(Error::unsupported(NAME, "a rectangle or cells that are not square"));
+        }
+        if map.undefined() > 0 {
+            return Err(Error::unsupported(NAME, "a map with undefined points"));
+        }
         let highest = map.highest();
         // Differences first: an offset of the heights changes nothing.
         let mut z: Vec<f64> = map.heights().iter().map(|h| highest - h).collect();
@@ -140,13 +146,13 @@ impl Prepared {
         for z in &mut z {
             *z /= height;
         }
-        let nondimensional = Nondimensionalisation::new(scene.modulus, map.cell(), height)?;
+        let nondimensional = Nondimensionalisation::new(scene.modulus, map.dx(), height)?;
         let mean = z.iter().sum::<f64>() / z.len() as f64;
-        let mut problem = Problem::new(map.cells(), Arc::new(z), scene.effects.boundary);
+        let mut problem = Problem::new(map.columns(), Arc::new(z), scene.effects.boundary);
         problem.levels = options.method != Method::SingleLevel;
         problem.operators.two_levels &= problem.levels;
         let normalisation =
-            Normalisation { modulus: scene.modulus, length: map.side(), height: has_rms.then_some(rms) };
+            Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
         Ok(Self {
             options,
             outputs: scene.outputs,

@@ -12,7 +12,7 @@
 //! * The approach `d` is counted **from first touch of the highest point**, not from the mean plane. At `F = 0`, `d = 0` and
 //!   `k = 0`.
 //! * Pressure is compressive and non-negative; stiffness is `k = dF/dd`.
-//! * Nondimensionalisation are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
+//! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
 //!   Names that end in `_bar` are normalised ([`Normalisation`] is the only place that does it).
 //! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative derivative of the force in it.
 //! * What depends on the path of the loads (friction, rheology) is a [`History`], taken [`Step`] by step.

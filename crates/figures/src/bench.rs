@@ -205,7 +205,7 @@ fn series(bench: &Bench) -> Result<Vec<Series>> {
         Surfaces::File(path) => {
             let map = read_map(path)?;
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-            reliefs.push((name, None, map.cells(), 0, Surface::Heights(Arc::new(map))));
+            reliefs.push((name, None, map.columns(), 0, Surface::Heights(Arc::new(map))));
         }
         Surfaces::SelfAffine { cells, fractal_dimensions, seed } => {
             for &d in fractal_dimensions {
@@ -297,7 +297,7 @@ impl Series {
 
     fn cells(&self) -> usize {
         match &self.scene.surface {
-            Surface::Heights(map) => map.cells(),
+            Surface::Heights(map) => map.columns(),
             _ => self.model.cells,
         }
     }

@@ -76,7 +76,7 @@ fn kept(n: usize) -> Vec<usize> {
 }
 
 fn sample(table: &mut Table, d: f64, map: &HeightMap) -> Result<()> {
-    let n = map.cells();
+    let n = map.columns();
     let kept = kept(n);
     let centre = |i: usize| (i as f64 + 0.5) / n as f64;
     for &iy in &kept {
@@ -94,7 +94,7 @@ fn flipped(values: &[u8], side: usize) -> Vec<u8> {
 }
 
 fn full_size(out: &Path, d: f64, map: &HeightMap) -> Result<[PathBuf; 2]> {
-    let n = map.cells();
+    let n = map.columns();
     let npy = out.join(format!("fig1-df{d:?}.npy"));
     write_npy(&npy, &[n as u64, n as u64], map.heights())?;
     let png = out.join(format!("fig1-df{d:?}.png"));

@@ -49,7 +49,7 @@ mod tests {
         let path = dir.path().join("map.npy");
         write_npy(&path, &[2, 2], &[0.0, 1.0, 2.0, 3.0]).unwrap();
         let map = read_map(&path).unwrap();
-        assert_eq!((map.cells(), map.heights()), (2, &[0.0, 1.0, 2.0, 3.0][..]));
+        assert_eq!((map.columns(), map.heights()), (2, &[0.0, 1.0, 2.0, 3.0][..]));
         let mut bytes = header("{'descr': '<f8', 'fortran_order': True, 'shape': (2, 2), }");
         bytes.extend([0.0f64, 1.0, 2.0, 3.0].iter().flat_map(|v| v.to_le_bytes()));
         fs::write(&path, bytes).unwrap();

@@ -48,7 +48,7 @@ impl Sample {
             stiffness_bar: state.stiffness.map(|k| normalisation.stiffness_bar(k)),
             contact_fraction: state.area.map(|a| normalisation.contact_fraction(a)),
             contact_cells: report.contact_cells,
-            contact_length: state.stiffness.map(|k| normalisation.contact_length(k) / normalisation.side),
+            contact_length: state.stiffness.map(|k| normalisation.contact_length(k) / normalisation.length),
             iterations: report.iterations,
             applications: report.applications,
             status: report.status.as_str().to_owned(),

@@ -87,8 +87,8 @@ fn small_solves(
     let mut physics = scene.scene(numerics, seed)?;
     let mut size = numerics.size();
     if let Surface::Heights(map) = &physics.surface {
-        size = map.cells().min(coarse);
-        if map.cells() > coarse {
+        size = map.columns().min(coarse);
+        if map.columns() > coarse {
             physics.surface = Surface::Heights(std::sync::Arc::new(thinned(map, coarse)?));
         }
     }
@@ -131,8 +131,8 @@ fn small_solves(
 
 /// Every so many-th cell of a map.
 fn thinned(map: &contact_model::HeightMap, m: usize) -> contact_model::Result<contact_model::HeightMap> {
-    let n = map.cells();
+    let n = map.columns();
     let at = |i: usize| i * n / m;
     let heights = (0..m * m).map(|i| map.heights()[at(i / m) * n + at(i % m)]).collect();
-    contact_model::HeightMap::new(m, map.side(), heights)
+    contact_model::HeightMap::new(m, map.length(), heights)
 }

@@ -53,7 +53,7 @@ impl Loads {
         Ok(match self.prescribed {
             Prescribed::Force => Load::Force(value),
             Prescribed::ForceBar => Load::Force(normalisation.force(value)?),
-            Prescribed::MeanPressure => Load::Force(value * normalisation.side * normalisation.side),
+            Prescribed::MeanPressure => Load::Force(value * normalisation.length * normalisation.length),
             Prescribed::Approach => Load::Approach(value),
             Prescribed::MeanGap => Load::MeanGap(value),
         })

@@ -180,7 +180,7 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
 /// Cells a side: a given map brings its own.
 pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> usize {
     match &scene.relief {
-        crate::Relief::Plain(Surface::Heights(map)) => map.cells(),
+        crate::Relief::Plain(Surface::Heights(map)) => map.columns(),
         _ => numerics.size(),
     }
 }

@@ -28,8 +28,8 @@ impl Relief {
     /// Side of the square.
     pub fn side(&self) -> f64 {
         match self {
-            Self::Plain(surface) => surface.side(),
-            Self::Sum { rough, .. } => rough.side,
+            Self::Plain(surface) => surface.size().length(),
+            Self::Sum { rough, .. } => rough.size.length(),
         }
     }
 
@@ -52,10 +52,10 @@ impl Relief {
         match self {
             Self::Plain(Surface::SelfAffine(s)) => self_affine(s),
             Self::Plain(Surface::Heights(map)) => {
-                format!("a map of {n} x {n} cells, side {}", number(map.side()), n = map.cells())
+                format!("a map of {n} x {n} cells, side {}", number(map.length()), n = map.columns())
             }
             Self::Plain(surface) => {
-                format!("{} on a square of side {}", surface.kind(), number(surface.side()))
+                format!("{} on a square of side {}", surface.kind(), number(surface.size().length()))
             }
             Self::Sum { rough, body } => format!("{} on {}", self_affine(rough), body.kind()),
         }
@@ -85,7 +85,8 @@ impl Relief {
 }
 
 fn self_affine(s: &SelfAffine) -> String {
-    let mut text = format!("a self-affine surface, D_f = {}, side {}", s.fractal_dimension(), number(s.side));
+    let mut text =
+        format!("a self-affine surface, D_f = {}, side {}", s.fractal_dimension(), number(s.size.length()));
     if let Amplitude::RmsHeight(h) = s.amplitude {
         text += &format!(", rms height {}", number(h));
     }
@@ -100,9 +101,9 @@ fn self_affine(s: &SelfAffine) -> String {
 
 /// Heights of a map plus those of a body on the same cells.
 pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
-    let body = surface_gen::height_map(body, map.cells(), 0)?;
+    let body = surface_gen::height_map(body, map.columns(), 0)?;
     let heights = map.heights().iter().zip(body.heights()).map(|(a, b)| a + b).collect();
-    HeightMap::new(map.cells(), map.side(), heights)
+    HeightMap::new(map.columns(), map.length(), heights)
 }
 
 /// Reads `[scene.surface]` and `[scene.body]`; the text says what was understood of a file.
@@ -128,7 +129,7 @@ pub(crate) fn read_relief(
         let map = match body {
             None => map,
             Some(body) => {
-                let body = read_body(&body, Some(map.side()), system)?;
+                let body = read_body(&body, Some(map.length()), system)?;
                 add(&map, &body).map_err(|e| scene.trouble(e.to_string()))?
             }
         };
@@ -138,7 +139,7 @@ pub(crate) fn read_relief(
     surface.known_only()?;
     let relief = match body {
         None => Relief::Plain(Surface::SelfAffine(rough)),
-        Some(body) => Relief::Sum { rough, body: read_body(&body, Some(rough.side), system)? },
+        Some(body) => Relief::Sum { rough, body: read_body(&body, Some(rough.size.length()), system)? },
     };
     Ok((relief, None))
 }
@@ -177,7 +178,7 @@ fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
     }
     let wavenumber = |wavelength: f64| 2.0 * PI / wavelength;
     Ok(SelfAffine {
-        side,
+        size: side.into(),
         hurst,
         amplitude: Amplitude::RmsHeight(rms),
         roll_off: roll_off.map(wavenumber),

@@ -336,7 +336,7 @@ fn check_cells(options: Option<&Entries<'_>>, relief: &Relief) -> Read<()> {
         let Some(table) = options.entry(model) else { continue };
         if let Some(cells) = table.table()?.entry("cells") {
             return Err(cells
-                .trouble_at_key(format!("`cells` is given, but the map brings its own {}", map.cells()))
+                .trouble_at_key(format!("`cells` is given, but the map brings its own {}", map.columns()))
                 .with_help("remove it here; `cells` in [scene.surface] averages the map over larger cells"));
         }
     }

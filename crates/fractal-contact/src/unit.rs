@@ -53,7 +53,7 @@ impl Unit {
         let relief = match &scene.relief {
             Relief::Plain(Surface::Heights(map)) => {
                 let bytes: Vec<u8> = map.heights().iter().flat_map(|h| h.to_le_bytes()).collect();
-                format!("map {} {:?} {:032x}", map.cells(), map.side(), fnv1a_128(&bytes))
+                format!("map {} {:?} {:032x}", map.columns(), map.length(), fnv1a_128(&bytes))
             }
             other => format!("{other:?}"),
         };

@@ -3,10 +3,10 @@
 //! A body `f(r)` is replaced by the line `g(x) = |x| int_0^|x| f'(r) / sqrt(x^2 - r^2) dr` (Hess 2011; Popov and Hess 2015), pressed
 //! into independent springs of stiffness E* per length. The half width of the line in contact is the radius of the round contact.
 
-use contact_model::{Error, Line, Result, Surface};
+use contact_model::{Error, Line, Result, Size, Surface};
 use std::f64::consts::PI;
 
-/// The MDR profile of an axisymmetric body, in units of the side of its square.
+/// The MDR profile of an axisymmetric body, in units of `L = sqrt(Lx Ly)` of its rectangle (the side of a square).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Profile {
     /// `g = slope |x|^exponent` of the body `z = c r^n`: `exponent = n`, `slope = kappa_n c L^(n - 1)`.
@@ -50,7 +50,7 @@ impl Profile {
     ///
     /// # Errors
     /// [`Error::Domain`] for a body whose depth at `r = L` over `L` no `f64` holds; [`Error::OutOfRange`] for a punch wider than
-    /// its square.
+    /// the shorter side.
     ///
     /// ```
     /// use contact_model::Surface;
@@ -75,16 +75,16 @@ impl Profile {
             }
         };
         match *surface {
-            Surface::Sphere { radius, size } => power(2.0, 0.5 * (side / radius)),
+            Surface::Sphere { radius, size } => power(2.0, 0.5 * (size.length() / radius)),
             Surface::Cone { slope, .. } => power(1.0, slope),
             Surface::PowerLaw { coefficient, exponent, size } => {
                 // L^(n-1) in two halves: the product may be moderate where the power alone overflows.
-                let half = side.powf(0.5 * (exponent - 1.0));
+                let half = size.length().powf(0.5 * (exponent - 1.0));
                 power(exponent, coefficient * half * half)
             }
             Surface::FlatCircle { radius, size } => {
-                let radius = radius / side;
-                check_radius(radius, side)?;
+                let radius = radius / size.length();
+                check_radius(radius, size)?;
                 Ok(Some(Self::Flat { radius }))
             }
             _ => Ok(None),
@@ -169,15 +169,16 @@ fn root(x: f64, n: f64) -> f64 {
     }
 }
 
-/// Errors where the contact has left the square: the half-space beyond it is free.
-pub(crate) fn check_radius(radius: f64, side: f64) -> Result<()> {
-    /// A radius of exactly half a side may come out a few roundings larger.
+/// Errors where the contact (radius in units of L) has left the rectangle: the half-space beyond it is free.
+pub(crate) fn check_radius(radius: f64, size: Size) -> Result<()> {
+    /// A radius of exactly half the shorter side may come out a few roundings larger.
     const ROUNDING: f64 = 8.0 * f64::EPSILON;
-    if radius <= 0.5 * (1.0 + ROUNDING) {
+    let (length, shorter) = (size.length(), size.shorter());
+    if radius <= 0.5 * (shorter / length) * (1.0 + ROUNDING) {
         Ok(())
     } else {
-        let value = radius * side;
-        Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max: 0.5 * side })
+        let value = radius * length;
+        Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max: 0.5 * shorter })
     }
 }
 

@@ -5,7 +5,7 @@ use crate::axisymmetric::{Profile, RoundContact, check_radius};
 use crate::bearing::Bearing;
 use contact_model::{
     Adhesion, ContactModel, ContactState, Effects, Error, Line, Load, Nondimensionalisation, Normalisation,
-    Outputs, PreparedContact, Result, Scene, SelfAffine, SolveReport, Source, Stop, Surface,
+    Outputs, PreparedContact, Result, Scene, SelfAffine, Size, SolveReport, Source, Stop, Surface,
 };
 use std::sync::{Arc, Mutex};
 use surface_gen::LineGenerator;
@@ -74,12 +74,12 @@ impl ContactModel for Mdr1d {
         if outputs.contact_patches {
             return Err(Error::unsupported(NAME, "contact patches (a line and a profile have no cells)"));
         }
-        let (side, modulus) = (scene.surface.side(), scene.modulus);
+        let (length, modulus) = (scene.surface.size().length(), scene.modulus);
         if let Some(profile) = Profile::new(&scene.surface)? {
-            let nondimensional = Nondimensionalisation::new(modulus, side, side)?;
-            let normalisation = Normalisation { modulus, length: side, height: None };
-            let adhesive = adhesive(profile, scene)?;
-            return Ok(Box::new(Body { profile, adhesive, nondimensional, normalisation, outputs }));
+            let nondimensional = Nondimensionalisation::new(modulus, length, length)?;
+            let normalisation = Normalisation { modulus, length, height: None };
+            let (adhesive, size) = (adhesive(profile, scene)?, scene.surface.size());
+            return Ok(Box::new(Body { profile, size, adhesive, nondimensional, normalisation, outputs }));
         }
         if scene.effects.adhesion != Adhesion::Off {
             let what = format!(
@@ -98,10 +98,10 @@ impl ContactModel for Mdr1d {
         match &scene.surface {
             Surface::SelfAffine(surface) => {
                 let line = surface_gen::self_affine_line(surface, self.elements, seed)?;
-                Ok(Box::new(Rough::new(Bearing::new(&line), &line, side, modulus, outputs)))
+                Ok(Box::new(Rough::new(Bearing::new(&line), &line, length, modulus, outputs)))
             }
             Surface::Line { line, .. } => {
-                Ok(Box::new(Rough::new(Bearing::new(line), line, side, modulus, outputs)))
+                Ok(Box::new(Rough::new(Bearing::new(line), line, length, modulus, outputs)))
             }
             other => Err(Error::unsupported(NAME, other.kind())),
         }
@@ -168,7 +168,7 @@ impl ContactModel for Ensemble {
         let spare = self.spare.lock().ok().and_then(|mut spare| spare.pop());
         let mut bearing = spare.unwrap_or_else(Bearing::empty);
         bearing.rebuild(&line);
-        let mut rough = Rough::new(bearing, &line, self.surface.side, scene.modulus, outputs);
+        let mut rough = Rough::new(bearing, &line, self.surface.size.length(), scene.modulus, outputs);
         rough.home = Some(Arc::clone(&self.spare));
         Ok(Box::new(rough))
     }
@@ -184,9 +184,9 @@ struct Rough {
 }
 
 impl Rough {
-    fn new(bearing: Bearing, line: &Line, side: f64, modulus: f64, outputs: Outputs) -> Self {
+    fn new(bearing: Bearing, line: &Line, length: f64, modulus: f64, outputs: Outputs) -> Self {
         let height = surface_gen::rms_height(line.heights());
-        let normalisation = Normalisation { modulus, length: side, height: Some(height) };
+        let normalisation = Normalisation { modulus, length, height: Some(height) };
         Self { bearing, normalisation, outputs, home: None }
     }
 }
@@ -232,7 +232,7 @@ fn adhesive(profile: Profile, scene: &Scene) -> Result<Option<Adhesive>> {
     match scene.effects.adhesion {
         Adhesion::Off => Ok(None),
         Adhesion::ShortRange { work } => {
-            let scaled = work / scene.modulus / scene.surface.side();
+            let scaled = work / scene.modulus / scene.surface.size().length();
             if scaled.is_finite() && (scaled > 0.0 || work <= 0.0) {
                 Adhesive::new(profile, scaled).map(Some)
             } else {
@@ -247,6 +247,7 @@ fn adhesive(profile: Profile, scene: &Scene) -> Result<Option<Adhesive>> {
 /// An axisymmetric body.
 struct Body {
     profile: Profile,
+    size: Size,
     adhesive: Option<Adhesive>,
     nondimensional: Nondimensionalisation,
     normalisation: Normalisation,
@@ -313,7 +314,7 @@ impl PreparedContact for Body {
             Some(adhesive) => self.adhere(adhesive, load)?,
             None => self.press(load)?,
         };
-        check_radius(contact.radius, self.normalisation.side)?;
+        check_radius(contact.radius, self.size)?;
         if touches && contact.radius <= 0.0 {
             return Err(out_of_f64(contact.radius));
         }

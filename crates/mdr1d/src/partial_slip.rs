@@ -4,7 +4,7 @@ use crate::axisymmetric::{Profile, check_radius};
 use crate::slip::Springs;
 use contact_model::{
     ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Nondimensionalisation,
-    Normalisation, Outputs, Result, Scene, SolveReport, Source, Step, Tangential, TangentialState,
+    Normalisation, Outputs, Result, Scene, Size, SolveReport, Source, Step, Tangential, TangentialState,
 };
 
 const NAME: &str = "mdr1d_partial_slip";
@@ -80,11 +80,12 @@ impl HistoryModel for PartialSlip {
                 "a scene without both bodies (Scene::of_pair): friction needs G*",
             ));
         };
-        let (side, modulus) = (scene.surface.side(), scene.modulus);
+        let (length, modulus) = (scene.surface.size().length(), scene.modulus);
         Ok(Box::new(Prepared {
             profile,
-            nondimensional: Nondimensionalisation::new(modulus, side, side)?,
-            normalisation: Normalisation { modulus, length: side, height: None },
+            size: scene.surface.size(),
+            nondimensional: Nondimensionalisation::new(modulus, length, length)?,
+            normalisation: Normalisation { modulus, length, height: None },
             outputs: scene.outputs,
             coefficient,
             time: 0.0,
@@ -95,6 +96,7 @@ impl HistoryModel for PartialSlip {
 
 struct Prepared {
     profile: Profile,
+    size: Size,
     nondimensional: Nondimensionalisation,
     normalisation: Normalisation,
     outputs: Outputs,
@@ -133,7 +135,7 @@ impl History for Prepared {
             }
             other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
         };
-        check_radius(contact.radius, self.normalisation.side)?;
+        check_radius(contact.radius, self.size)?;
         if loaded && (contact.radius <= 0.0 || contact.approach <= 0.0 || contact.force <= 0.0) {
             let expected = "a number within the range of f64";
             return Err(Error::domain("contact radius over side", contact.radius, expected));

@@ -5,7 +5,7 @@ use crate::material::Material;
 use crate::relaxation::{Relaxation, check_pair};
 use contact_model::{
     ContactState, Effects, Error, History, HistoryModel, HistoryState, Load, Nondimensionalisation,
-    Normalisation, Outputs, Result, Rheology, Scene, SolveReport, Source, Step, Tangential,
+    Normalisation, Outputs, Result, Rheology, Scene, Size, SolveReport, Source, Step, Tangential,
 };
 
 const NAME: &str = "mdr1d_viscoelastic";
@@ -85,11 +85,12 @@ impl HistoryModel for Viscoelastic {
             let what = format!("{}: relaxing springs need a round contact", scene.surface.kind());
             return Err(Error::unsupported(NAME, what));
         };
-        let (side, modulus) = (scene.surface.side(), scene.modulus);
+        let (length, modulus) = (scene.surface.size().length(), scene.modulus);
         Ok(Box::new(Prepared {
             profile,
-            nondimensional: Nondimensionalisation::new(modulus, side, side)?,
-            normalisation: Normalisation { modulus, length: side, height: None },
+            size: scene.surface.size(),
+            nondimensional: Nondimensionalisation::new(modulus, length, length)?,
+            normalisation: Normalisation { modulus, length, height: None },
             outputs: scene.outputs,
             relaxation: Relaxation::new(material, NAME),
         }))
@@ -98,6 +99,7 @@ impl HistoryModel for Viscoelastic {
 
 struct Prepared {
     profile: Profile,
+    size: Size,
     nondimensional: Nondimensionalisation,
     normalisation: Normalisation,
     outputs: Outputs,
@@ -126,7 +128,7 @@ impl History for Prepared {
             }
             other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
         };
-        check_radius(at.contact.radius, self.normalisation.side)?;
+        check_radius(at.contact.radius, self.size)?;
         for value in [at.memory.force, at.memory.load, at.contact.approach] {
             if !value.is_finite() {
                 return Err(Error::domain("state in units of side and modulus", value, "a finite number"));

@@ -41,12 +41,12 @@ pub fn every_contact_set(map: &HeightMap, cells: &[usize], load: Load) -> Vec<Sm
 }
 
 fn one_set(map: &HeightMap, contact: Vec<usize>, outside: &[usize], load: Load) -> Option<SmallContact> {
-    let n = map.cells();
+    let n = map.columns();
     let highest = map.highest();
     let z = |i: usize| highest - map.heights()[i];
     // Displacement of cell i under unit force on cell j.
     let k =
-        |i: usize, j: usize| influence((i % n).abs_diff(j % n), (i / n).abs_diff(j / n)) / (PI * map.cell());
+        |i: usize, j: usize| influence((i % n).abs_diff(j % n), (i / n).abs_diff(j / n)) / (PI * map.dx());
     let matrix: Vec<Vec<f64>> = contact.iter().map(|&i| contact.iter().map(|&j| k(i, j)).collect()).collect();
     // f = d q - r with K q = 1, K r = z.
     let q = eliminate(matrix.clone(), vec![1.0; contact.len()]);

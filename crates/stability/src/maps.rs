@@ -60,8 +60,8 @@ pub fn relief(kind: u8, cells: usize, noise: &[f64]) -> Result<HeightMap> {
 /// # Errors
 /// None for a map.
 pub fn mirrored(of: &HeightMap) -> Result<HeightMap> {
-    let (n, h) = (of.cells(), of.heights());
-    map(n, of.side(), |x, y| h[y * n + n - 1 - x])
+    let (n, h) = (of.columns(), of.heights());
+    map(n, of.length(), |x, y| h[y * n + n - 1 - x])
 }
 
 /// The map with x and y exchanged.
@@ -69,8 +69,8 @@ pub fn mirrored(of: &HeightMap) -> Result<HeightMap> {
 /// # Errors
 /// None for a map.
 pub fn transposed(of: &HeightMap) -> Result<HeightMap> {
-    let (n, h) = (of.cells(), of.heights());
-    map(n, of.side(), |x, y| h[x * n + y])
+    let (n, h) = (of.columns(), of.heights());
+    map(n, of.length(), |x, y| h[x * n + y])
 }
 
 /// The map turned by 90 degrees.
@@ -86,7 +86,7 @@ pub fn rotated(of: &HeightMap) -> Result<HeightMap> {
 /// # Errors
 /// Those of [`HeightMap::new`] where a factor is not positive or overflows.
 pub fn stretched(of: &HeightMap, lateral: f64, vertical: f64) -> Result<HeightMap> {
-    HeightMap::new(of.cells(), of.side() * lateral, of.heights().iter().map(|h| h * vertical).collect())
+    HeightMap::new(of.columns(), of.length() * lateral, of.heights().iter().map(|h| h * vertical).collect())
 }
 
 /// The map with its cells unchanged in the middle of `factor` times as many a side, all new ones at `height`.
@@ -94,10 +94,10 @@ pub fn stretched(of: &HeightMap, lateral: f64, vertical: f64) -> Result<HeightMa
 /// # Errors
 /// Those of [`HeightMap::new`].
 pub fn embedded(of: &HeightMap, factor: usize, height: f64) -> Result<HeightMap> {
-    let (n, h) = (of.cells(), of.heights());
+    let (n, h) = (of.columns(), of.heights());
     let first = (factor - 1) * n / 2;
     let inside = first..first + n;
-    map(factor * n, of.side() * factor as f64, |x, y| {
+    map(factor * n, of.length() * factor as f64, |x, y| {
         if inside.contains(&x) && inside.contains(&y) { h[(y - first) * n + x - first] } else { height }
     })
 }

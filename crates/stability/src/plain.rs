@@ -27,7 +27,7 @@ impl PlainSum {
 
     /// The table for a map.
     pub fn of(map: &HeightMap) -> Self {
-        Self::new(map.cells(), map.cell())
+        Self::new(map.columns(), map.dx())
     }
 
     /// Displacement of cell i under a unit force on cell j.

@@ -51,7 +51,7 @@ impl LineGenerator {
     pub fn new(surface: &SelfAffine, elements: usize) -> Result<Self> {
         Ok(Self {
             elements,
-            length: line_length(surface.side),
+            length: line_length(surface.size.length()),
             amplitudes: line_amplitudes(surface, elements)?.into(),
             transform: RealFftPlanner::new().plan_fft_inverse(elements),
             spare: Arc::default(),
@@ -163,8 +163,8 @@ mod tests {
 
     /// The slow twin: Eq. 14 wave by wave, both signs of q, `B_1D = sqrt((2 pi / L_1D) pi q C_2D)`.
     fn direct(surface: &SelfAffine, constant: f64, n: usize, seed: u64) -> Vec<f64> {
-        let length = line_length(surface.side);
-        let (q0, floor) = (TAU / surface.side, surface.roll_off.unwrap_or(0.0));
+        let length = line_length(surface.size.length());
+        let (q0, floor) = (TAU / surface.size.length(), surface.roll_off.unwrap_or(0.0));
         let element = length / n as f64;
         let cutoff = surface.short_cutoff.unwrap_or(f64::INFINITY).min(PI / element) * (1.0 + 1e-12);
         let order = i32::try_from((n - 1) / 2).unwrap();
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn transform_is_the_sum_over_waves() {
-        let base = SelfAffine { side: 2.0, amplitude: Amplitude::Spectrum(0.3), ..unit(2.4) };
+        let base = SelfAffine { size: 2.0.into(), amplitude: Amplitude::Spectrum(0.3), ..unit(2.4) };
         for (n, roll_off, short_cutoff) in [
             (3, None, None),
             (4, None, None),

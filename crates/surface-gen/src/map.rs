@@ -53,7 +53,7 @@ impl MapGenerator {
         let shifts = (0..=(cells / 2) as u128).map(|m| ((m << 63) / cells as u128) as u64).collect();
         Ok(Self {
             cells,
-            side: surface.side,
+            side: surface.size.length(),
             spectrum,
             shifts,
             along_y: FftPlanner::new().plan_fft_inverse(cells),
@@ -225,14 +225,14 @@ mod tests {
 
     /// `C_2D` as the paper writes it, with the constant at q_0 = 2 pi / L.
     fn density(surface: &SelfAffine, constant: f64, q: f64) -> f64 {
-        let q0 = TAU / surface.side;
+        let q0 = TAU / surface.size.length();
         let floor = surface.roll_off.unwrap_or(0.0);
         constant * (q.max(floor) / q0.max(floor)).powf(-2.0 * (surface.hurst + 1.0))
     }
 
     /// The slow twin: Eq. 4 wave by wave, both half-planes, in the plain words of the formula.
     fn direct(surface: &SelfAffine, constant: f64, cells: usize, seed: u64) -> Vec<f64> {
-        let (n, side) = (i32::try_from(cells).unwrap(), surface.side);
+        let (n, side) = (i32::try_from(cells).unwrap(), surface.size.length());
         let cell = side / cells as f64;
         let cutoff = surface.short_cutoff.unwrap_or(f64::INFINITY).min(PI / cell) * (1.0 + 1e-12);
         let mut heights = vec![0.0; cells * cells];
@@ -257,7 +257,7 @@ mod tests {
     }
 
     fn spectral(hurst: f64, roll_off: Option<f64>, short_cutoff: Option<f64>) -> SelfAffine {
-        SelfAffine { side: 2.0, hurst, amplitude: Amplitude::Spectrum(0.3), roll_off, short_cutoff }
+        SelfAffine { size: 2.0.into(), hurst, amplitude: Amplitude::Spectrum(0.3), roll_off, short_cutoff }
     }
 
     #[test]
@@ -355,7 +355,7 @@ mod tests {
 
     /// Amplitude of the wave (mx, my) about the corner of the square, `mean of h exp(-i q x)`.
     fn project(map: &HeightMap, mx: f64, my: f64) -> C {
-        let n = map.cells();
+        let n = map.columns();
         let sum: C = (0..n * n)
             .map(|i| {
                 let x = ((i % n) as f64 + 0.5) / n as f64;
@@ -418,7 +418,7 @@ mod tests {
         }
         let huge = SelfAffine { amplitude: Amplitude::RmsHeight(1e308), ..unit(2.4) };
         assert!(self_affine_map(&huge, 8, 0).is_err());
-        let steep = SelfAffine { side: 1e-300, amplitude: Amplitude::Spectrum(1e300), ..unit(2.4) };
+        let steep = SelfAffine { size: 1e-300.into(), amplitude: Amplitude::Spectrum(1e300), ..unit(2.4) };
         assert!(self_affine_map(&steep, 8, 0).is_err());
     }
 

@@ -19,7 +19,7 @@ fn relative(q: f64, roll_off: f64, hurst: f64) -> f64 {
 
 /// Roll-off in units of `q_0`, no larger than the grid's last wave (beyond it the spectrum is flat either way).
 fn roll_off(surface: &SelfAffine, last: f64) -> f64 {
-    surface.roll_off.map_or(0.0, |q| (q / TAU * surface.side).min(last))
+    surface.roll_off.map_or(0.0, |q| (q / TAU * surface.size.length()).min(last))
 }
 
 fn checked_scale(scale: f64, surface: &SelfAffine) -> Result<f64> {
@@ -56,7 +56,7 @@ impl MapSpectrum {
         let n = cells as u64;
         let grid2 = n * n / 4; // |q| <= pi / cell
         let short2 = surface.short_cutoff.map_or(f64::INFINITY, |q| {
-            let last = q / TAU * surface.side * (1.0 + CUTOFF_SLACK);
+            let last = q / TAU * surface.size.length() * (1.0 + CUTOFF_SLACK);
             (last * last).floor()
         });
         let limit2 = if short2 < grid2 as f64 { short2 as u64 } else { grid2 };
@@ -74,7 +74,7 @@ impl MapSpectrum {
         };
         let scale = match surface.amplitude {
             Amplitude::RmsHeight(h) => h / spectrum.moment(0).sqrt(),
-            Amplitude::Spectrum(c) => TAU / surface.side * c.sqrt(),
+            Amplitude::Spectrum(c) => TAU / surface.size.length() * c.sqrt(),
         };
         spectrum.scale = checked_scale(scale, surface)?;
         Ok(spectrum)
@@ -122,7 +122,7 @@ pub(crate) fn line_amplitudes(surface: &SelfAffine, elements: usize) -> Result<V
         let expected = format!("between 1 and {MOST_ELEMENTS} elements");
         return Err(Error::domain("elements", elements as f64, expected));
     }
-    let length = line_length(surface.side);
+    let length = line_length(surface.size.length());
     let mut last = (elements - 1) / 2;
     if let Some(q) = surface.short_cutoff {
         last = last.min((q / TAU * length * (1.0 + CUTOFF_SLACK)) as usize);

@@ -2,7 +2,7 @@
 
 use crate::indenter::{axisymmetric, flat_circle, flat_square, sine};
 use crate::{self_affine_line, self_affine_map};
-use contact_model::{Error, HeightMap, Line, Result, Surface};
+use contact_model::{Cells, Error, HeightMap, Line, Result, Surface};
 use std::sync::Arc;
 
 /// Name in errors of this crate.
@@ -29,9 +29,14 @@ const NAME: &str = "surface-gen";
 /// ```
 pub fn height_map(surface: &Surface, cells: usize, seed: u64) -> Result<Arc<HeightMap>> {
     surface.validate()?;
+    let size = surface.size();
+    if !matches!(surface, Surface::Heights(_)) && !size.is_square() {
+        return Err(Error::unsupported(NAME, format!("{} on a rectangle", surface.kind())));
+    }
+    let side = size.x;
     let map = match *surface {
         Surface::SelfAffine(ref s) => self_affine_map(s, cells, seed)?,
-        Surface::Heights(ref map) if map.cells() == cells => return Ok(Arc::clone(map)),
+        Surface::Heights(ref map) if map.cells() == Cells::from(cells) => return Ok(Arc::clone(map)),
         Surface::Heights(ref map) => {
             return Err(Error::Shape {
                 name: "heights".into(),
@@ -39,14 +44,14 @@ pub fn height_map(surface: &Surface, cells: usize, seed: u64) -> Result<Arc<Heig
                 expected: format!("{cells} x {cells}, the cells asked for (maps are not resampled)").into(),
             });
         }
-        Surface::Sphere { radius, size } => axisymmetric(cells, side, |r| 0.5 * r * (r / radius))?,
-        Surface::Cone { slope, size } => axisymmetric(cells, side, |r| slope * r)?,
-        Surface::PowerLaw { coefficient, exponent, size } => {
+        Surface::Sphere { radius, .. } => axisymmetric(cells, side, |r| 0.5 * r * (r / radius))?,
+        Surface::Cone { slope, .. } => axisymmetric(cells, side, |r| slope * r)?,
+        Surface::PowerLaw { coefficient, exponent, .. } => {
             axisymmetric(cells, side, |r| coefficient * r.powf(exponent))?
         }
-        Surface::FlatCircle { radius, size } => flat_circle(cells, side, radius)?,
-        Surface::Flat { size } => flat_square(cells, side)?,
-        Surface::Sine { amplitude, wavelength, size } => sine(cells, side, amplitude, wavelength)?,
+        Surface::FlatCircle { radius, .. } => flat_circle(cells, side, radius)?,
+        Surface::Flat { .. } => flat_square(cells, side)?,
+        Surface::Sine { amplitude, wavelength, .. } => sine(cells, side, amplitude, wavelength)?,
         _ => return Err(Error::unsupported(NAME, format!("{} as a map", surface.kind()))),
     };
     Ok(Arc::new(map))

@@ -7,7 +7,7 @@ use surface_io::{Encoding, Field, files, vti};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let name = std::env::args().nth(1).unwrap_or_else(|| "rough.vti".into());
     let map = self_affine_map(&SelfAffine::new(2.3, 1e-3, 1e-6)?, 129, 1)?;
-    let (n, cell) = (map.cells(), map.cell());
+    let (n, cell) = (map.columns(), map.dx());
     let heights = map.heights();
     let slope: Vec<f64> =
         (0..n * n).map(|i| (heights[i / n * n + (i % n + 1) % n] - heights[i]) / cell).collect();

@@ -58,7 +58,7 @@ impl Description {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn describe(map: &HeightMap) -> Description {
-    let (cells, side) = (map.cells(), map.side());
+    let (cells, side) = (map.columns(), map.length());
     let ends = |(low, high): (f64, f64), &h: &f64| (low.min(h), high.max(h));
     let (low, high) = map.heights().iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
     let spectrum = windowed(map, 0.5 * low + 0.5 * high).map_or_else(Vec::new, |map| radial_spectrum(&map));
@@ -78,7 +78,7 @@ pub fn describe(map: &HeightMap) -> Description {
 
 /// The map about its mean under Hann's window; `None` where the mean is not representable, which finite reliefs exclude.
 fn windowed(map: &HeightMap, middle: f64) -> Option<HeightMap> {
-    let cells = map.cells();
+    let cells = map.columns();
     let window: Vec<f64> = (0..cells).map(|i| (PI * (i as f64 + 0.5) / cells as f64).sin().powi(2)).collect();
     let about: Vec<f64> = map.heights().iter().map(|h| h - middle).collect();
     let count = about.len() as f64;
@@ -88,7 +88,7 @@ fn windowed(map: &HeightMap, middle: f64) -> Option<HeightMap> {
         .enumerate()
         .map(|(i, h)| (h - mean) * window[i % cells] * window[i / cells] / WINDOW)
         .collect();
-    HeightMap::new(cells, map.side(), heights).ok()
+    HeightMap::new(cells, map.length(), heights).ok()
 }
 
 impl fmt::Display for Description {

@@ -13,7 +13,7 @@
 //! let treatment = Treatment { crop: Some(Crop::Centre), fill: Some(Fill::Neighbours), ..Treatment::default() };
 //! let map = scan.map(&treatment)?;
 //! // The hole in the middle column is the mean of its neighbours in the square of the first two columns: 2 and 4.
-//! assert!(map.cells() == 2 && (map.heights()[3] - 3e-9).abs() < 1e-20);
+//! assert!(map.columns() == 2 && (map.heights()[3] - 3e-9).abs() < 1e-20);
 //! println!("{}", describe(&map));
 //! # Ok::<(), surface_io::Error>(())
 //! ```

@@ -66,7 +66,7 @@ impl Scan {
     /// let declared = Declared { cell: Some("1 um".parse()?), unit: Some("nm".parse()?), ..Declared::default() };
     /// let scan = Scan::from_bytes("a.txt", b"1 2\n3 6\n", &declared)?;
     /// let map = scan.map(&Treatment { detrend: Detrend::Mean, ..Treatment::default() })?;
-    /// assert_eq!((map.cells(), map.side()), (2, 2e-6));
+    /// assert_eq!((map.columns(), map.length()), (2, 2e-6));
     /// assert_eq!(map.heights()[0], -2e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -59,12 +59,12 @@ impl Metric {
 pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let bytes = match ending {
-        "npy" => npy(&[map.cells(), map.cells()], map.heights()).map_err(Error::content(path))?,
+        "npy" => npy(&[map.columns(), map.columns()], map.heights()).map_err(Error::content(path))?,
         "txt" => text(map, metric).into_bytes(),
         "xyz" => xyz(map, metric).into_bytes(),
         "vti" => {
             let field = Field { name: "height", unit: metric.name(), values: map.heights() };
-            vti(map.cells(), map.cell(), &[field], Encoding::Base64).map_err(Error::content(path))?
+            vti(map.columns(), map.dx(), &[field], Encoding::Base64).map_err(Error::content(path))?
         }
         other => {
             let problem = Problem::Ending { found: other.chars().take(16).collect() };
@@ -84,11 +84,11 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn text(map: &HeightMap, metric: Metric) -> String {
-    let (side, suffix) = (map.side(), metric.suffix());
+    let (side, suffix) = (map.length(), metric.suffix());
     let head =
         format!("# Width: {side:e}{suffix}\n# Height: {side:e}{suffix}\n# Value units: {}\n", metric.name());
     let mut written = Lines::new(head, 24 * map.heights().len());
-    for row in map.heights().chunks_exact(map.cells()) {
+    for row in map.heights().chunks_exact(map.columns()) {
         for (i, h) in row.iter().enumerate() {
             let end = if i + 1 == row.len() { '\n' } else { '\t' };
             written.add(format_args!("{h:e}{end}"));
@@ -106,7 +106,7 @@ pub fn text(map: &HeightMap, metric: Metric) -> String {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn xyz(map: &HeightMap, metric: Metric) -> String {
-    let (cells, cell, unit) = (map.cells(), map.cell(), metric.name());
+    let (cells, cell, unit) = (map.columns(), map.dx(), metric.name());
     let head = format!("# Lateral units: {unit}\n# Value units: {unit}\n# x y z\n");
     let mut written = Lines::new(head, 64 * map.heights().len());
     for (i, h) in map.heights().iter().enumerate() {

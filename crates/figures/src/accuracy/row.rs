@@ -149,7 +149,7 @@ pub(crate) fn measure(
     };
     let ContactState { approach, stiffness, area, fields, report, .. } = state;
     Ok(Some(Answer {
-        stiffness: stiffness.map(|k| k / (normalisation.modulus * normalisation.side)),
+        stiffness: stiffness.map(|k| k / (normalisation.modulus * normalisation.length)),
         approach,
         area: area.map(|a| normalisation.contact_fraction(a)),
         pressure: fields.and_then(|f| f.pressure),

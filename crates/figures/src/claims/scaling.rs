@@ -94,7 +94,7 @@ fn vertical(model: &dyn ContactModel) -> Result<Vec<Claim>> {
 /// A larger window around the same contact changes nothing (Eqs. 19 to 21); the exponent of a body z ~ r^H is 1/(1 + H) (Eq. 24).
 fn zoom() -> Result<Vec<Claim>> {
     let hurst = 0.6;
-    let body = |side| Surface::PowerLaw { coefficient: 1.0, exponent: hurst, size: side.into() };
+    let body = |side: f64| Surface::PowerLaw { coefficient: 1.0, exponent: hurst, size: side.into() };
     let mut claims = Vec::new();
     // The same contact, in a square of side L and of side C L = 2 L with the same cells.
     let force = 0.05;

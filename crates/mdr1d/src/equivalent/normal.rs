@@ -61,7 +61,7 @@ impl Normal {
     ) -> Result<Self> {
         let normalisation = contact.normalisation();
         let nondimensional =
-            Nondimensionalisation::new(normalisation.modulus, normalisation.side, normalisation.side)?;
+            Nondimensionalisation::new(normalisation.modulus, normalisation.length, normalisation.length)?;
         Ok(Self {
             contact,
             full,

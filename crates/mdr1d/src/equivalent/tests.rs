@@ -274,7 +274,7 @@ fn a_stop_between_nodes_leaves_no_trace() {
 fn any_units_do() {
     let run = |length: f64, young: f64| {
         let pair = Pair { first: Body::Rigid, second: Body::Elastic { young, poisson: 0.5 } };
-        let surface = Surface::Sphere { radius: length, size: 2.0 * length.into() };
+        let surface = Surface::Sphere { radius: length, size: (2.0 * length).into() };
         let mut scene = Scene::of_pair(surface, pair).unwrap();
         scene.effects.friction = Friction::Coulomb { coefficient: MU };
         let mut contact = equivalent(8).prepare(&scene, 0).unwrap();

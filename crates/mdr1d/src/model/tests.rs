@@ -165,7 +165,7 @@ fn an_ensemble_gives_the_same_bits_with_memory_used_before() {
 fn adhesion_of_a_sphere_behind_the_trait() {
     // data/paper/VALUES.md: E* = R = 1, w = 0.01. In other units too.
     for (modulus, length) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-        let mut scene = Scene::new(Surface::Sphere { radius: length, size: 2.0 * length.into() }, modulus);
+        let mut scene = Scene::new(Surface::Sphere { radius: length, size: (2.0 * length).into() }, modulus);
         scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 * (modulus * length) };
         let mut contact = prepare(&scene, 0);
         let s = contact.solve(Load::Force(0.0)).unwrap();

@@ -13,7 +13,7 @@ fn scene(surface: Surface, mu: f64) -> Scene {
 }
 
 fn sphere(length: f64) -> Surface {
-    Surface::Sphere { radius: length, size: 2.0 * length.into() }
+    Surface::Sphere { radius: length, size: (2.0 * length).into() }
 }
 
 fn step(normal: f64, tangential: Tangential) -> Step {

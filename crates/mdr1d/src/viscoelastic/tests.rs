@@ -112,7 +112,7 @@ fn ramps_in_closed_form() {
 #[test]
 fn in_any_units() {
     let run = |length: f64, modulus: f64| {
-        let surface = Surface::Sphere { radius: length, size: 2.0 * length.into() };
+        let surface = Surface::Sphere { radius: length, size: (2.0 * length).into() };
         let mut scene = Scene::new(surface, modulus);
         scene.effects.rheology = SOLID;
         scene.outputs.stiffness = false;

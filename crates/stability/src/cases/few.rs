@@ -74,8 +74,8 @@ fn one_cell(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let map = rough_map(2.6, cells, 8)?;
         let state = press_both(ledger, &map, Load::Force(1e-12))?;
         ledger.must(state.report.contact_cells == Some(1), || format!("{:?}", state.report.contact_cells));
-        ledger.near("k", stiffness(&state)?, exact * map.cell());
-        ledger.near("F/d", state.force / approach(&state)?, exact * map.cell());
+        ledger.near("k", stiffness(&state)?, exact * map.dx());
+        ledger.near("F/d", state.force / approach(&state)?, exact * map.dx());
     }
     Ok(())
 }
@@ -87,9 +87,9 @@ fn two_cells(ledger: &mut Ledger, (dx, dy): (usize, usize), printed: f64) -> Res
         for load in [Load::Approach(1e-3), Load::Force(1e-6), Load::Force(1e-150)] {
             let state = press_both(ledger, &map, load)?;
             ledger.must(state.report.contact_cells == Some(2), || format!("{:?}", state.report));
-            let exact = 2.0 * PI * map.cell() / (influence(0, 0) + influence(dx, dy));
+            let exact = 2.0 * PI * map.dx() / (influence(0, 0) + influence(dx, dy));
             ledger.near("k", stiffness(&state)?, exact);
-            ledger.near("k as printed", stiffness(&state)?, printed * map.cell());
+            ledger.near("k as printed", stiffness(&state)?, printed * map.dx());
         }
     }
     Ok(())
@@ -101,7 +101,7 @@ fn two_summits(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let far = influence(cells - 1, cells - 1) / influence(0, 0);
         let last = cells - 1;
         let even = map(cells, 1.0, |x, y| if x == y && (x == 0 || x == last) { 1.0 } else { 0.0 })?;
-        let cell = even.cell();
+        let cell = even.dx();
         let one = PI * cell / influence(0, 0);
         let state = press_both(ledger, &even, Load::Force(1e-3 * cell))?;
         ledger.must(state.report.contact_cells == Some(2), || format!("{:?}", state.report));
@@ -131,7 +131,7 @@ fn two_summits(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 fn spike(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for cells in [9, 64, 101] {
         let map = map(cells, 1.0, |x, y| if (x, y) == (4, 5) { 1.0 } else { 0.0 })?;
-        let one = PI * map.cell() / influence(0, 0);
+        let one = PI * map.dx() / influence(0, 0);
         // The spike presses its surroundings down with it: the farthest corner is touched first.
         let corner = (4_usize.max(cells - 1 - 4), 5_usize.max(cells - 1 - 5));
         let joins = 1.0 / (1.0 - influence(corner.0, corner.1) / influence(0, 0));

@@ -97,7 +97,7 @@ fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             for method in [Method::Auto, Method::SingleLevel] {
                 let model = Bem3d { method, ..tight() };
                 let state = model.prepare(&scene, 0)?.solve(Load::Force(force))?;
-                let area = rough.cell() * rough.cell();
+                let area = rough.dx() * rough.dx();
                 let forces: Vec<(usize, f64)> = pressure(&state)?
                     .iter()
                     .map(|p| p * area)
@@ -197,7 +197,7 @@ fn noise_floor(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let map = rough_map(fractal_dimension, cells, 4)?;
         for method in [Method::SingleLevel, Method::Iterative] {
             let state = press_by(ledger, &Bem3d { method, ..tight() }, &map, Load::Force(force))?;
-            let area = map.cell() * map.cell();
+            let area = map.dx() * map.dx();
             let forces: Vec<(usize, f64)> =
                 pressure(&state)?.iter().map(|p| p * area).enumerate().filter(|(_, f)| *f > 0.0).collect();
             let u = PlainSum::of(&map).displacement(&forces);

@@ -90,7 +90,7 @@ fn rectangles(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let inside = |along: usize, across: usize| along < length && across < width;
             let map = faces(length, |x, y| if turned { inside(y, x) } else { inside(x, y) })?;
             let state = press(ledger, &map, Load::Approach(1e-3))?;
-            let area = (length * width) as f64 * map.cell() * map.cell();
+            let area = (length * width) as f64 * map.dx() * map.dx();
             Ok(stiffness(&state)? / area.sqrt())
         };
         let (coarse, fine) = (k(ledger, width, false)?, k(ledger, 2 * width, false)?);

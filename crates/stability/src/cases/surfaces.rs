@@ -49,7 +49,7 @@ fn beside_the_ends(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(33, 65);
     let surface = |hurst: f64| {
         let amplitude = Amplitude::RmsHeight(1.0);
-        let surface = SelfAffine { side: 1.0, hurst, amplitude, roll_off: None, short_cutoff: None };
+        let surface = SelfAffine { size: 1.0.into(), hurst, amplitude, roll_off: None, short_cutoff: None };
         surface_gen::self_affine_map(&surface, cells, 3)
     };
     for (end, beside) in [(0.0, 1e-13), (1.0, 1.0 - 1e-13)] {
@@ -63,7 +63,8 @@ fn beside_the_ends(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     }
     for outside in [-1e-300, 1.0 + f64::EPSILON, f64::NAN] {
         let amplitude = Amplitude::RmsHeight(1.0);
-        let surface = SelfAffine { side: 1.0, hurst: outside, amplitude, roll_off: None, short_cutoff: None };
+        let surface =
+            SelfAffine { size: 1.0.into(), hurst: outside, amplitude, roll_off: None, short_cutoff: None };
         let mut refused = scene(crate::map(1, 1.0, |_, _| 0.0)?);
         refused.surface = Surface::SelfAffine(surface);
         let refused = tight().prepare(&refused, 0);

@@ -52,7 +52,7 @@ fn flat_top(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let map = faces(cells, inside)?;
         let contact: Vec<usize> = (0..cells * cells).filter(|i| inside(i % cells, i / cells)).collect();
         let exact = PlainSum::of(&map).stiffness(&contact);
-        ledger.near("printed k", exact, 1.106_498_258 * 8.0 * map.cell());
+        ledger.near("printed k", exact, 1.106_498_258 * 8.0 * map.dx());
         for load in [Load::Approach(1e-6), Load::Force(1e-12), Load::Force(1e-3)] {
             let state = press_both(ledger, &map, load)?;
             ledger.must(state.report.contact_cells == Some(64), || format!("{:?}", state.report));

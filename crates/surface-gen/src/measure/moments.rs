@@ -73,7 +73,7 @@ fn range(values: &[f64]) -> (f64, f64) {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn rms_slope_differences(map: &HeightMap) -> f64 {
-    let (n, heights) = (map.cells(), map.heights());
+    let (n, heights) = (map.columns(), map.heights());
     let along_x = || heights.chunks_exact(n).flat_map(|row| row.windows(2).map(|w| w[1] - w[0]));
     let along_y = || heights.iter().zip(&heights[n..]).map(|(a, b)| b - a);
     let unit = along_x().chain(along_y()).fold(0.0, |unit: f64, step| unit.max(step.abs()));
@@ -81,7 +81,7 @@ pub fn rms_slope_differences(map: &HeightMap) -> f64 {
         return 0.0;
     }
     let sum: f64 = along_x().chain(along_y()).map(|step| (step / unit).powi(2)).sum();
-    (sum / (n * (n - 1)) as f64).sqrt() * (unit / map.cell())
+    (sum / (n * (n - 1)) as f64).sqrt() * (unit / map.dx())
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl RowTransform {
 
 /// Calls `visit(|m|^2, |H|^2, copies)` for every wave but the mean, in a fixed order; returns the unit of H. `copies` counts the conjugate wave.
 fn waves(map: &HeightMap, mut visit: impl FnMut(u64, f64, f64)) -> f64 {
-    let n = map.cells();
+    let n = map.columns();
     let (middle, unit) = range(map.heights());
     let width = n / 2 + 1;
     let mut columns = vec![Complex::new(0.0, 0.0); width * n];
@@ -85,7 +85,7 @@ fn waves(map: &HeightMap, mut visit: impl FnMut(u64, f64, f64)) -> f64 {
 pub fn rms_slope(map: &HeightMap) -> f64 {
     let mut sum = 0.0;
     let unit = waves(map, |m2, power, copies| sum += copies * m2 as f64 * power);
-    TAU * sum.sqrt() * (unit / map.side())
+    TAU * sum.sqrt() * (unit / map.length())
 }
 
 /// Spectrum of a map averaged over rings: pairs (q, C_2D) in units of 1/length and length^4, for ring 1, 2, ..., N/2.
@@ -105,7 +105,7 @@ pub fn rms_slope(map: &HeightMap) -> f64 {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn radial_spectrum(map: &HeightMap) -> Vec<(f64, f64)> {
-    let rings = map.cells() / 2;
+    let rings = map.columns() / 2;
     // Count, sum of |m|, sum of |H|^2.
     let mut sums = vec![(0.0, 0.0, 0.0); rings + 1];
     let unit = waves(map, |m2, power, copies| {
@@ -114,7 +114,7 @@ pub fn radial_spectrum(map: &HeightMap) -> Vec<(f64, f64)> {
             *sum = (sum.0 + copies, sum.1 + copies * m, sum.2 + copies * power);
         }
     });
-    let side = map.side();
+    let side = map.length();
     let point = |&(count, m, power): &(f64, f64, f64)| {
         (TAU / side * (m / count), ((power / count).sqrt() * unit * side / TAU).powi(2))
     };

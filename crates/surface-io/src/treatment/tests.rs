@@ -32,9 +32,9 @@ fn units_are_metres_or_none() {
         treated(&scan, |_| ()).map_err(|e| e.to_string())
     };
     let map = read("0.5 um", Some("nm")).unwrap();
-    assert_eq!((map.side().to_bits(), map.heights()), (1e-6_f64.to_bits(), &[1e-9, 2e-9, 3e-9, 4e-9][..]));
+    assert_eq!((map.length().to_bits(), map.heights()), (1e-6_f64.to_bits(), &[1e-9, 2e-9, 3e-9, 4e-9][..]));
     let map = read("0.5", None).unwrap();
-    assert_eq!((map.side().to_bits(), map.heights()), (1_f64.to_bits(), &[1.0, 2.0, 3.0, 4.0][..]));
+    assert_eq!((map.length().to_bits(), map.heights()), (1_f64.to_bits(), &[1.0, 2.0, 3.0, 4.0][..]));
     assert_eq!(read("0.5", Some("none")).unwrap(), map);
     assert!(read("0.5 um", None).unwrap_err().contains("say unit = \"nm\""));
     assert!(
@@ -50,7 +50,7 @@ fn crops_take_what_they_say() {
     let error = treated(&wide, |_| ()).unwrap_err().to_string();
     assert!(error.contains("2 rows of 5: expected a square map; crop = \"centre\""), "{error}");
     let map = treated(&wide, |t| t.crop = Some(Crop::Centre)).unwrap();
-    assert_eq!((map.side().to_bits(), map.heights()), (2_f64.to_bits(), &[1.0, 2.0, 11.0, 12.0][..]));
+    assert_eq!((map.length().to_bits(), map.heights()), (2_f64.to_bits(), &[1.0, 2.0, 11.0, 12.0][..]));
     let window = |row, column, cells| treated(&wide, |t| t.crop = Some(Crop::Window { row, column, cells }));
     assert_eq!(window(0, 3, 2).unwrap().heights(), [3.0, 4.0, 13.0, 14.0]);
     assert_eq!(window(1, 4, 1).unwrap().heights(), [14.0]);
@@ -154,7 +154,7 @@ fn trends_are_what_least_squares_give() {
 fn coarser_cells_are_means() {
     let fine = scan(4, 4, |x, y| x + 4.0 * y);
     let map = treated(&fine, |t| t.cells = Some(2)).unwrap();
-    assert_eq!((map.heights(), map.side().to_bits()), (&[2.5, 4.5, 10.5, 12.5][..], 4_f64.to_bits()));
+    assert_eq!((map.heights(), map.length().to_bits()), (&[2.5, 4.5, 10.5, 12.5][..], 4_f64.to_bits()));
     // 3 cells to 2: weights 2/3 and 1/3.
     let map = treated(&scan(3, 3, |x, _| 3.0 * x * x), |t| t.cells = Some(2)).unwrap();
     for (h, expected) in map.heights().iter().zip([1.0, 9.0, 1.0, 9.0]) {

@@ -10,9 +10,9 @@ fn check(name: &str, map: &HeightMap, metric: Metric, declared: &Declared) {
     let path = dir.path().join(name);
     write_map(&path, map, metric).unwrap();
     let read = Scan::read(&path, declared).unwrap().map(&Treatment::default()).unwrap();
-    assert_eq!(read.cells(), map.cells());
+    assert_eq!(read.columns(), map.columns());
     // Points say their places, whose differences lose digits with the number of cells.
-    assert!((read.side() / map.side() - 1.0).abs() <= ROUNDING * map.cells() as f64, "{name}");
+    assert!((read.length() / map.length() - 1.0).abs() <= ROUNDING * map.columns() as f64, "{name}");
     for (a, b) in read.heights().iter().zip(map.heights()) {
         assert_eq!(a.to_bits(), b.to_bits(), "{name}");
     }
@@ -36,7 +36,7 @@ proptest! {
                 check("a.txt", &map, metric, &plain);
                 check("a.xyz", &map, metric, &plain);
             }
-            let cell = Some(crate::Quantity::new(map.cell(), Dimension::LENGTH).unwrap());
+            let cell = Some(crate::Quantity::new(map.dx(), Dimension::LENGTH).unwrap());
             check("a.npy", &map, Metric::Metres, &Declared { cell, unit: metres, ..plain });
         }
     }
