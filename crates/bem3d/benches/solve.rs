@@ -1,6 +1,6 @@
 //! The kernel, each operator, and one cold solve of each strategy.
 
-use bem3d::{Bem3d, Method, love, operators};
+use bem3d::{Bem3d, Method, benchmarks, love};
 use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -17,10 +17,10 @@ fn applications(c: &mut Criterion) {
     let mut group = c.benchmark_group("one application, N = 512");
     group.sample_size(20);
     for (name, step) in [("direct", 400), ("two levels", 400), ("f32", 1), ("f64", 1), ("inverse", 1)] {
-        let Some(mut apply) = operators::timed(name, side, step) else { continue };
+        let Some(mut apply) = benchmarks::timed(name, side, step) else { continue };
         group.bench_function(format!("{name}, one cell in {step}"), |b| b.iter(&mut apply));
     }
-    group.bench_function("factor of 1000 cells", |b| b.iter(|| operators::factor(side, 1000)));
+    group.bench_function("factor of 1000 cells", |b| b.iter(|| benchmarks::factor(side, 1000)));
     group.finish();
 }
 

@@ -64,22 +64,20 @@
 //! parallel over surfaces.
 
 mod active_set;
-mod candidates;
-mod cells;
-mod certificate;
-mod cg;
-mod filled;
-pub mod love;
-mod margin;
+mod geometry;
+mod kernel;
+mod linear;
 mod model;
 mod operator;
-#[doc(hidden)]
-pub mod operators;
-mod seed;
+mod real;
 mod stiffness;
-mod strategy;
+mod tuning;
 
+pub use kernel::love;
 pub use model::{Bem3d, Method};
+
+#[doc(hidden)]
+pub mod benchmarks;
 
 /// Number of the solver's format. It changes with anything that can change a result beyond its tolerance, so that stored
 /// results of other versions are not mixed with new ones.

@@ -1,25 +1,20 @@
-//! What a square that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
+//! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
 
-use super::Prepared;
+use super::prepared::Prepared;
 use crate::active_set::{Solved, Target};
+use crate::tuning::{GAP_LOADS, GAP_STEP, MAGNIFIED};
 use contact_model::{ContactState, Error, Result, Status, Stop};
-
-/// Largest factor from the error of `k'` to that of k ([`Prepared::magnification`]); beyond it no digit of k is left.
-const MAGNIFIED: f64 = 1e10;
-/// Loads at most on the way to a mean gap, and the largest step of ln F between two of them.
-const GAP_LOADS: usize = 60;
-const GAP_STEP: f64 = 3.0;
 
 impl Prepared {
     /// How many times the relative error of k is that of `1' K^-1 1 = k'` with the constant c in K: `k = k' / (1 - c k')`.
     ///
-    /// 1 with free boundaries; grows without limit towards full contact of a periodic square.
+    /// 1 with free boundaries; grows without limit towards full contact of a periodic surface.
     pub(super) fn magnification(&self, value: f64) -> f64 {
         let rest = 1.0 - self.problem.operators.table().shift() * value;
         if rest > 1.0 / MAGNIFIED { 1.0 / rest } else { MAGNIFIED }
     }
 
-    /// Mean gap of a state in scaled units. The displacement under the kernel of zero mean has none.
+    /// Mean gap of a state, nondimensional: the distance of the mean planes, undefined points left out. The displacement under the kernel of zero mean has none.
     pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
         let force: f64 = solved.p.iter().sum();
         let plane = solved.d - self.problem.operators.table().shift() * force;
@@ -27,11 +22,11 @@ impl Prepared {
         (self.mean - plane).max(0.0)
     }
 
-    /// The state at a mean gap (scaled), by Newton's method in ln F where the stiffness is known and secants where it is not: the gap
+    /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and secants where it is not: the gap
     /// falls about linearly with ln F. It is met to the tolerance, in rms heights.
-    pub(super) fn press_to(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
+    pub(super) fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
         if asked >= self.mean {
-            return self.untouched().completed(&self.outputs, self.normalisation.modulus);
+            return self.no_contact();
         }
         if asked <= 0.0 {
             let name = "mean gap (at 0 every force from that of full contact on would do)".into();
@@ -42,10 +37,9 @@ impl Prepared {
                 max: self.nondimensional.approach(self.mean)?,
             });
         }
-        self.problem.operators.applications = 0;
-        self.problem.operators.solves = 0;
-        let (limits, side) = (self.limits(), self.problem.side as f64);
-        // A wave of the rms height and the length of the square closes at about side x rms.
+        self.begin_count();
+        let (limits, side) = (self.limits(), (self.problem.grid().count() as f64).sqrt());
+        // A wave of the rms height and the length of the map closes at about side x rms.
         let mut x = self.last.as_ref().map_or(0.1 * side, |last| last.force).ln();
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut before: Option<(f64, f64)> = None;

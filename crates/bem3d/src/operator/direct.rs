@@ -1,26 +1,27 @@
-//! The elastic operator by direct summation: exact, O(n m), obviously right.
+//! The influence matrix by direct summation: exact, O(n m), obviously right.
 
-use super::Table;
-use crate::cells::CellSet;
+use super::influence::InfluenceOperator;
+use crate::geometry::CellSet;
+use crate::kernel::KernelTable;
+use crate::real::Real;
 
-/// `u_i = sum_j I(i - j) p_j` for the cells `i` of `targets`, by summing over the cells `j` of `sources`.
-///
-/// Shape: `p` on `sources`, `u` on `targets`; dimensionless (see [`crate::love::influence`]). Cost: O(sources x targets).
-/// The twin of every faster operator, and the fastest one itself for a few hundred cells.
-pub fn apply(table: &Table, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
-    u.fill(0.0);
-    let side = sources.side();
-    for source_row in sources.rows() {
-        for target_row in targets.rows() {
-            let line = table.row(source_row.y.abs_diff(target_row.y));
-            for i in target_row.span.clone() {
-                let x = targets.index()[i] as usize - target_row.y * side;
-                let mut sum = 0.0;
-                for j in source_row.span.clone() {
-                    let xs = sources.index()[j] as usize - source_row.y * side;
-                    sum += line[x.abs_diff(xs)] * p[j];
+/// The reference implementation of every faster operator, and the fastest one itself for a few hundred cells.
+#[derive(Debug)]
+pub struct DirectSum<'a>(pub &'a KernelTable);
+
+impl<T: Real> InfluenceOperator<T> for DirectSum<'_> {
+    /// `u_i = sum_j I(i - j) p_j`. Cost: O(sources x targets).
+    fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
+        u.fill(T::default());
+        for source in sources.rows() {
+            let pressure = &p[source.span()];
+            for target in targets.rows() {
+                let line = self.0.row(source.y.abs_diff(target.y));
+                for (&x, u) in target.columns.iter().zip(&mut u[target.span()]) {
+                    let pairs = source.columns.iter().zip(pressure);
+                    let sum: f64 = pairs.map(|(&xs, p)| line[x.abs_diff(xs) as usize] * p.to_f64()).sum();
+                    *u += T::of(sum);
                 }
-                u[i] += sum;
             }
         }
     }

@@ -1,0 +1,108 @@
+//! The cells that may touch at a given approach: those whose undeformed gap z is smaller.
+
+use crate::geometry::{CellSet, Grid};
+use crate::tuning::{CANDIDATES_AHEAD, LISTED_CANDIDATES};
+use std::sync::Arc;
+
+/// Finds the cells with `z < d`.
+///
+/// Outside them the gap `u + z - d` is positive because u is not negative: they need no check and no storage. Undefined points have an
+/// infinite z and are never among them.
+#[derive(Debug)]
+pub struct Candidates {
+    grid: Grid,
+    z: Arc<Vec<f64>>,
+    /// Cells with z < cap, where they are few.
+    list: CellSet,
+    cap: f64,
+}
+
+impl Candidates {
+    /// Takes the undeformed gaps of a grid, row-major.
+    pub fn new(grid: Grid, z: Arc<Vec<f64>>) -> Self {
+        Self { grid, z, list: CellSet::default(), cap: 0.0 }
+    }
+
+    /// The undeformed gaps of the whole grid.
+    pub fn z(&self) -> &[f64] {
+        &self.z
+    }
+
+    /// The cells with `z < d`.
+    ///
+    /// Cost: the grid once for each doubling of d, else the candidates of the last doubling; the grid each time where many lie below.
+    pub fn below(&mut self, d: f64) -> CellSet {
+        if d > self.cap {
+            let cap = CANDIDATES_AHEAD * d;
+            if self.more_than(self.grid.count() / LISTED_CANDIDATES, cap) {
+                return self.scan(d);
+            }
+            (self.list, self.cap) = (self.scan(cap), cap);
+        }
+        let z = self.gaps(&self.list);
+        self.list.filter(|k| z[k] < d)
+    }
+
+    fn scan(&self, d: f64) -> CellSet {
+        let columns = |row: &'_ [f64]| -> Vec<u32> {
+            row.iter().enumerate().filter(|&(_, &z)| z < d).map(|(x, _)| x as u32).collect()
+        };
+        CellSet::from_rows(self.z.chunks_exact(self.grid.columns).map(columns).enumerate())
+    }
+
+    /// Whether more than `count` cells lie below d.
+    ///
+    /// Cost: the grid at most, much less where the answer is yes.
+    pub fn more_than(&self, count: usize, d: f64) -> bool {
+        self.z.iter().filter(|&&z| z < d).nth(count).is_some()
+    }
+
+    /// The undeformed gaps on a set.
+    pub fn gaps(&self, set: &CellSet) -> Vec<f64> {
+        let mut gaps = vec![0.0; set.len()];
+        self.add_to(set, &mut gaps);
+        gaps
+    }
+
+    /// Adds the undeformed gaps on a set to values on it.
+    pub fn add_to(&self, set: &CellSet, values: &mut [f64]) {
+        for row in set.rows() {
+            row.add(&self.z[row.y * self.grid.columns..][..self.grid.columns], values, 0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn below_is_strict_and_complete_whatever_was_asked_before() {
+        let z = Arc::new(vec![0.0, 0.5, 1.0, 0.25, 3.0, f64::INFINITY, 0.0, 1.5, 0.75, 4.0, 5.0, 6.0]);
+        for grid in [Grid::square(3, 4), Grid::square(12, 1), Grid::square(1, 12)] {
+            let mut candidates = Candidates::new(grid, Arc::clone(&z));
+            for d in [0.1, 0.5, 0.1, 4.0, 1.0, 0.0, 1e300] {
+                let expected: Vec<usize> = (0..12).filter(|&i| z[i] < d).collect();
+                assert_eq!(candidates.below(d).index(grid).collect::<Vec<_>>(), expected, "d = {d}");
+                for count in 0..12 {
+                    assert_eq!(candidates.more_than(count, d), expected.len() > count, "{count} at d = {d}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_grid_is_scanned_for_twice_the_approach_in_any_unit() {
+        // Work: a path of loads up to twice the first one is served from the list, and the list holds no more.
+        for unit in [2f64.powi(-40), 1.0, 2f64.powi(40)] {
+            let z = (0..64).map(|i| f64::from(i) * unit).collect();
+            let mut candidates = Candidates::new(Grid::square(8, 8), Arc::new(z));
+            assert_eq!(candidates.below(3.0 * unit).len(), 3);
+            assert_eq!(candidates.list.len(), 6, "z = 6 is not below twice 3");
+            assert_eq!(candidates.below(6.0 * unit).len(), 6);
+            assert_eq!(candidates.list.len(), 6, "no second scan");
+            assert_eq!(candidates.below(30.0 * unit).len(), 30, "many: not listed");
+            assert_eq!(candidates.list.len(), 6);
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Where a solve begins: from the tangent of the last state, or by nested iteration from the same surface on coarser grids.
+
+use super::solver::solve;
+use super::state::{Guess, Limits, Problem, Solved, Target};
+use crate::geometry::{CellSet, Grid};
+use crate::tuning::Tuning;
+use contact_model::Stop;
+use std::sync::Arc;
+
+/// The state solved last, from which the next is extrapolated.
+#[derive(Debug)]
+pub struct LastState {
+    /// The contact set.
+    pub contact: CellSet,
+    /// Pressure on it.
+    pub p: Vec<f64>,
+    /// Approach.
+    pub d: f64,
+    /// Sum of the pressure.
+    pub force: f64,
+    /// q and k, where known.
+    pub tangent: Option<(Vec<f64>, f64)>,
+}
+
+impl LastState {
+    /// How many times the last load is asked for.
+    pub fn ratio(&self, target: Target) -> f64 {
+        match target {
+            Target::Force(force) => force / self.force,
+            Target::Approach(d) => d / self.d,
+        }
+    }
+
+    /// A guess of q at a state from the last one and the secant between them; on the way down the last q alone.
+    pub fn tangent_at(self, solved: &Solved, tuning: &Tuning) -> Option<Vec<f64>> {
+        let mut q = solved.contact.carry(&self.contact, &self.tangent.as_ref()?.0);
+        let way = solved.d - self.d;
+        if way > 0.0 {
+            let before = solved.contact.carry(&self.contact, &self.p);
+            for ((q, p), before) in q.iter_mut().zip(&solved.p).zip(&before) {
+                *q += tuning.extrapolation * ((p - before) / way - *q);
+            }
+        }
+        Some(q)
+    }
+
+    /// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load, so that the predicted
+    /// approach is an upper bound and every new contact cell lies below it. Where no stiffness was asked for, the pressure is scaled.
+    pub fn extrapolated(&self, target: Target, tuning: &Tuning) -> Option<Guess> {
+        let ratio = self.ratio(target);
+        if !(1.0 / tuning.warm..=tuning.warm).contains(&ratio) {
+            return None;
+        }
+        let (mut p, d): (Vec<f64>, f64) = if let Some((q, k)) = &self.tangent {
+            let step = match target {
+                Target::Force(force) => (force - self.force) / k,
+                Target::Approach(d) => d - self.d,
+            };
+            (self.p.iter().zip(q).map(|(p, q)| p + step * q).collect(), self.d + step.max(0.0))
+        } else {
+            (self.p.iter().map(|p| ratio * p).collect(), self.d * ratio.max(1.0))
+        };
+        let set = self.contact.filter(|k| p[k] > 0.0);
+        p.retain(|&p| p > 0.0);
+        (!set.is_empty()).then(|| Guess { set, p, d: d.max(f64::MIN_POSITIVE), far: false })
+    }
+
+    /// Whether a load begins on coarse grids although a state is known.
+    ///
+    /// The tangent overshoots (the stiffness grows with every cell that joins); where it predicts far more cells than the load
+    /// has grown by, eliminating them costs more than a coarse solution at a third of the price. `predicted` counts them with one
+    /// application; where a good part of the grid will touch, the answer is known without.
+    pub fn overshoots(&self, target: Target, cells: usize, tuning: &Tuning, predicted: impl FnOnce() -> usize) -> bool {
+        let ratio = self.ratio(target);
+        let (expected, cells) = (self.contact.len() as f64 * ratio, cells as f64);
+        !(tuning.near.0..=tuning.near.1).contains(&ratio)
+            && (expected * tuning.filling >= cells
+                || (expected * tuning.counted >= cells && predicted() as f64 > tuning.overshoot * expected))
+    }
+}
+
+/// Number of cells that carry pressure or would penetrate under a guess, in single precision.
+pub fn predicted_cells(problem: &mut Problem, guess: &Guess) -> usize {
+    let checked = problem.candidates.below(guess.d).union(&guess.set);
+    let mut gap = Vec::new();
+    problem.operators.rough(&guess.set, &guess.p, &checked, &mut gap);
+    problem.candidates.add_to(&checked, &mut gap);
+    gap.iter().filter(|&&g| g < guess.d).count().max(guess.set.len())
+}
+
+/// A guess for a load with nothing known.
+///
+/// The cells with `z < F / k_1` (k_1: one cell alone, the softest contact) contain the contact set. If they are few they are the guess;
+/// otherwise the surface averaged over 2 x 2 cells is solved first. A coarse grid only says where to begin: every fine cell
+/// stays a candidate, because fractal summits vanish on coarse grids.
+pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: Stop<'_>) -> Guess {
+    let (grid, tuning) = (problem.grid(), *problem.operators.tuning());
+    let own = problem.operators.table().own();
+    // The highest cell of a coarse grid lies below the plane of first touch.
+    let (highest, first, deepest) = range(problem.candidates.z());
+    let reach = match target {
+        Target::Force(force) => first + force * own,
+        Target::Approach(d) => d,
+    };
+    let reach = reach.min(2.0 * deepest + f64::MIN_POSITIVE);
+    let from_above = |problem: &mut Problem| {
+        let set = problem.candidates.below(reach).union(&CellSet::from_index(grid, &[highest]));
+        let p = match target {
+            Target::Force(force) => force / set.len() as f64,
+            // Any positive value: the first outer iteration evaluates the true gap.
+            Target::Approach(d) => d / (own * set.len() as f64),
+        };
+        Guess { p: vec![p; set.len()], set, d: reach, far: false }
+    };
+    if grid.count() <= tuning.coarsest * tuning.coarsest || !problem.nested {
+        return from_above(problem);
+    }
+    if limits.factor && !problem.candidates.more_than(tuning.largest_factor, reach) {
+        let guess = from_above(problem);
+        let window = guess.set.window().unwrap_or(grid.window());
+        if problem.operators.planner().factors(guess.set.len(), window) {
+            return guess;
+        }
+    }
+    let mut coarse = problem.coarser.take().unwrap_or_else(|| Box::new(coarser(problem)));
+    if let Target::Approach(d) = target
+        && range(coarse.candidates.z()).1 >= d
+    {
+        problem.coarser = Some(coarse);
+        return from_above(problem);
+    }
+    let limits = Limits { tolerance: tuning.coarse_tolerance, outer_iterations: tuning.coarse_iterations, ..limits };
+    let coarse_target = match target {
+        Target::Force(force) => Target::Force(force / pressure_ratio(grid, &tuning)),
+        approach @ Target::Approach(_) => approach,
+    };
+    let guess = cold_start(&mut coarse, coarse_target, limits, stop);
+    let solved = solve(&mut coarse, coarse_target, guess, limits, stop);
+    let guess = prolonged(problem, &solved);
+    problem.coarser = Some(coarse);
+    guess
+}
+
+/// The defined cell with the smallest gap, that gap, and the largest finite one.
+fn range(z: &[f64]) -> (u32, f64, f64) {
+    let mut highest = 0;
+    let mut deepest = 0.0f64;
+    for (i, &value) in z.iter().enumerate() {
+        if value < z[highest] {
+            highest = i;
+        }
+        if value.is_finite() {
+            deepest = deepest.max(value);
+        }
+    }
+    (highest as u32, z[highest], deepest)
+}
+
+/// Fine columns and rows of a coarse cell: a direction with few cells is left as it is.
+fn blocks(grid: Grid, tuning: &Tuning) -> (usize, usize) {
+    let halved = |n: usize| 1 + usize::from(2 * n > tuning.coarsest);
+    (halved(grid.columns), halved(grid.rows))
+}
+
+/// Nondimensional pressure at equal force: forces are counted in the side of a cell, so that a sum over coarse cells is smaller.
+fn pressure_ratio(grid: Grid, tuning: &Tuning) -> f64 {
+    let (across, down) = blocks(grid, tuning);
+    ((across * down) as f64).sqrt()
+}
+
+/// The same surface on cells twice as large: means of their defined cells (fewer at the last row and column of an odd grid).
+fn coarser(problem: &Problem) -> Problem {
+    let (fine, tuning) = (problem.grid(), *problem.operators.tuning());
+    let (across, down) = blocks(fine, &tuning);
+    let stretch = if across == down { fine.stretch } else { fine.stretch * (across as f64 / down as f64).sqrt() };
+    let grid = Grid { columns: fine.columns.div_ceil(across), rows: fine.rows.div_ceil(down), stretch };
+    let mut sums = vec![(0.0, 0.0); grid.count()];
+    for (i, &z) in problem.candidates.z().iter().enumerate().filter(|(_, z)| z.is_finite()) {
+        let (x, y) = (i % fine.columns / across, i / fine.columns / down);
+        let (sum, count) = &mut sums[y * grid.columns + x];
+        (*sum, *count) = (*sum + z, *count + 1.0);
+    }
+    let mean = |&(sum, count): &(f64, f64)| if count > 0.0 { sum / count } else { f64::INFINITY };
+    let z = sums.iter().map(mean).collect();
+    Problem::new(grid, Arc::new(z), problem.operators.table().boundary(), tuning)
+}
+
+/// Coarse pressure on the fine cells below it that lie under the plane (on all defined ones if none does).
+fn prolonged(problem: &Problem, solved: &Solved) -> Guess {
+    let (grid, z, d) = (problem.grid(), problem.candidates.z(), solved.d);
+    let tuning = problem.operators.tuning();
+    let ((across, down), ratio) = (blocks(grid, tuning), pressure_ratio(grid, tuning));
+    let mut cells: Vec<(u32, f64)> = Vec::with_capacity(across * down * solved.p.len());
+    for ((x, y), p) in solved.contact.places().zip(&solved.p) {
+        let rows = y * down..((y + 1) * down).min(grid.rows);
+        let below = rows.flat_map(|y| {
+            let columns = x * across..((x + 1) * across).min(grid.columns);
+            columns.map(move |x| y * grid.columns + x)
+        });
+        let under_plane = below.clone().filter(|&i| z[i] < d).count();
+        let limit = if under_plane > 0 { d } else { f64::INFINITY };
+        let carrying = below.filter(|&i| z[i] < limit);
+        let share = ratio * p / carrying.clone().count() as f64;
+        cells.extend(carrying.map(|i| (i as u32, share)));
+    }
+    cells.sort_unstable_by_key(|&(i, _)| i);
+    let index: Vec<u32> = cells.iter().map(|&(i, _)| i).collect();
+    let p = cells.iter().map(|&(_, p)| p).collect();
+    Guess { set: CellSet::from_index(grid, &index), p, d, far: true }
+}

@@ -1,0 +1,12 @@
+//! The complementarity problem at one load.
+
+mod candidates;
+mod initial_guess;
+mod residuals;
+mod solver;
+mod state;
+mod undecided;
+
+pub use initial_guess::{LastState, cold_start, predicted_cells};
+pub use solver::{resume, solve};
+pub use state::{Guess, Limits, Problem, Solved, Target};

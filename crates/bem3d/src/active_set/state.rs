@@ -1,0 +1,126 @@
+//! What is solved, from where, how well, and what comes of it.
+
+use super::candidates::Candidates;
+use super::residuals::Residuals;
+use super::undecided::undecided;
+use crate::geometry::{CellSet, Grid};
+use crate::kernel::KernelTable;
+use crate::linear::Workspace;
+use crate::operator::Operators;
+use crate::tuning::Tuning;
+use contact_model::{Boundary, Status};
+use std::sync::Arc;
+
+/// One surface in nondimensional form: z in units of the rms height, p so that `u = sum I p`.
+#[derive(Debug)]
+pub struct Problem {
+    /// Where contact is possible.
+    pub candidates: Candidates,
+    /// The operators.
+    pub operators: Operators,
+    /// Room for its linear systems.
+    pub workspace: Workspace,
+    /// The same surface on larger cells, once a cold start has asked for it.
+    pub coarser: Option<Box<Problem>>,
+    /// Whether coarse grids may give initial guesses.
+    pub nested: bool,
+}
+
+impl Problem {
+    /// A surface of gaps z from the plane of first touch, row-major; infinite where a point is undefined.
+    pub fn new(grid: Grid, z: Arc<Vec<f64>>, boundary: Boundary, tuning: Tuning) -> Self {
+        Self {
+            candidates: Candidates::new(grid, z),
+            operators: Operators::new(KernelTable::shared(grid, boundary), tuning),
+            workspace: Workspace::default(),
+            coarser: None,
+            nested: true,
+        }
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> Grid {
+        self.operators.table().grid()
+    }
+}
+
+/// What is prescribed, nondimensional.
+#[derive(Debug, Clone, Copy)]
+pub enum Target {
+    /// Sum of p.
+    Force(f64),
+    /// Approach.
+    Approach(f64),
+}
+
+/// How accurate, how long.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Bound of the residuals.
+    pub tolerance: f64,
+    /// Length that gaps are compared with; `None`: the approach.
+    pub height: Option<f64>,
+    /// Outer iterations at most.
+    pub outer_iterations: usize,
+    /// Whether small sets may be factored.
+    pub factor: bool,
+}
+
+/// An initial guess.
+#[derive(Debug, Clone)]
+pub struct Guess {
+    /// Where there is pressure.
+    pub set: CellSet,
+    /// Positive pressure there.
+    pub p: Vec<f64>,
+    /// Approach that belongs to it, rather too large than too small.
+    pub d: f64,
+    /// Whether it is known to be far off: then single precision is enough for the first gap.
+    pub far: bool,
+}
+
+/// A solved state.
+#[derive(Debug, Clone)]
+pub struct Solved {
+    /// The contact set: cells with p > 0.
+    pub contact: CellSet,
+    /// Pressure on it.
+    pub p: Vec<f64>,
+    /// Approach.
+    pub d: f64,
+    /// `K q = 1` on the contact set, where the state was factored.
+    pub q: Option<Vec<f64>>,
+    /// How well the contact conditions hold.
+    pub residuals: Residuals,
+    /// Conjugate gradient steps.
+    pub steps: usize,
+    /// How it ended.
+    pub status: Status,
+    /// The gap that the residuals were measured from.
+    pub continuation: Continuation,
+}
+
+/// The exact gap of a state on all cells that could touch: what says which cells are undecided, and what a solve to a tighter
+/// tolerance begins with instead of evaluating it again.
+#[derive(Debug, Clone, Default)]
+pub struct Continuation {
+    /// The candidates, the contact set among them.
+    pub checked: CellSet,
+    /// Gap on them.
+    pub gap: Vec<f64>,
+    /// The candidates are those below this approach.
+    pub reach: f64,
+}
+
+impl Solved {
+    /// Gap left on the contact set.
+    pub fn gap_on_contact(&self) -> Vec<f64> {
+        self.contact.carry(&self.continuation.checked, &self.continuation.gap)
+    }
+
+    /// Cells outside the contact set that may belong to it: their gap is negative or below what it can still change.
+    pub fn undecided(&self, grid: Grid, left: &[f64], tuning: &Tuning) -> CellSet {
+        let Continuation { checked, gap, .. } = &self.continuation;
+        undecided(grid, &self.contact, left, checked, gap, tuning)
+    }
+}

@@ -1,0 +1,361 @@
+//! Sets of cells of a grid: work follows the contact, not the grid.
+
+use super::grid::{Grid, Window};
+use crate::tuning::LONG_RUN;
+use std::ops::{AddAssign, Range};
+
+/// A set of cells, row by row. Values on it stand one after the other in the order of the cells.
+///
+/// Every cell has its column; where the cells of a row form long runs, the runs are kept too, and values move run by run.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CellSet {
+    rows: Vec<RowStart>,
+    columns: Vec<u32>,
+    runs: Vec<Run>,
+}
+
+/// Where a row begins in the lists of its set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct RowStart {
+    y: u32,
+    cells: u32,
+    runs: u32,
+}
+
+/// Neighbouring cells of one row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Run {
+    x: u32,
+    length: u32,
+}
+
+/// The cells of a set in one row of the grid.
+#[derive(Debug, Clone, Copy)]
+pub struct Row<'a> {
+    /// Row of the grid.
+    pub y: usize,
+    /// Position of its first cell.
+    start: usize,
+    /// Columns of its cells.
+    pub columns: &'a [u32],
+    runs: &'a [Run],
+}
+
+impl Row<'_> {
+    /// Positions of its cells in the list of the set.
+    pub fn span(&self) -> Range<usize> {
+        self.start..self.start + self.columns.len()
+    }
+
+    /// Its runs as columns of a row that begins at column x0, with the positions of their values.
+    fn runs(&self, x0: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
+        let mut at = self.start;
+        self.runs.iter().map(move |run| {
+            let (x, length) = (run.x as usize - x0, run.length as usize);
+            at += length;
+            (x..x + length, at - length..at)
+        })
+    }
+
+    /// Writes the values of a set where they belong in a row that begins at column x0; the rest of the row stays.
+    pub fn spread<T: Copy>(&self, values: &[T], row: &mut [T], x0: usize) {
+        if self.runs.is_empty() {
+            for (&x, &value) in self.columns.iter().zip(&values[self.span()]) {
+                row[x as usize - x0] = value;
+            }
+        } else {
+            for (columns, at) in self.runs(x0) {
+                row[columns].copy_from_slice(&values[at]);
+            }
+        }
+    }
+
+    /// Reads the values of a set from a row that begins at column x0.
+    pub fn collect<T: Copy>(&self, row: &[T], values: &mut [T], x0: usize) {
+        if self.runs.is_empty() {
+            for (&x, value) in self.columns.iter().zip(&mut values[self.span()]) {
+                *value = row[x as usize - x0];
+            }
+        } else {
+            for (columns, at) in self.runs(x0) {
+                values[at].copy_from_slice(&row[columns]);
+            }
+        }
+    }
+
+    /// Adds a row that begins at column x0 to the values of a set.
+    pub fn add<T: Copy + AddAssign>(&self, row: &[T], values: &mut [T], x0: usize) {
+        if self.runs.is_empty() {
+            for (&x, value) in self.columns.iter().zip(&mut values[self.span()]) {
+                *value += row[x as usize - x0];
+            }
+        } else {
+            for (columns, at) in self.runs(x0) {
+                for (value, &more) in values[at].iter_mut().zip(&row[columns]) {
+                    *value += more;
+                }
+            }
+        }
+    }
+
+    /// Writes one value to its cells in a row that begins at column x0.
+    pub fn fill<T: Copy>(&self, value: T, row: &mut [T], x0: usize) {
+        if self.runs.is_empty() {
+            for &x in self.columns {
+                row[x as usize - x0] = value;
+            }
+        } else {
+            for (columns, _) in self.runs(x0) {
+                row[columns].fill(value);
+            }
+        }
+    }
+}
+
+impl CellSet {
+    /// All cells of a grid.
+    pub fn all(grid: Grid) -> Self {
+        Self::from_rows((0..grid.rows).map(|y| (y, 0..grid.columns as u32)))
+    }
+
+    /// From rows in increasing order, each with its columns in increasing order.
+    pub fn from_rows<C: IntoIterator<Item = u32>>(rows: impl IntoIterator<Item = (usize, C)>) -> Self {
+        let mut set = Self::default();
+        for (y, columns) in rows {
+            set.push_row(y, columns);
+        }
+        set
+    }
+
+    /// The cells with one of these strictly increasing linear indices `y * columns + x`.
+    pub fn from_index(grid: Grid, index: &[u32]) -> Self {
+        let row = |i: &u32| *i as usize / grid.columns;
+        let rows = index.chunk_by(|a, b| row(a) == row(b));
+        Self::from_rows(rows.map(|cells| {
+            let first = (row(&cells[0]) * grid.columns) as u32;
+            (row(&cells[0]), cells.iter().map(move |i| i - first))
+        }))
+    }
+
+    /// Adds the cells of the next row that has any.
+    fn push_row(&mut self, y: usize, columns: impl IntoIterator<Item = u32>) {
+        let first = self.columns.len();
+        self.columns.extend(columns);
+        let row = &self.columns[first..];
+        let Some(&x) = row.first() else { return };
+        self.rows.push(RowStart { y: y as u32, cells: first as u32, runs: self.runs.len() as u32 });
+        let breaks = row.windows(2).filter(|pair| pair[0] + 1 != pair[1]).count();
+        if row.len() < LONG_RUN * (breaks + 1) {
+            return;
+        }
+        let mut run = Run { x, length: 1 };
+        for &x in &row[1..] {
+            if x == run.x + run.length {
+                run.length += 1;
+            } else {
+                self.runs.push(std::mem::replace(&mut run, Run { x, length: 1 }));
+            }
+        }
+        self.runs.push(run);
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Whether it has no cells.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty()
+    }
+
+    /// The rows of the grid that hold cells of the set, in order.
+    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> + Clone {
+        let end = RowStart { y: u32::MAX, cells: self.columns.len() as u32, runs: self.runs.len() as u32 };
+        let next = self.rows.iter().skip(1).copied().chain(std::iter::once(end));
+        self.rows.iter().zip(next).map(|(row, next)| Row {
+            y: row.y as usize,
+            start: row.cells as usize,
+            columns: &self.columns[row.cells as usize..next.cells as usize],
+            runs: &self.runs[row.runs as usize..next.runs as usize],
+        })
+    }
+
+    /// Column and row of each cell.
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.rows().flat_map(|row| row.columns.iter().map(move |&x| (x as usize, row.y)))
+    }
+
+    /// Linear index `y * columns + x` of each cell.
+    pub fn index(&self, grid: Grid) -> impl Iterator<Item = usize> + '_ {
+        self.places().map(move |(x, y)| y * grid.columns + x)
+    }
+
+    /// Bounding box; `None` for the empty set.
+    pub fn window(&self) -> Option<Window> {
+        let (first, last) = (self.rows.first()?.y as usize, self.rows.last()?.y as usize);
+        let ends = self.rows().filter_map(|row| Some((*row.columns.first()?, *row.columns.last()?)));
+        let (low, high) = ends.fold((u32::MAX, 0), |(low, high), (a, b)| (low.min(a), high.max(b)));
+        let width = (high + 1).checked_sub(low)? as usize;
+        Some(Window { x: low as usize, y: first, width, height: last + 1 - first })
+    }
+
+    /// The cells at the positions where `keep` says so.
+    pub fn filter(&self, mut keep: impl FnMut(usize) -> bool) -> Self {
+        self.filter_beside(&Self::default(), |k, _| keep(k))
+    }
+
+    /// The cells that `keep` chooses by their position and by whether they belong to `part`, a subset of this set.
+    pub fn filter_beside(&self, part: &Self, mut keep: impl FnMut(usize, bool) -> bool) -> Self {
+        let mut parts = part.rows().peekable();
+        let mut kept = Self::default();
+        for row in self.rows() {
+            let within = parts.next_if(|part| part.y == row.y);
+            let mut within = within.map_or(&[][..], |part| part.columns);
+            kept.push_row(
+                row.y,
+                row.columns.iter().zip(row.span()).filter_map(|(&x, k)| {
+                    let inside = within.first() == Some(&x);
+                    within = &within[usize::from(inside)..];
+                    keep(k, inside).then_some(x)
+                }),
+            );
+        }
+        kept
+    }
+
+    /// The cells of either set.
+    pub fn union(&self, other: &Self) -> Self {
+        let (mut a, mut b) = (self.rows().peekable(), other.rows().peekable());
+        let mut both = Self::default();
+        while let Some(y) = [a.peek(), b.peek()].into_iter().flatten().map(|row| row.y).min() {
+            let (a, b) = (a.next_if(|row| row.y == y), b.next_if(|row| row.y == y));
+            both.push_row(y, merged(columns(a), columns(b)));
+        }
+        both
+    }
+
+    /// Values on `other` carried over to this set: 0 on cells that `other` lacks, dropped where this set lacks them.
+    pub fn carry<T: Copy + Default>(&self, other: &Self, values: &[T]) -> Vec<T> {
+        let mut carried = Vec::new();
+        self.carry_to(other, values, &mut carried);
+        carried
+    }
+
+    /// The same into a vector that is at hand.
+    pub fn carry_to<T: Copy + Default>(&self, other: &Self, values: &[T], carried: &mut Vec<T>) {
+        carried.clear();
+        carried.resize(self.len(), T::default());
+        self.beside(other, values, |row, line, x0| row.collect(line, carried, x0));
+    }
+
+    /// Adds values on `other` to values on this set.
+    pub fn add_carried<T: Copy + Default + AddAssign>(&self, other: &Self, values: &[T], sums: &mut [T]) {
+        self.beside(other, values, |row, line, x0| row.add(line, sums, x0));
+    }
+
+    /// Shows the values on `other` to each row that both sets have, as a line that begins at a column and is zero elsewhere.
+    fn beside<T: Copy + Default>(&self, other: &Self, values: &[T], mut show: impl FnMut(Row<'_>, &[T], usize)) {
+        let window = self.window().into_iter().chain(other.window()).reduce(Window::union);
+        let Some(window) = window else { return };
+        let mut line = vec![T::default(); window.width];
+        let mut others = other.rows().peekable();
+        for row in self.rows() {
+            while others.next_if(|other| other.y < row.y).is_some() {}
+            let Some(other) = others.next_if(|other| other.y == row.y) else { continue };
+            other.spread(values, &mut line, window.x);
+            show(row, &line, window.x);
+            other.fill(T::default(), &mut line, window.x);
+        }
+    }
+}
+
+fn columns(row: Option<Row<'_>>) -> &[u32] {
+    row.map_or(&[], |row| row.columns)
+}
+
+/// Two increasing sequences as one, without repetitions.
+fn merged<'a>(mut a: &'a [u32], mut b: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
+    std::iter::from_fn(move || {
+        let x = match (a.first(), b.first()) {
+            (Some(&x), Some(&y)) => x.min(y),
+            (Some(&x), None) | (None, Some(&x)) => x,
+            (None, None) => return None,
+        };
+        a = &a[usize::from(a.first() == Some(&x))..];
+        b = &b[usize::from(b.first() == Some(&x))..];
+        Some(x)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const GRID: Grid = Grid { columns: 4, rows: 5, stretch: 1.0 };
+
+    fn set(index: &[u32]) -> CellSet {
+        CellSet::from_index(GRID, index)
+    }
+
+    fn index(set: &CellSet) -> Vec<usize> {
+        set.index(GRID).collect()
+    }
+
+    #[test]
+    fn rows_window_and_carry() {
+        let all = set(&[1, 6, 7, 13]);
+        assert_eq!(all.rows().map(|row| (row.y, row.span())).collect::<Vec<_>>(), [(0, 0..1), (1, 1..3), (3, 3..4)]);
+        assert_eq!(all.window(), Some(Window { x: 1, y: 0, width: 3, height: 4 }));
+        let part = all.filter(|k| k != 1);
+        assert_eq!(index(&part), [1, 7, 13]);
+        assert_eq!(all.carry(&part, &[1.0, 2.0, 3.0]), [1.0, 0.0, 2.0, 3.0]);
+        assert_eq!(part.carry(&all, &[1.0, 9.0, 2.0, 3.0]), [1.0, 2.0, 3.0]);
+        assert_eq!(index(&all.filter_beside(&part, |_, inside| !inside)), [6]);
+        assert_eq!(set(&[]).window(), None);
+        assert_eq!(set(&[9, 14]).window(), Some(Window { x: 1, y: 2, width: 2, height: 2 }));
+        assert!(set(&[]).is_empty() && !all.is_empty());
+        assert_eq!(index(&set(&[0, 9, 19]).union(&set(&[0, 3, 8, 10, 16]))), [0, 3, 8, 9, 10, 16, 19]);
+        assert_eq!(CellSet::all(GRID).len(), 20);
+    }
+
+    proptest! {
+        #[test]
+        fn sets_are_what_plain_lists_say(
+            columns in 1usize..40, rows in 1usize..6,
+            picks in prop::collection::vec(0.0..1.0f64, 240), density in 0.05..1.0f64, other in 0.05..1.0f64,
+        ) {
+            let grid = Grid::square(columns, rows);
+            let list = |from: f64, to: f64| -> Vec<u32> {
+                (0..grid.count() as u32).filter(|&i| (from..to).contains(&picks[i as usize])).collect()
+            };
+            let (a, b) = (list(0.0, density), list(other - 0.5, other));
+            let (set_a, set_b) = (CellSet::from_index(grid, &a), CellSet::from_index(grid, &b));
+            let index = |set: &CellSet| set.index(grid).map(|i| i as u32).collect::<Vec<_>>();
+            prop_assert_eq!(index(&set_a), a.clone());
+            let mut union = [a.clone(), b.clone()].concat();
+            union.sort_unstable();
+            union.dedup();
+            prop_assert_eq!(index(&set_a.union(&set_b)), union);
+            let values: Vec<f64> = (0..b.len()).map(|k| 1.0 + k as f64).collect();
+            let expected: Vec<f64> =
+                a.iter().map(|i| b.binary_search(i).map_or(0.0, |k| values[k])).collect();
+            prop_assert_eq!(set_a.carry(&set_b, &values), expected);
+            let window = set_a.window().unwrap_or(grid.window());
+            let (mut back, mut twice) = (vec![0.0; a.len()], vec![1.0; a.len()]);
+            let values: Vec<f64> = (0..a.len()).map(|k| 1.0 + k as f64).collect();
+            for row in set_a.rows() {
+                let mut line = vec![0.0; window.width];
+                row.spread(&values, &mut line, window.x);
+                prop_assert_eq!(line.iter().filter(|&&v| v > 0.0).count(), row.columns.len());
+                row.collect(&line, &mut back, window.x);
+                row.add(&line, &mut twice, window.x);
+                row.fill(0.0, &mut line, window.x);
+                prop_assert!(line.iter().all(|&v| v == 0.0));
+            }
+            prop_assert_eq!(&back, &values);
+            prop_assert!(twice.iter().zip(&values).all(|(t, v)| *t == v + 1.0));
+        }
+    }
+}

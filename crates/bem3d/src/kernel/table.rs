@@ -1,0 +1,278 @@
+//! The kernel of one grid, free or periodic, and its symbols, shared by all surfaces of that grid.
+
+use super::love::{influence_of_rectangle, smallest_eigenvalue};
+use super::periodic::Periodic;
+use super::symbol::Symbol;
+use crate::geometry::{Grid, Lengths, Window};
+use crate::tuning::KEPT_SYMBOLS;
+use contact_model::Boundary;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+
+/// The kernel at all lags of a grid and the symbols made from it.
+///
+/// Rows and symbols are made when they are first needed: a contact of three cells does not pay for a table of four million.
+/// What it holds depends on the grid alone, so that sharing it changes no result.
+pub struct KernelTable {
+    grid: Grid,
+    boundary: Boundary,
+    smallest_eigenvalue: f64,
+    /// Made at the first use where the rectangle repeats itself.
+    periodic: OnceLock<Periodic>,
+    rows: Vec<OnceLock<Box<[f64]>>>,
+    double: Mutex<Kept<f64>>,
+    single: Mutex<Kept<f32>>,
+    inverse: Mutex<Kept<f32>>,
+}
+
+impl fmt::Debug for KernelTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Grid { columns, rows, .. } = self.grid;
+        write!(f, "KernelTable({columns} x {rows} cells, {:?})", self.boundary)
+    }
+}
+
+impl KernelTable {
+    /// The table of a grid; one table serves all surfaces alive at the same time.
+    pub fn shared(grid: Grid, boundary: Boundary) -> Arc<Self> {
+        static LIVE: Mutex<Vec<Weak<KernelTable>>> = Mutex::new(Vec::new());
+        let mut live = lock(&LIVE);
+        live.retain(|t| t.strong_count() > 0);
+        let same = |t: &Arc<Self>| t.grid == grid && t.boundary == boundary;
+        if let Some(table) = live.iter().filter_map(Weak::upgrade).find(same) {
+            return table;
+        }
+        let table = Arc::new(Self {
+            grid,
+            boundary,
+            smallest_eigenvalue: smallest_eigenvalue(grid.stretch),
+            periodic: OnceLock::new(),
+            rows: (0..grid.rows).map(|_| OnceLock::new()).collect(),
+            double: Mutex::default(),
+            single: Mutex::default(),
+            inverse: Mutex::default(),
+        });
+        live.push(Arc::downgrade(&table));
+        table
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// What lies outside the map.
+    pub fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+
+    fn is_periodic(&self) -> bool {
+        self.boundary == Boundary::Periodic
+    }
+
+    fn periodic(&self) -> &Periodic {
+        self.periodic.get_or_init(|| Periodic::new(self.grid))
+    }
+
+    /// The constant in the kernel: nothing with free boundaries, [`Periodic::shift`] with periodic ones.
+    pub fn shift(&self) -> f64 {
+        if self.is_periodic() { self.periodic().shift() } else { 0.0 }
+    }
+
+    /// A lower bound of the eigenvalues of the kernel on every set of cells.
+    pub fn smallest_eigenvalue(&self) -> f64 {
+        self.smallest_eigenvalue
+    }
+
+    /// Kernel at a lag.
+    fn at(&self, x: usize, y: usize) -> f64 {
+        if self.is_periodic() { self.periodic().at(x, y) } else { influence_of_rectangle(x, y, self.grid.stretch) }
+    }
+
+    /// Displacement of a cell under its own unit pressure.
+    pub fn own(&self) -> f64 {
+        self.at(0, 0)
+    }
+
+    /// Kernel at the lags `(0 .. columns, y)`.
+    pub fn row(&self, y: usize) -> &[f64] {
+        self.rows[y].get_or_init(|| (0..self.grid.columns).map(|x| self.at(x, y)).collect())
+    }
+
+    /// Circular lengths of a transform that is exact on a window: the period itself where the window needs as much.
+    pub fn exact_lengths(&self, window: Window) -> Lengths {
+        self.within_period(Lengths::free(window))
+    }
+
+    /// Circular lengths for corrections of the pressure, exact up to lags of half `share` of the window ([`Lengths::shortened`]).
+    pub fn shortened_lengths(&self, window: Window, share: f64) -> Lengths {
+        self.within_period(Lengths::shortened(window, share))
+    }
+
+    /// Circular lengths of the preconditioner of a window.
+    pub fn torus_lengths(&self, window: Window) -> Lengths {
+        self.within_period(Lengths::torus(window))
+    }
+
+    fn within_period(&self, lengths: Lengths) -> Lengths {
+        if self.is_periodic() { lengths.within_period(self.grid) } else { lengths }
+    }
+
+    /// Scaled symbol of the operator in double precision.
+    pub fn symbol_f64(&self, lengths: Lengths) -> Arc<Vec<f64>> {
+        lock(&self.double).get(lengths, || self.exact_symbol(lengths).scaled())
+    }
+
+    /// Scaled symbol of the operator in single precision.
+    pub fn symbol_f32(&self, lengths: Lengths) -> Arc<Vec<f32>> {
+        lock(&self.single).get(lengths, || self.exact_symbol(lengths).scaled())
+    }
+
+    /// Scaled inverse symbol of the kernel wrapped on a torus.
+    pub fn inverse_symbol(&self, lengths: Lengths) -> Arc<Vec<f32>> {
+        lock(&self.inverse).get(lengths, || {
+            let mut symbol = self.exact_symbol(lengths);
+            // The wrapped kernel is positive definite; a rounding error in a tiny window must not turn a sign.
+            let floor = self.smallest_eigenvalue / 2.0;
+            for value in &mut symbol.values {
+                *value = 1.0 / value.max(floor);
+            }
+            symbol.scaled()
+        })
+    }
+
+    /// Symbol of the kernel at the lags of a circular grid, each taken the shorter way round.
+    fn exact_symbol(&self, lengths: Lengths) -> Symbol {
+        Symbol::of_kernel(lengths, |x, y| self.at(x, y))
+    }
+}
+
+/// The symbols made last.
+#[derive(Default)]
+struct Kept<T> {
+    made: Vec<(Lengths, Arc<Vec<T>>)>,
+}
+
+impl<T> Kept<T> {
+    fn get(&mut self, lengths: Lengths, make: impl FnOnce() -> Arc<Vec<T>>) -> Arc<Vec<T>> {
+        if let Some((_, symbol)) = self.made.iter().find(|(l, _)| *l == lengths) {
+            return Arc::clone(symbol);
+        }
+        let symbol = make();
+        self.made.push((lengths, Arc::clone(&symbol)));
+        while self.made.len() > 1 && self.made.iter().map(|(_, s)| s.len()).sum::<usize>() > KEPT_SYMBOLS {
+            self.made.remove(0);
+        }
+        symbol
+    }
+}
+
+/// Locks; a panic of another thread while it filled a cache leaves nothing half-made behind.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cells::CellSet;
+    use crate::operator::direct;
+    use approx::assert_relative_eq;
+    use std::cell::Cell;
+
+    /// Rounding of transforms of a few hundred points.
+    const DOUBLE: f64 = 1e-13;
+    /// Single precision of the inverse.
+    const SINGLE: f64 = 1e-5;
+
+    fn all(side: usize) -> CellSet {
+        CellSet::new(side, (0..(side * side) as u32).collect())
+    }
+
+    #[test]
+    fn surfaces_of_one_grid_share_a_table() {
+        let [free, again, periodic] =
+            [Boundary::Free, Boundary::Free, Boundary::Periodic].map(|b| Table::shared(37, b));
+        assert!(Arc::ptr_eq(&free, &again));
+        assert!(!Arc::ptr_eq(&free, &periodic) && !Arc::ptr_eq(&free, &Table::shared(38, Boundary::Free)));
+        assert_eq!((free.boundary(), periodic.boundary()), (Boundary::Free, Boundary::Periodic));
+        assert!(Arc::ptr_eq(&periodic, &Table::shared(37, Boundary::Periodic)));
+        assert_eq!(format!("{free:?}"), "Table(37 cells, Free)");
+    }
+
+    #[test]
+    fn uniform_pressure_sinks_a_periodic_square_by_its_shift_alone() {
+        // Zero mean plus c: u = c N^2 everywhere, by pairs and by a transform. 6 and 16 are lengths of a transform, 7 is not.
+        for side in [6, 7, 16] {
+            let table = Table::shared(side, Boundary::Periodic);
+            assert_relative_eq!(table.shift(), 2.0 / side as f64);
+            let (cells, p) = (all(side), vec![1.0; side * side]);
+            let Some(window) = cells.window() else { unreachable!() };
+            let lengths = table.lengths(window);
+            if side == 7 {
+                assert_eq!(lengths, Lengths::free(window));
+            } else {
+                assert_eq!(lengths, Lengths { x: side, y: side }, "the period itself");
+            }
+            let (mut pairs, mut transform) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+            direct::apply(&table, &cells, &p, &cells, &mut pairs);
+            Convolution::new(window, lengths, table.symbol_f64(lengths)).apply(
+                &cells,
+                &p,
+                &cells,
+                &mut transform,
+            );
+            for (a, b) in pairs.iter().zip(&transform) {
+                assert_relative_eq!(*a, 2.0 * side as f64, max_relative = DOUBLE);
+                assert_relative_eq!(*b, 2.0 * side as f64, max_relative = DOUBLE);
+            }
+        }
+        let free = Table::shared(6, Boundary::Free);
+        assert!(free.shift() == 0.0);
+        let window = Window { x: 0, y: 0, width: 6, height: 6 };
+        assert_eq!(free.lengths(window), Lengths { x: 10, y: 10 });
+    }
+
+    #[test]
+    fn the_inverse_is_one_over_the_eigenvalue_of_a_wave() {
+        // The checkerboard on a torus of 16 cells: the smallest eigenvalue, which the floor of the inverse must not touch.
+        let side = 16;
+        let table = Table::shared(side, Boundary::Free);
+        let cells = all(side);
+        let Some(window) = cells.window() else { unreachable!() };
+        let lengths = Lengths::torus(window);
+        assert_eq!(lengths, Lengths { x: side, y: side });
+        let board: Vec<f64> =
+            (0..side * side).map(|k| if (k + k / side).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
+        let lag = |x: usize| x.min(side - x);
+        let eigenvalue: f64 =
+            (0..side * side).map(|k| board[k] * influence(lag(k % side), lag(k / side))).sum();
+        assert!((eigenvalue / crate::love::SMALLEST_EIGENVALUE - 1.0).abs() < 0.01, "{eigenvalue}");
+        let mut back = vec![0.0; board.len()];
+        Convolution::<f32>::new(window, lengths, table.inverse_symbol(lengths))
+            .apply(&cells, &board, &cells, &mut back);
+        for (b, p) in back.iter().zip(&board) {
+            assert_relative_eq!(*b, p / eigenvalue, max_relative = SINGLE);
+        }
+    }
+
+    #[test]
+    fn the_oldest_symbols_are_dropped_where_they_fill_the_memory() {
+        let mut kept = Kept::<u8>::default();
+        let made = Cell::new(0);
+        let mut get = |x: usize, count: usize| {
+            kept.get(Lengths { x, y: 2 }, || {
+                made.set(made.get() + 1);
+                Arc::new(vec![0; count])
+            });
+            made.get()
+        };
+        assert_eq!((get(2, KEPT / 2), get(4, KEPT / 2)), (1, 2));
+        assert_eq!((get(2, 0), get(4, 0)), (2, 2), "what just fits is kept");
+        assert_eq!(get(6, 1), 3);
+        assert_eq!((get(4, 0), get(6, 0)), (3, 3), "one too much: only the oldest went");
+        assert_eq!((get(2, KEPT + 1), get(2, 0)), (4, 4), "the last one stays whatever its size");
+        assert_eq!(get(6, 1), 5);
+        const { assert!(KEPT >= 2049 * 2049, "a grid of 2049 cells a side finds its symbol again") };
+    }
+}

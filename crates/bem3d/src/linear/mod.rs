@@ -1,0 +1,11 @@
+//! Linear systems on one set of cells.
+
+mod cholesky;
+mod extension;
+mod pcg;
+mod preconditioner;
+mod workspace;
+
+pub use cholesky::Factor;
+pub use pcg::{Energy, StoppingCriteria};
+pub use workspace::Workspace;

@@ -1,0 +1,176 @@
+//! Preconditioned conjugate gradients for the influence matrix on one set of cells.
+
+use super::preconditioner::Preconditioner;
+use crate::geometry::CellSet;
+use crate::operator::InfluenceOperator;
+use crate::real::{Real, dot, sum};
+use contact_model::Stop;
+
+/// When an iteration ends: at the first of these.
+#[derive(Debug, Clone, Copy)]
+pub struct StoppingCriteria {
+    /// The error has fallen by this factor (in the norm `sqrt(r' M r)` of the preconditioned residual) ...
+    pub reduction: f64,
+    /// ... or its energy is below this share of the value `base + r' x` that the equation is solved for ...
+    pub energy: Option<Energy>,
+    /// ... or the residual is below this value everywhere ...
+    pub floor: f64,
+    /// ... or so many steps are done.
+    pub steps: usize,
+}
+
+/// How small the energy of the error shall be, in the units of the residual given.
+#[derive(Debug, Clone, Copy)]
+pub struct Energy {
+    /// Relative error of the value that is allowed.
+    pub share: f64,
+    /// The value before the correction.
+    pub base: f64,
+}
+
+/// What an iteration took and found, in the units of the residual given.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Outcome {
+    /// Steps.
+    pub steps: usize,
+    /// Applications of the influence matrix: one a step, and one that told nothing where the precision ended the iteration.
+    pub applications: usize,
+    /// Estimate from above of the energy `r' K^-1 r` at the beginning.
+    pub energy: f64,
+}
+
+/// Vectors on a set, kept from system to system.
+#[derive(Debug, Default)]
+pub struct Vectors<T> {
+    /// The set.
+    pub set: CellSet,
+    /// Residual; in: right-hand side of magnitude about 1.
+    pub r: Vec<T>,
+    /// Out: correction.
+    pub x: Vec<T>,
+    t: Vec<T>,
+    kt: Vec<T>,
+    z: Vec<T>,
+    /// What the sum of a correction is taken from: about `K^-1 1`, found on the first set of a load and carried from set to set. Empty:
+    /// not yet found.
+    weights: Vec<T>,
+}
+
+impl<T: Real> Vectors<T> {
+    /// Takes a new set; the right-hand side is zero.
+    pub fn take(&mut self, set: CellSet) {
+        let last = std::mem::replace(&mut self.set, set);
+        for vector in [&mut self.r, &mut self.x, &mut self.t, &mut self.kt, &mut self.z] {
+            vector.clear();
+            vector.resize(self.set.len(), T::default());
+        }
+        if !self.weights.is_empty() {
+            self.set.carry_to(&last, &self.weights, &mut self.z);
+            std::mem::swap(&mut self.weights, &mut self.z);
+            self.z.resize(self.set.len(), T::default());
+        }
+    }
+
+    /// Forgets the weights: those of another load or preconditioner.
+    pub fn forget(&mut self) {
+        self.weights.clear();
+    }
+
+    /// The sum of the weights, which are found where there are none.
+    fn weigh(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> f64 {
+        let total = sum(&self.weights);
+        if total > 0.0 {
+            return total;
+        }
+        let mut ones = vec![T::of(1.0); self.set.len()];
+        let total = preconditioner.apply(&self.set, T::default(), &mut ones, &mut self.z).sum;
+        self.weights.clone_from(&self.z);
+        total
+    }
+}
+
+/// Solves `K x = r` on a set approximately; with `fixed_sum`, `K x = r + const` and `sum x = 0`: the force is prescribed and the
+/// approach adapts.
+///
+/// With `fixed_sum` the equation is solved on the corrections without a sum: with the weights w, the residual is `r - (w'r / w'1) 1` and
+/// the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and keeps the sum whatever the weights; `K^-1 1` is the best of them.
+///
+/// Cost: one application of K and one of the preconditioner a step. The caller checks the result with the exact operator.
+pub fn pcg<T: Real>(
+    operator: &mut dyn InfluenceOperator<T>,
+    preconditioner: &mut dyn Preconditioner<T>,
+    v: &mut Vectors<T>,
+    fixed_sum: bool,
+    criteria: StoppingCriteria,
+    stop: Stop<'_>,
+) -> Outcome {
+    v.x.fill(T::default());
+    let factor = preconditioner.energy_factor();
+    let total = if fixed_sum { v.weigh(preconditioner) } else { 0.0 };
+    let small = |energy: f64, gain: f64| {
+        criteria.energy.is_some_and(|e| factor * energy <= e.share * (e.base + gain))
+    };
+    let (mut steps, mut applications, mut step, mut rz, mut gain) = (0, 0, T::default(), 0.0, 0.0);
+    let (mut start, mut rate, mut pending) = (0.0, 1.0, false);
+    loop {
+        let Vectors { set, r, kt, z, weights, .. } = &mut *v;
+        if steps > 0 {
+            add(r, T::default() - step, kt);
+        }
+        let offset = if fixed_sum { T::of(dot(weights, r) / total) } else { T::default() };
+        // Without a product of r and the weights, the part of z along them adds nothing to r'z.
+        let found = preconditioner.apply(set, offset, r, z);
+        let next = found.product;
+        if steps == 0 {
+            start = next;
+        }
+        let wanted = criteria.reduction * criteria.reduction * start;
+        let reached = small(next, gain) || (steps > 0 && next <= wanted) || found.largest <= criteria.floor;
+        if reached || next.is_nan() || next <= 0.0 || steps >= criteria.steps || stop() {
+            break;
+        }
+        if steps > 0 {
+            rate = next / rz;
+        }
+        let beta = if steps == 0 { T::default() } else { T::of(rate) };
+        rz = next;
+        let Vectors { set, x, t, kt, z, weights, .. } = &mut *v;
+        advance(x, step, t, beta, z);
+        if fixed_sum {
+            add(t, T::of(-found.sum / total), weights);
+        }
+        pending = false;
+        operator.apply(set, t, set, kt);
+        applications += 1;
+        let curvature = dot(t, kt);
+        if curvature.is_nan() || curvature <= 0.0 {
+            break; // Below what single precision can resolve.
+        }
+        step = T::of(rz / curvature);
+        gain += rz * rz / curvature;
+        steps += 1;
+        pending = true;
+        // Where the next step is expected to gain as much as the last one, the rest need not be known.
+        if rz * rate <= wanted || small(rz * rate, gain) {
+            break;
+        }
+    }
+    if pending {
+        add(&mut v.x, step, &v.t);
+    }
+    Outcome { steps, applications, energy: factor * start.max(0.0) }
+}
+
+fn add<T: Real>(a: &mut [T], factor: T, b: &[T]) {
+    for (a, &b) in a.iter_mut().zip(b) {
+        *a += factor * b;
+    }
+}
+
+/// `x += step t`, then `t = z + beta t`: each is read once.
+fn advance<T: Real>(x: &mut [T], step: T, t: &mut [T], beta: T, z: &[T]) {
+    for ((x, t), &z) in x.iter_mut().zip(t).zip(z) {
+        *x += step * *t;
+        *t = z + beta * *t;
+    }
+}

@@ -1,0 +1,240 @@
+//! One surface, ready to be loaded: the path from a load to a state.
+
+use super::{Bem3d, Method, NAME};
+use crate::active_set::{self, Guess, LastState, Limits, Problem, Solved, Target};
+use crate::geometry::Grid;
+use crate::stiffness::{self, Stiffness};
+use crate::tuning::Tuning;
+use contact_model::{
+    Boundary, ContactState, Error, HeightMap, Load, Nondimensionalisation, Normalisation, Outputs,
+    PreparedContact, Result, Scene, Status, Stop,
+};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// One surface, ready to be loaded.
+#[derive(Debug)]
+pub struct Prepared {
+    pub(super) options: Bem3d,
+    pub(super) outputs: Outputs,
+    pub(super) problem: Problem,
+    pub(super) nondimensional: Nondimensionalisation,
+    /// Unit of lengths normal to the surface: the rms height where there is one.
+    pub(super) height: f64,
+    pub(super) normalisation: Normalisation,
+    /// Mean of z over the defined points.
+    pub(super) mean: f64,
+    pub(super) last: Option<LastState>,
+    /// Mean gap at the load solved last, with periodic boundaries.
+    gap: Option<(Load, f64)>,
+}
+
+impl Prepared {
+    pub(super) fn new(options: Bem3d, scene: &Scene, map: &HeightMap, has_rms: bool) -> Result<Self> {
+        let highest = map.highest();
+        // Differences first: an offset of the heights changes nothing.
+        let mut z: Vec<f64> = map.heights().iter().map(|h| highest - h).collect();
+        let rms = if map.undefined() == 0 {
+            surface_gen::rms_height(&z)
+        } else {
+            surface_gen::rms_height(&z.iter().copied().filter(|z| z.is_finite()).collect::<Vec<_>>())
+        };
+        let height = if rms > 0.0 { rms } else { 1.0 };
+        for z in &mut z {
+            *z /= height;
+        }
+        let (grid, (dx, dy)) = (Grid::of(map), (map.dx(), map.dy()));
+        let length = if grid.has_square_cells() { dx } else { dx.sqrt() * dy.sqrt() };
+        let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
+        let defined = z.len() - map.undefined();
+        let mean = z.iter().filter(|z| z.is_finite()).sum::<f64>() / defined as f64;
+        let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, Tuning::DEFAULT);
+        problem.nested = options.method != Method::SingleLevel;
+        problem.operators.two_levels = problem.nested;
+        let normalisation =
+            Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
+        Ok(Self {
+            options,
+            outputs: scene.outputs,
+            problem,
+            nondimensional,
+            height,
+            normalisation,
+            mean,
+            last: None,
+            gap: None,
+        })
+    }
+
+    pub(super) fn is_periodic(&self) -> bool {
+        self.problem.operators.table().boundary() == Boundary::Periodic
+    }
+
+    pub(super) fn limits(&self) -> Limits {
+        let height = self.normalisation.height.filter(|&h| h > 0.0);
+        Limits {
+            tolerance: self.options.tolerance,
+            height: height.map(|h| self.nondimensional.approach_in(h)),
+            outer_iterations: self.options.max_outer_iterations,
+            factor: self.options.method == Method::Auto,
+        }
+    }
+
+    /// The guess for a target: the tangent at the last state, or a cold start.
+    fn guess(&mut self, target: Target, limits: Limits, stop: Stop<'_>) -> Guess {
+        let tuning = *self.problem.operators.tuning();
+        if let Some(last) = &self.last
+            && let Some(guess) = last.extrapolated(target, &tuning)
+        {
+            let (nested, cells) = (self.problem.nested, self.problem.grid().count());
+            let predicted = || active_set::predicted_cells(&mut self.problem, &guess);
+            if !nested || !last.overshoots(target, cells, &tuning, predicted) {
+                return guess;
+            }
+        }
+        active_set::cold_start(&mut self.problem, target, limits, stop)
+    }
+
+    /// The stiffness of a state from guesses of q and of k.
+    fn tangent(&mut self, solved: &Solved, mut q: Option<Vec<f64>>, k: Option<f64>, stop: Stop<'_>) -> Stiffness {
+        let misjudged = self.problem.operators.tuning().misjudged;
+        let mut expected = k.map_or(1.0, |k| self.magnification(k));
+        let mut steps = 0;
+        if solved.q.is_some() {
+            q.clone_from(&solved.q);
+        }
+        loop {
+            let tolerance = self.options.tolerance / expected;
+            let mut tangent = stiffness::solve(&mut self.problem, solved, q, tolerance, stop);
+            steps += tangent.steps;
+            tangent.steps = steps;
+            let found = self.magnification(tangent.value);
+            if found <= misjudged * expected || solved.q.is_some() || tangent.q.is_empty() || stop() {
+                return tangent;
+            }
+            expected = found;
+            q = Some(tangent.q);
+        }
+    }
+
+    /// Relative error of k itself.
+    pub(super) fn stiffness_error(&self, tangent: &Stiffness) -> f64 {
+        tangent.error() * self.magnification(tangent.value)
+    }
+
+    /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the certificate does: as long as
+    /// undecided cells could change it by more than the tolerance, the contact set is solved further.
+    pub(super) fn settle(&mut self, target: Target, mut limits: Limits, stop: Stop<'_>) -> (Solved, Option<Stiffness>) {
+        let tuning = *self.problem.operators.tuning();
+        let guess = self.guess(target, limits, stop);
+        let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
+        // Full contact of a periodic surface has no finite stiffness.
+        let full = self.is_periodic() && solved.contact.len() == self.problem.grid().count();
+        if full || !self.outputs.needs_stiffness() {
+            return (solved, None);
+        }
+        // The last state is not needed any more, and as large as the contact.
+        let last = self.last.take();
+        let k = last.as_ref().and_then(|last| last.tangent.as_ref()).map(|&(_, k)| k);
+        let q = last.and_then(|last| last.tangent_at(&solved, &tuning));
+        let mut tangent = self.tangent(&solved, q, k, stop);
+        for _ in 0..tuning.tightenings {
+            let (error, before) = (self.stiffness_error(&tangent), solved.residuals.worst());
+            if solved.status != Status::Converged || error <= self.options.tolerance || stop() {
+                break;
+            }
+            // The state may be better than it was asked to be: begin there.
+            let share = tuning.tight_aim * self.options.tolerance / error;
+            limits.tolerance = share.clamp(tuning.tighter.0, tuning.tighter.1) * limits.tolerance.min(before);
+            let Solved { contact, p, d, q, residuals, steps, status, continuation } = solved;
+            let again = Solved { contact: contact.clone(), p: p.clone(), q: q.clone(), continuation, d, residuals, steps, status };
+            let next = active_set::resume(&mut self.problem, target, again, limits, stop);
+            let steps = steps + next.steps;
+            if next.residuals.worst() >= before {
+                let continuation = next.continuation;
+                solved = Solved { contact, p, d, q, residuals, steps, status, continuation };
+                break;
+            }
+            // The tighter state counts as converged when it meets the tolerance that was asked for.
+            let converged = next.residuals.worst() <= self.options.tolerance;
+            let status = if converged { Status::Converged } else { next.status };
+            let q = next.contact.carry(&contact, &tangent.q);
+            let spent = tangent.steps;
+            solved = Solved { status, steps: steps + spent, ..next };
+            tangent = self.tangent(&solved, Some(q), k, stop);
+        }
+        (solved, Some(tangent))
+    }
+
+    /// Keeps a state to begin the next from.
+    pub(super) fn remember(&mut self, solved: Solved, tangent: Option<Stiffness>) {
+        let Solved { contact, p, d, .. } = solved;
+        let force = p.iter().sum();
+        let tangent = tangent.map(|t| (t.q, t.value));
+        self.last = Some(LastState { contact, p, d, force, tangent });
+    }
+
+    /// Work is counted from here.
+    pub(super) fn begin_count(&mut self) {
+        self.problem.operators.applications = 0;
+        self.problem.operators.solves = 0;
+    }
+}
+
+impl PreparedContact for Prepared {
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
+    }
+
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.gap = None;
+        let units = self.nondimensional;
+        let target = match load.validated()? {
+            Load::Force(f) => Target::Force(held("force", f, units.force_in(f) / PI)?),
+            Load::Approach(d) if !self.is_periodic() => {
+                Target::Approach(held("approach", d, units.approach_in(d))?)
+            }
+            Load::MeanGap(gap) if self.is_periodic() => {
+                let state = self.at_mean_gap(held("mean gap", gap, units.approach_in(gap))?, stop)?;
+                self.gap = Some((load, gap));
+                return Ok(state);
+            }
+            Load::Approach(_) => {
+                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
+                return Err(Error::unsupported(NAME, what));
+            }
+            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
+        };
+        if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
+            self.gap = Some((load, units.approach(self.mean)?));
+            return self.no_contact();
+        }
+        self.begin_count();
+        let (solved, tangent) = self.settle(target, self.limits(), stop);
+        self.gap = Some((load, units.approach(self.gap_of(&solved))?));
+        let miss = match target {
+            Target::Force(asked) => ((solved.p.iter().sum::<f64>() - asked) / asked).abs(),
+            Target::Approach(_) => 0.0,
+        };
+        self.state(solved, tangent, miss, stop)
+    }
+
+    fn mean_gap(&mut self, load: Load) -> Result<f64> {
+        if !self.is_periodic() {
+            return Err(Error::unsupported(NAME, "a mean gap (free boundaries)"));
+        }
+        if self.gap.is_none_or(|(at, _)| at != load) {
+            self.solve(load)?;
+        }
+        self.gap.map(|(_, gap)| gap).ok_or_else(|| Error::unsupported(NAME, "a mean gap"))
+    }
+}
+
+/// A nondimensional load, unless no f64 holds it.
+fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
+    if result.is_finite() && (result > 0.0 || value <= 0.0) {
+        Ok(result)
+    } else {
+        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
+    }
+}

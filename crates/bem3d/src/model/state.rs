@@ -1,0 +1,152 @@
+//! From a solution to the state that is returned.
+
+use super::prepared::Prepared;
+use crate::active_set::Solved;
+use crate::geometry::CellSet;
+use crate::stiffness::Stiffness;
+use contact_model::{
+    Certificate, ContactState, Error, Fields, Patches, Result, SolveReport, Status, Stop, Work,
+};
+use std::f64::consts::PI;
+
+impl Prepared {
+    pub(super) fn state(
+        &mut self,
+        solved: Solved,
+        tangent: Option<Stiffness>,
+        load_error: f64,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
+        let force: f64 = solved.p.iter().sum();
+        let periodic = self.is_periodic();
+        let certificate = Certificate {
+            duality_gap: solved.residuals.duality_gap,
+            penetration: solved.residuals.penetration,
+            complementarity: solved.residuals.complementarity,
+            load_error,
+            stiffness_error: tangent.as_ref().map(|t| self.stiffness_error(t)),
+        };
+        let met = certificate.meets(self.options.tolerance);
+        let status = match solved.status {
+            Status::Converged if met => Status::Converged,
+            Status::Converged if stop() => Status::Stopped,
+            Status::Converged => Status::Stagnated,
+            other => other,
+        };
+        let fields = self.fields(&solved)?;
+        let report = SolveReport {
+            work: Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref()),
+            status,
+            strategy: self.strategy(&solved),
+            iterations: solved.steps + tangent.as_ref().map_or(0, |t| t.steps),
+            applications: std::mem::take(&mut self.problem.operators.applications),
+            contact_cells: Some(solved.contact.len()),
+            certificate,
+        };
+        let state = ContactState {
+            force: self.nondimensional.force(PI * force)?,
+            approach: if periodic { None } else { Some(self.nondimensional.approach(solved.d)?) },
+            stiffness: match &tangent {
+                Some(t) => Some(self.nondimensional.stiffness(PI * t.value * self.magnification(t.value))?),
+                None => None,
+            },
+            area: if self.outputs.area {
+                Some(self.nondimensional.area(solved.contact.len() as f64)?)
+            } else {
+                None
+            },
+            conductance: None,
+            patches: self.patches(&solved.contact)?,
+            fields,
+            report,
+        }
+        .completed(&self.outputs, self.normalisation.modulus)?;
+        if status == Status::Converged {
+            self.remember(solved, tangent);
+            Ok(state)
+        } else if status == Status::Stopped {
+            Err(Error::Stopped { best: Some(Box::new(state)) })
+        } else {
+            Err(Error::NotConverged { best: Box::new(state) })
+        }
+    }
+
+    fn fields(&mut self, solved: &Solved) -> Result<Option<Fields>> {
+        if !self.outputs.any_field() {
+            return Ok(None);
+        }
+        let grid = self.problem.grid();
+        let mut fields = Fields::default();
+        if self.outputs.pressure {
+            let mut p = vec![0.0; grid.count()];
+            for (i, &value) in solved.contact.index(grid).zip(&solved.p) {
+                p[i] = self.nondimensional.pressure(PI * value)?;
+            }
+            fields.pressure = Some(p);
+        }
+        if self.outputs.displacement || self.outputs.gap {
+            let mut u = Vec::new();
+            self.problem.operators.exact(&solved.contact, &solved.p, &CellSet::all(grid), &mut u);
+            // What the constant in the kernel adds to every displacement.
+            let shift = self.problem.operators.table().shift() * solved.p.iter().sum::<f64>();
+            let height = self.height;
+            if self.outputs.gap {
+                let z = self.problem.candidates.z();
+                fields.gap = Some(u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect());
+            }
+            if self.outputs.displacement {
+                fields.displacement = Some(u.iter().map(|u| (u - shift) * height).collect());
+            }
+        }
+        Ok(Some(fields))
+    }
+
+    /// Connected patches of the contact set, where asked for.
+    fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
+        if !self.outputs.contact_patches {
+            return Ok(None);
+        }
+        let boundary = self.problem.operators.table().boundary();
+        let grid = self.problem.grid();
+        let index: Vec<u32> = contact.index(grid).map(|i| i as u32).collect();
+        let sizes = surface_gen::patches(grid.columns, &index, boundary);
+        let areas =
+            sizes.into_iter().map(|size| self.nondimensional.area(size as f64)).collect::<Result<_>>()?;
+        Ok(Some(Patches::new(areas)))
+    }
+
+    /// The state before first touch, and at it.
+    pub(super) fn no_contact(&self) -> Result<ContactState> {
+        let grid = self.problem.grid();
+        let zeros = |wanted: bool| wanted.then(|| vec![0.0; grid.count()]);
+        let gap = |z: &[f64], height: f64| z.iter().map(|z| z * height).collect();
+        let fields = self.outputs.any_field().then(|| Fields {
+            pressure: zeros(self.outputs.pressure),
+            displacement: zeros(self.outputs.displacement),
+            gap: self.outputs.gap.then(|| gap(self.problem.candidates.z(), self.height)),
+        });
+        let mut report = SolveReport::exact("no contact");
+        report.contact_cells = Some(0);
+        report.work = Work::of(0, fields.as_ref());
+        ContactState {
+            force: 0.0,
+            approach: (!self.is_periodic()).then_some(0.0),
+            stiffness: self.outputs.needs_stiffness().then_some(0.0),
+            area: self.outputs.area.then_some(0.0),
+            conductance: None,
+            patches: self.outputs.contact_patches.then(Patches::default),
+            fields,
+            report,
+        }
+        .completed(&self.outputs, self.normalisation.modulus)
+    }
+
+    /// How a state was found, in one short phrase.
+    fn strategy(&self, solved: &Solved) -> String {
+        match (solved.q.is_some(), self.problem.operators.last()) {
+            (true, _) => format!("dense {}", solved.contact.len()),
+            (false, Some(recipe)) => recipe.to_string(),
+            (false, None) => format!("direct {}", solved.contact.len()),
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The operators of one surface, each planned when it is first asked for.
+
+use super::direct::DirectSum;
+use super::fft::FftConvolution;
+use super::influence::InfluenceOperator;
+use super::recipe::{Application, Conditioning, Planner, Recipe};
+use super::two_level::TwoLevel;
+use crate::geometry::{CellSet, Window};
+use crate::kernel::KernelTable;
+use crate::real::Real;
+use crate::tuning::Tuning;
+use std::sync::Arc;
+
+/// The operators of one surface, with the count of what they did.
+#[derive(Debug)]
+pub struct Operators {
+    table: Arc<KernelTable>,
+    tuning: Tuning,
+    double: Option<FftConvolution<f64>>,
+    single: Option<FftConvolution<f32>>,
+    shortened: Option<FftConvolution<f32>>,
+    torus: Option<FftConvolution<f32>>,
+    two_level: Option<TwoLevel>,
+    /// Applications of the influence matrix so far, all precisions together.
+    pub applications: usize,
+    /// Linear systems so far: factors and runs of conjugate gradients.
+    pub solves: usize,
+    /// Whether approximations of the far field may be chosen.
+    pub two_levels: bool,
+    /// How the last system was solved.
+    last: Option<Recipe>,
+}
+
+/// The influence matrix in the way that was chosen for one application or one system.
+#[derive(Debug)]
+pub enum Planned<'a> {
+    /// Sum over all pairs.
+    Direct(DirectSum<'a>),
+    /// Smooth part on a lattice, near part by pairs.
+    TwoLevel(&'a mut TwoLevel),
+    /// Transform in single precision.
+    Fft(&'a mut FftConvolution<f32>),
+}
+
+impl<T: Real> InfluenceOperator<T> for Planned<'_>
+where
+    FftConvolution<f32>: InfluenceOperator<T>,
+{
+    fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
+        match self {
+            Self::Direct(direct) => direct.apply(sources, p, targets, u),
+            Self::TwoLevel(two_level) => two_level.apply(sources, p, targets, u),
+            Self::Fft(transform) => transform.apply(sources, p, targets, u),
+        }
+    }
+}
+
+impl Operators {
+    /// Nothing is planned yet.
+    pub fn new(table: Arc<KernelTable>, tuning: Tuning) -> Self {
+        Self {
+            table,
+            tuning,
+            double: None,
+            single: None,
+            shortened: None,
+            torus: None,
+            two_level: None,
+            applications: 0,
+            solves: 0,
+            two_levels: true,
+            last: None,
+        }
+    }
+
+    /// The kernel.
+    pub fn table(&self) -> &KernelTable {
+        &self.table
+    }
+
+    /// The tuned constants.
+    pub fn tuning(&self) -> &Tuning {
+        &self.tuning
+    }
+
+    /// Who chooses between the operators.
+    pub fn planner(&self) -> Planner<'_> {
+        Planner { table: &self.table, tuning: &self.tuning, two_levels: self.two_levels }
+    }
+
+    /// How the last system was solved; `None` before the first.
+    pub fn last(&self) -> Option<Recipe> {
+        self.last
+    }
+
+    /// `u = K p` in double precision without approximation: direct sums or the FFT, whichever is cheaper.
+    pub fn exact(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
+        let Some(window) = self.begin(sources, targets, u) else { return };
+        if self.planner().exact(sources.len(), targets.len(), window) == Application::Direct {
+            return DirectSum(&self.table).apply(sources, p, targets, u);
+        }
+        let table = &self.table;
+        let transform = planned(&mut self.double, window, &self.tuning, || {
+            let lengths = table.exact_lengths(window);
+            FftConvolution::new(window, lengths, table.symbol_f64(lengths))
+        });
+        transform.apply(sources, p, targets, u);
+    }
+
+    /// `u = K p` to five digits or more, for decisions that are checked with [`Self::exact`].
+    pub fn rough(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
+        let Some(window) = self.begin(sources, targets, u) else { return };
+        let application = self.planner().fast(sources, targets, window);
+        self.application(application, window).apply(sources, p, targets, u);
+    }
+
+    /// Zeroes `u` on the targets and counts an application, unless there is nothing to apply or nothing to apply it to.
+    fn begin(&mut self, sources: &CellSet, targets: &CellSet, u: &mut Vec<f64>) -> Option<Window> {
+        u.clear();
+        u.resize(targets.len(), 0.0);
+        let window = sources.window()?.union(targets.window()?);
+        self.applications += 1;
+        Some(window)
+    }
+
+    /// The influence matrix and, where the recipe has one, the transform of its torus inverse.
+    pub fn system(&mut self, recipe: Recipe) -> (Planned<'_>, Option<&mut FftConvolution<f32>>) {
+        let Recipe { window, application, conditioning } = recipe;
+        self.last = Some(recipe);
+        let Self { table, tuning, single, shortened, two_level, torus, .. } = self;
+        let inverse = match conditioning {
+            Conditioning::Identity => None,
+            Conditioning::Torus(lengths) => Some(planned(torus, window, tuning, || {
+                FftConvolution::new(window, lengths, table.inverse_symbol(lengths))
+            })),
+        };
+        (plan(application, window, table, tuning, (single, shortened, two_level)), inverse)
+    }
+
+    fn application(&mut self, application: Application, window: Window) -> Planned<'_> {
+        let Self { table, tuning, single, shortened, two_level, .. } = self;
+        plan(application, window, table, tuning, (single, shortened, two_level))
+    }
+}
+
+type Slots<'a> =
+    (&'a mut Option<FftConvolution<f32>>, &'a mut Option<FftConvolution<f32>>, &'a mut Option<TwoLevel>);
+
+/// Plans an application in single precision, or takes a plan that serves.
+fn plan<'a>(
+    application: Application,
+    window: Window,
+    table: &'a KernelTable,
+    tuning: &Tuning,
+    (single, shortened, two_level): Slots<'a>,
+) -> Planned<'a> {
+    match application {
+        Application::Direct => Planned::Direct(DirectSum(table)),
+        Application::TwoLevel(split) => {
+            if !two_level.as_ref().is_some_and(|o| o.split() == split && o.window().serves(window, tuning)) {
+                *two_level = None;
+            }
+            Planned::TwoLevel(two_level.get_or_insert_with(|| TwoLevel::new(window, split)))
+        }
+        Application::Fft(lengths) => {
+            let slot = if lengths == table.exact_lengths(window) { single } else { shortened };
+            Planned::Fft(planned(slot, window, tuning, || {
+                FftConvolution::new(window, lengths, table.symbol_f32(lengths))
+            }))
+        }
+    }
+}
+
+/// The convolution of `slot` where it serves the window, else a new one.
+fn planned<'a, T: Real>(
+    slot: &'a mut Option<FftConvolution<T>>,
+    window: Window,
+    tuning: &Tuning,
+    make: impl FnOnce() -> FftConvolution<T>,
+) -> &'a mut FftConvolution<T> {
+    if !slot.as_ref().is_some_and(|c| c.window().serves(window, tuning)) {
+        *slot = None;
+    }
+    slot.get_or_insert_with(make)
+}

@@ -1,0 +1,273 @@
+//! How one linear system is solved: a pure function of sizes, with the measured constants of [`Tuning`].
+
+use super::two_level::Split;
+use crate::geometry::{CellSet, Lengths, Window};
+use crate::kernel::KernelTable;
+use crate::tuning::Tuning;
+use contact_model::Boundary;
+use std::fmt;
+
+/// How one application of the influence matrix is done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Application {
+    /// Sum over all pairs.
+    Direct,
+    /// Smooth part on a lattice, near part by pairs.
+    TwoLevel(Split),
+    /// Transform of the window.
+    Fft(Lengths),
+}
+
+/// The preconditioner of a system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Conditioning {
+    /// None.
+    Identity,
+    /// The inverse of the kernel wrapped on a torus around the window.
+    Torus(Lengths),
+}
+
+/// How one linear system on a set of cells is solved.
+///
+/// Vectors are in double precision where the application is, in single precision where a transform is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Recipe {
+    /// Bounding box of the set.
+    pub window: Window,
+    /// The influence matrix.
+    pub application: Application,
+    /// The preconditioner.
+    pub conditioning: Conditioning,
+}
+
+impl Recipe {
+    /// Whether vectors are in single precision: all that a transform in single precision can use.
+    pub fn is_single(&self) -> bool {
+        matches!(self.application, Application::Fft(_)) || self.has_preconditioner()
+    }
+
+    /// Whether there is a preconditioner.
+    pub fn has_preconditioner(&self) -> bool {
+        self.conditioning != Conditioning::Identity
+    }
+}
+
+impl fmt::Display for Recipe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.application {
+            Application::Direct => write!(f, "direct")?,
+            Application::TwoLevel(Split { spacing, reach, order }) => {
+                write!(f, "two levels, spacing {spacing} reach {reach} order {order}")?;
+            }
+            Application::Fft(Lengths { x, y }) => write!(f, "fft {x} x {y}, f32 in f64")?,
+        }
+        match self.conditioning {
+            Conditioning::Identity => Ok(()),
+            Conditioning::Torus(Lengths { x, y }) => write!(f, ", torus inverse {x} x {y}"),
+        }
+    }
+}
+
+/// Chooses for one grid.
+#[derive(Debug, Clone, Copy)]
+pub struct Planner<'a> {
+    /// The kernel.
+    pub table: &'a KernelTable,
+    /// The cost model.
+    pub tuning: &'a Tuning,
+    /// Whether approximations of the far field may be chosen.
+    pub two_levels: bool,
+}
+
+impl Planner<'_> {
+    fn fft_ns(&self, lengths: Lengths) -> f64 {
+        let points = lengths.points() as f64;
+        self.tuning.point_ns * points * points.log2()
+    }
+
+    fn direct_ns(&self, sources: usize, targets: usize) -> f64 {
+        self.tuning.pair_ns * sources as f64 * targets as f64
+    }
+
+    /// The cheaper exact way between two sets in a window: direct sums or a transform in double precision.
+    pub fn exact(&self, sources: usize, targets: usize, window: Window) -> Application {
+        let lengths = self.table.exact_lengths(window);
+        let direct = self.direct_ns(sources, targets) <= self.fft_ns(lengths);
+        if direct { Application::Direct } else { Application::Fft(lengths) }
+    }
+
+    /// The cheapest way to five digits or more between two sets inside a window.
+    ///
+    /// Cost: nothing for a dense set, a count of the cells on coarse tiles for a scattered one.
+    pub fn fast(&self, sources: &CellSet, targets: &CellSet, window: Window) -> Application {
+        let tuning = self.tuning;
+        let lengths = self.table.exact_lengths(window);
+        let direct = self.direct_ns(sources.len(), targets.len());
+        let fft = tuning.single * self.fft_ns(lengths);
+        let mut best =
+            if direct <= fft { (direct, Application::Direct) } else { (fft, Application::Fft(lengths)) };
+        let cells = sources.len().max(targets.len());
+        // The smooth far field is that of the free kernel of square cells.
+        let known = self.table.boundary() == Boundary::Free && self.table.grid().has_square_cells();
+        let few = cells <= tuning.largest_scattered && cells * tuning.scattered <= window.count();
+        if !(self.two_levels && known && few) {
+            return best.1;
+        }
+        for spacing in [4, 8, 16, 32] {
+            let split = Split { spacing, reach: tuning.reach, order: tuning.order };
+            let transform = self.fft_ns(Lengths::free(split.lattice(window)));
+            let weights = split.order * split.order * (sources.len() + targets.len());
+            let far = transform + tuning.spread_ns * weights as f64;
+            if far >= best.0 {
+                continue;
+            }
+            let near = tuning.close_pair_ns * close_pairs(sources, targets, window, split.radius());
+            if far + near < best.0 {
+                best = (far + near, Application::TwoLevel(split));
+            }
+        }
+        best.1
+    }
+
+    /// How a system on a set is solved of which `contact` cells are known to be in contact. `every_lag`: whether the kernel must be exact at
+    /// every lag, as for the stiffness, or may be that of a shorter torus, as for corrections of the pressure: at a prescribed force they
+    /// have no sum, so that the far lags count for little, and the exact gap that follows sees what is left.
+    pub fn system(&self, set: &CellSet, contact: usize, every_lag: bool) -> Option<Recipe> {
+        let (window, tuning) = (set.window()?, self.tuning);
+        let share = contact as f64 / window.count() as f64;
+        let large = contact > tuning.largest_factor && share >= tuning.preconditioned_large;
+        let application = if large { Application::Fft(self.table.exact_lengths(window)) } else { self.fast(set, set, window) };
+        let application = match application {
+            Application::Fft(_) if !every_lag => {
+                Application::Fft(self.table.shortened_lengths(window, tuning.shortened))
+            }
+            other => other,
+        };
+        let conditioning = if large || share >= tuning.preconditioned {
+            Conditioning::Torus(self.table.torus_lengths(window))
+        } else {
+            Conditioning::Identity
+        };
+        Some(Recipe { window, application, conditioning })
+    }
+
+    /// Whether systems on a set of `n` cells are solved by factorisation.
+    pub fn factors(&self, n: usize, window: Window) -> bool {
+        let (cells, tuning) = (n as f64, self.tuning);
+        let factor = tuning.factors * (tuning.factor_ns * cells.powi(3) / 3.0 + 4.0 * cells * cells);
+        let fft = tuning.single * self.fft_ns(self.table.exact_lengths(window));
+        let iterate = tuning.applications * fft.min(self.direct_ns(n, n));
+        n <= tuning.always_factored || (n <= tuning.largest_factor && factor <= iterate)
+    }
+}
+
+/// About how many pairs lie within a radius: each tile of that size with the nine around it, by the share of a disc.
+fn close_pairs(sources: &CellSet, targets: &CellSet, window: Window, radius: usize) -> f64 {
+    let (across, down) = (window.width / radius + 3, window.height / radius + 3);
+    let count = |set: &CellSet| {
+        let mut tile = vec![0u32; across * down];
+        for row in set.rows() {
+            let line = ((row.y - window.y) / radius + 1) * across + 1;
+            for &x in row.columns {
+                tile[line + (x as usize - window.x) / radius] += 1;
+            }
+        }
+        tile
+    };
+    let (a, b) = (count(sources), count(targets));
+    let mut pairs = 0.0;
+    for y in 1..down - 1 {
+        for x in 1..across - 1 {
+            let here = f64::from(b[y * across + x]);
+            if here > 0.0 {
+                let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| y * across + x));
+                pairs += here * around.map(|t| f64::from(a[t])).sum::<f64>();
+            }
+        }
+    }
+    pairs * std::f64::consts::PI / 9.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Grid;
+    use std::sync::Arc;
+
+    const GRID: Grid = Grid { columns: 2049, rows: 2049, stretch: 1.0 };
+
+    /// One cell in `step`, all over the grid.
+    fn every(step: usize) -> CellSet {
+        CellSet::from_index(GRID, &(0..2049 * 2049_u32).step_by(step).collect::<Vec<_>>())
+    }
+
+    fn with<R>(grid: Grid, boundary: Boundary, ask: impl FnOnce(Planner<'_>) -> R) -> R {
+        let table: Arc<KernelTable> = KernelTable::shared(grid, boundary);
+        ask(Planner { table: &table, tuning: &Tuning::DEFAULT, two_levels: true })
+    }
+
+    #[test]
+    fn small_sets_never_pay_for_the_grid() {
+        with(GRID, Boundary::Free, |planner| {
+            let window = GRID.window();
+            assert_eq!(planner.exact(300, 3000, window), Application::Direct);
+            let lengths = Lengths { x: 4096, y: 4096 };
+            assert_eq!(planner.exact(100_000, 100_000, window), Application::Fft(lengths));
+            assert!(planner.factors(200, window) && !planner.factors(50_000, window));
+        });
+    }
+
+    #[test]
+    fn direct_two_levels_and_transform_in_this_order() {
+        let choice = |grid: Grid, boundary, set: &CellSet| {
+            with(grid, boundary, |planner| planner.fast(set, set, GRID.window()))
+        };
+        assert_eq!(choice(GRID, Boundary::Free, &every(200_000)), Application::Direct);
+        assert!(matches!(choice(GRID, Boundary::Free, &every(400)), Application::TwoLevel(_)));
+        assert!(matches!(choice(GRID, Boundary::Free, &every(3)), Application::Fft(_)));
+        // Its far field is that of square cells on a half-space that does not repeat.
+        let oblong = Grid { stretch: 1.2, ..GRID };
+        assert!(matches!(choice(oblong, Boundary::Free, &every(400)), Application::Fft(_)));
+        let period = Application::Fft(Lengths { x: 2049, y: 2049 });
+        assert_eq!(choice(GRID, Boundary::Periodic, &every(400)), period);
+    }
+
+    #[test]
+    fn a_system_is_planned_by_what_touches() {
+        with(GRID, Boundary::Free, |planner| {
+            let plan = |set: &CellSet, every_lag| planner.system(set, set.len(), every_lag).unwrap();
+            let dense = plan(&every(3), true);
+            assert_eq!(dense.to_string(), "fft 4096 x 4096, f32 in f64, torus inverse 2160 x 2160");
+            assert!(dense.is_single());
+            assert_eq!(plan(&every(3), false).application, Application::Fft(Lengths { x: 3072, y: 3072 }));
+            let scattered = plan(&every(400), true);
+            assert_eq!(scattered.conditioning, Conditioning::Identity);
+            assert!(!scattered.is_single() && scattered.to_string().starts_with("two levels, spacing"));
+            assert!(plan(&every(290), true).is_single() && !plan(&every(310), true).is_single());
+            let few = CellSet::from_index(GRID, &[5, 7]);
+            assert_eq!(planner.system(&few, 0, true).unwrap().to_string(), "direct");
+            assert!(planner.system(&CellSet::default(), 0, true).is_none());
+        });
+    }
+
+    #[test]
+    fn close_pairs_are_counted_well_enough() {
+        let set = every(41);
+        let estimate = close_pairs(&set, &set, GRID.window(), 48);
+        let uniform = set.len() as f64 * std::f64::consts::PI * 48.0 * 48.0 / 41.0;
+        assert!((0.8..1.1).contains(&(estimate / uniform)), "{}", estimate / uniform);
+    }
+
+    #[test]
+    fn the_choice_to_factor_is_monotone_in_the_size_of_the_set() {
+        with(GRID, Boundary::Free, |planner| {
+            for side in [32, 2049] {
+                let window = Grid::square(side, side).window();
+                let factored: Vec<bool> = (1..9000).step_by(50).map(|n| planner.factors(n, window)).collect();
+                assert!(factored.windows(2).all(|w| w[0] || !w[1]), "once too large, always too large");
+            }
+            let huge = Window { x: 0, y: 0, width: 1 << 19, height: 1 << 19 };
+            assert!(!planner.factors(Tuning::DEFAULT.largest_factor + 1, huge));
+        });
+    }
+}

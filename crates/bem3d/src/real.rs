@@ -1,0 +1,108 @@
+//! Single and double precision.
+
+use crate::tuning::{BLOCK, LANES};
+use rustfft::FftNum;
+use std::ops::AddAssign;
+
+/// Floating point of an operator and of the vectors of an iteration: f64, or f32 where the result is certified in f64.
+pub trait Real: FftNum + Default + AddAssign + PartialOrd {
+    /// Name in reports.
+    const NAME: &'static str;
+    /// Rounds to this precision.
+    fn of(value: f64) -> Self;
+    /// Widens to f64.
+    fn to_f64(self) -> f64;
+}
+
+impl Real for f64 {
+    const NAME: &'static str = "f64";
+    fn of(value: f64) -> Self {
+        value
+    }
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+impl Real for f32 {
+    const NAME: &'static str = "f32";
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+/// A power of two near the largest magnitude, so that values over it lie in the middle of the range of single precision.
+pub fn binary_unit(values: &[f64]) -> f64 {
+    let largest = largest(values);
+    if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
+}
+
+/// Largest magnitude.
+pub fn largest<T: Real>(values: &[T]) -> T {
+    let larger = |a: T, b: T| if b.abs() > a { b.abs() } else { a };
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [T::default(); LANES];
+    for chunk in chunks {
+        for (lane, &value) in lanes.iter_mut().zip(chunk) {
+            *lane = larger(*lane, value);
+        }
+    }
+    lanes.iter().chain(rest).fold(T::default(), |a, &b| larger(a, b))
+}
+
+/// Scalar product, in double precision over blocks: rounding stays far below that of a transform.
+pub fn dot<T: Real>(a: &[T], b: &[T]) -> f64 {
+    a.chunks(BLOCK).zip(b.chunks(BLOCK)).map(|(a, b)| block(a, b).to_f64()).sum()
+}
+
+fn block<T: Real>(a: &[T], b: &[T]) -> T {
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    let mut lanes = [T::default(); LANES];
+    for (a, b) in a.iter().zip(b) {
+        for ((lane, &a), &b) in lanes.iter_mut().zip(a).zip(b) {
+            *lane += a * b;
+        }
+    }
+    let products = rest_a.iter().zip(rest_b).map(|(&a, &b)| a * b);
+    lanes.into_iter().chain(products).fold(T::default(), |sum, value| sum + value)
+}
+
+/// Sum in double precision.
+pub fn sum<T: Real>(values: &[T]) -> f64 {
+    let block = |values: &[T]| {
+        let (chunks, rest) = values.as_chunks::<LANES>();
+        let mut lanes = [T::default(); LANES];
+        for chunk in chunks {
+            for (lane, &value) in lanes.iter_mut().zip(chunk) {
+                *lane += value;
+            }
+        }
+        lanes.iter().chain(rest).map(|value| value.to_f64()).sum::<f64>()
+    };
+    values.chunks(BLOCK).map(block).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn sums_products_and_magnitudes_of_any_length() {
+        for n in [0, 1, LANES - 1, LANES, BLOCK + 5] {
+            let a: Vec<f64> = (0..n).map(|k| (k as f64).sin()).collect();
+            let b: Vec<f64> = (0..n).map(|k| 0.3 - (0.7 * k as f64).cos()).collect();
+            assert_relative_eq!(sum(&a), a.iter().sum::<f64>(), epsilon = 1e-12);
+            let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+            assert_relative_eq!(dot(&a, &b), product, epsilon = 1e-12);
+            let single = |v: &[f64]| v.iter().map(|&v| v as f32).collect::<Vec<_>>();
+            assert_relative_eq!(dot(&single(&a), &single(&b)), product, epsilon = 1e-3);
+            assert_relative_eq!(largest(&b), b.iter().fold(0.0, |m: f64, v| m.max(v.abs())));
+        }
+        assert_relative_eq!(binary_unit(&[0.3, -5.0]), 4.0);
+        assert_relative_eq!(binary_unit(&[0.0]), 1.0);
+    }
+}

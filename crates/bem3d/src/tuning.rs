@@ -1,0 +1,218 @@
+//! Every tuned constant of this crate: meaning, unit, value, and when and where it was measured.
+//!
+//! Times are those of one thread of an AMD EPYC (2024, AVX-512) in November 2026, if nothing else is said; the command that measures what a
+//! choice costs is `cargo xtask bench` (tables in `data/bench`). None of these numbers changes what a result converges to: they choose
+//! between ways to it and decide when an iteration looks at the exact gap. Results that are compared bit by bit need the same values.
+
+/// Constants that a solve reads; [`Tuning::DEFAULT`] is what is shipped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tuning {
+    // Cost model of one application of the influence matrix.
+    /// ns of one look-up and addition of the direct sum between scattered cells. 2026-11, `benches/solve.rs`.
+    pub pair_ns: f64,
+    /// ns per point and log2 of the points of a padded transform: one application in double precision. 2026-11, `benches/solve.rs`.
+    pub point_ns: f64,
+    /// Time of an application in single precision over double. 2026-11, `benches/solve.rs`.
+    pub single: f64,
+    /// ns of one close pair of the two-level operator, short runs and misses included. 2026-11, `benches/solve.rs`.
+    pub close_pair_ns: f64,
+    /// ns of one interpolation weight of the two-level operator. 2026-11, `benches/solve.rs`.
+    pub spread_ns: f64,
+    /// Radius of the near part of the two-level operator, in spacings, and points of its interpolation in each direction: an error of
+    /// 4e-5 of the largest displacement in the test of `two_level`. 2026-11.
+    pub reach: usize,
+    /// See `reach`.
+    pub order: usize,
+    /// The two-level operator is for at most one contact cell in so many of the window ... 2026-11, sweep at N = 2049.
+    pub scattered: usize,
+    /// ... and for at most so many cells.
+    pub largest_scattered: usize,
+    /// A plan for a window serves a smaller one of at least this share of its cells: a new plan costs about three applications. 2026-11.
+    pub kept_window: f64,
+    /// Length of the torus of pressure corrections, in window sides: exact up to lags of half of it. 2026-11, sweep at N = 1024.
+    pub shortened: f64,
+
+    // Factor or iterate.
+    /// ns of one multiplication of a Cholesky factorisation (faer, one thread). 2026-11, `benches/solve.rs`.
+    pub factor_ns: f64,
+    /// Applications that the iterative solution on one contact set takes, pressure and stiffness. 2026-11, `bench`.
+    pub applications: f64,
+    /// Factorisations that the direct solution on one contact set takes. 2026-11, `bench`.
+    pub factors: f64,
+    /// Largest set that is factored (memory: 16 n^2 bytes).
+    pub largest_factor: usize,
+    /// Sets up to this size are always factored: the result is exact and costs a millisecond or two.
+    pub always_factored: usize,
+    /// Share of the window in contact from which the preconditioner saves more applications than it costs. 2026-11, sweep at N = 512.
+    pub preconditioned: f64,
+    /// The same for sets too large to factor. 2026-11, sweep at N = 2049, D_f = 2.0 and 2.6.
+    pub preconditioned_large: f64,
+    /// Share of a coarser value that a gap between contacts takes over in the preconditioner: 0.6 to 0.7 was best for N = 513 and 2049,
+    /// D_f = 2 to 2.6, 5 to 94 % contact. 2026-11.
+    pub decay: f32,
+
+    // Contact set.
+    /// Reduction of the error asked of an inner solve: half of what is still wanted, within this range. A looser one restarts too
+    /// often, a tighter one solves well on a set that will change. 2026-11, sweep at N = 512.
+    pub reduction: (f64, f64),
+    /// The same while the residuals are above `early`: the set still changes a lot.
+    pub early_reduction: f64,
+    /// See `early_reduction`; relative, as the residuals.
+    pub early: f64,
+    /// Steps of an inner solve at most.
+    pub inner_steps: usize,
+    /// Residual gap, as a share of the tolerance, below which an inner solve need not go.
+    pub floor: f64,
+    /// Residuals count as better when they fall by this factor.
+    pub better: f64,
+    /// Outer iterations without better residuals after which the solve has stagnated.
+    pub patience: usize,
+    /// Above these residuals, and above so many times the tolerance (`rough_factor`), the next gap is evaluated in single precision.
+    pub rough: f64,
+    /// See `rough`.
+    pub rough_factor: f64,
+    /// ... as long as that gap exceeds the noise of single precision, this share of the approach.
+    pub single_noise: f64,
+    /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact: penetrations below are within
+    /// the error of the inner solve, and adding those cells would regrow the set. 2026-11.
+    pub noise: f64,
+    /// Candidates reach up to this multiple of the approach; a plane that ends higher costs one more outer iteration.
+    pub candidates: f64,
+    /// Candidates up to one approach serve another of at least this share of it.
+    pub kept_candidates: f64,
+    /// Penetration that a factored solution leaves by rounding, relative to the approach.
+    pub factor_rounding: f64,
+    /// Cells a side of the squares in which the largest gap left is kept; near a cell are its own square and the eight around.
+    pub undecided_square: usize,
+    /// What the weights beyond them add up to: 0.113 next to a straight edge (see `undecided`).
+    pub undecided_far: f64,
+
+    // Stiffness.
+    /// Corrections at most; each gains a decade or more.
+    pub stiffness_rounds: usize,
+    /// Steps of one correction at most.
+    pub stiffness_steps: usize,
+    /// Share of the tolerance that the linear solve may use up; the rest is left to undecided cells.
+    pub stiffness_share: f64,
+    /// Share of the tolerance that the iteration aims at: its own estimate is not yet checked in double precision.
+    pub stiffness_aim: f64,
+    /// Reduction of the residual at most in one correction: single precision has no more to give.
+    pub stiffness_reduction: f64,
+    /// Times that the contact set is solved further for the sake of the stiffness ...
+    pub tightenings: usize,
+    /// ... by factors of the residuals in this range ...
+    pub tighter: (f64, f64),
+    /// ... aiming at this share of the tolerance.
+    pub tight_aim: f64,
+    /// A periodic stiffness is solved again when its magnification turns out so many times the one expected.
+    pub misjudged: f64,
+
+    // Initial guess.
+    /// Loads within this ratio of the last one start from it ...
+    pub warm: f64,
+    /// ... and from its tangent without further questions within this ratio.
+    pub near: (f64, f64),
+    /// Where one cell in so many will touch, no tangent is followed far. 2026-11, sweep at N = 1024.
+    pub filling: f64,
+    /// Where one cell in so many will touch, the cells that a tangent predicts are counted before it is followed ...
+    pub counted: f64,
+    /// ... and it is not if they are so many times what the load has grown by.
+    pub overshoot: f64,
+    /// How far the secant between two loads is extrapolated beyond the last tangent for the initial guess of q: half way, where it holds,
+    /// it would be twice as far. 2026-11.
+    pub extrapolation: f64,
+    /// Grids of at most the square of so many cells are solved without a coarser one.
+    pub coarsest: usize,
+    /// Tolerance and outer iterations on coarse grids: an initial guess, not a result.
+    pub coarse_tolerance: f64,
+    /// See `coarse_tolerance`.
+    pub coarse_iterations: usize,
+}
+
+impl Tuning {
+    /// The values that all committed results were made with.
+    pub const DEFAULT: Self = Self {
+        pair_ns: 2.0,
+        point_ns: 0.17,
+        single: 0.65,
+        close_pair_ns: 3.0,
+        spread_ns: 1.0,
+        reach: 6,
+        order: 6,
+        scattered: 20,
+        largest_scattered: 200_000,
+        kept_window: 0.6,
+        shortened: 1.5,
+        factor_ns: 0.07,
+        applications: 20.0,
+        factors: 2.5,
+        largest_factor: 6000,
+        always_factored: 256,
+        preconditioned: 0.02,
+        preconditioned_large: 1.0 / 300.0,
+        decay: 0.7,
+        reduction: (0.1, 0.3),
+        early_reduction: 0.3,
+        early: 0.02,
+        inner_steps: 40,
+        floor: 0.2,
+        better: 0.9,
+        patience: 12,
+        rough: 0.03,
+        rough_factor: 10.0,
+        single_noise: 1e-4,
+        noise: 1.0,
+        candidates: 1.05,
+        kept_candidates: 0.9,
+        factor_rounding: 1e-12,
+        undecided_square: 32,
+        undecided_far: 0.125,
+        stiffness_rounds: 40,
+        stiffness_steps: 60,
+        stiffness_share: 0.5,
+        stiffness_aim: 0.3,
+        stiffness_reduction: 1e-3,
+        tightenings: 5,
+        tighter: (0.1, 0.5),
+        tight_aim: 0.7,
+        misjudged: 1.5,
+        warm: 30.0,
+        near: (0.8, 1.25),
+        filling: 10.0,
+        counted: 200.0,
+        overshoot: 2.5,
+        extrapolation: 1.5,
+        coarsest: 48,
+        coarse_tolerance: 1e-2,
+        coarse_iterations: 20,
+    };
+}
+
+// Layout: constants of the compiled code.
+
+/// Rows of a transform that are transposed together: 32 complex numbers in single precision are four cache lines. 2026-11.
+pub const TILE: usize = 32;
+/// Bytes of a cache line.
+pub const CACHE_LINE: usize = 64;
+/// Columns at a distance of a multiple of so many numbers would fall into the same few lines of the cache.
+pub const ALIASED: usize = 64;
+/// Accumulators side by side in a sum: one 512-bit register of single precision.
+pub const LANES: usize = 16;
+/// Numbers that they take in before a sum goes on in double precision.
+pub const BLOCK: usize = 2048;
+/// From so many cells a run on, values move run by run; below it, cell by cell is faster. 2026-11.
+pub const LONG_RUN: usize = 8;
+/// Levels of the preconditioner's extension at most: below `decay^8` nothing is left.
+pub const EXTENSION_LEVELS: usize = 8;
+/// Numbers kept at most in the symbols of one kind: 134 MB of f64, four times the largest symbol of 2049 cells a side.
+pub const KEPT_SYMBOLS: usize = 1 << 24;
+/// The list of candidates is filled up to so many times the approach asked for, so that a path of loads does not scan the grid each time ...
+pub const CANDIDATES_AHEAD: f64 = 2.0;
+/// ... unless it would hold more than one cell in so many.
+pub const LISTED_CANDIDATES: usize = 8;
+/// Largest factor from the error of `1' K^-1 1` with the shifted kernel to that of k; beyond it no digit of k is left.
+pub const MAGNIFIED: f64 = 1e10;
+/// Loads at most on the way to a mean gap.
+pub const GAP_LOADS: usize = 60;
+/// Largest step of ln F between two of them.
+pub const GAP_STEP: f64 = 3.0;
