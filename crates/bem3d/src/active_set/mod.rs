@@ -2,6 +2,7 @@
 
 mod candidates;
 mod initial_guess;
+mod progress;
 mod residuals;
 mod solver;
 mod state;

@@ -1,11 +1,11 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating cells.
 
+use super::progress::{Decision, Evaluated, Progress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
 use crate::geometry::CellSet;
-use crate::linear::{Factor, StoppingCriteria};
+use crate::linear::Factor;
 use crate::real::largest;
-use crate::tuning::Tuning;
 use contact_model::{Status, Stop};
 
 /// Solves for one load from a guess.
@@ -30,7 +30,7 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
 /// Goes on from a solved state to a tighter tolerance; its gap is not evaluated again.
 pub fn resume(problem: &mut Problem, target: Target, solved: Solved, limits: Limits, stop: Stop<'_>) -> Solved {
     let Solved { contact, p, d, q, residuals, continuation, .. } = solved;
-    let evaluated = Evaluated { residuals, complete: true };
+    let evaluated = Evaluated { residuals, complete: true, factored: q.is_some() };
     let solver = Solver::new(problem, target, limits, Pressure { contact, p, d, q }, continuation);
     solver.iterate(Some(evaluated), false, stop)
 }
@@ -43,14 +43,6 @@ struct Pressure {
     d: f64,
     /// Where the set was factored; then p and d are exact on it.
     q: Option<Vec<f64>>,
-}
-
-/// What the gap of a pressure says.
-#[derive(Debug, Clone, Copy)]
-struct Evaluated {
-    residuals: Residuals,
-    /// Whether the gap is known on every cell below the plane, in double precision.
-    complete: bool,
 }
 
 struct Solver<'a> {
@@ -77,41 +69,22 @@ impl<'a> Solver<'a> {
         Self { problem, target, limits, now, state, left, reach, best, now_is_best: false }
     }
 
-    fn iterate(mut self, mut known: Option<Evaluated>, mut rough: bool, stop: Stop<'_>) -> Solved {
-        let (tuning, limits) = (*self.problem.operators.tuning(), self.limits);
-        let mut best: Option<Evaluated> = None;
-        let (mut steps, mut iteration, mut since_best) = (0, 0, 0);
+    fn iterate(mut self, mut known: Option<Evaluated>, rough: bool, stop: Stop<'_>) -> Solved {
+        let tuning = *self.problem.operators.tuning();
+        let mut progress = Progress::new(self.limits, rough);
+        let mut steps = 0;
         let (status, last) = loop {
-            let evaluated = known.take().unwrap_or_else(|| self.evaluate(rough));
-            let (error, d) = (evaluated.residuals.worst(), self.now.d);
-            let settled = self.now.q.is_none() || evaluated.residuals.deepest <= tuning.factor_rounding * d;
-            if evaluated.complete && settled && error <= limits.tolerance {
-                break (Status::Converged, evaluated);
-            } else if stop() {
-                break (Status::Stopped, evaluated);
-            } else if iteration >= limits.outer_iterations {
-                break (Status::IterationLimit, evaluated);
-            } else if since_best > tuning.patience {
-                break (Status::Stagnated, evaluated);
+            let evaluated = known.take().unwrap_or_else(|| self.evaluate(progress.rough));
+            match progress.judge(evaluated, self.now.d, &tuning, stop) {
+                Decision::End(status) => break (status, evaluated),
+                Decision::Continue { best } => self.now_is_best |= best,
             }
-            let length = error * limits.height.unwrap_or(d);
-            rough = error > tuning.rough
-                && error > tuning.rough_factor * limits.tolerance
-                && length > tuning.single_noise * d;
-            if evaluated.complete && best.is_none_or(|b| error < tuning.better * b.residuals.worst()) {
-                self.now_is_best = true;
-                (best, since_best) = (Some(evaluated), 0);
-            } else {
-                since_best += usize::from(!rough);
-            }
-            steps += self.improve(error, stop);
-            iteration += 1;
+            steps += self.improve(evaluated.residuals.worst(), stop);
         };
         let mut residuals = last.residuals;
-        let better = best.is_some_and(|best| best.residuals.worst() <= residuals.worst());
-        if status != Status::Converged && better && !self.now_is_best {
+        if status != Status::Converged && !self.now_is_best && progress.best <= residuals.worst() {
             self.now = std::mem::take(&mut self.best);
-            self.state = Continuation::default();
+            (self.state, self.reach) = (Continuation::default(), tuning.candidates * self.now.d);
             residuals = self.evaluate(false).residuals;
         }
         let Self { now: Pressure { contact, p, d, q }, state: continuation, .. } = self;
@@ -161,7 +134,7 @@ impl<'a> Solver<'a> {
         // Just above the plane: a generous guess must not make every outer iteration evaluate the whole grid.
         *reach = tuning.candidates * now.d;
         let residuals = Residuals::measure(&now.p, left, lowest, limits.height.unwrap_or(now.d));
-        Evaluated { residuals, complete: !rough && now.d <= state.reach }
+        Evaluated { residuals, complete: !rough && now.d <= state.reach, factored: now.q.is_some() }
     }
 
     /// One outer iteration: a new set from the gap, a solution on it, and the cells in tension removed. Returns the steps taken.
@@ -205,17 +178,6 @@ impl<'a> Solver<'a> {
             self.best = last;
         }
     }
-}
-
-/// What an inner solve is asked for when the residuals are `error`.
-fn criteria(limits: Limits, error: f64, d: f64, tuning: &Tuning) -> StoppingCriteria {
-    let reduction = if error > tuning.early {
-        tuning.early_reduction
-    } else {
-        (0.5 * limits.tolerance / error).clamp(tuning.reduction.0, tuning.reduction.1)
-    };
-    let floor = tuning.floor * limits.tolerance * limits.height.unwrap_or(d);
-    StoppingCriteria { reduction, energy: None, floor, steps: tuning.inner_steps }
 }
 
 /// Removes cells in tension from a small superset until none is left; p, q and d are exact up to rounding.

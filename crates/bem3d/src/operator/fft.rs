@@ -89,11 +89,6 @@ impl<T: Real> FftConvolution<T> {
         self.window
     }
 
-    /// The circular lengths.
-    pub fn lengths(&self) -> Lengths {
-        self.lengths
-    }
-
     /// The convolution of whole rows of the window: `fill` writes row y (given as zeros) where `given` says so, `take` reads the result
     /// where it is `wanted`. Both see the rows in increasing order, all of `fill` before the first of `take`.
     ///
