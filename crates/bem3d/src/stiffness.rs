@@ -51,7 +51,9 @@ pub fn solve(
     let grid = problem.grid();
     let Problem { operators, workspace, .. } = problem;
     let (contact, tuning) = (&state.contact, *operators.tuning());
-    let Some(recipe) = operators.planner().system(contact, contact.len(), true) else { return Stiffness::unknown() };
+    let Some(recipe) = operators.planner().system(contact, contact.len(), true) else {
+        return Stiffness::unknown();
+    };
     // A factored state needs no transform.
     let conditioning = if state.q.is_some() { Conditioning::Identity } else { recipe.conditioning };
     let recipe = Recipe { conditioning, ..recipe };

@@ -47,6 +47,9 @@ pub struct Tuning {
     pub preconditioned: f64,
     /// The same for sets too large to factor. 2026-11, sweep at N = 2049, D_f = 2.0 and 2.6.
     pub preconditioned_large: f64,
+    /// From so many cells on, residuals are extended into the gaps between contacts: below, zeros take fewer steps. 2026-11, sweeps at
+    /// N = 257 and 513, D_f = 2.0 to 2.8.
+    pub extended: usize,
     /// Share of a coarser value that a gap between contacts takes over in the preconditioner: 0.6 to 0.7 was best for N = 513 and 2049,
     /// D_f = 2 to 2.6, 5 to 94 % contact. 2026-11.
     pub decay: f32,
@@ -150,6 +153,7 @@ impl Tuning {
         always_factored: 256,
         preconditioned: 0.02,
         preconditioned_large: 1.0 / 300.0,
+        extended: 2000,
         decay: 0.7,
         reduction: (0.1, 0.3),
         early_reduction: 0.3,

@@ -70,7 +70,13 @@ impl LastState {
     /// The tangent overshoots (the stiffness grows with every cell that joins); where it predicts far more cells than the load
     /// has grown by, eliminating them costs more than a coarse solution at a third of the price. `predicted` counts them with one
     /// application; where a good part of the grid will touch, the answer is known without.
-    pub fn overshoots(&self, target: Target, cells: usize, tuning: &Tuning, predicted: impl FnOnce() -> usize) -> bool {
+    pub fn overshoots(
+        &self,
+        target: Target,
+        cells: usize,
+        tuning: &Tuning,
+        predicted: impl FnOnce() -> usize,
+    ) -> bool {
         let ratio = self.ratio(target);
         let (expected, cells) = (self.contact.len() as f64 * ratio, cells as f64);
         !(tuning.near.0..=tuning.near.1).contains(&ratio)
@@ -129,7 +135,8 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
         problem.coarser = Some(coarse);
         return from_above(problem);
     }
-    let limits = Limits { tolerance: tuning.coarse_tolerance, outer_iterations: tuning.coarse_iterations, ..limits };
+    let limits =
+        Limits { tolerance: tuning.coarse_tolerance, outer_iterations: tuning.coarse_iterations, ..limits };
     let coarse_target = match target {
         Target::Force(force) => Target::Force(force / pressure_ratio(grid, &tuning)),
         approach @ Target::Approach(_) => approach,
@@ -172,7 +179,8 @@ fn pressure_ratio(grid: Grid, tuning: &Tuning) -> f64 {
 fn coarser(problem: &Problem) -> Problem {
     let (fine, tuning) = (problem.grid(), *problem.operators.tuning());
     let (across, down) = blocks(fine, &tuning);
-    let stretch = if across == down { fine.stretch } else { fine.stretch * (across as f64 / down as f64).sqrt() };
+    let stretch =
+        if across == down { fine.stretch } else { fine.stretch * (across as f64 / down as f64).sqrt() };
     let grid = Grid { columns: fine.columns.div_ceil(across), rows: fine.rows.div_ceil(down), stretch };
     let mut sums = vec![(0.0, 0.0); grid.count()];
     for (i, &z) in problem.candidates.z().iter().enumerate().filter(|(_, z)| z.is_finite()) {

@@ -83,4 +83,3 @@ pub fn criteria(limits: Limits, error: f64, d: f64, tuning: &Tuning) -> Stopping
     let floor = tuning.floor * limits.tolerance * limits.height.unwrap_or(d);
     StoppingCriteria { reduction, energy: None, floor, steps: tuning.inner_steps }
 }
-

@@ -28,7 +28,13 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
 }
 
 /// Goes on from a solved state to a tighter tolerance; its gap is not evaluated again.
-pub fn resume(problem: &mut Problem, target: Target, solved: Solved, limits: Limits, stop: Stop<'_>) -> Solved {
+pub fn resume(
+    problem: &mut Problem,
+    target: Target,
+    solved: Solved,
+    limits: Limits,
+    stop: Stop<'_>,
+) -> Solved {
     let Solved { contact, p, d, q, residuals, continuation, .. } = solved;
     let evaluated = Evaluated { residuals, complete: true, factored: q.is_some() };
     let solver = Solver::new(problem, target, limits, Pressure { contact, p, d, q }, continuation);
@@ -62,7 +68,13 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(problem: &'a mut Problem, target: Target, limits: Limits, now: Pressure, state: Continuation) -> Self {
+    fn new(
+        problem: &'a mut Problem,
+        target: Target,
+        limits: Limits,
+        now: Pressure,
+        state: Continuation,
+    ) -> Self {
         problem.workspace.begin_load();
         let left = now.contact.carry(&state.checked, &state.gap);
         let (reach, best) = (state.reach, Pressure::default());

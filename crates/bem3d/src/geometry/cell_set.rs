@@ -255,7 +255,12 @@ impl CellSet {
     }
 
     /// Shows the values on `other` to each row that both sets have, as a line that begins at a column and is zero elsewhere.
-    fn beside<T: Copy + Default>(&self, other: &Self, values: &[T], mut show: impl FnMut(Row<'_>, &[T], usize)) {
+    fn beside<T: Copy + Default>(
+        &self,
+        other: &Self,
+        values: &[T],
+        mut show: impl FnMut(Row<'_>, &[T], usize),
+    ) {
         let window = self.window().into_iter().chain(other.window()).reduce(Window::union);
         let Some(window) = window else { return };
         let mut line = vec![T::default(); window.width];
@@ -306,7 +311,10 @@ mod tests {
     #[test]
     fn rows_window_and_carry() {
         let all = set(&[1, 6, 7, 13]);
-        assert_eq!(all.rows().map(|row| (row.y, row.span())).collect::<Vec<_>>(), [(0, 0..1), (1, 1..3), (3, 3..4)]);
+        assert_eq!(
+            all.rows().map(|row| (row.y, row.span())).collect::<Vec<_>>(),
+            [(0, 0..1), (1, 1..3), (3, 3..4)]
+        );
         assert_eq!(all.window(), Some(Window { x: 1, y: 0, width: 3, height: 4 }));
         let part = all.filter(|k| k != 1);
         assert_eq!(index(&part), [1, 7, 13]);

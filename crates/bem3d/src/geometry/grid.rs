@@ -187,7 +187,9 @@ mod tests {
         }
         // Kept for six tenths of its area, not for half of it.
         let planned = window(0, 0, 10, 10);
-        assert!(planned.serves(window(0, 0, 10, 6), &tuning) && !planned.serves(window(0, 0, 10, 5), &tuning));
+        assert!(
+            planned.serves(window(0, 0, 10, 6), &tuning) && !planned.serves(window(0, 0, 10, 5), &tuning)
+        );
         assert_eq!(window(3, 9, 1, 1).union(window(7, 4, 1, 1)), window(3, 4, 5, 6));
     }
 

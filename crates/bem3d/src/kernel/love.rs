@@ -118,7 +118,8 @@ mod tests {
     fn far_field_meets_the_closed_form() {
         for y in [0.0, 20.0, 45.0, 64.0] {
             // Loss of the closed form here: r^2 x 1.1e-16 x a few.
-            let closed = corner(64.5, y + 0.5) - corner(63.5, y + 0.5) - corner(64.5, y - 0.5) + corner(63.5, y - 0.5);
+            let closed =
+                corner(64.5, y + 0.5) - corner(63.5, y + 0.5) - corner(64.5, y - 0.5) + corner(63.5, y - 0.5);
             assert_relative_eq!(closed, far_field([64.0, y], [1.0, 1.0]), max_relative = 3e-12);
         }
     }
@@ -157,10 +158,16 @@ mod tests {
     fn a_rectangle_is_three_squares() {
         // Sides 3 : 1; the closed form, just beyond its end, and far away.
         let stretch = 3f64.sqrt();
-        for (x, y) in [(0, 0), (1, 0), (0, 1), (2, 3), (5, 1), (63, 20), (64, 1), (0, 193), (70, 300), (3000, 17)] {
+        for (x, y) in
+            [(0, 0), (1, 0), (0, 1), (2, 3), (5, 1), (63, 20), (64, 1), (0, 193), (70, 300), (3000, 17)]
+        {
             let squares: f64 = (-1..=1_isize).map(|k| influence((3 * x + k).unsigned_abs(), y)).sum();
             let x = x.unsigned_abs();
-            assert_relative_eq!(influence_of_rectangle(x, y, stretch), squares / stretch, max_relative = 2e-11);
+            assert_relative_eq!(
+                influence_of_rectangle(x, y, stretch),
+                squares / stretch,
+                max_relative = 2e-11
+            );
             let turned = influence_of_rectangle(y, x, stretch.recip());
             assert_relative_eq!(turned, squares / stretch, max_relative = 2e-11);
         }

@@ -138,7 +138,11 @@ impl Interpolation {
         };
         let norm = |j: usize| if j == 0 { 1.0 } else { 2.0 } / modes as f64;
         let weight = |q: f64, i: usize| {
-            polynomials(q).take(modes).enumerate().map(|(j, t)| norm(j) * t * (j as f64 * angle(i)).cos()).sum()
+            polynomials(q)
+                .take(modes)
+                .enumerate()
+                .map(|(j, t)| norm(j) * t * (j as f64 * angle(i)).cos())
+                .sum()
         };
         let weights = waves.iter().map(|&q| (0..modes).map(|i| weight(q, i)).collect()).collect();
         Self { nodes, weights }
@@ -203,7 +207,9 @@ mod tests {
             let (nx, ny) = (2000, 600);
             let (along_x, along_y) = (Interpolation::new(nx, a / b), Interpolation::new(ny, b / a));
             assert!(!along_x.weights.is_empty() && !along_y.weights.is_empty());
-            let value = |y: f64| -> Vec<f64> { along_x.nodes.iter().map(|&x| aliases(&weights, x, y, a, b)).collect() };
+            let value = |y: f64| -> Vec<f64> {
+                along_x.nodes.iter().map(|&x| aliases(&weights, x, y, a, b)).collect()
+            };
             let values: Vec<Vec<f64>> = along_y.nodes.iter().map(|&y| value(y)).collect();
             for (kx, ky) in [(0, 0), (1000, 0), (100, 290), (1000, 300), (3, 111), (700, 150)] {
                 let line: Vec<f64> = values.iter().map(|row| along_x.at(kx, row)).collect();
@@ -231,7 +237,8 @@ mod tests {
     #[test]
     fn a_cell_and_its_images() {
         // Differences of the kernel are sums of Love's kernel over images; what images beyond m periods add falls as 1/m.
-        for (columns, rows, stretch) in [(3_usize, 3_usize, 1.0), (8, 8, 1.0), (5, 8, 1.0), (1, 6, 1.0), (6, 4, 1.8), (5, 5, 0.4)]
+        for (columns, rows, stretch) in
+            [(3_usize, 3_usize, 1.0), (8, 8, 1.0), (5, 8, 1.0), (1, 6, 1.0), (6, 4, 1.8), (5, 5, 0.4)]
         {
             let kernel = kernel(columns, rows, stretch);
             // As many periods in each direction as make a square.
@@ -239,7 +246,8 @@ mod tests {
             let images = |(x, y): (usize, usize), m: f64| -> f64 {
                 let reach = |r: f64| (m * r).round() as isize;
                 let (mx, my) = (reach(ratio.recip()), reach(ratio));
-                let lag = |a: usize, i: isize, n: usize| (a.cast_signed() + i * n.cast_signed()).unsigned_abs();
+                let lag =
+                    |a: usize, i: isize, n: usize| (a.cast_signed() + i * n.cast_signed()).unsigned_abs();
                 (-mx..=mx)
                     .flat_map(|i| (-my..=my).map(move |j| (i, j)))
                     .map(|(i, j)| influence_of_rectangle(lag(x, i, columns), lag(y, j, rows), stretch))
@@ -249,7 +257,10 @@ mod tests {
                 let difference = |m| images((0, 0), m) - images(to, m);
                 let expected = 2.0 * difference(80.0) - difference(40.0);
                 let found = kernel.at(0, 0) - kernel.at(to.0, to.1);
-                assert!((found - expected).abs() < 2e-4, "{columns} {rows} {stretch} {to:?}: {found} {expected}");
+                assert!(
+                    (found - expected).abs() < 2e-4,
+                    "{columns} {rows} {stretch} {to:?}: {found} {expected}"
+                );
             }
         }
     }
@@ -283,9 +294,8 @@ mod tests {
     fn own_image_of_a_point() {
         // N (I(0) - I_free(0)) - c N -> 4 zeta(1/2) beta(1/2) = -3.9002649, the square lattice of point charges on their background;
         // cells add a term of second order.
-        let change = |n: usize| {
-            (kernel(n, n, 1.0).at(0, 0) - influence_of_rectangle(0, 0, 1.0)) * n as f64 - SHIFT
-        };
+        let change =
+            |n: usize| (kernel(n, n, 1.0).at(0, 0) - influence_of_rectangle(0, 0, 1.0)) * n as f64 - SHIFT;
         let limit = change(64) + (change(64) - change(32)) / 3.0;
         assert_relative_eq!(limit, -3.900_264_9, max_relative = 1e-8);
     }

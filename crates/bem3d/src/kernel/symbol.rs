@@ -94,23 +94,23 @@ mod tests {
     #[test]
     fn symbol_is_the_cosine_sum() {
         for (lx, ly) in [(6, 4), (5, 4), (6, 7), (1, 3), (9, 1)] {
-        let lengths = Lengths { x: lx, y: ly };
-        let kernel = |x: usize, y: usize| 1.0 / (1.0 + x as f64 + 2.0 * y as f64);
-        let symbol = Symbol::of_kernel(lengths, kernel);
-        assert_eq!(symbol.values.len(), (lx / 2 + 1) * (ly / 2 + 1));
-        let angle = |k: usize, x: usize, l: usize| std::f64::consts::TAU * (k * x) as f64 / l as f64;
-        for kx in 0..=lx / 2 {
-            for ky in 0..=ly / 2 {
-                let mut sum = 0.0;
-                for y in 0..ly {
-                    for x in 0..lx {
-                        let value = kernel(x.min(lx - x), y.min(ly - y));
-                        sum += value * angle(kx, x, lx).cos() * angle(ky, y, ly).cos();
+            let lengths = Lengths { x: lx, y: ly };
+            let kernel = |x: usize, y: usize| 1.0 / (1.0 + x as f64 + 2.0 * y as f64);
+            let symbol = Symbol::of_kernel(lengths, kernel);
+            assert_eq!(symbol.values.len(), (lx / 2 + 1) * (ly / 2 + 1));
+            let angle = |k: usize, x: usize, l: usize| std::f64::consts::TAU * (k * x) as f64 / l as f64;
+            for kx in 0..=lx / 2 {
+                for ky in 0..=ly / 2 {
+                    let mut sum = 0.0;
+                    for y in 0..ly {
+                        for x in 0..lx {
+                            let value = kernel(x.min(lx - x), y.min(ly - y));
+                            sum += value * angle(kx, x, lx).cos() * angle(ky, y, ly).cos();
+                        }
                     }
+                    approx::assert_relative_eq!(symbol.values[kx * (ly / 2 + 1) + ky], sum, epsilon = 1e-13);
                 }
-                approx::assert_relative_eq!(symbol.values[kx * (ly / 2 + 1) + ky], sum, epsilon = 1e-13);
             }
-        }
         }
     }
 }

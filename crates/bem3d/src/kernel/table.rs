@@ -86,7 +86,11 @@ impl KernelTable {
 
     /// Kernel at a lag.
     fn at(&self, x: usize, y: usize) -> f64 {
-        if self.is_periodic() { self.periodic().at(x, y) } else { influence_of_rectangle(x, y, self.grid.stretch) }
+        if self.is_periodic() {
+            self.periodic().at(x, y)
+        } else {
+            influence_of_rectangle(x, y, self.grid.stretch)
+        }
     }
 
     /// Displacement of a cell under its own unit pressure.

@@ -25,9 +25,11 @@ struct Level {
 }
 
 impl Extension {
-    /// Takes a set inside a window.
+    /// Takes a set inside a window; a decay of 0 extends by zeros.
     pub fn set(&mut self, set: &CellSet, window: Window, decay: f32) {
-        if self.window != Some(window) {
+        if decay <= 0.0 {
+            (self.window, self.levels) = (None, Vec::new());
+        } else if self.window != Some(window) {
             let mut levels = Vec::new();
             let (mut width, mut height) = (window.width, window.height);
             while (width > 1 || height > 1) && levels.len() < EXTENSION_LEVELS {

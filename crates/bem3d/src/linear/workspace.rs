@@ -4,7 +4,7 @@ use super::extension::Extension;
 use super::pcg::{Energy, Outcome, StoppingCriteria, Vectors, pcg};
 use super::preconditioner::{Identity, TorusInverse};
 use crate::geometry::CellSet;
-use crate::operator::{Operators, Recipe};
+use crate::operator::{Conditioning, Operators, Recipe};
 use crate::real::{Real, largest};
 use contact_model::Stop;
 
@@ -31,8 +31,10 @@ impl Workspace {
         }
         self.recipe = Some(recipe);
         let decay = operators.tuning().decay;
-        if let (_, Some(torus)) = operators.system(recipe) {
-            self.extension.set(&set, torus.window(), decay);
+        if let (Conditioning::Torus { extended, .. }, (_, Some(torus))) =
+            (recipe.conditioning, operators.system(recipe))
+        {
+            self.extension.set(&set, torus.window(), if extended { decay } else { 0.0 });
         }
         if recipe.is_single() {
             self.single.take(set);

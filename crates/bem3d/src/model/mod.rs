@@ -105,8 +105,8 @@ impl ContactModel for Bem3d {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contact_model::{Load, Outputs};
     use contact_model::SelfAffine;
+    use contact_model::{Load, Outputs};
 
     /// A rising path of one surface with and without the stiffness.
     #[test]

@@ -96,7 +96,13 @@ impl Prepared {
     }
 
     /// The stiffness of a state from guesses of q and of k.
-    fn tangent(&mut self, solved: &Solved, mut q: Option<Vec<f64>>, k: Option<f64>, stop: Stop<'_>) -> Stiffness {
+    fn tangent(
+        &mut self,
+        solved: &Solved,
+        mut q: Option<Vec<f64>>,
+        k: Option<f64>,
+        stop: Stop<'_>,
+    ) -> Stiffness {
         let misjudged = self.problem.operators.tuning().misjudged;
         let mut expected = k.map_or(1.0, |k| self.magnification(k));
         let mut steps = 0;
@@ -124,7 +130,12 @@ impl Prepared {
 
     /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the certificate does: as long as
     /// undecided cells could change it by more than the tolerance, the contact set is solved further.
-    pub(super) fn settle(&mut self, target: Target, mut limits: Limits, stop: Stop<'_>) -> (Solved, Option<Stiffness>) {
+    pub(super) fn settle(
+        &mut self,
+        target: Target,
+        mut limits: Limits,
+        stop: Stop<'_>,
+    ) -> (Solved, Option<Stiffness>) {
         let tuning = *self.problem.operators.tuning();
         let guess = self.guess(target, limits, stop);
         let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
@@ -147,7 +158,16 @@ impl Prepared {
             let share = tuning.tight_aim * self.options.tolerance / error;
             limits.tolerance = share.clamp(tuning.tighter.0, tuning.tighter.1) * limits.tolerance.min(before);
             let Solved { contact, p, d, q, residuals, steps, status, continuation } = solved;
-            let again = Solved { contact: contact.clone(), p: p.clone(), q: q.clone(), continuation, d, residuals, steps, status };
+            let again = Solved {
+                contact: contact.clone(),
+                p: p.clone(),
+                q: q.clone(),
+                continuation,
+                d,
+                residuals,
+                steps,
+                status,
+            };
             let next = active_set::resume(&mut self.problem, target, again, limits, stop);
             let steps = steps + next.steps;
             if next.residuals.worst() >= before {

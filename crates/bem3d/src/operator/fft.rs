@@ -219,7 +219,6 @@ impl InfluenceOperator<f64> for FftConvolution<f32> {
     }
 }
 
-
 /// Writes a tile of rows as columns: `columns[k * pitch + j] = lines[j * half + k]`.
 fn to_columns<T: Real>(lines: &[Complex<T>], half: usize, columns: &mut [Complex<T>], pitch: usize) {
     let mut row = lines.chunks_exact(half);

@@ -130,7 +130,7 @@ impl Operators {
         let Self { table, tuning, single, shortened, two_level, torus, .. } = self;
         let inverse = match conditioning {
             Conditioning::Identity => None,
-            Conditioning::Torus(lengths) => Some(planned(torus, window, tuning, || {
+            Conditioning::Torus { lengths, .. } => Some(planned(torus, window, tuning, || {
                 FftConvolution::new(window, lengths, table.inverse_symbol(lengths))
             })),
         };

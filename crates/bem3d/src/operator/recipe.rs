@@ -24,7 +24,12 @@ pub enum Conditioning {
     /// None.
     Identity,
     /// The inverse of the kernel wrapped on a torus around the window.
-    Torus(Lengths),
+    Torus {
+        /// Circular lengths of the torus.
+        lengths: Lengths,
+        /// Whether residuals are extended into the gaps between contacts.
+        extended: bool,
+    },
 }
 
 /// How one linear system on a set of cells is solved.
@@ -63,7 +68,9 @@ impl fmt::Display for Recipe {
         }
         match self.conditioning {
             Conditioning::Identity => Ok(()),
-            Conditioning::Torus(Lengths { x, y }) => write!(f, ", torus inverse {x} x {y}"),
+            Conditioning::Torus { lengths: Lengths { x, y }, extended } => {
+                write!(f, ", {}torus inverse {x} x {y}", if extended { "extended " } else { "" })
+            }
         }
     }
 }
@@ -136,7 +143,11 @@ impl Planner<'_> {
         let (window, tuning) = (set.window()?, self.tuning);
         let share = contact as f64 / window.count() as f64;
         let large = contact > tuning.largest_factor && share >= tuning.preconditioned_large;
-        let application = if large { Application::Fft(self.table.exact_lengths(window)) } else { self.fast(set, set, window) };
+        let application = if large {
+            Application::Fft(self.table.exact_lengths(window))
+        } else {
+            self.fast(set, set, window)
+        };
         let application = match application {
             Application::Fft(_) if !every_lag => {
                 Application::Fft(self.table.shortened_lengths(window, tuning.shortened))
@@ -144,7 +155,8 @@ impl Planner<'_> {
             other => other,
         };
         let conditioning = if large || share >= tuning.preconditioned {
-            Conditioning::Torus(self.table.torus_lengths(window))
+            let extended = contact >= tuning.extended;
+            Conditioning::Torus { lengths: self.table.torus_lengths(window), extended }
         } else {
             Conditioning::Identity
         };
@@ -237,7 +249,7 @@ mod tests {
         with(GRID, Boundary::Free, |planner| {
             let plan = |set: &CellSet, every_lag| planner.system(set, set.len(), every_lag).unwrap();
             let dense = plan(&every(3), true);
-            assert_eq!(dense.to_string(), "fft 4096 x 4096, f32 in f64, torus inverse 2160 x 2160");
+            assert_eq!(dense.to_string(), "fft 4096 x 4096, f32 in f64, extended torus inverse 2160 x 2160");
             assert!(dense.is_single());
             assert_eq!(plan(&every(3), false).application, Application::Fft(Lengths { x: 3072, y: 3072 }));
             let scattered = plan(&every(400), true);
