@@ -1,8 +1,10 @@
 //! Sampled surfaces: a rectangular map of cells and a line of elements.
 
 use crate::error::{Error, Result, positive};
+use std::ops::Range;
 
-/// Largest ratio of the sides of a cell. Beyond it the influence coefficients lose too many digits, and no instrument samples like that.
+/// Largest ratio of the sides of a cell. Beyond it the influence coefficients lose too many digits, and no
+/// instrument samples like that.
 const LARGEST_CELL_ASPECT: f64 = 1e4;
 
 /// Sides of a rectangle: Lx along x and Ly along y, in one length unit.
@@ -45,7 +47,8 @@ impl Size {
     /// Checks both sides.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a side that is not positive and finite: `side` where both are the same, else `side along x` or `along y`.
+    /// [`Error::Domain`] for a side that is not positive and finite: `side` where both are the same, else
+    /// `side along x` or `side along y`.
     pub fn validate(self) -> Result<()> {
         if self.is_square() {
             return positive("side", self.x).map(|_| ());
@@ -96,6 +99,32 @@ impl Cells {
     pub fn checked_count(self) -> Option<usize> {
         self.columns.checked_mul(self.rows)
     }
+
+    /// Checks that these cells can divide a rectangle of this size.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for no columns or rows, a side that is not positive, or cells whose sides differ by
+    /// a factor of more than 1e4.
+    ///
+    /// ```
+    /// use contact_model::{Cells, Size};
+    /// assert!(Cells { columns: 100, rows: 1 }.validate(Size { x: 2.0, y: 1.0 }).is_ok());
+    /// assert!(Cells { columns: 1, rows: 1 }.validate(Size { x: 1e5, y: 1.0 }).is_err());
+    /// ```
+    pub fn validate(self, size: Size) -> Result<()> {
+        for (name, count) in [("columns", self.columns), ("rows", self.rows)] {
+            if count == 0 {
+                return Err(Error::domain(name, 0.0, "at least 1"));
+            }
+        }
+        size.validate()?;
+        let aspect = (size.x / self.columns as f64) / (size.y / self.rows as f64);
+        if !(1.0 / LARGEST_CELL_ASPECT..=LARGEST_CELL_ASPECT).contains(&aspect) {
+            let expected = format!("between 1/{LARGEST_CELL_ASPECT} and {LARGEST_CELL_ASPECT}");
+            return Err(Error::domain("dx / dy (ratio of the sides of a cell)", aspect, expected));
+        }
+        Ok(())
+    }
 }
 
 /// As many rows as columns.
@@ -112,10 +141,11 @@ impl From<[usize; 2]> for Cells {
     }
 }
 
-/// Heights on a rectangle of equal cells, row-major (`heights[iy * columns + ix]`: rows along y, as NPY arrays `[row, column]`).
+/// Heights on a rectangle of equal cells, row-major (`heights[iy * columns + ix]`: rows along y, as NPY
+/// arrays `[row, column]`).
 ///
-/// Cell (ix, iy) covers `[ix, ix + 1] dx x [iy, iy + 1] dy`. Heights are finite, or minus infinity at undefined points, which cannot touch;
-/// at least one point is defined.
+/// Cell (ix, iy) covers `[ix, ix + 1] dx x [iy, iy + 1] dy`. Heights are finite, or minus infinity at
+/// undefined points, which cannot touch; at least one point is defined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightMap {
     cells: Cells,
@@ -125,12 +155,13 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// Takes `columns * rows` finite heights on a rectangle of the given size (same length unit). A single number for the cells or the
-    /// size makes it a square.
+    /// Takes `columns * rows` finite heights on a rectangle of the given size (same length unit). A single
+    /// number for the cells or the size makes it a square.
     ///
     /// # Errors
-    /// [`Error::Domain`] for no columns or rows, a side that is not positive, cells whose sides differ by more than 1e4, a height that is
-    /// NaN or infinite or a relief (highest minus lowest) that overflows; [`Error::Shape`] when the number of heights is not that of the cells.
+    /// Those of [`Cells::validate`]; [`Error::Domain`] for a height that is NaN or infinite or a relief
+    /// (highest minus lowest) that overflows; [`Error::Shape`] when the number of heights is not that of the
+    /// cells.
     ///
     /// ```
     /// use contact_model::HeightMap;
@@ -142,6 +173,39 @@ impl HeightMap {
         let (cells, size) = checked_grid(cells.into(), size.into(), heights.len())?;
         check_heights(&heights, |i| place(cells, i))?;
         Ok(Self { cells, size, heights, undefined: 0 })
+    }
+
+    /// The map of the heights `height(ix, iy)`, in the order of storage. The centre of cell (ix, iy) is at
+    /// `((ix + 1/2) dx, (iy + 1/2) dy)`.
+    ///
+    /// # Errors
+    /// As [`HeightMap::new`]; [`Error::Domain`] when the map does not fit in memory.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// let map = HeightMap::from_fn([2, 3], [2.0, 3.0], |ix, iy| (10 * iy + ix) as f64)?;
+    /// assert_eq!(map.heights(), [0.0, 1.0, 10.0, 11.0, 20.0, 21.0]);
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn from_fn(
+        cells: impl Into<Cells>,
+        size: impl Into<Size>,
+        mut height: impl FnMut(usize, usize) -> f64,
+    ) -> Result<Self> {
+        let (cells, size) = (cells.into(), size.into());
+        cells.validate(size)?;
+        let mut heights = Vec::new();
+        match cells.checked_count() {
+            Some(count) if heights.try_reserve_exact(count).is_ok() => {}
+            _ => {
+                let count = cells.columns as f64 * cells.rows as f64;
+                return Err(Error::domain("cells", count, "a map that fits in memory"));
+            }
+        }
+        for iy in 0..cells.rows {
+            heights.extend((0..cells.columns).map(|ix| height(ix, iy)));
+        }
+        Self::new(cells, size, heights)
     }
 
     /// The same from heights that are NaN at undefined points, which cannot touch.
@@ -177,11 +241,7 @@ impl HeightMap {
             }
         }
         if undefined == heights.len() {
-            return Err(Error::domain(
-                "defined points",
-                0.0,
-                "at least 1 (every height of the map is undefined)",
-            ));
+            return Err(no_point());
         }
         check_relief(low, high)?;
         Ok(Self { cells, size, heights, undefined })
@@ -241,6 +301,83 @@ impl HeightMap {
     pub fn highest(&self) -> f64 {
         highest(&self.heights)
     }
+
+    /// The map with x and y exchanged.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// let map = HeightMap::new([3, 2], [6.0, 1.0], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0])?.transposed();
+    /// assert_eq!((map.columns(), map.dx(), map.dy()), (2, 0.5, 2.0));
+    /// assert_eq!(map.heights(), [0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let Cells { columns, rows } = self.cells;
+        let heights = (0..columns).flat_map(|ix| self.heights[ix..].iter().step_by(columns).copied());
+        Self {
+            cells: Cells { columns: rows, rows: columns },
+            size: Size { x: self.size.y, y: self.size.x },
+            heights: heights.collect(),
+            undefined: self.undefined,
+        }
+    }
+
+    /// The map with x reversed: every row from its last column to its first.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// let map = HeightMap::new([3, 1], [3.0, 1.0], vec![0.0, 1.0, 2.0])?;
+    /// assert_eq!(map.mirrored().heights(), [2.0, 1.0, 0.0]);
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let rows = self.heights.chunks_exact(self.cells.columns);
+        Self { heights: rows.flat_map(|row| row.iter().rev().copied()).collect(), ..*self }
+    }
+
+    /// The part of the map in the given ranges of columns and rows, with the same cells.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for an empty range, a range that leaves the map, and a part without a defined point.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// let map = HeightMap::new([3, 2], [6.0, 1.0], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0])?;
+    /// let part = map.cropped(1..3, 0..2)?;
+    /// assert_eq!((part.heights(), part.dx(), part.dy()), (&[1.0, 2.0, 4.0, 5.0][..], 2.0, 0.5));
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn cropped(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Self> {
+        for (name, range, count) in [("columns", &columns, self.columns()), ("rows", &rows, self.rows())] {
+            if range.is_empty() || range.end > count {
+                let (name, end) = (format!("end of the range of {name}"), range.end as f64);
+                return Err(Error::domain(
+                    name,
+                    end,
+                    format!("more than {} and at most {count}", range.start),
+                ));
+            }
+        }
+        let cells = Cells { columns: columns.len(), rows: rows.len() };
+        let share = |part: usize, all: usize| part as f64 / all as f64;
+        let size = Size {
+            x: self.size.x * share(cells.columns, self.columns()),
+            y: self.size.y * share(cells.rows, self.rows()),
+        };
+        let inside = self.heights.chunks_exact(self.columns()).skip(rows.start).take(cells.rows);
+        let heights: Vec<f64> = inside.flat_map(|row| row[columns.clone()].iter().copied()).collect();
+        let undefined = heights.iter().filter(|h| h.is_infinite()).count();
+        if undefined == heights.len() {
+            return Err(no_point());
+        }
+        Ok(Self { cells, size, heights, undefined })
+    }
+}
+
+fn no_point() -> Error {
+    Error::domain("defined points", 0.0, "at least 1 (every height of the map is undefined)")
 }
 
 /// `sqrt(a b)` without overflow on the way; a itself where both are the same.
@@ -253,21 +390,11 @@ fn place(cells: Cells, i: usize) -> String {
 }
 
 fn checked_grid(cells: Cells, size: Size, heights: usize) -> Result<(Cells, Size)> {
-    let Cells { columns, rows } = cells;
-    for (name, count) in [("columns", columns), ("rows", rows)] {
-        if count == 0 {
-            return Err(Error::domain(name, 0.0, "at least 1"));
-        }
-    }
-    size.validate()?;
+    cells.validate(size)?;
     if cells.checked_count() != Some(heights) {
+        let Cells { columns, rows } = cells;
         let expected = format!("{rows} rows x {columns} columns").into();
         return Err(Error::Shape { name: "heights".into(), found: heights, expected });
-    }
-    let aspect = (size.x / columns as f64) / (size.y / rows as f64);
-    if !(1.0 / LARGEST_CELL_ASPECT..=LARGEST_CELL_ASPECT).contains(&aspect) {
-        let expected = format!("between 1/{LARGEST_CELL_ASPECT} and {LARGEST_CELL_ASPECT}");
-        return Err(Error::domain("dx / dy (ratio of the sides of a cell)", aspect, expected));
     }
     Ok((cells, size))
 }
@@ -283,8 +410,8 @@ impl Line {
     /// Takes the heights of the elements of a line of the given length (same length unit).
     ///
     /// # Errors
-    /// [`Error::Domain`] for a length that is not positive, a height that is NaN or infinite or a relief that overflows;
-    /// [`Error::Shape`] for no heights at all.
+    /// [`Error::Domain`] for a length that is not positive, a height that is NaN or infinite or a relief that
+    /// overflows; [`Error::Shape`] for no heights at all.
     pub fn new(length: f64, heights: Vec<f64>) -> Result<Self> {
         positive("length", length)?;
         if heights.is_empty() {
@@ -370,7 +497,35 @@ mod tests {
             "defined points = 0: expected at least 1 (every height of the map is undefined)"
         );
         assert!(HeightMap::with_undefined(2, 1.0, vec![0.0, f64::NAN, f64::INFINITY, 0.0]).is_err());
+        assert!(HeightMap::from_fn(usize::MAX, 1.0, |_, _| 0.0).is_err());
+        assert!(HeightMap::from_fn(2, 1.0, |_, _| f64::NAN).is_err());
         assert!(Line::new(1.0, vec![1e308, -1e308]).is_err());
         assert!(Line::new(1.0, vec![]).is_err());
+    }
+
+    #[test]
+    fn oblong_cells_are_named() {
+        let e = HeightMap::new([1, 10], [2e4, 10.0], vec![0.0; 10]).unwrap_err();
+        assert!(e.to_string().starts_with("dx / dy (ratio of the sides of a cell) = 20000: expected"), "{e}");
+        assert!(HeightMap::new([1, 10], [1e4, 10.0], vec![0.0; 10]).is_ok());
+        let e = Size { x: 1.0, y: -2.0 }.validate().unwrap_err();
+        assert_eq!(e.to_string(), "side along y = -2: expected a finite number > 0");
+    }
+
+    #[test]
+    fn undefined_points_go_with_their_cells() {
+        let nan = f64::NAN;
+        let map = HeightMap::with_undefined([3, 2], [3.0, 2.0], vec![0.0, nan, 2.0, nan, 4.0, 5.0]).unwrap();
+        let turned = map.transposed();
+        assert_eq!(turned.heights(), [0.0, f64::NEG_INFINITY, f64::NEG_INFINITY, 4.0, 2.0, 5.0]);
+        assert_eq!((turned.undefined(), turned.transposed()), (2, map.clone()));
+        assert_eq!(map.mirrored().heights(), [2.0, f64::NEG_INFINITY, 0.0, 5.0, 4.0, f64::NEG_INFINITY]);
+        assert_eq!(map.mirrored().mirrored(), map);
+        assert_eq!(map.cropped(2..3, 0..2).unwrap().undefined(), 0);
+        assert_eq!(map.cropped(0..3, 0..2).unwrap(), map);
+        assert!(map.cropped(1..2, 0..1).unwrap_err().to_string().starts_with("defined points = 0"));
+        for (columns, rows) in [(1..1, 0..2), (2..4, 0..2), (0..3, 3..4)] {
+            assert!(matches!(map.cropped(columns, rows), Err(Error::Domain { .. })));
+        }
     }
 }

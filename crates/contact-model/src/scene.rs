@@ -47,7 +47,8 @@ impl Scene {
         Ok(Self { pair: Some(pair), ..Self::new(surface, pair.modulus()?) })
     }
 
-    /// Checks the numbers that every model relies on: modulus, bodies, effects, outputs and the surface's own parameters.
+    /// Checks the numbers that every model relies on: modulus, bodies, effects, outputs and the surface's own
+    /// parameters.
     ///
     /// # Errors
     /// [`Error::Domain`] with the first value that makes no sense, or a modulus that is not E* of the pair.
@@ -160,7 +161,8 @@ impl Surface {
             Self::Cone { .. } => "a cone",
             Self::PowerLaw { .. } => "a power-law body",
             Self::FlatCircle { .. } => "a flat circular punch",
-            Self::Flat { .. } => "a flat square",
+            Self::Flat { size } if size.is_square() => "a flat square",
+            Self::Flat { .. } => "a flat rectangle",
             Self::Sine { .. } => "a sinusoidal surface",
         }
     }
@@ -193,7 +195,8 @@ impl Surface {
     }
 }
 
-/// A self-affine surface: `C_2D(q) ~ q^(-2 (H + 1))` from the longest wave to the grid's shortest (Eqs. 3, 4).
+/// A self-affine surface: `C_2D(q) ~ q^(-2 (H + 1))` from the longest wave to the grid's shortest (Eqs. 3,
+/// 4).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffine {
     /// Sides of the rectangle; a line that stands for it has the length [`line_length`] of `sqrt(Lx Ly)`.
@@ -202,24 +205,27 @@ pub struct SelfAffine {
     pub hurst: f64,
     /// What fixes the vertical scale.
     pub amplitude: Amplitude,
-    /// Roll-off wavenumber q_r: below it the spectrum is the constant `C(q_r)`. `None`: no roll-off (the paper's case).
+    /// Roll-off wavenumber q_r: below it the spectrum is the constant `C(q_r)`. `None`: no roll-off (the
+    /// paper's case).
     pub roll_off: Option<f64>,
-    /// Largest wavenumber. `None`: the grid's shortest wave, `|q| <= pi / cell`, on a circle.
+    /// Largest wavenumber. `None`: the grid's shortest isotropic wave, `|q| <= pi / max(dx, dy)`.
     pub short_cutoff: Option<f64>,
 }
 
 /// What fixes the vertical scale of a self-affine surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
-    /// The rms height of the sampled surface, exactly, at any resolution (the paper's choice: F_bar is counted in it).
+    /// The rms height of the sampled surface, exactly, at any resolution (the paper's choice: F_bar is
+    /// counted in it).
     RmsHeight(f64),
-    /// The constant `C_2D(q_0)` at `q_0 = 2 pi / L`, `L = sqrt(Lx Ly)` (length^4): finer grids add waves and leave the long ones alone.
-    /// In one dimension `C_1D = pi q C_2D` (Eq. 17).
+    /// The constant `C_2D(q_0)` at `q_0 = 2 pi / L`, `L = sqrt(Lx Ly)` (length^4): finer grids add waves and
+    /// leave the long ones alone. In one dimension `C_1D = pi q C_2D` (Eq. 17).
     Spectrum(f64),
 }
 
 impl SelfAffine {
-    /// The paper's surface: no roll-off, spectrum to the grid's end, prescribed rms height. `fractal_dimension` = 3 - H.
+    /// The paper's surface: no roll-off, spectrum to the grid's end, prescribed rms height.
+    /// `fractal_dimension` = 3 - H.
     ///
     /// # Errors
     /// [`Error::Domain`] for a fractal dimension outside [2, 3] or a side or height that is not positive.
@@ -275,7 +281,8 @@ pub fn line_length(side: f64) -> f64 {
     side * std::f64::consts::FRAC_2_SQRT_PI
 }
 
-/// Effects beyond linear elastic normal contact with free boundaries. Off unless named; a model that lacks one refuses it.
+/// Effects beyond linear elastic normal contact with free boundaries. Off unless named; a model that lacks
+/// one refuses it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Effects {
     /// What lies outside the square.

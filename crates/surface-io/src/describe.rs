@@ -61,7 +61,8 @@ pub fn describe(map: &HeightMap) -> Description {
     let (cells, side) = (map.columns(), map.length());
     let ends = |(low, high): (f64, f64), &h: &f64| (low.min(h), high.max(h));
     let (low, high) = map.heights().iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
-    let spectrum = windowed(map, 0.5 * low + 0.5 * high).map_or_else(Vec::new, |map| radial_spectrum(&map));
+    let spectrum = windowed(map, 0.5 * low + 0.5 * high)
+        .map_or_else(Vec::new, |map| radial_spectrum(&map).unwrap_or_default());
     let fitted = [TAU / side * FIRST_RING, LAST_SHARE * PI * cells as f64 / side];
     let hurst = hurst_from_spectrum(&spectrum, fitted[0], fitted[1]).ok();
     Description {
