@@ -222,13 +222,13 @@ fn too_few_rounds_are_an_error_or_enough() {
     let rough = scene(rough_map(2.2, 65, 4).unwrap());
     let exact = press(&rough_map(2.2, 65, 4).unwrap(), Load::Force(1.0));
     for rounds in 0..12 {
-        let model = Bem3d { tolerance: TOLERANCE, rounds, ..Bem3d::default() };
+        let model = Bem3d { tolerance: TOLERANCE, max_outer_iterations: rounds, ..Bem3d::default() };
         match model.prepare(&rough, 0).unwrap().solve(Load::Force(1.0)) {
             Ok(state) => {
                 assert_relative_eq!(state.stiffness.unwrap(), exact.stiffness.unwrap(), max_relative = SAME);
             }
             Err(Error::NotConverged { best }) => assert_ne!(best.report.status, Status::Converged),
-            Err(other) => panic!("{rounds} rounds: {other}"),
+            Err(other) => panic!("{rounds} outer iterations: {other}"),
         }
     }
 }

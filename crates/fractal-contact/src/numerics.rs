@@ -52,7 +52,7 @@ pub enum Numerics {
 }
 
 /// What `[models.bem3d]` says by default.
-const BEM3D: Bem3d = Bem3d { cells: 257, tolerance: 1e-6, rounds: 200, method: Method::Auto };
+const BEM3D: Bem3d = Bem3d { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto };
 
 /// A model behind one of the two traits.
 #[allow(missing_debug_implementations)] // Trait objects.
@@ -260,7 +260,7 @@ fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
         }
     }
     if let Some(entry) = table.find("rounds") {
-        model.rounds = entry.count(1)? as usize;
+        model.max_outer_iterations = entry.count(1)? as usize;
     }
     if let Some(entry) = table.find("method") {
         let words =

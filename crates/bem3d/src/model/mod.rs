@@ -94,7 +94,7 @@ impl ContactModel for Bem3d {
             surface => {
                 let nearly_square = Cells::nearly_square(self.cells, surface.size());
                 let cells = Cells { rows: self.rows.unwrap_or(nearly_square.rows), ..nearly_square };
-                surface_gen::height_map(surface, cells.columns, seed)?
+                surface_gen::height_map(surface, cells, seed)?
             }
         };
         let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));

@@ -109,7 +109,7 @@ impl Prepared {
         let boundary = self.problem.operators.table().boundary();
         let grid = self.problem.grid();
         let index: Vec<u32> = contact.index(grid).map(|i| i as u32).collect();
-        let sizes = surface_gen::patches(grid.columns, &index, boundary);
+        let sizes = surface_gen::patches([grid.columns, grid.rows], &index, boundary);
         let areas =
             sizes.into_iter().map(|size| self.nondimensional.area(size as f64)).collect::<Result<_>>()?;
         Ok(Some(Patches::new(areas)))

@@ -62,7 +62,7 @@ pub(super) const CASES: [Case; 9] = [
         solve: unattainable,
     },
     Case {
-        name: "a limit on rounds",
+        name: "a limit on outer iterations",
         why: "an interrupted active set is a plausible wrong answer",
         asserted: "NotConverged with the best state and its own certificate, or the k of the unlimited solve",
         bound: SAME,
@@ -269,7 +269,7 @@ fn few_rounds(ledger: &mut Ledger, _: Effort) -> Result<()> {
     let exact = press(ledger, &map, Load::Force(1.0))?;
     let mut refused = 0;
     for rounds in 0..12 {
-        let model = Bem3d { rounds, ..tight() };
+        let model = Bem3d { max_outer_iterations: rounds, ..tight() };
         match model.prepare(&watched(&map), 0)?.solve(Load::Force(1.0)) {
             Ok(state) => {
                 ledger
@@ -279,10 +279,10 @@ fn few_rounds(ledger: &mut Ledger, _: Effort) -> Result<()> {
             Err(Error::NotConverged { best }) => {
                 refused += 1;
                 ledger.must(best.report.status != Status::Converged, || {
-                    format!("{rounds} rounds: {:?}", best.report)
+                    format!("{rounds} outer iterations: {:?}", best.report)
                 });
                 ledger.must(!best.report.certificate.meets(model.tolerance), || {
-                    format!("{rounds} rounds: {} is good enough", best.report.certificate)
+                    format!("{rounds} outer iterations: {} is good enough", best.report.certificate)
                 });
             }
             Err(other) => return Err(other),
