@@ -1,9 +1,7 @@
 //! The slow, obviously right twin: try every contact set.
 
-use crate::plain::eliminate;
-use bem3d::love::influence;
+use crate::plain::{PlainSum, eliminate};
 use contact_model::{HeightMap, Load};
-use std::f64::consts::PI;
 
 /// A solution of the contact conditions on a small map with modulus 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,12 +39,10 @@ pub fn every_contact_set(map: &HeightMap, cells: &[usize], load: Load) -> Vec<Sm
 }
 
 fn one_set(map: &HeightMap, contact: Vec<usize>, outside: &[usize], load: Load) -> Option<SmallContact> {
-    let n = map.columns();
+    let plain = PlainSum::of(map);
     let highest = map.highest();
     let z = |i: usize| highest - map.heights()[i];
-    // Displacement of cell i under unit force on cell j.
-    let k =
-        |i: usize, j: usize| influence((i % n).abs_diff(j % n), (i / n).abs_diff(j / n)) / (PI * map.dx());
+    let k = |i: usize, j: usize| plain.between(i, j);
     let matrix: Vec<Vec<f64>> = contact.iter().map(|&i| contact.iter().map(|&j| k(i, j)).collect()).collect();
     // f = d q - r with K q = 1, K r = z.
     let q = eliminate(matrix.clone(), vec![1.0; contact.len()]);
@@ -78,6 +74,8 @@ fn one_set(map: &HeightMap, contact: Vec<usize>, outside: &[usize], load: Load) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bem3d::love::influence;
+    use std::f64::consts::PI;
     use approx::assert_relative_eq;
 
     #[test]

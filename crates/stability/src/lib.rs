@@ -47,4 +47,4 @@ pub use case::{Case, Effort, Status, Verdict, run};
 pub use cases::cases;
 pub use enumerate::{SmallContact, every_contact_set};
 pub use maps::{embedded, map, mirrored, relief, rotated, rough, rough_map, scene, stretched, transposed};
-pub use plain::{PlainSum, Relaxed, relaxed};
+pub use plain::{PlainSum, Relaxed, relaxed, relaxed_by};

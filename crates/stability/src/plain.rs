@@ -1,6 +1,6 @@
 //! The slow, obviously right twins: sums over pairs, Gauss's elimination, projected Gauss-Seidel.
 
-use bem3d::love::influence;
+use bem3d::love::influence_of_rectangle;
 use contact_model::HeightMap;
 use std::f64::consts::PI;
 
@@ -10,36 +10,89 @@ const OVER: f64 = 1.6;
 const SETTLED: f64 = 1e-15;
 const SWEEPS: usize = 3000;
 
+/// Periods of the images that a periodic kernel sums up on each side, for an extrapolation to infinitely many. What images beyond m
+/// periods add to a difference of the kernel is a series of odd powers of 1/(m + 1/2): four sums leave 1/(m + 1/2)^7.
+const IMAGES: [isize; 4] = [3, 6, 12, 24];
+
 /// Displacements of the cells of a grid under forces on them, by the plain sum, for modulus 1.
 #[derive(Debug, Clone)]
 pub struct PlainSum {
-    cells: usize,
+    columns: usize,
+    rows: usize,
     /// Displacement at lag (x, y) under a unit force, row-major.
     kernel: Vec<f64>,
 }
 
 impl PlainSum {
-    /// A table of `cells` x `cells` lags of `cell` size.
-    pub fn new(cells: usize, cell: f64) -> Self {
-        let kernel = (0..cells * cells).map(|i| influence(i % cells, i / cells) / (PI * cell)).collect();
-        Self { cells, kernel }
+    /// A table of all lags of a grid of `cells` (columns, rows) with sides `dx`, `dy`, on a half-space that is unloaded outside.
+    pub fn new([columns, rows]: [usize; 2], [dx, dy]: [f64; 2]) -> Self {
+        let (unit, stretch) = scales(dx, dy);
+        let lag = |i: usize| influence_of_rectangle(i % columns, i / columns, stretch) / (PI * unit);
+        Self { columns, rows, kernel: (0..columns * rows).map(lag).collect() }
     }
 
     /// The table for a map.
     pub fn of(map: &HeightMap) -> Self {
-        Self::new(map.columns(), map.dx())
+        Self::new([map.columns(), map.rows()], [map.dx(), map.dy()])
+    }
+
+    /// The table for a map that repeats itself, from sums of Love's kernel over its images: no Fourier transform and no spectrum.
+    ///
+    /// The sum has no limit but its differences have one; the kernel is counted from its smallest value. Accuracy about 1e-10 of the
+    /// largest one. Cost: some 3000 influence coefficients a lag, more for long rectangles.
+    pub fn periodic(map: &HeightMap) -> Self {
+        let (columns, rows) = (map.columns(), map.rows());
+        let (unit, stretch) = scales(map.dx(), map.dy());
+        // As many images in each direction as make about a square.
+        let ratio = map.size().x / map.size().y;
+        let odd = |r: f64| 2 * ((r - 1.0) / 2.0).round() as isize + 1;
+        let (along_x, along_y) = (odd((1.0 / ratio).max(1.0)), odd(ratio.max(1.0)));
+        let image = |lag: usize, i: isize, n: usize| (lag.cast_signed() + i * n.cast_signed()).unsigned_abs();
+        let sum = |x: usize, y: usize, m: isize| -> f64 {
+            // A window of images of one shape: (m + 1/2) along_x periods on each side along x.
+            let (mx, my) = (m * along_x + (along_x - 1) / 2, m * along_y + (along_y - 1) / 2);
+            (-mx..=mx)
+                .flat_map(|i| (-my..=my).map(move |j| (i, j)))
+                .map(|(i, j)| influence_of_rectangle(image(x, i, columns), image(y, j, rows), stretch))
+                .sum()
+        };
+        let origin = IMAGES.map(|m| sum(0, 0, m));
+        let (half_x, half_y) = (columns / 2 + 1, rows / 2 + 1);
+        let mut quarter = vec![0.0; half_x * half_y];
+        for (i, value) in quarter.iter_mut().enumerate().skip(1) {
+            let below: Vec<f64> =
+                IMAGES.iter().zip(origin).map(|(&m, origin)| sum(i % half_x, i / half_x, m) - origin).collect();
+            // value + c1 / M + c3 / M^3 + c5 / M^5 = below.
+            let row = |&m: &isize| {
+                let inverse = (m as f64 + 0.5).recip();
+                vec![1.0, inverse, inverse.powi(3), inverse.powi(5)]
+            };
+            *value = eliminate(IMAGES.iter().map(row).collect(), below)[0];
+        }
+        let lowest = quarter.iter().copied().fold(0.0, f64::min);
+        let fold = |lag: usize, n: usize| lag.min(n - lag);
+        let at = |i: usize| {
+            let (x, y) = (fold(i % columns, columns), fold(i / columns, rows));
+            (quarter[y * half_x + x] - 1.1 * lowest) / (PI * unit)
+        };
+        Self { columns, rows, kernel: (0..columns * rows).map(at).collect() }
+    }
+
+    /// Mean of a periodic kernel: the displacement of all cells under a unit force spread over all of them.
+    pub fn mean(&self) -> f64 {
+        self.kernel.iter().sum::<f64>() / self.kernel.len() as f64
     }
 
     /// Displacement of cell i under a unit force on cell j.
     pub fn between(&self, i: usize, j: usize) -> f64 {
-        let n = self.cells;
+        let n = self.columns;
         self.kernel[(i / n).abs_diff(j / n) * n + (i % n).abs_diff(j % n)]
     }
 
-    /// Displacement of every cell under forces on some. Cost O(N^2 n).
+    /// Displacement of every cell under forces on some. Cost O(N n) for N cells and n forces.
     pub fn displacement(&self, forces: &[(usize, f64)]) -> Vec<f64> {
-        let n = self.cells;
-        let mut u = vec![0.0; n * n];
+        let n = self.columns;
+        let mut u = vec![0.0; n * self.rows];
         for &(j, f) in forces {
             let (jx, jy) = (j % n, j / n);
             for (y, row) in u.chunks_exact_mut(n).enumerate() {
@@ -59,6 +112,12 @@ impl PlainSum {
     }
 }
 
+/// Side of the square cell of the same area, and the side along x in units of it.
+fn scales(dx: f64, dy: f64) -> (f64, f64) {
+    let square = (dx / dy - 1.0).abs() < 1e-14;
+    if square { (dx, 1.0) } else { ((dx * dy).sqrt(), (dx / dy).sqrt()) }
+}
+
 /// A state found by relaxation, modulus 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relaxed {
@@ -75,7 +134,11 @@ pub struct Relaxed {
 /// No guess, no contact set, no transform: slow and independent of everything that `bem3d` does. Cost O(n^2) a sweep and in
 /// memory for n cells within reach; a few hundred sweeps on 33 x 33 cells.
 pub fn relaxed(map: &HeightMap, approach: f64) -> Relaxed {
-    let sum = PlainSum::of(map);
+    relaxed_by(&PlainSum::of(map), map, approach)
+}
+
+/// The same with a given kernel; that of a periodic map may be counted from any value that leaves it positive, and the approach with it.
+pub fn relaxed_by(sum: &PlainSum, map: &HeightMap, approach: f64) -> Relaxed {
     let highest = map.highest();
     let reach: Vec<usize> =
         (0..map.heights().len()).filter(|&i| highest - map.heights()[i] < approach).collect();
@@ -146,11 +209,28 @@ mod tests {
 
     #[test]
     fn rows_of_the_plain_sum_are_its_pairs() {
-        let plain = PlainSum::new(5, 0.3);
-        let forces = [(3, 1.0), (12, -2.0), (24, 0.5)];
+        let plain = PlainSum::new([5, 4], [0.3, 0.2]);
+        let forces = [(3, 1.0), (12, -2.0), (19, 0.5)];
         for (i, u) in plain.displacement(&forces).iter().enumerate() {
             let pairs: f64 = forces.iter().map(|&(j, f)| plain.between(i, j) * f).sum();
             assert_relative_eq!(*u, pairs, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_wave_of_a_periodic_kernel_keeps_its_shape() {
+        // Any kernel that repeats itself turns a wave of pressure into a wave of displacement.
+        for (cells, size) in [([8, 8], [1.0, 1.0]), ([9, 5], [1.0, 1.0]), ([6, 3], [4.0, 1.0])] {
+            let map = HeightMap::new(cells, size, vec![0.0; cells[0] * cells[1]]).unwrap();
+            let wave = |i: usize| (PI * 2.0 * (i % cells[0]) as f64 / cells[0] as f64).cos();
+            let forces: Vec<(usize, f64)> = (0..cells[0] * cells[1]).map(|i| (i, wave(i))).collect();
+            let u = PlainSum::periodic(&map).displacement(&forces);
+            // 2 pi / q over pi E* at long waves; larger for short ones, which other waves of the continuum add to.
+            let continuum = 2.0 * size[0] / (2.0 * PI) * (cells[0] * cells[1]) as f64 / (size[0] * size[1]);
+            assert!((0.9..1.2).contains(&(u[0] / continuum)), "{} {continuum}", u[0]);
+            for (i, u_i) in u.iter().enumerate() {
+                assert_relative_eq!(*u_i, u[0] * wave(i), epsilon = 1e-9 * u[0]);
+            }
         }
     }
 

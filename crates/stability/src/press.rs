@@ -96,7 +96,7 @@ pub(crate) fn witness(
         format!("{load:?}: {:?}, {}", report.status, report.certificate)
     });
     let (p, d, k) = (pressure(state)?, approach(state)?, stiffness(state)?);
-    let area = map.dx() * map.dx();
+    let area = map.dx() * map.dy();
     let forces: Vec<(usize, f64)> =
         p.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, p)| (i, p * area)).collect();
     ledger.must(p.iter().all(|p| *p >= 0.0 && p.is_finite()), || format!("{load:?}: a pull"));
@@ -114,7 +114,7 @@ pub(crate) fn witness(
             format!("{load:?}: {name} {force}, sum of pressures {sum}")
         });
     }
-    if map.columns() > LARGEST_GRID {
+    if map.heights().len() > LARGEST_GRID * LARGEST_GRID {
         return Ok(());
     }
     let plain = PlainSum::of(map);

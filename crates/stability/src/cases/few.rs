@@ -152,7 +152,7 @@ fn spike(ledger: &mut Ledger, _: Effort) -> Result<()> {
 fn smallest_grids(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for (cells, printed) in [(1, 0.891_106_989), (2, 0.993_186_221), (3, 1.040_161_425)] {
         let all: Vec<usize> = (0..cells * cells).collect();
-        let exact = PlainSum::new(cells, 1.0 / cells as f64).stiffness(&all);
+        let exact = PlainSum::new([cells; 2], [1.0 / cells as f64; 2]).stiffness(&all);
         // Half a unit of the ninth printed digit.
         ledger.near("printed k", exact, printed);
         let flat = map(cells, 1.0, |_, _| 0.0)?;

@@ -5,6 +5,7 @@ mod few;
 mod limits;
 mod periodic;
 mod range;
+mod rectangles;
 mod shapes;
 mod surfaces;
 mod ties;
@@ -26,6 +27,7 @@ pub fn cases() -> Vec<Case> {
         &range::CASES,
         &units::CASES,
         &periodic::CASES,
+        &rectangles::CASES,
         &limits::CASES,
         &chance::CASES,
     ]

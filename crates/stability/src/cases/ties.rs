@@ -65,7 +65,7 @@ fn flat_top(ledger: &mut Ledger, _: Effort) -> Result<()> {
 fn flat_maps(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for cells in [2, 7, 31] {
         let all: Vec<usize> = (0..cells * cells).collect();
-        let exact = PlainSum::new(cells, 1.0 / cells as f64).stiffness(&all);
+        let exact = PlainSum::new([cells; 2], [1.0 / cells as f64; 2]).stiffness(&all);
         for height in [0.0, 1e9] {
             let flat = map(cells, 1.0, |_, _| height)?;
             for size in [1e-200, 1e-12, 0.3, 1e12, 1e200] {
