@@ -83,3 +83,136 @@ pub fn criteria(limits: Limits, error: f64, d: f64, tuning: &Tuning) -> Stopping
     let floor = tuning.floor * limits.tolerance * limits.height.unwrap_or(d);
     StoppingCriteria { reduction, energy: None, floor, steps: tuning.inner_steps }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use contact_model::never;
+
+    const TUNING: Tuning = Tuning::DEFAULT;
+    const TIGHT: Limits = Limits { tolerance: 1e-6, height: Some(1.0), outer_iterations: 100, factor: true };
+
+    /// A complete evaluation with these residuals.
+    fn seen(error: f64) -> Evaluated {
+        let residuals = Residuals { duality_gap: error, ..Residuals::default() };
+        Evaluated { residuals, complete: true, factored: false }
+    }
+
+    /// The first decision.
+    fn first(evaluated: Evaluated, d: f64) -> Decision {
+        Progress::new(TIGHT, false).judge(evaluated, d, &TUNING, &never)
+    }
+
+    /// The decisions on a series of evaluations at an approach of 1.
+    fn judged(limits: Limits, errors: &[f64]) -> Vec<Decision> {
+        let mut progress = Progress::new(limits, false);
+        errors.iter().map(|&error| progress.judge(seen(error), 1.0, &TUNING, &never)).collect()
+    }
+
+    #[test]
+    fn converged_is_complete_and_settled_and_within_the_tolerance() {
+        const CONVERGED: Decision = Decision::End(Status::Converged);
+        let good = seen(1e-6);
+        assert_eq!(first(good, 1.0), CONVERGED);
+        assert_eq!(first(seen(1.01e-6), 1.0), Decision::Continue { best: true });
+        // Any of the residuals counts.
+        for residuals in [
+            Residuals { penetration: 1.01e-6, ..Residuals::default() },
+            Residuals { complementarity: 1.01e-6, ..Residuals::default() },
+        ] {
+            assert_ne!(first(Evaluated { residuals, ..good }, 1.0), CONVERGED, "{residuals:?}");
+        }
+        // The gap is not known on every cell.
+        assert_eq!(first(Evaluated { complete: false, ..good }, 1.0), Decision::Continue { best: false });
+        // A factored set may leave the rounding of its approach, here 1e-12 x 1000, and no more.
+        let factored = |deepest| {
+            let residuals = Residuals { deepest, ..good.residuals };
+            first(Evaluated { residuals, factored: true, ..good }, 1e3)
+        };
+        assert_eq!(factored(5e-10), CONVERGED);
+        assert_eq!(factored(2e-9), Decision::Continue { best: true });
+        // A converged state is not stopped any more.
+        assert_eq!(Progress::new(TIGHT, false).judge(good, 1.0, &TUNING, &|| true), CONVERGED);
+        let stopped = Progress::new(TIGHT, false).judge(seen(1.0), 1.0, &TUNING, &|| true);
+        assert_eq!(stopped, Decision::End(Status::Stopped));
+    }
+
+    #[test]
+    fn patience_is_for_outer_iterations_without_better_residuals() {
+        // The first residuals are the best, patience + 1 more are no better, the next one ends it.
+        let decisions = judged(TIGHT, &[1e-3; Tuning::DEFAULT.patience + 3]);
+        let (last, before) = decisions.split_last().unwrap();
+        assert_eq!(*last, Decision::End(Status::Stagnated));
+        assert_eq!(before[0], Decision::Continue { best: true });
+        assert!(before[1..].iter().all(|&decision| decision == Decision::Continue { best: false }));
+        // What is followed by a gap in single precision takes no patience: only the limit of iterations ends it.
+        let decisions = judged(TIGHT, &[0.5; TIGHT.outer_iterations + 1]);
+        let end = Decision::End(Status::IterationLimit);
+        assert_eq!(decisions.iter().position(|&d| d == end), Some(TIGHT.outer_iterations));
+        // Better residuals begin anew.
+        let errors: Vec<f64> =
+            (0..5 * TUNING.patience).map(|i| 1e-3 * 0.8f64.powi((i / 10) as i32)).collect();
+        assert!(judged(TIGHT, &errors).iter().all(|d| matches!(d, Decision::Continue { .. })));
+    }
+
+    #[test]
+    fn residuals_are_better_when_they_fall_by_a_tenth() {
+        let best = |decisions: &[Decision]| -> Vec<usize> {
+            let best = Decision::Continue { best: true };
+            (0..decisions.len()).filter(|&i| decisions[i] == best).collect()
+        };
+        assert_eq!(best(&judged(TIGHT, &[1.0, 0.95, TUNING.better, 0.5, 0.46, 0.44])), [0, 3, 5]);
+        let mut progress = Progress::new(TIGHT, false);
+        progress.judge(seen(1.0), 1.0, &TUNING, &never);
+        let incomplete = Evaluated { complete: false, ..seen(0.1) };
+        assert_eq!(progress.judge(incomplete, 1.0, &TUNING, &never), Decision::Continue { best: false });
+        assert_relative_eq!(progress.best, 1.0);
+    }
+
+    #[test]
+    fn a_gap_in_single_precision_follows_large_residuals_that_it_can_resolve() {
+        let noise = TUNING.single_noise;
+        // (residuals, tolerance, height, approach) -> whether the next gap is evaluated in single precision.
+        for (error, tolerance, height, d, rough) in [
+            (0.5, 1e-6, 1.0, 1.0, true),
+            (0.02, 1e-6, 1.0, 1.0, false),
+            (TUNING.rough, 1e-6, 1.0, 1.0, false),
+            // Ten times the tolerance is near enough for double precision.
+            (0.5, 0.1, 1.0, 1.0, false),
+            (0.5, 0.05, 1.0, 1.0, false),
+            (0.5, 0.049, 1.0, 1.0, true),
+            // The gap that is measured, residuals x height, against 1e-4 of the approach.
+            (0.5, 1e-6, 1.0, 0.5 / noise, false),
+            (0.5, 1e-6, 1.0, 0.6 / noise, false),
+            (0.5, 1e-6, 1.0, 0.4 / noise, true),
+            (0.5, 1e-6, 4.0, 1.0 / noise, true),
+        ] {
+            let mut progress = Progress::new(Limits { tolerance, height: Some(height), ..TIGHT }, false);
+            assert!(!progress.rough);
+            progress.judge(seen(error), d, &TUNING, &never);
+            assert_eq!(progress.rough, rough, "{error} {tolerance} {height} {d}");
+        }
+        // Without a height gaps are compared with the approach, whatever its unit.
+        let mut progress = Progress::new(Limits { height: None, ..TIGHT }, true);
+        assert!(progress.rough);
+        progress.judge(seen(0.5), 1e-30, &TUNING, &never);
+        assert!(progress.rough);
+    }
+
+    #[test]
+    fn an_inner_solve_is_asked_for_half_of_what_is_wanted() {
+        let limits = Limits { tolerance: 1e-3, height: Some(5.0), ..TIGHT };
+        let reduction = |error| criteria(limits, error, 1.0, &TUNING).reduction;
+        assert_relative_eq!(reduction(4e-3), 0.125);
+        assert_relative_eq!(reduction(TUNING.early), TUNING.reduction.0);
+        assert_relative_eq!(reduction(1.01 * TUNING.early), TUNING.early_reduction);
+        assert_relative_eq!(reduction(1e-3), TUNING.reduction.1);
+        // A fifth of the tolerance, as a length: of the height, or of the approach where there is none.
+        assert_relative_eq!(criteria(limits, 1.0, 3.0, &TUNING).floor, 1e-3);
+        let tight = criteria(Limits { tolerance: 1e-9, height: None, ..limits }, 1e-2, 3.0, &TUNING);
+        assert_relative_eq!(tight.reduction, TUNING.reduction.0);
+        assert_relative_eq!(tight.floor, 0.6e-9);
+        assert!(tight.energy.is_none() && tight.steps == TUNING.inner_steps);
+    }
+}

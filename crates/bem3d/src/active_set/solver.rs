@@ -98,6 +98,9 @@ impl<'a> Solver<'a> {
             self.now = std::mem::take(&mut self.best);
             (self.state, self.reach) = (Continuation::default(), tuning.candidates * self.now.d);
             residuals = self.evaluate(false).residuals;
+        } else if !last.complete {
+            // What is returned carries residuals of double precision on every candidate, converged or not.
+            residuals = self.evaluate(false).residuals;
         }
         let Self { now: Pressure { contact, p, d, q }, state: continuation, .. } = self;
         Solved { contact, p, d, q, residuals, steps, status, continuation }
@@ -235,3 +238,6 @@ fn rescale(p: &mut [f64], force: f64) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -63,3 +63,113 @@ pub fn undecided(
         !in_contact && gap[k] < bound.at(x, y)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::KernelTable;
+    use crate::linear::Factor;
+    use crate::operator::{DirectSum, InfluenceOperator};
+    use approx::assert_relative_eq;
+    use contact_model::Boundary;
+    use proptest::prelude::*;
+
+    #[test]
+    fn near_gaps_count_whole_far_ones_by_an_eighth() {
+        let grid = Grid::square(12, 12);
+        let index = |x: u32, y: u32| 12 * y + x;
+        let contact = CellSet::from_index(grid, &[index(4, 4), index(5, 4), index(0, 10)]);
+        let bounds = ChangeBound::new(grid, &contact, &[-0.5, 0.25, 2.0], 3, 0.125);
+        // Squares of 3 x 3 cells, 4 a side; those at opposite edges are neighbours.
+        for (x, y, expected) in [
+            (0, 0, 2.0),
+            (8, 8, 0.75),
+            (5, 5, 0.75),
+            (9, 8, 2.0),
+            (2, 4, 0.75),
+            (8, 4, 0.75),
+            (9, 4, 0.25),
+            (11, 4, 0.25),
+        ] {
+            assert_relative_eq!(bounds.at(x, y), expected);
+        }
+        let nothing = ChangeBound::new(Grid::square(1, 1), &CellSet::default(), &[], 3, 0.125);
+        assert_relative_eq!(nothing.at(0, 0), 0.0);
+    }
+
+    #[test]
+    fn squares_of_a_rectangle() {
+        // Squares of 3 x 3 cells, 3 across and 5 down; the last ones are cut off.
+        let grid = Grid::square(8, 13);
+        let contact = CellSet::from_index(grid, &[8 * 12 + 7]);
+        let bounds = ChangeBound::new(grid, &contact, &[-1.0], 3, 0.125);
+        for (x, y, expected) in
+            [(7, 12, 1.0), (0, 0, 1.0), (3, 9, 1.0), (4, 8, 0.125), (4, 3, 0.125), (0, 2, 1.0)]
+        {
+            assert_relative_eq!(bounds.at(x, y), expected);
+        }
+    }
+
+    #[test]
+    fn undecided_by_hand() {
+        let grid = Grid::square(200, 200);
+        let checked = CellSet::from_index(grid, &[0, 1, 31, 4190, 4191, 30_000]);
+        let contact = CellSet::from_index(grid, &[0, 4190]);
+        // Gap left: 0.8 in the first corner, 0.1 at column 190 of row 20.
+        let found = |gap: [f64; 6]| -> Vec<usize> {
+            let left = [gap[0], gap[3]];
+            undecided(grid, &contact, &left, &checked, &gap, &Tuning::DEFAULT).index(grid).collect()
+        };
+        assert_eq!(found([-0.8, 0.79, 0.81, 0.1, 0.21, -1e-9]), [1, 30_000]);
+        assert_eq!(found([-0.8, 0.79, 0.81, 0.1, 0.19, -1e-9]), [1, 4191, 30_000]);
+    }
+
+    #[test]
+    fn an_exact_solution_leaves_the_cells_that_penetrate() {
+        let grid = Grid::square(3, 3);
+        let (all, first) = (CellSet::all(grid), CellSet::from_index(grid, &[0]));
+        let found = |gap: [f64; 9]| -> Vec<usize> {
+            undecided(grid, &first, &gap[..1], &all, &gap, &Tuning::DEFAULT).index(grid).collect()
+        };
+        // Penetrating, touching, open by less than the gap left, open by as much.
+        assert_eq!(found([-0.5, -1.0, 0.0, 0.4, 0.5, 2.0, 2.0, 2.0, 2.0]), [1, 2, 3]);
+        assert_eq!(found([0.0, -1e-9, 0.0, 1e-9, 1.0, 1.0, 1.0, 1.0, 1.0]), [1]);
+    }
+
+    /// Change of all gaps when the gaps left on the contact are made zero.
+    fn changes(grid: Grid, contact: &CellSet, gap: &[f64]) -> Vec<f64> {
+        let table = KernelTable::shared(grid, Boundary::Free);
+        let (_, p) = Factor::new(&table, contact).unwrap().solve_pair(gap);
+        let mut u = vec![0.0; grid.count()];
+        DirectSum(&table).apply(contact, &p, &CellSet::all(grid), &mut u);
+        u
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(12))]
+        #[test]
+        fn no_open_gap_next_to_contact_changes_more(
+            picks in proptest::collection::vec(0f64..1.0, 4000),
+            share in 0.1f64..0.9,
+            stretch in prop_oneof![Just(1.0), 0.8f64..1.25],
+        ) {
+            // Contact on one half and on scattered cells of the other; what is left differs by decades from place to place.
+            let (grid, square) = (Grid { columns: 40, rows: 36, stretch }, 8);
+            let mut picks = picks.into_iter();
+            let mut pick = || picks.next().unwrap();
+            let index: Vec<u32> =
+                (0..grid.count() as u32).filter(|i| i % 40 < 20 || pick() < share).collect();
+            let contact = CellSet::from_index(grid, &index);
+            let scale: Vec<f64> = (0..25).map(|_| 10f64.powf(-3.0 * pick())).collect();
+            let gap: Vec<f64> =
+                contact.places().map(|(x, y)| scale[y / 8 * 5 + x / 8] * (2.0 * pick() - 1.0)).collect();
+            let bounds = ChangeBound::new(grid, &contact, &gap, square, Tuning::DEFAULT.undecided_far);
+            let change = changes(grid, &contact, &gap);
+            let all = CellSet::all(grid);
+            let open = all.filter_beside(&contact, |_, in_contact| !in_contact);
+            for ((x, y), i) in open.places().zip(open.index(grid)) {
+                prop_assert!(change[i].abs() < bounds.at(x, y), "{} {} at {i}", change[i], bounds.at(x, y));
+            }
+        }
+    }
+}

@@ -236,29 +236,36 @@ mod tests {
 
     #[test]
     fn a_cell_and_its_images() {
-        // Differences of the kernel are sums of Love's kernel over images; what images beyond m periods add falls as 1/m.
-        for (columns, rows, stretch) in
-            [(3_usize, 3_usize, 1.0), (8, 8, 1.0), (5, 8, 1.0), (1, 6, 1.0), (6, 4, 1.8), (5, 5, 0.4)]
-        {
+        // Differences of the kernel are sums of Love's kernel over images in a square (as many periods in each direction as make one, those
+        // at its edges by half); what images beyond it add falls as one over its side.
+        for (columns, rows, stretch, [mx, my]) in [
+            (3_usize, 3_usize, 1.0, [40_isize, 40_isize]),
+            (8, 8, 1.0, [40, 40]),
+            (5, 8, 1.0, [48, 30]),
+            (1, 6, 1.0, [192, 32]),
+            (6, 4, 1.8, [50, 243]),
+            (5, 5, 0.4, [200, 32]),
+        ] {
             let kernel = kernel(columns, rows, stretch);
-            // As many periods in each direction as make a square.
-            let ratio = (columns as f64 * stretch * stretch / rows as f64).sqrt();
-            let images = |(x, y): (usize, usize), m: f64| -> f64 {
-                let reach = |r: f64| (m * r).round() as isize;
-                let (mx, my) = (reach(ratio.recip()), reach(ratio));
+            let images = |(x, y): (usize, usize), times: isize| -> f64 {
+                let (mx, my) = (times * mx, times * my);
                 let lag =
                     |a: usize, i: isize, n: usize| (a.cast_signed() + i * n.cast_signed()).unsigned_abs();
+                let weight = |i: isize, m: isize| if i.abs() == m { 0.5 } else { 1.0 };
                 (-mx..=mx)
                     .flat_map(|i| (-my..=my).map(move |j| (i, j)))
-                    .map(|(i, j)| influence_of_rectangle(lag(x, i, columns), lag(y, j, rows), stretch))
+                    .map(|(i, j)| {
+                        let image = influence_of_rectangle(lag(x, i, columns), lag(y, j, rows), stretch);
+                        weight(i, mx) * weight(j, my) * image
+                    })
                     .sum()
             };
             for to in [(columns / 2, 0), (columns / 3, rows / 2), (columns / 2, 1)] {
-                let difference = |m| images((0, 0), m) - images(to, m);
-                let expected = 2.0 * difference(80.0) - difference(40.0);
+                let difference = |times| images((0, 0), times) - images(to, times);
+                let expected = 2.0 * difference(2) - difference(1);
                 let found = kernel.at(0, 0) - kernel.at(to.0, to.1);
                 assert!(
-                    (found - expected).abs() < 2e-4,
+                    (found - expected).abs() < 3e-5,
                     "{columns} {rows} {stretch} {to:?}: {found} {expected}"
                 );
             }

@@ -179,8 +179,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cells::CellSet;
-    use crate::operator::direct;
+    use crate::geometry::CellSet;
+    use crate::operator::{DirectSum, FftConvolution, InfluenceOperator};
     use approx::assert_relative_eq;
     use std::cell::Cell;
 
@@ -189,74 +189,83 @@ mod tests {
     /// Single precision of the inverse.
     const SINGLE: f64 = 1e-5;
 
-    fn all(side: usize) -> CellSet {
-        CellSet::new(side, (0..(side * side) as u32).collect())
-    }
-
     #[test]
     fn surfaces_of_one_grid_share_a_table() {
-        let [free, again, periodic] =
-            [Boundary::Free, Boundary::Free, Boundary::Periodic].map(|b| Table::shared(37, b));
-        assert!(Arc::ptr_eq(&free, &again));
-        assert!(!Arc::ptr_eq(&free, &periodic) && !Arc::ptr_eq(&free, &Table::shared(38, Boundary::Free)));
+        let grid = Grid::square(37, 37);
+        let [free, again, periodic] = [Boundary::Free, Boundary::Free, Boundary::Periodic]
+            .map(|boundary| KernelTable::shared(grid, boundary));
+        assert!(Arc::ptr_eq(&free, &again) && !Arc::ptr_eq(&free, &periodic));
+        for other in [Grid::square(37, 38), Grid::square(38, 37), Grid { stretch: 1.1, ..grid }] {
+            assert!(!Arc::ptr_eq(&free, &KernelTable::shared(other, Boundary::Free)), "{other:?}");
+        }
         assert_eq!((free.boundary(), periodic.boundary()), (Boundary::Free, Boundary::Periodic));
-        assert!(Arc::ptr_eq(&periodic, &Table::shared(37, Boundary::Periodic)));
-        assert_eq!(format!("{free:?}"), "Table(37 cells, Free)");
+        assert_eq!((free.grid(), periodic.grid()), (grid, grid));
+        assert!(Arc::ptr_eq(&periodic, &KernelTable::shared(grid, Boundary::Periodic)));
+        assert_eq!(format!("{free:?}"), "KernelTable(37 x 37 cells, Free)");
     }
 
     #[test]
-    fn uniform_pressure_sinks_a_periodic_square_by_its_shift_alone() {
-        // Zero mean plus c: u = c N^2 everywhere, by pairs and by a transform. 6 and 16 are lengths of a transform, 7 is not.
-        for side in [6, 7, 16] {
-            let table = Table::shared(side, Boundary::Periodic);
-            assert_relative_eq!(table.shift(), 2.0 / side as f64);
-            let (cells, p) = (all(side), vec![1.0; side * side]);
-            let Some(window) = cells.window() else { unreachable!() };
-            let lengths = table.lengths(window);
-            if side == 7 {
-                assert_eq!(lengths, Lengths::free(window));
-            } else {
-                assert_eq!(lengths, Lengths { x: side, y: side }, "the period itself");
+    fn uniform_pressure_sinks_a_periodic_map_by_its_shift_alone() {
+        // Zero mean plus c: u = c times the number of cells everywhere, by pairs and by a transform. The period itself is a length that
+        // serves, whatever its prime factors.
+        for (columns, rows, stretch) in
+            [(6, 6, 1.0), (7, 7, 1.0), (16, 16, 1.0), (1, 1, 1.0), (13, 4, 1.0), (5, 12, 1.6)]
+        {
+            let grid = Grid { columns, rows, stretch };
+            let table = KernelTable::shared(grid, Boundary::Periodic);
+            if columns == rows {
+                assert_relative_eq!(table.shift(), 2.0 / columns as f64);
             }
+            let (cells, p) = (CellSet::all(grid), vec![1.0; grid.count()]);
+            let lengths = table.exact_lengths(grid.window());
+            assert_eq!(lengths, Lengths { x: columns, y: rows }, "the period itself");
             let (mut pairs, mut transform) = (vec![0.0; p.len()], vec![0.0; p.len()]);
-            direct::apply(&table, &cells, &p, &cells, &mut pairs);
-            Convolution::new(window, lengths, table.symbol_f64(lengths)).apply(
+            DirectSum(&table).apply(&cells, &p, &cells, &mut pairs);
+            FftConvolution::new(grid.window(), lengths, table.symbol_f64(lengths)).apply(
                 &cells,
                 &p,
                 &cells,
                 &mut transform,
             );
+            let expected = table.shift() * grid.count() as f64;
             for (a, b) in pairs.iter().zip(&transform) {
-                assert_relative_eq!(*a, 2.0 * side as f64, max_relative = DOUBLE);
-                assert_relative_eq!(*b, 2.0 * side as f64, max_relative = DOUBLE);
+                assert_relative_eq!(*a, expected, max_relative = DOUBLE);
+                assert_relative_eq!(*b, expected, max_relative = DOUBLE);
             }
         }
-        let free = Table::shared(6, Boundary::Free);
+        let free = KernelTable::shared(Grid::square(6, 6), Boundary::Free);
         assert!(free.shift() == 0.0);
         let window = Window { x: 0, y: 0, width: 6, height: 6 };
-        assert_eq!(free.lengths(window), Lengths { x: 10, y: 10 });
+        assert_eq!(free.exact_lengths(window), Lengths { x: 10, y: 10 });
     }
 
     #[test]
     fn the_inverse_is_one_over_the_eigenvalue_of_a_wave() {
-        // The checkerboard on a torus of 16 cells: the smallest eigenvalue, which the floor of the inverse must not touch.
-        let side = 16;
-        let table = Table::shared(side, Boundary::Free);
-        let cells = all(side);
-        let Some(window) = cells.window() else { unreachable!() };
-        let lengths = Lengths::torus(window);
-        assert_eq!(lengths, Lengths { x: side, y: side });
-        let board: Vec<f64> =
-            (0..side * side).map(|k| if (k + k / side).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
-        let lag = |x: usize| x.min(side - x);
-        let eigenvalue: f64 =
-            (0..side * side).map(|k| board[k] * influence(lag(k % side), lag(k / side))).sum();
-        assert!((eigenvalue / crate::love::SMALLEST_EIGENVALUE - 1.0).abs() < 0.01, "{eigenvalue}");
-        let mut back = vec![0.0; board.len()];
-        Convolution::<f32>::new(window, lengths, table.inverse_symbol(lengths))
-            .apply(&cells, &board, &cells, &mut back);
-        for (b, p) in back.iter().zip(&board) {
-            assert_relative_eq!(*b, p / eigenvalue, max_relative = SINGLE);
+        // The checkerboard on a torus: the smallest eigenvalue, which the floor of the inverse must not touch.
+        for (columns, rows, stretch) in [(16, 16, 1.0), (24, 16, 1.0), (20, 16, 1.5)] {
+            let grid = Grid { columns, rows, stretch };
+            let table = KernelTable::shared(grid, Boundary::Free);
+            let cells = CellSet::all(grid);
+            let lengths = table.torus_lengths(grid.window());
+            assert_eq!(lengths, Lengths { x: columns, y: rows });
+            let place = |k: usize| (k % columns, k / columns);
+            let board: Vec<f64> =
+                cells.places().map(|(x, y)| if (x + y).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
+            let lag = |x: usize, period: usize| x.min(period - x);
+            let eigenvalue: f64 = (0..grid.count())
+                .map(|k| {
+                    let (x, y) = place(k);
+                    board[k] * influence_of_rectangle(lag(x, columns), lag(y, rows), stretch)
+                })
+                .sum();
+            let smallest = table.smallest_eigenvalue();
+            assert!((eigenvalue / smallest - 1.0).abs() < 0.01, "{grid:?}: {eigenvalue} {smallest}");
+            let mut back = vec![0.0; board.len()];
+            FftConvolution::<f32>::new(grid.window(), lengths, table.inverse_symbol(lengths))
+                .apply(&cells, &board, &cells, &mut back);
+            for (b, p) in back.iter().zip(&board) {
+                assert_relative_eq!(*b, p / eigenvalue, max_relative = SINGLE);
+            }
         }
     }
 
@@ -271,12 +280,12 @@ mod tests {
             });
             made.get()
         };
-        assert_eq!((get(2, KEPT / 2), get(4, KEPT / 2)), (1, 2));
+        assert_eq!((get(2, KEPT_SYMBOLS / 2), get(4, KEPT_SYMBOLS / 2)), (1, 2));
         assert_eq!((get(2, 0), get(4, 0)), (2, 2), "what just fits is kept");
         assert_eq!(get(6, 1), 3);
         assert_eq!((get(4, 0), get(6, 0)), (3, 3), "one too much: only the oldest went");
-        assert_eq!((get(2, KEPT + 1), get(2, 0)), (4, 4), "the last one stays whatever its size");
+        assert_eq!((get(2, KEPT_SYMBOLS + 1), get(2, 0)), (4, 4), "the last one stays whatever its size");
         assert_eq!(get(6, 1), 5);
-        const { assert!(KEPT >= 2049 * 2049, "a grid of 2049 cells a side finds its symbol again") };
+        const { assert!(KEPT_SYMBOLS >= 2049 * 2049, "a grid of 2049 cells a side finds its symbol again") };
     }
 }
