@@ -43,11 +43,11 @@ impl fmt::Debug for LineGenerator {
 }
 
 impl LineGenerator {
-    /// Plans lines of `elements` elements that stand for the square of the given surface.
+    /// Plans lines of `elements` elements that stand for the square or rectangle of the given surface.
     ///
     /// # Errors
-    /// [`contact_model::Error::Domain`] for parameters that make no sense, for `elements` of 0 or above 2^31, and where no wave is left: lines
-    /// of 1 and 2 elements and short cut-offs below the longest wave.
+    /// [`contact_model::Error::Domain`] for parameters that make no sense, for `elements` of 0 or above 2^31,
+    /// and where no wave is left: lines of 1 and 2 elements and short cut-offs below the longest wave.
     pub fn new(surface: &SelfAffine, elements: usize) -> Result<Self> {
         Ok(Self {
             elements,
@@ -75,7 +75,8 @@ impl LineGenerator {
 
     /// Draws the line with this seed.
     ///
-    /// Cost O(n log n). The generator keeps its work space, twice the memory of a line for every thread that draws at the same time.
+    /// Cost O(n log n). The generator keeps its work space, twice the memory of a line for every thread that
+    /// draws at the same time.
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] when the heights overflow.
@@ -96,7 +97,8 @@ impl LineGenerator {
         Line::new(self.length, heights)
     }
 
-    /// Writes `B exp(i phi)` of the waves and 0 elsewhere, moved by half an element so that samples sit at the elements' centres.
+    /// Writes `B exp(i phi)` of the waves and 0 elsewhere, moved by half an element so that samples sit at
+    /// the elements' centres.
     fn fill(&self, seed: u64, spectrum: &mut [C]) {
         let (mean, waves) = spectrum.split_at_mut(1);
         let (waves, beyond) = waves.split_at_mut(self.amplitudes.len());
@@ -122,18 +124,20 @@ impl LineGenerator {
     }
 }
 
-/// A self-affine line of `elements` elements that stands for the square: `h(x) = sum over all q of B_1D(q) cos(q x + phi(q))`.
+/// A self-affine line of `elements` elements that stands for the rectangle: `h(x) = sum over all q of B_1D(q)
+/// cos(q x + phi(q))`.
 ///
-/// `B_1D = sqrt((2 pi / L_1D) C_1D)`, `C_1D = pi |q| C_2D(|q|)` (two-sided: the sum runs over both signs of q), `L_1D = (2 / sqrt(pi)) L`,
-/// q from `2 pi / L_1D` to `pi / dx` (or the shorter `short_cutoff`), the Nyquist wave left out. Sampled at the elements' centres.
-/// With `Amplitude::RmsHeight(h)` the rms of the samples is h for every seed; with `Amplitude::Spectrum(c)` the constant is
-/// `C_2D(2 pi / L)` of the square. The mean is 0.
+/// `B_1D = sqrt((2 pi / L_1D) C_1D)`, `C_1D = pi |q| C_2D(|q|)` (two-sided: the sum runs over both signs of
+/// q), `L_1D = (2 / sqrt(pi)) L`, `L = sqrt(Lx Ly)`, q from `2 pi / L_1D` to `pi / dx` (or the shorter
+/// `short_cutoff`), the Nyquist wave left out. Sampled at the elements' centres. With
+/// `Amplitude::RmsHeight(h)` the rms of the samples is h for every seed; with `Amplitude::Spectrum(c)` the
+/// constant is `C_2D(2 pi / L)` of the rectangle. The mean is 0.
 ///
 /// # Errors
 /// As [`LineGenerator::new`] and [`LineGenerator::line`]. Cost O(n log n).
 ///
-/// Source: Pohrt, Popov, Filippov 2012, Eqs. 14-18. Differs from the printed form by the root over both factors of Eq. 15 (dimensions) and by
-/// being a sum over the line's waves.
+/// Source: Pohrt, Popov, Filippov 2012, Eqs. 14-18. Differs from the printed form by the root over both
+/// factors of Eq. 15 (dimensions) and by being a sum over the line's waves.
 ///
 /// ```
 /// let surface = contact_model::SelfAffine::new(2.4, 1.0, 0.5)?;

@@ -2,11 +2,12 @@
 //!
 //! # The stream, version 1
 //!
-//! 1. A wave has a stream (map or line), a *row* and an *index* in it. On a map the wave (mx, my) of the canonical half-plane
-//!    (`mx > 0`, or `mx = 0` and `my > 0`) has row `mx` and index `2 |my| + (my < 0 ? 1 : 0)`; the other half-plane has
-//!    `phi(-q) = -phi(q)`. On a line the wave m >= 1 has row 0 and index m.
+//! 1. A wave has a stream (map or line), a *row* and an *index* in it. On a map the wave (mx, my) of the
+//!    canonical half-plane (`mx > 0`, or `mx = 0` and `my > 0`) has row `mx` and index `2 |my| + (my < 0 ? 1
+//!    : 0)`; the other half-plane has `phi(-q) = -phi(q)`. On a line the wave m >= 1 has row 0 and index m.
 //! 2. Indices are cut into blocks of 256: `block = index / 256`. With `mix` the SplitMix64 finaliser,
-//!    `key = mix(mix(mix(seed xor stream) + row) + block)`; `stream` is the ASCII word "map wave" or "linewave" as a big-endian number.
+//!    `key = mix(mix(mix(seed xor stream) + row) + block)`; `stream` is the ASCII word "map wave" or
+//!    "linewave" as a big-endian number.
 //! 3. The state of Xoshiro256++ is the four first outputs of SplitMix64 started at `key`. Its output number
 //!    `index mod 256` is the word u of the wave.
 //! 4. `phi = 2 pi (u >> 11) / 2^53`, uniform on [0, 2 pi).
@@ -88,10 +89,11 @@ fn radians(turn: u64) -> f64 {
     TAU * ((turn >> 11) as f64 / (1_u64 << 53) as f64)
 }
 
-/// Phase of the wave with `mx` periods along x and `my` along y over the square (radians).
+/// Phase of the wave with `mx` periods along x and `my` along y over the rectangle (radians).
 ///
-/// In [0, 2 pi) on the canonical half-plane (`mx > 0`, or `mx = 0` and `my > 0`), `-phi(-mx, -my)` on the other one, 0 for the mean. The
-/// paper prints `phi(q) = phi(-q)` below Eq. 5, which would make every surface symmetric about the origin.
+/// In [0, 2 pi) on the canonical half-plane (`mx > 0`, or `mx = 0` and `my > 0`), `-phi(-mx, -my)` on the
+/// other one, 0 for the mean. The paper prints `phi(q) = phi(-q)` below Eq. 5, which would make every surface
+/// symmetric about the origin.
 ///
 /// ```
 /// use surface_gen::map_phase;
@@ -110,7 +112,8 @@ fn positive_map_phase(seed: u64, mx: u32, my: u32, negative: bool) -> f64 {
     radians(Turns::starting_at(seed, Stream::Map, u64::from(mx), index).next())
 }
 
-/// Phase of the wave with `m` periods over the line (radians): in [0, 2 pi) for `m > 0`, `-phi(-m)` for `m < 0`, 0 for the mean.
+/// Phase of the wave with `m` periods over the line (radians): in [0, 2 pi) for `m > 0`, `-phi(-m)` for `m <
+/// 0`, 0 for the mean.
 ///
 /// ```
 /// use surface_gen::line_phase;

@@ -1,6 +1,6 @@
 //! From the description of a surface to its samples.
 
-use crate::indenter::{axisymmetric, flat_circle, flat_square, sine};
+use crate::indenter::{axisymmetric, flat, flat_circle, sine};
 use crate::{self_affine_line, self_affine_map};
 use contact_model::{Cells, Error, HeightMap, Line, Result, Surface};
 use std::sync::Arc;
@@ -8,16 +8,20 @@ use std::sync::Arc;
 /// Name in errors of this crate.
 const NAME: &str = "surface-gen";
 
-/// Heights of any surface on `cells` x `cells` cells, sampled at the cells' centres; `seed` matters for random surfaces only.
+/// Heights of any surface, sampled at the cells' centres; `seed` matters for random surfaces only.
 ///
-/// Axisymmetric bodies have their apex (height 0) in the middle of the square, between four cells when `cells` is even: the highest
-/// *sample* then lies lower. A flat circular punch has height 0 where a cell's centre is on the face and -1000 sides elsewhere, deeper than
-/// any approach of the linear theory. A given map is passed on, not copied.
+/// `cells` is a number for as many rows as columns, or `[columns, rows]`; cells need not be squares.
+/// Axisymmetric bodies have their apex (height 0) in the middle of the rectangle, between cells where columns
+/// or rows are even: the highest *sample* then lies lower. A flat circular punch has height 0 where a cell's
+/// centre is on the face and -1000 longer sides elsewhere, deeper than any approach of the linear theory. A
+/// given map is passed on, not copied.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a line; [`Error::Shape`] for a given map of another size; [`Error::Domain`] for parameters that make no sense, a sine
-/// with waves shorter than two cells, a punch that misses every cell centre or does not fit in the square, and as
-/// [`self_affine_map`]. Cost O(N^2), for self-affine surfaces O(N^2 log N).
+/// [`Error::Unsupported`] for a line; [`Error::Shape`] for a given map of other cells; [`Error::Domain`] for
+/// parameters that make no sense, no columns or rows, cells whose sides differ by more than 1e4, a sine with
+/// waves shorter than two cells, a punch that misses every cell centre or is wider than the shorter side, a
+/// map that does not fit in memory; and as [`self_affine_map`]. Cost O(N) for N cells, for self-affine
+/// surfaces O(N log N).
 ///
 /// ```
 /// use contact_model::Surface;
@@ -27,31 +31,31 @@ const NAME: &str = "surface-gen";
 /// assert!(map.heights()[4] == 0.0);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn height_map(surface: &Surface, cells: usize, seed: u64) -> Result<Arc<HeightMap>> {
+pub fn height_map(surface: &Surface, cells: impl Into<Cells>, seed: u64) -> Result<Arc<HeightMap>> {
     surface.validate()?;
-    let size = surface.size();
-    if !matches!(surface, Surface::Heights(_)) && !size.is_square() {
-        return Err(Error::unsupported(NAME, format!("{} on a rectangle", surface.kind())));
-    }
-    let side = size.x;
+    let (cells, size) = (cells.into(), surface.size());
     let map = match *surface {
         Surface::SelfAffine(ref s) => self_affine_map(s, cells, seed)?,
-        Surface::Heights(ref map) if map.cells() == Cells::from(cells) => return Ok(Arc::clone(map)),
+        Surface::Heights(ref map) if map.cells() == cells => return Ok(Arc::clone(map)),
         Surface::Heights(ref map) => {
+            let Cells { columns, rows } = cells;
             return Err(Error::Shape {
                 name: "heights".into(),
                 found: map.heights().len(),
-                expected: format!("{cells} x {cells}, the cells asked for (maps are not resampled)").into(),
+                expected: format!(
+                    "{rows} rows x {columns} columns, the cells asked for (maps are not resampled)"
+                )
+                .into(),
             });
         }
-        Surface::Sphere { radius, .. } => axisymmetric(cells, side, |r| 0.5 * r * (r / radius))?,
-        Surface::Cone { slope, .. } => axisymmetric(cells, side, |r| slope * r)?,
+        Surface::Sphere { radius, .. } => axisymmetric(cells, size, |r| 0.5 * r * (r / radius))?,
+        Surface::Cone { slope, .. } => axisymmetric(cells, size, |r| slope * r)?,
         Surface::PowerLaw { coefficient, exponent, .. } => {
-            axisymmetric(cells, side, |r| coefficient * r.powf(exponent))?
+            axisymmetric(cells, size, |r| coefficient * r.powf(exponent))?
         }
-        Surface::FlatCircle { radius, .. } => flat_circle(cells, side, radius)?,
-        Surface::Flat { .. } => flat_square(cells, side)?,
-        Surface::Sine { amplitude, wavelength, .. } => sine(cells, side, amplitude, wavelength)?,
+        Surface::FlatCircle { radius, .. } => flat_circle(cells, size, radius)?,
+        Surface::Flat { .. } => flat(cells, size)?,
+        Surface::Sine { amplitude, wavelength, .. } => sine(cells, size, amplitude, wavelength)?,
         _ => return Err(Error::unsupported(NAME, format!("{} as a map", surface.kind()))),
     };
     Ok(Arc::new(map))
@@ -60,8 +64,9 @@ pub fn height_map(surface: &Surface, cells: usize, seed: u64) -> Result<Arc<Heig
 /// Heights of a self-affine or given line of `elements` elements.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for every other surface (an axisymmetric body has an equivalent profile, but that is a model's business, not
-/// sampling); [`Error::Shape`] for a given line of another size; otherwise as [`self_affine_line`]. Cost O(n log n).
+/// [`Error::Unsupported`] for every other surface (an axisymmetric body has an equivalent profile, but that
+/// is a model's business, not sampling); [`Error::Shape`] for a given line of another size; otherwise as
+/// [`self_affine_line`]. Cost O(n log n).
 ///
 /// ```
 /// use contact_model::{SelfAffine, Surface};

@@ -27,8 +27,8 @@ pub struct Description {
     pub range: [f64; 2],
     /// Root mean square of the heights about their mean.
     pub rms_height: f64,
-    /// Root mean square slope from differences of neighbouring cells; `None` where points are undefined.
-    pub rms_slope: Option<f64>,
+    /// Root mean square slope from differences of neighbouring cells.
+    pub rms_slope: f64,
     /// Spectrum averaged over rings of the wavenumber q: (q, C_2D), two-sided, in 1/length and length^4. Empty where points are undefined.
     pub spectrum: Vec<(f64, f64)>,
     /// Hurst exponent of the spectrum.
@@ -87,7 +87,7 @@ pub fn describe(map: &HeightMap) -> Description {
     let (low, high) = map.defined().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
     let whole = undefined == 0;
     let windowed = if whole { windowed(map, 0.5 * low + 0.5 * high) } else { None };
-    let spectrum = windowed.map_or_else(Vec::new, |map| radial_spectrum(&map));
+    let spectrum = windowed.and_then(|map| radial_spectrum(&map).ok()).unwrap_or_default();
     let fitted = [TAU / size.shorter() * FIRST_RING, LAST_SHARE * PI / map.dx().max(map.dy())];
     let hurst = if !whole {
         Err(Absent::Undefined)
@@ -96,20 +96,13 @@ pub fn describe(map: &HeightMap) -> Description {
     } else {
         hurst_from_spectrum(&spectrum, fitted[0], fitted[1]).map_err(|_| Absent::FewWaves)
     };
-    let defined: Vec<f64>;
-    let heights = if whole {
-        map.heights()
-    } else {
-        defined = map.defined().collect();
-        &defined
-    };
     Description {
         cells,
         size,
         undefined,
         range: [low, high],
-        rms_height: rms_height(heights),
-        rms_slope: whole.then(|| rms_slope_differences(map)),
+        rms_height: rms_height(map.heights()),
+        rms_slope: rms_slope_differences(map),
         spectrum,
         hurst,
         fitted,
@@ -125,8 +118,7 @@ fn windowed(map: &HeightMap, middle: f64) -> Option<HeightMap> {
     let (across, down) = (window(columns), window(rows));
     let about: Vec<f64> = map.heights().iter().map(|h| h - middle).collect();
     let count = about.len() as f64;
-    let mean: f64 =
-        about.chunks_exact(columns).map(|row| row.iter().map(|h| h / count).sum::<f64>()).sum();
+    let mean: f64 = about.chunks_exact(columns).map(|row| row.iter().map(|h| h / count).sum::<f64>()).sum();
     let heights = about
         .iter()
         .enumerate()
@@ -146,10 +138,7 @@ impl fmt::Display for Description {
         writeln!(f, "undefined points   {} of {}", self.undefined, columns * rows)?;
         writeln!(f, "range of heights   {low:e} to {high:e}")?;
         writeln!(f, "rms height         {:.6e}", self.rms_height)?;
-        match self.rms_slope {
-            Some(slope) => writeln!(f, "rms slope          {slope:.6e}")?,
-            None => writeln!(f, "rms slope          not determined: {}", Absent::Undefined)?,
-        }
+        writeln!(f, "rms slope          {:.6e}", self.rms_slope)?;
         match self.hurst.map(|h| 3.0 - h) {
             Ok(d) => {
                 let [longest, shortest] = self.fitted.map(|q| TAU / q);

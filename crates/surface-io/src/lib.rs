@@ -23,7 +23,7 @@
 //! # Nothing is guessed silently
 //!
 //! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`Declared::format`], everything else as a text matrix; three columns without either
-//!   are an error. Other files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
+//!   are points or a matrix by their comments, or an error. Other files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace. Comments begin with `#` or `%`; of them
 //!   `Width`, `Height`, `Value units` and `Lateral units` count, as Gwyddion's exports and this crate write them. Decimal commas are read when said
 //!   ([`Decimal::Comma`]). An empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined

@@ -132,7 +132,8 @@ fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Exten
     if let ([x, y], [Some(Extent::Cell(_)), Some(Extent::Cell(_))]) = (axes, extents)
         && let (Some(dx), Some(dy)) = (x.spacing, y.spacing)
     {
-        let doubt = |axis: &Axis, spacing: f64| 2.0 * axis.off * spacing / (axis.count - 1.0).max(1.0);
+        // The ends, on which the spacing rests, may be off their places by twice what is seen between them.
+        let doubt = |axis: &Axis, spacing: f64| 4.0 * axis.off * spacing / (axis.count - 1.0).max(1.0);
         if (dx - dy).abs() <= doubt(x, dx) + doubt(y, dy) + ROUNDED * dx {
             let common = (dx * (x.count - 1.0) + dy * (y.count - 1.0)) / (x.count + y.count - 2.0);
             extents = [Some(Extent::Cell(quantity(common)?)); 2];

@@ -236,7 +236,8 @@ impl Scan {
             let format = match format {
                 Some(format) => format,
                 None if table.columns == 3 && table.rows() > 3 => {
-                    return Err(content(path)(Problem::Ambiguous { lines: table.rows() }));
+                    let ambiguous = Problem::Ambiguous { lines: table.rows() };
+                    table.heading.format().ok_or(ambiguous).map_err(content(path))?
                 }
                 None => Format::Text,
             };

@@ -67,7 +67,7 @@ impl FromStr for Sides {
         let beside = |c: Option<char>| c.is_some_and(|c| !c.is_alphabetic());
         let between = text.char_indices().find(|&(at, c)| {
             let after = text[at + c.len_utf8()..].chars().next();
-            matches!(c, 'x' | '×') && beside(text[..at].chars().next_back()) && beside(after)
+            c == '×' || (c == 'x' && beside(text[..at].chars().next_back()) && beside(after))
         });
         match between {
             Some((at, c)) => Ok(Self::Two([text[..at].parse()?, text[at + c.len_utf8()..].parse()?])),
@@ -132,8 +132,10 @@ fn agree(a: Quantity, b: Quantity) -> bool {
 ///
 /// Everything that is given is checked; of several statements the cell counts first, then the size.
 pub(crate) fn given(declared: &Declared, count: [usize; 2]) -> Result<Option<[Extent; 2]>, Problem> {
-    let cell = declared.cell.map(|cell| positive("cell", ["cell along x", "cell along y"], cell)).transpose()?;
-    let size = declared.size.map(|size| positive("size", ["size along x", "size along y"], size)).transpose()?;
+    let cell =
+        declared.cell.map(|cell| positive("cell", ["cell along x", "cell along y"], cell)).transpose()?;
+    let size =
+        declared.size.map(|size| positive("size", ["size along x", "size along y"], size)).transpose()?;
     let width = declared.width.map(|w| positive("width", ["width"; 2], w.into())).transpose()?;
     let [columns, rows] = count;
     if let (Some(Sides::One(side)), true) = (declared.size, columns != rows) {

@@ -118,7 +118,9 @@ impl FromStr for Undefined {
     fn from_str(text: &str) -> Result<Self, WordError> {
         match text {
             "no_contact" => Ok(Self::NoContact),
-            other => Err(WordError::new("undefined", other, "no_contact (fill gives undefined points a height)")),
+            other => {
+                Err(WordError::new("undefined", other, "no_contact (fill gives undefined points a height)"))
+            }
         }
     }
 }

@@ -112,8 +112,7 @@ pub fn text(map: &HeightMap, metric: Metric) -> String {
 /// ```
 pub fn xyz(map: &HeightMap, metric: Metric) -> String {
     let (columns, unit) = (map.columns(), metric.name());
-    let head =
-        format!("{}# Lateral units: {unit}\n# Value units: {unit}\n# x y z\n", sides(map, metric));
+    let head = format!("{}# Lateral units: {unit}\n# Value units: {unit}\n# x y z\n", sides(map, metric));
     let mut written = Lines::new(head, 64 * map.heights().len());
     let centre = |k: usize, cell: f64| (k as f64 + 0.5) * cell;
     for (i, h) in map.heights().iter().enumerate() {

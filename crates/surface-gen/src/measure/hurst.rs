@@ -5,10 +5,11 @@ use contact_model::{Error, Result};
 /// Fewest points that a straight line is fitted through.
 const FEWEST: usize = 3;
 
-/// Hurst exponent from a radial spectrum: least squares of `ln C_2D = const - 2 (H + 1) ln q` over `q_min <= q <= q_max`.
+/// Hurst exponent from a radial spectrum: least squares of `ln C_2D = const - 2 (H + 1) ln q` over `q_min <=
+/// q <= q_max`.
 ///
-/// All points weigh the same; points with C = 0 are left out. The first rings bend the fit (see [`crate::radial_spectrum`]): start at ring 8
-/// or so.
+/// All points weigh the same; points with C = 0 are left out. The first rings bend the fit (see
+/// [`crate::radial_spectrum`]): start at ring 8 or so.
 ///
 /// # Errors
 /// [`Error::Domain`] where fewer than 3 points with C > 0 lie in the window.
@@ -23,7 +24,8 @@ pub fn hurst_from_spectrum(spectrum: &[(f64, f64)], q_min: f64, q_max: f64) -> R
     Ok(-0.5 * slope(spectrum, q_min, q_max)? - 1.0)
 }
 
-/// Hurst exponent from the spectrum of a line: least squares of `ln C_1D = const - (2 H + 1) ln q` over `q_min <= q <= q_max`.
+/// Hurst exponent from the spectrum of a line: least squares of `ln C_1D = const - (2 H + 1) ln q` over
+/// `q_min <= q <= q_max`.
 ///
 /// # Errors
 /// As [`hurst_from_spectrum`].

@@ -26,16 +26,24 @@ pub(crate) fn pairwise(values: &[f64], term: &impl Fn(f64) -> f64) -> f64 {
 
 /// Root mean square of the heights about their mean, `sqrt(mean (h - mean h)^2)`, in the unit of the heights.
 ///
-/// Two passes with pairwise sums, on heights divided by their largest deviation from the middle of their range: nothing overflows or underflows for heights of 1e-150
-/// or 1e150, and an offset costs its own rounding only. 0 for no heights or equal ones; not finite if a height is not.
+/// Undefined points (minus infinity, as in [`HeightMap::heights`]) are left out. Two passes with pairwise
+/// sums, on heights divided by their largest deviation from the middle of their range: nothing overflows or
+/// underflows for heights of 1e-150 or 1e150, and an offset costs its own rounding only. 0 for no heights or
+/// equal ones; not finite if a height is NaN or plus infinity. Cost O(n); undefined points cost a copy of the
+/// others.
 ///
 /// ```
 /// // Deviations from the mean 3 are -2, 0, 2: mean square 8/3.
 /// let rms = surface_gen::rms_height(&[1.0, 3.0, 5.0]);
 /// assert!((rms - (8.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+/// assert_eq!(surface_gen::rms_height(&[1.0, f64::NEG_INFINITY, 3.0, 5.0]), rms);
 /// ```
 pub fn rms_height(heights: &[f64]) -> f64 {
     let (low, high) = range(heights);
+    if low == f64::NEG_INFINITY {
+        let defined: Vec<f64> = heights.iter().copied().filter(|&h| h != f64::NEG_INFINITY).collect();
+        return rms_height(&defined);
+    }
     let (middle, unit) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
     if heights.is_empty() || unit <= 0.0 {
         return 0.0;
@@ -60,10 +68,12 @@ fn range(values: &[f64]) -> (f64, f64) {
     (low, high.iter().chain(rest).fold(f64::NEG_INFINITY, |a, &b| a.max(b)))
 }
 
-/// Root mean square slope from differences of neighbours inside the square, dimensionless.
+/// Root mean square slope from differences of neighbours inside the map, dimensionless.
 ///
-/// `sqrt(mean over x-neighbours (Delta h / h_c)^2 + mean over y-neighbours (Delta h / h_c)^2)`: for bodies that are not periodic. It
-/// falls below [`crate::rms_slope`] on rough surfaces, whose shortest waves it damps (by `sin(q h_c / 2) / (q h_c / 2)`). 0 for one cell. Cost O(N^2).
+/// `sqrt(mean over x-neighbours (Delta h / dx)^2 + mean over y-neighbours (Delta h / dy)^2)`: for bodies that
+/// are not periodic. Pairs with an undefined point are left out. The slope falls below [`crate::rms_slope`]
+/// on rough surfaces, whose shortest waves it damps (by `sin(q dx / 2) / (q dx / 2)` along x). A direction
+/// without pairs adds nothing; 0 for one cell. Cost O(N) for N cells.
 ///
 /// ```
 /// use contact_model::HeightMap;
@@ -73,15 +83,29 @@ fn range(values: &[f64]) -> (f64, f64) {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn rms_slope_differences(map: &HeightMap) -> f64 {
-    let (n, heights) = (map.columns(), map.heights());
-    let along_x = || heights.chunks_exact(n).flat_map(|row| row.windows(2).map(|w| w[1] - w[0]));
-    let along_y = || heights.iter().zip(&heights[n..]).map(|(a, b)| b - a);
+    let (columns, heights) = (map.columns(), map.heights());
+    let finite = |step: &f64| step.is_finite();
+    let along_x =
+        || heights.chunks_exact(columns).flat_map(|row| row.windows(2).map(|w| w[1] - w[0])).filter(finite);
+    let along_y = || heights.iter().zip(&heights[columns..]).map(|(a, b)| b - a).filter(finite);
     let unit = along_x().chain(along_y()).fold(0.0, |unit: f64, step| unit.max(step.abs()));
     if unit <= 0.0 {
         return 0.0;
     }
-    let sum: f64 = along_x().chain(along_y()).map(|step| (step / unit).powi(2)).sum();
-    (sum / (n * (n - 1)) as f64).sqrt() * (unit / map.dx())
+    let (pairs_x, pairs_y) = if map.undefined() == 0 {
+        (map.rows() * (columns - 1), columns * (map.rows() - 1))
+    } else {
+        (along_x().count(), along_y().count())
+    };
+    let square = |step: f64| (step / unit).powi(2);
+    if pairs_x == 0 {
+        return (along_y().map(square).sum::<f64>() / pairs_y as f64).sqrt() * (unit / map.dy());
+    }
+    // All pairs are counted as pairs along x.
+    let weight =
+        if pairs_y == 0 { 0.0 } else { (map.dx() / map.dy()).powi(2) * (pairs_x as f64 / pairs_y as f64) };
+    let sum: f64 = along_x().map(square).chain(along_y().map(|step| weight * square(step))).sum();
+    (sum / pairs_x as f64).sqrt() * (unit / map.dx())
 }
 
 #[cfg(test)]

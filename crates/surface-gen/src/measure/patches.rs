@@ -1,12 +1,14 @@
 //! Connected patches of a set of cells.
 
-use contact_model::Boundary;
+use contact_model::{Boundary, Cells};
 
-/// Number of cells in each connected patch of a set, in the order of the patches' first cells; cells are connected when they share
-/// an edge.
+/// Number of cells in each connected patch of a set, in the order of the patches' first cells; cells are
+/// connected when they share an edge.
 ///
-/// `index` holds strictly increasing linear indices `iy * cells + ix` on a grid of `cells` cells a side. With periodic boundaries opposite
-/// edges of the grid are one. Cost: O(n log n) at worst, O(n) in practice, for n cells of the set; the grid itself is never touched.
+/// `index` holds strictly increasing linear indices `iy * columns + ix` on a grid of so many cells (a number
+/// for as many rows as columns, or `[columns, rows]`). With periodic boundaries opposite
+/// edges of the grid are one. Cost: O(n log n) at worst, O(n) in practice, for n cells of the set; the grid
+/// itself is never touched.
 ///
 /// ```
 /// use contact_model::Boundary;
@@ -14,10 +16,13 @@ use contact_model::Boundary;
 /// let index = [0, 2, 3];
 /// assert_eq!(surface_gen::patches(3, &index, Boundary::Free), [2, 1]);
 /// assert_eq!(surface_gen::patches(3, &index, Boundary::Periodic), [3]);
+/// // The same indices on 6 columns and 2 rows: one row of three cells, of which the last two touch.
+/// assert_eq!(surface_gen::patches([6, 2], &index, Boundary::Free), [1, 2]);
 /// ```
-pub fn patches(cells: usize, index: &[u32], boundary: Boundary) -> Vec<usize> {
+pub fn patches(cells: impl Into<Cells>, index: &[u32], boundary: Boundary) -> Vec<usize> {
+    let Cells { columns, rows } = cells.into();
     debug_assert!(index.windows(2).all(|w| w[0] < w[1]));
-    let place = |k: usize| (index[k] as usize % cells, index[k] as usize / cells);
+    let place = |k: usize| (index[k] as usize % columns, index[k] as usize / columns);
     let mut forest = Forest { parent: (0..index.len()).collect() };
     // Position in the list of the cell above the one looked at: both go through the list in order.
     let mut above = 0;
@@ -27,7 +32,7 @@ pub fn patches(cells: usize, index: &[u32], boundary: Boundary) -> Vec<usize> {
             forest.join(k - 1, k);
         }
         if y > 0 {
-            let wanted = index[k] - cells as u32;
+            let wanted = index[k] - columns as u32;
             while index[above] < wanted {
                 above += 1;
             }
@@ -37,10 +42,10 @@ pub fn patches(cells: usize, index: &[u32], boundary: Boundary) -> Vec<usize> {
         }
     }
     if boundary == Boundary::Periodic {
-        let find = |x: usize, y: usize| index.binary_search(&((y * cells + x) as u32)).ok();
+        let find = |x: usize, y: usize| index.binary_search(&((y * columns + x) as u32)).ok();
         for k in 0..index.len() {
             let (x, y) = place(k);
-            for other in [(x == 0).then(|| find(cells - 1, y)), (y == 0).then(|| find(x, cells - 1))] {
+            for other in [(x == 0).then(|| find(columns - 1, y)), (y == 0).then(|| find(x, rows - 1))] {
                 if let Some(other) = other.flatten() {
                     forest.join(k, other);
                 }
@@ -81,8 +86,9 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
-    /// Flood fill on the whole grid: the slow twin.
-    fn flooded(cells: usize, set: &[bool], boundary: Boundary) -> Vec<usize> {
+    /// Flood fill on the whole grid: the reference.
+    fn flooded(cells: impl Into<Cells>, set: &[bool], boundary: Boundary) -> Vec<usize> {
+        let Cells { columns, rows } = cells.into();
         let mut seen = vec![false; set.len()];
         let mut sizes = Vec::new();
         for start in 0..set.len() {
@@ -93,11 +99,11 @@ mod tests {
             seen[start] = true;
             while let Some(i) = stack.pop() {
                 size += 1;
-                let (x, y) = (i % cells, i / cells);
-                for (dx, dy) in [(1, 0), (cells - 1, 0), (0, 1), (0, cells - 1)] {
-                    let (to_x, to_y) = ((x + dx) % cells, (y + dy) % cells);
+                let (x, y) = (i % columns, i / columns);
+                for (dx, dy) in [(1, 0), (columns - 1, 0), (0, 1), (0, rows - 1)] {
+                    let (to_x, to_y) = ((x + dx) % columns, (y + dy) % rows);
                     let wraps = to_x.abs_diff(x) > 1 || to_y.abs_diff(y) > 1;
-                    let j = to_y * cells + to_x;
+                    let j = to_y * columns + to_x;
                     if set[j] && !seen[j] && !(wraps && boundary == Boundary::Free) {
                         seen[j] = true;
                         stack.push(j);
@@ -130,17 +136,21 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 64, rng_seed: RngSeed::Fixed(11), ..ProptestConfig::default() })]
 
-        /// Beside the flood fill, and what cannot depend on the way: the sum, and the number without and with the wrap.
+        /// Beside the flood fill, and what cannot depend on the way: the sum, and the number without and with
+        /// the wrap.
         #[test]
         fn a_flood_finds_the_same(set in proptest::collection::vec(0.0..1.0_f64, 81), density in 0.05..0.95_f64) {
             let set: Vec<bool> = set.into_iter().map(|u| u < density).collect();
             let index = index(&set);
-            for boundary in [Boundary::Free, Boundary::Periodic] {
-                let found = patches(9, &index, boundary);
-                prop_assert_eq!(found.iter().sum::<usize>(), index.len());
-                prop_assert_eq!(&found, &flooded(9, &set, boundary));
+            for cells in [[9, 9], [27, 3], [3, 27], [81, 1], [1, 81]] {
+                for boundary in [Boundary::Free, Boundary::Periodic] {
+                    let found = patches(cells, &index, boundary);
+                    prop_assert_eq!(found.iter().sum::<usize>(), index.len());
+                    prop_assert_eq!(&found, &flooded(cells, &set, boundary));
+                }
+                let [free, periodic] = [Boundary::Free, Boundary::Periodic].map(|b| patches(cells, &index, b).len());
+                prop_assert!(periodic <= free);
             }
-            prop_assert!(patches(9, &index, Boundary::Periodic).len() <= patches(9, &index, Boundary::Free).len());
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Spectra of samples, as periodic fields.
 
-use contact_model::{HeightMap, Line};
+use crate::lattice::Lattice;
+use crate::spectrum::CUTOFF_SLACK;
+use contact_model::{Cells, Error, HeightMap, Line, Result};
 use realfft::RealFftPlanner;
 use rustfft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::TAU;
@@ -41,90 +43,112 @@ impl RowTransform {
     }
 }
 
-/// Calls `visit(|m|^2, |H|^2, copies)` for every wave but the mean, in a fixed order; returns the unit of H. `copies` counts the conjugate wave.
-fn waves(map: &HeightMap, mut visit: impl FnMut(u64, f64, f64)) -> f64 {
-    let n = map.columns();
+/// Calls `visit(|q|^2, |H|^2, copies)` for every wave but the mean, in a fixed order; returns the unit of H.
+/// Wavenumbers are in units of `2 pi / L`, `L = sqrt(Lx Ly)`; `copies` counts the conjugate wave.
+///
+/// # Errors
+/// [`Error::Domain`] for a map with undefined points.
+fn waves(map: &HeightMap, lattice: &Lattice, mut visit: impl FnMut(f64, f64, f64)) -> Result<f64> {
+    if map.undefined() > 0 {
+        let expected = "0: a spectrum needs every height (fill the undefined points or crop the map)";
+        return Err(Error::domain("undefined points", map.undefined() as f64, expected));
+    }
+    let Cells { columns: nx, rows: ny } = map.cells();
     let (middle, unit) = range(map.heights());
-    let width = n / 2 + 1;
-    let mut columns = vec![Complex::new(0.0, 0.0); width * n];
-    let mut along_x = RowTransform::new(n);
-    for (iy, row) in map.heights().chunks_exact(n).enumerate() {
+    let width = nx / 2 + 1;
+    let mut columns = vec![Complex::new(0.0, 0.0); width * ny];
+    let mut along_x = RowTransform::new(nx);
+    for (iy, row) in map.heights().chunks_exact(nx).enumerate() {
         for (mx, &value) in along_x.of(row, middle, unit).iter().enumerate() {
-            columns[mx * n + iy] = value;
+            columns[mx * ny + iy] = value;
         }
     }
-    let along_y = FftPlanner::new().plan_fft_forward(n);
+    let along_y = FftPlanner::new().plan_fft_forward(ny);
     let mut scratch = vec![Complex::new(0.0, 0.0); along_y.get_inplace_scratch_len()];
-    for (mx, column) in columns.chunks_exact_mut(n).enumerate() {
+    for (mx, column) in columns.chunks_exact_mut(ny).enumerate() {
         along_y.process_with_scratch(column, &mut scratch);
-        let copies = if mx == 0 || 2 * mx == n { 1.0 } else { 2.0 };
+        let copies = if mx == 0 || 2 * mx == nx { 1.0 } else { 2.0 };
         for (iy, value) in column.iter().enumerate() {
-            let my = iy.min(n - iy);
-            let m2 = (mx * mx + my * my) as u64;
-            if m2 > 0 {
-                visit(m2, value.norm_sqr() / (n as f64).powi(2), copies);
+            let my = iy.min(ny - iy);
+            if (mx, my) != (0, 0) {
+                visit(lattice.square(mx as u64, my as u64), value.norm_sqr() / (ny as f64).powi(2), copies);
             }
         }
     }
-    unit
+    Ok(unit)
 }
 
-/// Root mean square slope of a map as a periodic field, `sqrt(sum q^2 |H(q)|^2)`, dimensionless.
+/// Root mean square slope of a map as a periodic field, `sqrt(sum |q|^2 |H(q)|^2)`, dimensionless.
 ///
-/// Exact for the surfaces of this crate. For a body that is not periodic the jump from one edge to the opposite one counts as
-/// slope: take [`crate::rms_slope_differences`] there. Cost O(N^2 log N), memory about that of the map.
+/// Exact for the surfaces of this crate. For a body that is not periodic the jump from one edge to the
+/// opposite one counts as slope: take [`crate::rms_slope_differences`] there. Cost O(N log N) for N cells,
+/// memory about that of the map.
+///
+/// # Errors
+/// [`Error::Domain`] for a map with undefined points.
 ///
 /// ```
 /// use contact_model::Surface;
 /// // h = 0.1 cos(2 pi x): h' has the amplitude 0.2 pi, its rms is 0.2 pi / sqrt(2).
 /// let sine = Surface::Sine { amplitude: 0.1, wavelength: 1.0, size: 1.0.into() };
-/// let slope = surface_gen::rms_slope(&*surface_gen::height_map(&sine, 16, 0)?);
+/// let slope = surface_gen::rms_slope(&*surface_gen::height_map(&sine, 16, 0)?)?;
 /// assert!((slope - 0.4442882938158366).abs() < 1e-14);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn rms_slope(map: &HeightMap) -> f64 {
+pub fn rms_slope(map: &HeightMap) -> Result<f64> {
     let mut sum = 0.0;
-    let unit = waves(map, |m2, power, copies| sum += copies * m2 as f64 * power);
-    TAU * sum.sqrt() * (unit / map.length())
+    let lattice = Lattice::new(map.cells(), map.size());
+    let unit = waves(map, &lattice, |square, power, copies| sum += copies * square * power)?;
+    Ok(TAU * sum.sqrt() * (unit / map.length()))
 }
 
-/// Spectrum of a map averaged over rings: pairs (q, C_2D) in units of 1/length and length^4, for ring 1, 2, ..., N/2.
+/// Spectrum of a map averaged over rings: pairs (q, C_2D) in units of 1/length and length^4, for ring 1, 2,
+/// ... up to `|q| = pi / max(dx, dy)` (N/2 for a square of N x N cells).
 ///
-/// `C_2D(q) = (L / 2 pi)^2 |H(q)|^2`, two-sided: `integral of C_2D over all of the plane of q = rms^2` (the convention of Eq. 2). Ring k holds the
-/// waves with |m| nearest to k, q is the mean of their wavenumbers and C the arithmetic mean of theirs, zeros beyond a cut-off
-/// included. On a power law `q^-p` a ring's mean exceeds the value at its q by about `p (p + 1) / (24 k^2)` of it. The mean height is left out.
-/// Cost O(N^2 log N), memory about that of the map.
+/// `C_2D(q) = Lx Ly / (2 pi)^2 |H(q)|^2`, two-sided: `integral of C_2D over all of the plane of q = rms^2`
+/// (the convention of Eq. 2). Rings are as wide as the longest wave, `2 pi / max(Lx, Ly)`, so that none is
+/// empty and no long wave is left out: ring k holds the waves with |q| nearest to k of these, q is the mean
+/// of their wavenumbers and C the arithmetic mean of theirs, zeros beyond a cut-off included. An axis of 1 or
+/// 2 cells carries no wave of either sign and decides neither the width nor the last ring. On a power law
+/// `q^-p` a ring's mean exceeds the value at its q by about `p (p + 1) / (24 k^2)` of it. The mean height is
+/// left out. Cost O(N log N) for N cells, memory about that of the map.
+///
+/// # Errors
+/// [`Error::Domain`] for a map with undefined points.
 ///
 /// ```
 /// use contact_model::Surface;
 /// // One wave along x of amplitude 0.2: two of the 4 waves (+-1, 0), (0, +-1) and 4 of (+-1, +-1) of ring 1 carry 0.01 each.
 /// let sine = Surface::Sine { amplitude: 0.2, wavelength: 1.0, size: 1.0.into() };
-/// let spectrum = surface_gen::radial_spectrum(&*surface_gen::height_map(&sine, 16, 0)?);
+/// let spectrum = surface_gen::radial_spectrum(&*surface_gen::height_map(&sine, 16, 0)?)?;
 /// let tau = std::f64::consts::TAU;
 /// assert!((spectrum[0].1 * tau * tau - 2.0 * 0.01 / 8.0).abs() < 1e-15);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn radial_spectrum(map: &HeightMap) -> Vec<(f64, f64)> {
-    let rings = map.columns() / 2;
-    // Count, sum of |m|, sum of |H|^2.
-    let mut sums = vec![(0.0, 0.0, 0.0); rings + 1];
-    let unit = waves(map, |m2, power, copies| {
-        let m = (m2 as f64).sqrt();
+pub fn radial_spectrum(map: &HeightMap) -> Result<Vec<(f64, f64)>> {
+    let (lattice, length) = (Lattice::new(map.cells(), map.size()), map.length());
+    let longest = lattice.longest();
+    // Longest waves in 2 pi / L.
+    let rings = longest / length;
+    let last = (lattice.limit() * rings * (1.0 + CUTOFF_SLACK)) as usize;
+    // Count, sum of |q|, sum of |H|^2.
+    let mut sums = vec![(0.0, 0.0, 0.0); last + 1];
+    let unit = waves(map, &lattice, |square, power, copies| {
+        let m = square.sqrt() * rings;
         if let Some(sum) = sums.get_mut(m.round() as usize) {
             *sum = (sum.0 + copies, sum.1 + copies * m, sum.2 + copies * power);
         }
-    });
-    let side = map.length();
+    })?;
     let point = |&(count, m, power): &(f64, f64, f64)| {
-        (TAU / side * (m / count), ((power / count).sqrt() * unit * side / TAU).powi(2))
+        (TAU / longest * (m / count), ((power / count).sqrt() * unit * length / TAU).powi(2))
     };
-    sums.iter().skip(1).map(point).collect()
+    Ok(sums.iter().skip(1).filter(|(count, ..)| *count > 0.0).map(point).collect())
 }
 
 /// Spectrum of a line: pairs (q, C_1D) in units of 1/length and length^3, for the waves m = 1, 2, ..., n/2.
 ///
-/// `C_1D(q) = (L_1D / 2 pi) |H(q)|^2`, two-sided: `integral of C_1D over q of both signs = rms^2`, so that `C_1D = pi |q| C_2D` (Eq. 17) keeps the
-/// variance. The mean height is left out. Cost O(n log n).
+/// `C_1D(q) = (L_1D / 2 pi) |H(q)|^2`, two-sided: `integral of C_1D over q of both signs = rms^2`, so that
+/// `C_1D = pi |q| C_2D` (Eq. 17) keeps the variance. The mean height is left out. Cost O(n log n).
 ///
 /// ```
 /// // cos(2 pi x) on 4 elements: |H| = 1/2 for m = 1.

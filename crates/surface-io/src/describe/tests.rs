@@ -25,7 +25,8 @@ fn a_part_of_a_surface_is_not_periodic_and_keeps_its_dimension() {
     let found = describe(&part);
     assert!((found.fractal_dimension().unwrap() - 2.2).abs() < SCATTER, "{found}");
     // Without the window the jump between the edges flattens the spectrum.
-    let raw = hurst_from_spectrum(&radial_spectrum(&part), found.fitted[0], found.fitted[1]).unwrap();
+    let raw =
+        hurst_from_spectrum(&radial_spectrum(&part).unwrap(), found.fitted[0], found.fitted[1]).unwrap();
     assert!((3.0 - raw - 2.2).abs() > SCATTER);
     // The window keeps the level of the spectrum: the same waves have the same density in the part and in the whole, within the scatter of rings of a
     // few hundred waves.
@@ -43,7 +44,7 @@ fn small_and_flat_maps_have_no_dimension() {
     for map in [HeightMap::new(1, 1.0, vec![3.0]), HeightMap::new(64, 1.0, vec![3.0; 4096])] {
         let found = describe(&map.unwrap());
         assert_eq!(found.hurst, Err(Absent::NoRelief));
-        assert!(found.rms_height <= 0.0 && found.rms_slope.is_some_and(|s| s <= 0.0));
+        assert!(found.rms_height <= 0.0 && found.rms_slope <= 0.0);
         assert!(found.to_string().contains("fractal dimension  not determined: no relief"));
     }
 }
@@ -53,7 +54,7 @@ fn extreme_reliefs_stay_finite() {
     for unit in [1e-300, 1e300] {
         let heights = (0..64 * 64).map(|i| unit * f64::from((i * 37) % 101) / 101.0).collect();
         let found = describe(&HeightMap::new(64, 1.0, heights).unwrap());
-        assert!(found.rms_height.is_finite() && found.rms_slope.is_some_and(f64::is_finite));
+        assert!(found.rms_height.is_finite() && found.rms_slope.is_finite());
     }
 }
 
@@ -69,7 +70,11 @@ fn rectangles_keep_their_dimension() {
     let oblong = describe(&HeightMap::new([256, 200], part.size(), means).unwrap());
     assert!((oblong.fractal_dimension().unwrap() - 2.2).abs() < 2.0 * SCATTER, "{oblong}");
     let shown = oblong.to_string();
-    assert!(shown.contains("cells              256 x 200") && shown.contains("cell               3.90625e-3 x 1.953125e-3"), "{shown}");
+    assert!(
+        shown.contains("cells              256 x 200")
+            && shown.contains("cell               3.90625e-3 x 1.953125e-3"),
+        "{shown}"
+    );
     let strip = map.cropped(0..512, 0..20).unwrap();
     assert_eq!(describe(&strip).hurst, Err(Absent::FewWaves));
 }
@@ -78,7 +83,9 @@ fn rectangles_keep_their_dimension() {
 fn undefined_points_have_no_spectrum() {
     let heights = vec![1.0, f64::NAN, 3.0, 5.0, f64::NAN, 3.0];
     let found = describe(&HeightMap::with_undefined([3, 2], [3.0, 1.0], heights).unwrap());
-    assert_eq!((found.undefined, found.range, found.rms_slope), (2, [1.0, 5.0], None));
+    assert_eq!((found.undefined, found.range), (2, [1.0, 5.0]));
+    // Pairs of defined points: 1 to 5 and 3 to 3 along y over half a unit, none along x.
+    assert!((found.rms_slope - 32.0_f64.sqrt()).abs() < 1e-14, "{found}");
     // Heights 1, 3, 5, 3 about their mean 3.
     assert!((found.rms_height - 2.0_f64.sqrt()).abs() < 1e-15);
     assert!(found.spectrum.is_empty() && found.hurst == Err(Absent::Undefined));

@@ -107,7 +107,10 @@ impl fmt::Display for Problem {
                 write!(f, "line {line}, {key}: {source}; skip_lines leaves out a header")
             }
             Self::Side { line, key, value } => {
-                write!(f, "line {line}, {key} = {value}: expected a length > 0; skip_lines leaves out a header")
+                write!(
+                    f,
+                    "line {line}, {key} = {value}: expected a length > 0; skip_lines leaves out a header"
+                )
             }
             Self::Quantity { what, source } => write!(f, "{what}: {source}"),
             Self::Crop { from: [row, column], cells: [high, wide], shape: [rows, columns] } => write!(
@@ -118,10 +121,9 @@ impl fmt::Display for Problem {
                 f,
                 "{cells} {what}: expected 1 to {found}, as many as the map has; finer cells would be invented"
             ),
-            Self::Trend { present, unknowns } => write!(
-                f,
-                "a trend of {unknowns} unknowns is not determined by the {present} defined points"
-            ),
+            Self::Trend { present, unknowns } => {
+                write!(f, "a trend of {unknowns} unknowns is not determined by the {present} defined points")
+            }
             Self::Overflow { value } => {
                 write!(f, "height {value}: beyond the range of double precision after conversion")
             }

@@ -1,6 +1,7 @@
 //! What comments say: `# Width: 10 um`, `# Height: 10 um`, `# Value units: m`, as Gwyddion exports them and this crate writes them.
 
 use crate::error::Problem;
+use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, QuantityError, Unit};
 
 /// The statements that count; everything else is a comment.
@@ -61,6 +62,13 @@ impl Heading {
             _ => {}
         }
         Ok(())
+    }
+
+    /// The format that the comments are those of: points have a unit of x and y, a matrix has a width and a height.
+    pub(crate) fn format(&self) -> Option<Format> {
+        let matrix = self.width.is_some() && self.height.is_some();
+        let points = self.lateral_unit.is_some();
+        if points { Some(Format::Xyz) } else { matrix.then_some(Format::Text) }
     }
 
     /// Width and height. Without a unit they count only where the heights are said to have none: elsewhere they are numbers of pixels.

@@ -46,7 +46,11 @@ fn units_are_metres_or_none() {
         read("0.5", Some("nm")).unwrap_err().contains("the side of a cell is 0.5, but the heights have nm")
     );
     assert!(read("0.5 um", Some("none")).unwrap_err().contains("but the heights have no unit"));
-    assert!(read("", Some("none")).unwrap_err().contains("the size of the map is neither in the file nor given: say size = "));
+    assert!(
+        read("", Some("none"))
+            .unwrap_err()
+            .contains("the size of the map is neither in the file nor given: say size = ")
+    );
 }
 
 #[test]
