@@ -37,12 +37,7 @@ const MOST_PIXELS: f64 = 4096.0;
 /// # Errors
 /// [`Error::Content`] for another number of values than cells, no cells or a size that is not positive,
 /// [`Error::File`] when it cannot be written.
-pub fn write_grey(
-    path: &Path,
-    cells: impl Into<Cells>,
-    size: impl Into<Size>,
-    values: &[f64],
-) -> Result<()> {
+pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, values: &[f64]) -> Result<()> {
     let (cells, size) = (cells.into(), size.into());
     let Cells { columns, rows } = cells;
     if values.is_empty() || cells.checked_count() != Some(values.len()) {
@@ -224,14 +219,19 @@ mod tests {
         assert_eq!(image([2, 1], [2.0, 1.0], &[0.0, 1.0]), (2, 1, vec![255, 0]));
         assert_eq!(image([1, 2], [1.0, 2.0], &[0.0, 1.0]), (1, 2, vec![0, 255]));
         // Cells of 2 x 1: four pixels across, two up.
-        assert_eq!(image([2, 2], [4.0, 2.0], &[0.0, 1.0, 1.0, 0.0]), (4, 2, vec![0, 0, 255, 255, 255, 255, 0, 0]));
+        assert_eq!(
+            image([2, 2], [4.0, 2.0], &[0.0, 1.0, 1.0, 0.0]),
+            (4, 2, vec![0, 0, 255, 255, 255, 255, 0, 0])
+        );
         // An undefined point is transparent.
         assert_eq!(image([2, 1], [2.0, 1.0], &[f64::NAN, 1.0]), (2, 1, vec![255, 0, 255, 255]));
         assert_eq!(image([2, 1], [2.0, 1.0], &[f64::NAN; 2]).2, [255, 0, 255, 0]);
         // Long rectangles do not become large files.
         let (width, height, _) = image([1, 2], [5e3, 1.0], &[0.0, 1.0]);
         assert_eq!((width, height), (4096, 1));
-        assert!(write_grey(&path, [2, 2], 1.0, &[0.0; 3]).is_err() && write_grey(&path, 0, 1.0, &[]).is_err());
+        assert!(
+            write_grey(&path, [2, 2], 1.0, &[0.0; 3]).is_err() && write_grey(&path, 0, 1.0, &[]).is_err()
+        );
         assert!(write_grey(&path, [1, 2], [1.0, 1e9], &[0.0; 2]).is_err());
     }
 

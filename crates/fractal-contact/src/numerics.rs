@@ -6,11 +6,11 @@ use analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
 };
 use bem3d::{Bem3d, Method};
-use contact_model::{ContactModel, HistoryModel, Source};
+use contact_model::{Cells, ContactModel, HistoryModel, Size, Source};
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 
-/// Largest grids: 54 GB for a light load, 4 GB for a line.
-const MOST_CELLS: usize = 1 << 15;
+/// Largest grids: 54 GB for a light load (the square of this many cells), 4 GB for a line.
+pub(crate) const MOST_CELLS: usize = 1 << 15;
 const MOST_ELEMENTS: usize = 1 << 28;
 
 /// Grid on which models are asked whether they can answer.
@@ -22,7 +22,7 @@ const PROBE_ELEMENTS: usize = 1 << 10;
 #[non_exhaustive]
 pub enum Numerics {
     /// Boundary elements in three dimensions.
-    Bem3d(Bem3d),
+    Bem3d(BoundaryElements),
     /// The method of reduction of dimensionality.
     Mdr1d(Mdr1d),
     /// A sphere.
@@ -48,11 +48,71 @@ pub enum Numerics {
     /// Axisymmetric viscoelastic bodies, a history.
     Viscoelastic,
     /// Friction or rheology of any surface that boundary elements can press, a history.
-    Equivalent(Equivalent<Bem3d>),
+    Equivalent(Equivalent<BoundaryElements>),
+}
+
+/// Numerics of boundary elements as a scene gives them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundaryElements {
+    /// The model; its cells are the columns of the grid.
+    pub model: Bem3d,
+    /// Rows of the grid; `None`: as many as make the cells nearest to squares.
+    pub rows: Option<usize>,
+}
+
+impl From<Bem3d> for BoundaryElements {
+    fn from(model: Bem3d) -> Self {
+        Self { model, rows: None }
+    }
+}
+
+impl BoundaryElements {
+    /// The grid on a rectangle of this size.
+    pub fn cells(&self, size: Size) -> Cells {
+        let nearly_square = Cells::nearly_square(self.model.cells, size);
+        self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square })
+    }
+
+    /// The same with at most so many cells along the longer side of the grid, in the same proportion.
+    fn reduced(self, most: usize, size: Size) -> Self {
+        let Cells { columns, rows } = self.cells(size);
+        let longer = columns.max(rows);
+        if longer <= most {
+            return self;
+        }
+        let fewer = |count: usize| ((count as f64 * (most as f64 / longer as f64)).round() as usize).max(1);
+        let model = Bem3d { cells: fewer(columns), ..self.model };
+        Self { model, rows: self.rows.map(|_| fewer(rows)) }
+    }
+}
+
+/// Errors for rows that the model would not take on a generated surface: `Bem3d` chooses them itself, nearest to square cells.
+pub(crate) fn refuse_rows(numerics: &Numerics, size: Size) -> contact_model::Result<()> {
+    let Some(elements) = numerics.boundary_elements() else { return Ok(()) };
+    let Cells { columns, rows } = elements.cells(size);
+    if rows == Cells::nearly_square(columns, size).rows {
+        return Ok(());
+    }
+    let what = format!("{rows} rows of {columns} cells on this rectangle (leave `rows` out)");
+    Err(contact_model::Error::unsupported(numerics.name(), what))
+}
+
+/// The model of these numerics.
+fn bem3d_of(numerics: BoundaryElements) -> Bem3d {
+    numerics.model
+}
+
+/// The same where boundary elements press for another model.
+fn equivalent_of(outer: Equivalent<BoundaryElements>) -> Equivalent<Bem3d> {
+    let Equivalent { model, per_decade, decades } = outer;
+    Equivalent { model: bem3d_of(model), per_decade, decades }
 }
 
 /// What `[models.bem3d]` says by default.
-const BEM3D: Bem3d = Bem3d { cells: 257, tolerance: 1e-6, rounds: 200, method: Method::Auto };
+const BEM3D: BoundaryElements = BoundaryElements {
+    model: Bem3d { cells: 257, tolerance: 1e-6, rounds: 200, method: Method::Auto },
+    rows: None,
+};
 
 /// A model behind one of the two traits.
 #[allow(missing_debug_implementations)] // Trait objects.
@@ -95,7 +155,7 @@ impl Numerics {
     /// The model itself.
     pub fn model(&self) -> AnyModel {
         match *self {
-            Self::Bem3d(model) => AnyModel::Contact(Box::new(model)),
+            Self::Bem3d(model) => AnyModel::Contact(Box::new(bem3d_of(model))),
             Self::Mdr1d(model) => AnyModel::Contact(Box::new(model)),
             Self::Hertz => AnyModel::Contact(Box::new(Hertz)),
             Self::PowerLawBody => AnyModel::Contact(Box::new(PowerLawBody)),
@@ -108,7 +168,7 @@ impl Numerics {
             Self::CattaneoMindlin => AnyModel::History(Box::new(CattaneoMindlin)),
             Self::PartialSlip => AnyModel::History(Box::new(PartialSlip)),
             Self::Viscoelastic => AnyModel::History(Box::new(Viscoelastic)),
-            Self::Equivalent(model) => AnyModel::History(Box::new(model)),
+            Self::Equivalent(model) => AnyModel::History(Box::new(equivalent_of(model))),
         }
     }
 
@@ -130,23 +190,33 @@ impl Numerics {
         self.size() > 0
     }
 
-    /// Cells a side, elements of a line; 0 for a formula.
+    /// Columns of a grid, elements of a line; 0 for a formula.
     pub fn size(&self) -> usize {
         match self {
-            Self::Bem3d(model) | Self::Equivalent(Equivalent { model, .. }) => model.cells,
+            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => {
+                numerics.model.cells
+            }
             Self::Mdr1d(model) => model.elements,
             _ => 0,
         }
     }
 
-    /// The same on a grid of at most these cells or elements.
-    #[must_use]
-    pub fn reduced(self, cells: usize, elements: usize) -> Self {
+    /// The numerics of boundary elements, where they press.
+    pub fn boundary_elements(&self) -> Option<&BoundaryElements> {
         match self {
-            Self::Bem3d(model) => Self::Bem3d(Bem3d { cells: model.cells.min(cells), ..model }),
+            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => Some(numerics),
+            _ => None,
+        }
+    }
+
+    /// The same on a grid of at most these cells along the longer side of a rectangle of this size, or elements.
+    #[must_use]
+    pub fn reduced(self, cells: usize, elements: usize, size: Size) -> Self {
+        match self {
+            Self::Bem3d(model) => Self::Bem3d(model.reduced(cells, size)),
             Self::Mdr1d(model) => Self::Mdr1d(Mdr1d { elements: model.elements.min(elements) }),
             Self::Equivalent(outer) => {
-                let model = Bem3d { cells: outer.model.cells.min(cells), ..outer.model };
+                let model = outer.model.reduced(cells, size);
                 Self::Equivalent(Equivalent { model, ..outer })
             }
             other => other,
@@ -155,17 +225,18 @@ impl Numerics {
 
     /// The same on a grid that is only asked whether it can answer.
     #[must_use]
-    pub(crate) fn probe(&self) -> Self {
-        self.reduced(PROBE_CELLS, PROBE_ELEMENTS)
+    pub(crate) fn probe(&self, size: Size) -> Self {
+        self.reduced(PROBE_CELLS, PROBE_ELEMENTS, size)
     }
 
-    /// What one may expect of its numbers, in a sentence; `cells` a side, of models that have them.
-    pub fn accuracy(&self, rough: bool, cells: usize) -> String {
+    /// What one may expect of its numbers, in a sentence; `cells` of models that have them.
+    pub fn accuracy(&self, rough: bool, cells: Cells) -> String {
+        let Cells { columns, rows } = cells;
         match self {
-            Self::Bem3d(model) => format!(
-                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {cells} x {cells} cells; the cells \
+            Self::Bem3d(numerics) => format!(
+                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {columns} x {rows} cells; the cells \
                  themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
-                model.tolerance
+                numerics.model.tolerance
             ),
             Self::Mdr1d(_) if rough => "exact for its line; against three dimensions 7 to 18 % too stiff near F_bar = 1, exponents as 1/(1+H)".into(),
             Self::Mdr1d(_) | Self::Hertz | Self::PowerLawBody | Self::Westergaard | Self::Jkr => "exact, to about 1e-13".into(),
@@ -181,7 +252,7 @@ impl Numerics {
                 "exact within Cattaneo's and Mindlin's assumptions (no coupling, slip along the load)".into()
             }
             Self::Equivalent(_) => format!(
-                "the normal part is that of bem3d on {cells} x {cells} cells; tangential results are exact for round contacts, a few per cent off for \
+                "the normal part is that of bem3d on {columns} x {rows} cells; tangential results are exact for round contacts, a few per cent off for \
                  others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
                  bodies, about two for rough ones (its doubt is in `strategy`)"
             ),
@@ -249,9 +320,13 @@ fn at_most(entry: &Entry<'_>, most: usize, help: &str) -> Read<usize> {
     }
 }
 
-fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
+fn bem3d_options(mut numerics: BoundaryElements, table: &Entries<'_>) -> Read<BoundaryElements> {
+    let model = &mut numerics.model;
     if let Some(entry) = table.find("cells") {
         model.cells = at_most(&entry, MOST_CELLS, "a light load takes 50 bytes a cell")?;
+    }
+    if let Some(entry) = table.find("rows") {
+        numerics.rows = Some(at_most(&entry, MOST_CELLS, "a light load takes 50 bytes a cell")?);
     }
     if let Some(entry) = table.find("tolerance") {
         model.tolerance = entry.positive_number()?;
@@ -267,7 +342,7 @@ fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
             [("auto", Method::Auto), ("iterative", Method::Iterative), ("single_level", Method::SingleLevel)];
         model.method = entry.choice(&words)?;
     }
-    Ok(model)
+    Ok(numerics)
 }
 
 fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
@@ -322,13 +397,32 @@ mod tests {
 
     #[test]
     fn the_list_of_all_models_has_their_defaults() {
-        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default())));
-        assert!(Numerics::ALL.contains(&Numerics::Equivalent(Equivalent::new(Bem3d::default()))));
+        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default().into())));
+        let Equivalent { per_decade, decades, .. } = Equivalent::new(Bem3d::default());
+        assert!(Numerics::ALL.contains(&Numerics::Equivalent(Equivalent {
+            model: BEM3D,
+            per_decade,
+            decades
+        })));
         assert!(Numerics::ALL.contains(&Numerics::Mdr1d(Mdr1d::default())));
         assert!(Numerics::ALL.contains(&Numerics::Persson(Persson::default())));
         assert!(Numerics::ALL.contains(&Numerics::GreenwoodWilliamson(GreenwoodWilliamson::default())));
         for numerics in Numerics::ALL {
             assert_eq!(numerics.is_history(), matches!(numerics.model(), AnyModel::History(_)));
         }
+    }
+
+    #[test]
+    fn grids_of_rectangles() {
+        let grid = |cells, rows| BoundaryElements { model: Bem3d { cells, ..Bem3d::default() }, rows };
+        let wide = Size { x: 4.0, y: 1.0 };
+        assert_eq!(grid(64, None).cells(wide), [64, 16].into());
+        assert_eq!(grid(64, Some(64)).cells(wide), 64.into());
+        assert_eq!(grid(64, Some(64)).reduced(16, wide), grid(16, Some(16)));
+        assert_eq!(grid(64, Some(8)).reduced(16, wide), grid(16, Some(2)));
+        assert_eq!(grid(16, None).reduced(16, wide), grid(16, None));
+        // The longer side of the grid counts, and no side vanishes.
+        assert_eq!(grid(64, None).reduced(16, Size { x: 1.0, y: 4.0 }), grid(4, None));
+        assert_eq!(grid(64, None).reduced(16, Size { x: 1.0, y: 1e4 }), grid(1, None));
     }
 }
