@@ -5,7 +5,8 @@ use contact_model::{
     Size, SolveReport, Stop,
 };
 
-/// A closed form between force, approach and stiffness, in the [`Nondimensionalisation`] of its [`Closed`]; loads are positive.
+/// A closed form between force, approach and stiffness, in the [`Nondimensionalisation`] of its [`Closed`];
+/// loads are positive.
 pub(crate) trait Law: Send {
     /// State at a force.
     fn at_force(&self, force: f64) -> Result<Point>;
@@ -129,7 +130,8 @@ pub(crate) fn of_body(scene: &Scene) -> Result<(Nondimensionalisation, Normalisa
     ))
 }
 
-/// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is free.
+/// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is
+/// free.
 pub(crate) fn within(radius: f64, size: Size) -> Result<()> {
     let (length, shorter) = (size.length(), size.shorter());
     if radius <= 0.5 * (shorter / length) * ROUNDED_UP {

@@ -8,17 +8,19 @@ const NAME: &str = "flat_punch";
 
 /// Stiffness of the rigid square punch, `k / (E* L)` = 1.152298.
 ///
-/// Converged boundary-element value; the electrical capacitance of the unit square, which is the same number up to a constant,
-/// agrees. The paper's 1.1419 ([`contact_model::PAPER_STIFFNESS_FACTOR`]) is 0.9 % lower and not converged.
+/// Converged boundary-element value; the electrical capacitance of the unit square, which is the same number
+/// up to a constant, agrees. The paper's 1.1419 ([`contact_model::PAPER_STIFFNESS_FACTOR`]) is 0.9 % lower
+/// and not converged.
 pub const SQUARE_STIFFNESS: f64 = 1.152_298;
 
 /// Uncertainty of [`SQUARE_STIFFNESS`], one unit of its last digit.
 pub const SQUARE_STIFFNESS_UNCERTAINTY: f64 = 1e-6;
 
-/// A rigid flat punch: `F = k d`, with `k = 2 E* a` for a circle of radius a and `k = 1.152298(1) E* L` for a square of side L.
+/// A rigid flat punch: `F = k d`, with `k = 2 E* a` for a circle of radius a and `k = 1.152298(1) E* L` for a
+/// square of side L.
 ///
-/// Takes [`Surface::FlatCircle`] (exact) and [`Surface::Flat`] (with the stated uncertainty in the report). The area is that
-/// of the face.
+/// Takes [`Surface::FlatCircle`] (exact) and a square [`Surface::Flat`] (with the stated uncertainty in the
+/// report). The area is that of the face.
 ///
 /// ```
 /// use analytic::FlatPunch;
@@ -99,11 +101,12 @@ impl Law for Face {
     }
 }
 
-/// `p(r) = F / (2 pi a^2) (1 - r^2/a^2)^(-1/2)` under a flat circular punch of radius a, in the unit of F/a^2; 0 outside
-/// (Boussinesq).
+/// `p(r) = F / (2 pi a^2) (1 - r^2/a^2)^(-1/2)` under a flat circular punch of radius a, in the unit of
+/// F/a^2; 0 outside (Boussinesq).
 ///
 /// # Errors
-/// [`Error::Domain`] at the edge itself, where the pressure is infinite, and for a force or radius that makes no sense.
+/// [`Error::Domain`] at the edge itself, where the pressure is infinite, and for a force or radius that makes
+/// no sense.
 ///
 /// ```
 /// // F = 2 pi, a = 1: 1 in the middle, 1.25 at r = 0.6.

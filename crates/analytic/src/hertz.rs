@@ -77,10 +77,12 @@ impl Law for Sphere {
     }
 }
 
-/// `p(r) = p_0 sqrt(1 - r^2 / a^2)` with `p_0 = 3 F / (2 pi a^2)`, in the unit of F/a^2; 0 outside (Hertz; Johnson Eq. 4.24).
+/// `p(r) = p_0 sqrt(1 - r^2 / a^2)` with `p_0 = 3 F / (2 pi a^2)`, in the unit of F/a^2; 0 outside (Hertz;
+/// Johnson Eq. 4.24).
 ///
 /// # Errors
-/// [`Error::Domain`] for a force that is negative or a contact radius that is not positive, or not finite numbers.
+/// [`Error::Domain`] for a force that is negative or a contact radius that is not positive, or not finite
+/// numbers.
 ///
 /// ```
 /// // F = 2 pi, a = 1: p_0 = 3, and at r = 0.6 it is 3 x 0.8.

@@ -9,16 +9,18 @@ use std::f64::consts::PI;
 
 const NAME: &str = "jkr";
 
-/// The JKR contact of a sphere with [`Adhesion::ShortRange`]: `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d = a^2/R - sqrt(2 pi w a/E*)`.
+/// The JKR contact of a sphere with [`Adhesion::ShortRange`]: `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d
+/// = a^2/R - sqrt(2 pi w a/E*)`.
 ///
-/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be negative, and no load means
-/// the adhered contact, not an empty one. (Bodies that approach each other jump into this contact at d = 0.) A force below `-3/2 pi
-/// w R` or an approach below that of `F = -5/6 pi w R` is [`Error::OutOfRange`], named a pull-off: the smallest admissible load is
-/// in the error. So is a contact radius beyond half the shorter side.
+/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be
+/// negative, and no load means the adhered contact, not an empty one. (Bodies that approach each other jump
+/// into this contact at d = 0.) A force below `-3/2 pi w R` or an approach below that of `F = -5/6 pi w R` is
+/// [`Error::OutOfRange`], named a pull-off: the smallest admissible load is in the error. So is a contact
+/// radius beyond half the shorter side.
 ///
-/// The stiffness is that of the contact set, `k = 2 E* a`: what an oscillation too small to move the edge sees, and what a
-/// conductance follows from. The slope of the equilibrium curve, where the edge moves, is [`Sphere::slope`].
-/// Takes [`Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
+/// The stiffness is that of the contact set, `k = 2 E* a`: what an oscillation too small to move the edge
+/// sees, and what a conductance follows from. The slope of the equilibrium curve, where the edge moves, is
+/// [`Sphere::slope`]. Takes [`Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
 ///
 /// ```
 /// use analytic::Jkr;
@@ -72,7 +74,8 @@ impl ContactModel for Jkr {
     }
 }
 
-/// A sphere with adhesion, outside the common trait: the equilibrium curve through its contact radius, and where it ends.
+/// A sphere with adhesion, outside the common trait: the equilibrium curve through its contact radius, and
+/// where it ends.
 ///
 /// ```
 /// use analytic::jkr::Sphere;
@@ -138,14 +141,14 @@ impl Sphere {
         signed(self.approach_of(a), |approach| self.nondimensional.approach(approach))
     }
 
-    /// `dF/dd` along the equilibrium curve: positive where a prescribed force holds the contact, negative where only a prescribed
-    /// approach does.
+    /// `dF/dd` along the equilibrium curve: positive where a prescribed force holds the contact, negative
+    /// where only a prescribed approach does.
     ///
     /// `2 E* a (1 - b) / (1 - b/3)` with `b = (3/4) sqrt(2 pi w R^2/(E* a^3))`; without adhesion 2 E* a.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a radius that is not finite or at or below that of the pull-off under prescribed approach, where the
-    /// slope has no bound.
+    /// [`Error::Domain`] for a radius that is not finite or at or below that of the pull-off under prescribed
+    /// approach, where the slope has no bound.
     pub fn slope(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
         let b = 0.75 * (2.0 * PI * self.work / a).sqrt() / a;
@@ -158,7 +161,8 @@ impl Sphere {
 
     /// Contact radius at a force: `a^3 = 3 R/(4 E*) (sqrt(F + F_a) + sqrt(F_a))^2` with `F_a = 3/2 pi w R`.
     ///
-    /// The printed `F + 3 pi w R + sqrt(6 pi w R F + (3 pi w R)^2)` is the same square, and cancels near the pull-off.
+    /// The printed `F + 3 pi w R + sqrt(6 pi w R F + (3 pi w R)^2)` is the same square, and cancels near the
+    /// pull-off.
     ///
     /// # Errors
     /// [`Error::Domain`] for a force that is not finite, [`Error::OutOfRange`] below the pull-off force.
@@ -172,7 +176,8 @@ impl Sphere {
     /// Contact radius at an approach: the larger root of `d = a^2/R - sqrt(2 pi w a/E*)`.
     ///
     /// # Errors
-    /// [`Error::Domain`] for an approach that is not finite, [`Error::OutOfRange`] below that of the pull-off.
+    /// [`Error::Domain`] for an approach that is not finite, [`Error::OutOfRange`] below that of the
+    /// pull-off.
     pub fn radius_at_approach(&self, approach: f64) -> Result<f64> {
         if !approach.is_finite() {
             return Err(Error::domain("approach", approach, "a finite number"));
@@ -245,7 +250,8 @@ impl Sphere {
 
     /// Contact radius in R at an approach.
     ///
-    /// With `a = s^2` the equation `s^4 - c s - d = 0` is convex in s; Newton's steps from above its largest root only descend.
+    /// With `a = s^2` the equation `s^4 - c s - d = 0` is convex in s; Newton's steps from above its largest
+    /// root only descend.
     fn at_approach(&self, approach: f64) -> Result<f64> {
         /// Descents stop at rounding after at most 60 halvings and a few steps; this is never reached.
         const MOST_STEPS: usize = 200;
@@ -463,7 +469,8 @@ mod tests {
             }
         }
 
-        /// The work done from the pull-off under approach to a state is what the elastic body and the surfaces have gained.
+        /// The work done from the pull-off under approach to a state is what the elastic body and the
+        /// surfaces have gained.
         #[test]
         fn energy(a in 0.3_f64..0.5, work in 1e-4_f64..1e-2) {
             let sphere = Sphere::new(1.0, 1.0, work).unwrap();

@@ -1,5 +1,5 @@
-//! Closed forms, one theory per file, each a [`contact_model::ContactModel`] (with friction a [`contact_model::HistoryModel`]) that
-//! names its sources.
+//! Closed forms, one theory per file, each a [`contact_model::ContactModel`] (with friction a
+//! [`contact_model::HistoryModel`]) that names its sources.
 //!
 //! | model | surfaces | claims |
 //! |---|---|---|
@@ -13,29 +13,33 @@
 //! | [`CattaneoMindlin`] (a history) | sphere, [`contact_model::Friction::Coulomb`] | tangential force and displacement, stick radius, dissipated energy |
 //! | [`PowerLaw`] | self-affine, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
-//! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11), [`conductance_fit`] (Eq. 13),
-//! [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4). The product of two waves has no closed form; its limits for small and
-//! nearly full contact are functions of [`westergaard`]. What theories know of a random surface is in [`spectrum`].
+//! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11),
+//! [`conductance_fit`] (Eq. 13), [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4). The product of
+//! two waves has no closed form; its limits for small and nearly full contact are functions of
+//! [`westergaard`]. What theories know of a random surface is in [`spectrum`].
 //!
 //! # Conventions
 //!
-//! As in [`contact_model`]: `d` counts from first touch, pressure is compressive, units are the caller's own. Round contacts
-//! sit in the middle of the square; once their radius exceeds half its side they are out of range, because the half-space outside
-//! carries no pressure.
+//! As in [`contact_model`]: `d` counts from first touch, pressure is compressive, units are the caller's own.
+//! Round contacts sit in the middle of the rectangle; once their radius exceeds half its shorter side they
+//! are out of range, because the half-space outside carries no pressure. `L = sqrt(Lx Ly)`, the side of a
+//! square; theories of rough surfaces know the nominal area `L^2` alone.
 //!
-//! Periodic contacts have a mean gap and no approach: [`contact_model::PreparedContact::mean_gap`], [`contact_model::Load::MeanGap`].
+//! Periodic contacts have a mean gap and no approach: [`contact_model::PreparedContact::mean_gap`],
+//! [`contact_model::Load::MeanGap`].
 //!
 //! # Accuracy and speed
 //!
-//! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the constant of the flat
-//! square is known to 1e-6 and says so in the report. A state costs well under a microsecond; of [`GreenwoodWilliamson`] and
-//! [`Persson`] tens of microseconds (quadratures to 1e-11), with the mean gap a few hundred. How good theories of rough surfaces are
-//! is another matter. [`PowerLaw`] is as good as the fit it is.
+//! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the
+//! constant of the flat square is known to 1e-6 and says so in the report. A state costs well under a
+//! microsecond; of [`GreenwoodWilliamson`] and [`Persson`] tens of microseconds (quadratures to 1e-11), with
+//! the mean gap a few hundred. How good theories of rough surfaces are is another matter. [`PowerLaw`] is as
+//! good as the fit it is.
 //!
 //! # What it does not do
 //!
-//! No fields: a closed form has no cells. Where the pressure is a formula it is a function of r ([`hertz::pressure`],
-//! [`flat_punch::pressure`]). Effects that the table does not name are refused.
+//! No fields: a closed form has no cells. Where the pressure is a formula it is a function of r
+//! ([`hertz::pressure`], [`flat_punch::pressure`]). Effects that the table does not name are refused.
 
 pub mod cattaneo_mindlin;
 mod closed;

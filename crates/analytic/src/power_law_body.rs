@@ -9,8 +9,9 @@ const NAME: &str = "power_law_body";
 
 /// A power-law body: `d = kappa_n c a^n`, `F = 2 E* d a n / (n + 1)`, `k = 2 E* a`, `A = pi a^2` ([`kappa`]).
 ///
-/// Then `d ln k / d ln F = 1 / (n + 1)` exactly, at any load. Takes [`Surface::PowerLaw`], [`Surface::Cone`] (n = 1) and
-/// [`Surface::Sphere`] (n = 2); a contact radius beyond half the shorter side is [`Error::OutOfRange`].
+/// Then `d ln k / d ln F = 1 / (n + 1)` exactly, at any load. Takes [`Surface::PowerLaw`], [`Surface::Cone`]
+/// (n = 1) and [`Surface::Sphere`] (n = 2); a contact radius beyond half the shorter side is
+/// [`Error::OutOfRange`].
 ///
 /// ```
 /// use analytic::PowerLawBody;
@@ -184,7 +185,8 @@ mod tests {
             let surface = |length: f64| Surface::PowerLaw { coefficient: c * length.powf(1.0 - n), exponent: n, size: length.into() };
             let scene = Scene::new(surface(1.0), 1.5);
             check_curve(&PowerLawBody, &scene, d);
-            // The coefficient itself, c L^(1 - n), leaves f64 for larger n; at extreme lengths powf rounds it.
+            // The coefficient itself, c L^(1 - n), leaves f64 for larger n; at extreme lengths powf rounds
+            // it.
             if n < 2.5 {
                 scale_invariant(&PowerLawBody, surface, d, 1e-11);
             }

@@ -1,10 +1,11 @@
 //! Moments of a self-affine spectrum between its cut-offs, in closed form: what theories know of a surface.
 //!
-//! The spectrum of [`SelfAffine`]: constant from `q_0 = 2 pi/L` to the roll-off, then `q^(-2 (H + 1))` to the short cut-off.
-//! Integrals run over the whole plane of wavenumbers; a surface drawn on a grid has the sum over the grid's waves instead. The few
-//! longest waves carry most of the height, and there the two differ: at equal rms height and without roll-off, 2048 cells a side,
-//! the slope here is 35/31/24/16/9/3 % larger than that of the grid for D_f = 2.0/2.2/2.4/2.6/2.8/3.0. At an equal constant
-//! ([`Amplitude::Spectrum`]), or with a roll-off some octaves from the longest wave, they agree closely: compare theories with drawn
+//! The spectrum of [`SelfAffine`]: constant from `q_0 = 2 pi/L` to the roll-off, then `q^(-2 (H + 1))` to the
+//! short cut-off. Integrals run over the whole plane of wavenumbers; a surface drawn on a grid has the sum
+//! over the grid's waves instead. The few longest waves carry most of the height, and there the two differ:
+//! at equal rms height and without roll-off, 2048 cells a side, the slope here is 35/31/24/16/9/3 % larger
+//! than that of the grid for D_f = 2.0/2.2/2.4/2.6/2.8/3.0. At an equal constant ([`Amplitude::Spectrum`]),
+//! or with a roll-off some octaves from the longest wave, they agree closely: compare theories with drawn
 //! surfaces in that way.
 
 use contact_model::{Amplitude, Error, Result, SelfAffine};
@@ -43,8 +44,9 @@ impl Spectrum {
     /// The spectrum of a surface with a short cut-off.
     ///
     /// # Errors
-    /// Those of [`SelfAffine::validate`]; [`Error::Domain`] without a short cut-off (slope and curvature then belong to a grid, not to the
-    /// surface), for one that is not beyond the longest wave `2 pi/L`, and for an amplitude that no `f64` holds.
+    /// Those of [`SelfAffine::validate`]; [`Error::Domain`] without a short cut-off (slope and curvature then
+    /// belong to a grid, not to the surface), for one that is not beyond the longest wave `2 pi/L`, and for
+    /// an amplitude that no `f64` holds.
     pub fn new(surface: &SelfAffine) -> Result<Self> {
         surface.validate()?;
         let Some(cutoff) = surface.short_cutoff else {
@@ -78,7 +80,7 @@ impl Spectrum {
         self.height
     }
 
-    /// Side L of the square, a length.
+    /// `L = sqrt(Lx Ly)`, the side of a square: a length.
     pub fn side(&self) -> f64 {
         self.side
     }
@@ -96,14 +98,15 @@ impl Spectrum {
         }
     }
 
-    /// Nayak's bandwidth parameter `alpha = m0 m4/m2^2` (J. Lubr. Technol. 93, 398 (1971)), dimensionless, at least 3/2.
+    /// Nayak's bandwidth parameter `alpha = m0 m4/m2^2` (J. Lubr. Technol. 93, 398 (1971)), dimensionless, at
+    /// least 3/2.
     pub fn bandwidth(&self) -> f64 {
         let [m0, m2, m4] = self.profile_moments();
         m0 * (m4 / m2) / m2
     }
 
-    /// Moments m0, m2, m4 of a profile of the surface: variances of height, slope and curvature along a line, in `h^2`, `(h/L)^2`
-    /// and `(h/L^2)^2`.
+    /// Moments m0, m2, m4 of a profile of the surface: variances of height, slope and curvature along a line,
+    /// in `h^2`, `(h/L)^2` and `(h/L^2)^2`.
     ///
     /// `m0 = h^2`, `m2 = g^2/2`, `m4 = (3/8) 2 pi int q^5 C dq`: the angular means of `cos^2` and `cos^4`.
     pub(crate) fn profile_moments(&self) -> [f64; 3] {
@@ -146,7 +149,8 @@ impl Spectrum {
         (PI * self.plateau * (flat + steep)).sqrt()
     }
 
-    /// Wavenumbers from the longest wave to the cut-off, at most a factor sqrt(2) apart, the roll-off among them.
+    /// Wavenumbers from the longest wave to the cut-off, at most a factor sqrt(2) apart, the roll-off among
+    /// them.
     pub(crate) fn ladder(&self) -> Vec<f64> {
         let mut ladder = vec![self.low];
         for (from, to) in [(self.low, self.roll), (self.roll, self.high)] {
@@ -234,7 +238,8 @@ pub(crate) mod tests {
 
     #[test]
     fn slopes_of_a_grid_with_equal_height() {
-        // rms slope of 2048 x 2048 cells (data/paper/VALUES.md), and what the front page says of the difference.
+        // rms slope of 2048 x 2048 cells (data/paper/VALUES.md), and what the front page says of the
+        // difference.
         for (hurst, grid, more) in [
             (1.0, 17.38, 1.35),
             (0.8, 37.29, 1.31),

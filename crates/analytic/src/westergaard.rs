@@ -1,4 +1,5 @@
-//! Westergaard: a sinusoidal wave, periodic; and the limits of the product of two waves (Johnson, Greenwood, Higginson).
+//! Westergaard: a sinusoidal wave, periodic; and the limits of the product of two waves (Johnson, Greenwood,
+//! Higginson).
 
 use crate::closed::ROUNDED_UP;
 use crate::periodic::{self, Periodic, PeriodicLaw};
@@ -11,17 +12,20 @@ use std::f64::consts::{PI, SQRT_2};
 
 const NAME: &str = "westergaard";
 
-/// How far the side along x may be from a whole number of waves: both may have been rounded on their way through a file.
+/// How far the side along x may be from a whole number of waves: both may have been rounded on their way
+/// through a file.
 const WHOLE_WAVES: f64 = 1e-9;
 
-/// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat: closes at the mean pressure `p* = pi E* D/w`.
+/// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat: closes at the mean pressure `p* = pi E*
+/// D/w`.
 ///
-/// With `r = p/p*`: contact width over wavelength `(2/pi) asin sqrt(r)`, mean gap `D (1 - r + r ln r)`, stiffness per area `pi E*/(w
-/// ln(1/r))`. From `p*` on the contact is full: the area is that of the square, the mean gap 0, and there is no finite stiffness;
-/// asking for it is [`Error::OutOfRange`]. A mean gap beyond D is no contact.
+/// With `r = p/p*`: contact width over wavelength `(2/pi) asin sqrt(r)`, mean gap `D (1 - r + r ln r)`,
+/// stiffness per area `pi E*/(w ln(1/r))`. From `p*` on the contact is full: the area is that of the square,
+/// the mean gap 0, and there is no finite stiffness; asking for it is [`Error::OutOfRange`]. A mean gap
+/// beyond D is no contact.
 ///
-/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves along x. The rms height of its
-/// normalisation is D/sqrt(2).
+/// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves along x.
+/// The rms height of its normalisation is D/sqrt(2).
 ///
 /// ```
 /// use analytic::Westergaard;
@@ -138,7 +142,8 @@ impl PeriodicLaw for Wave {
         if gap >= 1.0 {
             return Ok(0.0);
         }
-        // In e = 1 - r near full contact, where r would lose digits; below, r ~ (1 - gap)/ln: any bracket does.
+        // In e = 1 - r near full contact, where r would lose digits; below, r ~ (1 - gap)/ln: any bracket
+        // does.
         let r = if gap < gap_over_amplitude(0.5) {
             1.0 - root::between(0.0, 0.5, |e| gap_over_amplitude(1.0 - e) - gap)
         } else {
@@ -148,8 +153,8 @@ impl PeriodicLaw for Wave {
     }
 }
 
-/// `p* = sqrt(2) pi E* D/w`: the mean pressure that closes `h = D cos(2 pi x/w) cos(2 pi y/w)` (Johnson, Greenwood, Higginson, Int.
-/// J. Mech. Sci. 27, 383 (1985)).
+/// `p* = sqrt(2) pi E* D/w`: the mean pressure that closes `h = D cos(2 pi x/w) cos(2 pi y/w)` (Johnson,
+/// Greenwood, Higginson, Int. J. Mech. Sci. 27, 383 (1985)).
 ///
 /// # Errors
 /// [`Error::Domain`] for a number that is not finite and positive.
@@ -173,8 +178,8 @@ pub fn product_full_pressure(modulus: f64, amplitude: f64, wavelength: f64) -> R
     }
 }
 
-/// `A/A0 = pi (3 r/(8 pi))^(2/3)` of that product of waves, asymptotic for small `r = p/p*`: Hertz's contact at each of the two
-/// crests a square.
+/// `A/A0 = pi (3 r/(8 pi))^(2/3)` of that product of waves, asymptotic for small `r = p/p*`: Hertz's contact
+/// at each of the two crests a square.
 ///
 /// The crests' mutual displacement is neglected: a relative error of order `r^(1/3)`.
 ///
@@ -191,8 +196,8 @@ pub fn product_small_fraction(ratio: f64) -> Result<f64> {
     Ok(PI * (3.0 / 8.0 / PI * share(ratio)?).cbrt().powi(2))
 }
 
-/// `K w/E* = 2 sqrt(2) (3 r/(8 pi))^(1/3)` of that product of waves, its stiffness per area for small r: `2 E* a` at each of the two
-/// crests a square.
+/// `K w/E* = 2 sqrt(2) (3 r/(8 pi))^(1/3)` of that product of waves, its stiffness per area for small r: `2
+/// E* a` at each of the two crests a square.
 ///
 /// Hertz's contact as in [`product_small_fraction`], with the same neglect.
 ///
@@ -210,9 +215,11 @@ pub fn product_small_stiffness(ratio: f64) -> Result<f64> {
     Ok(4.0 * (product_small_fraction(ratio)? / (2.0 * PI)).sqrt())
 }
 
-/// `1 - A/A0 = 3/(2 pi) (1 - r)` of that product of waves, asymptotic for r near 1: the fraction that is not in contact.
+/// `1 - A/A0 = 3/(2 pi) (1 - r)` of that product of waves, asymptotic for r near 1: the fraction that is not
+/// in contact.
 ///
-/// The gaps that remain act as pressurised cracks at the troughs (Johnson, Greenwood, Higginson, Int. J. Mech. Sci. 27, 383 (1985)).
+/// The gaps that remain act as pressurised cracks at the troughs (Johnson, Greenwood, Higginson, Int. J.
+/// Mech. Sci. 27, 383 (1985)).
 ///
 /// # Errors
 /// As [`product_small_fraction`].
@@ -288,7 +295,8 @@ mod tests {
 
     #[test]
     fn few_lines_are_hertz_line_contacts() {
-        // Line contact (Johnson Eq. 4.43): a^2 = 4 P R/(pi E*) with P = p w and 1/R = D (2 pi/w)^2; half width a of w.
+        // Line contact (Johnson Eq. 4.43): a^2 = 4 P R/(pi E*) with P = p w and 1/R = D (2 pi/w)^2; half
+        // width a of w.
         let (d, w, p) = (0.01, 1.0, 1e-9);
         let state = Westergaard.prepare(&scene(d, w, 1.0, 1.0), 0).unwrap().solve(Load::Force(p)).unwrap();
         let half = (4.0 * p * w * w * w / (PI * 4.0 * PI * PI * d)).sqrt();

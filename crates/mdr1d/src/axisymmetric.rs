@@ -1,12 +1,15 @@
-//! Axisymmetric bodies through their MDR profile g(x): exact for force, approach, stiffness and contact radius.
+//! Axisymmetric bodies through their MDR profile g(x): exact for force, approach, stiffness and contact
+//! radius.
 //!
-//! A body `f(r)` is replaced by the line `g(x) = |x| int_0^|x| f'(r) / sqrt(x^2 - r^2) dr` (Hess 2011; Popov and Hess 2015), pressed
-//! into independent springs of stiffness E* per length. The half width of the line in contact is the radius of the round contact.
+//! A body `f(r)` is replaced by the line `g(x) = |x| int_0^|x| f'(r) / sqrt(x^2 - r^2) dr` (Hess 2011; Popov
+//! and Hess 2015), pressed into independent springs of stiffness E* per length. The half width of the line in
+//! contact is the radius of the round contact.
 
 use contact_model::{Error, Line, Result, Size, Surface};
 use std::f64::consts::PI;
 
-/// The MDR profile of an axisymmetric body, in units of `L = sqrt(Lx Ly)` of its rectangle (the side of a square).
+/// The MDR profile of an axisymmetric body, in units of `L = sqrt(Lx Ly)` of its rectangle (the side of a
+/// square).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Profile {
     /// `g = slope |x|^exponent` of the body `z = c r^n`: `exponent = n`, `slope = kappa_n c L^(n - 1)`.
@@ -46,11 +49,12 @@ impl RoundContact {
 }
 
 impl Profile {
-    /// The profile of a sphere (paraboloid), cone, power-law body or flat circular punch; `None` for any other surface.
+    /// The profile of a sphere (paraboloid), cone, power-law body or flat circular punch; `None` for any
+    /// other surface.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a body whose depth at `r = L` over `L` no `f64` holds; [`Error::OutOfRange`] for a punch wider than
-    /// the shorter side.
+    /// [`Error::Domain`] for a body whose depth at `r = L` over `L` no `f64` holds; [`Error::OutOfRange`] for
+    /// a punch wider than the shorter side.
     ///
     /// ```
     /// use contact_model::Surface;
@@ -99,14 +103,16 @@ impl Profile {
         }
     }
 
-    /// The profile sampled at the centres of an odd number of elements over `|x| <= half_width`, in units of L.
+    /// The profile sampled at the centres of an odd number of elements over `|x| <= half_width`, in units of
+    /// L.
     ///
-    /// For checks of the numerics: [`crate::Bearing`] of this line converges to the exact state, the force with order
-    /// `min(2, 1 + n)` in the element, the stiffness with order 1. Odd, so that the apex is a centre and `d = 0` is first touch.
+    /// For checks of the numerics: [`crate::Bearing`] of this line converges to the exact state, the force
+    /// with order `min(2, 1 + n)` in the element, the stiffness with order 1. Odd, so that the apex is a
+    /// centre and `d = 0` is first touch.
     ///
     /// # Errors
-    /// [`Error::Shape`] for an even number of elements; [`Error::OutOfRange`] for a half width beyond a flat punch; errors of
-    /// [`Line::new`].
+    /// [`Error::Shape`] for an even number of elements; [`Error::OutOfRange`] for a half width beyond a flat
+    /// punch; errors of [`Line::new`].
     pub fn line(self, half_width: f64, elements: usize) -> Result<Line> {
         if elements.is_multiple_of(2) {
             let expected = "an odd number (the apex is an element's centre)".into();
@@ -182,10 +188,12 @@ pub(crate) fn check_radius(radius: f64, size: Size) -> Result<()> {
     }
 }
 
-/// `kappa_n = (sqrt(pi)/2) n Gamma(n/2) / Gamma((n + 1)/2)`: the profile of `r^n` is `kappa_n |x|^n` (Hess 2011).
+/// `kappa_n = (sqrt(pi)/2) n Gamma(n/2) / Gamma((n + 1)/2)`: the profile of `r^n` is `kappa_n |x|^n` (Hess
+/// 2011).
 ///
-/// No gamma function is needed: `kappa_n = sqrt(pi) Gamma(x + 1/2) / Gamma(x)` with `x = (n + 1)/2` obeys `kappa_n = kappa_(n+2)
-/// (n + 1)/(n + 2)` and for large n has a rapidly convergent asymptotic series. Relative error below 1e-14 for every n > 0.
+/// No gamma function is needed: `kappa_n = sqrt(pi) Gamma(x + 1/2) / Gamma(x)` with `x = (n + 1)/2` obeys
+/// `kappa_n = kappa_(n+2) (n + 1)/(n + 2)` and for large n has a rapidly convergent asymptotic series.
+/// Relative error below 1e-14 for every n > 0.
 ///
 /// # Errors
 /// [`Error::Domain`] for an exponent that is not finite and positive.
@@ -218,7 +226,8 @@ pub fn kappa(exponent: f64) -> Result<f64> {
         factor *= (n + 1.0) / (n + 2.0);
         n += 2.0;
     }
-    // (Gamma(w + 3/4) / Gamma(w + 1/4))^2 = w (1 + 1/(32 w^2) - ...) with w = (n + 1/2)/2: even powers of 1/w only.
+    // (Gamma(w + 3/4) / Gamma(w + 1/4))^2 = w (1 + 1/(32 w^2) - ...) with w = (n + 1/2)/2: even powers of 1/w
+    // only.
     let w = 0.5 * (n + 0.5);
     let y = (w * w).recip();
     let series = SERIES.iter().rev().fold(0.0, |sum, c| sum * y + c);

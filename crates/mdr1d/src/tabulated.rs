@@ -3,13 +3,15 @@
 use crate::shape::{Shape, of_power};
 use contact_model::{Error, Result};
 
-/// A monotone profile g(x) through given states of a contact, in units of the side of its square.
+/// A monotone profile g(x) through given states of a contact, in units of `L = sqrt(Lx Ly)` of its rectangle.
 ///
-/// A spring foundation of stiffness E* whose line has the half width `x(d) = k(d)/(2 E*)` in contact answers with the same F, d and k as the
-/// contact whose stiffness that is: `F = 2 E* int_0^d x`, `k = 2 E* x` (Popov, Pohrt, Hess; M. Hess 2011). So any contact whose k never
-/// falls with d has an equivalent profile, `g(x(d)) = d`. Between two states x is the parabola in d that meets both stiffnesses and the
-/// difference of forces where that parabola never falls (x is then good to third order of the spacing, F to fourth), else two straight
-/// pieces that do the same. From first touch to the first state x is a power of d, or a flat face with a straight flank, as F d/k says.
+/// A spring foundation of stiffness E* whose line has the half width `x(d) = k(d)/(2 E*)` in contact answers
+/// with the same F, d and k as the contact whose stiffness that is: `F = 2 E* int_0^d x`, `k = 2 E* x`
+/// (Popov, Pohrt, Hess; M. Hess 2011). So any contact whose k never falls with d has an equivalent profile,
+/// `g(x(d)) = d`. Between two states x is the parabola in d that meets both stiffnesses and the difference of
+/// forces where that parabola never falls (x is then good to third order of the spacing, F to fourth), else
+/// two straight pieces that do the same. From first touch to the first state x is a power of d, or a flat
+/// face with a straight flank, as F d/k says.
 ///
 /// ```
 /// use contact_model::{Scene, Surface};
@@ -77,7 +79,8 @@ impl Tabulated {
     /// The profile through states in ascending order of their approach.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] where the stiffness falls with the approach, or the force is not convex, by more than the states' slack.
+    /// [`Error::OutOfRange`] where the stiffness falls with the approach, or the force is not convex, by more
+    /// than the states' slack.
     pub(crate) fn new(nodes: &[Node]) -> Result<Self> {
         let mut pieces = Vec::with_capacity(nodes.len() + 1);
         let mut last: Option<Node> = None;
@@ -135,11 +138,11 @@ impl Tabulated {
         self.nodes
     }
 
-    /// Evidence of the tabulation at a depth: the largest change of the force at any state up to it when that state is left out, over
-    /// the force at the depth.
+    /// Evidence of the tabulation at a depth: the largest change of the force at any state up to it when that
+    /// state is left out, over the force at the depth.
     ///
-    /// A bound of the error that the table makes in F, and in a tangential force over mu F: some ten times the error itself for smooth
-    /// bodies (fourth order, twice the spacing).
+    /// A bound of the error that the table makes in F, and in a tangential force over mu F: some ten times
+    /// the error itself for smooth bodies (fourth order, twice the spacing).
     pub fn doubt(&self, depth: f64) -> f64 {
         let below = self.doubts.partition_point(|(approach, _)| *approach <= depth);
         let change = below.checked_sub(1).map_or(0.0, |last| self.doubts[last].1);
