@@ -5,7 +5,9 @@
 use analytic::{Hertz, Westergaard};
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
-use contact_model::{Boundary, ContactModel, ContactState, HeightMap, Load, PreparedContact, Scene, SelfAffine, Surface};
+use contact_model::{
+    Boundary, ContactModel, ContactState, HeightMap, Load, PreparedContact, Scene, SelfAffine, Surface,
+};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stability::{PlainSum, relaxed, relaxed_by};
@@ -30,7 +32,8 @@ fn prepared(map: &HeightMap, boundary: Boundary, method: Method) -> Box<dyn Prep
 /// Reproducible heights in [0, 1].
 fn noise(seed: usize) -> impl Fn(usize, usize) -> f64 {
     move |x, y| {
-        let mut state = (x as u64 * 7919 + y as u64 * 104_729 + seed as u64 * 31 + 1).wrapping_mul(6_364_136_223_846_793_005);
+        let mut state = (x as u64 * 7919 + y as u64 * 104_729 + seed as u64 * 31 + 1)
+            .wrapping_mul(6_364_136_223_846_793_005);
         state ^= state >> 29;
         (state.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -93,7 +96,8 @@ fn against_periodic_sums(map: &HeightMap, approaches: &[f64]) {
     let sum = PlainSum::periodic(map);
     let (cell, highest) = (map.dx() * map.dy(), map.highest());
     let mean = map.heights().iter().map(|h| highest - h).sum::<f64>() / map.heights().len() as f64;
-    let mut contacts = [Method::Auto, Method::Iterative].map(|method| prepared(map, Boundary::Periodic, method));
+    let mut contacts =
+        [Method::Auto, Method::Iterative].map(|method| prepared(map, Boundary::Periodic, method));
     for &approach in approaches {
         let slow = relaxed_by(&sum, map, approach);
         for contact in &mut contacts {
@@ -183,7 +187,8 @@ fn a_turned_map_has_the_same_numbers() {
         let here = waves([24, 14], [1.0, 2.0], 7);
         let turned = here.transposed();
         for force in [1e-4, 0.02, 0.3] {
-            let solve = |map: &HeightMap| prepared(map, boundary, Method::Auto).solve(Load::Force(force)).unwrap();
+            let solve =
+                |map: &HeightMap| prepared(map, boundary, Method::Auto).solve(Load::Force(force)).unwrap();
             let (a, b) = (solve(&here), solve(&turned));
             assert_relative_eq!(a.stiffness.unwrap(), b.stiffness.unwrap(), max_relative = SAME);
             assert_eq!(a.report.contact_cells, b.report.contact_cells);
@@ -253,15 +258,14 @@ fn a_periodic_rectangle_carries_a_wave_along_either_side() {
     for ratio in [0.3, 0.8] {
         let force = ratio * PI * amplitude;
         let exact = theory.solve(Load::Force(force)).unwrap().stiffness.unwrap();
-        for (cells, size, along_x) in [
-            ([250, 9], [1.0, 0.3], true),
-            ([7, 250], [0.2, 1.0], false),
-            ([250, 1], [1.0, 2.0], true),
-        ] {
+        for (cells, size, along_x) in
+            [([250, 9], [1.0, 0.3], true), ([7, 250], [0.2, 1.0], false), ([250, 1], [1.0, 2.0], true)]
+        {
             let map = map(cells, size, |x, y| if along_x { wave(x, cells[0]) } else { wave(y, cells[1]) });
             // Force and stiffness grow with the area.
             let area = size[0] * size[1];
-            let state = prepared(&map, Boundary::Periodic, Method::Auto).solve(Load::Force(force * area)).unwrap();
+            let state =
+                prepared(&map, Boundary::Periodic, Method::Auto).solve(Load::Force(force * area)).unwrap();
             assert_relative_eq!(state.stiffness.unwrap(), exact * area, max_relative = 6.0 / 250.0);
         }
     }

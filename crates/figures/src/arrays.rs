@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::files;
+use contact_model::{Cells, Size};
 use npyz::WriterBuilder as _;
 use std::path::Path;
 
@@ -24,23 +25,68 @@ pub fn write_npy(path: &Path, shape: &[u64], values: &[f64]) -> Result<()> {
     files::write_whole(path, &bytes)
 }
 
-/// Writes a square map of `side` x `side` values as a grey-scale PNG, y upwards: the lowest value is white, the highest black.
+/// Most pixels along a side of a picture whose cells are oblong; one with square cells has a pixel for each.
+const MOST_PIXELS: f64 = 4096.0;
+
+/// Writes a map of values (row-major, columns along x and rows along y) on a rectangle of the given size as a
+/// PNG, y upwards: the lowest value is white, the highest black, undefined points (NaN) are transparent.
+///
+/// The picture has the aspect ratio of the rectangle. A pixel is a square of the shorter side of a cell, or
+/// larger where the picture would have more than 4096 of them along a side.
 ///
 /// # Errors
-/// [`Error::Content`] for values that are no square, [`Error::File`] when it cannot be written.
-pub fn write_grey(path: &Path, side: usize, values: &[f64]) -> Result<()> {
-    if side == 0 || side.checked_mul(side) != Some(values.len()) {
-        return Err(Error::content(path, format!("{} values are no map of {side} x {side}", values.len())));
+/// [`Error::Content`] for another number of values than cells, no cells or a size that is not positive,
+/// [`Error::File`] when it cannot be written.
+pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, values: &[f64]) -> Result<()> {
+    let (cells, size) = (cells.into(), size.into());
+    let Cells { columns, rows } = cells;
+    if values.is_empty() || cells.checked_count() != Some(values.len()) {
+        let message = format!("{} values are no map of {rows} rows x {columns} columns", values.len());
+        return Err(Error::content(path, message));
     }
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let shade = |v: &f64| {
-        let t = if high > low { ((v - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
-        (255.0 * (1.0 - t)).round() as u8
+    cells.validate(size).map_err(|e| Error::content(path, e.to_string()))?;
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    // Halves, because the range of finite numbers may overflow.
+    let shade = |v: f64| {
+        let t = if high > low { (0.5 * v - 0.5 * low) / (0.5 * high - 0.5 * low) } else { 0.0 };
+        (255.0 * (1.0 - t.clamp(0.0, 1.0))).round() as u8
     };
-    let pixels: Vec<u8> = values.chunks(side).rev().flatten().map(shade).collect();
-    files::write_whole(path, &encode_grey(path, side, &pixels)?)
+    let [width, height] = pixels(cells, size);
+    let transparent = values.iter().any(|v| !v.is_finite());
+    let mut bytes = Vec::with_capacity(width * height * if transparent { 2 } else { 1 });
+    for y in (0..height).rev() {
+        let row = &values[y * rows / height * columns..][..columns];
+        for x in 0..width {
+            let value = row[x * columns / width];
+            let defined = value.is_finite();
+            bytes.push(if defined { shade(value) } else { 255 });
+            if transparent {
+                bytes.push(if defined { 255 } else { 0 });
+            }
+        }
+    }
+    let picture = if transparent {
+        encode(path, width, &bytes, png::ColorType::GrayscaleAlpha, 2)?
+    } else {
+        encode_grey(path, width, &bytes)?
+    };
+    files::write_whole(path, &picture)
 }
+
+/// Width and height in pixels of a picture of these cells.
+fn pixels(cells: Cells, size: Size) -> [usize; 2] {
+    let (dx, dy) = (size.x / cells.columns as f64, size.y / cells.rows as f64);
+    if (dx / dy - 1.0).abs() < SQUARE {
+        return [cells.columns, cells.rows];
+    }
+    let pixel = dx.min(dy).max(size.x.max(size.y) / MOST_PIXELS);
+    [size.x, size.y].map(|side| ((side / pixel).round() as usize).max(1))
+}
+
+/// Cells whose sides differ by less than this are square in a picture: a pixel over the most of them.
+const SQUARE: f64 = 1.0 / MOST_PIXELS;
 
 /// Grey values of heights, darker = higher, for optimal contrast: the lowest and highest 0.5 % are white and black.
 ///
@@ -158,6 +204,35 @@ mod tests {
         assert!(g[0] > g[1] && g[1] >= g[2]);
         assert_eq!(grey(&[1.0, 1.0]), [255, 255]);
         assert_eq!(grey(&[]), [0_u8; 0]);
+    }
+
+    #[test]
+    fn pictures_keep_the_shape_of_the_rectangle() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.png");
+        let image = |cells: [usize; 2], size: [f64; 2], values: &[f64]| {
+            write_grey(&path, cells, size, values).unwrap();
+            let image = Image::decode(&path, &std::fs::read(&path).unwrap()).unwrap();
+            (image.width, image.pixels.len() / image.channels / image.width, image.pixels)
+        };
+        // Row 0 is at y = 0, at the bottom.
+        assert_eq!(image([2, 1], [2.0, 1.0], &[0.0, 1.0]), (2, 1, vec![255, 0]));
+        assert_eq!(image([1, 2], [1.0, 2.0], &[0.0, 1.0]), (1, 2, vec![0, 255]));
+        // Cells of 2 x 1: four pixels across, two up.
+        assert_eq!(
+            image([2, 2], [4.0, 2.0], &[0.0, 1.0, 1.0, 0.0]),
+            (4, 2, vec![0, 0, 255, 255, 255, 255, 0, 0])
+        );
+        // An undefined point is transparent.
+        assert_eq!(image([2, 1], [2.0, 1.0], &[f64::NAN, 1.0]), (2, 1, vec![255, 0, 255, 255]));
+        assert_eq!(image([2, 1], [2.0, 1.0], &[f64::NAN; 2]).2, [255, 0, 255, 0]);
+        // Long rectangles do not become large files.
+        let (width, height, _) = image([1, 2], [5e3, 1.0], &[0.0, 1.0]);
+        assert_eq!((width, height), (4096, 1));
+        assert!(
+            write_grey(&path, [2, 2], 1.0, &[0.0; 3]).is_err() && write_grey(&path, 0, 1.0, &[]).is_err()
+        );
+        assert!(write_grey(&path, [1, 2], [1.0, 1e9], &[0.0; 2]).is_err());
     }
 
     #[test]

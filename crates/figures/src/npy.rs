@@ -14,16 +14,18 @@ use surface_io::{Declared, Dimension, Format, Problem, Quantity, Scan, Treatment
 /// than it says, or holds a number that is not finite (with its row and column).
 pub fn read_map(path: &Path) -> Result<HeightMap> {
     let side = Quantity::new(1.0, Dimension::NONE).map_err(|e| Error::content(path, e.to_string()))?;
-    let declared = Declared { format: Some(Format::Npy), width: Some(side), ..Declared::default() };
+    let declared =
+        Declared { format: Some(Format::Npy), size: Some([side, side].into()), ..Declared::default() };
     let scan = Scan::read(path, &declared).map_err(Error::from)?;
+    let (rows, columns) = (scan.understood().rows, scan.understood().columns);
+    if rows != columns {
+        return Err(Error::content(path, format!("{rows} rows of {columns}: expected a square map")));
+    }
     scan.map(&Treatment::default()).map_err(|error| match error.problem() {
         // What could be done about it elsewhere is not offered here.
-        Some(Problem::NotSquare { rows, columns }) => {
-            Error::content(path, format!("{rows} rows of {columns}: expected a square map"))
-        }
-        Some(Problem::Holes { missing, cells, first }) => Error::content(
+        Some(Problem::Undefined { undefined, points, first }) => Error::content(
             path,
-            format!("{missing} of {cells} numbers are NaN, the first in {first}: expected finite heights"),
+            format!("{undefined} of {points} numbers are NaN, the first in {first}: expected finite heights"),
         ),
         _ => error.into(),
     })

@@ -34,7 +34,7 @@ Examples:
   fractal-contact run scene.toml               results.csv, manifest.json and what the scene asks for, in out/scene/
   fractal-contact run scene.toml --out DIR --threads 2
   fractal-contact info results.csv             also scenes and surfaces
-  fractal-contact surface rough.txt --seed 1 --side '1 mm' --rms-height '1 um'
+  fractal-contact surface rough.txt --seed 1 --size '1 mm' --rms-height '1 um'
   fractal-contact completions bash > /etc/bash_completion.d/fractal-contact
 
 Exit codes: 0 done; 1 error; 2 a mistake in the scene or the arguments; 3 done, but some loads were refused or did not converge; 130 stopped
@@ -43,9 +43,10 @@ by Ctrl-C, with the states so far in the files. The same command goes on where i
 const SURFACE: &str = "\
 Examples:
   fractal-contact surface rough.npy --seed 1
-  fractal-contact surface rough.txt --seed 1 --cells 513 --side '1 mm' --rms-height '1 um' --fractal-dimension 2.2
+  fractal-contact surface rough.txt --seed 1 --cells 513 --size '1 mm' --rms-height '1 um' --fractal-dimension 2.2
+  fractal-contact surface long.xyz --seed 1 --cells 512 --size '4 mm x 1 mm' --rms-height '1 um'
 
-An NPY file holds heights only: a scene that reads it says `unit` and `cell`. Text and XYZ say them themselves.";
+An NPY file holds heights only: a scene that reads it says `unit`, and `size` or `cell`. Text and XYZ say them themselves.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -78,21 +79,27 @@ pub enum Command {
         /// Unit of its heights, such as nm.
         #[arg(long)]
         unit: Option<surface_io::Unit>,
-        /// Side of one cell, such as "0.5 um".
+        /// Side of a square map, such as "1 mm", or both of a rectangle, "2 mm x 1 mm".
+        #[arg(long, conflicts_with = "cell")]
+        size: Option<surface_io::Sides>,
+        /// Side of one cell, such as "0.5 um", or both, "0.5 um x 0.25 um".
         #[arg(long)]
-        cell: Option<surface_io::Quantity>,
+        cell: Option<surface_io::Sides>,
     },
     /// Draws a self-affine surface into a file: .npy, .txt (text matrix), .xyz or .vti by its ending.
     #[command(after_help = SURFACE)]
     Surface {
         /// The file.
         file: PathBuf,
-        /// Cells a side.
+        /// Cells along x: columns.
         #[arg(long, default_value_t = 257)]
         cells: usize,
-        /// Side of the square, such as "1 mm", or a plain number.
-        #[arg(long, default_value = "1")]
-        side: String,
+        /// Cells along y [default: as many as make the cells nearest to squares].
+        #[arg(long)]
+        rows: Option<usize>,
+        /// Side of a square, such as "1 mm" or a plain number, or both of a rectangle, "2 mm x 1 mm".
+        #[arg(long, visible_alias = "side", default_value = "1")]
+        size: String,
         /// Fractal dimension in [2, 3]; the Hurst exponent is 3 minus it.
         #[arg(long, default_value_t = 2.4)]
         fractal_dimension: f64,

@@ -4,7 +4,7 @@ use crate::loads::Request;
 use crate::numerics::{AnyModel, Numerics};
 use crate::plan::{Cost, cells};
 use crate::scene_file::SceneFile;
-use contact_model::Surface;
+use contact_model::{Cells, HeightMap, Surface};
 use std::time::{Duration, Instant};
 
 /// Cells a side, and elements, of the solves that the cost is predicted from.
@@ -29,22 +29,24 @@ const BOX_OVER_CONTACT: f64 = 6.0;
 
 /// Time and work of a small twin, scaled. What a small grid refuses is not predicted: its run will tell.
 pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
-    let coarse = (cells(scene, numerics) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);
-    let small = numerics.reduced(coarse, CALIBRATION_ELEMENTS);
+    let (grid, size) = (cells(scene, numerics), scene.relief.size());
+    let coarse = (grid.columns.max(grid.rows) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);
+    let small = numerics.reduced(coarse, CALIBRATION_ELEMENTS, size);
     // Code and memory that are touched for the first time are no part of what grows with N.
-    let warm = numerics.reduced(WARM_CELLS, CALIBRATION_ELEMENTS);
+    let warm = numerics.reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
     let _ = small_solves(scene, &warm, WARM_CELLS, &contact_model::never);
     let asked = scene.request.count();
     let total = (asked * scene.chance.surfaces) as f64;
     let begin = Instant::now();
     let stop = || begin.elapsed() > CALIBRATION_TIME;
-    let (solved, size) = small_solves(scene, &small, coarse, &stop).unwrap_or_default();
+    let (solved, used) = small_solves(scene, &small, coarse, &stop).unwrap_or_default();
     let mut cost = Cost { seconds: begin.elapsed().as_secs_f64(), ..solved.cost };
-    let n = cells(scene, numerics) as f64;
+    let count = grid.columns as f64 * grid.rows as f64;
     let per_state = total / (solved.states.max(1)) as f64;
     let (time, applications) = match numerics {
-        Numerics::Bem3d(_) | Numerics::Equivalent(_) if size > 0 => {
-            let ratio = n / size as f64;
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) if used > 0 => {
+            // Cells a side of the squares of as many cells.
+            let ratio = (count / used as f64).sqrt();
             (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
         }
         Numerics::Mdr1d(m) => (m.elements as f64 / small.size().max(1) as f64, 1.0),
@@ -61,9 +63,9 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         let fields =
             [outputs.pressure, outputs.displacement, outputs.gap].iter().filter(|f| **f).count() as f64;
         cost.fields = fields * total;
-        cost.field_bytes = cost.fields * n * n * 8.0;
+        cost.field_bytes = cost.fields * count * 8.0;
         let filled = (BOX_OVER_CONTACT * solved.filled).min(1.0);
-        cost.memory = n * n * (LIGHT_BYTES + FILLED_BYTES * filled + 8.0 * fields);
+        cost.memory = count * (LIGHT_BYTES + FILLED_BYTES * filled + 8.0 * fields);
     }
     cost
 }
@@ -76,7 +78,7 @@ struct Solved {
     cost: Cost,
 }
 
-/// A few of the loads on a small grid; the second number is its cells a side.
+/// A few of the loads on a grid of at most `coarse` cells along its longer side; the second number is that of its cells.
 fn small_solves(
     scene: &SceneFile,
     numerics: &Numerics,
@@ -85,13 +87,13 @@ fn small_solves(
 ) -> contact_model::Result<(Solved, usize)> {
     let seed = scene.seed(0);
     let mut physics = scene.scene(numerics, seed)?;
-    let mut size = numerics.size();
+    let mut grid = numerics.boundary_elements().map(|elements| elements.grid(scene.relief.size()));
     if let Surface::Heights(map) = &physics.surface {
-        size = map.columns().min(coarse);
-        if map.columns() > coarse {
-            physics.surface = Surface::Heights(std::sync::Arc::new(thinned(map, coarse)?));
-        }
+        let thin = thinned(map, coarse)?;
+        grid = Some(thin.cells());
+        physics.surface = Surface::Heights(std::sync::Arc::new(thin));
     }
+    let size = grid.and_then(Cells::checked_count).unwrap_or(0);
     let mut solved = Solved::default();
     match (numerics.model(), &scene.request) {
         (AnyModel::Contact(model), Request::Loads(loads)) => {
@@ -108,7 +110,7 @@ fn small_solves(
                 };
                 solved.states += 1;
                 let contact = state.report.contact_cells.unwrap_or(0) as f64;
-                solved.filled = solved.filled.max(contact / (size * size).max(1) as f64);
+                solved.filled = solved.filled.max(contact / size.max(1) as f64);
                 solved.cost.applications += state.report.applications as f64;
                 solved.cost.linear_solves += state.report.work.linear_solves as f64;
             }
@@ -119,7 +121,7 @@ fn small_solves(
                 let Ok(state) = contact.advance_until(*step, stop) else { break };
                 solved.states += 1;
                 let cells = state.normal.report.contact_cells.unwrap_or(0) as f64;
-                solved.filled = solved.filled.max(cells / (size * size).max(1) as f64);
+                solved.filled = solved.filled.max(cells / size.max(1) as f64);
                 solved.cost.applications += state.normal.report.applications as f64;
                 solved.cost.linear_solves += state.normal.report.work.linear_solves as f64;
             }
@@ -129,10 +131,19 @@ fn small_solves(
     Ok((solved, size))
 }
 
-/// Every so many-th cell of a map.
-fn thinned(map: &contact_model::HeightMap, m: usize) -> contact_model::Result<contact_model::HeightMap> {
-    let n = map.columns();
-    let at = |i: usize| i * n / m;
-    let heights = (0..m * m).map(|i| map.heights()[at(i / m) * n + at(i % m)]).collect();
-    contact_model::HeightMap::new(m, map.length(), heights)
+/// Every so many-th cell of a map, at most `coarse` along the longer side.
+fn thinned(map: &HeightMap, coarse: usize) -> contact_model::Result<HeightMap> {
+    let longer = map.columns().max(map.rows());
+    if longer <= coarse {
+        return Ok(map.clone());
+    }
+    let fewer = |count: usize| (count * coarse / longer).max(1);
+    let (columns, rows) = (fewer(map.columns()), fewer(map.rows()));
+    let at = |i: usize| {
+        let (row, column) = (i / columns * map.rows() / rows, i % columns * map.columns() / columns);
+        map.heights()[row * map.columns() + column]
+    };
+    let height = |h: f64| if h.is_finite() { h } else { f64::NAN };
+    let heights = (0..columns * rows).map(|i| height(at(i))).collect();
+    HeightMap::with_undefined([columns, rows], map.size(), heights)
 }

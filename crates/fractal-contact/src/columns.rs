@@ -61,10 +61,13 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
         Request::Loads(loads) => {
             let (unit, meaning) = match loads.prescribed {
                 Prescribed::Force => ("N", "force asked for"),
-                Prescribed::ForceBar => {
-                    ("1", "F_bar asked for, F/(E* h L) with this surface's measured rms height h")
+                Prescribed::ForceBar => (
+                    "1",
+                    "F_bar asked for, F/(E* h L) with this surface's measured rms height h, L = sqrt(Lx Ly)",
+                ),
+                Prescribed::MeanPressure => {
+                    ("Pa", "mean pressure asked for, F/(Lx Ly), undefined points included")
                 }
-                Prescribed::MeanPressure => ("Pa", "mean pressure asked for, F/L^2"),
                 Prescribed::Approach => ("m", "approach asked for"),
                 Prescribed::MeanGap => ("m", "mean gap asked for"),
             };
@@ -73,7 +76,9 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
     }
     list.push(kind("force", "N", "normal force", |s| normal(s, |n| n.force)));
     if rough {
-        list.push(kind("force_bar", "1", "F/(E* h L)", |s| scaled(s, |n, c| c.force_bar(n.force).ok())));
+        list.push(kind("force_bar", "1", "F/(E* h L), L = sqrt(Lx Ly)", |s| {
+            scaled(s, |n, c| c.force_bar(n.force).ok())
+        }));
     }
     if scene.effects.boundary == Boundary::Free {
         list.push(kind("approach", "m", "from first touch of the highest point", |s| {
@@ -81,7 +86,7 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
         }));
     }
     if scene.asked.mean_gap {
-        list.push(kind("mean_gap", "m", "mean of the gap over the square", |s| s.mean_gap.into()));
+        list.push(kind("mean_gap", "m", "mean of the gap over the area", |s| s.mean_gap.into()));
     }
     if scene.is_history() {
         list.push(kind("contact_radius", "m", "of a round contact", |s| {
@@ -102,13 +107,13 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
     }
     if outputs.stiffness {
         list.push(kind("stiffness", "N/m", "dF/dd on the contact set", |s| normal(s, |n| n.stiffness)));
-        list.push(kind("stiffness_bar", "1", "k/(1.1419 E* L)", |s| {
+        list.push(kind("stiffness_bar", "1", "k/(1.1419 E* L), L = sqrt(Lx Ly)", |s| {
             scaled(s, |n, c| n.stiffness.map(|k| c.stiffness_bar(k)))
         }));
     }
     if outputs.area {
         list.push(kind("area", "m^2", "real contact area", |s| normal(s, |n| n.area)));
-        list.push(kind("contact_fraction", "1", "A/L^2", |s| {
+        list.push(kind("contact_fraction", "1", "A/(Lx Ly), undefined points included", |s| {
             scaled(s, |n, c| n.area.map(|a| c.contact_fraction(a)))
         }));
     }

@@ -162,6 +162,13 @@ fn distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
+/// Lengths along x and y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Lengths {
+    One(f64),
+    Two([f64; 2]),
+}
+
 /// One value.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry<'a> {
@@ -325,6 +332,24 @@ impl<'a> Entry<'a> {
     /// The same, > 0.
     pub fn positive(&self, dimension: Dimension, system: System) -> Read<f64> {
         self.above_zero(self.quantity(dimension, system)?)
+    }
+
+    /// One length > 0, or two in a list.
+    pub fn lengths(&self, system: System) -> Read<Lengths> {
+        if !self.is_list() {
+            return self.positive(Dimension::LENGTH, system).map(Lengths::One);
+        }
+        let values = self.list();
+        let [x, y] = &values[..] else {
+            let example = if system == System::Si { "[\"2 mm\", \"1 mm\"]" } else { "[2, 1]" };
+            return Err(self
+                .trouble(format!("`{}` has {} values: expected one, or two", self.path, values.len()))
+                .with_help(format!(
+                    "along x, then along y, such as {example}; one value where both are the same"
+                )));
+        };
+        let length = |entry: &Self| entry.positive(Dimension::LENGTH, system);
+        Ok(Lengths::Two([length(x)?, length(y)?]))
     }
 
     /// A plain number > 0.

@@ -5,11 +5,11 @@ use crate::plan::Plan;
 use crate::scene_file::SceneFile;
 use std::f64::consts::TAU;
 use std::path::Path;
-use surface_io::{Declared, Scan, Treatment, describe};
+use surface_io::{Declared, Scan, Treatment, Undefined, describe};
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface (anything else).
 ///
-/// `declared` is what the caller says about a surface's file; holes and other shapes than a square are told, not mended.
+/// `declared` is what the caller says about a surface's file; undefined points are told, not filled.
 ///
 /// # Errors
 /// As [`SceneFile::read`] and [`crate::check`] for scenes; [`Error::Figures`] and [`Error::Surface`] with what is wrong with the file.
@@ -59,7 +59,8 @@ fn table(path: &Path) -> Result<String> {
 fn surface(path: &Path, declared: &Declared) -> Result<String> {
     let scan = Scan::read(path, declared).map_err(Error::Surface)?;
     let mut text = format!("{}\n", scan.understood());
-    match scan.map(&Treatment::default()) {
+    let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };
+    match scan.map(&keep) {
         Ok(map) => {
             let description = describe(&map);
             text += &format!("\n{description}\n{}", spectrum(&description.spectrum));

@@ -14,7 +14,7 @@ pub enum Prescribed {
     Force,
     /// F over E* h L, with the measured rms height of each surface.
     ForceBar,
-    /// Force over the area of the square.
+    /// Force over the nominal contact area Lx Ly, undefined points included.
     MeanPressure,
     /// Approach.
     Approach,

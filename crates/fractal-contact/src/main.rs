@@ -32,15 +32,17 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
             run_scene(&scene, &Options { out, threads, fresh })
         }
-        Command::Info { file, format, unit, cell } => {
-            let declared = surface_io::Declared { format, unit, cell, ..surface_io::Declared::default() };
+        Command::Info { file, format, unit, size, cell } => {
+            let declared =
+                surface_io::Declared { format, unit, size, cell, ..surface_io::Declared::default() };
             print!("{}", info(&file, &declared)?);
             Ok(ExitCode::SUCCESS)
         }
         Command::Surface {
             file,
             cells,
-            side,
+            rows,
+            size,
             fractal_dimension,
             rms_height,
             roll_off_wavelength,
@@ -49,7 +51,8 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
         } => {
             let make = Make {
                 cells,
-                side,
+                rows,
+                size,
                 fractal_dimension,
                 rms_height,
                 roll_off_wavelength,

@@ -1,18 +1,20 @@
 //! A generated surface as a file.
 
 use crate::error::{Error, Result};
-use contact_model::{Amplitude, SelfAffine};
+use contact_model::{Amplitude, Cells, SelfAffine, Size};
 use std::f64::consts::PI;
 use std::path::Path;
-use surface_io::{Dimension, Metric, Quantity, describe, write_map};
+use surface_io::{Dimension, Metric, Quantity, Sides, describe, write_map};
 
 /// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Make {
-    /// Cells a side.
+    /// Columns.
     pub cells: usize,
-    /// Side of the square.
-    pub side: String,
+    /// Rows; `None`: as many as make the cells nearest to squares.
+    pub rows: Option<usize>,
+    /// Side of a square, `1 mm`, or both of a rectangle, `2 mm x 1 mm`.
+    pub size: String,
     /// Fractal dimension in [2, 3].
     pub fractal_dimension: f64,
     /// Rms height.
@@ -33,20 +35,27 @@ impl Make {
     /// [`Error::Surface`] for another ending or a file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<String> {
         let mut units: Option<Dimension> = None;
-        let mut length = |name: &'static str, text: &str| {
-            let wrong = |reason: String| Error::Argument { name, reason };
-            let quantity: Quantity =
-                text.parse().map_err(|e: surface_io::QuantityError| wrong(e.to_string()))?;
+        let wrong = |name: &'static str, e: surface_io::QuantityError| Error::Argument {
+            name,
+            reason: e.to_string(),
+        };
+        let mut known_length = |name: &'static str, quantity: Quantity| {
             let dimension = quantity.dimension();
             let known = *units.get_or_insert(dimension);
             if dimension != known || !(dimension == Dimension::LENGTH || dimension == Dimension::NONE) {
-                return Err(wrong(format!(
-                    "`{text}`: give all lengths with a unit of length (\"1 mm\"), or none of them"
-                )));
+                return Err(Error::Argument {
+                    name,
+                    reason: format!(
+                        "`{quantity}`: give all lengths with a unit of length (\"1 mm\"), or none of them"
+                    ),
+                });
             }
             Ok(quantity.value())
         };
-        let side = length("--side", &self.side)?;
+        let [x, y] = self.size.parse::<Sides>().map_err(|e| wrong("--size", e))?.both();
+        let size = Size { x: known_length("--size", x)?, y: known_length("--size", y)? };
+        let mut length =
+            |name: &'static str, text: &str| known_length(name, text.parse().map_err(|e| wrong(name, e))?);
         let rms = length("--rms-height", &self.rms_height)?;
         let mut wavenumber = |name, text: &Option<String>| -> Result<Option<f64>> {
             text.as_deref().map(|t| Ok(2.0 * PI / length(name, t)?)).transpose()
@@ -55,11 +64,12 @@ impl Make {
         let short_cutoff = wavenumber("--shortest-wavelength", &self.shortest_wavelength)?;
         let metric = if units == Some(Dimension::LENGTH) { Metric::Metres } else { Metric::Unitless };
         let surface =
-            SelfAffine::new(self.fractal_dimension, side, rms).map_err(Error::model("the surface"))?;
+            SelfAffine::new(self.fractal_dimension, size, rms).map_err(Error::model("the surface"))?;
         let surface = SelfAffine { amplitude: Amplitude::RmsHeight(rms), roll_off, short_cutoff, ..surface };
         let seed = surface_gen::surface_seed(self.seed, 0);
-        let map =
-            surface_gen::self_affine_map(&surface, self.cells, seed).map_err(Error::model("the surface"))?;
+        let nearly_square = Cells::nearly_square(self.cells, size);
+        let cells = self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square });
+        let map = surface_gen::self_affine_map(&surface, cells, seed).map_err(Error::model("the surface"))?;
         write_map(path, &map, metric).map_err(Error::Surface)?;
         let unit = if metric == Metric::Metres { "m" } else { "none" };
         Ok(format!("{}\nunit               {unit}\n{}\n", path.display(), describe(&map)))

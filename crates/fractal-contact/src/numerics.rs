@@ -6,11 +6,11 @@ use analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
 };
 use bem3d::{Bem3d, Method};
-use contact_model::{ContactModel, HistoryModel, Source};
+use contact_model::{Cells, ContactModel, HistoryModel, Size, Source};
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 
-/// Largest grids: 54 GB for a light load, 4 GB for a line.
-const MOST_CELLS: usize = 1 << 15;
+/// Largest grids: 54 GB for a light load (the square of this many cells), 4 GB for a line.
+pub(crate) const MOST_CELLS: usize = 1 << 15;
 const MOST_ELEMENTS: usize = 1 << 28;
 
 /// Grid on which models are asked whether they can answer.
@@ -51,8 +51,20 @@ pub enum Numerics {
     Equivalent(Equivalent<Bem3d>),
 }
 
+/// The same with at most so many cells along the longer side of the grid on a rectangle of this size, in the same proportion.
+fn reduced(model: Bem3d, most: usize, size: Size) -> Bem3d {
+    let Cells { columns, rows } = model.grid(size);
+    let longer = columns.max(rows);
+    if longer <= most {
+        return model;
+    }
+    let fewer = |count: usize| ((count as f64 * (most as f64 / longer as f64)).round() as usize).max(1);
+    Bem3d { cells: fewer(columns), rows: model.rows.map(|_| fewer(rows)), ..model }
+}
+
 /// What `[models.bem3d]` says by default.
-const BEM3D: Bem3d = Bem3d { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto };
+const BEM3D: Bem3d =
+    Bem3d { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto };
 
 /// A model behind one of the two traits.
 #[allow(missing_debug_implementations)] // Trait objects.
@@ -130,23 +142,31 @@ impl Numerics {
         self.size() > 0
     }
 
-    /// Cells a side, elements of a line; 0 for a formula.
+    /// Columns of a grid, elements of a line; 0 for a formula.
     pub fn size(&self) -> usize {
         match self {
-            Self::Bem3d(model) | Self::Equivalent(Equivalent { model, .. }) => model.cells,
+            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => numerics.cells,
             Self::Mdr1d(model) => model.elements,
             _ => 0,
         }
     }
 
-    /// The same on a grid of at most these cells or elements.
-    #[must_use]
-    pub fn reduced(self, cells: usize, elements: usize) -> Self {
+    /// The numerics of boundary elements, where they press.
+    pub fn boundary_elements(&self) -> Option<&Bem3d> {
         match self {
-            Self::Bem3d(model) => Self::Bem3d(Bem3d { cells: model.cells.min(cells), ..model }),
+            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => Some(numerics),
+            _ => None,
+        }
+    }
+
+    /// The same on a grid of at most these cells along the longer side of a rectangle of this size, or elements.
+    #[must_use]
+    pub fn reduced(self, cells: usize, elements: usize, size: Size) -> Self {
+        match self {
+            Self::Bem3d(model) => Self::Bem3d(reduced(model, cells, size)),
             Self::Mdr1d(model) => Self::Mdr1d(Mdr1d { elements: model.elements.min(elements) }),
             Self::Equivalent(outer) => {
-                let model = Bem3d { cells: outer.model.cells.min(cells), ..outer.model };
+                let model = reduced(outer.model, cells, size);
                 Self::Equivalent(Equivalent { model, ..outer })
             }
             other => other,
@@ -155,17 +175,18 @@ impl Numerics {
 
     /// The same on a grid that is only asked whether it can answer.
     #[must_use]
-    pub(crate) fn probe(&self) -> Self {
-        self.reduced(PROBE_CELLS, PROBE_ELEMENTS)
+    pub(crate) fn probe(&self, size: Size) -> Self {
+        self.reduced(PROBE_CELLS, PROBE_ELEMENTS, size)
     }
 
-    /// What one may expect of its numbers, in a sentence; `cells` a side, of models that have them.
-    pub fn accuracy(&self, rough: bool, cells: usize) -> String {
+    /// What one may expect of its numbers, in a sentence; `cells` of models that have them.
+    pub fn accuracy(&self, rough: bool, cells: Cells) -> String {
+        let Cells { columns, rows } = cells;
         match self {
-            Self::Bem3d(model) => format!(
-                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {cells} x {cells} cells; the cells \
+            Self::Bem3d(numerics) => format!(
+                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {columns} x {rows} cells; the cells \
                  themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
-                model.tolerance
+                numerics.tolerance
             ),
             Self::Mdr1d(_) if rough => "exact for its line; against three dimensions 7 to 18 % too stiff near F_bar = 1, exponents as 1/(1+H)".into(),
             Self::Mdr1d(_) | Self::Hertz | Self::PowerLawBody | Self::Westergaard | Self::Jkr => "exact, to about 1e-13".into(),
@@ -181,7 +202,7 @@ impl Numerics {
                 "exact within Cattaneo's and Mindlin's assumptions (no coupling, slip along the load)".into()
             }
             Self::Equivalent(_) => format!(
-                "the normal part is that of bem3d on {cells} x {cells} cells; tangential results are exact for round contacts, a few per cent off for \
+                "the normal part is that of bem3d on {columns} x {rows} cells; tangential results are exact for round contacts, a few per cent off for \
                  others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
                  bodies, about two for rough ones (its doubt is in `strategy`)"
             ),
@@ -253,13 +274,16 @@ fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
     if let Some(entry) = table.find("cells") {
         model.cells = at_most(&entry, MOST_CELLS, "a light load takes 50 bytes a cell")?;
     }
+    if let Some(entry) = table.find("rows") {
+        model.rows = Some(at_most(&entry, MOST_CELLS, "a light load takes 50 bytes a cell")?);
+    }
     if let Some(entry) = table.find("tolerance") {
         model.tolerance = entry.positive_number()?;
         if model.tolerance >= 1.0 {
             return Err(entry.trouble("`tolerance` is not below 1").with_help("1e-6 gives six digits"));
         }
     }
-    if let Some(entry) = table.find("rounds") {
+    if let Some(entry) = table.find("max_outer_iterations") {
         model.max_outer_iterations = entry.count(1)? as usize;
     }
     if let Some(entry) = table.find("method") {
@@ -322,13 +346,32 @@ mod tests {
 
     #[test]
     fn the_list_of_all_models_has_their_defaults() {
-        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default())));
-        assert!(Numerics::ALL.contains(&Numerics::Equivalent(Equivalent::new(Bem3d::default()))));
+        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default().into())));
+        let Equivalent { per_decade, decades, .. } = Equivalent::new(Bem3d::default());
+        assert!(Numerics::ALL.contains(&Numerics::Equivalent(Equivalent {
+            model: BEM3D,
+            per_decade,
+            decades
+        })));
         assert!(Numerics::ALL.contains(&Numerics::Mdr1d(Mdr1d::default())));
         assert!(Numerics::ALL.contains(&Numerics::Persson(Persson::default())));
         assert!(Numerics::ALL.contains(&Numerics::GreenwoodWilliamson(GreenwoodWilliamson::default())));
         for numerics in Numerics::ALL {
             assert_eq!(numerics.is_history(), matches!(numerics.model(), AnyModel::History(_)));
         }
+    }
+
+    #[test]
+    fn grids_of_rectangles() {
+        let grid = |cells, rows| Bem3d { cells, rows, ..Bem3d::default() };
+        let wide = Size { x: 4.0, y: 1.0 };
+        assert_eq!(grid(64, None).grid(wide), [64, 16].into());
+        assert_eq!(grid(64, Some(64)).grid(wide), 64.into());
+        assert_eq!(reduced(grid(64, Some(64)), 16, wide), grid(16, Some(16)));
+        assert_eq!(reduced(grid(64, Some(8)), 16, wide), grid(16, Some(2)));
+        assert_eq!(reduced(grid(16, None), 16, wide), grid(16, None));
+        // The longer side of the grid counts, and no side vanishes.
+        assert_eq!(reduced(grid(64, None), 16, Size { x: 1.0, y: 4.0 }), grid(4, None));
+        assert_eq!(reduced(grid(64, None), 16, Size { x: 1.0, y: 1e4 }), grid(1, None));
     }
 }

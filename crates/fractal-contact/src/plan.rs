@@ -8,7 +8,7 @@ use crate::scene_file::SceneFile;
 use crate::trouble::Trouble;
 use crate::unit::{Unit, probe};
 use crate::words::{memory, number, time};
-use contact_model::Surface;
+use contact_model::{Cells, Surface};
 use std::fmt;
 
 /// What a run costs, or will cost.
@@ -50,6 +50,8 @@ pub struct Plan {
     pub relief: String,
     /// What was understood of its file.
     pub understood: Option<String>,
+    /// Remarks on the scene.
+    pub notes: Vec<Trouble>,
     /// E*.
     pub modulus: f64,
     /// Whether numbers are in SI.
@@ -92,7 +94,7 @@ fn refused(scene: &SceneFile, error: &contact_model::Error) -> Trouble {
     let able: Vec<&str> = Numerics::ALL
         .iter()
         .filter(|m| m.is_history() == scene.is_history())
-        .map(Numerics::probe)
+        .map(|m| m.probe(scene.relief.size()))
         .filter(|m| probe(scene, m).is_ok())
         .map(|m| m.name())
         .collect();
@@ -125,6 +127,7 @@ impl Plan {
             shows: scene.comment(),
             relief: scene.relief.describe(),
             understood: scene.understood.clone(),
+            notes: scene.notes.clone(),
             modulus: scene.modulus,
             units: match scene.system {
                 crate::System::Si => "SI (m, N, Pa, s)",
@@ -169,19 +172,26 @@ impl Plan {
 fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
     match numerics {
         Numerics::Bem3d(_) | Numerics::Equivalent(_) => {
-            let n = cells(scene, numerics);
-            format!("{n} x {n} cells of {:.4e}", scene.relief.side() / n as f64)
+            let (cells, size) = (cells(scene, numerics), scene.relief.size());
+            let Cells { columns, rows } = cells;
+            let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
+            if dx.to_bits() == dy.to_bits() {
+                format!("{columns} x {rows} cells of {dx:.4e}")
+            } else {
+                format!("{columns} x {rows} cells of {dx:.4e} x {dy:.4e}")
+            }
         }
         Numerics::Mdr1d(m) if scene.relief.is_rough() => format!("a line of {} elements", m.elements),
         _ => "none: a formula".into(),
     }
 }
 
-/// Cells a side: a given map brings its own.
-pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> usize {
-    match &scene.relief {
-        crate::Relief::Plain(Surface::Heights(map)) => map.columns(),
-        _ => numerics.size(),
+/// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.
+pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> Cells {
+    match (&scene.relief, numerics.boundary_elements()) {
+        (crate::Relief::Plain(Surface::Heights(map)), _) => map.cells(),
+        (relief, Some(elements)) => elements.grid(relief.size()),
+        _ => Cells { columns: numerics.size(), rows: 1 },
     }
 }
 
@@ -207,6 +217,9 @@ impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.shows.is_empty() {
             writeln!(f, "{}\n", self.shows)?;
+        }
+        for note in &self.notes {
+            writeln!(f, "{note}\n")?;
         }
         writeln!(f, "relief    {}", self.relief)?;
         for line in self.understood.iter().flat_map(|u| u.lines()) {

@@ -1,10 +1,11 @@
 //! What carries the relief: `[scene.surface]`, and `[scene.body]` added to it.
 
-use crate::entries::{Entries, Read, System};
+use crate::entries::{Entries, Lengths, Read, System};
 use crate::numerics::Numerics;
 use crate::scan;
+use crate::trouble::Trouble;
 use crate::words::number;
-use contact_model::{Amplitude, Error, HeightMap, Result, SelfAffine, Surface};
+use contact_model::{Amplitude, Error, HeightMap, Result, SelfAffine, Size, Surface};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,11 +26,11 @@ pub enum Relief {
 }
 
 impl Relief {
-    /// Side of the square.
-    pub fn side(&self) -> f64 {
+    /// Sides of the nominal contact area.
+    pub fn size(&self) -> Size {
         match self {
-            Self::Plain(surface) => surface.size().length(),
-            Self::Sum { rough, .. } => rough.size.length(),
+            Self::Plain(surface) => surface.size(),
+            Self::Sum { rough, .. } => rough.size,
         }
     }
 
@@ -52,10 +53,17 @@ impl Relief {
         match self {
             Self::Plain(Surface::SelfAffine(s)) => self_affine(s),
             Self::Plain(Surface::Heights(map)) => {
-                format!("a map of {n} x {n} cells, side {}", number(map.length()), n = map.columns())
+                let mut text =
+                    format!("a map of {} x {} cells, {}", map.columns(), map.rows(), sides(map.size()));
+                if map.undefined() > 0 {
+                    text += &format!(", {} undefined points", map.undefined());
+                }
+                text
             }
             Self::Plain(surface) => {
-                format!("{} on a square of side {}", surface.kind(), number(surface.size().length()))
+                let size = surface.size();
+                let shape = if size.is_square() { "square" } else { "rectangle" };
+                format!("{} on a {shape} of {}", surface.kind(), sides(size))
             }
             Self::Sum { rough, body } => format!("{} on {}", self_affine(rough), body.kind()),
         }
@@ -67,26 +75,35 @@ impl Relief {
     /// [`Error::Unsupported`] for a sum and a model without cells, and what drawing a surface refuses.
     pub fn surface(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
         match self {
-            Self::Plain(surface) => Ok(surface.clone()),
+            Self::Plain(surface) => {
+                if !matches!(surface, Surface::Heights(_)) {}
+                Ok(surface.clone())
+            }
             Self::Sum { rough, body } => {
-                let (Numerics::Bem3d(model) | Numerics::Equivalent(mdr1d::Equivalent { model, .. })) =
-                    numerics
-                else {
+                let Some(elements) = numerics.boundary_elements() else {
                     return Err(Error::unsupported(
                         numerics.name(),
                         "a rough surface on a body (it takes one or the other)",
                     ));
                 };
-                let rough = surface_gen::self_affine_map(rough, model.cells, seed)?;
+                let rough = surface_gen::self_affine_map(rough, elements.grid(rough.size), seed)?;
                 Ok(Surface::Heights(Arc::new(add(&rough, body)?)))
             }
         }
     }
 }
 
+/// One side of a square or both of a rectangle.
+fn sides(size: Size) -> String {
+    if size.is_square() {
+        format!("side {}", number(size.x))
+    } else {
+        format!("sides {} x {}", number(size.x), number(size.y))
+    }
+}
+
 fn self_affine(s: &SelfAffine) -> String {
-    let mut text =
-        format!("a self-affine surface, D_f = {}, side {}", s.fractal_dimension(), number(s.size.length()));
+    let mut text = format!("a self-affine surface, D_f = {}, {}", s.fractal_dimension(), sides(s.size));
     if let Amplitude::RmsHeight(h) = s.amplitude {
         text += &format!(", rms height {}", number(h));
     }
@@ -101,17 +118,33 @@ fn self_affine(s: &SelfAffine) -> String {
 
 /// Heights of a map plus those of a body on the same cells.
 pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
-    let body = surface_gen::height_map(body, map.columns(), 0)?;
-    let heights = map.heights().iter().zip(body.heights()).map(|(a, b)| a + b).collect();
-    HeightMap::new(map.columns(), map.length(), heights)
+    let body = surface_gen::height_map(body, map.cells(), 0)?;
+    let sum = |(a, b): (&f64, &f64)| if a.is_finite() { a + b } else { f64::NAN };
+    let heights = map.heights().iter().zip(body.heights()).map(sum).collect();
+    if map.undefined() > 0 {
+        HeightMap::with_undefined(map.cells(), map.size(), heights)
+    } else {
+        HeightMap::new(map.cells(), map.size(), heights)
+    }
 }
 
-/// Reads `[scene.surface]` and `[scene.body]`; the text says what was understood of a file.
-pub(crate) fn read_relief(
-    scene: &Entries<'_>,
-    system: System,
-    directory: &Path,
-) -> Read<(Relief, Option<String>)> {
+/// `[scene.surface]` and `[scene.body]` as they were read.
+pub(crate) struct Found {
+    pub relief: Relief,
+    /// What was understood of a file.
+    pub understood: Option<String>,
+    /// Remarks on the keys.
+    pub notes: Vec<Trouble>,
+}
+
+impl From<Relief> for Found {
+    fn from(relief: Relief) -> Self {
+        Self { relief, understood: None, notes: Vec::new() }
+    }
+}
+
+/// Reads `[scene.surface]` and `[scene.body]`.
+pub(crate) fn read_relief(scene: &Entries<'_>, system: System, directory: &Path) -> Read<Found> {
     let surface = scene.table("surface")?;
     let body = scene.table("body")?;
     let Some(surface) = surface else {
@@ -122,26 +155,27 @@ pub(crate) fn read_relief(
                     "describe one: [scene.surface] with `kind = \"self_affine\"` or \"file\", or [scene.body] with `kind = \"sphere\"`",
                 ));
         };
-        return Ok((Relief::Plain(read_body(&body, None, system)?), None));
+        return Ok(Relief::Plain(read_body(&body, None, system)?).into());
     };
     if surface.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == Rough::File {
-        let (map, understood) = scan::read_map(&surface, system, directory)?;
+        let scan::Found { map, understood, notes } = scan::read_map(&surface, system, directory)?;
         let map = match body {
             None => map,
             Some(body) => {
-                let body = read_body(&body, Some(map.length()), system)?;
+                let body = read_body(&body, Some(map.size()), system)?;
                 add(&map, &body).map_err(|e| scene.trouble(e.to_string()))?
             }
         };
-        return Ok((Relief::Plain(Surface::Heights(Arc::new(map))), Some(understood)));
+        let relief = Relief::Plain(Surface::Heights(Arc::new(map)));
+        return Ok(Found { relief, understood: Some(understood), notes });
     }
     let rough = read_self_affine(&surface, system)?;
     surface.known_only()?;
     let relief = match body {
         None => Relief::Plain(Surface::SelfAffine(rough)),
-        Some(body) => Relief::Sum { rough, body: read_body(&body, Some(rough.size.length()), system)? },
+        Some(body) => Relief::Sum { rough, body: read_body(&body, Some(rough.size), system)? },
     };
-    Ok((relief, None))
+    Ok(relief.into())
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -155,7 +189,7 @@ const ROUGH: [(&str, Rough); 2] = [("self_affine", Rough::SelfAffine), ("file", 
 fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
     let length =
         |key: &'static str| table.find(key).map(|e| e.positive(Dimension::LENGTH, system)).transpose();
-    let side = table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system)?;
+    let size = read_size(table, system)?;
     let hurst = match table.one_of(&["fractal_dimension", "hurst"])? {
         Some(("hurst", e)) => within(&e, e.number()?, 0.0, 1.0)?,
         Some((_, e)) => 3.0 - within(&e, e.number()?, 2.0, 3.0)?,
@@ -178,12 +212,27 @@ fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
     }
     let wavenumber = |wavelength: f64| 2.0 * PI / wavelength;
     Ok(SelfAffine {
-        size: side.into(),
+        size,
         hurst,
         amplitude: Amplitude::RmsHeight(rms),
         roll_off: roll_off.map(wavenumber),
         short_cutoff: short.map(wavenumber),
     })
+}
+
+/// `side = s` or `size = [Lx, Ly]`.
+fn read_size(table: &Entries<'_>, system: System) -> Read<Size> {
+    match table.one_of(&["side", "size"])? {
+        Some(("size", entry)) => Ok(match entry.lengths(system)? {
+            Lengths::One(side) => side.into(),
+            Lengths::Two(sides) => sides.into(),
+        }),
+        Some((_, entry)) if entry.is_list() => Err(entry
+            .trouble(format!("`side` has {} values: it is the one of a square", entry.list().len()))
+            .with_help("both sides of a rectangle are `size = [Lx, Ly]`")),
+        Some((_, entry)) => entry.positive(Dimension::LENGTH, system).map(Size::from),
+        None => table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system).map(Size::from),
+    }
 }
 
 fn within(entry: &crate::entries::Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
@@ -206,47 +255,43 @@ enum Kind {
     Sine,
 }
 
-const BODIES: [(&str, Kind); 6] = [
+const BODIES: [(&str, Kind); 7] = [
     ("sphere", Kind::Sphere),
     ("cone", Kind::Cone),
     ("power_law", Kind::PowerLaw),
     ("flat_circle", Kind::FlatCircle),
+    ("flat", Kind::Flat),
     ("flat_square", Kind::Flat),
     ("sine", Kind::Sine),
 ];
 
-/// A body; on a rough surface it has that surface's side.
-fn read_body(table: &Entries<'_>, given: Option<f64>, system: System) -> Read<Surface> {
+/// A body; on a rough surface it has that surface's size.
+fn read_body(table: &Entries<'_>, given: Option<Size>, system: System) -> Read<Surface> {
     let length = |key: &'static str| table.require(key, "\"1 mm\"")?.positive(Dimension::LENGTH, system);
     let kind = table.require("kind", "\"sphere\"")?.choice(&BODIES)?;
-    let side = match (given, table.find("side")) {
-        (Some(_), Some(entry)) => {
+    let size = match (given, table.one_of(&["side", "size"])?) {
+        (Some(_), Some((key, entry))) => {
             return Err(entry
-                .trouble_at_key("`side` is given for the surface and for the body on it")
-                .with_help("remove it in [scene.body]: the square is that of [scene.surface]"));
+                .trouble_at_key(format!("`{key}` is given for the body, which has that of the surface"))
+                .with_help("remove it in [scene.body]: the area is that of [scene.surface]"));
         }
-        (Some(side), None) => side,
-        (None, Some(entry)) => entry.positive(Dimension::LENGTH, system)?,
-        (None, None) => table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system)?,
+        (Some(size), None) => size,
+        (None, _) => read_size(table, system)?,
     };
     let surface = match kind {
-        Kind::Sphere => Surface::Sphere { radius: length("radius")?, size: side.into() },
-        Kind::Cone => {
-            Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size: side.into() }
-        }
+        Kind::Sphere => Surface::Sphere { radius: length("radius")?, size },
+        Kind::Cone => Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size },
         Kind::PowerLaw => {
             // Two lengths instead of a coefficient whose unit depends on the exponent.
             let exponent = table.require("exponent", "4")?.positive_number()?;
             let (depth, radius) = (length("depth")?, length("radius")?);
-            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size: side.into() }
+            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size }
         }
-        Kind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, size: side.into() },
-        Kind::Flat => Surface::Flat { size: side.into() },
-        Kind::Sine => Surface::Sine {
-            amplitude: length("amplitude")?,
-            wavelength: length("wavelength")?,
-            size: side.into(),
-        },
+        Kind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, size },
+        Kind::Flat => Surface::Flat { size },
+        Kind::Sine => {
+            Surface::Sine { amplitude: length("amplitude")?, wavelength: length("wavelength")?, size }
+        }
     };
     table.known_only()?;
     Ok(surface)

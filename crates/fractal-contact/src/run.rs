@@ -175,7 +175,9 @@ fn header(scene: &SceneFile) -> Header {
         crate::System::Si => "units: SI",
         crate::System::None => "units: none; lengths, forces and moduli in the scene's own",
     });
-    header = header.with_note(format!("modulus: {:?} (E*); side: {:?}", scene.modulus, scene.relief.side()));
+    let size = scene.relief.size();
+    header =
+        header.with_note(format!("modulus: {:?} (E*); size: {:?} x {:?}", scene.modulus, size.x, size.y));
     for numerics in &scene.models {
         header = header.with_note(format!("model: {numerics:?}"));
     }

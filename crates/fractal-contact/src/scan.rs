@@ -1,14 +1,26 @@
 //! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
 
-use crate::entries::{Entries, Entry, Read, System};
+use crate::entries::{Entries, Entry, Lengths, Read, System};
+use crate::trouble::Trouble;
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    Crop, Decimal, Declared, Detrend, Dimension, Fill, Format, Quantity, Scan, Treatment, Unit,
+    Crop, Decimal, Declared, Detrend, Dimension, Fill, Format, Quantity, Scan, Sides, Treatment, Undefined,
+    Unit,
 };
 
-/// The map, and what was understood of its file.
-pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) -> Read<(HeightMap, String)> {
+/// A map from a file.
+pub(crate) struct Found {
+    pub map: HeightMap,
+    /// What was understood of its file.
+    pub understood: String,
+    /// Remarks on the keys.
+    pub notes: Vec<Trouble>,
+}
+
+/// Reads the file of a surface.
+pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) -> Read<Found> {
+    let mut notes = Vec::new();
     let file = table.require("path", "\"heights.npy\"")?;
     let path = directory.join(file.text()?);
     let mut declared = Declared::default();
@@ -25,9 +37,14 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     };
     declared.unit = unit("unit")?;
     declared.lateral_unit = unit("lateral_unit")?;
-    match table.one_of(&["cell", "width"])? {
-        Some(("cell", entry)) => declared.cell = Some(length(&entry, system)?),
-        Some((_, entry)) => declared.width = Some(length(&entry, system)?),
+    match table.one_of(&["size", "cell", "width"])? {
+        Some(("size", entry)) => declared.size = Some(sides(&entry, system)?),
+        Some(("cell", entry)) => declared.cell = Some(sides(&entry, system)?),
+        Some((_, entry)) => {
+            declared.width = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
+            let note = Trouble::note("`width` is now `size`").at(entry.key_span());
+            notes.push(note.with_help("write `size = [Lx, Ly]`, or one value where the map is square; `width` is Lx, with square cells"));
+        }
         None => {}
     }
     if let Some(entry) = table.find("decimal") {
@@ -46,7 +63,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         if e.problem().is_none() {
             return trouble.with_help("a relative path counts from the folder of the scene");
         }
-        trouble.with_help("`format`, `unit`, `cell`, `width`, `crop`, `fill`, `missing` in [scene.surface] say how it is meant")
+        trouble.with_help("`format`, `unit`, `size`, `cell`, `crop`, `fill`, `undefined`, `missing` in [scene.surface] say how it is meant")
     };
     let scan = Scan::read(&path, &declared).map_err(wrong)?;
     let understood = scan.understood();
@@ -58,11 +75,18 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
             .trouble(format!("the heights have {found}, but the scene has {scene}"))
             .with_help("say `unit = \"nm\"` for heights of a scene with units, `unit = \"none\"` with `units = \"none\"`"));
     }
-    Ok((map, understood.to_string()))
+    Ok(Found { map, understood: understood.to_string(), notes })
 }
 
-fn length(entry: &Entry<'_>, system: System) -> Read<Quantity> {
-    let value = entry.positive(Dimension::LENGTH, system)?;
+/// One length or two: sides of the map or of a cell.
+fn sides(entry: &Entry<'_>, system: System) -> Read<Sides> {
+    Ok(match entry.lengths(system)? {
+        Lengths::One(side) => Sides::One(length(entry, side, system)?),
+        Lengths::Two([x, y]) => Sides::Two([length(entry, x, system)?, length(entry, y, system)?]),
+    })
+}
+
+fn length(entry: &Entry<'_>, value: f64, system: System) -> Read<Quantity> {
     let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
     Quantity::new(value, dimension).map_err(|e| entry.trouble(e.to_string()))
 }
@@ -74,29 +98,39 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Treatment> {
             let window = entry.table()?;
             let number =
                 |key: &'static str, least: u64| window.require(key, "0")?.count(least).map(|v| v as usize);
-            let crop = Crop::Window {
-                row: number("row", 0)?,
-                column: number("column", 0)?,
-                cells: number("cells", 1)?,
+            let (rows, columns) = match window.one_of(&["cells", "rows"])? {
+                Some(("cells", cells)) => {
+                    let cells = cells.count(1)? as usize;
+                    (cells, cells)
+                }
+                _ => (number("rows", 1)?, number("columns", 1)?),
             };
+            let crop = Crop::Window { row: number("row", 0)?, column: number("column", 0)?, rows, columns };
             window.finish()?;
             crop
         } else {
             entry.choice(&[("centre", Crop::Centre)])?
         });
     }
-    if let Some(entry) = table.find("fill") {
-        treatment.fill = Some(match entry.as_word() {
-            Some("neighbours") => Fill::Neighbours,
-            Some("plane") => Fill::Plane,
-            _ => {
-                let value = entry.quantity(Dimension::LENGTH, system).map_err(|trouble| {
-                    trouble.with_help("how holes are filled: \"neighbours\", \"plane\" or one height")
-                })?;
-                let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
-                Fill::Value(Quantity::new(value, dimension).map_err(|e| entry.trouble(e.to_string()))?)
-            }
-        });
+    match table.one_of(&["fill", "undefined"])? {
+        Some(("fill", entry)) => {
+            treatment.fill = Some(match entry.as_word() {
+                Some("neighbours") => Fill::Neighbours,
+                Some("plane") => Fill::Plane,
+                _ => {
+                    let value = entry.quantity(Dimension::LENGTH, system).map_err(|trouble| {
+                        trouble.with_help(
+                            "how undefined points are filled: \"neighbours\", \"plane\" or one height",
+                        )
+                    })?;
+                    Fill::Value(length(&entry, value, system)?)
+                }
+            });
+        }
+        Some((_, entry)) => {
+            treatment.undefined = Some(entry.choice(&[("no_contact", Undefined::NoContact)])?);
+        }
+        None => {}
     }
     if let Some(entry) = table.find("detrend") {
         treatment.detrend = entry.choice(&[
@@ -108,6 +142,9 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Treatment> {
     }
     if let Some(entry) = table.find("cells") {
         treatment.cells = Some(entry.count(1)? as usize);
+    }
+    if let Some(entry) = table.find("rows") {
+        treatment.rows = Some(entry.count(1)? as usize);
     }
     Ok(treatment)
 }

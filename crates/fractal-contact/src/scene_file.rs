@@ -4,9 +4,9 @@ use crate::effects::read_effects;
 use crate::entries::{Entries, Entry, Read, System};
 use crate::error::{Error, Result};
 use crate::loads::{Prescribed, Request, read_request};
-use crate::numerics::{Numerics, read_models};
+use crate::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::outputs::{Asked, read_outputs};
-use crate::relief::{Relief, read_relief};
+use crate::relief::{Found, Relief, read_relief};
 use crate::trouble::Trouble;
 use contact_model::{Adhesion, Body, Boundary, Effects, Friction, Pair, Rheology, Scene, Surface};
 use std::ops::Range;
@@ -46,6 +46,8 @@ pub struct SceneFile {
     pub chance: Chance,
     /// What was understood of the surface's file.
     pub understood: Option<String>,
+    /// Remarks on what stands in the file, such as keys that have a new name.
+    pub notes: Vec<Trouble>,
     places: Places,
 }
 
@@ -94,6 +96,7 @@ impl SceneFile {
             asked: Asked::default(),
             chance: Chance { seed: 0, surfaces: 1 },
             understood: None,
+            notes: Vec::new(),
             places: Places::default(),
         }
     }
@@ -139,6 +142,7 @@ impl SceneFile {
         };
         let mut scene = read().map_err(|trouble| trouble.placed(path, &text))?;
         path.clone_into(&mut scene.path);
+        scene.notes = scene.notes.into_iter().map(|note| note.placed(path, &text)).collect();
         scene.text = text;
         Ok(scene)
     }
@@ -222,8 +226,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let output_places = places(outputs_table.as_ref());
     let asked = read_outputs(outputs_table, system)?;
     let (modulus, pair) = read_material(&scene, system)?;
-    let (relief, understood) = read_relief(&scene, system, directory)?;
-    check_cells(options.as_ref(), &relief)?;
+    let Found { relief, understood, notes } = read_relief(&scene, system, directory)?;
+    check_cells(options.as_ref(), &models, &relief)?;
     let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
     let chance = read_chance(root, &scene, &relief)?;
     scene.finish()?;
@@ -245,6 +249,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
         asked,
         chance,
         understood,
+        notes,
         places,
     })
 }
@@ -329,15 +334,35 @@ fn read_chance(root: &Entries<'_>, scene: &Entries<'_>, relief: &Relief) -> Read
     Ok(Chance { seed, surfaces: count as usize })
 }
 
-/// A map brings its own cells.
-fn check_cells(options: Option<&Entries<'_>>, relief: &Relief) -> Read<()> {
-    let (Some(options), Relief::Plain(Surface::Heights(map))) = (options, relief) else { return Ok(()) };
+/// A map brings its own cells, and those of a generated surface are not too many.
+fn check_cells(options: Option<&Entries<'_>>, models: &[(Numerics, Entry<'_>)], relief: &Relief) -> Read<()> {
+    let Relief::Plain(Surface::Heights(map)) = relief else {
+        for (numerics, name) in models {
+            let Some(elements) = numerics.boundary_elements() else { continue };
+            let cells = elements.grid(relief.size());
+            if cells.checked_count().is_none_or(|count| count > MOST_CELLS * MOST_CELLS) {
+                let (columns, rows, most) = (cells.columns, cells.rows, MOST_CELLS);
+                return Err(name
+                    .trouble(format!("{columns} x {rows} cells: expected at most {most} x {most}"))
+                    .with_help(format!(
+                        "give fewer `cells` (columns) or `rows` in [models.{}]; without `rows` cells are nearly square",
+                        numerics.name()
+                    )));
+            }
+        }
+        return Ok(());
+    };
+    let Some(options) = options else { return Ok(()) };
     for model in ["bem3d", "equivalent"] {
         let Some(table) = options.entry(model) else { continue };
-        if let Some(cells) = table.table()?.entry("cells") {
-            return Err(cells
-                .trouble_at_key(format!("`cells` is given, but the map brings its own {}", map.columns()))
-                .with_help("remove it here; `cells` in [scene.surface] averages the map over larger cells"));
+        for (key, own) in [("cells", map.columns()), ("rows", map.rows())] {
+            if let Some(cells) = table.table()?.entry(key) {
+                return Err(cells
+                    .trouble_at_key(format!("`{key}` is given, but the map brings its own {own}"))
+                    .with_help(
+                        "remove it here; `cells` in [scene.surface] averages the map over larger cells",
+                    ));
+            }
         }
     }
     Ok(())

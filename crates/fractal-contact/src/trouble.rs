@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Longest part of a line that is shown.
 const SHOWN: usize = 100;
 
-/// A mistake in a scene: what, where and how to mend it. Its `Display` is a few lines with the place underlined.
+/// A mistake in a scene, or a note on it: what, where and how to mend it. Its `Display` is a few lines with the place underlined.
 ///
 /// ```
 /// use fractal_contact::Trouble;
@@ -20,6 +20,7 @@ const SHOWN: usize = 100;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Trouble {
     message: String,
+    is_note: bool,
     span: Option<Range<usize>>,
     help: Option<String>,
     place: Option<Box<Place>>,
@@ -36,7 +37,12 @@ struct Place {
 impl Trouble {
     /// A mistake of the whole file.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), span: None, help: None, place: None }
+        Self { message: message.into(), is_note: false, span: None, help: None, place: None }
+    }
+
+    /// A remark on the whole file, which is read all the same.
+    pub fn note(message: impl Into<String>) -> Self {
+        Self { is_note: true, ..Self::new(message) }
     }
 
     /// At these bytes of the text; a place given before stays.
@@ -92,7 +98,7 @@ fn excerpt(text: &str, span: &Range<usize>) -> (usize, usize, String, usize) {
 
 impl fmt::Display for Trouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error: {}", self.message)?;
+        write!(f, "{}: {}", if self.is_note { "note" } else { "error" }, self.message)?;
         let mut indent = 1;
         if let Some(place) = &self.place {
             let path = place.path.display();

@@ -5,11 +5,13 @@ use crate::error::{Error, Result};
 use crate::loads::Request;
 use crate::numerics::{AnyModel, Numerics};
 use crate::outputs::Format;
+use crate::plan::cells;
 use crate::relief::Relief;
 use crate::scene_file::SceneFile;
 use analysis::Value;
-use contact_model::{ContactState, Fields, Scene, Step, Stop, Surface};
+use contact_model::{Cells, ContactState, Fields, Scene, Step, Stop, Surface};
 use figures::fnv1a_128;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -53,7 +55,7 @@ impl Unit {
         let relief = match &scene.relief {
             Relief::Plain(Surface::Heights(map)) => {
                 let bytes: Vec<u8> = map.heights().iter().flat_map(|h| h.to_le_bytes()).collect();
-                format!("map {} {:?} {:032x}", map.columns(), map.length(), fnv1a_128(&bytes))
+                format!("map {:?} {:?} {:032x}", map.cells(), map.size(), fnv1a_128(&bytes))
             }
             other => format!("{other:?}"),
         };
@@ -74,10 +76,12 @@ impl Unit {
     pub fn cost(&self, scene: &SceneFile) -> u64 {
         let numerics = self.numerics(scene);
         let n = numerics.size() as u64;
+        let Cells { columns, rows } = cells(scene, numerics);
+        let count = columns as u64 * rows as u64;
         let states = scene.request.count() as u64;
         match numerics {
-            Numerics::Bem3d(_) => 10 + n * n * states / 4,
-            Numerics::Equivalent(_) => 10 + n * n * (states + 49) / 4,
+            Numerics::Bem3d(_) => 10 + count * states / 4,
+            Numerics::Equivalent(_) => 10 + count * (states + 49) / 4,
             Numerics::Mdr1d(_) => 10 + n,
             _ => 10,
         }
@@ -227,6 +231,7 @@ impl Unit {
         }
         let Some(fields) = found.fields.take() else { return Ok(()) };
         let Fields { pressure, displacement, gap } = &fields;
+        let grid = cells(scene, self.numerics(scene));
         let asked = &scene.asked;
         for (name, values, formats) in [
             ("pressure", pressure, &asked.pressure),
@@ -234,15 +239,18 @@ impl Unit {
             ("gap", gap, &asked.gap),
         ] {
             let Some(values) = values else { continue };
-            let side = values.len().isqrt();
+            let values = &on_defined_points(name, values, scene);
             for format in formats {
                 let model = self.numerics(scene).name();
                 let file = format!("{name}-{model}-{}-{index:03}.{}", self.surface, format.extension());
                 let path = out.join(&file);
                 match format {
-                    Format::Npy => figures::write_npy(&path, &[side as u64, side as u64], values)?,
-                    Format::Png => figures::write_grey(&path, side, values)?,
-                    Format::Vti => write_vti(&path, name, scene, side, values)?,
+                    Format::Npy => {
+                        let shape = [grid.rows as u64, grid.columns as u64];
+                        figures::write_npy(&path, &shape, values)?;
+                    }
+                    Format::Png => figures::write_grey(&path, grid, scene.relief.size(), values)?,
+                    Format::Vti => write_vti(&path, name, scene, grid, values)?,
                 }
                 result.bytes += std::fs::metadata(&path).map_err(Error::file("read", &path))?.len();
                 result.files.push(file.into());
@@ -255,7 +263,7 @@ impl Unit {
     /// full one.
     pub fn probe(&self, scene: &SceneFile) -> contact_model::Result<()> {
         let numerics = self.numerics(scene);
-        match probe(scene, &numerics.probe()) {
+        match probe(scene, &numerics.probe(scene.relief.size())) {
             Ok(()) => Ok(()),
             Err(error @ contact_model::Error::Unsupported { .. }) => Err(error),
             Err(_) => probe(scene, numerics),
@@ -263,15 +271,25 @@ impl Unit {
     }
 }
 
-fn write_vti(path: &Path, name: &str, scene: &SceneFile, side: usize, values: &[f64]) -> Result<()> {
+/// A field as files have it: there is no gap at an undefined point.
+fn on_defined_points<'a>(name: &str, values: &'a [f64], scene: &SceneFile) -> Cow<'a, [f64]> {
+    match &scene.relief {
+        Relief::Plain(Surface::Heights(map)) if map.undefined() > 0 && name == "gap" => {
+            let defined = |(h, g): (&f64, &f64)| if h.is_finite() { *g } else { f64::NAN };
+            map.heights().iter().zip(values).map(defined).collect()
+        }
+        _ => Cow::Borrowed(values),
+    }
+}
+
+fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[f64]) -> Result<()> {
     let unit = match (scene.system, name) {
         (crate::System::None, _) => "",
         (crate::System::Si, "pressure") => "Pa",
         (crate::System::Si, _) => "m",
     };
     let field = surface_io::Field { name, unit, values };
-    let cell = scene.relief.side() / side as f64;
-    let bytes = surface_io::vti(side, cell, &[field], surface_io::Encoding::Base64)
+    let bytes = surface_io::vti(grid, scene.relief.size(), &[field], surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
     Ok(figures::write_whole(path, &bytes)?)
 }

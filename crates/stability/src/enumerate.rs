@@ -74,9 +74,9 @@ fn one_set(map: &HeightMap, contact: Vec<usize>, outside: &[usize], load: Load) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_relative_eq;
     use bem3d::love::influence;
     use std::f64::consts::PI;
-    use approx::assert_relative_eq;
 
     #[test]
     fn two_cells_of_which_one_is_out_of_reach_until_it_is_not() {

@@ -60,8 +60,11 @@ impl PlainSum {
         let (half_x, half_y) = (columns / 2 + 1, rows / 2 + 1);
         let mut quarter = vec![0.0; half_x * half_y];
         for (i, value) in quarter.iter_mut().enumerate().skip(1) {
-            let below: Vec<f64> =
-                IMAGES.iter().zip(origin).map(|(&m, origin)| sum(i % half_x, i / half_x, m) - origin).collect();
+            let below: Vec<f64> = IMAGES
+                .iter()
+                .zip(origin)
+                .map(|(&m, origin)| sum(i % half_x, i / half_x, m) - origin)
+                .collect();
             // value + c1 / M + c3 / M^3 + c5 / M^5 = below.
             let row = |&m: &isize| {
                 let inverse = (m as f64 + 0.5).recip();

@@ -15,8 +15,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Field { name: "height", unit: "m", values: heights },
         Field { name: "slope along x", unit: "", values: &slope },
     ];
-    files::write_whole(name.as_ref(), &vti(n, cell, &fields, Encoding::Base64)?)?;
-    files::write_whole(format!("{name}.ascii.vti").as_ref(), &vti(n, cell, &fields, Encoding::Ascii)?)?;
+    files::write_whole(name.as_ref(), &vti(map.cells(), map.size(), &fields, Encoding::Base64)?)?;
+    files::write_whole(
+        format!("{name}.ascii.vti").as_ref(),
+        &vti(map.cells(), map.size(), &fields, Encoding::Ascii)?,
+    )?;
     println!("{name}: {n} x {n} cells of {cell} m, highest {} m", map.highest());
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What a map holds.
 
-use contact_model::HeightMap;
+use contact_model::{Cells, HeightMap, Size};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 use surface_gen::{hurst_from_spectrum, radial_spectrum, rms_height, rms_slope_differences};
@@ -17,37 +17,61 @@ const WINDOW: f64 = 0.375;
 /// Numbers that describe a map, in its own unit of length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
-    /// Cells a side.
-    pub cells: usize,
-    /// Side of the square.
-    pub side: f64,
+    /// Columns and rows.
+    pub cells: Cells,
+    /// Sides of the rectangle.
+    pub size: Size,
+    /// Number of undefined points; the other numbers are of the defined ones.
+    pub undefined: usize,
     /// Lowest and highest height.
     pub range: [f64; 2],
     /// Root mean square of the heights about their mean.
     pub rms_height: f64,
     /// Root mean square slope from differences of neighbouring cells.
     pub rms_slope: f64,
-    /// Spectrum averaged over rings 1 to N/2: (q, C_2D), two-sided, in 1/length and length^4.
+    /// Spectrum averaged over rings of the wavenumber q: (q, C_2D), two-sided, in 1/length and length^4. Empty where points are undefined.
     pub spectrum: Vec<(f64, f64)>,
-    /// Hurst exponent of the spectrum; `None` where too few rings lie in the range of the fit (below 40 cells a side) or the map is flat.
-    pub hurst: Option<f64>,
+    /// Hurst exponent of the spectrum.
+    pub hurst: Result<f64, Absent>,
     /// Wavenumbers from and to which the exponent was fitted.
     pub fitted: [f64; 2],
+}
+
+/// Why a map has no Hurst exponent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Absent {
+    /// The spectrum of a map with undefined points is that of their pattern too.
+    Undefined,
+    /// All heights are one.
+    NoRelief,
+    /// Too few rings lie in the range of the fit: fewer than about 40 cells along the shorter side, or cells far from squares.
+    FewWaves,
+}
+
+impl fmt::Display for Absent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Undefined => "points are undefined; fill them first",
+            Self::NoRelief => "no relief",
+            Self::FewWaves => "too few waves along one side",
+        })
+    }
 }
 
 impl Description {
     /// Effective fractal dimension D_f = 3 - H, whether or not it lies between 2 and 3 as that of a self-affine surface does.
     pub fn fractal_dimension(&self) -> Option<f64> {
-        self.hurst.map(|h| 3.0 - h)
+        self.hurst.ok().map(|h| 3.0 - h)
     }
 }
 
-/// Describes a map: range, rms height and slope, spectrum, Hurst exponent.
+/// Describes a map: sides, range, rms height and slope, spectrum, Hurst exponent.
 ///
 /// The map is not taken as periodic: its mean is subtracted and Hann's window laid over it before the spectrum, which keeps the jump between
 /// opposite edges out of the short waves, smears each ring over its neighbours, and is scaled so that a homogeneous surface keeps its spectrum. Subtract a
-/// tilt first ([`crate::Detrend::Plane`]). The exponent is fitted by least squares in logarithms from ring 8 to half of the shortest wave's
-/// wavenumber. Cost O(N^2 log N), memory about three times that of the map.
+/// tilt first ([`crate::Detrend::Plane`]). The exponent is fitted by least squares in logarithms from an eighth of the shorter side to waves of four
+/// of the longer cell sides. Cost O(N log N) for N points, memory about three times that of the map.
 ///
 /// ```
 /// use contact_model::SelfAffine;
@@ -58,16 +82,24 @@ impl Description {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn describe(map: &HeightMap) -> Description {
-    let (cells, side) = (map.columns(), map.length());
-    let ends = |(low, high): (f64, f64), &h: &f64| (low.min(h), high.max(h));
-    let (low, high) = map.heights().iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
-    let spectrum = windowed(map, 0.5 * low + 0.5 * high)
-        .map_or_else(Vec::new, |map| radial_spectrum(&map).unwrap_or_default());
-    let fitted = [TAU / side * FIRST_RING, LAST_SHARE * PI * cells as f64 / side];
-    let hurst = hurst_from_spectrum(&spectrum, fitted[0], fitted[1]).ok();
+    let (cells, size, undefined) = (map.cells(), map.size(), map.undefined());
+    let ends = |(low, high): (f64, f64), h: f64| (low.min(h), high.max(h));
+    let (low, high) = map.defined().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    let whole = undefined == 0;
+    let windowed = if whole { windowed(map, 0.5 * low + 0.5 * high) } else { None };
+    let spectrum = windowed.and_then(|map| radial_spectrum(&map).ok()).unwrap_or_default();
+    let fitted = [TAU / size.shorter() * FIRST_RING, LAST_SHARE * PI / map.dx().max(map.dy())];
+    let hurst = if !whole {
+        Err(Absent::Undefined)
+    } else if high <= low {
+        Err(Absent::NoRelief)
+    } else {
+        hurst_from_spectrum(&spectrum, fitted[0], fitted[1]).map_err(|_| Absent::FewWaves)
+    };
     Description {
         cells,
-        side,
+        size,
+        undefined,
         range: [low, high],
         rms_height: rms_height(map.heights()),
         rms_slope: rms_slope_differences(map),
@@ -79,29 +111,36 @@ pub fn describe(map: &HeightMap) -> Description {
 
 /// The map about its mean under Hann's window; `None` where the mean is not representable, which finite reliefs exclude.
 fn windowed(map: &HeightMap, middle: f64) -> Option<HeightMap> {
-    let cells = map.columns();
-    let window: Vec<f64> = (0..cells).map(|i| (PI * (i as f64 + 0.5) / cells as f64).sin().powi(2)).collect();
+    let Cells { columns, rows } = map.cells();
+    let window = |count: usize| -> Vec<f64> {
+        (0..count).map(|i| (PI * (i as f64 + 0.5) / count as f64).sin().powi(2)).collect()
+    };
+    let (across, down) = (window(columns), window(rows));
     let about: Vec<f64> = map.heights().iter().map(|h| h - middle).collect();
     let count = about.len() as f64;
-    let mean: f64 = about.chunks_exact(cells).map(|row| row.iter().map(|h| h / count).sum::<f64>()).sum();
+    let mean: f64 = about.chunks_exact(columns).map(|row| row.iter().map(|h| h / count).sum::<f64>()).sum();
     let heights = about
         .iter()
         .enumerate()
-        .map(|(i, h)| (h - mean) * window[i % cells] * window[i / cells] / WINDOW)
+        .map(|(i, h)| (h - mean) * across[i % columns] * down[i / columns] / WINDOW)
         .collect();
-    HeightMap::new(cells, map.length(), heights).ok()
+    HeightMap::new(map.cells(), map.size(), heights).ok()
 }
 
 impl fmt::Display for Description {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [low, high] = self.range;
-        writeln!(f, "cells              {} x {}", self.cells, self.cells)?;
-        writeln!(f, "side               {:e}", self.side)?;
+        let Cells { columns, rows } = self.cells;
+        let Size { x, y } = self.size;
+        writeln!(f, "cells              {columns} x {rows} (columns x rows)")?;
+        writeln!(f, "size               {x:e} x {y:e}")?;
+        writeln!(f, "cell               {:e} x {:e}", x / columns as f64, y / rows as f64)?;
+        writeln!(f, "undefined points   {} of {}", self.undefined, columns * rows)?;
         writeln!(f, "range of heights   {low:e} to {high:e}")?;
         writeln!(f, "rms height         {:.6e}", self.rms_height)?;
         writeln!(f, "rms slope          {:.6e}", self.rms_slope)?;
-        match self.fractal_dimension() {
-            Some(d) => {
+        match self.hurst.map(|h| 3.0 - h) {
+            Ok(d) => {
                 let [longest, shortest] = self.fitted.map(|q| TAU / q);
                 write!(
                     f,
@@ -111,7 +150,7 @@ impl fmt::Display for Description {
                     if (2.0..=3.0).contains(&d) { "" } else { "; outside 2 to 3: not self-affine there" };
                 f.write_str(outside)?;
             }
-            None => write!(f, "fractal dimension  not determined: too few waves, or no relief")?,
+            Err(absent) => write!(f, "fractal dimension  not determined: {absent}")?,
         }
         if !self.spectrum.is_empty() {
             write!(f, "\nspectrum           wavelength, C_2D")?;

@@ -3,7 +3,7 @@
 mod shown;
 
 use crate::format::Format;
-use crate::quantity::QuantityError;
+use crate::quantity::{Quantity, QuantityError};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -151,6 +151,13 @@ pub enum Problem {
         /// The lengths of the axes.
         found: Vec<u64>,
     },
+    /// An array without rows or without columns.
+    NoCells {
+        /// Rows.
+        rows: u64,
+        /// Columns.
+        columns: u64,
+    },
     /// The length of the file is not that of its shape.
     Length {
         /// Rows.
@@ -239,33 +246,19 @@ pub enum Problem {
         /// Columns.
         columns: f64,
     },
-    /// Spacings along x and y differ.
-    Oblong {
-        /// Spacing along x.
-        dx: f64,
-        /// Spacing along y.
-        dy: f64,
-    },
-    /// The map is not square.
-    NotSquare {
-        /// Rows.
-        rows: usize,
-        /// Columns.
-        columns: usize,
-    },
-    /// Holes, and nobody said how to fill them.
-    Holes {
-        /// Cells without a height.
-        missing: usize,
-        /// All cells.
-        cells: usize,
-        /// The first one.
+    /// Undefined points, and nobody said what becomes of them.
+    Undefined {
+        /// Points without a height.
+        undefined: usize,
+        /// All points.
+        points: usize,
+        /// The first undefined one.
         first: Place,
     },
-    /// No cell has a height.
-    AllMissing {
-        /// All cells.
-        cells: usize,
+    /// No point is defined.
+    AllUndefined {
+        /// All points.
+        points: usize,
     },
     /// Neither the file nor the caller says something.
     Unsaid {
@@ -308,6 +301,15 @@ pub enum Problem {
         /// Why.
         source: QuantityError,
     },
+    /// The comment of a text says a side that is not positive.
+    Side {
+        /// Line, from 1.
+        line: usize,
+        /// What it says, `width` or `height`.
+        key: String,
+        /// The length.
+        value: Quantity,
+    },
     /// A quantity that was said makes no sense.
     Quantity {
         /// What.
@@ -315,25 +317,27 @@ pub enum Problem {
         /// Why.
         source: QuantityError,
     },
-    /// The square to be cut out leaves the map.
+    /// The rectangle to be cut out leaves the map.
     Crop {
-        /// First row and column of the square.
+        /// First row and column of the rectangle.
         from: [usize; 2],
-        /// Its cells a side.
-        cells: usize,
+        /// Its rows and columns.
+        cells: [usize; 2],
         /// Rows and columns of the map.
         shape: [usize; 2],
     },
-    /// More cells than the map has.
+    /// More cells than the map has along one axis, or none.
     Resample {
-        /// Cells a side asked for.
+        /// `columns` or `rows`.
+        what: &'static str,
+        /// The number asked for.
         cells: usize,
-        /// Cells a side of the map.
+        /// That of the map.
         found: usize,
     },
-    /// Too few cells with heights, or all in a line, for a trend.
+    /// Too few defined points, or all in a line, for a trend.
     Trend {
-        /// Cells with heights.
+        /// Defined points.
         present: usize,
         /// Unknowns of the trend.
         unknowns: usize,
@@ -348,7 +352,7 @@ pub enum Problem {
         /// The ending, shortened.
         found: String,
     },
-    /// A field with a number that is not finite.
+    /// A field with a number that is not finite (nor NaN at an undefined point, where those are written).
     NotFinite {
         /// Name of the field.
         field: String,

@@ -1,19 +1,21 @@
 //! Surfaces from and to files, and quantities with units.
 //!
-//! Two steps, so that a person can look between them: a [`Scan`] is what a file holds, with holes and in its own unit, and [`Understood`] says what was
-//! taken from it; [`Scan::map`] makes a square [`contact_model::HeightMap`] of it, doing only what a [`Treatment`] names.
+//! Two steps, so that a person can look between them: a [`Scan`] is what a file holds, with undefined points and in its own unit, and
+//! [`Understood`] says what was taken from it; [`Scan::map`] makes a [`contact_model::HeightMap`] of it, doing only what a [`Treatment`] names.
 //!
 //! ```
-//! use surface_io::{Crop, Declared, Detrend, Fill, Scan, Treatment, describe};
-//! let file = b"# Width: 3 um\n# Value units: nm\n1 2 3\n4 nan 8\n";
+//! use surface_io::{Declared, Fill, Scan, Treatment, Undefined, describe};
+//! // Three columns over 3 um and two rows over 1 um: cells of 1 um x 0.5 um.
+//! let file = b"# Width: 3 um\n# Height: 1 um\n# Value units: nm\n1 2 3\n4 nan 8\n";
 //! let scan = Scan::from_bytes("a.txt", file, &Declared::default())?;
-//! assert_eq!(scan.understood().missing, 1);
-//! // Neither square nor whole: both are errors until somebody says what to do.
+//! assert_eq!(scan.understood().undefined, 1);
+//! // An undefined point is an error until somebody says what becomes of it.
 //! assert!(scan.map(&Treatment::default()).is_err());
-//! let treatment = Treatment { crop: Some(Crop::Centre), fill: Some(Fill::Neighbours), ..Treatment::default() };
-//! let map = scan.map(&treatment)?;
-//! // The hole in the middle column is the mean of its neighbours in the square of the first two columns: 2 and 4.
-//! assert!(map.columns() == 2 && (map.heights()[3] - 3e-9).abs() < 1e-20);
+//! let map = scan.map(&Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() })?;
+//! assert_eq!((map.columns(), map.rows(), map.undefined(), map.size().y), (3, 2, 1, 1e-6));
+//! let map = scan.map(&Treatment { fill: Some(Fill::Neighbours), ..Treatment::default() })?;
+//! // Neighbours along y are nearer and weigh 2, those along x 1/2: (2 * 2 + (4 + 8) / 2) / 3.
+//! assert!((map.heights()[4] - 10e-9 / 3.0).abs() < 1e-18);
 //! println!("{}", describe(&map));
 //! # Ok::<(), surface_io::Error>(())
 //! ```
@@ -21,23 +23,27 @@
 //! # Nothing is guessed silently
 //!
 //! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`Declared::format`], everything else as a text matrix; three columns without either
-//!   are an error. Other files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
+//!   are points or a matrix by their comments, or an error. Other files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace. Comments begin with `#` or `%`; of them
 //!   `Width`, `Height`, `Value units` and `Lateral units` count, as Gwyddion's exports and this crate write them. Decimal commas are read when said
-//!   ([`Decimal::Comma`]). An empty place between two delimiters, `nan` and words such as `---` or `BAD` are holes.
-//! * **Points.** In any order; the spacing is the smallest step, refined over the whole range. A point may be off its place by a tenth of a found spacing
+//!   ([`Decimal::Comma`]). An empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined
+//!   points.
+//! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so is a header's width or height without the
+//!   other, and two that are square cells within the decimals that are printed. Cells whose sides differ by more than 1e4 are an error.
+//! * **Points.** In any order; the spacing along each axis is the smallest step, refined over the whole range, and one for both where they differ by
+//!   no more than the points are off their places. A point may be off its place by a tenth of a found spacing
 //!   or a quarter of a given one, how far one is is told, two points at one place and a grid more than half empty are errors.
 //! * **NPY.** Two axes of float64, float32, float16 or integers, either byte order, row by row or column by column. An integer that no double holds is an error.
-//! * **Units.** Heights with a unit come out in metres, and the side of a cell must then have one too; without any unit both stay as they are. What is
+//! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any unit both stay as they are. What is
 //!   given beside what the file says must agree with it within the digits of a header (0.5 %).
-//! * **Holes** are refused without a [`Fill`], infinite heights always, maps that are not square without a [`Crop`].
-//! * Row j is y, column i is x, the first row is y = 0: `heights[j * cells + i]`.
+//! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both), infinite heights always.
+//! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row, column]`.
 //!
 //! # Accuracy
 //!
 //! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them ([`Quantity`]); heights of a scan are converted with one
-//! rounding. What is written is read again to the bit ([`text()`], [`xyz`], [`npy`]); the side of a map is a product of the cells and may lose
-//! a last digit. Trends are exact to 1e-13 of the range of the heights, filled holes to 1e-10.
+//! rounding. What is written is read again to the bit ([`text()`], [`xyz`], [`npy`]); so are the
+//! sides in text and XYZ. Trends are exact to 1e-13 of the range of the heights, filled points to 1e-10.
 //!
 //! # Hostile files
 //!
@@ -48,7 +54,8 @@
 //! # Speed
 //!
 //! On one core of a busy machine of the 2020s a map of 1024 x 1024 cells is read from NPY in 0.02 s, from text in 0.12 s and from points in 0.45 s, written in
-//! 0.02, 0.2 and 0.5 s (VTI 0.07 s), and described in 0.03 s. [`Fill::Neighbours`] takes as many sweeps over the holes as the largest one is wide.
+//! 0.02, 0.2 and 0.5 s (VTI 0.07 s), and described in 0.03 s. [`Fill::Neighbours`] takes as many sweeps over the undefined points as the largest patch
+//! of them is wide.
 //!
 //! # Writing
 //!
@@ -57,7 +64,7 @@
 //!
 //! # What it does not do
 //!
-//! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers, filters, maps that are not square or have oblong cells.
+//! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers, filters.
 
 mod describe;
 mod error;
@@ -67,19 +74,21 @@ mod npy;
 mod points;
 mod quantity;
 mod scan;
+mod sides;
 mod text;
 mod treatment;
 mod vti;
 mod word;
 mod write;
 
-pub use describe::{Description, describe};
+pub use describe::{Absent, Description, describe};
 pub use error::{Error, NumberKind, Place, Problem, Result};
 pub use format::Format;
 pub use npy::npy;
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
 pub use scan::{Decimal, Declared, Said, Scan, Speaker, Understood};
-pub use treatment::{Crop, Detrend, Fill, Treatment};
+pub use sides::Sides;
+pub use treatment::{Crop, Detrend, Fill, Treatment, Undefined};
 pub use vti::{Encoding, Field, vti};
 pub use word::WordError;
 pub use write::{Metric, text, write_map, xyz};

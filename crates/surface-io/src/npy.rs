@@ -22,7 +22,7 @@ const CHUNK: usize = 8192;
 pub(crate) fn read(path: &Path, reader: &mut impl Read, length: u64, declared: &Declared) -> Result<Found> {
     let content = Error::content;
     if declared.lateral_unit.is_some() {
-        let reason = "an array has no coordinates; give cell or width with a unit";
+        let reason = "an array has no coordinates; give size or cell with a unit";
         return Err(content(path)(Problem::Useless { what: "lateral_unit", reason }));
     }
     if declared.skip_lines > 0 {
@@ -34,7 +34,7 @@ pub(crate) fn read(path: &Path, reader: &mut impl Read, length: u64, declared: &
         return Err(content(path)(Problem::Shape { found: header.shape }));
     };
     if rows == 0 || columns == 0 {
-        return Err(content(path)(Problem::Empty));
+        return Err(content(path)(Problem::NoCells { rows, columns }));
     }
     let found = length - header_bytes;
     let expected = (u128::from(rows) * u128::from(columns)).saturating_mul(header.kind.bytes() as u128);
@@ -70,7 +70,7 @@ pub(crate) fn read(path: &Path, reader: &mut impl Read, length: u64, declared: &
         Order::Fortran => "column by column",
     };
     let details = format!("{}, {order}", header.kind);
-    Ok(Found { format: Format::Npy, details, rows, columns, heights, unit: None, cell: None })
+    Ok(Found { format: Format::Npy, details, rows, columns, heights, unit: None, extent: [None; 2] })
 }
 
 /// Doubles hold every integer up to this size.

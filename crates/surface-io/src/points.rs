@@ -6,6 +6,7 @@ use crate::error::Problem;
 use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::scan::{Declared, Found, check_unit};
+use crate::sides::Extent;
 use crate::text::Table;
 use axis::Axis;
 
@@ -15,6 +16,9 @@ const FULL: f64 = 0.5;
 /// Deviations from the grid are told from this on, in percent of a cell; below they are roundings.
 const SHOWN: f64 = 0.01;
 
+/// Roundings of coordinates in double precision, relative to a spacing.
+const ROUNDED: f64 = 1e-9;
+
 /// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
 ///
 /// Cost O(n log n) for n points.
@@ -22,28 +26,29 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
     if table.columns != 3 {
         return Err(Problem::NotPoints { line: table.first_line(), found: table.columns });
     }
-    if declared.width.is_some() {
-        let reason = "points say their width themselves; give cell where noise hides the spacing";
-        return Err(Problem::Useless { what: "width", reason });
-    }
     let unit = table.heading.unit.clone();
     let heights_unit = declared.unit.as_ref().or(unit.as_ref());
     let lateral = lateral_unit(declared, table, heights_unit)?;
-    let spacing = declared.cell.map(|cell| spacing_of(cell, lateral.as_ref())).transpose()?;
+    let spacing = match declared.cell {
+        Some(cell) => {
+            let [x, y] = cell.both();
+            [Some(spacing_of(x, lateral.as_ref())?), Some(spacing_of(y, lateral.as_ref())?)]
+        }
+        None => [None, None],
+    };
     let points = table.rows();
     let axis = |name, at: usize| {
         let along = table.values.iter().skip(at).step_by(3).copied();
         if let Some(point) = along.clone().position(|v: f64| v.is_nan()) {
             return Err(Problem::Coordinate { axis: name, line: table.lines[point] as usize });
         }
-        Axis::find(name, along.collect(), spacing)
+        Axis::find(name, along.collect(), spacing[at])
     };
     let (x, y) = (axis('x', 0)?, axis('y', 1)?);
     if x.count * y.count * FULL > points as f64 {
         return Err(Problem::Sparse { points, rows: y.count, columns: x.count });
     }
     let (rows, columns) = (y.count as usize, x.count as usize);
-    let cell = common(&x, &y)?;
     let mut heights = vec![f64::NAN; rows * columns];
     // Lines that are taken; 0 is none.
     let mut taken = vec![0_u32; rows * columns];
@@ -56,18 +61,16 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
         taken[at] = table.lines[i];
         heights[at] = point[2];
     }
-    let cell = match (declared.cell, cell) {
-        (Some(_), _) | (None, None) => None,
-        (None, Some(cell)) => {
-            let unit = lateral.unwrap_or_else(Unit::none);
-            Some(Quantity::of(cell, &unit).map_err(|source| Problem::Quantity { what: "spacing", source })?)
-        }
+    let extent = if declared.cell.is_some() {
+        [None; 2]
+    } else {
+        extents(table, [&x, &y], &lateral.unwrap_or_else(Unit::none))?
     };
     let off = 100.0 * x.off.max(y.off);
     let off =
         if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
     let details = format!("{points} points, {}{off}", table.delimiter);
-    Ok(Found { format: Format::Xyz, details, rows, columns, heights, unit, cell })
+    Ok(Found { format: Format::Xyz, details, rows, columns, heights, unit, extent })
 }
 
 /// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not guessed at.
@@ -103,17 +106,40 @@ fn spacing_of(cell: Quantity, lateral: Option<&Unit>) -> Result<f64, Problem> {
     }
 }
 
-/// One spacing for both axes where they differ by less than half a cell over the whole map; `None` for a single point.
-fn common(x: &Axis, y: &Axis) -> Result<Option<f64>, Problem> {
-    match (x.spacing, y.spacing) {
-        (Some(dx), Some(dy)) => {
-            if (dx - dy).abs() * x.count.max(y.count) > 0.5 * dx.min(dy) {
-                return Err(Problem::Oblong { dx, dy });
+/// Both axes by their spacings, or by the width and height in the comments where an axis has one place only. `None` where neither says it.
+///
+/// What the comments say replaces what differs from it by roundings of the coordinates only. One spacing serves both axes where they differ by no more than
+/// the points are off their places.
+fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Extent>; 2], Problem> {
+    let quantity = |spacing: f64| {
+        Quantity::of(spacing, unit).map_err(|source| Problem::Quantity { what: "spacing", source })
+    };
+    let said = table.heading.sides();
+    let mut extents = [None; 2];
+    for ((extent, axis), side) in extents.iter_mut().zip(axes).zip(said) {
+        let spacing = axis.spacing.map(quantity).transpose()?;
+        let side = side.map(|side| side.quantity).filter(|side| side.dimension() == unit.dimension());
+        *extent = match (spacing, side) {
+            (Some(spacing), Some(side))
+                if (spacing.value() * axis.count / side.value() - 1.0).abs() > ROUNDED =>
+            {
+                Some(Extent::Cell(spacing))
             }
-            Ok(Some((dx * (x.count - 1.0) + dy * (y.count - 1.0)) / (x.count + y.count - 2.0)))
-        }
-        (one, other) => Ok(one.or(other)),
+            (Some(spacing), None) => Some(Extent::Cell(spacing)),
+            (_, side) => side.map(Extent::Side),
+        };
     }
+    if let ([x, y], [Some(Extent::Cell(_)), Some(Extent::Cell(_))]) = (axes, extents)
+        && let (Some(dx), Some(dy)) = (x.spacing, y.spacing)
+    {
+        // The ends, on which the spacing rests, may be off their places by twice what is seen between them.
+        let doubt = |axis: &Axis, spacing: f64| 4.0 * axis.off * spacing / (axis.count - 1.0).max(1.0);
+        if (dx - dy).abs() <= doubt(x, dx) + doubt(y, dy) + ROUNDED * dx {
+            let common = (dx * (x.count - 1.0) + dy * (y.count - 1.0)) / (x.count + y.count - 2.0);
+            extents = [Some(Extent::Cell(quantity(common)?)); 2];
+        }
+    }
+    Ok(extents)
 }
 
 #[cfg(test)]

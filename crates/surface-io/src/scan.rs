@@ -3,6 +3,7 @@
 use crate::error::{Error, Place, Problem, Result};
 use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, Unit};
+use crate::sides::{self, Extent, Sides};
 use crate::{npy, points, text};
 use std::fmt;
 use std::fs::File;
@@ -18,13 +19,16 @@ pub struct Declared {
     pub unit: Option<Unit>,
     /// Unit of x and y of points.
     pub lateral_unit: Option<Unit>,
-    /// Side of one cell: a length, or a number where the heights have no unit.
-    pub cell: Option<Quantity>,
-    /// Length of a row, `columns * cell`, instead of the cell.
+    /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights have
+    /// no unit. One value is that of a square map.
+    pub size: Option<Sides>,
+    /// Sides of one cell, dx and dy, instead of the size. One value is that of square cells.
+    pub cell: Option<Sides>,
+    /// Older name of a size of square cells: the length of a row, `columns * cell`.
     pub width: Option<Quantity>,
     /// How decimals are written in text.
     pub decimal: Decimal,
-    /// A number of the file that stands for a missing height, such as -9999.
+    /// A number of the file that stands for an undefined point, such as -9999.
     pub missing: Option<f64>,
     /// Lines of text to leave out at the beginning.
     pub skip_lines: usize,
@@ -39,6 +43,7 @@ impl Default for Declared {
             format: None,
             unit: None,
             lateral_unit: None,
+            size: None,
             cell: None,
             width: None,
             decimal: Decimal::Point,
@@ -98,56 +103,60 @@ pub struct Understood {
     pub rows: usize,
     /// Columns.
     pub columns: usize,
-    /// Side of one cell; `None` where nobody said it.
-    pub cell: Option<Said<Quantity>>,
+    /// Sides of the map along x and y; `None` where nobody said them or their cells.
+    pub size: Option<[Quantity; 2]>,
+    /// Sides of one cell along x and y; `None` where nobody said them or the size.
+    pub cell: Option<Said<[Quantity; 2]>>,
     /// Unit of the heights; `None` where nobody said it.
     pub unit: Option<Said<Unit>>,
-    /// Cells without a height.
-    pub missing: usize,
-    /// Lowest and highest height in the file's unit; `None` where all are missing.
+    /// Number of undefined points: cells without a height.
+    pub undefined: usize,
+    /// Lowest and highest height in the file's unit; `None` where no point is defined.
     pub range: Option<[f64; 2]>,
-    /// Root mean square of the heights about their mean in the file's unit; `None` where all are missing.
+    /// Root mean square of the heights about their mean in the file's unit; `None` where no point is defined.
     pub rms_height: Option<f64>,
 }
 
 impl Understood {
     /// Share of the cells without a height, 0 to 1.
-    pub fn missing_share(&self) -> f64 {
-        self.missing as f64 / (self.rows as f64 * self.columns as f64)
+    pub fn undefined_share(&self) -> f64 {
+        self.undefined as f64 / (self.rows as f64 * self.columns as f64)
     }
 }
 
 impl fmt::Display for Understood {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "format   {} ({})", self.format, self.details)?;
-        writeln!(f, "shape    {} rows of {}", self.rows, self.columns)?;
-        match &self.cell {
-            Some(cell) => writeln!(f, "cell     {} ({})", cell.value, cell.by)?,
-            None => writeln!(f, "cell     not said")?,
+        writeln!(f, "format     {} ({})", self.format, self.details)?;
+        writeln!(f, "shape      {} rows of {}", self.rows, self.columns)?;
+        match (&self.size, &self.cell) {
+            (Some([x, y]), Some(Said { value: [dx, dy], by })) => {
+                writeln!(f, "size       {x} x {y} ({by})\ncell       {dx} x {dy}")?;
+            }
+            _ => writeln!(f, "size       not said")?,
         }
         match &self.unit {
-            Some(unit) => writeln!(f, "heights  in {} ({})", unit.value, unit.by)?,
-            None => writeln!(f, "heights  unit not said")?,
+            Some(unit) => writeln!(f, "heights    in {} ({})", unit.value, unit.by)?,
+            None => writeln!(f, "heights    unit not said")?,
         }
         match (self.range, self.rms_height) {
             (Some([low, high]), Some(rms)) => {
-                writeln!(f, "range    {low:e} to {high:e}, rms about the mean {rms:.4e}")?;
+                writeln!(f, "range      {low:e} to {high:e}, rms about the mean {rms:.4e}")?;
             }
-            _ => writeln!(f, "range    none")?,
+            _ => writeln!(f, "range      none")?,
         }
-        write!(f, "missing  {} of {} cells", self.missing, self.rows * self.columns)?;
-        if self.missing > 0 { write!(f, " ({:.3} %)", 100.0 * self.missing_share()) } else { Ok(()) }
+        write!(f, "undefined  {} of {} points", self.undefined, self.rows * self.columns)?;
+        if self.undefined > 0 { write!(f, " ({:.3} %)", 100.0 * self.undefined_share()) } else { Ok(()) }
     }
 }
 
-/// A rectangle of heights as a file holds them: with holes, in the file's unit.
+/// A rectangle of heights as a file holds them: with undefined points, in the file's unit.
 ///
-/// [`Scan::map`] makes a square [`contact_model::HeightMap`] of it.
+/// [`Scan::map`] makes a [`contact_model::HeightMap`] of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scan {
     path: PathBuf,
     understood: Understood,
-    /// Row-major; NaN is a hole and never leaves this crate.
+    /// Row-major; NaN is an undefined point and never leaves this crate.
     heights: Vec<f64>,
 }
 
@@ -159,7 +168,8 @@ pub(crate) struct Found {
     pub(crate) columns: usize,
     pub(crate) heights: Vec<f64>,
     pub(crate) unit: Option<Unit>,
-    pub(crate) cell: Option<Quantity>,
+    /// Along x and y, where the file says it.
+    pub(crate) extent: [Option<Extent>; 2],
 }
 
 impl Scan {
@@ -226,7 +236,8 @@ impl Scan {
             let format = match format {
                 Some(format) => format,
                 None if table.columns == 3 && table.rows() > 3 => {
-                    return Err(content(path)(Problem::Ambiguous { lines: table.rows() }));
+                    let ambiguous = Problem::Ambiguous { lines: table.rows() };
+                    table.heading.format().ok_or(ambiguous).map_err(content(path))?
                 }
                 None => Format::Text,
             };
@@ -242,22 +253,22 @@ impl Scan {
     }
 
     fn new(path: &Path, found: Found, declared: &Declared) -> Result<Self, Problem> {
-        let Found { format, details, rows, columns, mut heights, unit, cell } = found;
-        if let Some(hole) = declared.missing {
+        let Found { format, details, rows, columns, mut heights, unit, extent } = found;
+        if let Some(undefined) = declared.missing {
             for h in &mut heights {
-                if h.to_bits() == hole.to_bits() || (*h - hole).abs() <= 0.0 {
+                if h.to_bits() == undefined.to_bits() || (*h - undefined).abs() <= 0.0 {
                     *h = f64::NAN;
                 }
             }
         }
-        let (mut missing, mut range) = (0, None);
+        let (mut undefined, mut range) = (0, None);
         for (i, &h) in heights.iter().enumerate() {
             if h.is_infinite() {
                 let place = Place::Cell { row: i / columns, column: i % columns };
                 return Err(Problem::Infinite { place, value: h });
             }
             if h.is_nan() {
-                missing += 1;
+                undefined += 1;
             } else {
                 let [low, high] = range.unwrap_or([h, h]);
                 range = Some([h.min(low), h.max(high)]);
@@ -267,16 +278,28 @@ impl Scan {
         let unit = said(unit, declared.unit.clone(), |a, b| {
             a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
         })?;
-        let given = given_cell(declared, columns)?;
-        let cell = said(cell, given, |a, b| {
-            let close = (a.value() / b.value() - 1.0).abs() <= PRINTED;
-            (a.dimension() == b.dimension() && close)
-                .then_some(())
-                .ok_or_else(|| contradiction("side of a cell", a, b))
-        })?;
-        let rms_height = range.map(|range| rms(&heights, columns, missing, range));
+        let count = [columns, rows];
+        let given = sides::given(declared, count)?;
+        let extents = match (given, extent) {
+            (Some(given), file) => {
+                for axis in 0..2 {
+                    if let Some(file) = file[axis] {
+                        sides::check_axis(axis, file, given[axis], count[axis])?;
+                    }
+                }
+                Some((given, Speaker::Caller))
+            }
+            (None, [Some(x), Some(y)]) => Some(([x, y], Speaker::File)),
+            (None, _) => None,
+        };
+        let (mut size, mut cell) = (None, None);
+        if let Some(([x, y], by)) = extents {
+            size = Some([x.side(columns)?, y.side(rows)?]);
+            cell = Some(Said { value: [x.cell(columns)?, y.cell(rows)?], by });
+        }
+        let rms_height = range.map(|range| rms(&heights, columns, undefined, range));
         let understood =
-            Understood { format, details, rows, columns, cell, unit, missing, range, rms_height };
+            Understood { format, details, rows, columns, size, cell, unit, undefined, range, rms_height };
         Ok(Self { path: path.to_owned(), understood, heights })
     }
 
@@ -290,7 +313,7 @@ impl Scan {
         &self.path
     }
 
-    /// Height of a cell in the file's unit; `None` where it is missing or outside.
+    /// Height of a cell in the file's unit; `None` where it is undefined or outside.
     pub fn height(&self, row: usize, column: usize) -> Option<f64> {
         let inside = row < self.understood.rows && column < self.understood.columns;
         let height = inside.then(|| self.heights[row * self.understood.columns + column])?;
@@ -302,14 +325,14 @@ impl Scan {
     }
 }
 
-/// Rms height about the mean of what is measured: about the middle of the range and in units of half of it, so that nothing overflows; summed row by
+/// Rms height of the defined points about their mean: about the middle of the range and in units of half of it, so that nothing overflows; summed row by
 /// row, so that rounding grows with the side only.
-fn rms(heights: &[f64], columns: usize, missing: usize, [low, high]: [f64; 2]) -> f64 {
+fn rms(heights: &[f64], columns: usize, undefined: usize, [low, high]: [f64; 2]) -> f64 {
     let (middle, unit) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
     if unit <= 0.0 {
         return 0.0;
     }
-    let present = (heights.len() - missing) as f64;
+    let present = (heights.len() - undefined) as f64;
     let mean_of = |f: &dyn Fn(f64) -> f64| {
         let row =
             |row: &[f64]| row.iter().filter(|h| !h.is_nan()).map(|h| f((h - middle) / unit)).sum::<f64>();
@@ -322,7 +345,11 @@ fn rms(heights: &[f64], columns: usize, missing: usize, [low, high]: [f64; 2]) -
 /// Headers print lengths with three digits or more: half of the last one.
 pub(crate) const PRINTED: f64 = 5e-3;
 
-fn contradiction(what: &'static str, file: &impl fmt::Display, caller: &impl fmt::Display) -> Problem {
+pub(crate) fn contradiction(
+    what: &'static str,
+    file: &impl fmt::Display,
+    caller: &impl fmt::Display,
+) -> Problem {
     let (first, second) = (format!("{file} {}", Speaker::File), format!("{caller} {}", Speaker::Caller));
     Problem::Contradiction { what, first, second }
 }
@@ -352,30 +379,4 @@ pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), 
             Err(Problem::Quantity { what, source })
         }
     }
-}
-
-/// The side of a cell as given, directly or by the length of a row.
-fn given_cell(declared: &Declared, columns: usize) -> Result<Option<Quantity>, Problem> {
-    let check = |what: &'static str, said: Option<Quantity>| match said {
-        Some(q) if q.dimension() != Dimension::LENGTH && q.dimension() != Dimension::NONE => {
-            let source = q.expect(Dimension::LENGTH).err();
-            source.map_or(Ok(None), |source| Err(Problem::Quantity { what, source }))
-        }
-        Some(q) if q.value() <= 0.0 => {
-            Err(Problem::Said { what, value: q.value(), expected: "a length > 0" })
-        }
-        said => Ok(said),
-    };
-    let (cell, width) = (check("cell", declared.cell)?, check("width", declared.width)?);
-    let quantity = |value, dimension| {
-        Quantity::new(value, dimension).map_err(|source| Problem::Quantity { what: "width", source })
-    };
-    let by_width = width.map(|w| quantity(w.value() / columns as f64, w.dimension())).transpose()?;
-    if let (Some(a), Some(b)) = (cell, by_width)
-        && (a.dimension() != b.dimension() || (a.value() / b.value() - 1.0).abs() > PRINTED)
-    {
-        let (first, second) = (format!("cell = {a}"), format!("width over {columns} columns = {b}"));
-        return Err(Problem::Contradiction { what: "side of a cell", first, second });
-    }
-    Ok(cell.or(by_width))
 }

@@ -56,7 +56,7 @@ impl fmt::Display for Delimiter {
     }
 }
 
-/// Lines of equally many numbers; NaN is a hole.
+/// Lines of equally many numbers; NaN is an undefined point.
 #[derive(Debug)]
 pub(crate) struct Table {
     pub(crate) columns: usize,
@@ -82,7 +82,7 @@ impl Table {
 
     /// Reads all lines.
     ///
-    /// Memory: at most 8 bytes for each byte of the text (a hole between two commas), and 4 for each line.
+    /// Memory: at most 8 bytes for each byte of the text (nothing between two commas), and 4 for each line.
     pub(crate) fn read(bytes: &[u8], declared: &Declared) -> Result<Self, Problem> {
         check_text(bytes)?;
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);

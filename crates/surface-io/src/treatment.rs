@@ -1,4 +1,4 @@
-//! From a scan to a square map: crop, trend, holes, resampling, units.
+//! From a scan to a map: crop, trend, undefined points, resampling, units.
 
 mod fill;
 mod resample;
@@ -9,42 +9,58 @@ pub use trend::Detrend;
 use crate::error::{Error, Place, Problem, Result};
 use crate::quantity::{Dimension, Quantity};
 use crate::scan::Scan;
-use contact_model::HeightMap;
+use contact_model::{Cells, HeightMap, Size};
 
 /// What is done to a scan, in this order; nothing unless named.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Treatment {
-    /// Which square is taken.
+    /// Which part is taken.
     pub crop: Option<Crop>,
-    /// What stands in the holes. Without it holes are an error.
+    /// What becomes of undefined points. Without it and without [`Treatment::fill`] they are an error.
+    pub undefined: Option<Undefined>,
+    /// Which heights undefined points get; it contradicts [`Treatment::undefined`].
     pub fill: Option<Fill>,
-    /// What is subtracted: fitted to the cells that have a height in the file, after the crop.
+    /// What is subtracted: fitted to the points that are defined in the file, after the crop.
     pub detrend: Detrend,
-    /// Cells a side after averaging over larger cells.
+    /// Columns after averaging over larger cells; as many as the map has where only `rows` is given.
     pub cells: Option<usize>,
+    /// Rows after averaging over larger cells; as much fewer as the columns where only `cells` is given.
+    pub rows: Option<usize>,
 }
 
-/// A square part of a scan.
+/// A part of a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Crop {
-    /// The largest square in the middle; where the margins are odd, the upper and the left one are the smaller.
+    /// The largest square in the middle, as nearly as oblong cells make one; where the margins are odd, the upper and the left one are
+    /// the smaller.
     Centre,
-    /// The square of `cells` x `cells` whose first cell is (row, column), counted from 0.
+    /// The rectangle of `rows` x `columns` cells whose first cell is (row, column), counted from 0.
     Window {
         /// First row.
         row: usize,
         /// First column.
         column: usize,
-        /// Cells a side.
-        cells: usize,
+        /// Number of rows.
+        rows: usize,
+        /// Number of columns.
+        columns: usize,
     },
 }
 
-/// Heights for cells that have none.
+/// What becomes of undefined points that are not filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Undefined {
+    /// They stay undefined and cannot touch ([`HeightMap::with_undefined`]).
+    NoContact,
+}
+
+/// Heights for undefined points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fill {
-    /// Each missing height is the mean of those of its neighbours (four inside, fewer at an edge), filled ones included: the discrete harmonic
-    /// function with the measured rim. Unique, between the lowest and the highest height of the rim, and a plane stays a plane inside.
+    /// The discrete harmonic function with the measured rim: each filled height is the mean of those of its neighbours (four inside, fewer
+    /// at an edge), filled ones included, with the weights dy/dx along x and dx/dy along y. Unique, between the lowest and the highest
+    /// height of the rim, and a plane stays a plane inside.
     Neighbours,
     /// The least-squares plane through all measured heights.
     Plane,
@@ -53,13 +69,16 @@ pub enum Fill {
 }
 
 impl Scan {
-    /// A square map: crop, fill, subtract the trend, average over larger cells; in metres where the scan has units, else in its own numbers.
+    /// A map: crop, fill, subtract the trend, average over larger cells; in metres where the scan has units, else in its own numbers.
     ///
-    /// The trend is fitted to measured heights only and subtracted from all. Cost O(N^2), with [`Fill::Neighbours`] times the width of the holes.
+    /// The trend is fitted to measured heights only and subtracted from all. Where undefined points are kept, the mean over a larger cell is that of its
+    /// defined part, and the cell is undefined where this is less than half of it. Cost O(N) for N points, with
+    /// [`Fill::Neighbours`] times the width of the undefined patches.
     ///
     /// # Errors
-    /// [`Error::Content`]: not square, holes without a fill, side of a cell or unit of the heights not said (one of them with a unit and the
-    /// other without), a crop that leaves the map, finer cells, heights that overflow, a trend that the heights do not determine.
+    /// [`Error::Content`]: undefined points that are neither filled nor kept, or both; sides or unit of the heights not said (one of them with
+    /// a unit and the other without), cells whose sides differ by more than 1e4, a crop that leaves the map, finer cells, heights that
+    /// overflow, a trend that the heights do not determine.
     ///
     /// ```
     /// use surface_io::{Declared, Detrend, Scan, Treatment};
@@ -75,11 +94,17 @@ impl Scan {
     }
 
     fn treated(&self, treatment: &Treatment) -> Result<HeightMap, Problem> {
-        let cell = self.cell()?;
-        let (cells, mut heights) = self.square(treatment.crop)?;
-        let missing = heights.iter().filter(|h| h.is_nan()).count();
-        if missing == heights.len() {
-            return Err(Problem::AllMissing { cells: heights.len() });
+        if let (Some(_), Some(Undefined::NoContact)) = (treatment.fill, treatment.undefined) {
+            let (first, second) = ("fill is given".into(), "undefined = \"no_contact\" too".into());
+            return Err(Problem::Contradiction { what: "undefined points", first, second });
+        }
+        let (size, cell) = self.sides()?;
+        // Cells that no map may have are refused before anything is fitted to them.
+        Cells::from(1).validate(Size::from(cell)).map_err(Problem::Map)?;
+        let (cells, mut heights) = self.part(treatment.crop, cell)?;
+        let undefined = heights.iter().filter(|h| h.is_nan()).count();
+        if undefined == heights.len() {
+            return Err(Problem::AllUndefined { points: heights.len() });
         }
         if let Some(unit) = &self.understood().unit {
             for h in &mut heights {
@@ -90,43 +115,54 @@ impl Scan {
             return Err(Problem::Overflow { value });
         }
         let trend = treatment.detrend.fit(cells, &heights)?;
-        if missing > 0 {
+        if undefined > 0 {
             let first = heights.iter().position(|h| h.is_nan()).unwrap_or(0);
-            let first = Place::Cell { row: first / cells, column: first % cells };
-            let fill = treatment.fill.ok_or(Problem::Holes { missing, cells: heights.len(), first })?;
-            self.fill(fill, cells, &mut heights)?;
+            let first = Place::Cell { row: first / cells.columns, column: first % cells.columns };
+            match (treatment.fill, treatment.undefined) {
+                (Some(fill), _) => self.fill(fill, cells, cell, &mut heights)?,
+                (None, Some(Undefined::NoContact)) => {}
+                (None, None) => {
+                    return Err(Problem::Undefined { undefined, points: heights.len(), first });
+                }
+            }
         }
         if let Some(trend) = trend {
             trend.subtract(cells, &mut heights);
         }
-        let (coarse, heights) = match treatment.cells {
-            None => (cells, heights),
-            Some(coarse) if coarse == 0 || coarse > cells => {
-                return Err(Problem::Resample { cells: coarse, found: cells });
-            }
-            Some(coarse) => (coarse, resample::coarsen(&heights, cells, coarse)),
+        let whole = cells == Cells { columns: self.understood().columns, rows: self.understood().rows };
+        let part = [cell[0] * cells.columns as f64, cell[1] * cells.rows as f64];
+        let size = if whole { size } else { part };
+        let coarse = coarse(treatment, cells)?;
+        let heights = resample::coarsen(heights, cells, coarse);
+        let kept = undefined > 0 && treatment.fill.is_none();
+        let map = if kept {
+            HeightMap::with_undefined(coarse, size, heights)
+        } else {
+            HeightMap::new(coarse, size, heights)
         };
-        HeightMap::new(coarse, cell * cells as f64, heights).map_err(Problem::Map)
+        map.map_err(Problem::Map)
     }
 
-    /// Side of a cell in metres, or in the numbers of the file.
-    fn cell(&self) -> Result<f64, Problem> {
+    /// Sides of the map and of a cell in metres, or in the numbers of the file.
+    fn sides(&self) -> Result<([f64; 2], [f64; 2]), Problem> {
         let understood = self.understood();
         let unit = understood.unit.as_ref().map(|u| u.value.dimension());
-        match (understood.cell.as_ref().map(|c| c.value), unit) {
-            (None, _) => {
-                let remedy =
-                    "say cell = \"0.5 um\" or width = \"1 mm\", or a number where the heights have no unit";
-                Err(Problem::Unsaid { what: "the side of a cell", remedy })
-            }
-            (Some(cell), None) if cell.dimension() == Dimension::LENGTH => Err(Problem::Unsaid {
+        let (Some(size), Some(cell)) = (understood.size, &understood.cell) else {
+            let remedy = "say size = [\"1 mm\", \"2 mm\"] or cell = \"0.5 um\", or numbers where the heights have no unit";
+            return Err(Problem::Unsaid { what: "the size of the map", remedy });
+        };
+        let dx = cell.value[0];
+        match unit {
+            None if dx.dimension() == Dimension::LENGTH => Err(Problem::Unsaid {
                 what: "the unit of the heights",
                 remedy: "say unit = \"nm\" or another unit of length",
             }),
-            (Some(cell), unit) if cell.dimension() == unit.unwrap_or(Dimension::NONE) => Ok(cell.value()),
-            (Some(cell), _) => Err(Problem::Contradiction {
+            unit if dx.dimension() == unit.unwrap_or(Dimension::NONE) => {
+                Ok((size.map(Quantity::value), cell.value.map(Quantity::value)))
+            }
+            _ => Err(Problem::Contradiction {
                 what: "units",
-                first: format!("the side of a cell is {cell}"),
+                first: format!("the side of a cell is {dx}"),
                 second: format!(
                     "the heights have {}",
                     understood.unit.as_ref().map_or_else(|| "no unit".into(), |u| u.value.to_string())
@@ -135,28 +171,37 @@ impl Scan {
         }
     }
 
-    fn square(&self, crop: Option<Crop>) -> Result<(usize, Vec<f64>), Problem> {
-        let (rows, columns) = (self.understood().rows, self.understood().columns);
-        let (row, column, cells) = match crop {
-            None if rows != columns => return Err(Problem::NotSquare { rows, columns }),
-            None => return Ok((rows, self.heights().to_vec())),
-            Some(Crop::Centre) => {
-                let cells = rows.min(columns);
-                ((rows - cells) / 2, (columns - cells) / 2, cells)
+    /// The heights that are left by a crop.
+    fn part(&self, crop: Option<Crop>, cell: [f64; 2]) -> Result<(Cells, Vec<f64>), Problem> {
+        let (all_rows, all_columns) = (self.understood().rows, self.understood().columns);
+        let (row, column, rows, columns) = match crop {
+            None => {
+                let cells = Cells { columns: all_columns, rows: all_rows };
+                return Ok((cells, self.heights().to_vec()));
             }
-            Some(Crop::Window { row, column, cells }) => (row, column, cells),
+            Some(Crop::Centre) => {
+                let side = (all_columns as f64 * cell[0]).min(all_rows as f64 * cell[1]);
+                let across = |cell: f64, all: usize| ((side / cell).round() as usize).clamp(1, all);
+                let (rows, columns) = (across(cell[1], all_rows), across(cell[0], all_columns));
+                ((all_rows - rows) / 2, (all_columns - columns) / 2, rows, columns)
+            }
+            Some(Crop::Window { row, column, rows, columns }) => (row, column, rows, columns),
         };
-        let inside = |from: usize, all: usize| from.checked_add(cells).is_some_and(|end| end <= all);
-        if cells == 0 || !inside(row, rows) || !inside(column, columns) {
-            return Err(Problem::Crop { from: [row, column], cells, shape: [rows, columns] });
+        let inside = |from: usize, count: usize, all: usize| {
+            count > 0 && from.checked_add(count).is_some_and(|end| end <= all)
+        };
+        if !inside(row, rows, all_rows) || !inside(column, columns, all_columns) {
+            let (cells, shape) = ([rows, columns], [all_rows, all_columns]);
+            return Err(Problem::Crop { from: [row, column], cells, shape });
         }
-        let part = |row: &[f64]| row[column..column + cells].to_vec();
-        Ok((cells, self.heights().chunks_exact(columns).skip(row).take(cells).flat_map(part).collect()))
+        let part = |row: &[f64]| row[column..column + columns].to_vec();
+        let rows_taken = self.heights().chunks_exact(all_columns).skip(row).take(rows);
+        Ok((Cells { columns, rows }, rows_taken.flat_map(part).collect()))
     }
 
-    fn fill(&self, fill: Fill, cells: usize, heights: &mut [f64]) -> Result<(), Problem> {
+    fn fill(&self, fill: Fill, cells: Cells, cell: [f64; 2], heights: &mut [f64]) -> Result<(), Problem> {
         match fill {
-            Fill::Neighbours => fill::harmonic(cells, heights),
+            Fill::Neighbours => fill::harmonic(cells, cell[1] / cell[0], heights),
             Fill::Plane => {
                 if let Some(plane) = Detrend::Plane.fit(cells, heights)? {
                     plane.fill(cells, heights);
@@ -171,6 +216,27 @@ impl Scan {
         }
         Ok(())
     }
+}
+
+/// Columns and rows after averaging.
+fn coarse(treatment: &Treatment, cells: Cells) -> Result<Cells, Problem> {
+    let Cells { columns, rows } = cells;
+    let coarse = match (treatment.cells, treatment.rows) {
+        (None, None) => return Ok(cells),
+        (None, Some(rows)) => Cells { columns, rows },
+        (Some(columns), Some(rows)) => Cells { columns, rows },
+        (Some(fewer), None) => {
+            // Cells keep their shape as nearly as whole numbers let them.
+            let share = fewer.min(columns) as f64 / columns as f64;
+            Cells { columns: fewer, rows: ((rows as f64 * share).round() as usize).max(1) }
+        }
+    };
+    for (what, asked, found) in [("columns", coarse.columns, columns), ("rows", coarse.rows, rows)] {
+        if asked == 0 || asked > found {
+            return Err(Problem::Resample { what, cells: asked, found });
+        }
+    }
+    Ok(coarse)
 }
 
 #[cfg(test)]

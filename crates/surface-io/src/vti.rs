@@ -5,15 +5,16 @@
 
 use crate::error::Problem;
 use crate::write::Lines;
+use contact_model::{Cells, Size};
 
-/// Numbers on the cells of a square.
+/// Numbers on the cells of a rectangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Field<'a> {
     /// Name, such as `pressure`.
     pub name: &'a str,
     /// Unit, such as `Pa`; it is written behind the name. Empty or `none` for none.
     pub unit: &'a str,
-    /// Values, row-major, finite.
+    /// Values, row-major; NaN at undefined points.
     pub values: &'a [f64],
 }
 
@@ -22,67 +23,90 @@ pub struct Field<'a> {
 pub enum Encoding {
     /// Base64 in one section at the end: little-endian float64.
     Base64,
-    /// Decimals, exact too, about twice as long.
+    /// Decimals, exact too, about twice as long; it has no undefined points.
     Ascii,
 }
 
-/// The bytes of a VTI file: fields as data of `cells` x `cells` square cells in the plane z = 0, the first corner at the origin.
+/// VTK's mark of a cell that is not shown (`vtkDataSetAttributes::HIDDENCELL`).
+const HIDDEN: u8 = 32;
+
+/// The bytes of a VTI file: fields as data of cells (columns along x, rows along y) on a rectangle of the given size in the plane z = 0,
+/// the first corner at the origin. A single number for the cells or the size makes it a square.
 ///
-/// Row 0 is at y = 0. In ParaView, "Cell Data to Point Data" goes before "Warp By Scalar".
+/// Row 0 is at y = 0. In ParaView, "Cell Data to Point Data" goes before "Warp By Scalar". An undefined point is NaN in the field, and VTK's array
+/// `vtkGhostType` hides the cells where any field is undefined; without such a point there is no such array.
 ///
 /// # Errors
-/// [`Problem::Said`] for a field of another size, no cells, a cell that is not positive; [`Problem::NotFinite`] for a field with a NaN or an infinity: viewers
-/// take them for data.
+/// [`Problem::Said`] for a field of another size or a side that is not positive, [`Problem::NoCells`] for no rows or columns;
+/// [`Problem::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for one with a NaN: VTK's reader of decimals stops there.
 ///
 /// ```
 /// use surface_io::{Encoding, Field, vti};
 /// let field = Field { name: "height", unit: "m", values: &[0.0, 1.0, 2.0, 3.0] };
-/// let file = String::from_utf8(vti(2, 0.5, &[field], Encoding::Ascii)?)?;
-/// assert!(file.contains("WholeExtent=\"0 2 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"0.5 0.5 0.5\""));
+/// let file = String::from_utf8(vti(2, [1.0, 4.0], &[field], Encoding::Ascii)?)?;
+/// assert!(file.contains("WholeExtent=\"0 2 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"0.5 2 0.5\""));
 /// assert!(file.contains("<DataArray type=\"Float64\" Name=\"height [m]\" format=\"ascii\">\n0 1\n2 3\n</DataArray>"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn vti(cells: usize, cell: f64, fields: &[Field<'_>], encoding: Encoding) -> Result<Vec<u8>, Problem> {
-    if !(cell.is_finite() && cell > 0.0) {
-        return Err(Problem::Said { what: "cell", value: cell, expected: "a finite number > 0" });
+pub fn vti(
+    cells: impl Into<Cells>,
+    size: impl Into<Size>,
+    fields: &[Field<'_>],
+    encoding: Encoding,
+) -> Result<Vec<u8>, Problem> {
+    let (cells, size) = (cells.into(), size.into());
+    let Cells { columns, rows } = cells;
+    for (what, side) in [("side along x", size.x), ("side along y", size.y)] {
+        if !(side.is_finite() && side > 0.0) {
+            return Err(Problem::Said { what, value: side, expected: "a finite number > 0" });
+        }
     }
-    if cells == 0 {
-        return Err(Problem::Empty);
+    if columns == 0 || rows == 0 {
+        return Err(Problem::NoCells { rows: rows as u64, columns: columns as u64 });
     }
     for field in fields {
-        if cells.checked_mul(cells) != Some(field.values.len()) {
+        if cells.checked_count() != Some(field.values.len()) {
             let value = field.values.len() as f64;
             return Err(Problem::Said {
                 what: "number of values of a field",
                 value,
-                expected: "cells x cells",
+                expected: "rows x columns",
             });
         }
-        if let Some(at) = field.values.iter().position(|v| !v.is_finite()) {
+        let wrong = |v: &f64| v.is_infinite() || (v.is_nan() && encoding == Encoding::Ascii);
+        if let Some(at) = field.values.iter().position(wrong) {
             return Err(Problem::NotFinite { field: field.name.to_owned(), at, value: field.values[at] });
         }
     }
+    let count = fields.first().map_or(0, |f| f.values.len());
+    let undefined = |i: usize| fields.iter().any(|f| f.values[i].is_nan());
+    let mut hidden: Vec<u8> = Vec::new();
+    if (0..count).any(undefined) {
+        hidden.extend((0..count).map(|i| if undefined(i) { HIDDEN } else { 0 }));
+    }
     let active = fields.first().map_or(String::new(), |f| format!(" Scalars=\"{}\"", title(f)));
-    let extent = format!("0 {cells} 0 {cells} 0 0");
+    let extent = format!("0 {columns} 0 {rows} 0 0");
+    let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
     let head = format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <ImageData WholeExtent=\"{extent}\" Origin=\"0 0 0\" Spacing=\"{cell} {cell} {cell}\">\n\
+         <ImageData WholeExtent=\"{extent}\" Origin=\"0 0 0\" Spacing=\"{dx} {dy} {dx}\">\n\
          <Piece Extent=\"{extent}\">\n<PointData></PointData>\n<CellData{active}>\n"
     );
-    let per_field = 24 * cells * cells + 200;
+    let per_field = 24 * count + 200;
     let mut file = Lines::new(head, fields.len() * per_field + 200);
-    let run = 4 * (8 + 8 * cells * cells).div_ceil(3);
+    // Every array is one run of base64 behind the ones before.
+    let run = |bytes: usize| 4 * (8 + bytes).div_ceil(3);
     for (k, field) in fields.iter().enumerate() {
         let title = title(field);
         file.add(format_args!("<DataArray type=\"Float64\" Name=\"{title}\" format="));
         match encoding {
-            Encoding::Base64 => file.add(format_args!("\"appended\" offset=\"{}\"/>\n", k * run)),
+            Encoding::Base64 => file.add(format_args!("\"appended\" offset=\"{}\"/>\n", k * run(8 * count))),
             Encoding::Ascii => {
                 file.add(format_args!("\"ascii\">\n"));
-                for row in field.values.chunks_exact(cells) {
+                for row in field.values.chunks_exact(columns) {
                     for (i, v) in row.iter().enumerate() {
-                        let end = if i + 1 == cells { '\n' } else { ' ' };
+                        let end = if i + 1 == columns { '\n' } else { ' ' };
                         if v.abs() >= 1e-4 && v.abs() < 1e6 || v.abs() <= 0.0 {
                             file.add(format_args!("{v}{end}"));
                         } else {
@@ -94,6 +118,12 @@ pub fn vti(cells: usize, cell: f64, fields: &[Field<'_>], encoding: Encoding) ->
             }
         }
     }
+    if !hidden.is_empty() {
+        let offset = fields.len() * run(8 * count);
+        file.add(format_args!(
+            "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"appended\" offset=\"{offset}\"/>\n"
+        ));
+    }
     file.add(format_args!("</CellData>\n</Piece>\n</ImageData>\n"));
     if encoding == Encoding::Base64 && !fields.is_empty() {
         file.add(format_args!("<AppendedData encoding=\"base64\">\n_"));
@@ -103,6 +133,12 @@ pub fn vti(cells: usize, cell: f64, fields: &[Field<'_>], encoding: Encoding) ->
             for value in field.values {
                 base64.add(value.to_le_bytes());
             }
+            base64.finish();
+        }
+        if !hidden.is_empty() {
+            let mut base64 = Base64::new(&mut file.text);
+            base64.add((hidden.len() as u64).to_le_bytes());
+            base64.add(hidden);
             base64.finish();
         }
         file.add(format_args!("\n</AppendedData>\n"));

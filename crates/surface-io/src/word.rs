@@ -3,7 +3,7 @@
 use crate::format::Format;
 use crate::quantity::QuantityError;
 use crate::scan::Decimal;
-use crate::treatment::{Crop, Detrend, Fill};
+use crate::treatment::{Crop, Detrend, Fill, Undefined};
 use std::fmt;
 use std::str::FromStr;
 
@@ -108,10 +108,27 @@ impl FromStr for Fill {
     }
 }
 
+impl FromStr for Undefined {
+    type Err = WordError;
+
+    /// Reads `no_contact`.
+    ///
+    /// # Errors
+    /// [`WordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, WordError> {
+        match text {
+            "no_contact" => Ok(Self::NoContact),
+            other => {
+                Err(WordError::new("undefined", other, "no_contact (fill gives undefined points a height)"))
+            }
+        }
+    }
+}
+
 impl FromStr for Crop {
     type Err = WordError;
 
-    /// Reads `centre`, or row, column and cells a side as in `10,20,256`.
+    /// Reads `centre`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are as many columns as rows.
     ///
     /// # Errors
     /// [`WordError`] for other words.
@@ -121,11 +138,12 @@ impl FromStr for Crop {
         }
         let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
         match numbers.as_deref() {
-            Ok(&[row, column, cells]) => Ok(Self::Window { row, column, cells }),
+            Ok(&[row, column, cells]) => Ok(Self::Window { row, column, rows: cells, columns: cells }),
+            Ok(&[row, column, rows, columns]) => Ok(Self::Window { row, column, rows, columns }),
             _ => Err(WordError::new(
                 "crop",
                 text,
-                "centre, or row, column and cells a side such as \"10,20,256\"",
+                "centre, or row, column, rows and columns such as \"10,20,256,512\"",
             )),
         }
     }
@@ -150,13 +168,16 @@ mod tests {
         assert_eq!("plane".parse(), Ok(Fill::Plane));
         assert_eq!("-2 um".parse(), Ok(Fill::Value("-2e-6 m".parse().unwrap())));
         assert_eq!("centre".parse(), Ok(Crop::Centre));
-        assert_eq!("1, 2,3".parse(), Ok(Crop::Window { row: 1, column: 2, cells: 3 }));
+        assert_eq!("1, 2,3".parse(), Ok(Crop::Window { row: 1, column: 2, rows: 3, columns: 3 }));
+        assert_eq!("1,2,3,4".parse(), Ok(Crop::Window { row: 1, column: 2, rows: 3, columns: 4 }));
+        assert_eq!("no_contact".parse(), Ok(Undefined::NoContact));
         for (text, error) in [
             ("hdf5".parse::<Format>().unwrap_err(), "format = \"hdf5\": expected npy, text or xyz"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
             ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane or quadric"),
             ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, or row"),
             ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, or row"),
+            ("skip".parse::<Undefined>().unwrap_err(), "undefined = \"skip\": expected no_contact (fill gives"),
             (
                 "2 Um".parse::<Fill>().unwrap_err(),
                 "fill = \"2 Um\": expected neighbours, plane or a height such as \"-2 um\" (unknown unit \"Um\": upper and lower case differ, is it um?)",

@@ -45,7 +45,8 @@ impl Metric {
 
 /// Writes a map whole or not at all, in the format of the name's ending: `npy`, `txt`, `xyz` or `vti`.
 ///
-/// Text, XYZ and VTI say the side of a cell and the unit, NPY says neither. Every number is written so that the same double is read again.
+/// Text, XYZ and VTI say the size and the unit, NPY (an array `[row, column]`) says neither. Every number is written so that the same double is
+/// read again. Undefined points are `nan` in text and XYZ, NaN in NPY and VTI; VTI also hides their cells ([`vti`]).
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses, [`Error::Content`] for another ending.
@@ -59,12 +60,13 @@ impl Metric {
 pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let bytes = match ending {
-        "npy" => npy(&[map.columns(), map.columns()], map.heights()).map_err(Error::content(path))?,
+        "npy" => npy(&[map.rows(), map.columns()], &with_nan(map)).map_err(Error::content(path))?,
         "txt" => text(map, metric).into_bytes(),
         "xyz" => xyz(map, metric).into_bytes(),
         "vti" => {
-            let field = Field { name: "height", unit: metric.name(), values: map.heights() };
-            vti(map.columns(), map.dx(), &[field], Encoding::Base64).map_err(Error::content(path))?
+            let values = with_nan(map);
+            let field = Field { name: "height", unit: metric.name(), values: &values };
+            vti(map.cells(), map.size(), &[field], Encoding::Base64).map_err(Error::content(path))?
         }
         other => {
             let problem = Problem::Ending { found: other.chars().take(16).collect() };
@@ -74,46 +76,65 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
     files::write_whole(path, &bytes)
 }
 
-/// A text matrix with a header: rows in lines, tabs between the numbers.
+/// A text matrix with a header: rows in lines, tabs between the numbers, `nan` at undefined points.
 ///
 /// ```
 /// use surface_io::{Metric, text};
-/// let map = contact_model::HeightMap::new(2, 1e-6, vec![0.0, 1e-9, 2e-9, 3.5])?;
+/// let map = contact_model::HeightMap::new(2, [1e-6, 2e-6], vec![0.0, 1e-9, 2e-9, 3.5])?;
 /// let written = text(&map, Metric::Metres);
-/// assert_eq!(written, "# Width: 1e-6 m\n# Height: 1e-6 m\n# Value units: m\n0e0\t1e-9\n2e-9\t3.5e0\n");
+/// assert_eq!(written, "# Width: 1e-6 m\n# Height: 2e-6 m\n# Value units: m\n0e0\t1e-9\n2e-9\t3.5e0\n");
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn text(map: &HeightMap, metric: Metric) -> String {
-    let (side, suffix) = (map.length(), metric.suffix());
-    let head =
-        format!("# Width: {side:e}{suffix}\n# Height: {side:e}{suffix}\n# Value units: {}\n", metric.name());
+    let head = format!("{}# Value units: {}\n", sides(map, metric), metric.name());
     let mut written = Lines::new(head, 24 * map.heights().len());
     for row in map.heights().chunks_exact(map.columns()) {
         for (i, h) in row.iter().enumerate() {
             let end = if i + 1 == row.len() { '\n' } else { '\t' };
-            written.add(format_args!("{h:e}{end}"));
+            if h.is_finite() {
+                written.add(format_args!("{h:e}{end}"));
+            } else {
+                written.add(format_args!("nan{end}"));
+            }
         }
     }
     written.text
 }
 
-/// Points x, y, z, one per line, at the centres of the cells, with the units in comments.
+/// Points x, y, z, one per line, at the centres of the cells, with size and units in comments; z is `nan` at undefined points.
 ///
 /// ```
 /// use surface_io::{Metric, xyz};
-/// let map = contact_model::HeightMap::new(1, 2.0, vec![5.0])?;
-/// assert_eq!(xyz(&map, Metric::Unitless), "# Lateral units: none\n# Value units: none\n# x y z\n1e0 1e0 5e0\n");
+/// let map = contact_model::HeightMap::new(1, [2.0, 4.0], vec![5.0])?;
+/// let head = "# Width: 2e0\n# Height: 4e0\n# Lateral units: none\n# Value units: none\n# x y z\n";
+/// assert_eq!(xyz(&map, Metric::Unitless), format!("{head}1e0 2e0 5e0\n"));
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn xyz(map: &HeightMap, metric: Metric) -> String {
-    let (cells, cell, unit) = (map.columns(), map.dx(), metric.name());
-    let head = format!("# Lateral units: {unit}\n# Value units: {unit}\n# x y z\n");
+    let (columns, unit) = (map.columns(), metric.name());
+    let head = format!("{}# Lateral units: {unit}\n# Value units: {unit}\n# x y z\n", sides(map, metric));
     let mut written = Lines::new(head, 64 * map.heights().len());
+    let centre = |k: usize, cell: f64| (k as f64 + 0.5) * cell;
     for (i, h) in map.heights().iter().enumerate() {
-        let centre = |k: usize| (k as f64 + 0.5) * cell;
-        written.add(format_args!("{:e} {:e} {h:e}\n", centre(i % cells), centre(i / cells)));
+        let (x, y) = (centre(i % columns, map.dx()), centre(i / columns, map.dy()));
+        if h.is_finite() {
+            written.add(format_args!("{x:e} {y:e} {h:e}\n"));
+        } else {
+            written.add(format_args!("{x:e} {y:e} nan\n"));
+        }
     }
     written.text
+}
+
+/// The lines of a header that say both sides.
+fn sides(map: &HeightMap, metric: Metric) -> String {
+    let (size, suffix) = (map.size(), metric.suffix());
+    format!("# Width: {:e}{suffix}\n# Height: {:e}{suffix}\n", size.x, size.y)
+}
+
+/// The heights of a map with NaN at undefined points, as files have them.
+fn with_nan(map: &HeightMap) -> Vec<f64> {
+    map.heights().iter().map(|&h| if h.is_finite() { h } else { f64::NAN }).collect()
 }
 
 /// Text that grows.

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use surface_io::{Crop, Decimal, Declared, Detrend, Fill, Format, Scan, Treatment};
+use surface_io::{Crop, Decimal, Declared, Detrend, Fill, Format, Scan, Treatment, Undefined};
 
 thread_local! {
     /// Bytes that this thread holds, and the most that it held.
@@ -48,7 +48,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What is stated on the crate's front page: the file itself, 8 bytes for a hole between two commas, twice that for points on a half-empty grid.
+/// What is stated on the crate's front page: the file itself, 8 bytes for nothing between two commas, twice that for points on a half-empty grid.
 const MULTIPLE: usize = 24;
 
 /// Errors, words of `Understood`, the buffer of NPY.
@@ -75,9 +75,13 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
         Declared {
             unit: "nm".parse().ok(),
             lateral_unit: "um".parse().ok(),
-            cell: "1 um".parse().ok(),
-            ..plain
+            cell: "1 um x 3 um".parse().ok(),
+            ..plain.clone()
         },
+        Declared { size: "7 x 0.5".parse().ok(), ..plain.clone() },
+        Declared { size: "1 nm x 1 m".parse().ok(), unit: "nm".parse().ok(), ..plain.clone() },
+        Declared { cell: "1e-300 x 1e300".parse().ok(), width: "1".parse().ok(), ..plain.clone() },
+        Declared { cell: "1 x 2".parse().ok(), format: Some(Format::Xyz), ..plain },
         cell,
     ];
     for name in NAMES {
@@ -94,15 +98,45 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
             };
             prop_assert!(!scan.understood().to_string().is_empty());
             for detrend in [Detrend::Nothing, Detrend::Plane, Detrend::Quadric] {
-                for fill in [None, Some(Fill::Neighbours), Some(Fill::Plane)] {
-                    let treatment = Treatment { crop: Some(Crop::Centre), fill, detrend, cells: None };
-                    match scan.map(&treatment) {
-                        Ok(map) => prop_assert!(map.heights().iter().all(|h| h.is_finite())),
-                        Err(error) => prop_assert!(!error.to_string().is_empty()),
+                for (fill, undefined) in [
+                    (None, None),
+                    (Some(Fill::Neighbours), None),
+                    (Some(Fill::Plane), None),
+                    (None, Some(Undefined::NoContact)),
+                ] {
+                    for (crop, rows) in [(None, None), (Some(Crop::Centre), Some(1)), (Some(WINDOW), None)] {
+                        let treatment = Treatment { crop, undefined, fill, detrend, cells: None, rows };
+                        check(&scan, &treatment)?;
                     }
                 }
             }
         }
+    }
+    Ok(())
+}
+
+/// All but the first column and row of small maps.
+const WINDOW: Crop = Crop::Window { row: 1, column: 1, rows: 1, columns: 2 };
+
+/// A map, or a reason why there is none; what is written of it is read as the same map.
+fn check(scan: &Scan, treatment: &Treatment) -> Result<(), TestCaseError> {
+    let map = match scan.map(treatment) {
+        Ok(map) => map,
+        Err(error) => {
+            prop_assert!(!error.to_string().is_empty());
+            return Ok(());
+        }
+    };
+    prop_assert_eq!(map.defined().count() + map.undefined(), map.columns() * map.rows());
+    prop_assert!(map.undefined() == 0 || treatment.undefined.is_some());
+    prop_assert!(!surface_io::describe(&map).to_string().is_empty());
+    let text = surface_io::text(&map, surface_io::Metric::Unitless);
+    let again = Scan::from_bytes("b.txt", text.as_bytes(), &Declared::default());
+    let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };
+    match again.and_then(|scan| scan.map(&keep)) {
+        Ok(again) => prop_assert_eq!(again, map),
+        // The smallest numbers that quantities have are normal.
+        Err(error) => prop_assert!(map.size().shorter() < 1e-300, "{error}"),
     }
     Ok(())
 }
@@ -117,6 +151,8 @@ fn valid(which: usize) -> Vec<u8> {
         2 => surface_io::xyz(&map, surface_io::Metric::Unitless).into_bytes(),
         3 => b"# Width: 10.00 um\n1,5;2,5;nan\n3;4;5\n-1e3;7;8\n".to_vec(),
         4 => b"\x93NUMPY\x01\x00\x46\x00{'descr': '>i2', 'fortran_order': True, 'shape': (2, 3), }           \n012345678901".to_vec(),
+        5 => b"# Width: 6 um\n# Height: 1.0 um\n# Value units: nm\n1 2 nan\n4 bad 6\n".to_vec(),
+        6 => b"# Lateral units: mm\n0 0 1\n2 0 2\n0 0.5 nan\n2 0.5 4\n0 1 5\n2 1 6\n".to_vec(),
         _ => b"1,2,,4\n5,6,7,8\n9,,,,\n".to_vec(),
     }
 }
@@ -144,6 +180,15 @@ proptest! {
     }
 
     #[test]
+    fn almost_a_heading(
+        width in "[-+]?[0-9]{0,3}[.]?[0-9]{0,2}(e-?[0-9]{1,3})? ?(um|m|nm|px|)",
+        height in "[-+]?[0-9]{0,3}[.]?[0-9]{0,2}(e-?[0-9]{1,3})? ?(um|m|nm|s|)",
+        heights in "(([0-9]|nan|-)[ \n]){1,20}",
+    ) {
+        torture(format!("# Width: {width}\n# Height: {height}\n# Value units: nm\n{heights}").as_bytes())?;
+    }
+
+    #[test]
     fn almost_a_header(shape in "[0-9,() L]{0,24}", kind in "[<>|=]?[fiuc]?[0-9]{0,2}", order in "(True|False|1)") {
         let text = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': ({shape}), }}");
         let length = (text.len() as u16).to_le_bytes();
@@ -152,7 +197,7 @@ proptest! {
 
     #[test]
     fn valid_files_with_bytes_changed_lost_and_doubled(
-        which in 0..6_usize,
+        which in 0..8_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..6),
     ) {
         let mut bytes = valid(which);
@@ -174,10 +219,10 @@ proptest! {
 
 #[test]
 fn the_valid_files_are_valid() {
-    for which in 0..6 {
+    for which in 0..8 {
         let declared = match which {
             3 => Declared { decimal: Decimal::Comma, ..Declared::default() },
-            2 => Declared { format: Some(Format::Xyz), ..Declared::default() },
+            2 | 6 => Declared { format: Some(Format::Xyz), ..Declared::default() },
             _ => Declared::default(),
         };
         let scan = Scan::from_bytes("a", &valid(which), &declared);
@@ -225,5 +270,65 @@ fn real_files_stay_below_the_multiple() {
             "{name}: {} times",
             held as f64 / bytes.len() as f64
         );
+    }
+}
+
+/// Every contradiction and every impossible rectangle has a message with the file, the value and what was expected.
+#[test]
+fn impossible_rectangles_are_named() {
+    let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };
+    let error = |name: &str, bytes: &[u8], change: &dyn Fn(&mut Declared)| {
+        let mut declared = Declared { unit: "m".parse().ok(), ..Declared::default() };
+        change(&mut declared);
+        let scan = Scan::from_bytes(name, bytes, &declared).and_then(|scan| scan.map(&keep));
+        scan.unwrap_err().to_string()
+    };
+    let empty = surface_io::npy(&[3, 0], &[]).unwrap();
+    let undefined = surface_io::npy(&[1, 2], &[f64::NAN; 2]).unwrap();
+    let two = surface_io::npy(&[1, 2], &[1.0, 2.0]).unwrap();
+    for (found, expected) in [
+        (error("a.txt", b"1 2 3\n4 5\n", &|_| ()), "a.txt: line 2 has 2 values: expected 3 as in line 1"),
+        (
+            error("a.npy", &empty, &|_| ()),
+            "a.npy: an array of 3 rows x 0 columns: expected at least 1 of each",
+        ),
+        (
+            error("a.npy", &undefined, &|d| d.cell = "1 m".parse().ok()),
+            "a.npy: 2 of 2 points are undefined: expected one height at least",
+        ),
+        (
+            error("a.npy", &two, &|d| d.size = "1 m x 2e9 m".parse().ok()),
+            "a.npy: dx / dy (ratio of the sides of a cell) = 0.00000000025: expected between",
+        ),
+        (
+            error("a.npy", &two, &|d| d.cell = "-1 m x 1 m".parse().ok()),
+            "a.npy: cell along x = -1: expected a length > 0",
+        ),
+        (
+            error("a.npy", &two, &|d| d.size = "1 m".parse().ok()),
+            "a.npy: size: one value, 1 m, is that of a square map, but there are 1 rows of 2",
+        ),
+        (
+            error("a.npy", &two, &|d| (d.size, d.cell) = ("2 m x 1 m".parse().ok(), "2 m".parse().ok())),
+            "a.npy: side of a cell along x: cell = 2 m, but size over 2 columns = 1 m",
+        ),
+        (
+            error("a.txt", b"# Width: 2 m\n# Height: 1 m\n1 2\n", &|d| d.size = "2 m x 2 m".parse().ok()),
+            "a.txt: size along y: 1 m said by the file, but 2 m as given",
+        ),
+        (
+            error("a.txt", b"# Width: -2 m\n1 2\n", &|_| ()),
+            "a.txt: line 1, width = -2 m: expected a length > 0",
+        ),
+        (
+            error("a.xyz", b"0 0 1\n1 0 2\n0 1e-9 3\n1 1e-9 4\n", &|d| d.lateral_unit = "m".parse().ok()),
+            "a.xyz: dx / dy (ratio of the sides of a cell) = 999999999",
+        ),
+        (
+            error("a.xyz", b"0 0 1\n1 0 2\n2 0 2\n", &|d| d.lateral_unit = "m".parse().ok()),
+            "a.xyz: the size of the map is neither in the file nor given: say size = ",
+        ),
+    ] {
+        assert!(found.starts_with(expected), "{found}\n{expected}");
     }
 }

@@ -5,7 +5,7 @@ mod prepared;
 mod state;
 
 use contact_model::{
-    Boundary, Cells, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface,
+    Boundary, Cells, ContactModel, Effects, Error, PreparedContact, Result, Scene, Size, Source, Surface,
 };
 use prepared::Prepared;
 use std::sync::Arc;
@@ -54,6 +54,14 @@ pub enum Method {
     SingleLevel,
 }
 
+impl Bem3d {
+    /// The grid on a rectangle of this size.
+    pub fn grid(&self, size: Size) -> Cells {
+        let nearly_square = Cells::nearly_square(self.cells, size);
+        Cells { rows: self.rows.unwrap_or(nearly_square.rows), ..nearly_square }
+    }
+}
+
 impl Default for Bem3d {
     fn default() -> Self {
         Self { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto }
@@ -91,11 +99,7 @@ impl ContactModel for Bem3d {
         let map = match &scene.surface {
             Surface::Heights(map) => Arc::clone(map),
             Surface::Line { .. } => return Err(Error::unsupported(NAME, "a line (it needs a map)")),
-            surface => {
-                let nearly_square = Cells::nearly_square(self.cells, surface.size());
-                let cells = Cells { rows: self.rows.unwrap_or(nearly_square.rows), ..nearly_square };
-                surface_gen::height_map(surface, cells, seed)?
-            }
+            surface => surface_gen::height_map(surface, self.grid(surface.size()), seed)?,
         };
         let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));
         Ok(Box::new(Prepared::new(*self, scene, &map, has_rms)?))

@@ -130,7 +130,8 @@ fn oblong_cells(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for d in [0.2, 1.0, 3.0] {
         against_relaxation(ledger, &map, d)?;
         let k = stiffness(&press_both(ledger, &map, Load::Approach(d))?)?;
-        ledger.near("k of the turned map", stiffness(&press(ledger, &map.transposed(), Load::Approach(d))?)?, k);
+        let turned = stiffness(&press(ledger, &map.transposed(), Load::Approach(d))?)?;
+        ledger.near("k of the turned map", turned, k);
     }
     Ok(())
 }

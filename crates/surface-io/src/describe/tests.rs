@@ -43,9 +43,9 @@ fn a_part_of_a_surface_is_not_periodic_and_keeps_its_dimension() {
 fn small_and_flat_maps_have_no_dimension() {
     for map in [HeightMap::new(1, 1.0, vec![3.0]), HeightMap::new(64, 1.0, vec![3.0; 4096])] {
         let found = describe(&map.unwrap());
-        assert_eq!(found.hurst, None);
+        assert_eq!(found.hurst, Err(Absent::NoRelief));
         assert!(found.rms_height <= 0.0 && found.rms_slope <= 0.0);
-        assert!(found.to_string().contains("not determined"));
+        assert!(found.to_string().contains("fractal dimension  not determined: no relief"));
     }
 }
 
@@ -56,4 +56,38 @@ fn extreme_reliefs_stay_finite() {
         let found = describe(&HeightMap::new(64, 1.0, heights).unwrap());
         assert!(found.rms_height.is_finite() && found.rms_slope.is_finite());
     }
+}
+
+#[test]
+fn rectangles_keep_their_dimension() {
+    let map = self_affine_map(&SelfAffine::new(2.2, 1.0, 1.0).unwrap(), 512, 1).unwrap();
+    let part = map.cropped(0..512, 100..300).unwrap();
+    let found = describe(&part);
+    assert_eq!((found.cells, found.size), (part.cells(), part.size()));
+    assert!((found.fractal_dimension().unwrap() - 2.2).abs() < 2.0 * SCATTER, "{found}");
+    // Two columns in one: cells of 2 x 1.
+    let means = part.heights().chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+    let oblong = describe(&HeightMap::new([256, 200], part.size(), means).unwrap());
+    assert!((oblong.fractal_dimension().unwrap() - 2.2).abs() < 2.0 * SCATTER, "{oblong}");
+    let shown = oblong.to_string();
+    assert!(
+        shown.contains("cells              256 x 200")
+            && shown.contains("cell               3.90625e-3 x 1.953125e-3"),
+        "{shown}"
+    );
+    let strip = map.cropped(0..512, 0..20).unwrap();
+    assert_eq!(describe(&strip).hurst, Err(Absent::FewWaves));
+}
+
+#[test]
+fn undefined_points_have_no_spectrum() {
+    let heights = vec![1.0, f64::NAN, 3.0, 5.0, f64::NAN, 3.0];
+    let found = describe(&HeightMap::with_undefined([3, 2], [3.0, 1.0], heights).unwrap());
+    assert_eq!((found.undefined, found.range), (2, [1.0, 5.0]));
+    // Pairs of defined points: 1 to 5 and 3 to 3 along y over half a unit, none along x.
+    assert!((found.rms_slope - 32.0_f64.sqrt()).abs() < 1e-14, "{found}");
+    // Heights 1, 3, 5, 3 about their mean 3.
+    assert!((found.rms_height - 2.0_f64.sqrt()).abs() < 1e-15);
+    assert!(found.spectrum.is_empty() && found.hurst == Err(Absent::Undefined));
+    assert!(found.to_string().contains("undefined points   2 of 6"), "{found}");
 }

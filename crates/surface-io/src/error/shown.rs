@@ -40,6 +40,9 @@ impl fmt::Display for Problem {
             Self::Shape { found } => {
                 write!(f, "an array of {} dimensions {found:?}: expected two, rows and columns", found.len())
             }
+            Self::NoCells { rows, columns } => {
+                write!(f, "an array of {rows} rows x {columns} columns: expected at least 1 of each")
+            }
             Self::Length { rows, columns, expected, found } => {
                 let what = if *expected > u128::from(*found) { "cut short" } else { "more than one array?" };
                 write!(
@@ -89,18 +92,13 @@ impl fmt::Display for Problem {
                 f,
                 "{points} points on a grid of {rows} x {columns}: expected heights at half of the places at least; say cell where noise hides the spacing"
             ),
-            Self::Oblong { dx, dy } => {
-                write!(f, "spacing {dx} along x and {dy} along y: expected square cells; resample it first")
+            Self::Undefined { undefined, points, first } => write!(
+                f,
+                "{undefined} of {points} points are undefined, the first in {first}: keep them as \"no_contact\", or fill them: \"neighbours\", \"plane\" or a value"
+            ),
+            Self::AllUndefined { points } => {
+                write!(f, "{points} of {points} points are undefined: expected one height at least")
             }
-            Self::NotSquare { rows, columns } => write!(
-                f,
-                "{rows} rows of {columns}: expected a square map; crop = \"centre\" takes the largest square in the middle, a window takes any other"
-            ),
-            Self::Holes { missing, cells, first } => write!(
-                f,
-                "{missing} of {cells} cells have no height, the first in {first}: say how to fill them: \"neighbours\", \"plane\" or a value"
-            ),
-            Self::AllMissing { cells } => write!(f, "none of the {cells} cells has a height"),
             Self::Unsaid { what, remedy } => write!(f, "{what} is neither in the file nor given: {remedy}"),
             Self::Contradiction { what, first, second } => write!(f, "{what}: {first}, but {second}"),
             Self::Useless { what, reason } => write!(f, "{what} was given: {reason}"),
@@ -108,19 +106,24 @@ impl fmt::Display for Problem {
             Self::Heading { line, key, source } => {
                 write!(f, "line {line}, {key}: {source}; skip_lines leaves out a header")
             }
+            Self::Side { line, key, value } => {
+                write!(
+                    f,
+                    "line {line}, {key} = {value}: expected a length > 0; skip_lines leaves out a header"
+                )
+            }
             Self::Quantity { what, source } => write!(f, "{what}: {source}"),
-            Self::Crop { from: [row, column], cells, shape: [rows, columns] } => write!(
+            Self::Crop { from: [row, column], cells: [high, wide], shape: [rows, columns] } => write!(
                 f,
-                "crop of {cells} x {cells} cells from row {row}, column {column}: the map has {rows} rows of {columns}"
+                "crop of {high} x {wide} cells from row {row}, column {column}: the map has {rows} rows of {columns}"
             ),
-            Self::Resample { cells, found } => write!(
+            Self::Resample { what, cells, found } => write!(
                 f,
-                "{cells} cells a side: expected 1 to {found}, the cells of the map; finer cells would be invented"
+                "{cells} {what}: expected 1 to {found}, as many as the map has; finer cells would be invented"
             ),
-            Self::Trend { present, unknowns } => write!(
-                f,
-                "a trend of {unknowns} unknowns is not determined by the {present} cells with heights"
-            ),
+            Self::Trend { present, unknowns } => {
+                write!(f, "a trend of {unknowns} unknowns is not determined by the {present} defined points")
+            }
             Self::Overflow { value } => {
                 write!(f, "height {value}: beyond the range of double precision after conversion")
             }

@@ -65,12 +65,12 @@ fn half_precision_by_its_definition() {
 }
 
 #[test]
-fn nan_is_a_hole_and_an_infinity_an_error() {
+fn nan_is_an_undefined_point_and_an_infinity_an_error() {
     let data = |v: f64| {
         [of("'<f8'", "False", "(1, 2)"), 1.0_f64.to_le_bytes().to_vec(), v.to_le_bytes().to_vec()].concat()
     };
     let found = scan(&data(f64::NAN)).unwrap();
-    assert_eq!((found.understood().missing, found.height(0, 1), found.height(0, 2)), (1, None, None));
+    assert_eq!((found.understood().undefined, found.height(0, 1), found.height(0, 2)), (1, None, None));
     assert_eq!(found.understood().range, Some([1.0, 1.0]));
     let error = scan(&data(f64::INFINITY)).unwrap_err().to_string();
     assert_eq!(
@@ -107,7 +107,8 @@ fn every_bad_file_says_what_is_wrong() {
         ("(4,)", "1 dimensions [4]: expected two"),
         ("()", "0 dimensions []"),
         ("(1, 2, 2)", "3 dimensions [1, 2, 2]"),
-        ("(0, 4)", "no data"),
+        ("(0, 4)", "an array of 0 rows x 4 columns: expected at least 1 of each"),
+        ("(4, 0)", "an array of 4 rows x 0 columns: expected at least 1 of each"),
         ("(1000000, 125000)", "take 1000000000000 (cut short)"),
         ("(18446744073709551615, 18446744073709551615)", "cut short"),
         ("(18446744073709551616, 1)", "below 2^64"),

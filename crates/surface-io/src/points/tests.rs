@@ -11,12 +11,12 @@ fn error(text: &str) -> String {
 }
 
 #[test]
-fn points_in_any_order_with_a_hole() {
+fn points_in_any_order_with_an_undefined_one() {
     let scan = read("1 1 4\n0 0 1\n\n1 0 2 # last\n2 0 3\n0 1 nan\n").unwrap();
     let found = scan.understood();
-    assert_eq!((found.rows, found.columns, found.missing), (2, 3, 2));
+    assert_eq!((found.rows, found.columns, found.undefined), (2, 3, 2));
     assert_eq!(found.details, "5 points, spaces between numbers");
-    assert_eq!(found.cell.clone().unwrap().value.to_string(), "1");
+    assert_eq!(found.cell.clone().unwrap().value[0].to_string(), "1");
     assert_eq!((scan.height(0, 2), scan.height(1, 1), scan.height(1, 2)), (Some(3.0), Some(4.0), None));
 }
 
@@ -29,9 +29,9 @@ fn printed_digits_do_not_bend_the_grid() {
         }
     }
     let scan = read(&text).unwrap();
-    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().missing), (10, 10, 0));
+    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().undefined), (10, 10, 0));
     approx::assert_relative_eq!(
-        scan.understood().cell.clone().unwrap().value.value(),
+        scan.understood().cell.clone().unwrap().value[1].value(),
         1e-3 / 3.0,
         max_relative = 1e-12
     );
@@ -50,7 +50,7 @@ fn noise_needs_a_cell() {
     assert!(complaint.contains("say cell"), "{complaint}");
     let declared = Declared { cell: "1".parse().ok(), ..Declared::default() };
     let scan = Scan::from_bytes("a.xyz", text.as_bytes(), &declared).unwrap();
-    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().missing), (8, 8, 0));
+    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().undefined), (8, 8, 0));
     assert_eq!(scan.height(7, 7), Some(63.0));
     assert!(scan.understood().details.contains("% of a cell off their places"));
     for wrong in ["2", "0.4", "0.001", "1e-300"] {
@@ -63,7 +63,6 @@ fn noise_needs_a_cell() {
 fn bad_points_are_named() {
     for (text, expected) in [
         ("0 0 1\n1 0 2\n0 0 3\n", "the points of lines 1 and 3 are both at x = 0, y = 0"),
-        ("0 0 1\n1 0 2\n0 2 3\n1 2 3\n", "spacing 1 along x and 2 along y: expected square cells"),
         ("0 0 1\n1 0 2\n2.4 0 3\n", "x = 1 is off the grid x = 0 + i * 1.2"),
         ("0 0 1\n1 1 2\n2 2 3\n3 3 3\n", "4 points on a grid of 4 x 4"),
         ("0 0 1\n1 nan 2\n", "line 2 has no y"),
@@ -74,13 +73,9 @@ fn bad_points_are_named() {
     ] {
         assert!(error(text).contains(expected), "{}: {expected}", error(text));
     }
-    let declared = Declared { width: "1".parse().ok(), ..Declared::default() };
-    assert!(
-        Scan::from_bytes("a.xyz", b"0 0 1\n", &declared)
-            .unwrap_err()
-            .to_string()
-            .contains("width themselves")
-    );
+    let declared = Declared { size: "3 x 2".parse().ok(), ..Declared::default() };
+    let error = Scan::from_bytes("a.xyz", b"0 0 1\n1 0 2\n0 1 3\n1 1 4\n", &declared).unwrap_err();
+    assert_eq!(error.to_string(), "a.xyz: size along x: 2 said by the file, but 3 as given");
     let declared = Declared { lateral_unit: "mm".parse().ok(), ..Declared::default() };
     let text = b"# Lateral units: um\n0 0 1\n";
     assert!(matches!(
@@ -94,6 +89,26 @@ fn bad_points_are_named() {
             .to_string()
             .contains("x and y have no unit")
     );
+}
+
+#[test]
+fn cells_are_oblong_or_square_as_the_points_say() {
+    let cell = |text: &str| read(text).unwrap().understood().cell.clone().unwrap().value.map(|s| s.value());
+    assert_eq!(cell("0 0 1\n1 0 2\n0 2 3\n1 2 3\n"), [1.0, 2.0]);
+    // Points off their places by 0.5 % leave the spacing of three of them open to 1 %: 1.005 and 0.995 are one.
+    let [dx, dy] =
+        cell("0 0 1\n1.01 0 2\n2.01 0 3\n0 1 1\n1.01 1 2\n2.01 1 3\n0 1.99 1\n1.01 1.99 2\n2.01 1.99 3\n");
+    assert!(dx.to_bits() == dy.to_bits() && (dx - 1.0).abs() < 1e-12);
+    let exact = cell("0 0 1\n1 0 2\n2 0 3\n0 0.99 1\n1 0.99 2\n2 0.99 3\n0 1.98 1\n1 1.98 2\n2 1.98 3\n");
+    assert_eq!(exact, [1.0, 0.99]);
+    // One row has no spacing along y unless somebody says it.
+    let row = "0 0 1\n1 0 2\n2 0 3\n";
+    assert_eq!(read(row).unwrap().understood().cell, None);
+    let said = format!("# Width: 3\n# Height: 0.5\n# Lateral units: none\n# Value units: none\n{row}");
+    assert_eq!(cell(&said), [1.0, 0.5]);
+    let declared = Declared { cell: "1 x 0.25".parse().ok(), ..Declared::default() };
+    let scan = Scan::from_bytes("a.xyz", row.as_bytes(), &declared).unwrap();
+    assert_eq!(scan.understood().size.unwrap().map(|s| s.value()), [3.0, 0.25]);
 }
 
 #[test]
@@ -112,7 +127,7 @@ proptest! {
         rows in 2..7_usize,
         columns in 2..7_usize,
         origin in -1e3..1e3_f64,
-        spacing in 1e-3..1e3_f64,
+        spacing in (1e-3..1e3_f64, 1e-3..1e3_f64),
         keys in prop::collection::vec(any::<u32>(), 36),
     ) {
         let mut kept: Vec<usize> = (0..rows * columns).collect();
@@ -124,17 +139,18 @@ proptest! {
         kept.sort_by_key(|&i| keys[i]);
         let mut text = String::new();
         for &i in &kept {
-            let at = |k: usize| origin + spacing * k as f64;
-            writeln!(text, "{} {} {}", at(i % columns), at(i / columns), i).unwrap();
+            let at = |k: usize, spacing: f64| origin + spacing * k as f64;
+            writeln!(text, "{} {} {}", at(i % columns, spacing.0), at(i / columns, spacing.1), i).unwrap();
         }
         let scan = read(&text).unwrap();
         prop_assert_eq!((scan.understood().rows, scan.understood().columns), (rows, columns));
-        prop_assert_eq!(scan.understood().missing, rows * columns - kept.len());
+        prop_assert_eq!(scan.understood().undefined, rows * columns - kept.len());
         for i in kept {
             prop_assert_eq!(scan.height(i / columns, i % columns), Some(i as f64));
         }
-        let cell = scan.understood().cell.clone().unwrap().value.value();
+        let [dx, dy] = scan.understood().cell.clone().unwrap().value.map(|side| side.value());
         // Coordinates are rounded at the size of the origin.
-        prop_assert!((cell - spacing).abs() <= 1e-12 * (origin.abs() + spacing));
+        prop_assert!((dx - spacing.0).abs() <= 1e-12 * (origin.abs() + spacing.0));
+        prop_assert!((dy - spacing.1).abs() <= 1e-12 * (origin.abs() + spacing.1));
     }
 }

@@ -1,19 +1,28 @@
 //! What comments say: `# Width: 10 um`, `# Height: 10 um`, `# Value units: m`, as Gwyddion exports them and this crate writes them.
 
 use crate::error::Problem;
+use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, QuantityError, Unit};
 
 /// The statements that count; everything else is a comment.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Heading {
-    /// Length of a row.
-    pub(crate) width: Option<Quantity>,
-    /// Length of a column.
-    pub(crate) height: Option<Quantity>,
+    /// Length of a row, Lx.
+    width: Option<Side>,
+    /// Length of a column, Ly.
+    height: Option<Side>,
     /// Unit of the heights.
     pub(crate) unit: Option<Unit>,
     /// Unit of x and y.
     pub(crate) lateral_unit: Option<Unit>,
+}
+
+/// A side and how far it may be rounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Side {
+    pub(crate) quantity: Quantity,
+    /// Half of the last decimal that is printed, relative; 0 for whole numbers and those with an exponent.
+    pub(crate) rounding: f64,
 }
 
 /// Longest comment that is looked at, in bytes.
@@ -33,8 +42,17 @@ impl Heading {
         let Some((key, value)) = text.split_once(':') else { return Ok(()) };
         let key = key.trim().to_ascii_lowercase();
         match key.as_str() {
-            "width" => self.width = self.width.or_else(|| length(value)),
-            "height" => self.height = self.height.or_else(|| length(value)),
+            "width" | "height" => {
+                let side = side(value);
+                let negative = |s: &Side| s.quantity.value() <= 0.0;
+                if let Some(Side { quantity, .. }) = side.filter(negative)
+                    && quantity.dimension() == Dimension::LENGTH
+                {
+                    return Err(Problem::Side { line, key, value: quantity });
+                }
+                let said = if key == "width" { &mut self.width } else { &mut self.height };
+                *said = said.or(side.filter(|s| !negative(s)));
+            }
             "value units" | "lateral units" if !value.trim().is_empty() => {
                 let unit =
                     unit(value).map_err(|source| Problem::Heading { line, key: key.clone(), source })?;
@@ -46,17 +64,34 @@ impl Heading {
         Ok(())
     }
 
-    /// Lengths without a unit count only where the heights are said to have none: elsewhere they are numbers of pixels.
-    pub(super) fn side(&self, side: Option<Quantity>) -> Option<Quantity> {
+    /// The format that the comments are those of: points have a unit of x and y, a matrix has a width and a height.
+    pub(crate) fn format(&self) -> Option<Format> {
+        let matrix = self.width.is_some() && self.height.is_some();
+        let points = self.lateral_unit.is_some();
+        if points { Some(Format::Xyz) } else { matrix.then_some(Format::Text) }
+    }
+
+    /// Width and height. Without a unit they count only where the heights are said to have none: elsewhere they are numbers of pixels.
+    pub(crate) fn sides(&self) -> [Option<Side>; 2] {
         let plain = self.unit.as_ref().is_some_and(|u| u.dimension() == Dimension::NONE);
-        side.filter(|q| plain || q.dimension() == Dimension::LENGTH)
+        let counts = |side: &Side| plain || side.quantity.dimension() == Dimension::LENGTH;
+        [self.width.filter(counts), self.height.filter(counts)]
     }
 }
 
-fn length(text: &str) -> Option<Quantity> {
+/// A length or a plain number; `None` for other words.
+fn side(text: &str) -> Option<Side> {
     let quantity: Quantity = text.parse().ok()?;
     let known = quantity.dimension() == Dimension::LENGTH || quantity.dimension() == Dimension::NONE;
-    (known && quantity.value() > 0.0).then_some(quantity)
+    let number = text.trim().split(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '+' | '-'))).next()?;
+    let exponent = text.trim()[number.len()..].starts_with(['e', 'E']);
+    let rounding = match (number.split_once('.'), number.parse::<f64>()) {
+        (Some((_, decimals)), Ok(number)) if !exponent => {
+            0.5 * 10_f64.powi(-(decimals.len() as i32)) / number.abs()
+        }
+        _ => 0.0,
+    };
+    known.then_some(Side { quantity, rounding })
 }
 
 fn unit(text: &str) -> Result<Unit, QuantityError> {

@@ -3,32 +3,44 @@
 use super::Table;
 use crate::error::Problem;
 use crate::format::Format;
-use crate::quantity::Quantity;
-use crate::scan::{Declared, Found, PRINTED};
+use crate::scan::{Declared, Found};
+use crate::sides::Extent;
 
 /// The rows of a table as a map; the first line is row 0.
 pub(crate) fn matrix(table: Table, declared: &Declared) -> Result<Found, Problem> {
     if declared.lateral_unit.is_some() {
-        let reason = "a matrix has no coordinates; give cell or width with a unit";
+        let reason = "a matrix has no coordinates; give size or cell with a unit";
         return Err(Problem::Useless { what: "lateral_unit", reason });
     }
     let (rows, columns) = (table.rows(), table.columns);
-    let heading = &table.heading;
-    let side = |said: Option<Quantity>, cells: usize| {
-        let said = heading.side(said)?;
-        Quantity::new(said.value() / cells as f64, said.dimension()).ok()
+    let extent = extents(&table, columns, rows)?;
+    let (details, unit) = (table.delimiter.to_string(), table.heading.unit.clone());
+    Ok(Found { format: Format::Text, details, rows, columns, heights: table.values, unit, extent })
+}
+
+/// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells are square within the
+/// digits that it prints.
+fn extents(table: &Table, columns: usize, rows: usize) -> Result<[Option<Extent>; 2], Problem> {
+    let [width, height] = table.heading.sides();
+    let cell = |side: Extent, count: usize| side.cell(count).map(Extent::Cell);
+    let (Some(across), Some(down)) = (width, height) else {
+        return Ok([
+            match (width, height) {
+                (None, Some(down)) => Some(cell(Extent::Side(down.quantity), rows)?),
+                (across, _) => across.map(|across| Extent::Side(across.quantity)),
+            },
+            match (width, height) {
+                (Some(across), None) => Some(cell(Extent::Side(across.quantity), columns)?),
+                (_, down) => down.map(|down| Extent::Side(down.quantity)),
+            },
+        ]);
     };
-    let (across, down) = (side(heading.width, columns), side(heading.height, rows));
-    if let (Some(a), Some(b)) = (across, down) {
-        if a.dimension() != b.dimension() {
-            let (first, second) = (format!("{a} by its width"), format!("{b} by its height"));
-            return Err(Problem::Contradiction { what: "side of a cell", first, second });
-        }
-        if (a.value() / b.value() - 1.0).abs() > PRINTED {
-            return Err(Problem::Oblong { dx: a.value(), dy: b.value() });
-        }
+    let (a, b) = (across.quantity, down.quantity);
+    if a.dimension() != b.dimension() {
+        let (first, second) = (format!("{a} is the width"), format!("{b} is the height"));
+        return Err(Problem::Contradiction { what: "size", first, second });
     }
-    let details = table.delimiter.to_string();
-    let (unit, cell) = (heading.unit.clone(), across.or(down));
-    Ok(Found { format: Format::Text, details, rows, columns, heights: table.values, unit, cell })
+    let (dx, dy) = (Extent::Side(a).cell(columns)?, Extent::Side(b).cell(rows)?);
+    let square = (dx.value() / dy.value() - 1.0).abs() <= across.rounding + down.rounding;
+    Ok([Some(Extent::Side(a)), Some(if square { Extent::Cell(dx) } else { Extent::Side(b) })])
 }

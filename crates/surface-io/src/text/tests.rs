@@ -46,15 +46,15 @@ fn delimiters_comments_and_line_ends() {
 }
 
 #[test]
-fn holes_are_counted() {
+fn undefined_points_are_counted() {
     for text in ["1,,3\n4,nan,6\n", "1,NaN,3\n4,BAD,6", "1\t---\t3\n4\t***\t6\n", "1 n/a 3\n4 - 6\n"] {
         let scan = read(text.as_bytes()).unwrap();
-        assert_eq!((scan.understood().missing, scan.understood().rows), (2, 2), "{text:?}");
+        assert_eq!((scan.understood().undefined, scan.understood().rows), (2, 2), "{text:?}");
         assert_eq!(scan.understood().range, Some([1.0, 6.0]));
     }
     let declared = Declared { missing: Some(-9999.0), ..Declared::default() };
     let scan = Scan::from_bytes("a.txt", b"1 -9999\n3 4\n", &declared).unwrap();
-    assert_eq!((scan.understood().missing, scan.height(0, 1), scan.height(0, 0)), (1, None, Some(1.0)));
+    assert_eq!((scan.understood().undefined, scan.height(0, 1), scan.height(0, 0)), (1, None, Some(1.0)));
     // Heights 1, 3, 4 about their mean 8/3: squares 25/9, 1/9 and 16/9, mean 14/9.
     approx::assert_relative_eq!(
         scan.understood().rms_height.unwrap(),
@@ -62,7 +62,10 @@ fn holes_are_counted() {
         max_relative = 1e-15
     );
     let shown = scan.understood().to_string();
-    assert!(shown.contains("missing  1 of 4 cells (25.000 %)") && shown.contains("unit not said"), "{shown}");
+    assert!(
+        shown.contains("undefined  1 of 4 points (25.000 %)") && shown.contains("unit not said"),
+        "{shown}"
+    );
 }
 
 #[test]
@@ -73,14 +76,16 @@ fn what_a_heading_says_counts() {
     for bytes in [gwyddion.as_bytes(), &latin] {
         let scan = read(bytes).unwrap();
         let cell = scan.understood().cell.clone().unwrap();
-        assert_eq!((cell.value.value().to_bits(), cell.by), (5e-6_f64.to_bits(), Speaker::File));
+        let sides = cell.value.map(|side| side.value());
+        assert_eq!((sides, cell.by), ([5e-6; 2], Speaker::File));
+        assert_eq!(scan.understood().size.unwrap().map(|side| side.value()), [10e-6, 5e-6]);
         assert_eq!(scan.understood().unit.clone().unwrap().value.to_string(), "m");
     }
     // A number of pixels is no length.
     assert_eq!(read(b"# Width: 512\n1 2\n3 4\n").unwrap().understood().cell, None);
     assert_eq!(read(b"# Width: 512 px\n1 2\n3 4\n").unwrap().understood().cell, None);
     let plain = read(b"# Width: 3\n# Value units: none\n1 2\n3 4\n").unwrap();
-    assert_eq!(plain.understood().cell.clone().unwrap().value.to_string(), "1.5");
+    assert_eq!(plain.understood().cell.clone().unwrap().value[1].to_string(), "1.5");
     for (text, expected) in [
         (
             "# c\n# Value units: V\n1\n",
@@ -95,7 +100,17 @@ fn what_a_heading_says_counts() {
         assert!(error.starts_with(expected), "{error}");
     }
     assert_eq!(read(b"# Value units:\n1\n").unwrap().understood().unit, None);
-    assert!(matches!(problem(b"# Width: 3 um\n# Height: 2 um\n1 2\n3 4\n"), Problem::Oblong { .. }));
+    let oblong = read(b"# Width: 3 um\n# Height: 2 um\n1 2\n3 4\n").unwrap();
+    assert_eq!(oblong.understood().cell.clone().unwrap().value.map(|side| side.value()), [1.5e-6, 1e-6]);
+    assert!(oblong.understood().to_string().contains("cell       1.5e-6 m x 1e-6 m"));
+    assert_eq!(
+        read(b"1 2\n# Width: 3 um\n# Height: -2 um\n3 4\n").unwrap_err().to_string(),
+        "a.txt: line 3, height = -2e-6 m: expected a length > 0; skip_lines leaves out a header"
+    );
+    assert!(matches!(
+        problem(b"# Width: 3 um\n# Height: 2\n# Value units: none\n1 2\n3 4\n"),
+        Problem::Contradiction { what: "size", .. }
+    ));
 }
 
 #[test]
@@ -107,7 +122,7 @@ fn contradictions_are_named() {
         Scan::from_bytes("a.txt", text, &declared).map_err(|e| e.to_string())
     };
     let error = with(|d| d.cell = "6 um".parse().ok()).unwrap_err();
-    assert_eq!(error, "a.txt: side of a cell: 5e-6 m said by the file, but 6e-6 m as given");
+    assert_eq!(error, "a.txt: side of a cell along x: 5e-6 m said by the file, but 6e-6 m as given");
     let error = with(|d| d.unit = "um".parse().ok()).unwrap_err();
     assert_eq!(error, "a.txt: unit of the heights: nm said by the file, but um as given");
     // The header prints few digits: what is given within them is taken.
@@ -117,7 +132,10 @@ fn contradictions_are_named() {
         d.width = "10 um".parse().ok();
         d.cell = "4 um".parse().ok();
     });
-    assert_eq!(error.unwrap_err(), "a.txt: side of a cell: cell = 4e-6 m, but width over 2 columns = 5e-6 m");
+    assert_eq!(
+        error.unwrap_err(),
+        "a.txt: side of a cell along x: cell = 4e-6 m, but width over 2 columns = 5e-6 m"
+    );
     assert!(with(|d| d.cell = "5 s".parse().ok()).unwrap_err().contains("5 s is a time: expected a length"));
     assert!(with(|d| d.cell = "-5 um".parse().ok()).unwrap_err().contains("expected a length > 0"));
     assert!(with(|d| d.unit = "GPa".parse().ok()).unwrap_err().contains("expected a length"));
@@ -185,6 +203,11 @@ fn three_columns_with_a_format_are_read() {
     let scan = Scan::from_bytes("a.txt", text, &declared).unwrap();
     assert_eq!((scan.understood().rows, scan.understood().columns), (4, 3));
     assert_eq!(read(b"1 2 3\n4 5 6\n7 8 9\n").unwrap().understood().rows, 3);
+    // Comments of a matrix, and of points.
+    let said = read(&[b"# Width: 3 um\n# Height: 4 um\n", &text[..]].concat()).unwrap();
+    assert_eq!((said.understood().format, said.understood().rows), (crate::Format::Text, 4));
+    let said = read(b"# Lateral units: um\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n").unwrap();
+    assert_eq!((said.understood().format, said.understood().rows), (crate::Format::Xyz, 2));
 }
 
 #[test]
@@ -197,4 +220,73 @@ fn files_that_are_none() {
     std::fs::write(dir.path().join("a.txt"), "1 2\n3 4\n").unwrap();
     let scan = Scan::read(&dir.path().join("a.txt"), &Declared::default()).unwrap();
     assert_eq!(heights(&scan), [1.0, 2.0, 3.0, 4.0]);
+}
+
+/// Lengths that are printed with decimals are rounded there: cells that are square within them are square.
+#[test]
+fn printed_decimals_do_not_make_cells_oblong() {
+    let row = "1 2 3 4 5 6 7\n";
+    let cell = |width: &str, height: &str| {
+        let text = format!("# Width: {width}\n# Height: {height}\n{}", row.repeat(3));
+        read(text.as_bytes()).unwrap().understood().cell.clone().unwrap().value.map(|side| side.value())
+    };
+    // 10/7 = 1.428571, 4.29/3 = 1.43: within the last digit of 4.29.
+    let [dx, dy] = cell("10.00 um", "4.29 um");
+    assert_eq!((dx.to_bits(), dx.to_bits()), ((10e-6_f64 / 7.0).to_bits(), dy.to_bits()));
+    for (width, height) in [("10.000 um", "4.290 um"), ("10 um", "4 um"), ("1e-5 m", "4.29e-6 m")] {
+        let [dx, dy] = cell(width, height);
+        assert!((dx / dy - 1.0).abs() > 5e-4, "{width} {height}");
+    }
+}
+
+#[test]
+fn sizes_are_one_value_or_two_and_agree() {
+    let with = |change: &dyn Fn(&mut Declared)| {
+        let mut declared = Declared { unit: "nm".parse().ok(), ..Declared::default() };
+        change(&mut declared);
+        let scan = Scan::from_bytes("a.txt", b"1 2 3 4\n5 6 7 8\n", &declared).map_err(|e| e.to_string())?;
+        let found = scan.understood();
+        Ok::<_, String>((
+            found.size.unwrap().map(|s| s.value()),
+            found.cell.clone().unwrap().value.map(|s| s.value()),
+        ))
+    };
+    assert_eq!(with(&|d| d.size = "4 m x 1 m".parse().ok()), Ok(([4.0, 1.0], [1.0, 0.5])));
+    assert_eq!(with(&|d| d.cell = "3 m x 1 m".parse().ok()), Ok(([12.0, 2.0], [3.0, 1.0])));
+    assert_eq!(with(&|d| d.cell = "3 m".parse().ok()), Ok(([12.0, 6.0], [3.0, 3.0])));
+    assert_eq!(with(&|d| d.width = "4 m".parse().ok()), Ok(([4.0, 2.0], [1.0, 1.0])));
+    let both = with(&|d| (d.cell, d.size) = ("1 m".parse().ok(), "4 m x 2 m".parse().ok()));
+    assert_eq!(both, Ok(([4.0, 2.0], [1.0, 1.0])));
+    for (size, cell, expected) in [
+        (
+            "4 m",
+            "",
+            "size: one value, 4 m, is that of a square map, but there are 2 rows of 4: say both sides",
+        ),
+        ("4 m x 2 m", "1 m x 2 m", "side of a cell along y: cell = 2 m, but size over 2 rows = 1 m"),
+        ("4 m x -2 m", "", "size along y = -2: expected a length > 0"),
+        ("", "-1 m x 1 m", "cell along x = -1: expected a length > 0"),
+        ("", "0 m", "cell = 0: expected a length > 0"),
+        ("4 m x 2", "", "size: 4 m along x, but 2 along y"),
+        ("4 m x 2 s", "", "size along y: 2 s is a time: expected a length"),
+        ("", "1e308 m", "size: inf: beyond the range of double precision"),
+    ] {
+        let error = with(&|d| (d.size, d.cell) = (size.parse().ok(), cell.parse().ok()));
+        assert!(error.as_ref().is_err_and(|e| e.contains(expected)), "{size} {cell}: {error:?}");
+    }
+    // The file and the caller differ along y only.
+    let text = b"# Width: 4 um\n# Height: 1 um\n1 2 3 4\n5 6 7 8\n";
+    let error = |change: &dyn Fn(&mut Declared)| {
+        let mut declared = Declared::default();
+        change(&mut declared);
+        Scan::from_bytes("a.txt", text, &declared).unwrap_err().to_string()
+    };
+    assert_eq!(
+        error(&|d| d.size = "4 um x 2 um".parse().ok()),
+        "a.txt: size along y: 1e-6 m said by the file, but 2e-6 m as given"
+    );
+    assert_eq!(
+        error(&|d| d.cell = "1 um".parse().ok()),
+        "a.txt: side of a cell along y: 5e-7 m said by the file, but 1e-6 m as given"
+    );
 }

@@ -1,13 +1,17 @@
-//! Holes filled by the discrete harmonic function with the measured rim.
+//! Undefined points filled by the discrete harmonic function with the measured rim.
+
+use contact_model::Cells;
 
 /// Residual, as a share of the first one, at which the iteration ends: rounding of heights of six digits is far larger.
 const TOLERANCE: f64 = 1e-12;
 
-/// Fills every NaN so that it is the mean of its neighbours; at least one height must be measured.
+/// Fills every NaN so that it is the weighted mean of its neighbours; at least one height must be measured. `aspect` is dy/dx of a cell.
 ///
-/// Conjugate gradients on the graph Laplacian of the missing cells, which is positive definite because the grid is connected. Cost O(m) for each of about as
-/// many iterations as the largest hole is wide; memory 9 numbers for each of the m missing cells and one for every cell.
-pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
+/// The flow from one cell to the next is the difference of their heights times the length of their common edge over the distance of their centres:
+/// dy/dx along x, dx/dy along y, 1 for square cells. Conjugate gradients on the graph Laplacian of the missing cells, which is positive definite because the
+/// grid is connected. Cost O(m) for each of about as many iterations as the largest undefined patch is wide; memory 9 numbers for
+/// each of the m missing cells and one for every cell.
+pub(super) fn harmonic(cells: Cells, aspect: f64, heights: &mut [f64]) {
     let missing: Vec<usize> = (0..heights.len()).filter(|&i| heights[i].is_nan()).collect();
     // What is measured has the number behind the last: a place of the vectors that stays 0.
     let measured = missing.len();
@@ -15,13 +19,15 @@ pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
     for (k, &i) in missing.iter().enumerate() {
         number[i] = k;
     }
+    // Up, down, left, right.
+    let weights = [aspect.recip(), aspect.recip(), aspect, aspect];
     let neighbours = |i: usize| {
-        let (row, column) = (i / cells, i % cells);
+        let (row, column) = (i / cells.columns, i % cells.columns);
         [
-            (row > 0).then(|| i - cells),
-            (row + 1 < cells).then(|| i + cells),
+            (row > 0).then(|| i - cells.columns),
+            (row + 1 < cells.rows).then(|| i + cells.columns),
             (column > 0).then(|| i - 1),
-            (column + 1 < cells).then(|| i + 1),
+            (column + 1 < cells.columns).then(|| i + 1),
         ]
     };
     let inner: Vec<[usize; 4]> =
@@ -33,20 +39,23 @@ pub(super) fn harmonic(cells: usize, heights: &mut [f64]) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &h| (a.min(h), b.max(h)));
     let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
     let unit = if half > 0.0 { half } else { 1.0 };
-    let degree: Vec<f64> = missing.iter().map(|&i| neighbours(i).iter().flatten().count() as f64).collect();
+    let weight = |(j, w): (&Option<usize>, &f64)| if j.is_some() { *w } else { 0.0 };
+    let degree: Vec<f64> =
+        missing.iter().map(|&i| neighbours(i).iter().zip(&weights).map(weight).sum()).collect();
     let apply = |x: &[f64], y: &mut [f64]| {
         for (k, around) in inner.iter().enumerate() {
-            y[k] = degree[k] * x[k] - around.iter().map(|&j| x[j]).sum::<f64>();
+            y[k] = degree[k] * x[k] - around.iter().zip(weights).map(|(&j, w)| w * x[j]).sum::<f64>();
         }
     };
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let rim = |i: usize| {
-        let rim = neighbours(i).into_iter().flatten().filter(|&j| number[j] == measured);
-        rim.map(|j| (heights[j] - middle) / unit).sum::<f64>()
+        let around = neighbours(i).into_iter().zip(weights).filter_map(|(j, w)| Some((j?, w)));
+        let rim = around.filter(|&(j, _)| number[j] == measured);
+        rim.map(|(j, w)| w * ((heights[j] - middle) / unit)).sum::<f64>()
     };
     let mut x = vec![0.0; missing.len()];
     let mut residual: Vec<f64> = missing.iter().map(|&i| rim(i)).collect();
-    // Preconditioned by the number of neighbours.
+    // Preconditioned by the sum of the weights.
     let preconditioned = |r: &[f64]| r.iter().zip(&degree).map(|(r, d)| r / d).collect::<Vec<f64>>();
     let mut z = preconditioned(&residual);
     let mut direction = z.clone();

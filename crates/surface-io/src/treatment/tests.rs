@@ -1,4 +1,4 @@
-use crate::{Crop, Declared, Detrend, Fill, Scan, Treatment};
+use crate::{Crop, Declared, Detrend, Fill, Scan, Treatment, Undefined};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use contact_model::HeightMap;
 use proptest::prelude::*;
@@ -11,9 +11,14 @@ const FILLED: f64 = 1e-10;
 
 /// A scan of cells of side 1 with the height `f(x, y)` in column x of row y, NaN where it is missing.
 fn scan(rows: usize, columns: usize, f: impl Fn(f64, f64) -> f64) -> Scan {
+    scan_of("1", rows, columns, f)
+}
+
+/// The same with cells of the given sides.
+fn scan_of(cell: &str, rows: usize, columns: usize, f: impl Fn(f64, f64) -> f64) -> Scan {
     let heights: Vec<f64> =
         (0..rows * columns).map(|i| f((i % columns) as f64, (i / columns) as f64)).collect();
-    let declared = Declared { cell: "1".parse().ok(), ..Declared::default() };
+    let declared = Declared { cell: cell.parse().ok(), ..Declared::default() };
     Scan::from_bytes("a.npy", &crate::npy(&[rows, columns], &heights).unwrap(), &declared).unwrap()
 }
 
@@ -41,32 +46,48 @@ fn units_are_metres_or_none() {
         read("0.5", Some("nm")).unwrap_err().contains("the side of a cell is 0.5, but the heights have nm")
     );
     assert!(read("0.5 um", Some("none")).unwrap_err().contains("but the heights have no unit"));
-    assert!(read("", Some("none")).unwrap_err().contains("say cell = "));
+    assert!(
+        read("", Some("none"))
+            .unwrap_err()
+            .contains("the size of the map is neither in the file nor given: say size = ")
+    );
 }
 
 #[test]
 fn crops_take_what_they_say() {
     let wide = scan(2, 5, |x, y| x + 10.0 * y);
-    let error = treated(&wide, |_| ()).unwrap_err().to_string();
-    assert!(error.contains("2 rows of 5: expected a square map; crop = \"centre\""), "{error}");
+    let whole = treated(&wide, |_| ()).unwrap();
+    assert_eq!((whole.columns(), whole.rows(), whole.size()), (5, 2, [5.0, 2.0].into()));
+    assert_eq!(whole.heights()[5..], [10.0, 11.0, 12.0, 13.0, 14.0]);
     let map = treated(&wide, |t| t.crop = Some(Crop::Centre)).unwrap();
     assert_eq!((map.length().to_bits(), map.heights()), (2_f64.to_bits(), &[1.0, 2.0, 11.0, 12.0][..]));
-    let window = |row, column, cells| treated(&wide, |t| t.crop = Some(Crop::Window { row, column, cells }));
-    assert_eq!(window(0, 3, 2).unwrap().heights(), [3.0, 4.0, 13.0, 14.0]);
-    assert_eq!(window(1, 4, 1).unwrap().heights(), [14.0]);
-    for (row, column, cells) in [(0, 4, 2), (1, 0, 2), (0, 0, 0), (usize::MAX, 0, 1), (0, 5, 1)] {
-        let error = window(row, column, cells).unwrap_err().to_string();
+    let window = |row, column, rows, columns| {
+        treated(&wide, |t| t.crop = Some(Crop::Window { row, column, rows, columns }))
+    };
+    assert_eq!(window(0, 3, 2, 2).unwrap().heights(), [3.0, 4.0, 13.0, 14.0]);
+    assert_eq!(window(1, 4, 1, 1).unwrap().heights(), [14.0]);
+    let part = window(1, 1, 1, 3).unwrap();
+    assert_eq!((part.heights(), part.size()), (&[11.0, 12.0, 13.0][..], [3.0, 1.0].into()));
+    for (row, column, rows, columns) in
+        [(0, 4, 2, 2), (1, 0, 2, 2), (0, 0, 0, 1), (0, 0, 1, 0), (usize::MAX, 0, 1, 1), (0, 5, 1, 1)]
+    {
+        let error = window(row, column, rows, columns).unwrap_err().to_string();
         assert!(error.contains("the map has 2 rows of 5"), "{error}");
     }
+    // A square of oblong cells: 4 columns of 1 and 2 rows of 2.
+    let oblong = scan_of("1 x 2", 2, 7, |x, _| x);
+    let map = treated(&oblong, |t| t.crop = Some(Crop::Centre)).unwrap();
+    assert_eq!((map.columns(), map.rows(), map.size()), (4, 2, 4.0.into()));
+    assert_eq!(map.heights()[..4], [1.0, 2.0, 3.0, 4.0]);
 }
 
 #[test]
-fn holes_are_refused_unless_filled() {
+fn undefined_points_are_refused_unless_filled_or_kept() {
     let hole = |x: f64, y: f64| (2.0..5.0).contains(&x) && (1.0..4.0).contains(&y);
     let plane = |x: f64, y: f64| 3.0 + 0.5 * x - 2.0 * y;
     let holed = scan(7, 7, |x, y| if hole(x, y) { f64::NAN } else { plane(x, y) });
     let error = treated(&holed, |_| ()).unwrap_err().to_string();
-    assert!(error.contains("9 of 49 cells have no height, the first in row 1, column 2"), "{error}");
+    assert!(error.contains("9 of 49 points are undefined, the first in row 1, column 2"), "{error}");
     for fill in [Fill::Neighbours, Fill::Plane] {
         let map = treated(&holed, |t| t.fill = Some(fill)).unwrap();
         for (i, h) in map.heights().iter().enumerate() {
@@ -82,8 +103,16 @@ fn holes_are_refused_unless_filled() {
     );
     let empty = scan(2, 2, |_, _| f64::NAN);
     let error = treated(&empty, |t| t.fill = Some(Fill::Neighbours)).unwrap_err().to_string();
-    assert!(error.contains("none of the 4 cells has a height"), "{error}");
-    // Without holes no fill is needed and none is done.
+    assert!(error.contains("4 of 4 points are undefined: expected one height at least"), "{error}");
+    let error = treated(&empty, |t| t.undefined = Some(Undefined::NoContact)).unwrap_err().to_string();
+    assert!(error.contains("4 of 4 points are undefined"), "{error}");
+    let error = treated(&holed, |t| {
+        t.undefined = Some(Undefined::NoContact);
+        t.fill = Some(Fill::Plane);
+    });
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("undefined points: fill is given, but undefined = \"no_contact\" too"), "{error}");
+    // Without undefined points no fill is needed and none is done.
     let whole = scan(3, 3, plane);
     assert_eq!(treated(&whole, |t| t.fill = Some(Fill::Plane)).unwrap(), treated(&whole, |_| ()).unwrap());
 }
@@ -146,7 +175,7 @@ fn trends_are_what_least_squares_give() {
         t.fill = Some(Fill::Neighbours);
     });
     let error = error.unwrap_err().to_string();
-    assert!(error.contains("a trend of 3 unknowns is not determined by the 5 cells"), "{error}");
+    assert!(error.contains("a trend of 3 unknowns is not determined by the 5 defined points"), "{error}");
     assert!(treated(&scan(2, 2, |x, _| x), |t| t.detrend = Detrend::Quadric).is_err());
 }
 
@@ -162,9 +191,74 @@ fn coarser_cells_are_means() {
     }
     for wrong in [0, 5] {
         let error = treated(&fine, |t| t.cells = Some(wrong)).unwrap_err().to_string();
-        assert!(error.contains("expected 1 to 4"), "{error}");
+        assert!(error.contains(&format!("{wrong} columns: expected 1 to 4")), "{error}");
+        let error = treated(&fine, |t| t.rows = Some(wrong)).unwrap_err().to_string();
+        assert!(error.contains(&format!("{wrong} rows: expected 1 to 4")), "{error}");
     }
+    // Columns and rows each for themselves; half as many rows as columns stay half as many.
+    let wide = scan_of("1 x 2", 4, 8, |x, y| x + 10.0 * y);
+    let map = treated(&wide, |t| t.cells = Some(2)).unwrap();
+    assert_eq!((map.rows(), map.size()), (1, [8.0, 8.0].into()));
+    assert_eq!(map.heights(), [16.5, 20.5]);
+    let map = treated(&wide, |t| t.rows = Some(2)).unwrap();
+    assert_eq!((map.columns(), map.rows(), map.heights()[8]), (8, 2, 25.0));
+    let map = treated(&wide, |t| (t.cells, t.rows) = (Some(1), Some(4))).unwrap();
+    assert_eq!(map.heights(), [3.5, 13.5, 23.5, 33.5]);
     assert_eq!(treated(&fine, |t| t.cells = Some(4)).unwrap(), treated(&fine, |_| ()).unwrap());
+}
+
+/// Points that are kept undefined stay so through the crop and the trend, and coarse cells follow their larger half.
+#[test]
+fn undefined_points_are_kept() {
+    let plane = |x: f64, y: f64| 5.0 + x - 2.0 * y;
+    let gone = |x: f64, y: f64| x >= 4.0 && y < 1.0;
+    let holed = scan_of("1 x 0.5", 3, 6, |x, y| if gone(x, y) { f64::NAN } else { plane(x, y) });
+    let keep = |change: &dyn Fn(&mut Treatment)| {
+        treated(&holed, |t| {
+            t.undefined = Some(Undefined::NoContact);
+            change(t);
+        })
+        .unwrap()
+    };
+    let map = keep(&|_| ());
+    assert_eq!((map.undefined(), map.size(), map.highest()), (2, [6.0, 1.5].into(), 8.0));
+    assert_eq!(map.heights()[4..6], [f64::NEG_INFINITY; 2]);
+    let map = keep(&|t| t.detrend = Detrend::Plane);
+    assert!(map.undefined() == 2 && map.defined().all(|h| h.abs() < 10.0 * ROUNDING));
+    let map = keep(&|t| t.crop = Some(Crop::Window { row: 0, column: 0, rows: 2, columns: 5 }));
+    assert_eq!((map.undefined(), map.columns(), map.size()), (1, 5, [5.0, 1.0].into()));
+    let map = keep(&|t| t.crop = Some(Crop::Window { row: 1, column: 0, rows: 2, columns: 6 }));
+    assert_eq!(map.undefined(), 0);
+    // Coarse cells of 4 columns: one defined, the other half defined and the mean of that half.
+    let part = scan(1, 8, |x, _| if x >= 6.0 { f64::NAN } else { x });
+    let coarser = |columns: usize| {
+        treated(&part, |t| (t.undefined, t.cells) = (Some(Undefined::NoContact), Some(columns))).unwrap()
+    };
+    assert_eq!(coarser(2).heights(), [1.5, 4.5]);
+    assert_eq!(coarser(4).heights(), [0.5, 2.5, 4.5, f64::NEG_INFINITY]);
+    assert_eq!((coarser(4).undefined(), coarser(1).heights()), (1, &[2.5][..]));
+}
+
+/// On oblong cells the fill is the five-point formula of the Laplacian with both spacings.
+#[test]
+fn fills_know_the_sides_of_a_cell() {
+    // x^2 - y^2 is harmonic, on the grid too: dx = 1, dy = 1/4.
+    let harmonic = |x: f64, y: f64| x * x - (0.25 * y).powi(2);
+    let gone = |x: f64, y: f64| (1.0..6.0).contains(&x) && (1.0..9.0).contains(&y);
+    let holed = scan_of("1 x 0.25", 10, 7, |x, y| if gone(x, y) { f64::NAN } else { harmonic(x, y) });
+    let map = treated(&holed, |t| t.fill = Some(Fill::Neighbours)).unwrap();
+    for (i, h) in map.heights().iter().enumerate() {
+        assert_abs_diff_eq!(*h, harmonic((i % 7) as f64, (i / 7) as f64), epsilon = 36.0 * FILLED);
+    }
+}
+
+#[test]
+fn cells_that_no_map_has_are_refused() {
+    for cell in ["1 x 1e9", "1e9 x 1", "1 x 1.1e4"] {
+        let error = treated(&scan_of(cell, 2, 2, |x, _| x), |t| t.fill = Some(Fill::Neighbours)).unwrap_err();
+        assert!(error.to_string().contains("a.npy: dx / dy (ratio of the sides of a cell) = "), "{error}");
+    }
+    assert!(treated(&scan_of("1 x 1e4", 2, 2, |x, _| x), |_| ()).is_ok());
 }
 
 #[test]

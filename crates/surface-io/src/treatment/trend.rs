@@ -1,6 +1,7 @@
 //! Least-squares polynomials in x and y.
 
 use crate::error::Problem;
+use contact_model::Cells;
 
 /// What is subtracted from the heights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,7 +23,7 @@ const MOST: usize = 6;
 /// A pivot of the scaled normal matrix below this is 0: the squares of coordinates that are one line to 1e-5 of their range.
 const SINGULAR: f64 = 1e-10;
 
-/// Coefficients of Legendre's polynomials in coordinates that run from -1 to 1 over the square.
+/// Coefficients of Legendre's polynomials in coordinates that run from -1 to 1 along each side.
 #[derive(Debug)]
 pub(super) struct Trend {
     unknowns: usize,
@@ -43,7 +44,7 @@ impl Detrend {
     }
 
     /// Fits the heights that are not NaN; `None` for nothing to subtract.
-    pub(super) fn fit(self, cells: usize, heights: &[f64]) -> Result<Option<Trend>, Problem> {
+    pub(super) fn fit(self, cells: Cells, heights: &[f64]) -> Result<Option<Trend>, Problem> {
         let unknowns = self.unknowns();
         if unknowns == 0 {
             return Ok(None);
@@ -57,11 +58,11 @@ impl Detrend {
         let mut matrix = [[0.0; MOST]; MOST];
         let mut right = [0.0; MOST];
         let mut present = 0;
-        for row in 0..cells {
+        for (row, heights) in heights.chunks_exact(cells.columns).enumerate() {
             // Row by row: sums of sums lose fewer digits than one long sum.
             let mut row_matrix = [[0.0; MOST]; MOST];
             let mut row_right = [0.0; MOST];
-            for (column, &h) in heights[row * cells..(row + 1) * cells].iter().enumerate() {
+            for (column, &h) in heights.iter().enumerate() {
                 if h.is_nan() {
                     continue;
                 }
@@ -87,29 +88,29 @@ impl Detrend {
 }
 
 impl Trend {
-    fn at(&self, row: usize, column: usize, cells: usize) -> f64 {
-        let basis = basis(row, column, cells);
+    fn at(&self, i: usize, cells: Cells) -> f64 {
+        let basis = basis(i / cells.columns, i % cells.columns, cells);
         (0..self.unknowns).map(|i| self.coefficients[i] * basis[i]).sum()
     }
 
-    pub(super) fn subtract(&self, cells: usize, heights: &mut [f64]) {
+    pub(super) fn subtract(&self, cells: Cells, heights: &mut [f64]) {
         for (i, h) in heights.iter_mut().enumerate() {
-            *h = (*h - self.middle) - self.unit * self.at(i / cells, i % cells, cells);
+            *h = (*h - self.middle) - self.unit * self.at(i, cells);
         }
     }
 
-    /// Puts its own heights into the holes.
-    pub(super) fn fill(&self, cells: usize, heights: &mut [f64]) {
+    /// Puts its own heights at the undefined points.
+    pub(super) fn fill(&self, cells: Cells, heights: &mut [f64]) {
         for (i, h) in heights.iter_mut().enumerate().filter(|(_, h)| h.is_nan()) {
-            *h = self.middle + self.unit * self.at(i / cells, i % cells, cells);
+            *h = self.middle + self.unit * self.at(i, cells);
         }
     }
 }
 
-/// 1, x, y and the three products of second order, nearly orthogonal over the whole square.
-fn basis(row: usize, column: usize, cells: usize) -> [f64; MOST] {
-    let to_unit = |i: usize| (2.0 * i as f64 + 1.0) / cells as f64 - 1.0;
-    let (x, y) = (to_unit(column), to_unit(row));
+/// 1, x, y and the three products of second order, nearly orthogonal over the whole rectangle.
+fn basis(row: usize, column: usize, cells: Cells) -> [f64; MOST] {
+    let to_unit = |i: usize, count: usize| (2.0 * i as f64 + 1.0) / count as f64 - 1.0;
+    let (x, y) = (to_unit(column, cells.columns), to_unit(row, cells.rows));
     [1.0, x, y, 1.5 * x * x - 0.5, x * y, 1.5 * y * y - 0.5]
 }
 

@@ -50,13 +50,7 @@ fn a_reader_finds_every_field_at_its_offset() {
     assert!(file.contains("Name=\"p &lt;&amp;&quot;&gt; [m]\""));
     assert!(file.contains("<CellData Scalars=\"gap [m]\">"));
     assert!(file.contains("header_type=\"UInt64\"") && file.contains("byte_order=\"LittleEndian\""));
-    let section = file.split_once("encoding=\"base64\">\n_").unwrap().1;
-    let section = section.split_once('\n').unwrap().0;
-    let offsets: Vec<usize> = file
-        .split("offset=\"")
-        .skip(1)
-        .map(|rest| rest.split_once('"').unwrap().0.parse().unwrap())
-        .collect();
+    let (section, offsets) = appended(&file);
     assert_eq!(offsets.len(), 3);
     for (offset, values) in offsets.into_iter().zip(&fields) {
         // Length and numbers are one run of base64.
@@ -65,6 +59,30 @@ fn a_reader_finds_every_field_at_its_offset() {
         let read = run[8..].chunks_exact(8).map(|c| f64::from_le_bytes(c.try_into().unwrap()).to_bits());
         assert!(read.eq(values.iter().map(|v| v.to_bits())));
     }
+}
+
+/// The appended section and the offsets into it.
+fn appended(file: &str) -> (&str, Vec<usize>) {
+    let section = file.split_once("encoding=\"base64\">\n_").unwrap().1;
+    let offset = |rest: &str| rest.split_once('"').unwrap().0.parse().unwrap();
+    (section.split_once('\n').unwrap().0, file.split("offset=\"").skip(1).map(offset).collect())
+}
+
+/// Undefined points are NaN in their field and hidden in all.
+#[test]
+fn rectangles_with_undefined_points() {
+    let (gap, height) = ([f64::NAN, 1.0, 2.0, 3.0, 4.0, 5.0], [1.0, 2.0, 3.0, f64::NAN, 5.0, 6.0]);
+    let fields =
+        [Field { name: "gap", unit: "", values: &gap }, Field { name: "height", unit: "", values: &height }];
+    let file = String::from_utf8(vti([3, 2], [6.0, 1.0], &fields, Encoding::Base64).unwrap()).unwrap();
+    assert!(file.contains("WholeExtent=\"0 3 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"2 0.5 2\""), "{file}");
+    assert!(file.contains("<DataArray type=\"UInt8\" Name=\"vtkGhostType\""));
+    let (section, offsets) = appended(&file);
+    assert_eq!(offsets.len(), 3);
+    let run = decode(&section[offsets[1]..offsets[2]]);
+    assert!(run[..8] == 48_u64.to_le_bytes() && f64::from_le_bytes(run[32..40].try_into().unwrap()).is_nan());
+    let hidden = decode(&section[offsets[2]..]);
+    assert_eq!(hidden, [&6_u64.to_le_bytes()[..], &[32, 0, 0, 32, 0, 0]].concat());
 }
 
 #[test]
@@ -81,12 +99,19 @@ fn decimals_are_exact_and_plain() {
 #[test]
 fn what_no_viewer_shows_is_refused() {
     let field = |values| Field { name: "gap", unit: "", values };
-    let error =
-        |cells, cell, values| vti(cells, cell, &[field(values)], Encoding::Base64).unwrap_err().to_string();
-    assert_eq!(error(1, 1.0, &[f64::NAN]), "gap: value 0 (counted from 0) is NaN: expected finite numbers");
-    assert_eq!(error(2, 1.0, &[1.0]), "number of values of a field = 1: expected cells x cells");
-    assert_eq!(error(1, 0.0, &[1.0]), "cell = 0: expected a finite number > 0");
-    assert_eq!(error(0, 1.0, &[]), "no data in it");
+    let error = |cells: usize, size: f64, values| {
+        vti(cells, size, &[field(values)], Encoding::Base64).unwrap_err().to_string()
+    };
+    assert_eq!(
+        error(1, 1.0, &[f64::INFINITY]),
+        "gap: value 0 (counted from 0) is inf: expected finite numbers"
+    );
+    assert_eq!(error(2, 1.0, &[1.0]), "number of values of a field = 1: expected rows x columns");
+    assert_eq!(error(1, 0.0, &[1.0]), "side along x = 0: expected a finite number > 0");
+    assert_eq!(error(0, 1.0, &[]), "an array of 0 rows x 0 columns: expected at least 1 of each");
+    let decimals = vti(1, 1.0, &[field(&[f64::NAN])], Encoding::Ascii).unwrap_err().to_string();
+    assert_eq!(decimals, "gap: value 0 (counted from 0) is NaN: expected finite numbers");
+    assert!(vti([2, 1], [1.0, -1.0], &[], Encoding::Base64).is_err());
     assert!(vti(usize::MAX, 1.0, &[field(&[])], Encoding::Ascii).is_err());
     assert!(vti(2, 1.0, &[], Encoding::Base64).is_ok());
 }
