@@ -10,13 +10,13 @@ use contact_model::Stop;
 /// Nondimensional stiffness with its evidence.
 #[derive(Debug, Clone)]
 pub struct Stiffness {
-    /// Ritz value of `1' K^-1 1`.
+    /// Ritz value of `1' G^-1 1`.
     pub value: f64,
     /// Estimated relative error of the linear solve on the given set.
     pub solve_error: f64,
     /// Estimated relative error from cells that may be on the wrong side of the set.
     pub set_error: f64,
-    /// `K q = 1` on the contact set.
+    /// `G q = 1` on the contact set.
     pub q: Vec<f64>,
     /// Conjugate gradient steps.
     pub steps: usize,
@@ -33,14 +33,14 @@ impl Stiffness {
     }
 }
 
-/// Solves `K q = 1` on the contact set of a state until the relative error of k is estimated below half of `tolerance`.
+/// Solves `G q = 1` on the contact set of a state until the relative error of k is estimated below half of `tolerance`.
 ///
-/// For any q with residual `r = 1 - K q` the true k lies between the Ritz value `(1'q)^2 / (q'Kq)` and
-/// `1'q + r'q + r'K^-1 r`; both errors are quadratic in that of q. `guess` may be the q of a similar set; that of a factored state is
+/// For any q with residual `r = 1 - G q` the true k lies between the Ritz value `(1'q)^2 / (q'Gq)` and
+/// `1'q + r'q + r'G^-1 r`; both errors are quadratic in that of q. `guess` may be the q of a similar set; that of a factored state is
 /// exact up to rounding. The energy of a residual is the first thing that conjugate gradients find, so that the check of one
 /// correction is the beginning of the next.
 ///
-/// Cost: about 10 applications of K for a relative error of 1e-4.
+/// Cost: about 10 applications of G for a relative error of 1e-4.
 pub fn solve(
     problem: &mut Problem,
     state: &Solved,
@@ -108,7 +108,7 @@ pub fn solve(
     Stiffness { steps, ..best }
 }
 
-/// Ritz value and relative width of the bounds from `1'q`, `r'q` and the energy `r' K^-1 r`.
+/// Ritz value and relative width of the bounds from `1'q`, `r'q` and the energy `r' G^-1 r`.
 fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
     let ritz = sum * sum / (sum - rq);
     (ritz, (sum + rq + energy - ritz).max(0.0) / ritz)
@@ -116,8 +116,8 @@ fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
 
 /// Change of k if the undecided cells changed sides.
 ///
-/// Adding cell j adds `(1 - (Kq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
-/// takes away `q_j^2 / (K^-1)_jj`, at most `q_j^2 K_jj`. Undecided are the cells of [`Solved::undecided`] and those whose pressure
+/// Adding cell j adds `(1 - (Gq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
+/// takes away `q_j^2 / (G^-1)_jj`, at most `q_j^2 G_jj`. Undecided are the cells of [`Solved::undecided`] and those whose pressure
 /// is below what their own residual gap can change. `tests/stiffness_error.rs` compares the sum of both parts with true errors.
 fn set_error(table: &KernelTable, state: &Solved, left: &[f64], at_undecided: &[f64], q: &[f64]) -> f64 {
     let smallest = table.smallest_eigenvalue();

@@ -214,7 +214,7 @@ pub const KEPT_SYMBOLS: usize = 1 << 24;
 pub const CANDIDATES_AHEAD: f64 = 2.0;
 /// ... unless it would hold more than one cell in so many.
 pub const LISTED_CANDIDATES: usize = 8;
-/// Largest factor from the error of `1' K^-1 1` with the shifted kernel to that of k; beyond it no digit of k is left.
+/// Largest factor from the error of `1' G^-1 1` with the shifted kernel to that of k; beyond it no digit of k is left.
 pub const MAGNIFIED: f64 = 1e10;
 /// Loads at most on the way to a mean gap.
 pub const GAP_LOADS: usize = 60;

@@ -11,7 +11,7 @@ use crate::sample::number;
 use crate::sweep::collect;
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Boundary, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine, Stop,
+    Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine, Size, Stop,
     Surface, never,
 };
 use std::path::{Path, PathBuf};
@@ -42,12 +42,14 @@ pub struct Bench {
 /// Reliefs of a bench.
 #[derive(Debug, Clone)]
 pub enum Surfaces {
-    /// A map as it is, on a square of side 1.
+    /// A map as it is, with square cells and `sqrt(Lx Ly) = 1`.
     File(PathBuf),
     /// Self-affine surfaces without roll-off, every size with every fractal dimension.
     SelfAffine {
-        /// Cells a side.
+        /// Columns.
         cells: Vec<usize>,
+        /// Rows of square cells on a rectangle of area 1; `None`: as many as columns.
+        rows: Option<usize>,
         /// D_f.
         fractal_dimensions: Vec<f64>,
         /// Seed of the surface itself.
@@ -62,8 +64,8 @@ pub struct BenchRow {
     pub surface: String,
     /// D_f and seed of a generated surface.
     pub drawn: Option<(f64, u64)>,
-    /// Cells a side.
-    pub cells: usize,
+    /// Columns and rows of the map.
+    pub cells: Cells,
     /// F/(E* h L) with the measured rms height.
     pub force_bar: f64,
     /// Asked for.
@@ -86,7 +88,7 @@ pub struct BenchRow {
 }
 
 /// Columns of the table, in order.
-pub const BENCH_COLUMNS: [&str; 25] = [
+pub const BENCH_COLUMNS: [&str; 26] = [
     "cells",
     "force_bar",
     "approach_over_h",
@@ -111,6 +113,7 @@ pub const BENCH_COLUMNS: [&str; 25] = [
     "surface",
     "fractal_dimension",
     "seed",
+    "rows",
     "version",
 ];
 
@@ -134,7 +137,7 @@ impl BenchRow {
             _ => None,
         };
         Ok([
-            self.cells.to_string(),
+            self.cells.columns.to_string(),
             number(self.force_bar),
             text(approach),
             text(self.state.stiffness.map(|k| self.normalisation.stiffness_bar(k))),
@@ -158,6 +161,7 @@ impl BenchRow {
             self.surface.clone(),
             text(self.drawn.map(|(d, _)| d)),
             self.drawn.map(|(_, seed)| seed.to_string()).unwrap_or_default(),
+            self.cells.rows.to_string(),
             env!("CARGO_PKG_VERSION").to_owned(),
         ])
     }
@@ -172,6 +176,7 @@ impl BenchRow {
 struct Series {
     surface: String,
     drawn: Option<(f64, u64)>,
+    cells: Cells,
     scene: Scene,
     seed: u64,
     model: Bem3d,
@@ -205,15 +210,16 @@ fn series(bench: &Bench) -> Result<Vec<Series>> {
         Surfaces::File(path) => {
             let map = read_map(path)?;
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-            reliefs.push((name, None, map.columns(), 0, Surface::Heights(Arc::new(map))));
+            reliefs.push((name, None, map.cells(), 0, Surface::Heights(Arc::new(map))));
         }
-        Surfaces::SelfAffine { cells, fractal_dimensions, seed } => {
+        Surfaces::SelfAffine { cells, rows, fractal_dimensions, seed } => {
             for &d in fractal_dimensions {
-                for &n in cells {
-                    let surface =
-                        SelfAffine::new(d, 1.0, 1.0).map_err(Error::model(format!("D_f = {d:?}")))?;
+                for &columns in cells {
+                    let cells = Cells { columns, rows: rows.unwrap_or(columns) };
+                    let surface = SelfAffine::new(d, unit_area(cells), 1.0)
+                        .map_err(Error::model(format!("D_f = {d:?}")))?;
                     let surface = Surface::SelfAffine(surface);
-                    reliefs.push(("self-affine".to_owned(), Some((d, *seed)), n, *seed, surface));
+                    reliefs.push(("self-affine".to_owned(), Some((d, *seed)), cells, *seed, surface));
                 }
             }
         }
@@ -224,11 +230,19 @@ fn series(bench: &Bench) -> Result<Vec<Series>> {
             let mut scene = Scene::new(relief.clone(), 1.0);
             scene.effects.boundary = bench.boundary;
             scene.outputs.pressure = bench.pressure.is_some();
-            let model = Bem3d { cells, tolerance, method: bench.method, ..Bem3d::default() };
-            all.push(Series { surface: surface.clone(), drawn, scene, seed, model });
+            let (columns, rows) = (cells.columns, Some(cells.rows));
+            let model =
+                Bem3d { cells: columns, rows, tolerance, method: bench.method, ..Bem3d::default() };
+            all.push(Series { surface: surface.clone(), drawn, cells, scene, seed, model });
         }
     }
     Ok(all)
+}
+
+/// Sides of a rectangle of square cells with `sqrt(Lx Ly) = 1`.
+pub(crate) fn unit_area(cells: Cells) -> Size {
+    let aspect = cells.columns as f64 / cells.rows as f64;
+    Size { x: aspect.sqrt(), y: aspect.recip().sqrt() }
 }
 
 impl Series {
@@ -272,7 +286,7 @@ impl Series {
             let mut row = BenchRow {
                 surface: self.surface.clone(),
                 drawn: self.drawn,
-                cells: self.cells(),
+                cells: self.cells,
                 force_bar,
                 tolerance: self.model.tolerance,
                 state,
@@ -295,13 +309,6 @@ impl Series {
         Ok(rows)
     }
 
-    fn cells(&self) -> usize {
-        match &self.scene.surface {
-            Surface::Heights(map) => map.columns(),
-            _ => self.model.cells,
-        }
-    }
-
     /// Writes the field and forgets it: a bench of many loads would keep them all.
     fn save_pressure(&self, directory: &Path, row: &mut BenchRow) -> Result<()> {
         let Some(pressure) = row.state.fields.take().and_then(|f| f.pressure) else { return Ok(()) };
@@ -309,10 +316,10 @@ impl Series {
             .file_stem()
             .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let drawn =
-            row.drawn.map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells)).unwrap_or_default();
+            row.drawn.map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells.columns)).unwrap_or_default();
         let name = format!("pressure_{stem}{drawn}_F{:?}_tol{:?}.npy", row.force_bar, row.tolerance);
-        let n = row.cells as u64;
-        write_npy(&directory.join(name), &[n, n], &pressure)
+        let shape = [row.cells.rows as u64, row.cells.columns as u64];
+        write_npy(&directory.join(name), &shape, &pressure)
     }
 }
 
@@ -341,7 +348,7 @@ mod tests {
 
     fn small() -> Bench {
         Bench {
-            surfaces: Surfaces::SelfAffine { cells: vec![17], fractal_dimensions: vec![2.4], seed: 3 },
+            surfaces: Surfaces::SelfAffine { cells: vec![17], rows: None, fractal_dimensions: vec![2.4], seed: 3 },
             forces: Forces::parse("1,0.01").unwrap(),
             tolerances: vec![1e-6],
             boundary: Boundary::Free,
@@ -375,6 +382,18 @@ mod tests {
     }
 
     #[test]
+    fn a_rectangle_has_its_rows() {
+        let surfaces = Surfaces::SelfAffine { cells: vec![24], rows: Some(6), fractal_dimensions: vec![2.2], seed: 1 };
+        for row in bench(&Bench { surfaces, ..small() }, &|_| Ok(())).unwrap() {
+            assert!(row.converged());
+            approx::assert_relative_eq!(row.normalisation.length, 1.0, max_relative = 1e-15);
+            let fields = row.fields().unwrap();
+            let field = |name: &str| &fields[BENCH_COLUMNS.iter().position(|c| *c == name).unwrap()];
+            assert_eq!((field("cells").as_str(), field("rows").as_str()), ("24", "6"));
+        }
+    }
+
+    #[test]
     fn cold_and_warm_rows_agree() {
         let warm = bench(&small(), &|_| Ok(())).unwrap();
         let cold = bench(&Bench { cold: true, threads: 2, ..small() }, &|_| Ok(())).unwrap();
@@ -391,7 +410,7 @@ mod tests {
     #[test]
     fn rows_stand_in_the_order_asked_for_whatever_the_threads() {
         let surfaces =
-            Surfaces::SelfAffine { cells: vec![17, 9], fractal_dimensions: vec![2.4, 2.0], seed: 3 };
+            Surfaces::SelfAffine { cells: vec![17, 9], rows: None, fractal_dimensions: vec![2.4, 2.0], seed: 3 };
         let many = Bench { surfaces, tolerances: vec![1e-6, 1e-3], ..small() };
         let numbers = |threads| {
             let rows = bench(&Bench { threads, ..many.clone() }, &|_| Ok(())).unwrap();

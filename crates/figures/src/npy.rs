@@ -5,21 +5,23 @@ use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{Declared, Dimension, Format, Problem, Quantity, Scan, Treatment};
 
-/// Reads a square NPY array of numbers as heights on a square of side 1, as they are: row-major means `[iy][ix]`.
+/// Reads an NPY array `[row, column]` of numbers as heights on square cells with `sqrt(Lx Ly) = 1`, as they are.
 ///
 /// Either byte order and either order of the axes; the shape is compared with the length of the file before anything is allocated.
 ///
 /// # Errors
-/// [`Error::File`] when it cannot be read; [`Error::Content`] when it is no NPY file, no square, not of real numbers, shorter or longer
+/// [`Error::File`] when it cannot be read; [`Error::Content`] when it is no NPY file, not of real numbers, shorter or longer
 /// than it says, or holds a number that is not finite (with its row and column).
 pub fn read_map(path: &Path) -> Result<HeightMap> {
-    let side = Quantity::new(1.0, Dimension::NONE).map_err(|e| Error::content(path, e.to_string()))?;
-    let declared =
-        Declared { format: Some(Format::Npy), size: Some([side, side].into()), ..Declared::default() };
-    let scan = Scan::read(path, &declared).map_err(Error::from)?;
+    let declared = |x: f64, y: f64| {
+        let side = |s: f64| Quantity::new(s, Dimension::NONE).map_err(|e| Error::content(path, e.to_string()));
+        Ok::<_, Error>(Declared { format: Some(Format::Npy), size: Some([side(x)?, side(y)?].into()), ..Declared::default() })
+    };
+    let mut scan = Scan::read(path, &declared(1.0, 1.0)?).map_err(Error::from)?;
     let (rows, columns) = (scan.understood().rows, scan.understood().columns);
     if rows != columns {
-        return Err(Error::content(path, format!("{rows} rows of {columns}: expected a square map")));
+        let size = crate::bench::unit_area([columns, rows].into());
+        scan = Scan::read(path, &declared(size.x, size.y)?).map_err(Error::from)?;
     }
     scan.map(&Treatment::default()).map_err(|error| match error.problem() {
         // What could be done about it elsewhere is not offered here.

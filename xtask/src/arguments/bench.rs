@@ -46,12 +46,16 @@ pub enum MethodName {
 /// Flags of the bench.
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// A square NPY map of real numbers, taken as it is (L = E* = 1, F_bar by its measured rms height).
-    #[arg(long, value_name = "FILE.npy", conflicts_with_all = ["cells", "fractal_dimensions", "seed"])]
+    /// An NPY map [row, column] of real numbers, taken as it is (square cells, L = sqrt(Lx Ly) = E* = 1, F_bar by its measured
+    /// rms height).
+    #[arg(long, value_name = "FILE.npy", conflicts_with_all = ["cells", "rows", "fractal_dimensions", "seed"])]
     surface: Option<PathBuf>,
-    /// Cells a side of generated surfaces, separated by commas [default: 257,513,1025].
+    /// Columns of generated surfaces, separated by commas [default: 257,513,1025].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     cells: Option<Vec<usize>>,
+    /// Rows of generated surfaces: square cells on a rectangle of area 1 [default: as many as columns].
+    #[arg(long, value_name = "N")]
+    rows: Option<usize>,
     /// Fractal dimensions of generated surfaces, separated by commas.
     #[arg(
         long,
@@ -139,6 +143,7 @@ impl BenchArguments {
                     .cells
                     .clone()
                     .unwrap_or_else(|| if self.scaling { SCALING_CELLS.to_vec() } else { CELLS.to_vec() }),
+                rows: self.rows,
                 fractal_dimensions: self.fractal_dimensions.clone(),
                 seed: self.seed,
             },

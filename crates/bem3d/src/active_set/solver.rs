@@ -11,11 +11,11 @@ use contact_model::{Status, Stop};
 /// Solves for one load from a guess.
 ///
 /// At fixed force, solving on a superset of the contact set and removing the cells in tension never removes a true contact cell
-/// where K restricted to the set is an inverse M-matrix, which it was on every set tried: bilateral contact on a superset needs a larger
+/// where G restricted to the set is an inverse M-matrix, which it was on every set tried: bilateral contact on a superset needs a larger
 /// approach than the true one, and every removal lowers it. Rounding and early stops can break this, so each outer iteration evaluates
 /// the exact gap on all candidates and adds the cells that penetrate.
 ///
-/// Cost: 20 to 60 applications of K for four digits, a few factorisations for a small set.
+/// Cost: 20 to 60 applications of G for four digits, a few factorisations for a small set.
 pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
     let Guess { set, p, d, far } = guess;
     let reach = match target {

@@ -88,7 +88,7 @@ pub struct Solved {
     pub p: Vec<f64>,
     /// Approach.
     pub d: f64,
-    /// `K q = 1` on the contact set, where the state was factored.
+    /// `G q = 1` on the contact set, where the state was factored.
     pub q: Option<Vec<f64>>,
     /// How well the contact conditions hold.
     pub residuals: Residuals,

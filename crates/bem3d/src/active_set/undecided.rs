@@ -1,6 +1,6 @@
 //! How far the gaps of open cells may still change: what decides whether a cell is open for sure.
 //!
-//! On a contact set C the displacement of an open cell j follows those of the contact with weights `K_jC K_CC^-1`. Where K on C is an
+//! On a contact set C the displacement of an open cell j follows those of the contact with weights `G_jC G_CC^-1`. Where G on C is an
 //! inverse M-matrix they are positive and their sum is below 1: no open gap changes by more than the largest gap left on the contact.
 //! Nor does a far gap change it much. Next to a straight edge of the contact the weights beyond a distance R add up to
 //! `(2 / pi) asin sqrt(1 / R)` in cells; of one open cell within the contact, to a few hundredths.

@@ -5,14 +5,14 @@ use crate::kernel::KernelTable;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
-/// The factor of K on one set.
+/// The factor of G on one set.
 #[derive(Debug)]
 pub struct Factor {
     factor: Llt<f64>,
 }
 
 impl Factor {
-    /// Assembles and factors K on a set of n cells; `None` if rounding makes it indefinite (never seen).
+    /// Assembles and factors G on a set of n cells; `None` if rounding makes it indefinite (never seen).
     ///
     /// Cost: n^3 / 3 multiplications and 16 n^2 bytes.
     pub fn new(table: &KernelTable, set: &CellSet) -> Option<Self> {
@@ -24,7 +24,7 @@ impl Factor {
         Llt::new(matrix.as_ref(), Side::Lower).ok().map(|factor| Self { factor })
     }
 
-    /// Solves `K q = 1` and `K w = z`.
+    /// Solves `G q = 1` and `G w = z`.
     pub fn solve_pair(&self, z: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let right = Mat::from_fn(z.len(), 2, |i, j| if j == 0 { 1.0 } else { z[i] });
         let solution = self.factor.solve(&right);

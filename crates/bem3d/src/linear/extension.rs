@@ -1,6 +1,6 @@
 //! Extension of displacements from the contact set into the gaps between, for the preconditioner.
 //!
-//! For every extension E of a function on the set C to a whole window, `E' K^-1 E >= (K_CC)^-1`, with equality for the
+//! For every extension E of a function on the set C to a whole window, `E' G^-1 E >= (G_CC)^-1`, with equality for the
 //! displacement that the pressure makes. Zeros are an extension too, but a poor one: the jump at every edge of contact
 //! weighs as much as what is asked. Here a gap takes the mean of the contact around it on the finest of ever coarser grids
 //! that has contact there, times a decay for each level; this halves the number of steps where contact is full of holes.

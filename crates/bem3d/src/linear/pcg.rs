@@ -35,7 +35,7 @@ pub struct Outcome {
     pub steps: usize,
     /// Applications of the influence matrix: one a step, and one that told nothing where the precision ended the iteration.
     pub applications: usize,
-    /// Estimate from above of the energy `r' K^-1 r` at the beginning.
+    /// Estimate from above of the energy `r' G^-1 r` at the beginning.
     pub energy: f64,
 }
 
@@ -51,7 +51,7 @@ pub struct Vectors<T> {
     t: Vec<T>,
     kt: Vec<T>,
     z: Vec<T>,
-    /// What the sum of a correction is taken from: about `K^-1 1`, found on the first set of a load and carried from set to set. Empty:
+    /// What the sum of a correction is taken from: about `G^-1 1`, found on the first set of a load and carried from set to set. Empty:
     /// not yet found.
     weights: Vec<T>,
 }
@@ -89,13 +89,13 @@ impl<T: Real> Vectors<T> {
     }
 }
 
-/// Solves `K x = r` on a set approximately; with `fixed_sum`, `K x = r + const` and `sum x = 0`: the force is prescribed and the
+/// Solves `G x = r` on a set approximately; with `fixed_sum`, `G x = r + const` and `sum x = 0`: the force is prescribed and the
 /// approach adapts.
 ///
 /// With `fixed_sum` the equation is solved on the corrections without a sum: with the weights w, the residual is `r - (w'r / w'1) 1` and
-/// the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and keeps the sum whatever the weights; `K^-1 1` is the best of them.
+/// the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and keeps the sum whatever the weights; `G^-1 1` is the best of them.
 ///
-/// Cost: one application of K and one of the preconditioner a step. The caller checks the result with the exact operator.
+/// Cost: one application of G and one of the preconditioner a step. The caller checks the result with the exact operator.
 pub fn pcg<T: Real>(
     operator: &mut dyn InfluenceOperator<T>,
     preconditioner: &mut dyn Preconditioner<T>,

@@ -22,7 +22,7 @@ pub trait Preconditioner<T> {
     /// Lowers the residual `r` by `offset` and writes `z = M r`.
     fn apply(&mut self, set: &CellSet, offset: T, r: &mut [T], z: &mut [T]) -> Preconditioned;
 
-    /// The energy `r' K^-1 r` is at most so many times `r' M r`.
+    /// The energy `r' G^-1 r` is at most so many times `r' M r`.
     fn energy_factor(&self) -> f64;
 }
 
@@ -48,7 +48,7 @@ impl<T: Real> Preconditioner<T> for Identity {
 }
 
 /// `M = E' B E`: the residual is extended into the gaps between contacts ([`Extension`]), the inverse of the kernel on a torus around
-/// the window is applied (about |q| / 2 pi), and the transpose leads back. A quarter of the cost of an application of K or less.
+/// the window is applied (about |q| / 2 pi), and the transpose leads back. A quarter of the cost of an application of G or less.
 #[derive(Debug)]
 pub struct TorusInverse<'a> {
     /// The inverse on the torus.
@@ -60,7 +60,7 @@ pub struct TorusInverse<'a> {
 impl TorusInverse<'_> {
     /// Safety factor of the energy on a torus.
     ///
-    /// `(K_CC)^-1 <= (K^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound; wrapping the lattice on a torus
+    /// `(G_CC)^-1 <= (G^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound; wrapping the lattice on a torus
     /// makes it an estimate that a residual as wide as the torus can exceed by some ten per cent.
     pub const SAFETY: f64 = 2.0;
 }

@@ -48,7 +48,7 @@ impl Workspace {
         if self.recipe.is_some_and(|recipe| recipe.is_single()) { &self.single.set } else { &self.double.set }
     }
 
-    /// Solves `K x = right` on the set approximately and writes x over `right`; with `fixed_sum`, `K x = right + const` and `sum x = 0`.
+    /// Solves `G x = right` on the set approximately and writes x over `right`; with `fixed_sum`, `G x = right + const` and `sum x = 0`.
     /// Criteria and outcome are in the units of `right`.
     pub fn solve(
         &mut self,

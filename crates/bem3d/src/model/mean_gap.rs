@@ -6,7 +6,7 @@ use crate::tuning::{GAP_LOADS, GAP_STEP, MAGNIFIED};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 impl Prepared {
-    /// How many times the relative error of k is that of `1' K^-1 1 = k'` with the constant c in K: `k = k' / (1 - c k')`.
+    /// How many times the relative error of k is that of `1' G^-1 1 = k'` with the constant c in G: `k = k' / (1 - c k')`.
     ///
     /// 1 with free boundaries; grows without limit towards full contact of a periodic surface.
     pub(super) fn magnification(&self, value: f64) -> f64 {

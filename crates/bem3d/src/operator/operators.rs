@@ -93,7 +93,7 @@ impl Operators {
         self.last
     }
 
-    /// `u = K p` in double precision without approximation: direct sums or the FFT, whichever is cheaper.
+    /// `u = G p` in double precision without approximation: direct sums or the FFT, whichever is cheaper.
     pub fn exact(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
         let Some(window) = self.begin(sources, targets, u) else { return };
         if self.planner().exact(sources.len(), targets.len(), window) == Application::Direct {
@@ -107,7 +107,7 @@ impl Operators {
         transform.apply(sources, p, targets, u);
     }
 
-    /// `u = K p` to five digits or more, for decisions that are checked with [`Self::exact`].
+    /// `u = G p` to five digits or more, for decisions that are checked with [`Self::exact`].
     pub fn rough(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
         let Some(window) = self.begin(sources, targets, u) else { return };
         let application = self.planner().fast(sources, targets, window);
