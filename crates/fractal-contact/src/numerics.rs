@@ -86,7 +86,8 @@ impl BoundaryElements {
     }
 }
 
-/// Errors for rows that the model would not take on a generated surface: `Bem3d` chooses them itself, nearest to square cells.
+/// Errors for rows that the model would not take on a generated surface: `Bem3d` chooses them itself, nearest
+/// to square cells.
 pub(crate) fn refuse_rows(numerics: &Numerics, size: Size) -> contact_model::Result<()> {
     let Some(elements) = numerics.boundary_elements() else { return Ok(()) };
     let Cells { columns, rows } = elements.cells(size);
@@ -185,7 +186,8 @@ impl Numerics {
         matches!(self, Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_))
     }
 
-    /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version has to be compared.
+    /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version
+    /// has to be compared.
     pub fn is_stored(&self) -> bool {
         self.size() > 0
     }
@@ -209,7 +211,8 @@ impl Numerics {
         }
     }
 
-    /// The same on a grid of at most these cells along the longer side of a rectangle of this size, or elements.
+    /// The same on a grid of at most these cells along the longer side of a rectangle of this size, or
+    /// elements.
     #[must_use]
     pub fn reduced(self, cells: usize, elements: usize, size: Size) -> Self {
         match self {

@@ -95,7 +95,8 @@ fn bad_points_are_named() {
 fn cells_are_oblong_or_square_as_the_points_say() {
     let cell = |text: &str| read(text).unwrap().understood().cell.clone().unwrap().value.map(|s| s.value());
     assert_eq!(cell("0 0 1\n1 0 2\n0 2 3\n1 2 3\n"), [1.0, 2.0]);
-    // Points off their places by 0.5 % leave the spacing of three of them open to 1 %: 1.005 and 0.995 are one.
+    // Points off their places by 0.5 % leave the spacing of three of them open to 1 %: 1.005 and 0.995 are
+    // one.
     let [dx, dy] =
         cell("0 0 1\n1.01 0 2\n2.01 0 3\n0 1 1\n1.01 1 2\n2.01 1 3\n0 1.99 1\n1.01 1.99 2\n2.01 1.99 3\n");
     assert!(dx.to_bits() == dy.to_bits() && (dx - 1.0).abs() < 1e-12);
