@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn thin_maps_keep_their_shape_and_undefined_points() {
-        let height = |i: usize| if i % 16 == 0 { f64::NAN } else { i as f64 };
+        let height = |i: usize| if i.is_multiple_of(16) { f64::NAN } else { i as f64 };
         let map = HeightMap::with_undefined([16, 4], [8.0, 1.0], (0..64).map(height).collect()).unwrap();
         let thin = thinned(&map, 8).unwrap();
         assert_eq!((thin.cells(), thin.size(), thin.undefined()), ([8, 2].into(), map.size(), 2));

@@ -90,7 +90,7 @@ fn side(text: &str) -> Option<Side> {
     let exponent = text.trim()[number.len()..].starts_with(['e', 'E']);
     let rounding = match (number.split_once('.'), number.parse::<f64>()) {
         (Some((_, decimals)), Ok(number)) if !exponent => {
-            0.5 * 10_f64.powi(-(decimals.len() as i32)) / number.abs()
+            0.5 * 0.1_f64.powf(decimals.len() as f64) / number.abs()
         }
         _ => 0.0,
     };
