@@ -4,8 +4,8 @@ use clap::builder::TypedValueParser as _;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 
-/// Contact of rough and smooth elastic bodies from a short text file: it says what is pressed, what is asked and which effects count;
-/// only that is computed.
+/// Contact of rough and smooth elastic bodies from a short text file: it says what is pressed, what is asked
+/// and which effects count; only that is computed.
 #[derive(Debug, Parser)]
 #[command(name = "fractal-contact", version, after_long_help = AFTER)]
 pub struct Arguments {

@@ -21,8 +21,9 @@ const CALIBRATION_TIME: Duration = Duration::from_secs(3);
 pub(crate) const TIME_EXPONENT: f64 = 2.3;
 /// Applications of the operator over cells a side, as measured by the same.
 const APPLICATIONS_EXPONENT: f64 = 0.3;
-/// Memory of one solve of bem3d, bytes per cell of the grid: what light loads take, and how much more contact that fills the grid takes;
-/// the box around a contact of a share `s` of the cells fills about `6 s` of it. Read off `peak_memory_bytes` in `data/bench/scaling.csv`.
+/// Memory of one solve of bem3d, bytes per cell of the grid: what light loads take, and how much more contact
+/// that fills the grid takes; the box around a contact of a share `s` of the cells fills about `6 s` of it.
+/// Read off `peak_memory_bytes` in `data/bench/scaling.csv`.
 const LIGHT_BYTES: f64 = 50.0;
 const FILLED_BYTES: f64 = 150.0;
 const BOX_OVER_CONTACT: f64 = 6.0;
@@ -78,7 +79,8 @@ struct Solved {
     cost: Cost,
 }
 
-/// A few of the loads on a grid of at most `coarse` cells along its longer side; the second number is that of its cells.
+/// A few of the loads on a grid of at most `coarse` cells along its longer side; the second number is that of
+/// its cells.
 fn small_solves(
     scene: &SceneFile,
     numerics: &Numerics,
@@ -146,4 +148,23 @@ fn thinned(map: &HeightMap, coarse: usize) -> contact_model::Result<HeightMap> {
     let height = |h: f64| if h.is_finite() { h } else { f64::NAN };
     let heights = (0..columns * rows).map(|i| height(at(i))).collect();
     HeightMap::with_undefined([columns, rows], map.size(), heights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thin_maps_keep_their_shape_and_undefined_points() {
+        let height = |i: usize| if i.is_multiple_of(16) { f64::NAN } else { i as f64 };
+        let map = HeightMap::with_undefined([16, 4], [8.0, 1.0], (0..64).map(height).collect()).unwrap();
+        let thin = thinned(&map, 8).unwrap();
+        assert_eq!((thin.cells(), thin.size(), thin.undefined()), ([8, 2].into(), map.size(), 2));
+        assert_eq!((thin.heights()[1], thin.heights()[9]), (2.0, 34.0));
+        assert_eq!(thinned(&map, 16).unwrap(), map);
+        assert_eq!(
+            thinned(&map, 1).unwrap_err().to_string(),
+            "defined points = 0: expected at least 1 (every height of the map is undefined)"
+        );
+    }
 }

@@ -37,8 +37,8 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
         line(
             "boundary",
             boundary,
-            "periodic copies of the square".into(),
-            "an unloaded half-space outside the square",
+            "periodic copies of the rectangle".into(),
+            "an unloaded half-space outside the rectangle",
         ),
         line("adhesion", adhesion, format!("short range, work {} per area", number(work)), "no attraction"),
         line("friction", friction, format!("Coulomb, coefficient {coefficient}"), "no tangential load"),

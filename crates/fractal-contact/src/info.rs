@@ -7,12 +7,14 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use surface_io::{Declared, Scan, Treatment, Undefined, describe};
 
-/// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface (anything else).
+/// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
+/// (anything else).
 ///
 /// `declared` is what the caller says about a surface's file; undefined points are told, not filled.
 ///
 /// # Errors
-/// As [`SceneFile::read`] and [`crate::check`] for scenes; [`Error::Figures`] and [`Error::Surface`] with what is wrong with the file.
+/// As [`SceneFile::read`] and [`crate::check`] for scenes; [`Error::Figures`] and [`Error::Surface`] with
+/// what is wrong with the file.
 pub fn info(path: &Path, declared: &Declared) -> Result<String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     match ending {

@@ -1,11 +1,14 @@
-//! Scenes: a short text file says what is pressed, what is asked and which effects count; only that is computed.
+//! Scenes: a short text file says what is pressed, what is asked and which effects count; only that is
+//! computed.
 //!
 //! # What it computes
 //!
-//! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`, `[outputs]`, `[models.NAME]`
-//! (numerics) and `[chance]`. [`Plan`] says what will be done, what will not and why, and what it will cost; [`run`] answers the scene with every
-//! model that it names and writes `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`Make`]
-//! draws a surface into one. The mechanics are those of the model crates; the program `fractal-contact` is a thin layer on this library.
+//! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`,
+//! `[outputs]`, `[models.NAME]` (numerics) and `[chance]`. [`Plan`] says what will be done, what will not and
+//! why, and what it will cost; [`run`] answers the scene with every model that it names and writes
+//! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`Make`]
+//! draws a surface into one. The mechanics are those of the model crates; the program `fractal-contact` is a
+//! thin layer on this library.
 //!
 //! ```
 //! use fractal_contact::{Options, Plan, SceneFile, run};
@@ -26,32 +29,44 @@
 //!
 //! # Conventions
 //!
-//! * Physical scenes give every dimensional number with its unit (`"70 GPa"`), results are in SI; `units = "none"` takes plain numbers in any
-//!   consistent units. A number without a unit is an error, as is a unit where there should be none.
-//! * Loads are `force`, `force_bar` (F/(E* h L) with each surface's own measured rms height; rough surfaces only), `mean_pressure`,
-//!   `approach` or, with periodic boundaries, `mean_gap`: one number, a list, or `{ from, to, count }`, logarithmic unless
-//!   `spacing = "linear"`. They are solved in the order given; increasing is the fastest.
-//! * What depends on the path (friction, rheology) takes `[[scene.path]]` instead: ends of straight pieces, each with `states` points; what a
-//!   step does not name stays as it was.
-//! * `[scene.surface]` is random (`self_affine`) or a `file`; `[scene.body]` is a sphere, cone, ...; with both, heights add.
-//! * Effects and outputs are off unless named. What a model lacks is an error before anything is computed, with the models that have it.
-//! * A load outside a model's range has its row with the reason (`status` is `refused`), and the others go on.
-//! * `results.csv` has the same bytes for any number of threads and after any interruption; times and the machine are in `manifest.json`.
+//! * Physical scenes give every dimensional number with its unit (`"70 GPa"`), results are in SI; `units =
+//!   "none"` takes plain numbers in any consistent units. A number without a unit is an error, as is a unit
+//!   where there should be none.
+//! * Loads are `force`, `force_bar` (F/(E* h L) with each surface's own measured rms height; rough surfaces
+//!   only), `mean_pressure`, `approach` or, with periodic boundaries, `mean_gap`: one number, a list, or `{
+//!   from, to, count }`, logarithmic unless `spacing = "linear"`. They are solved in the order given;
+//!   increasing is the fastest.
+//! * What depends on the path (friction, rheology) takes `[[scene.path]]` instead: ends of straight pieces,
+//!   each with `states` points; what a step does not name stays as it was.
+//! * `[scene.surface]` is random (`self_affine`) or a `file`; `[scene.body]` is a sphere, cone, ...; with
+//!   both, heights add.
+//! * `side = s` is a square, `size = [Lx, Ly]` a rectangle; L is `sqrt(Lx Ly)`, mean pressure and contact
+//!   fraction are over `Lx Ly`. Undefined points of a file are an error unless they are filled or kept
+//!   (`undefined = "no_contact"`). NPY arrays are `[row, column]`, rows along y.
+//! * Effects and outputs are off unless named. What a model lacks is an error before anything is computed,
+//!   with the models that have it.
+//! * A load outside a model's range has its row with the reason (`status` is `refused`), and the others go
+//!   on.
+//! * `results.csv` has the same bytes for any number of threads and after any interruption; times and the
+//!   machine are in `manifest.json`.
 //!
 //! # Errors
 //!
-//! A mistake in a scene is a [`Trouble`]: what, the line with the place underlined, and a remedy. Unknown keys are mistakes. The tables are read key
-//! by key rather than derived, because a derived reader knows neither units nor remedies, and loses the place of a value in an enum.
+//! A mistake in a scene is a [`Trouble`], and so is a note on a key with a new name: what, the line with the
+//! place underlined, and a remedy. Unknown keys are mistakes. The tables are read key by key rather than
+//! derived, because a derived reader knows neither units nor remedies, and loses the place of a value in an
+//! enum.
 //!
 //! # How accurate, how fast
 //!
-//! As the models are; the plan says so for each. Reading, planning and writing take milliseconds. The prediction of cost solves a few of the loads
-//! on a grid of a quarter of the cells (at most 257, at most 3 s) and scales by measured exponents: within a factor of three.
+//! As the models are; the plan says so for each. Reading, planning and writing take milliseconds. The
+//! prediction of cost solves a few of the loads on a grid of a quarter of the cells (at most 257, at most 3
+//! s) and scales by measured exponents: within a factor of three.
 //!
 //! # What it does not do
 //!
-//! No mechanics of its own, no distribution over machines (a model on a surface is the unit that one would distribute), no means over surfaces
-//! (`figures` has them): one row per state.
+//! No mechanics of its own, no distribution over machines (a model on a surface is the unit that one would
+//! distribute), no means over surfaces (`figures` has them): one row per state.
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 
@@ -83,7 +98,7 @@ pub use error::{Error, Result};
 pub use info::info;
 pub use loads::{Loads, Prescribed, Request};
 pub use make::Make;
-pub use numerics::{AnyModel, Numerics};
+pub use numerics::{AnyModel, BoundaryElements, Numerics};
 pub use outputs::{Asked, Format};
 pub use plan::{Cost, ModelPlan, Plan, check};
 pub use relief::Relief;

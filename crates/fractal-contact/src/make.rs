@@ -31,8 +31,8 @@ impl Make {
     /// Draws the surface, writes it (`.npy`, `.txt`, `.xyz` or `.vti`) and says in a few lines what it is.
     ///
     /// # Errors
-    /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Model`] for numbers that make no sense,
-    /// [`Error::Surface`] for another ending or a file that cannot be written.
+    /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Model`] for numbers
+    /// that make no sense, [`Error::Surface`] for another ending or a file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<String> {
         let mut units: Option<Dimension> = None;
         let wrong = |name: &'static str, e: surface_io::QuantityError| Error::Argument {

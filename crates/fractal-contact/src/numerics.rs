@@ -137,7 +137,8 @@ impl Numerics {
         matches!(self, Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_))
     }
 
-    /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version has to be compared.
+    /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version
+    /// has to be compared.
     pub fn is_stored(&self) -> bool {
         self.size() > 0
     }
@@ -159,7 +160,8 @@ impl Numerics {
         }
     }
 
-    /// The same on a grid of at most these cells along the longer side of a rectangle of this size, or elements.
+    /// The same on a grid of at most these cells along the longer side of a rectangle of this size, or
+    /// elements.
     #[must_use]
     pub fn reduced(self, cells: usize, elements: usize, size: Size) -> Self {
         match self {

@@ -141,7 +141,8 @@ impl Plan {
         })
     }
 
-    /// The plan with what it will cost, from small solves of the same kind here and now. Takes a few seconds at most.
+    /// The plan with what it will cost, from small solves of the same kind here and now. Takes a few seconds
+    /// at most.
     ///
     /// # Errors
     /// As [`check`].

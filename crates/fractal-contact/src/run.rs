@@ -50,9 +50,9 @@ pub struct Outcome {
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
 ///
-/// `results.csv` and `manifest.json` always; `patches.csv`, fields and curves where the scene asks for them. Finished models and
-/// surfaces are kept in `OUT/.units` and reused by the next run of the same scene. Where `stop` says so, the states so far are
-/// written and [`Outcome::stopped`] is true.
+/// `results.csv` and `manifest.json` always; `patches.csv`, fields and curves where the scene asks for them.
+/// Finished models and surfaces are kept in `OUT/.units` and reused by the next run of the same scene. Where
+/// `stop` says so, the states so far are written and [`Outcome::stopped`] is true.
 ///
 /// # Errors
 /// As [`crate::check`]; [`Error::Model`] for what only shows at full size; files that cannot be written.

@@ -68,7 +68,8 @@ struct Places {
 }
 
 impl SceneFile {
-    /// A scene built in code, in any consistent units: no effects, no outputs, one surface of seed 0. Messages then have no line.
+    /// A scene built in code, in any consistent units: no effects, no outputs, one surface of seed 0.
+    /// Messages then have no line.
     ///
     /// ```
     /// use contact_model::Surface;

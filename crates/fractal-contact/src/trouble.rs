@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 /// Longest part of a line that is shown.
 const SHOWN: usize = 100;
 
-/// A mistake in a scene, or a note on it: what, where and how to mend it. Its `Display` is a few lines with the place underlined.
+/// A mistake in a scene, or a note on it: what, where and how to mend it. Its `Display` is a few lines with
+/// the place underlined.
 ///
 /// ```
 /// use fractal_contact::Trouble;

@@ -87,11 +87,12 @@ impl Unit {
         }
     }
 
-    /// Answers all loads in their order. A load that a model refuses has its row with the reason, and the others go on.
+    /// Answers all loads in their order. A load that a model refuses has its row with the reason, and the
+    /// others go on.
     ///
     /// # Errors
-    /// [`Error::Model`] where the scene cannot be prepared, and files that cannot be written. A stop is no error: the result is
-    /// then not whole.
+    /// [`Error::Model`] where the scene cannot be prepared, and files that cannot be written. A stop is no
+    /// error: the result is then not whole.
     pub fn solve(&self, scene: &SceneFile, out: &Path, stop: Stop<'_>) -> Result<UnitResult> {
         let start = Instant::now();
         let numerics = self.numerics(scene);
@@ -259,8 +260,8 @@ impl Unit {
         Ok(())
     }
 
-    /// Errors where this model cannot answer the scene, found out on a small grid; what that grid refuses for its own sake is asked of the
-    /// full one.
+    /// Errors where this model cannot answer the scene, found out on a small grid; what that grid refuses for
+    /// its own sake is asked of the full one.
     pub fn probe(&self, scene: &SceneFile) -> contact_model::Result<()> {
         let numerics = self.numerics(scene);
         match probe(scene, &numerics.probe(scene.relief.size())) {
@@ -301,5 +302,58 @@ pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics) -> contact_model::Re
     match numerics.model() {
         AnyModel::Contact(model) => model.prepare(&physics, seed).map(|_| ()),
         AnyModel::History(model) => model.prepare(&physics, seed).map(|_| ()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Loads, Prescribed, Relief};
+    use contact_model::{HeightMap, SolveReport};
+    use std::sync::Arc;
+
+    /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
+    #[test]
+    fn fields_are_arrays_of_rows_and_columns() {
+        let heights = vec![1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0];
+        let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
+        let relief = Relief::Plain(Surface::Heights(Arc::new(map)));
+        let loads = Request::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
+        let mut scene = SceneFile::new(vec![Numerics::ALL[0]], relief, 1.0, loads);
+        let all = vec![Format::Npy, Format::Png, Format::Vti];
+        (scene.asked.pressure, scene.asked.gap) = (all.clone(), all);
+        let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];
+        let gap = vec![0.5, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
+        let mut state = ContactState {
+            force: 1.0,
+            approach: None,
+            stiffness: None,
+            area: None,
+            conductance: None,
+            patches: None,
+            fields: Some(Fields { pressure: Some(pressure.clone()), gap: Some(gap), displacement: None }),
+            report: SolveReport::exact("test"),
+        };
+        let dir = tempfile::tempdir().unwrap();
+        let mut result = UnitResult::default();
+        let unit = Unit { model: 0, surface: 0 };
+        unit.keep(&scene, &mut state, 0, dir.path(), &mut result).unwrap();
+        assert_eq!((result.files.len(), state.fields), (6, None));
+        let scan = |name: &str| {
+            surface_io::Scan::read(&dir.path().join(name), &surface_io::Declared::default()).unwrap()
+        };
+        let read = scan("pressure-bem3d-0-000.npy");
+        assert_eq!((read.understood().rows, read.understood().columns), (2, 3));
+        let values: Vec<f64> = (0..6).filter_map(|i| read.height(i / 3, i % 3)).collect();
+        assert_eq!(values, pressure);
+        let read = scan("gap-bem3d-0-000.npy");
+        assert_eq!((read.height(1, 1), read.height(0, 0), read.understood().undefined), (None, Some(0.5), 1));
+        let vti = std::fs::read_to_string(dir.path().join("gap-bem3d-0-000.vti")).unwrap();
+        assert!(vti.contains("WholeExtent=\"0 3 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"2 0.5 2\""), "{vti}");
+        assert!(vti.contains("vtkGhostType"));
+        // Width and height of a PNG stand after its first chunk's name; pixels are squares of 0.5.
+        let png = std::fs::read(dir.path().join("gap-bem3d-0-000.png")).unwrap();
+        let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+        assert_eq!((side(16), side(20)), (12, 2));
     }
 }

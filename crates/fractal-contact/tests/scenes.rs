@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// Two exact solutions of one contact, each good to about 1e-12.
 const EXACT: f64 = 1e-9;
-/// Boundary elements of 129 cells a side against a smooth body that spans a third of them: second order of the cell over the contact.
+/// Boundary elements of 129 cells a side against a smooth body that spans a third of them: second order of
+/// the cell over the contact.
 const CELLS: f64 = 0.02;
 
 fn folder() -> PathBuf {

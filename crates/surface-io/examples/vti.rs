@@ -1,4 +1,5 @@
-//! A rough surface and its slope as a file for ParaView: `cargo run -p surface-io --example vti -- rough.vti`.
+//! A rough surface and its slope as a file for ParaView: `cargo run -p surface-io --example vti --
+//! rough.vti`.
 
 use contact_model::SelfAffine;
 use surface_gen::self_affine_map;

@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 use surface_gen::{hurst_from_spectrum, radial_spectrum, rms_height, rms_slope_differences};
 
-/// First ring of the fit: the first ones bend it (see [`surface_gen::radial_spectrum`]), and a window smears each over its neighbours.
+/// First ring of the fit: the first ones bend it (see [`surface_gen::radial_spectrum`]), and a window smears
+/// each over its neighbours.
 const FIRST_RING: f64 = 8.0;
 
 /// The fit ends at this share of the shortest wave's wavenumber: instruments damp what is next to it.
@@ -29,7 +30,8 @@ pub struct Description {
     pub rms_height: f64,
     /// Root mean square slope from differences of neighbouring cells.
     pub rms_slope: f64,
-    /// Spectrum averaged over rings of the wavenumber q: (q, C_2D), two-sided, in 1/length and length^4. Empty where points are undefined.
+    /// Spectrum averaged over rings of the wavenumber q: (q, C_2D), two-sided, in 1/length and length^4.
+    /// Empty where points are undefined.
     pub spectrum: Vec<(f64, f64)>,
     /// Hurst exponent of the spectrum.
     pub hurst: Result<f64, Absent>,
@@ -45,7 +47,8 @@ pub enum Absent {
     Undefined,
     /// All heights are one.
     NoRelief,
-    /// Too few rings lie in the range of the fit: fewer than about 40 cells along the shorter side, or cells far from squares.
+    /// Too few rings lie in the range of the fit: fewer than about 40 cells along the shorter side, or cells
+    /// far from squares.
     FewWaves,
 }
 
@@ -60,7 +63,8 @@ impl fmt::Display for Absent {
 }
 
 impl Description {
-    /// Effective fractal dimension D_f = 3 - H, whether or not it lies between 2 and 3 as that of a self-affine surface does.
+    /// Effective fractal dimension D_f = 3 - H, whether or not it lies between 2 and 3 as that of a
+    /// self-affine surface does.
     pub fn fractal_dimension(&self) -> Option<f64> {
         self.hurst.ok().map(|h| 3.0 - h)
     }
@@ -68,10 +72,12 @@ impl Description {
 
 /// Describes a map: sides, range, rms height and slope, spectrum, Hurst exponent.
 ///
-/// The map is not taken as periodic: its mean is subtracted and Hann's window laid over it before the spectrum, which keeps the jump between
-/// opposite edges out of the short waves, smears each ring over its neighbours, and is scaled so that a homogeneous surface keeps its spectrum. Subtract a
-/// tilt first ([`crate::Detrend::Plane`]). The exponent is fitted by least squares in logarithms from an eighth of the shorter side to waves of four
-/// of the longer cell sides. Cost O(N log N) for N points, memory about three times that of the map.
+/// The map is not taken as periodic: its mean is subtracted and Hann's window laid over it before the
+/// spectrum, which keeps the jump between opposite edges out of the short waves, smears each ring over its
+/// neighbours, and is scaled so that a homogeneous surface keeps its spectrum. Subtract a tilt first
+/// ([`crate::Detrend::Plane`]). The exponent is fitted by least squares in logarithms from an eighth of the
+/// shorter side to waves of four of the longer cell sides. Cost O(N log N) for N points, memory about three
+/// times that of the map.
 ///
 /// ```
 /// use contact_model::SelfAffine;
@@ -109,7 +115,8 @@ pub fn describe(map: &HeightMap) -> Description {
     }
 }
 
-/// The map about its mean under Hann's window; `None` where the mean is not representable, which finite reliefs exclude.
+/// The map about its mean under Hann's window; `None` where the mean is not representable, which finite
+/// reliefs exclude.
 fn windowed(map: &HeightMap, middle: f64) -> Option<HeightMap> {
     let Cells { columns, rows } = map.cells();
     let window = |count: usize| -> Vec<f64> {

@@ -21,7 +21,8 @@ pub fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(Error::system("create the directory", path))
 }
 
-/// Writes a file whole: into a temporary name beside it, then renamed over it. A failure leaves no file, and an old one as it was.
+/// Writes a file whole: into a temporary name beside it, then renamed over it. A failure leaves no file, and
+/// an old one as it was.
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses (permission, full disk).

@@ -45,7 +45,8 @@ const FOREIGN: [(&[u8], &str, &str); 9] = [
 ];
 
 impl Format {
-    /// The format by what is said, the first bytes and the name's ending; `None` for text that may be a matrix or points.
+    /// The format by what is said, the first bytes and the name's ending; `None` for text that may be a
+    /// matrix or points.
     pub(crate) fn tell(said: Option<Self>, path: &Path, start: &[u8]) -> Result<Option<Self>, Problem> {
         if start.is_empty() {
             return Err(Problem::Empty);

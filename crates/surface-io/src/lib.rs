@@ -1,7 +1,8 @@
 //! Surfaces from and to files, and quantities with units.
 //!
-//! Two steps, so that a person can look between them: a [`Scan`] is what a file holds, with undefined points and in its own unit, and
-//! [`Understood`] says what was taken from it; [`Scan::map`] makes a [`contact_model::HeightMap`] of it, doing only what a [`Treatment`] names.
+//! Two steps, so that a person can look between them: a [`Scan`] is what a file holds, with undefined points
+//! and in its own unit, and [`Understood`] says what was taken from it; [`Scan::map`] makes a
+//! [`contact_model::HeightMap`] of it, doing only what a [`Treatment`] names.
 //!
 //! ```
 //! use surface_io::{Declared, Fill, Scan, Treatment, Undefined, describe};
@@ -22,49 +23,60 @@
 //!
 //! # Nothing is guessed silently
 //!
-//! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`Declared::format`], everything else as a text matrix; three columns without either
-//!   are points or a matrix by their comments, or an error. Other files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
-//! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace. Comments begin with `#` or `%`; of them
-//!   `Width`, `Height`, `Value units` and `Lateral units` count, as Gwyddion's exports and this crate write them. Decimal commas are read when said
-//!   ([`Decimal::Comma`]). An empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined
-//!   points.
-//! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so is a header's width or height without the
-//!   other, and two that are square cells within the decimals that are printed. Cells whose sides differ by more than 1e4 are an error.
-//! * **Points.** In any order; the spacing along each axis is the smallest step, refined over the whole range, and one for both where they differ by
-//!   no more than the points are off their places. A point may be off its place by a tenth of a found spacing
-//!   or a quarter of a given one, how far one is is told, two points at one place and a grid more than half empty are errors.
-//! * **NPY.** Two axes of float64, float32, float16 or integers, either byte order, row by row or column by column. An integer that no double holds is an error.
-//! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any unit both stay as they are. What is
-//!   given beside what the file says must agree with it within the digits of a header (0.5 %).
-//! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both), infinite heights always.
-//! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row, column]`.
+//! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`Declared::format`], everything else as
+//!   a text matrix; three columns without either are points or a matrix by their comments, or an error. Other
+//!   files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
+//! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
+//!   Comments begin with `#` or `%`; of them `Width`, `Height`, `Value units` and `Lateral units` count, as
+//!   Gwyddion's exports and this crate write them. Decimal commas are read when said ([`Decimal::Comma`]). An
+//!   empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined points.
+//! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
+//!   is a header's width or height without the other, and two that are square cells within the decimals that
+//!   are printed. Cells whose sides differ by more than 1e4 are an error.
+//! * **Points.** In any order; the spacing along each axis is the smallest step, refined over the whole
+//!   range, and one for both where they differ by no more than the points are off their places. A point may
+//!   be off its place by a tenth of a found spacing or a quarter of a given one, how far one is is told, two
+//!   points at one place and a grid more than half empty are errors.
+//! * **NPY.** Two axes of float64, float32, float16 or integers, either byte order, row by row or column by
+//!   column. An integer that no double holds is an error.
+//! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any
+//!   unit both stay as they are. What is given beside what the file says must agree with it within the digits
+//!   of a header (0.5 %).
+//! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both),
+//!   infinite heights always.
+//! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row,
+//!   column]`.
 //!
 //! # Accuracy
 //!
-//! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them ([`Quantity`]); heights of a scan are converted with one
-//! rounding. What is written is read again to the bit ([`text()`], [`xyz`], [`npy`]); so are the
-//! sides in text and XYZ. Trends are exact to 1e-13 of the range of the heights, filled points to 1e-10.
+//! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them
+//! ([`Quantity`]); heights of a scan are converted with one rounding. What is written is read again to the
+//! bit ([`text()`], [`xyz`], [`npy`]); so are the sides in text and XYZ. Trends are exact to 1e-13 of the
+//! range of the heights, filled points to 1e-10.
 //!
 //! # Hostile files
 //!
-//! Readers never panic, and hold at most 24 bytes for each byte of the file (a map without digits: single zeros on a half-empty grid; 1 for NPY, about 2
-//! for text) besides 100 kB. Sizes that a header claims are compared with the length of the file before anything is allocated, and
-//! files beyond [`Declared::largest_bytes`] are not read. `tests/hostile.rs` counts.
+//! Readers never panic, and hold at most 24 bytes for each byte of the file (a map without digits: single
+//! zeros on a half-empty grid; 1 for NPY, about 2 for text) besides 100 kB. Sizes that a header claims are
+//! compared with the length of the file before anything is allocated, and files beyond
+//! [`Declared::largest_bytes`] are not read. `tests/hostile.rs` counts.
 //!
 //! # Speed
 //!
-//! On one core of a busy machine of the 2020s a map of 1024 x 1024 cells is read from NPY in 0.02 s, from text in 0.12 s and from points in 0.45 s, written in
-//! 0.02, 0.2 and 0.5 s (VTI 0.07 s), and described in 0.03 s. [`Fill::Neighbours`] takes as many sweeps over the undefined points as the largest patch
-//! of them is wide.
+//! On one core of a busy machine of the 2020s a map of 1024 x 1024 cells is read from NPY in 0.02 s, from
+//! text in 0.12 s and from points in 0.45 s, written in 0.02, 0.2 and 0.5 s (VTI 0.07 s), and described in
+//! 0.03 s. [`Fill::Neighbours`] takes as many sweeps over the undefined points as the largest patch of them
+//! is wide.
 //!
 //! # Writing
 //!
-//! [`write_map`] by the name's ending; [`npy`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or
-//! not at all.
+//! [`write_map`] by the name's ending; [`npy`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes,
+//! and [`files::write_whole`] puts them into a file whole or not at all.
 //!
 //! # What it does not do
 //!
-//! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers, filters.
+//! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers,
+//! filters.
 
 mod describe;
 mod error;

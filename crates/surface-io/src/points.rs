@@ -73,7 +73,8 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
     Ok(Found { format: Format::Xyz, details, rows, columns, heights, unit, extent })
 }
 
-/// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not guessed at.
+/// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not
+/// guessed at.
 fn lateral_unit(declared: &Declared, table: &Table, heights: Option<&Unit>) -> Result<Option<Unit>, Problem> {
     let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
     if let (Some(a), Some(b)) = (file, given)
@@ -106,10 +107,11 @@ fn spacing_of(cell: Quantity, lateral: Option<&Unit>) -> Result<f64, Problem> {
     }
 }
 
-/// Both axes by their spacings, or by the width and height in the comments where an axis has one place only. `None` where neither says it.
+/// Both axes by their spacings, or by the width and height in the comments where an axis has one place only.
+/// `None` where neither says it.
 ///
-/// What the comments say replaces what differs from it by roundings of the coordinates only. One spacing serves both axes where they differ by no more than
-/// the points are off their places.
+/// What the comments say replaces what differs from it by roundings of the coordinates only. One spacing
+/// serves both axes where they differ by no more than the points are off their places.
 fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Extent>; 2], Problem> {
     let quantity = |spacing: f64| {
         Quantity::of(spacing, unit).map_err(|source| Problem::Quantity { what: "spacing", source })

@@ -1,7 +1,8 @@
 //! Numbers with units: `"1 mm"`, `"70 GPa"`, `"50 mJ/m^2"`.
 //!
-//! Own code rather than a crate: `uom` fixes units at compile time and reads one type of quantity per parser, the crates that parse any unit are
-//! under the GPL or young, and a scene file needs one thing that none has: an error that says what was meant by `Mpa`.
+//! Own code rather than a crate: `uom` fixes units at compile time and reads one type of quantity per parser,
+//! the crates that parse any unit are under the GPL or young, and a scene file needs one thing that none has:
+//! an error that says what was meant by `Mpa`.
 
 mod dimension;
 mod error;
@@ -94,10 +95,12 @@ impl FromStr for Quantity {
 
     /// Reads a number and a unit, with or without a space between; a number alone has no dimension.
     ///
-    /// For units that are powers of ten of SI units (all but minutes and hours) the result is the double nearest to what is written.
+    /// For units that are powers of ten of SI units (all but minutes and hours) the result is the double
+    /// nearest to what is written.
     ///
     /// # Errors
-    /// [`QuantityError`] for what is no number, a decimal comma, an unknown unit (with what may have been meant), a number that does not fit.
+    /// [`QuantityError`] for what is no number, a decimal comma, an unknown unit (with what may have been
+    /// meant), a number that does not fit.
     fn from_str(text: &str) -> Result<Self, QuantityError> {
         let text = text.trim();
         let (mantissa, exponent, rest) = split(text)?;

@@ -19,8 +19,8 @@ pub struct Declared {
     pub unit: Option<Unit>,
     /// Unit of x and y of points.
     pub lateral_unit: Option<Unit>,
-    /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights have
-    /// no unit. One value is that of a square map.
+    /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights
+    /// have no unit. One value is that of a square map.
     pub size: Option<Sides>,
     /// Sides of one cell, dx and dy, instead of the size. One value is that of square cells.
     pub cell: Option<Sides>,
@@ -178,7 +178,8 @@ impl Scan {
     /// Memory: the heights for NPY; for text the file and at most four times its length on top.
     ///
     /// # Errors
-    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the file or contradicts what is declared.
+    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the
+    /// file or contradicts what is declared.
     pub fn read(path: &Path, declared: &Declared) -> Result<Self> {
         // Looked at before it is opened: opening a pipe waits for a writer.
         let about = std::fs::metadata(path).map_err(Error::system("open", path))?;
@@ -189,7 +190,8 @@ impl Scan {
         Self::from_reader(path, BufReader::new(file), about.len(), declared)
     }
 
-    /// Reads the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's name.
+    /// Reads the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's
+    /// name.
     ///
     /// # Errors
     /// As [`Scan::read`].
@@ -325,8 +327,8 @@ impl Scan {
     }
 }
 
-/// Rms height of the defined points about their mean: about the middle of the range and in units of half of it, so that nothing overflows; summed row by
-/// row, so that rounding grows with the side only.
+/// Rms height of the defined points about their mean: about the middle of the range and in units of half of
+/// it, so that nothing overflows; summed row by row, so that rounding grows with the side only.
 fn rms(heights: &[f64], columns: usize, undefined: usize, [low, high]: [f64; 2]) -> f64 {
     let (middle, unit) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
     if unit <= 0.0 {

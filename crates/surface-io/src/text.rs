@@ -22,7 +22,8 @@ pub(crate) enum Delimiter {
 }
 
 impl Delimiter {
-    /// The delimiter of a line of data: a semicolon if there is one, else a tab, else a comma, else whitespace.
+    /// The delimiter of a line of data: a semicolon if there is one, else a tab, else a comma, else
+    /// whitespace.
     fn of(line: &[u8], decimal: Decimal) -> Self {
         if line.contains(&b';') {
             Self::Semicolon

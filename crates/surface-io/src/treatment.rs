@@ -31,8 +31,8 @@ pub struct Treatment {
 /// A part of a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Crop {
-    /// The largest square in the middle, as nearly as oblong cells make one; where the margins are odd, the upper and the left one are
-    /// the smaller.
+    /// The largest square in the middle, as nearly as oblong cells make one; where the margins are odd, the
+    /// upper and the left one are the smaller.
     Centre,
     /// The rectangle of `rows` x `columns` cells whose first cell is (row, column), counted from 0.
     Window {
@@ -58,9 +58,10 @@ pub enum Undefined {
 /// Heights for undefined points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fill {
-    /// The discrete harmonic function with the measured rim: each filled height is the mean of those of its neighbours (four inside, fewer
-    /// at an edge), filled ones included, with the weights dy/dx along x and dx/dy along y. Unique, between the lowest and the highest
-    /// height of the rim, and a plane stays a plane inside.
+    /// The discrete harmonic function with the measured rim: each filled height is the mean of those of its
+    /// neighbours (four inside, fewer at an edge), filled ones included, with the weights dy/dx along x and
+    /// dx/dy along y. Unique, between the lowest and the highest height of the rim, and a plane stays a plane
+    /// inside.
     Neighbours,
     /// The least-squares plane through all measured heights.
     Plane,
@@ -69,16 +70,19 @@ pub enum Fill {
 }
 
 impl Scan {
-    /// A map: crop, fill, subtract the trend, average over larger cells; in metres where the scan has units, else in its own numbers.
+    /// A map: crop, fill, subtract the trend, average over larger cells; in metres where the scan has units,
+    /// else in its own numbers.
     ///
-    /// The trend is fitted to measured heights only and subtracted from all. Where undefined points are kept, the mean over a larger cell is that of its
-    /// defined part, and the cell is undefined where this is less than half of it. Cost O(N) for N points, with
-    /// [`Fill::Neighbours`] times the width of the undefined patches.
+    /// The trend is fitted to measured heights only and subtracted from all. Where undefined points are kept,
+    /// the mean over a larger cell is that of its defined part, and the cell is undefined where this is less
+    /// than half of it. Cost O(N) for N points, with [`Fill::Neighbours`] times the width of the undefined
+    /// patches.
     ///
     /// # Errors
-    /// [`Error::Content`]: undefined points that are neither filled nor kept, or both; sides or unit of the heights not said (one of them with
-    /// a unit and the other without), cells whose sides differ by more than 1e4, a crop that leaves the map, finer cells, heights that
-    /// overflow, a trend that the heights do not determine.
+    /// [`Error::Content`]: undefined points that are neither filled nor kept, or both; sides or unit of the
+    /// heights not said (one of them with a unit and the other without), cells whose sides differ by more
+    /// than 1e4, a crop that leaves the map, finer cells, heights that overflow, a trend that the heights do
+    /// not determine.
     ///
     /// ```
     /// use surface_io::{Declared, Detrend, Scan, Treatment};

@@ -1,7 +1,8 @@
 //! VTI, the XML file of image data of VTK, for ParaView.
 //!
-//! After "VTK File Formats" (docs.vtk.org) and, where it is silent, vtkXMLWriter: an array in the appended section is its length in bytes as `UInt64` followed by
-//! its numbers, both in one run of base64; offsets count characters of base64 after the underscore.
+//! After "VTK File Formats" (docs.vtk.org) and, where it is silent, vtkXMLWriter: an array in the appended
+//! section is its length in bytes as `UInt64` followed by its numbers, both in one run of base64; offsets
+//! count characters of base64 after the underscore.
 
 use crate::error::Problem;
 use crate::write::Lines;
@@ -30,15 +31,18 @@ pub enum Encoding {
 /// VTK's mark of a cell that is not shown (`vtkDataSetAttributes::HIDDENCELL`).
 const HIDDEN: u8 = 32;
 
-/// The bytes of a VTI file: fields as data of cells (columns along x, rows along y) on a rectangle of the given size in the plane z = 0,
-/// the first corner at the origin. A single number for the cells or the size makes it a square.
+/// The bytes of a VTI file: fields as data of cells (columns along x, rows along y) on a rectangle of the
+/// given size in the plane z = 0, the first corner at the origin. A single number for the cells or the size
+/// makes it a square.
 ///
-/// Row 0 is at y = 0. In ParaView, "Cell Data to Point Data" goes before "Warp By Scalar". An undefined point is NaN in the field, and VTK's array
-/// `vtkGhostType` hides the cells where any field is undefined; without such a point there is no such array.
+/// Row 0 is at y = 0. In ParaView, "Cell Data to Point Data" goes before "Warp By Scalar". An undefined point
+/// is NaN in the field, and VTK's array `vtkGhostType` hides the cells where any field is undefined; without
+/// such a point there is no such array.
 ///
 /// # Errors
-/// [`Problem::Said`] for a field of another size or a side that is not positive, [`Problem::NoCells`] for no rows or columns;
-/// [`Problem::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for one with a NaN: VTK's reader of decimals stops there.
+/// [`Problem::Said`] for a field of another size or a side that is not positive, [`Problem::NoCells`] for no
+/// rows or columns; [`Problem::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for one
+/// with a NaN: VTK's reader of decimals stops there.
 ///
 /// ```
 /// use surface_io::{Encoding, Field, vti};

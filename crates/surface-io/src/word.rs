@@ -128,7 +128,8 @@ impl FromStr for Undefined {
 impl FromStr for Crop {
     type Err = WordError;
 
-    /// Reads `centre`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are as many columns as rows.
+    /// Reads `centre`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are
+    /// as many columns as rows.
     ///
     /// # Errors
     /// [`WordError`] for other words.

@@ -45,8 +45,9 @@ impl Metric {
 
 /// Writes a map whole or not at all, in the format of the name's ending: `npy`, `txt`, `xyz` or `vti`.
 ///
-/// Text, XYZ and VTI say the size and the unit, NPY (an array `[row, column]`) says neither. Every number is written so that the same double is
-/// read again. Undefined points are `nan` in text and XYZ, NaN in NPY and VTI; VTI also hides their cells ([`vti`]).
+/// Text, XYZ and VTI say the size and the unit, NPY (an array `[row, column]`) says neither. Every number is
+/// written so that the same double is read again. Undefined points are `nan` in text and XYZ, NaN in NPY and
+/// VTI; VTI also hides their cells ([`vti`]).
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses, [`Error::Content`] for another ending.
@@ -101,7 +102,8 @@ pub fn text(map: &HeightMap, metric: Metric) -> String {
     written.text
 }
 
-/// Points x, y, z, one per line, at the centres of the cells, with size and units in comments; z is `nan` at undefined points.
+/// Points x, y, z, one per line, at the centres of the cells, with size and units in comments; z is `nan` at
+/// undefined points.
 ///
 /// ```
 /// use surface_io::{Metric, xyz};

@@ -1,4 +1,5 @@
-//! Readers under files that nobody meant well: they never panic and never allocate more than a stated multiple of the file.
+//! Readers under files that nobody meant well: they never panic and never allocate more than a stated
+//! multiple of the file.
 
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 #![allow(unsafe_code)] // A global allocator that counts is unsafe by its nature; it hands everything to the system's.
@@ -48,7 +49,8 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What is stated on the crate's front page: the file itself, 8 bytes for nothing between two commas, twice that for points on a half-empty grid.
+/// What is stated on the crate's front page: the file itself, 8 bytes for nothing between two commas, twice
+/// that for points on a half-empty grid.
 const MULTIPLE: usize = 24;
 
 /// Errors, words of `Understood`, the buffer of NPY.
@@ -273,7 +275,8 @@ fn real_files_stay_below_the_multiple() {
     }
 }
 
-/// Every contradiction and every impossible rectangle has a message with the file, the value and what was expected.
+/// Every contradiction and every impossible rectangle has a message with the file, the value and what was
+/// expected.
 #[test]
 fn impossible_rectangles_are_named() {
     let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };

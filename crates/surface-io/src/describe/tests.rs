@@ -28,8 +28,8 @@ fn a_part_of_a_surface_is_not_periodic_and_keeps_its_dimension() {
     let raw =
         hurst_from_spectrum(&radial_spectrum(&part).unwrap(), found.fitted[0], found.fitted[1]).unwrap();
     assert!((3.0 - raw - 2.2).abs() > SCATTER);
-    // The window keeps the level of the spectrum: the same waves have the same density in the part and in the whole, within the scatter of rings of a
-    // few hundred waves.
+    // The window keeps the level of the spectrum: the same waves have the same density in the part and in the
+    // whole, within the scatter of rings of a few hundred waves.
     let level = |d: &Description, q: f64| {
         let inside: Vec<f64> =
             d.spectrum.iter().filter(|p| p.0 > q && p.0 < 2.0 * q).map(|p| p.1.ln()).collect();

@@ -2,10 +2,12 @@
 
 use crate::error::Problem;
 
-/// Coordinates nearer to each other than this share of their range are one: digits that a program rounded in double precision.
+/// Coordinates nearer to each other than this share of their range are one: digits that a program rounded in
+/// double precision.
 const SAME: f64 = 1e-9;
 
-/// How far a coordinate may be off its place, in spacings that were found: coordinates printed with few digits.
+/// How far a coordinate may be off its place, in spacings that were found: coordinates printed with few
+/// digits.
 const OFF_FOUND: f64 = 0.1;
 
 /// The same for spacings that were given: a quarter leaves no doubt which place is meant.
@@ -27,7 +29,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// The grid of these coordinates: with the given spacing, else with the smallest step between two of them, refined over their whole range.
+    /// The grid of these coordinates: with the given spacing, else with the smallest step between two of
+    /// them, refined over their whole range.
     pub(super) fn find(name: char, mut values: Vec<f64>, given: Option<f64>) -> Result<Self, Problem> {
         values.sort_unstable_by(f64::total_cmp);
         let (Some(&origin), Some(&last)) = (values.first(), values.last()) else {

@@ -1,4 +1,5 @@
-use crate::{Declared, Problem, Scan};
+use crate::{Declared, Problem, Quantity, Scan};
+use contact_model::Size;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -93,22 +94,23 @@ fn bad_points_are_named() {
 
 #[test]
 fn cells_are_oblong_or_square_as_the_points_say() {
-    let cell = |text: &str| read(text).unwrap().understood().cell.clone().unwrap().value.map(|s| s.value());
-    assert_eq!(cell("0 0 1\n1 0 2\n0 2 3\n1 2 3\n"), [1.0, 2.0]);
-    // Points off their places by 0.5 % leave the spacing of three of them open to 1 %: 1.005 and 0.995 are one.
+    let cell = |text: &str| read(text).unwrap().understood().cell.clone().unwrap().value.map(Quantity::value);
+    assert_eq!(Size::from(cell("0 0 1\n1 0 2\n0 2 3\n1 2 3\n")), [1.0, 2.0].into());
+    // Points off their places by 0.5 % leave the spacing of three of them open to 1 %: 1.005 and 0.995 are
+    // one.
     let [dx, dy] =
         cell("0 0 1\n1.01 0 2\n2.01 0 3\n0 1 1\n1.01 1 2\n2.01 1 3\n0 1.99 1\n1.01 1.99 2\n2.01 1.99 3\n");
     assert!(dx.to_bits() == dy.to_bits() && (dx - 1.0).abs() < 1e-12);
     let exact = cell("0 0 1\n1 0 2\n2 0 3\n0 0.99 1\n1 0.99 2\n2 0.99 3\n0 1.98 1\n1 1.98 2\n2 1.98 3\n");
-    assert_eq!(exact, [1.0, 0.99]);
+    assert_eq!(Size::from(exact), [1.0, 0.99].into());
     // One row has no spacing along y unless somebody says it.
     let row = "0 0 1\n1 0 2\n2 0 3\n";
     assert_eq!(read(row).unwrap().understood().cell, None);
     let said = format!("# Width: 3\n# Height: 0.5\n# Lateral units: none\n# Value units: none\n{row}");
-    assert_eq!(cell(&said), [1.0, 0.5]);
+    assert_eq!(Size::from(cell(&said)), [1.0, 0.5].into());
     let declared = Declared { cell: "1 x 0.25".parse().ok(), ..Declared::default() };
     let scan = Scan::from_bytes("a.xyz", row.as_bytes(), &declared).unwrap();
-    assert_eq!(scan.understood().size.unwrap().map(|s| s.value()), [3.0, 0.25]);
+    assert_eq!(Size::from(scan.understood().size.unwrap().map(Quantity::value)), [3.0, 0.25].into());
 }
 
 #[test]
@@ -148,7 +150,7 @@ proptest! {
         for i in kept {
             prop_assert_eq!(scan.height(i / columns, i % columns), Some(i as f64));
         }
-        let [dx, dy] = scan.understood().cell.clone().unwrap().value.map(|side| side.value());
+        let [dx, dy] = scan.understood().cell.clone().unwrap().value.map(Quantity::value);
         // Coordinates are rounded at the size of the origin.
         prop_assert!((dx - spacing.0).abs() <= 1e-12 * (origin.abs() + spacing.0));
         prop_assert!((dy - spacing.1).abs() <= 1e-12 * (origin.abs() + spacing.1));

@@ -14,9 +14,10 @@ const LONGEST: usize = 64;
 
 /// A unit such as `um`, `GPa`, `J/m^2` or `W/(m K)`.
 ///
-/// Symbols m, g, s, A, K, N, Pa, J, W, V, Ohm, Hz, bar with the prefixes f, p, n, u (also the Greek letter), m, c, d, k, M, G, T; angstrom, min, h, %.
-/// Products by a space, `*` or a centred dot, one `/` with brackets around more than one symbol behind it, powers as `^2` or as superscripts. The
-/// empty text and `none` are the unit of plain numbers.
+/// Symbols m, g, s, A, K, N, Pa, J, W, V, Ohm, Hz, bar with the prefixes f, p, n, u (also the Greek letter),
+/// m, c, d, k, M, G, T; angstrom, min, h, %. Products by a space, `*` or a centred dot, one `/` with brackets
+/// around more than one symbol behind it, powers as `^2` or as superscripts. The empty text and `none` are
+/// the unit of plain numbers.
 ///
 /// ```
 /// let unit: surface_io::Unit = "um".parse()?;
@@ -51,7 +52,8 @@ impl Unit {
 
     /// A number of this unit in SI units, rounded once for powers of ten up to 22.
     pub fn to_si(&self, number: f64) -> f64 {
-        // 10^22 is the largest power of ten that a double holds exactly; dividing by one rounds once, multiplying by 1e-6 twice.
+        // 10^22 is the largest power of ten that a double holds exactly; dividing by one rounds once,
+        // multiplying by 1e-6 twice.
         let scaled = if self.exponent < 0 {
             number / 10_f64.powi(-self.exponent)
         } else {
@@ -68,7 +70,8 @@ impl Unit {
             && self.factor.to_bits() == other.factor.to_bits()
     }
 
-    /// A number written with this unit: mantissa and exponent are read together, so that only the nearest double is taken.
+    /// A number written with this unit: mantissa and exponent are read together, so that only the nearest
+    /// double is taken.
     pub(super) fn joined(&self, mantissa: &str, exponent: i64) -> Option<f64> {
         let exponent = exponent + i64::from(self.exponent);
         format!("{mantissa}e{exponent}").parse::<f64>().ok().map(|value| value * self.factor)
@@ -88,7 +91,8 @@ impl FromStr for Unit {
     /// Reads a unit.
     ///
     /// # Errors
-    /// [`QuantityError::Unit`] with the part that is unknown and what may have been meant; [`QuantityError::Form`] for a product that can be read in two ways.
+    /// [`QuantityError::Unit`] with the part that is unknown and what may have been meant;
+    /// [`QuantityError::Form`] for a product that can be read in two ways.
     fn from_str(text: &str) -> Result<Self, QuantityError> {
         let text = text.trim();
         if text.is_empty() || text == "none" {

@@ -1,4 +1,5 @@
-//! What comments say: `# Width: 10 um`, `# Height: 10 um`, `# Value units: m`, as Gwyddion exports them and this crate writes them.
+//! What comments say: `# Width: 10 um`, `# Height: 10 um`, `# Value units: m`, as Gwyddion exports them and
+//! this crate writes them.
 
 use crate::error::Problem;
 use crate::format::Format;
@@ -64,14 +65,16 @@ impl Heading {
         Ok(())
     }
 
-    /// The format that the comments are those of: points have a unit of x and y, a matrix has a width and a height.
+    /// The format that the comments are those of: points have a unit of x and y, a matrix has a width and a
+    /// height.
     pub(crate) fn format(&self) -> Option<Format> {
         let matrix = self.width.is_some() && self.height.is_some();
         let points = self.lateral_unit.is_some();
         if points { Some(Format::Xyz) } else { matrix.then_some(Format::Text) }
     }
 
-    /// Width and height. Without a unit they count only where the heights are said to have none: elsewhere they are numbers of pixels.
+    /// Width and height. Without a unit they count only where the heights are said to have none: elsewhere
+    /// they are numbers of pixels.
     pub(crate) fn sides(&self) -> [Option<Side>; 2] {
         let plain = self.unit.as_ref().is_some_and(|u| u.dimension() == Dimension::NONE);
         let counts = |side: &Side| plain || side.quantity.dimension() == Dimension::LENGTH;
@@ -87,7 +90,7 @@ fn side(text: &str) -> Option<Side> {
     let exponent = text.trim()[number.len()..].starts_with(['e', 'E']);
     let rounding = match (number.split_once('.'), number.parse::<f64>()) {
         (Some((_, decimals)), Ok(number)) if !exponent => {
-            0.5 * 10_f64.powi(-(decimals.len() as i32)) / number.abs()
+            0.5 * 0.1_f64.powf(decimals.len() as f64) / number.abs()
         }
         _ => 0.0,
     };

@@ -18,8 +18,8 @@ pub(crate) fn matrix(table: Table, declared: &Declared) -> Result<Found, Problem
     Ok(Found { format: Format::Text, details, rows, columns, heights: table.values, unit, extent })
 }
 
-/// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells are square within the
-/// digits that it prints.
+/// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells
+/// are square within the digits that it prints.
 fn extents(table: &Table, columns: usize, rows: usize) -> Result<[Option<Extent>; 2], Problem> {
     let [width, height] = table.heading.sides();
     let cell = |side: Extent, count: usize| side.cell(count).map(Extent::Cell);

@@ -1,4 +1,5 @@
-use crate::{Decimal, Declared, NumberKind, Place, Problem, Scan, Speaker};
+use crate::{Decimal, Declared, NumberKind, Place, Problem, Quantity, Scan, Speaker};
+use contact_model::Size;
 
 fn read(text: &[u8]) -> crate::Result<Scan> {
     Scan::from_bytes("a.txt", text, &Declared::default())
@@ -76,9 +77,9 @@ fn what_a_heading_says_counts() {
     for bytes in [gwyddion.as_bytes(), &latin] {
         let scan = read(bytes).unwrap();
         let cell = scan.understood().cell.clone().unwrap();
-        let sides = cell.value.map(|side| side.value());
+        let sides = cell.value.map(Quantity::value);
         assert_eq!((sides, cell.by), ([5e-6; 2], Speaker::File));
-        assert_eq!(scan.understood().size.unwrap().map(|side| side.value()), [10e-6, 5e-6]);
+        assert_eq!(Size::from(scan.understood().size.unwrap().map(Quantity::value)), [10e-6, 5e-6].into());
         assert_eq!(scan.understood().unit.clone().unwrap().value.to_string(), "m");
     }
     // A number of pixels is no length.
@@ -101,7 +102,8 @@ fn what_a_heading_says_counts() {
     }
     assert_eq!(read(b"# Value units:\n1\n").unwrap().understood().unit, None);
     let oblong = read(b"# Width: 3 um\n# Height: 2 um\n1 2\n3 4\n").unwrap();
-    assert_eq!(oblong.understood().cell.clone().unwrap().value.map(|side| side.value()), [1.5e-6, 1e-6]);
+    let cell = oblong.understood().cell.clone().unwrap().value.map(Quantity::value);
+    assert_eq!(Size::from(cell), [1.5e-6, 1e-6].into());
     assert!(oblong.understood().to_string().contains("cell       1.5e-6 m x 1e-6 m"));
     assert_eq!(
         read(b"1 2\n# Width: 3 um\n# Height: -2 um\n3 4\n").unwrap_err().to_string(),
@@ -228,7 +230,7 @@ fn printed_decimals_do_not_make_cells_oblong() {
     let row = "1 2 3 4 5 6 7\n";
     let cell = |width: &str, height: &str| {
         let text = format!("# Width: {width}\n# Height: {height}\n{}", row.repeat(3));
-        read(text.as_bytes()).unwrap().understood().cell.clone().unwrap().value.map(|side| side.value())
+        read(text.as_bytes()).unwrap().understood().cell.clone().unwrap().value.map(Quantity::value)
     };
     // 10/7 = 1.428571, 4.29/3 = 1.43: within the last digit of 4.29.
     let [dx, dy] = cell("10.00 um", "4.29 um");
@@ -247,8 +249,8 @@ fn sizes_are_one_value_or_two_and_agree() {
         let scan = Scan::from_bytes("a.txt", b"1 2 3 4\n5 6 7 8\n", &declared).map_err(|e| e.to_string())?;
         let found = scan.understood();
         Ok::<_, String>((
-            found.size.unwrap().map(|s| s.value()),
-            found.cell.clone().unwrap().value.map(|s| s.value()),
+            found.size.unwrap().map(Quantity::value),
+            found.cell.clone().unwrap().value.map(Quantity::value),
         ))
     };
     assert_eq!(with(&|d| d.size = "4 m x 1 m".parse().ok()), Ok(([4.0, 1.0], [1.0, 0.5])));

@@ -2,15 +2,18 @@
 
 use contact_model::Cells;
 
-/// Residual, as a share of the first one, at which the iteration ends: rounding of heights of six digits is far larger.
+/// Residual, as a share of the first one, at which the iteration ends: rounding of heights of six digits is
+/// far larger.
 const TOLERANCE: f64 = 1e-12;
 
-/// Fills every NaN so that it is the weighted mean of its neighbours; at least one height must be measured. `aspect` is dy/dx of a cell.
+/// Fills every NaN so that it is the weighted mean of its neighbours; at least one height must be measured.
+/// `aspect` is dy/dx of a cell.
 ///
-/// The flow from one cell to the next is the difference of their heights times the length of their common edge over the distance of their centres:
-/// dy/dx along x, dx/dy along y, 1 for square cells. Conjugate gradients on the graph Laplacian of the missing cells, which is positive definite because the
-/// grid is connected. Cost O(m) for each of about as many iterations as the largest undefined patch is wide; memory 9 numbers for
-/// each of the m missing cells and one for every cell.
+/// The flow from one cell to the next is the difference of their heights times the length of their common
+/// edge over the distance of their centres: dy/dx along x, dx/dy along y, 1 for square cells. Conjugate
+/// gradients on the graph Laplacian of the missing cells, which is positive definite because the grid is
+/// connected. Cost O(m) for each of about as many iterations as the largest undefined patch is wide; memory 9
+/// numbers for each of the m missing cells and one for every cell.
 pub(super) fn harmonic(cells: Cells, aspect: f64, heights: &mut [f64]) {
     let missing: Vec<usize> = (0..heights.len()).filter(|&i| heights[i].is_nan()).collect();
     // What is measured has the number behind the last: a place of the vectors that stays 0.
@@ -32,7 +35,8 @@ pub(super) fn harmonic(cells: Cells, aspect: f64, heights: &mut [f64]) {
     };
     let inner: Vec<[usize; 4]> =
         missing.iter().map(|&i| neighbours(i).map(|j| j.map_or(measured, |j| number[j]))).collect();
-    // Heights about the middle of the measured ones and in units of half their range, so that nothing overflows.
+    // Heights about the middle of the measured ones and in units of half their range, so that nothing
+    // overflows.
     let (low, high) = heights
         .iter()
         .filter(|h| !h.is_nan())

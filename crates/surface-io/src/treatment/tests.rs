@@ -6,7 +6,8 @@ use proptest::prelude::*;
 /// Sums of a few hundred terms of size 1.
 const ROUNDING: f64 = 1e-13;
 
-/// The iteration that fills holes ends at 1e-12 of its first residual; the error is that times the width of the hole.
+/// The iteration that fills holes ends at 1e-12 of its first residual; the error is that times the width of
+/// the hole.
 const FILLED: f64 = 1e-10;
 
 /// A scan of cells of side 1 with the height `f(x, y)` in column x of row y, NaN where it is missing.
@@ -207,7 +208,8 @@ fn coarser_cells_are_means() {
     assert_eq!(treated(&fine, |t| t.cells = Some(4)).unwrap(), treated(&fine, |_| ()).unwrap());
 }
 
-/// Points that are kept undefined stay so through the crop and the trend, and coarse cells follow their larger half.
+/// Points that are kept undefined stay so through the crop and the trend, and coarse cells follow their
+/// larger half.
 #[test]
 fn undefined_points_are_kept() {
     let plane = |x: f64, y: f64| 5.0 + x - 2.0 * y;

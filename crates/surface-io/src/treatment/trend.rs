@@ -20,7 +20,8 @@ pub enum Detrend {
 /// Most unknowns.
 const MOST: usize = 6;
 
-/// A pivot of the scaled normal matrix below this is 0: the squares of coordinates that are one line to 1e-5 of their range.
+/// A pivot of the scaled normal matrix below this is 0: the squares of coordinates that are one line to 1e-5
+/// of their range.
 const SINGULAR: f64 = 1e-10;
 
 /// Coefficients of Legendre's polynomials in coordinates that run from -1 to 1 along each side.
@@ -52,7 +53,8 @@ impl Detrend {
         let measured = || heights.iter().enumerate().filter(|(_, h)| !h.is_nan());
         let (low, high) =
             measured().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (_, &h)| (a.min(h), b.max(h)));
-        // About the middle of the range and in units of half of it: nothing overflows, and an offset costs its own rounding only.
+        // About the middle of the range and in units of half of it: nothing overflows, and an offset costs
+        // its own rounding only.
         let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
         let unit = if half > 0.0 { half } else { 1.0 };
         let mut matrix = [[0.0; MOST]; MOST];
@@ -114,7 +116,8 @@ fn basis(row: usize, column: usize, cells: Cells) -> [f64; MOST] {
     [1.0, x, y, 1.5 * x * x - 0.5, x * y, 1.5 * y * y - 0.5]
 }
 
-/// Cholesky's factorisation of the scaled matrix, of which the lower triangle is given; `None` where it is singular.
+/// Cholesky's factorisation of the scaled matrix, of which the lower triangle is given; `None` where it is
+/// singular.
 fn solve(matrix: &mut [[f64; MOST]; MOST], mut right: [f64; MOST], n: usize) -> Option<[f64; MOST]> {
     let mut scale = [0.0; MOST];
     for i in 0..n {
