@@ -104,3 +104,6 @@ impl<T: Real> Vectors<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
