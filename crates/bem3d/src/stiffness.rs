@@ -126,3 +126,6 @@ fn set_error(table: &KernelTable, state: &Solved, left: &[f64], at_undecided: &[
     let removed: f64 = doubtful.map(|((_, q), _)| q * q).sum::<f64>() * table.own();
     added + removed
 }
+
+#[cfg(test)]
+mod tests;

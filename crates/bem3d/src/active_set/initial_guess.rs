@@ -216,3 +216,6 @@ fn prolonged(problem: &Problem, solved: &Solved) -> Guess {
     let p = cells.iter().map(|&(_, p)| p).collect();
     Guess { set: CellSet::from_index(grid, &index), p, d, far: true }
 }
+
+#[cfg(test)]
+mod tests;

@@ -32,3 +32,38 @@ impl Factor {
         (column(0), column(1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Grid;
+    use crate::operator::{DirectSum, InfluenceOperator};
+    use approx::assert_relative_eq;
+    use contact_model::Boundary;
+
+    #[test]
+    fn the_factor_inverts_the_direct_sum() {
+        let square = Grid::square(12, 12);
+        for (grid, boundary) in [
+            (square, Boundary::Free),
+            (square, Boundary::Periodic),
+            (Grid { columns: 9, rows: 14, stretch: 1.3 }, Boundary::Free),
+            (Grid { columns: 1, rows: 20, stretch: 1.0 }, Boundary::Periodic),
+        ] {
+            let table = KernelTable::shared(grid, boundary);
+            let picks = [true, false, true, true, false, true, false];
+            let cells = CellSet::all(grid).filter(|k| picks[k % picks.len()]);
+            let z: Vec<f64> = (0..cells.len()).map(|k| 1.0 + (k as f64 * 0.7).sin()).collect();
+            let (q, w) = Factor::new(&table, &cells).unwrap().solve_pair(&z);
+            let mut back = vec![0.0; z.len()];
+            DirectSum(&table).apply(&cells, &q, &cells, &mut back);
+            for b in &back {
+                assert_relative_eq!(*b, 1.0, max_relative = 1e-13);
+            }
+            DirectSum(&table).apply(&cells, &w, &cells, &mut back);
+            for (b, z) in back.iter().zip(&z) {
+                assert_relative_eq!(b, z, epsilon = 1e-13, max_relative = 1e-13);
+            }
+        }
+    }
+}

@@ -195,13 +195,14 @@ fn neighbours(levels: &mut [Level], coarse: usize) -> (&mut Level, &mut Level) {
 mod tests {
     use super::*;
 
-    const SIDE: usize = 21;
+    const WIDTH: usize = 21;
+    const HEIGHT: usize = 26;
 
     /// A set that leaves the right third of the grid open, and one that reaches its last, odd column and row.
     fn masks() -> [Vec<f32>; 2] {
-        [14, SIDE].map(|width| {
-            let inside = |i: usize| (i * i + i / 5) % 7 < 2 && i % SIDE < width || i == SIDE * SIDE - 1;
-            (0..SIDE * SIDE).map(|i| f32::from(u8::from(inside(i)))).collect()
+        [14, WIDTH].map(|width| {
+            let inside = |i: usize| (i * i + i / 5) % 7 < 2 && i % WIDTH < width || i == WIDTH * HEIGHT - 1;
+            (0..WIDTH * HEIGHT).map(|i| f32::from(u8::from(inside(i)))).collect()
         })
     }
 
@@ -211,12 +212,15 @@ mod tests {
 
     const DECAY: f32 = 0.7;
     /// The rows and columns of the window begin where those of the grid do not.
-    const WINDOW: Window = Window { x: 3, y: 5, width: SIDE, height: SIDE };
+    const WINDOW: Window = Window { x: 3, y: 5, width: WIDTH, height: HEIGHT };
 
     fn extension(mask: &[f32]) -> Extension {
-        let columns = |y: usize| (0..SIDE).filter(move |x| mask[y * SIDE + x] > 0.0).map(|x| (x + 3) as u32);
-        let set = CellSet::from_rows((0..SIDE).map(|y| (y + 5, columns(y))));
+        let columns = |y: usize| (0..WIDTH).filter(move |x| mask[y * WIDTH + x] > 0.0).map(|x| (x + 3) as u32);
+        let set = CellSet::from_rows((0..HEIGHT).map(|y| (y + 5, columns(y))));
         let mut extension = Extension::default();
+        // What it held before does not matter, in the same window and in another one.
+        extension.set(&set, Window { x: 0, y: 0, width: 40, height: 50 }, 0.1);
+        extension.set(&CellSet::from_rows([(7, [4, 9, 20])]), WINDOW, 0.2);
         extension.set(&set, WINDOW, DECAY);
         extension
     }
@@ -224,13 +228,13 @@ mod tests {
     /// r on the set, what is passed on elsewhere.
     fn forward(e: &mut Extension, mask: &[f32], r: &[f32]) -> Vec<f32> {
         e.clear();
-        for (y, row) in r.chunks_exact(SIDE).enumerate() {
+        for (y, row) in r.chunks_exact(WIDTH).enumerate() {
             e.add(y, row);
         }
         e.extend();
         let mut out = vec![0.0; r.len()];
-        for (y, out) in out.chunks_exact_mut(SIDE).enumerate() {
-            let k = y * SIDE..(y + 1) * SIDE;
+        for (y, out) in out.chunks_exact_mut(WIDTH).enumerate() {
+            let k = y * WIDTH..(y + 1) * WIDTH;
             e.fill(y, out);
             for ((out, r), m) in out.iter_mut().zip(&r[k.clone()]).zip(&mask[k]) {
                 *out = if *m > 0.0 { *r } else { *out };
@@ -242,12 +246,12 @@ mod tests {
     fn transposed(e: &mut Extension, mask: &[f32], u: &[f32]) -> Vec<f32> {
         e.clear();
         let mut outside: Vec<f32> = u.iter().zip(mask).map(|(u, m)| u * (1.0 - m)).collect();
-        for (y, row) in outside.chunks_exact_mut(SIDE).enumerate() {
+        for (y, row) in outside.chunks_exact_mut(WIDTH).enumerate() {
             e.add_outside(y, row);
         }
         e.collect();
         let mut out = vec![0.0; u.len()];
-        for (y, out) in out.chunks_exact_mut(SIDE).enumerate() {
+        for (y, out) in out.chunks_exact_mut(WIDTH).enumerate() {
             e.take(y, out);
         }
         out.iter().zip(u).zip(mask).map(|((above, u), m)| m * (u + above)).collect()
@@ -275,10 +279,10 @@ mod tests {
             let u = values(0.7, &vec![1.0; mask.len()]);
             let dot = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>();
             let back = transposed(&mut e, &mask, &u);
-            for x in 0..SIDE {
+            for x in 0..WIDTH {
                 let mut r = values(1.3, &mask);
                 for (i, r) in r.iter_mut().enumerate() {
-                    *r *= f32::from(u8::from(i % SIDE == x));
+                    *r *= f32::from(u8::from(i % WIDTH == x));
                 }
                 let (one, two) = (dot(&forward(&mut e, &mask, &r), &u), dot(&r, &back));
                 assert!((one - two).abs() < 1e-4 * one.abs().max(1.0), "column {x}: {one} {two}");

@@ -106,3 +106,6 @@ impl<T: Real> Vectors<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -26,3 +26,36 @@ impl<T: Real> InfluenceOperator<T> for DirectSum<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Grid;
+    use crate::kernel::love::influence_of_rectangle;
+    use approx::assert_relative_eq;
+    use contact_model::Boundary;
+
+    #[test]
+    fn a_sum_over_pairs_by_hand() {
+        // Cells (0, 0) and (4, 2) act on (4, 2) and (1, 1).
+        let grid = Grid { columns: 5, rows: 3, stretch: 1.3 };
+        let sources = CellSet::from_index(grid, &[0, 14]);
+        let targets = CellSet::from_index(grid, &[6, 14]);
+        let influence = |x, y| influence_of_rectangle(x, y, 1.3);
+        let mut u = [9.0; 2];
+        let sum = |boundary, u: &mut [f64]| {
+            DirectSum(&KernelTable::shared(grid, boundary)).apply(&sources, &[2.0, -1.0], &targets, u);
+        };
+        sum(Boundary::Free, &mut u);
+        assert_relative_eq!(u[0], 2.0 * influence(1, 1) - influence(3, 1), max_relative = 1e-14);
+        assert_relative_eq!(u[1], 2.0 * influence(4, 2) - influence(0, 0), max_relative = 1e-14);
+        // A lag of four in a period of five is one the other way round.
+        sum(Boundary::Periodic, &mut u);
+        let kernel = KernelTable::shared(grid, Boundary::Periodic);
+        assert_relative_eq!(u[1], 2.0 * kernel.row(1)[1] - kernel.row(0)[0], max_relative = 1e-14);
+        // In single precision only the result is rounded.
+        let mut single = [0.0f32; 2];
+        DirectSum(&kernel).apply(&sources, &[2.0f32, -1.0], &targets, &mut single);
+        assert_relative_eq!(f64::from(single[1]), u[1], max_relative = 1e-6);
+    }
+}

@@ -286,6 +286,38 @@ mod tests {
     #[test]
     fn runs_of_tiles() {
         assert_eq!(runs(7, |i| i != 2 && i != 3), [0..2, 4..7]);
+        assert!(runs(3, |_| false).is_empty());
+    }
+
+    #[test]
+    fn only_rows_with_cells_are_read_and_written() {
+        // More rows than two tiles; rows are seen in order, the given ones before the wanted ones.
+        let grid = Grid::square(6, 2 * TILE + 5);
+        let lengths = Lengths::free(grid.window());
+        let symbol = Symbol::of_kernel(lengths, influence);
+        let mut operator = FftConvolution::<f64>::new(grid.window(), lengths, symbol.scaled());
+        let (given, wanted) = ([1, TILE + 1, 2 * TILE + 4], [0, 3, 2 * TILE]);
+        let (mut read, mut written) = (Vec::new(), Vec::new());
+        for _ in 0..2 {
+            (read, written) = (Vec::new(), Vec::new());
+            operator.rows(
+                |y| given.contains(&y),
+                |y, row| {
+                    assert!(row.len() == 6 && row.iter().all(|&p| p == 0.0));
+                    row[2] = 1.0;
+                    read.push(y);
+                },
+                |y| wanted.contains(&y),
+                |y, row| written.push((y, row[4])),
+            );
+        }
+        assert_eq!(read, given);
+        for (&(y, u), wanted) in written.iter().zip(wanted) {
+            assert_eq!(y, wanted);
+            let expected: f64 = given.iter().map(|given| influence(2, given.abs_diff(y))).sum();
+            approx::assert_relative_eq!(u, expected, max_relative = 1e-13);
+        }
+        assert_eq!(written.len(), wanted.len());
     }
 
     #[test]

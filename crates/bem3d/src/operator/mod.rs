@@ -11,6 +11,8 @@ pub use direct::DirectSum;
 pub use fft::FftConvolution;
 pub use influence::InfluenceOperator;
 pub use operators::Operators;
+#[cfg(test)]
+pub use recipe::Application;
 pub use recipe::{Conditioning, Recipe};
 #[doc(hidden)]
 pub use two_level::{Split, TwoLevel};

@@ -183,3 +183,6 @@ fn planned<'a, T: Real>(
     }
     slot.get_or_insert_with(make)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,12 +1,12 @@
-//! Is the estimated error of the stiffness honest? Loose solves against tight ones.
+//! Does the estimated error of the stiffness cover the true one? Loose solves beside tight ones.
 
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};
 
-/// Share of true errors inside the estimate that is called honest.
-const INSIDE: f64 = 0.9;
-/// The median estimate may not be more than so many times the true error: a bound nobody can use is not honest either.
-const WASTE: f64 = 20.0;
+/// Coverage: share of the true errors that lie inside their estimate.
+const COVERAGE: f64 = 0.9;
+/// The median estimate is at most so many times the true error: a larger bound would be of no use.
+const OVERESTIMATE: f64 = 20.0;
 
 #[test]
 fn the_estimated_error_of_k_covers_the_true_one() {
@@ -36,6 +36,6 @@ fn the_estimated_error_of_k_covers_the_true_one() {
     let inside = ratios.iter().filter(|&&r| r <= 1.0).count() as f64 / ratios.len() as f64;
     let median = ratios[ratios.len() / 2];
     println!("{} solves: {inside:.3} inside, median true / estimated {median:.3}", ratios.len());
-    assert!(inside >= INSIDE, "only {inside} of the true errors lie inside their estimate");
-    assert!(median >= 1.0 / WASTE, "the estimates are {} times too large", 1.0 / median);
+    assert!(inside >= COVERAGE, "only {inside} of the true errors lie inside their estimate");
+    assert!(median >= 1.0 / OVERESTIMATE, "the estimates are {} times too large", 1.0 / median);
 }
