@@ -11,8 +11,8 @@ use crate::sample::number;
 use crate::sweep::collect;
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine, Size, Stop,
-    Surface, never,
+    Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
+    Size, Stop, Surface, never,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -231,8 +231,7 @@ fn series(bench: &Bench) -> Result<Vec<Series>> {
             scene.effects.boundary = bench.boundary;
             scene.outputs.pressure = bench.pressure.is_some();
             let (columns, rows) = (cells.columns, Some(cells.rows));
-            let model =
-                Bem3d { cells: columns, rows, tolerance, method: bench.method, ..Bem3d::default() };
+            let model = Bem3d { cells: columns, rows, tolerance, method: bench.method, ..Bem3d::default() };
             all.push(Series { surface: surface.clone(), drawn, cells, scene, seed, model });
         }
     }
@@ -315,8 +314,10 @@ impl Series {
         let stem = Path::new(&self.surface)
             .file_stem()
             .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let drawn =
-            row.drawn.map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells.columns)).unwrap_or_default();
+        let drawn = row
+            .drawn
+            .map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells.columns))
+            .unwrap_or_default();
         let name = format!("pressure_{stem}{drawn}_F{:?}_tol{:?}.npy", row.force_bar, row.tolerance);
         let shape = [row.cells.rows as u64, row.cells.columns as u64];
         write_npy(&directory.join(name), &shape, &pressure)
@@ -348,7 +349,12 @@ mod tests {
 
     fn small() -> Bench {
         Bench {
-            surfaces: Surfaces::SelfAffine { cells: vec![17], rows: None, fractal_dimensions: vec![2.4], seed: 3 },
+            surfaces: Surfaces::SelfAffine {
+                cells: vec![17],
+                rows: None,
+                fractal_dimensions: vec![2.4],
+                seed: 3,
+            },
             forces: Forces::parse("1,0.01").unwrap(),
             tolerances: vec![1e-6],
             boundary: Boundary::Free,
@@ -383,7 +389,8 @@ mod tests {
 
     #[test]
     fn a_rectangle_has_its_rows() {
-        let surfaces = Surfaces::SelfAffine { cells: vec![24], rows: Some(6), fractal_dimensions: vec![2.2], seed: 1 };
+        let surfaces =
+            Surfaces::SelfAffine { cells: vec![24], rows: Some(6), fractal_dimensions: vec![2.2], seed: 1 };
         for row in bench(&Bench { surfaces, ..small() }, &|_| Ok(())).unwrap() {
             assert!(row.converged());
             approx::assert_relative_eq!(row.normalisation.length, 1.0, max_relative = 1e-15);
@@ -409,8 +416,12 @@ mod tests {
 
     #[test]
     fn rows_stand_in_the_order_asked_for_whatever_the_threads() {
-        let surfaces =
-            Surfaces::SelfAffine { cells: vec![17, 9], rows: None, fractal_dimensions: vec![2.4, 2.0], seed: 3 };
+        let surfaces = Surfaces::SelfAffine {
+            cells: vec![17, 9],
+            rows: None,
+            fractal_dimensions: vec![2.4, 2.0],
+            seed: 3,
+        };
         let many = Bench { surfaces, tolerances: vec![1e-6, 1e-3], ..small() };
         let numbers = |threads| {
             let rows = bench(&Bench { threads, ..many.clone() }, &|_| Ok(())).unwrap();

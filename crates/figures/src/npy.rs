@@ -14,8 +14,13 @@ use surface_io::{Declared, Dimension, Format, Problem, Quantity, Scan, Treatment
 /// than it says, or holds a number that is not finite (with its row and column).
 pub fn read_map(path: &Path) -> Result<HeightMap> {
     let declared = |x: f64, y: f64| {
-        let side = |s: f64| Quantity::new(s, Dimension::NONE).map_err(|e| Error::content(path, e.to_string()));
-        Ok::<_, Error>(Declared { format: Some(Format::Npy), size: Some([side(x)?, side(y)?].into()), ..Declared::default() })
+        let side =
+            |s: f64| Quantity::new(s, Dimension::NONE).map_err(|e| Error::content(path, e.to_string()));
+        Ok::<_, Error>(Declared {
+            format: Some(Format::Npy),
+            size: Some([side(x)?, side(y)?].into()),
+            ..Declared::default()
+        })
     };
     let mut scan = Scan::read(path, &declared(1.0, 1.0)?).map_err(Error::from)?;
     let (rows, columns) = (scan.understood().rows, scan.understood().columns);

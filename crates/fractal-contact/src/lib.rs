@@ -98,7 +98,7 @@ pub use error::{Error, Result};
 pub use info::info;
 pub use loads::{Loads, Prescribed, Request};
 pub use make::Make;
-pub use numerics::{AnyModel, BoundaryElements, Numerics};
+pub use numerics::{AnyModel, Numerics};
 pub use outputs::{Asked, Format};
 pub use plan::{Cost, ModelPlan, Plan, check};
 pub use relief::Relief;

@@ -139,7 +139,7 @@ fn columns_and_rows_of_boundary_elements() {
     for (options, cells) in [("cells = 64", [64, 16]), ("cells = 64\nrows = 64", [64, 64])] {
         let scene = of(options);
         let elements = scene.models[0].boundary_elements().unwrap();
-        assert_eq!(elements.cells(scene.relief.size()), cells.into());
+        assert_eq!(elements.grid(scene.relief.size()), cells.into());
         // A sum of a rough surface and a body is drawn on these cells.
         match scene.scene(&scene.models[0], 1).unwrap().surface {
             Surface::Heights(map) => assert_eq!((map.cells(), map.size()), (cells.into(), [4.0, 1.0].into())),

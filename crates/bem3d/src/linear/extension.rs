@@ -215,7 +215,8 @@ mod tests {
     const WINDOW: Window = Window { x: 3, y: 5, width: WIDTH, height: HEIGHT };
 
     fn extension(mask: &[f32]) -> Extension {
-        let columns = |y: usize| (0..WIDTH).filter(move |x| mask[y * WIDTH + x] > 0.0).map(|x| (x + 3) as u32);
+        let columns =
+            |y: usize| (0..WIDTH).filter(move |x| mask[y * WIDTH + x] > 0.0).map(|x| (x + 3) as u32);
         let set = CellSet::from_rows((0..HEIGHT).map(|y| (y + 5, columns(y))));
         let mut extension = Extension::default();
         // What it held before does not matter, in the same window and in another one.

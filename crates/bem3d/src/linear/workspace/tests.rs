@@ -80,7 +80,7 @@ fn solve_on(
     Solution { x, outcome }
 }
 
-/// Estimated energy `r' K^-1 r`, which no step is needed for.
+/// Estimated energy `r' G^-1 r`, which no step is needed for.
 fn energy(operators: &mut Operators, set: &CellSet, recipe: Recipe, r: &[f64]) -> f64 {
     let found = solve_on(operators, set, recipe, r, false, endless(0));
     assert!(found.outcome.steps == 0 && found.x.iter().all(|&x| x == 0.0));
@@ -134,10 +134,16 @@ fn every_recipe_reaches_the_factored_solution() {
                     assert!((x - (w - shift * q)).abs() < SINGLE * norm, "{recipe} {fixed_sum}");
                 }
                 let sum = found.x.iter().sum::<f64>().abs();
-                assert!(!fixed_sum || sum < if recipe.is_single() { SINGLE } else { 1e-9 } * norm, "{recipe}: {sum}");
+                assert!(
+                    !fixed_sum || sum < if recipe.is_single() { SINGLE } else { 1e-9 } * norm,
+                    "{recipe}: {sum}"
+                );
                 // Work, not time: the preconditioner makes the number of steps small.
                 let steps = found.outcome.steps;
-                assert!(steps <= if recipe.has_preconditioner() { 25 } else { 60 }, "{recipe}: {steps} steps");
+                assert!(
+                    steps <= if recipe.has_preconditioner() { 25 } else { 60 },
+                    "{recipe}: {steps} steps"
+                );
                 // Eight times the gap asks for eight times the pressure, to the last bit, in as many steps.
                 let eight: Vec<f64> = r.iter().map(|r| 8.0 * r).collect();
                 let again = solve_on(&mut operators, &set, recipe, &eight, fixed_sum, criteria);
@@ -214,7 +220,7 @@ fn the_energy_estimates_bound_the_energy() {
 
 #[test]
 fn the_energy_of_the_error_is_compared_with_the_value_gained() {
-    // r'K^-1 r of what is left, at most |r|^2 / eigenvalue or 2 r'M r, against a share of base + r'x, in any unit.
+    // r'G^-1 r of what is left, at most |r|^2 / eigenvalue or 2 r'M r, against a share of base + r'x, in any unit.
     let set = scattered(SQUARE);
     for unit in [1.0, 1e3] {
         let right = right(set.len(), unit);

@@ -48,7 +48,11 @@ fn a_circular_length_of_twice_n_less_one_is_exact() {
         let (all, window) = (CellSet::all(grid), grid.window());
         let lengths = Lengths::free(window);
         let shortest = |n: usize| (2 * (n - 1)).max(2);
-        assert_eq!((lengths.x, lengths.y), (shortest(columns), shortest(rows)), "this test is about the shortest lengths");
+        assert_eq!(
+            (lengths.x, lengths.y),
+            (shortest(columns), shortest(rows)),
+            "this test is about the shortest lengths"
+        );
         let p = pressure(all.len());
         let mut u = vec![0.0; p.len()];
         FftConvolution::new(window, lengths, table.symbol_f64(lengths)).apply(&all, &p, &all, &mut u);
@@ -60,7 +64,7 @@ fn a_circular_length_of_twice_n_less_one_is_exact() {
 
 #[test]
 fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
-    // Far from the edges B K p = p up to what the wrapped kernel lacks.
+    // Far from the edges B G p = p up to what the wrapped kernel lacks.
     for grid in [Grid::square(48, 48), Grid::square(60, 48), Grid { columns: 54, rows: 40, stretch: 0.9 }] {
         let mut operators = operators(grid, Boundary::Free);
         let (all, (a, b)) = (CellSet::all(grid), grid.cell());
@@ -86,7 +90,8 @@ fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
 
 #[test]
 fn a_shortened_transform_is_exact_up_to_three_quarters_of_the_window_and_positive_definite() {
-    for (columns, rows, expected) in [(48, 48, Lengths { x: 72, y: 72 }), (54, 48, Lengths { x: 80, y: 72 })] {
+    for (columns, rows, expected) in [(48, 48, Lengths { x: 72, y: 72 }), (54, 48, Lengths { x: 80, y: 72 })]
+    {
         let grid = Grid::square(columns, rows);
         let (all, window) = (CellSet::all(grid), grid.window());
         let mut operators = operators(grid, Boundary::Free);
@@ -124,9 +129,14 @@ fn a_transform_is_planned_once_and_kept_where_it_serves() {
     let mut operators = operators(grid, Boundary::Free);
     let table = Arc::clone(&operators.table);
     let window = |x, y, width, height| Window { x, y, width, height };
-    let rows = |w: Window| CellSet::from_rows((w.y..w.y + w.height).map(move |y| (y, w.x as u32..(w.x + w.width) as u32)));
+    let rows = |w: Window| {
+        CellSet::from_rows((w.y..w.y + w.height).map(move |y| (y, w.x as u32..(w.x + w.width) as u32)))
+    };
     let planned = |operators: &Operators| {
-        (operators.single.as_ref().map(FftConvolution::window), operators.shortened.as_ref().map(FftConvolution::window))
+        (
+            operators.single.as_ref().map(FftConvolution::window),
+            operators.shortened.as_ref().map(FftConvolution::window),
+        )
     };
     let (large, part, other) = (window(2, 3, 30, 20), window(3, 4, 27, 18), window(5, 1, 30, 20));
     // (window, short, plan of all lags, plan of short ones)
@@ -218,8 +228,7 @@ fn two_levels_follow_the_sets_and_are_kept_where_they_fit() {
 fn a_recipe_is_described() {
     let grid = Grid::square(64, 64);
     let operators = operators(grid, Boundary::Free);
-    let described =
-        |set: &CellSet| operators.planner().system(set, set.len(), true).unwrap().to_string();
+    let described = |set: &CellSet| operators.planner().system(set, set.len(), true).unwrap().to_string();
     assert_eq!(described(&CellSet::from_index(grid, &[0, 4095])), "direct");
     // 2 (64 - 1) = 126 has a factor 7; 128 is the next good length.
     assert_eq!(described(&CellSet::all(grid)), "fft 128 x 128, f32 in f64, torus inverse 64 x 64");
