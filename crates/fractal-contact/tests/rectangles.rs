@@ -217,7 +217,6 @@ fn the_program_makes_and_tells_rectangles() {
 
 /// Fields, pictures and numbers of a solved rectangle with oblong cells and an undefined point.
 #[test]
-#[ignore = "needs rectangular bem3d"]
 fn a_rectangle_is_pressed() {
     let dir = tempfile::tempdir().unwrap();
     let (columns, rows) = (24, 8);

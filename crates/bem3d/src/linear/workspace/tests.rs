@@ -35,7 +35,10 @@ fn recipe(set: &CellSet, application: Application, conditioning: Conditioning) -
 /// Every way to solve a system on a set: exact ones first, then those of single precision and of two levels.
 fn recipes(grid: Grid, set: &CellSet) -> Vec<Recipe> {
     let window = set.window().unwrap();
-    let (fft, torus) = (Application::Fft(Lengths::free(window)), Conditioning::Torus(Lengths::torus(window)));
+    let (fft, torus) = (
+        Application::Fft(Lengths::free(window)),
+        Conditioning::Torus { lengths: Lengths::torus(window), extended: true },
+    );
     let split = Split { spacing: 2, reach: 6, order: 8 };
     let mut recipes = vec![
         recipe(set, Application::Direct, Conditioning::Identity),
@@ -51,7 +54,7 @@ fn recipes(grid: Grid, set: &CellSet) -> Vec<Recipe> {
 
 /// Without and with a preconditioner, the influence matrix by pairs.
 fn both(set: &CellSet) -> [Recipe; 2] {
-    let torus = Conditioning::Torus(Lengths::torus(set.window().unwrap()));
+    let torus = Conditioning::Torus { lengths: Lengths::torus(set.window().unwrap()), extended: true };
     [Conditioning::Identity, torus].map(|conditioning| recipe(set, Application::Direct, conditioning))
 }
 

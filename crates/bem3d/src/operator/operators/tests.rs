@@ -78,7 +78,8 @@ fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
             .collect();
         let mut u = Vec::new();
         operators.exact(&all, &p, &all, &mut u);
-        let conditioning = Conditioning::Torus(operators.table().torus_lengths(grid.window()));
+        let conditioning =
+            Conditioning::Torus { lengths: operators.table().torus_lengths(grid.window()), extended: true };
         let system = Recipe { conditioning, ..recipe(grid.window(), Application::Direct) };
         let (_, inverse) = operators.system(system);
         let mut back = vec![0.0; p.len()];
