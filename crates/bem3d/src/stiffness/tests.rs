@@ -31,6 +31,7 @@ fn preconditioned() -> [Tuning; 2] {
     [pairs, transforms]
 }
 
+#[expect(clippy::large_types_passed_by_value, reason = "as `Problem::new`")]
 fn flat(grid: Grid, tuning: Tuning) -> Problem {
     Problem::new(grid, Arc::new(vec![0.0; grid.count()]), Boundary::Free, tuning)
 }
@@ -64,15 +65,13 @@ fn factored(state: &Solved, grid: Grid) -> Solved {
 #[test]
 fn full_contact_of_small_squares() {
     // data/paper/VALUES.md, given to 8 or 9 digits; k / (E* L) = pi k_scaled / N.
-    for (side, expected) in [
-        (1, 0.891_106_989),
-        (2, 0.993_186_221),
-        (4, 1.065_467_232),
-        (8, 1.106_498_258),
-        (16, 1.128_630_66),
-    ] {
+    for (side, expected) in
+        [(1, 0.891_106_989), (2, 0.993_186_221), (4, 1.065_467_232), (8, 1.106_498_258), (16, 1.128_630_66)]
+    {
         let grid = Grid::square(side, side);
-        for (tuning, factor) in recipes().map(|tuning| (tuning, false)).into_iter().chain([(Tuning::DEFAULT, true)]) {
+        for (tuning, factor) in
+            recipes().map(|tuning| (tuning, false)).into_iter().chain([(Tuning::DEFAULT, true)])
+        {
             let mut problem = flat(grid, tuning);
             let (set, p) = (CellSet::all(grid), vec![1.0; grid.count()]);
             let guess = Guess { set, p, d: 4.0 * grid.count() as f64, far: false };
@@ -97,7 +96,10 @@ fn the_estimate_covers_a_loose_solve() {
                 let loose = solve(&mut problem, &state, None, tolerance, &never);
                 let (error, estimate) = ((loose.value / exact - 1.0).abs(), loose.solve_error);
                 let rounding = 1e-12;
-                assert!(error <= estimate + rounding && estimate <= tolerance, "{tolerance}: {error} {estimate}");
+                assert!(
+                    error <= estimate + rounding && estimate <= tolerance,
+                    "{tolerance}: {error} {estimate}"
+                );
                 assert!(loose.value <= exact * (1.0 + rounding), "a Ritz value is a lower bound");
             }
         }
@@ -198,14 +200,21 @@ fn a_good_guess_costs_no_step_and_a_cold_start_a_few() {
             let before = problem.operators.applications;
             let warm = solve(&mut problem, &state, Some(tight.q), 1e-6, &never);
             assert_eq!(warm.steps, 0);
-            assert_eq!(problem.operators.applications - before, 1, "one application says that it is good enough");
+            assert_eq!(
+                problem.operators.applications - before,
+                1,
+                "one application says that it is good enough"
+            );
         }
         // That of a factored state is exact.
         let mut problem = flat(grid, Tuning::DEFAULT);
         let exact = solve(&mut problem, &factored(&state, grid), None, TIGHT, &never);
         assert!(exact.steps == 0 && exact.solve_error < 1e-12, "{}", exact.solve_error);
         assert_eq!(problem.operators.applications, 1);
-        assert!(!problem.operators.last().unwrap().has_preconditioner(), "a factored state needs no transform");
+        assert!(
+            !problem.operators.last().unwrap().has_preconditioner(),
+            "a factored state needs no transform"
+        );
     }
 }
 

@@ -103,7 +103,9 @@ mod tangent {
             assert!(bare.extrapolated(Target::Force(far), &TUNING).is_none(), "thirty times away is far");
         }
         // No cell keeps its pressure.
-        assert!(before.extrapolated(Target::Approach(0.05 * before.d), &TUNING).is_none_or(|g| !g.set.is_empty()));
+        assert!(
+            before.extrapolated(Target::Approach(0.05 * before.d), &TUNING).is_none_or(|g| !g.set.is_empty())
+        );
     }
 
     #[test]
@@ -134,7 +136,8 @@ fn a_guess_predicts_the_cells_that_it_makes_penetrate() {
         let z: Vec<f64> = (0..grid.count()).map(|i| (i % 8 + i / 8) as f64 / 8.0).collect();
         let mut problem = problem(grid, z.clone());
         let mut predicted = |cells: &[u32], p: f64, d: f64| {
-            let guess = Guess { set: CellSet::from_index(grid, cells), p: vec![p; cells.len()], d, far: false };
+            let guess =
+                Guess { set: CellSet::from_index(grid, cells), p: vec![p; cells.len()], d, far: false };
             predicted_cells(&mut problem, &guess)
         };
         for d in [0.9, 1.3, 2.0] {

@@ -134,10 +134,16 @@ fn every_recipe_reaches_the_factored_solution() {
                     assert!((x - (w - shift * q)).abs() < SINGLE * norm, "{recipe} {fixed_sum}");
                 }
                 let sum = found.x.iter().sum::<f64>().abs();
-                assert!(!fixed_sum || sum < if recipe.is_single() { SINGLE } else { 1e-9 } * norm, "{recipe}: {sum}");
+                assert!(
+                    !fixed_sum || sum < if recipe.is_single() { SINGLE } else { 1e-9 } * norm,
+                    "{recipe}: {sum}"
+                );
                 // Work, not time: the preconditioner makes the number of steps small.
                 let steps = found.outcome.steps;
-                assert!(steps <= if recipe.has_preconditioner() { 25 } else { 60 }, "{recipe}: {steps} steps");
+                assert!(
+                    steps <= if recipe.has_preconditioner() { 25 } else { 60 },
+                    "{recipe}: {steps} steps"
+                );
                 // Eight times the gap asks for eight times the pressure, to the last bit, in as many steps.
                 let eight: Vec<f64> = r.iter().map(|r| 8.0 * r).collect();
                 let again = solve_on(&mut operators, &set, recipe, &eight, fixed_sum, criteria);
