@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(decisions.iter().position(|&d| d == end), Some(TIGHT.outer_iterations));
         // Better residuals begin anew.
         let errors: Vec<f64> =
-            (0..5 * TUNING.patience).map(|i| 1e-3 * 0.8f64.powi((i / 10) as i32)).collect();
+            (0..5 * TUNING.patience).map(|i| 1e-3 * 0.8f64.powf((i / 10) as f64)).collect();
         assert!(judged(TIGHT, &errors).iter().all(|d| matches!(d, Decision::Continue { .. })));
     }
 

@@ -349,7 +349,22 @@ mod tests {
             let values: Vec<f64> = (0..b.len()).map(|k| 1.0 + k as f64).collect();
             let expected: Vec<f64> =
                 a.iter().map(|i| b.binary_search(i).map_or(0.0, |k| values[k])).collect();
-            prop_assert_eq!(set_a.carry(&set_b, &values), expected);
+            // Into a vector that held something else, and added to what was there.
+            let (mut carried, mut sums) = (vec![7.0; 3], vec![0.5; a.len()]);
+            set_a.carry_to(&set_b, &values, &mut carried);
+            prop_assert_eq!(&carried, &expected);
+            set_a.add_carried(&set_b, &values, &mut sums);
+            prop_assert_eq!(sums, expected.iter().map(|v| v + 0.5).collect::<Vec<_>>());
+            let both = set_a.union(&set_b);
+            let chosen = both.filter_beside(&set_b, |k, inside| inside != k.is_multiple_of(3));
+            let plain: Vec<u32> = index(&both)
+                .into_iter()
+                .enumerate()
+                .filter(|(k, i)| b.binary_search(i).is_ok() != k.is_multiple_of(3))
+                .map(|(_, i)| i)
+                .collect();
+            prop_assert_eq!(index(&chosen), plain.clone());
+            prop_assert_eq!(chosen, CellSet::from_index(grid, &plain), "its rows and runs are those of the list");
             let window = set_a.window().unwrap_or(grid.window());
             let (mut back, mut twice) = (vec![0.0; a.len()], vec![1.0; a.len()]);
             let values: Vec<f64> = (0..a.len()).map(|k| 1.0 + k as f64).collect();
@@ -363,7 +378,8 @@ mod tests {
                 prop_assert!(line.iter().all(|&v| v == 0.0));
             }
             prop_assert_eq!(&back, &values);
-            prop_assert!(twice.iter().zip(&values).all(|(t, v)| *t == v + 1.0));
+            let one_more: Vec<f64> = values.iter().map(|v| v + 1.0).collect();
+            prop_assert_eq!(twice, one_more);
         }
     }
 }

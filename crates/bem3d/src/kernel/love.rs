@@ -183,7 +183,7 @@ mod tests {
             // Means of neighbouring partial sums, twice in each direction.
             let weight = |x: usize| [1.0, 1.0, 0.75, 0.25][(x + 3).saturating_sub(n).min(3)];
             let term = |x: usize, y: usize| {
-                let sign = if (x + y) % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = if (x + y).is_multiple_of(2) { 1.0 } else { -1.0 };
                 sign * copies(x) * copies(y) * weight(x) * weight(y) * influence_of_rectangle(x, y, stretch)
             };
             (0..=n).flat_map(|x| (0..=n).map(move |y| term(x, y))).sum()

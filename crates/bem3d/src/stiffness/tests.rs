@@ -31,6 +31,7 @@ fn preconditioned() -> [Tuning; 2] {
     [pairs, transforms]
 }
 
+#[expect(clippy::large_types_passed_by_value, reason = "as `Problem::new`")]
 fn flat(grid: Grid, tuning: Tuning) -> Problem {
     Problem::new(grid, Arc::new(vec![0.0; grid.count()]), Boundary::Free, tuning)
 }
