@@ -1,4 +1,5 @@
-//! Values beside the literature and a factor, and the error that a stiffness states, part by part, in every recipe.
+//! Values beside the literature and a factor, and the error that a stiffness states, part by part, in every
+//! recipe.
 
 use super::*;
 use crate::active_set::{self, Guess, Limits, Target};
@@ -16,7 +17,8 @@ const TIGHT: f64 = 1e-9;
 /// Single precision in the estimates with a preconditioner.
 const SINGLE: f64 = 1e-4;
 
-/// Tuned constants that choose one recipe for every system: by pairs and by transforms, without and with the preconditioner.
+/// Tuned constants that choose one recipe for every system: by pairs and by transforms, without and with the
+/// preconditioner.
 fn recipes() -> [Tuning; 4] {
     let without = Tuning { preconditioned: 2.0, preconditioned_large: 2.0, ..Tuning::DEFAULT };
     let with = Tuning { preconditioned: 0.0, ..without };
@@ -133,8 +135,8 @@ fn cells_on_the_wrong_side_by_hand() {
 
 #[test]
 fn the_stated_error_of_an_undecided_corner_is_what_the_corner_changes() {
-    // A small map with and without one corner. Schur complements lie between the smallest eigenvalue and K_jj: the estimate exceeds the
-    // change by a factor between 1 and 1.9325 for square cells.
+    // A small map with and without one corner. Schur complements lie between the smallest eigenvalue and
+    // K_jj: the estimate exceeds the change by a factor between 1 and 1.9325 for square cells.
     for grid in [Grid::square(4, 4), Grid { columns: 6, rows: 3, stretch: 1.2 }] {
         let table = KernelTable::shared(grid, Boundary::Free);
         let excess = table.own() / table.smallest_eigenvalue();

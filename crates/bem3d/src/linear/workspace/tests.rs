@@ -1,4 +1,5 @@
-//! Each reason to stop, beside runs that end after every step and are looked at in double precision; solutions beside a factor.
+//! Each reason to stop, beside runs that end after every step and are looked at in double precision;
+//! solutions beside a factor.
 
 use super::*;
 use crate::geometry::{Grid, Lengths};
@@ -101,9 +102,11 @@ fn path(grid: Grid, set: &CellSet, recipe: Recipe, right: &[f64]) -> Vec<(Vec<f6
     (0..9).map(after).collect()
 }
 
-/// The first step at which something holds, or will hold after one more step that gains as much as the last one.
+/// The first step at which something holds, or will hold after one more step that gains as much as the last
+/// one.
 ///
-/// `value(n)` is compared with `bound(n)`; an iteration ends after step n where the value expected there is small enough already.
+/// `value(n)` is compared with `bound(n)`; an iteration ends after step n where the value expected there is
+/// small enough already.
 fn first_step(from: usize, value: impl Fn(usize) -> f64, bound: impl Fn(usize) -> f64) -> usize {
     (from..8)
         .find(|&n| {
@@ -220,7 +223,8 @@ fn the_energy_estimates_bound_the_energy() {
 
 #[test]
 fn the_energy_of_the_error_is_compared_with_the_value_gained() {
-    // r'K^-1 r of what is left, at most |r|^2 / eigenvalue or 2 r'M r, against a share of base + r'x, in any unit.
+    // r'K^-1 r of what is left, at most |r|^2 / eigenvalue or 2 r'M r, against a share of base + r'x, in any
+    // unit.
     let set = scattered(SQUARE);
     for unit in [1.0, 1e3] {
         let right = right(set.len(), unit);
