@@ -1,4 +1,5 @@
-//! Values beside the literature and a factor, and the error that a stiffness states, part by part, in every recipe.
+//! Values beside the literature and a factor, and the error that a stiffness states, part by part, in every
+//! recipe.
 
 use super::*;
 use crate::active_set::{self, Guess, Limits, Target};
@@ -16,7 +17,8 @@ const TIGHT: f64 = 1e-9;
 /// Single precision in the estimates with a preconditioner.
 const SINGLE: f64 = 1e-4;
 
-/// Tuned constants that choose one recipe for every system: by pairs and by transforms, without and with the preconditioner.
+/// Tuned constants that choose one recipe for every system: by pairs and by transforms, without and with the
+/// preconditioner.
 fn recipes() -> [Tuning; 4] {
     let without = Tuning { preconditioned: 2.0, preconditioned_large: 2.0, ..Tuning::DEFAULT };
     let with = Tuning { preconditioned: 0.0, ..without };

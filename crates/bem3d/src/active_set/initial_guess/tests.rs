@@ -10,7 +10,7 @@ fn problem(grid: Grid, z: Vec<f64>) -> Problem {
     Problem::new(grid, Arc::new(z), Boundary::Free, Tuning::DEFAULT)
 }
 
-/// Surfaces of a tangent that is followed.
+/// The tangent of the last state.
 mod tangent {
     use super::*;
 
@@ -66,7 +66,8 @@ mod tangent {
                 k.solve_error
             });
             assert!(extrapolated < 0.5 * carried, "{extrapolated} {carried}");
-            // Between equal loads, or on the way down, there is no better guess than the tangent at the larger load.
+            // Between equal loads, or on the way down, there is no better guess than the tangent at the
+            // larger load.
             let back = last(&states[1]).tangent_at(&states[0].0, &TUNING).unwrap();
             assert_eq!(back, states[0].0.contact.carry(&solved.contact, &states[1].1));
             assert_eq!(last(&states[1]).tangent_at(solved, &TUNING).unwrap(), states[1].1);
@@ -131,7 +132,8 @@ mod tangent {
 
 #[test]
 fn a_guess_predicts_the_cells_that_it_makes_penetrate() {
-    // A corner under its own load: u = I(x, y) around it. Steps of z and an approach between the values of u + z.
+    // A corner under its own load: u = I(x, y) around it. Steps of z and an approach between the
+    // values of u + z.
     for grid in [Grid::square(8, 8), Grid::square(8, 6)] {
         let z: Vec<f64> = (0..grid.count()).map(|i| (i % 8 + i / 8) as f64 / 8.0).collect();
         let mut problem = problem(grid, z.clone());
@@ -145,7 +147,8 @@ fn a_guess_predicts_the_cells_that_it_makes_penetrate() {
             assert!(expected > 1);
             assert_eq!(predicted(&[0], 1.0, d), expected, "d = {d}");
         }
-        // Without pressure the cells below the plane penetrate; one at its height does not: z = 1/8 holds for cells 1 and 8.
+        // Without pressure the cells below the plane penetrate; one at its height does not: z = 1/8 holds for
+        // cells 1 and 8.
         assert_eq!(predicted(&[1], 0.0, 0.125), 1);
         // At least the guess itself.
         assert_eq!(predicted(&[0, 1, 2], 100.0, 0.1), 3);

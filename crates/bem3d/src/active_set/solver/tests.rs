@@ -189,7 +189,8 @@ fn a_state_taken_up_again_is_not_evaluated_again() {
 
 #[test]
 fn work_of_standard_solves_is_pinned() {
-    // Counts, not times: a change of the algorithm shows here. The band leaves room for other processors' last digits.
+    // Counts, not times: a change of the algorithm shows here. The band leaves room for other processors'
+    // last digits.
     let grid = Grid::square(64, 64);
     for (force, most) in [(0.5, 50), (5.0, 60), (50.0, 60)] {
         let mut problem = problem(grid, &rough(grid, 3), Tuning::DEFAULT);
@@ -273,8 +274,8 @@ fn set(index: &[u32]) -> CellSet {
     CellSet::from_index(EIGHT, index)
 }
 
-/// A summit, a neighbour ten units below it, and all the rest far below: under a unit force the summit alone carries, and
-/// `d = I(0, 0)`.
+/// A summit, a neighbour ten units below it, and all the rest far below: under a unit force the summit alone
+/// carries, and `d = I(0, 0)`.
 fn summit() -> Problem {
     let mut z = vec![100.0; 64];
     (z[0], z[1]) = (0.0, 10.0);
@@ -316,8 +317,8 @@ fn a_factored_approach_is_measured_not_replaced() {
 
 #[test]
 fn a_cell_is_added_when_it_penetrates_by_more_than_the_noise() {
-    // A gap of 0.5 is left on the summit: that is the noise. Under its own load the neighbour is in tension, which costs a second
-    // factor.
+    // A gap of 0.5 is left on the summit: that is the noise. Under its own load the neighbour is in tension,
+    // which costs a second factor.
     for (gap, factors) in [(0.3, 1), (-0.3, 1), (-0.5, 1), (-0.51, 2)] {
         let mut problem = summit();
         let mut solver = solver(&mut problem, 0, 5.0, true);
@@ -333,7 +334,8 @@ fn a_cell_is_added_when_it_penetrates_by_more_than_the_noise() {
 
 #[test]
 fn a_cell_without_pressure_is_not_in_contact() {
-    // Stopped before the first step, an inner solve changes nothing: the neighbour that was added still carries nothing.
+    // Stopped before the first step, an inner solve changes nothing: the neighbour that was added still
+    // carries nothing.
     for recipe in recipes() {
         let mut problem = summit();
         problem.operators =
@@ -353,7 +355,7 @@ fn a_cell_without_pressure_is_not_in_contact() {
 
 #[test]
 fn the_kept_pressure_is_returned_where_it_is_the_best() {
-    // A good pressure, and an inner solve that is spoilt: stopped at once, its set is all that changes.
+    // A good pressure, and two that follow it on cells far below.
     let mut problem = summit();
     let mut solver = solver(&mut problem, 0, 5.0, false);
     let first = solver.evaluate(false).residuals;
@@ -371,7 +373,8 @@ fn the_kept_pressure_is_returned_where_it_is_the_best() {
 
 #[test]
 fn residuals_of_ever_more_iterations_never_become_worse() {
-    // What is returned is the better of the best and the last; the best is replaced when residuals fall by a tenth.
+    // What is returned is the better of the best and the last; the best is replaced when residuals fall by a
+    // tenth.
     let grid = Grid::square(20, 13);
     let z = rough(grid, 8);
     for (target, factor) in

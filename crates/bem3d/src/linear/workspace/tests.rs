@@ -1,4 +1,5 @@
-//! Each reason to stop, beside runs that end after every step and are looked at in double precision; solutions beside a factor.
+//! Each reason to stop, beside runs that end after every step and are looked at in double precision;
+//! solutions beside a factor.
 
 use super::*;
 use crate::geometry::{Grid, Lengths};
@@ -104,9 +105,11 @@ fn path(grid: Grid, set: &CellSet, recipe: Recipe, right: &[f64]) -> Vec<(Vec<f6
     (0..9).map(after).collect()
 }
 
-/// The first step at which something holds, or will hold after one more step that gains as much as the last one.
+/// The first step at which something holds, or will hold after one more step that gains as much as the last
+/// one.
 ///
-/// `value(n)` is compared with `bound(n)`; an iteration ends after step n where the value expected there is small enough already.
+/// `value(n)` is compared with `bound(n)`; an iteration ends after step n where the value expected there is
+/// small enough already.
 fn first_step(from: usize, value: impl Fn(usize) -> f64, bound: impl Fn(usize) -> f64) -> usize {
     (from..8)
         .find(|&n| {

@@ -105,7 +105,8 @@ fn a_shortened_transform_is_exact_up_to_three_quarters_of_the_window_and_positiv
             operators.system(recipe(window, Application::Fft(lengths))).0.apply(&all, p, &all, &mut u);
             u
         };
-        // One pressed cell in a corner: u is the kernel itself; lags of more than half way round are taken the other way.
+        // One pressed cell in a corner: u is the kernel itself; lags of more than half way round are taken
+        // the other way.
         let mut p = vec![0.0; all.len()];
         p[0] = 1.0;
         for ((x, y), u) in all.places().zip(apply(short, &p)) {
@@ -153,7 +154,8 @@ fn a_transform_is_planned_once_and_kept_where_it_serves() {
         let (p, mut u) = (pressure(set.len()), vec![0.0; set.len()]);
         operators.system(recipe(w, Application::Fft(lengths))).0.apply(&set, &p, &set, &mut u);
         assert_eq!(planned(&operators), (single, shortened));
-        // Lags are taken the shorter way round the plan that was used, which is exact for all of them where it is not a short one.
+        // Lags are taken the shorter way round the plan that was used, which is exact for all of them where
+        // it is not a short one.
         let used = if short { table.shortened_lengths(shortened.unwrap(), 1.5) } else { lengths };
         let fold = |a: usize, b: usize, period: usize| a.abs_diff(b).min(period - a.abs_diff(b));
         let exact: Vec<f64> = set
