@@ -190,7 +190,7 @@ fn coarser(problem: &Problem) -> Problem {
     }
     let mean = |&(sum, count): &(f64, f64)| if count > 0.0 { sum / count } else { f64::INFINITY };
     let z = sums.iter().map(mean).collect();
-    Problem::new(grid, Arc::new(z), problem.operators.table().boundary(), tuning)
+    Problem::new(grid, Arc::new(z), problem.operators.table().boundary(), &tuning)
 }
 
 /// Coarse pressure on the fine cells below it that lie under the plane (on all defined ones if none does).

@@ -161,12 +161,13 @@ impl<'a> Solver<'a> {
         let set = checked.filter_beside(&now.contact, |k, in_contact| in_contact || gap[k] < -noise);
         let planner = problem.operators.planner();
         let Some(recipe) = planner.system(&set, now.contact.len(), false) else { return 0 };
-        if limits.factor && planner.factors(set.len(), recipe.window) {
-            if let Some(exact) = eliminate(problem, &set, *target) {
-                self.reach = tuning.candidates * exact.d;
-                self.advance(exact);
-                return 0;
-            }
+        if limits.factor
+            && planner.factors(set.len(), recipe.window)
+            && let Some(exact) = eliminate(problem, &set, *target)
+        {
+            self.reach = tuning.candidates * exact.d;
+            self.advance(exact);
+            return 0;
         }
         let mut change = set.carry(checked, gap);
         for value in &mut change {

@@ -28,7 +28,7 @@ pub struct Problem {
 
 impl Problem {
     /// A surface of gaps z from the plane of first touch, row-major; infinite where a point is undefined.
-    pub fn new(grid: Grid, z: Arc<Vec<f64>>, boundary: Boundary, tuning: Tuning) -> Self {
+    pub fn new(grid: Grid, z: Arc<Vec<f64>>, boundary: Boundary, tuning: &Tuning) -> Self {
         Self {
             candidates: Candidates::new(grid, z),
             operators: Operators::new(KernelTable::shared(grid, boundary), tuning),

@@ -2,18 +2,10 @@
 
 use super::prepared::Prepared;
 use crate::active_set::{Solved, Target};
-use crate::tuning::{GAP_LOADS, GAP_STEP, MAGNIFIED};
+use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 impl Prepared {
-    /// How many times the relative error of k is that of `1' G^-1 1 = k'` with the constant c in G: `k = k' / (1 - c k')`.
-    ///
-    /// 1 with free boundaries; grows without limit towards full contact of a periodic surface.
-    pub(super) fn magnification(&self, value: f64) -> f64 {
-        let rest = 1.0 - self.problem.operators.table().shift() * value;
-        if rest > 1.0 / MAGNIFIED { 1.0 / rest } else { MAGNIFIED }
-    }
-
     /// Mean gap of a state, nondimensional: the distance of the mean planes, undefined points left out. The displacement under the kernel of zero mean has none.
     pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
         let force: f64 = solved.p.iter().sum();

@@ -1,72 +1,16 @@
 //! The boundary-element model behind the common traits.
 
+mod contact;
 mod mean_gap;
+mod options;
 mod prepared;
 mod state;
 
-use contact_model::{
-    Boundary, Cells, ContactModel, Effects, Error, PreparedContact, Result, Scene, Size, Source, Surface,
-};
-use prepared::Prepared;
+pub use options::{Bem3d, Method};
+
+use contact_model::{Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface};
+use prepared::{NAME, Prepared};
 use std::sync::Arc;
-
-/// Name of the model.
-const NAME: &str = "bem3d";
-
-/// Numerics of the boundary-element model.
-///
-/// ```
-/// use bem3d::Bem3d;
-/// use contact_model::{ContactModel, Load, Scene, Surface};
-/// // Two cells a side, all four in contact: k = 0.993186221 E* L (data/paper/VALUES.md).
-/// let model = Bem3d { cells: 2, ..Bem3d::default() };
-/// let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
-/// let state = model.prepare(&scene, 0)?.solve(Load::Force(1.0))?;
-/// assert!((state.stiffness.unwrap() - 0.993186221).abs() < 1e-9);
-/// # Ok::<(), contact_model::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bem3d {
-    /// Number of columns, N >= 1. Ignored where the scene brings its own map.
-    pub cells: usize,
-    /// Number of rows; `None`: as many as make the cells nearly square ([`Cells::nearly_square`]).
-    pub rows: Option<usize>,
-    /// Bound t of the certificate and of the estimated relative error of k ([`Certificate::meets`]).
-    ///
-    /// The certificate counts gaps in rms heights, so that at a prescribed force the approach is good to a few t (at worst about ten) of
-    /// the rms height, not of itself: a light load on a rough surface wants a smaller t for a precise d.
-    pub tolerance: f64,
-    /// Outer iterations at most (each a handful of operator applications).
-    pub max_outer_iterations: usize,
-    /// How small sets are solved.
-    pub method: Method,
-}
-
-/// How the linear systems of one contact set are solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
-    /// Factor small sets, iterate on large ones: whichever is cheaper.
-    #[default]
-    Auto,
-    /// Iterate always.
-    Iterative,
-    /// One grid and one operator, to compare with: no factors, no two-level sums, no nested iteration.
-    SingleLevel,
-}
-
-impl Bem3d {
-    /// The grid on a rectangle of this size.
-    pub fn grid(&self, size: Size) -> Cells {
-        let nearly_square = Cells::nearly_square(self.cells, size);
-        Cells { rows: self.rows.unwrap_or(nearly_square.rows), ..nearly_square }
-    }
-}
-
-impl Default for Bem3d {
-    fn default() -> Self {
-        Self { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto }
-    }
-}
 
 impl ContactModel for Bem3d {
     fn name(&self) -> &'static str {

@@ -1,16 +1,17 @@
-//! One surface, ready to be loaded: the path from a load to a state.
+//! One surface, ready to be loaded: from a load to pressure and stiffness.
 
-use super::{Bem3d, Method, NAME};
+use super::options::{Bem3d, Method};
 use crate::active_set::{self, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::Grid;
 use crate::stiffness::{self, Stiffness};
-use crate::tuning::Tuning;
+use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
-    Boundary, ContactState, Error, HeightMap, Load, Nondimensionalisation, Normalisation, Outputs,
-    PreparedContact, Result, Scene, Status, Stop,
+    Boundary, HeightMap, Load, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Status, Stop,
 };
-use std::f64::consts::PI;
 use std::sync::Arc;
+
+/// Name of the model.
+pub const NAME: &str = "bem3d";
 
 /// One surface, ready to be loaded.
 #[derive(Debug)]
@@ -26,7 +27,7 @@ pub struct Prepared {
     pub(super) mean: f64,
     pub(super) last: Option<LastState>,
     /// Mean gap at the load solved last, with periodic boundaries.
-    gap: Option<(Load, f64)>,
+    pub(super) gap: Option<(Load, f64)>,
 }
 
 impl Prepared {
@@ -48,7 +49,7 @@ impl Prepared {
         let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = z.iter().filter(|z| z.is_finite()).sum::<f64>() / defined as f64;
-        let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, Tuning::DEFAULT);
+        let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, &Tuning::DEFAULT);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         let normalisation =
@@ -121,6 +122,14 @@ impl Prepared {
             expected = found;
             q = Some(tangent.q);
         }
+    }
+
+    /// How many times the relative error of k is that of `1' G^-1 1 = k'` with the constant c in G: `k = k' / (1 - c k')`.
+    ///
+    /// 1 with free boundaries; grows without limit towards full contact of a periodic surface.
+    pub(super) fn magnification(&self, value: f64) -> f64 {
+        let rest = 1.0 - self.problem.operators.table().shift() * value;
+        if rest > 1.0 / MAGNIFIED { 1.0 / rest } else { MAGNIFIED }
     }
 
     /// Relative error of k itself.
@@ -198,63 +207,5 @@ impl Prepared {
     pub(super) fn begin_count(&mut self) {
         self.problem.operators.applications = 0;
         self.problem.operators.solves = 0;
-    }
-}
-
-impl PreparedContact for Prepared {
-    fn normalisation(&self) -> Normalisation {
-        self.normalisation
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.gap = None;
-        let units = self.nondimensional;
-        let target = match load.validated()? {
-            Load::Force(f) => Target::Force(held("force", f, units.force_in(f) / PI)?),
-            Load::Approach(d) if !self.is_periodic() => {
-                Target::Approach(held("approach", d, units.approach_in(d))?)
-            }
-            Load::MeanGap(gap) if self.is_periodic() => {
-                let state = self.at_mean_gap(held("mean gap", gap, units.approach_in(gap))?, stop)?;
-                self.gap = Some((load, gap));
-                return Ok(state);
-            }
-            Load::Approach(_) => {
-                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
-                return Err(Error::unsupported(NAME, what));
-            }
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
-        };
-        if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
-            self.gap = Some((load, units.approach(self.mean)?));
-            return self.no_contact();
-        }
-        self.begin_count();
-        let (solved, tangent) = self.settle(target, self.limits(), stop);
-        self.gap = Some((load, units.approach(self.gap_of(&solved))?));
-        let miss = match target {
-            Target::Force(asked) => ((solved.p.iter().sum::<f64>() - asked) / asked).abs(),
-            Target::Approach(_) => 0.0,
-        };
-        self.state(solved, tangent, miss, stop)
-    }
-
-    fn mean_gap(&mut self, load: Load) -> Result<f64> {
-        if !self.is_periodic() {
-            return Err(Error::unsupported(NAME, "a mean gap (free boundaries)"));
-        }
-        if self.gap.is_none_or(|(at, _)| at != load) {
-            self.solve(load)?;
-        }
-        self.gap.map(|(_, gap)| gap).ok_or_else(|| Error::unsupported(NAME, "a mean gap"))
-    }
-}
-
-/// A nondimensional load, unless no f64 holds it.
-fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
-    if result.is_finite() && (result > 0.0 || value <= 0.0) {
-        Ok(result)
-    } else {
-        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
     }
 }

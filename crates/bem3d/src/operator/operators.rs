@@ -57,10 +57,10 @@ where
 
 impl Operators {
     /// Nothing is planned yet.
-    pub fn new(table: Arc<KernelTable>, tuning: Tuning) -> Self {
+    pub fn new(table: Arc<KernelTable>, tuning: &Tuning) -> Self {
         Self {
             table,
-            tuning,
+            tuning: *tuning,
             double: None,
             single: None,
             shortened: None,

@@ -35,7 +35,7 @@ fn preconditioned() -> [Tuning; 2] {
 
 #[expect(clippy::large_types_passed_by_value, reason = "as `Problem::new`")]
 fn flat(grid: Grid, tuning: Tuning) -> Problem {
-    Problem::new(grid, Arc::new(vec![0.0; grid.count()]), Boundary::Free, tuning)
+    Problem::new(grid, Arc::new(vec![0.0; grid.count()]), Boundary::Free, &tuning)
 }
 
 /// A state with these pressures and gaps on all cells of a grid; contact where the pressure is positive.

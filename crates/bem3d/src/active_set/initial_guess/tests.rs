@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use contact_model::{Boundary, Status, never};
 
 fn problem(grid: Grid, z: Vec<f64>) -> Problem {
-    Problem::new(grid, Arc::new(z), Boundary::Free, Tuning::DEFAULT)
+    Problem::new(grid, Arc::new(z), Boundary::Free, &Tuning::DEFAULT)
 }
 
 /// The tangent of the last state.

@@ -18,7 +18,7 @@ const SQUARE: Grid = Grid { columns: 16, rows: 16, stretch: 1.0 };
 const OBLONG: Grid = Grid { columns: 13, rows: 19, stretch: 1.2 };
 
 fn operators(grid: Grid) -> Operators {
-    Operators::new(KernelTable::shared(grid, Boundary::Free), Tuning::DEFAULT)
+    Operators::new(KernelTable::shared(grid, Boundary::Free), &Tuning::DEFAULT)
 }
 
 fn scattered(grid: Grid) -> CellSet {

@@ -22,7 +22,7 @@ fn pressure(n: usize) -> Vec<f64> {
 }
 
 fn operators(grid: Grid, boundary: Boundary) -> Operators {
-    Operators::new(KernelTable::shared(grid, boundary), Tuning::DEFAULT)
+    Operators::new(KernelTable::shared(grid, boundary), &Tuning::DEFAULT)
 }
 
 fn directly(table: &KernelTable, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
@@ -240,7 +240,7 @@ fn a_recipe_is_described() {
     let described = |set: &CellSet| operators.planner().system(set, set.len(), true).unwrap().to_string();
     assert_eq!(described(&CellSet::from_index(grid, &[0, 4095])), "direct");
     // 2 (64 - 1) = 126 has a factor 7; 128 is the next good length.
-    assert_eq!(described(&CellSet::all(grid)), "fft 128 x 128, f32 in f64, torus inverse 64 x 64");
+    assert_eq!(described(&CellSet::all(grid)), "fft 128 x 128, f32 in f64, extended torus inverse 64 x 64");
 }
 
 proptest! {
