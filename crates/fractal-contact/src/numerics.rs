@@ -348,7 +348,7 @@ mod tests {
 
     #[test]
     fn the_list_of_all_models_has_their_defaults() {
-        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default().into())));
+        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default())));
         let Equivalent { per_decade, decades, .. } = Equivalent::new(Bem3d::default());
         assert!(Numerics::ALL.contains(&Numerics::Equivalent(Equivalent {
             model: BEM3D,

@@ -75,10 +75,7 @@ impl Relief {
     /// [`Error::Unsupported`] for a sum and a model without cells, and what drawing a surface refuses.
     pub fn surface(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
         match self {
-            Self::Plain(surface) => {
-                if !matches!(surface, Surface::Heights(_)) {}
-                Ok(surface.clone())
-            }
+            Self::Plain(surface) => Ok(surface.clone()),
             Self::Sum { rough, body } => {
                 let Some(elements) = numerics.boundary_elements() else {
                     return Err(Error::unsupported(

@@ -72,7 +72,8 @@ impl PlainSum {
             };
             *value = eliminate(IMAGES.iter().map(row).collect(), below)[0];
         }
-        let lowest = quarter.iter().copied().fold(0.0, f64::min);
+        // Below every value, and below 0 where there is one cell.
+        let lowest = quarter.iter().copied().fold(-0.1, f64::min);
         let fold = |lag: usize, n: usize| lag.min(n - lag);
         let at = |i: usize| {
             let (x, y) = (fold(i % columns, columns), fold(i / columns, rows));

@@ -8,7 +8,9 @@ mod state;
 
 pub use options::{Bem3d, Method};
 
-use contact_model::{Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface};
+use contact_model::{
+    Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface,
+};
 use prepared::{NAME, Prepared};
 use std::sync::Arc;
 

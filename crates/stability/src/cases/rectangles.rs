@@ -172,11 +172,12 @@ fn frame(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 fn checkerboard(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let n = effort.pick(14, 20);
     let masked = |h: &dyn Fn(usize) -> f64| {
-        let heights = (0..n * n).map(|i| if (i % n + i / n) % 2 == 0 { h(i) } else { f64::NAN });
+        let heights =
+            (0..n * n).map(|i: usize| if (i % n + i / n).is_multiple_of(2) { h(i) } else { f64::NAN });
         HeightMap::with_undefined(n, 1.0, heights.collect())
     };
     let flat = masked(&|_| 0.0)?;
-    let black: Vec<usize> = (0..n * n).filter(|i| (i % n + i / n) % 2 == 0).collect();
+    let black: Vec<usize> = (0..n * n).filter(|i| (i % n + i / n).is_multiple_of(2)).collect();
     let state = press_both(ledger, &flat, Load::Approach(1.0))?;
     ledger.near("k of a flat board", stiffness(&state)?, PlainSum::of(&flat).stiffness(&black));
     let relief = relief([n, n], [1.0, 1.0], 6)?;
