@@ -12,9 +12,14 @@ pub trait Real: FftNum + Default + AddAssign + PartialOrd {
     fn of(value: f64) -> Self;
     /// Widens to f64.
     fn to_f64(self) -> f64;
+    /// The larger of this and the magnitude of another, as one instruction of a vector loop.
+    fn or_larger(self, other: Self) -> Self;
 }
 
 impl Real for f64 {
+    fn or_larger(self, other: Self) -> Self {
+        self.max(other.abs())
+    }
     const NAME: &'static str = "f64";
     fn of(value: f64) -> Self {
         value
@@ -25,6 +30,9 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
+    fn or_larger(self, other: Self) -> Self {
+        self.max(other.abs())
+    }
     const NAME: &'static str = "f32";
     fn of(value: f64) -> Self {
         value as Self
@@ -42,15 +50,14 @@ pub fn binary_unit(values: &[f64]) -> f64 {
 
 /// Largest magnitude.
 pub fn largest<T: Real>(values: &[T]) -> T {
-    let larger = |a: T, b: T| if b.abs() > a { b.abs() } else { a };
     let (chunks, rest) = values.as_chunks::<LANES>();
     let mut lanes = [T::default(); LANES];
     for chunk in chunks {
         for (lane, &value) in lanes.iter_mut().zip(chunk) {
-            *lane = larger(*lane, value);
+            *lane = lane.or_larger(value);
         }
     }
-    lanes.iter().chain(rest).fold(T::default(), |a, &b| larger(a, b))
+    lanes.iter().chain(rest).fold(T::default(), |a, &b| a.or_larger(b))
 }
 
 /// Scalar product, in double precision over blocks: rounding stays far below that of a transform.

@@ -20,7 +20,7 @@ pub struct Bem3d {
     pub cells: usize,
     /// Number of rows; `None`: as many as make the cells nearly square ([`Cells::nearly_square`]).
     pub rows: Option<usize>,
-    /// Bound t of the certificate and of the estimated relative error of k ([`Certificate::meets`]).
+    /// Bound t of the certificate and of the estimated relative error of k ([`contact_model::Certificate::meets`]).
     ///
     /// The certificate counts gaps in rms heights, so that at a prescribed force the approach is good to a few t (at worst about ten) of
     /// the rms height, not of itself: a light load on a rough surface wants a smaller t for a precise d.
