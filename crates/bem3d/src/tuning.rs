@@ -1,62 +1,63 @@
-//! Every tuned constant of this crate: meaning, unit, value, and when and where it was measured.
+//! Every tuned constant of this crate: meaning, unit and value.
 //!
-//! Times are those of one thread of an AMD EPYC (2024, AVX-512) in November 2026, if nothing else is said; the command that measures what a
-//! choice costs is `cargo xtask bench` (tables in `data/bench`). None of these numbers changes what a result converges to: they choose
-//! between ways to it and decide when an iteration looks at the exact gap. Results that are compared bit by bit need the same values.
+//! All but `extended` and `kept_candidates` come from the engine before this one with their values unchanged. Their dates, machines and
+//! measuring commands were not recorded one by one and have not been measured again; the tables of `data/bench` show what that engine
+//! cost with them. None of these numbers changes what a result converges to: they choose between ways to it and decide when an
+//! iteration evaluates the exact gap. Results that are compared bit by bit need the same values.
 
 /// Constants that a solve reads; [`Tuning::DEFAULT`] is what is shipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
     // Cost model of one application of the influence matrix.
-    /// ns of one look-up and addition of the direct sum between scattered cells. 2026-11, `benches/solve.rs`.
+    /// ns of one look-up and addition of the direct sum between scattered cells.
     pub pair_ns: f64,
-    /// ns per point and log2 of the points of a padded transform: one application in double precision. 2026-11, `benches/solve.rs`.
+    /// ns per point and log2 of the points of a padded transform: one application in double precision.
     pub point_ns: f64,
-    /// Time of an application in single precision over double. 2026-11, `benches/solve.rs`.
+    /// Time of an application in single precision over double.
     pub single: f64,
-    /// ns of one close pair of the two-level operator, short runs and misses included. 2026-11, `benches/solve.rs`.
+    /// ns of one close pair of the two-level operator, short runs and misses included.
     pub close_pair_ns: f64,
-    /// ns of one interpolation weight of the two-level operator. 2026-11, `benches/solve.rs`.
+    /// ns of one interpolation weight of the two-level operator.
     pub spread_ns: f64,
     /// Radius of the near part of the two-level operator, in spacings, and points of its interpolation in each direction: an error of
-    /// 4e-5 of the largest displacement in the test of `two_level`. 2026-11.
+    /// 4e-5 of the largest displacement in the test of `two_level`.
     pub reach: usize,
     /// See `reach`.
     pub order: usize,
-    /// The two-level operator is for at most one contact cell in so many of the window ... 2026-11, sweep at N = 2049.
+    /// The two-level operator is for at most one contact cell in so many of the window ...
     pub scattered: usize,
     /// ... and for at most so many cells.
     pub largest_scattered: usize,
-    /// A plan for a window serves a smaller one of at least this share of its cells: a new plan costs about three applications. 2026-11.
+    /// A plan for a window serves a smaller one of at least this share of its cells: a new plan costs about three applications.
     pub kept_window: f64,
-    /// Length of the torus of pressure corrections, in window sides: exact up to lags of half of it. 2026-11, sweep at N = 1024.
+    /// Length of the torus of pressure corrections, in window sides: exact up to lags of half of it.
     pub shortened: f64,
 
     // Factor or iterate.
-    /// ns of one multiplication of a Cholesky factorisation (faer, one thread). 2026-11, `benches/solve.rs`.
+    /// ns of one multiplication of a Cholesky factorisation (faer, one thread).
     pub factor_ns: f64,
-    /// Applications that the iterative solution on one contact set takes, pressure and stiffness. 2026-11, `bench`.
+    /// Applications that the iterative solution on one contact set takes, pressure and stiffness.
     pub applications: f64,
-    /// Factorisations that the direct solution on one contact set takes. 2026-11, `bench`.
+    /// Factorisations that the direct solution on one contact set takes.
     pub factors: f64,
     /// Largest set that is factored (memory: 16 n^2 bytes).
     pub largest_factor: usize,
     /// Sets up to this size are always factored: the result is exact and costs a millisecond or two.
     pub always_factored: usize,
-    /// Share of the window in contact from which the preconditioner saves more applications than it costs. 2026-11, sweep at N = 512.
+    /// Share of the window in contact from which the preconditioner saves more applications than it costs.
     pub preconditioned: f64,
-    /// The same for sets too large to factor. 2026-11, sweep at N = 2049, D_f = 2.0 and 2.6.
+    /// The same for sets too large to factor.
     pub preconditioned_large: f64,
-    /// From so many cells on, residuals are extended into the gaps between contacts: below, zeros take fewer steps. 2026-11, sweeps at
-    /// N = 257 and 513, D_f = 2.0 to 2.8.
+    /// From so many cells on, residuals are extended into the gaps between contacts: below, zeros take fewer steps. 2026-11, Xeon, five sweeps
+    /// (`examples/sweep`) at N = 257 and 513, D_f = 2.0 to 2.8, 1e-8: applications counted, no other set of surfaces tried.
     pub extended: usize,
     /// Share of a coarser value that a gap between contacts takes over in the preconditioner: 0.6 to 0.7 was best for N = 513 and 2049,
-    /// D_f = 2 to 2.6, 5 to 94 % contact. 2026-11.
+    /// D_f = 2 to 2.6, 5 to 94 % contact.
     pub decay: f32,
 
     // Contact set.
     /// Reduction of the error asked of an inner solve: half of what is still wanted, within this range. A looser one restarts too
-    /// often, a tighter one solves well on a set that will change. 2026-11, sweep at N = 512.
+    /// often, a tighter one solves well on a set that will change.
     pub reduction: (f64, f64),
     /// The same while the residuals are above `early`: the set still changes a lot.
     pub early_reduction: f64,
@@ -77,11 +78,11 @@ pub struct Tuning {
     /// ... as long as that gap exceeds the noise of single precision, this share of the approach.
     pub single_noise: f64,
     /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact: penetrations below are within
-    /// the error of the inner solve, and adding those cells would regrow the set. 2026-11.
+    /// the error of the inner solve, and adding those cells would regrow the set.
     pub noise: f64,
     /// Candidates reach up to this multiple of the approach; a plane that ends higher costs one more outer iteration.
     pub candidates: f64,
-    /// Candidates up to one approach serve another of at least this share of it.
+    /// Candidates up to one approach serve another of at least this share of it. Chosen without a measurement.
     pub kept_candidates: f64,
     /// Penetration that a factored solution leaves by rounding, relative to the approach.
     pub factor_rounding: f64,
@@ -115,14 +116,14 @@ pub struct Tuning {
     pub warm: f64,
     /// ... and from its tangent without further questions within this ratio.
     pub near: (f64, f64),
-    /// Where one cell in so many will touch, no tangent is followed far. 2026-11, sweep at N = 1024.
+    /// Where one cell in so many will touch, no tangent is followed far.
     pub filling: f64,
     /// Where one cell in so many will touch, the cells that a tangent predicts are counted before it is followed ...
     pub counted: f64,
     /// ... and it is not if they are so many times what the load has grown by.
     pub overshoot: f64,
     /// How far the secant between two loads is extrapolated beyond the last tangent for the initial guess of q: half way, where it holds,
-    /// it would be twice as far. 2026-11.
+    /// it would be twice as far.
     pub extrapolation: f64,
     /// Grids of at most the square of so many cells are solved without a coarser one.
     pub coarsest: usize,
@@ -133,7 +134,7 @@ pub struct Tuning {
 }
 
 impl Tuning {
-    /// The values that all committed results were made with.
+    /// What is shipped.
     pub const DEFAULT: Self = Self {
         pair_ns: 2.0,
         point_ns: 0.17,
@@ -194,7 +195,7 @@ impl Tuning {
 
 // Layout: constants of the compiled code.
 
-/// Rows of a transform that are transposed together: 32 complex numbers in single precision are four cache lines. 2026-11.
+/// Rows of a transform that are transposed together: 32 complex numbers in single precision are four cache lines.
 pub const TILE: usize = 32;
 /// Bytes of a cache line.
 pub const CACHE_LINE: usize = 64;
@@ -204,7 +205,7 @@ pub const ALIASED: usize = 64;
 pub const LANES: usize = 16;
 /// Numbers that they take in before a sum goes on in double precision.
 pub const BLOCK: usize = 2048;
-/// From so many cells a run on, values move run by run; below it, cell by cell is faster. 2026-11.
+/// From so many cells a run on, values move run by run; below it, cell by cell is faster.
 pub const LONG_RUN: usize = 8;
 /// Levels of the preconditioner's extension at most: below `decay^8` nothing is left.
 pub const EXTENSION_LEVELS: usize = 8;

@@ -6,7 +6,8 @@ use crate::operator::InfluenceOperator;
 use crate::real::{Real, dot, sum};
 use contact_model::Stop;
 
-/// When an iteration ends: at the first of these.
+/// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as much as the last one, would
+/// meet a criterion. The caller measures the result.
 #[derive(Debug, Clone, Copy)]
 pub struct StoppingCriteria {
     /// The error has fallen by this factor (in the norm `sqrt(r' M r)` of the preconditioned residual) ...
