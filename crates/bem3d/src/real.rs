@@ -60,6 +60,18 @@ pub fn largest<T: Real>(values: &[T]) -> T {
     lanes.iter().chain(rest).fold(T::default(), |a, &b| a.or_larger(b))
 }
 
+/// Smallest number; infinite if there is none.
+pub fn smallest(values: &[f64]) -> f64 {
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [f64::INFINITY; LANES];
+    for chunk in chunks {
+        for (lane, &value) in lanes.iter_mut().zip(chunk) {
+            *lane = if value < *lane { value } else { *lane };
+        }
+    }
+    lanes.iter().chain(rest).fold(f64::INFINITY, |m, &value| m.min(value))
+}
+
 /// Scalar product, in double precision over blocks: rounding stays far below that of a transform.
 pub fn dot<T: Real>(a: &[T], b: &[T]) -> f64 {
     a.chunks(BLOCK).zip(b.chunks(BLOCK)).map(|(a, b)| block(a, b).to_f64()).sum()
@@ -107,6 +119,7 @@ mod tests {
             assert_relative_eq!(dot(&a, &b), product, epsilon = 1e-12);
             let single = |v: &[f64]| v.iter().map(|&v| v as f32).collect::<Vec<_>>();
             assert_relative_eq!(dot(&single(&a), &single(&b)), product, epsilon = 1e-3);
+            assert_relative_eq!(smallest(&b), b.iter().fold(f64::INFINITY, |m: f64, v| m.min(*v)));
             assert_relative_eq!(largest(&b), b.iter().fold(0.0, |m: f64, v| m.max(v.abs())));
         }
         assert_relative_eq!(binary_unit(&[0.3, -5.0]), 4.0);

@@ -201,6 +201,8 @@ pub const TILE: usize = 32;
 pub const CACHE_LINE: usize = 64;
 /// Columns at a distance of a multiple of so many numbers would fall into the same few lines of the cache.
 pub const ALIASED: usize = 64;
+/// Side of the squares in which columns are read back as rows; divides [`TILE`].
+pub const SQUARE: usize = 4;
 /// Accumulators side by side in a sum: one 512-bit register of single precision.
 pub const LANES: usize = 16;
 /// Numbers that they take in before a sum goes on in double precision.

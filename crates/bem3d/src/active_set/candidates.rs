@@ -39,15 +39,11 @@ impl Candidates {
             }
             (self.list, self.cap) = (self.scan(cap), cap);
         }
-        let z = self.gaps(&self.list);
-        self.list.filter(|k| z[k] < d)
+        self.list.filter(&self.gaps(&self.list), |z| z < d)
     }
 
     fn scan(&self, d: f64) -> CellSet {
-        let columns = |row: &'_ [f64]| -> Vec<u32> {
-            row.iter().enumerate().filter(|&(_, &z)| z < d).map(|(x, _)| x as u32).collect()
-        };
-        CellSet::from_rows(self.z.chunks_exact(self.grid.columns).map(columns).enumerate())
+        CellSet::of_grid(self.grid, &self.z, |z| z < d)
     }
 
     /// Whether more than `count` cells lie below d.

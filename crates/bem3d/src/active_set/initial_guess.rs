@@ -60,7 +60,7 @@ impl LastState {
         } else {
             (self.p.iter().map(|p| ratio * p).collect(), self.d * ratio.max(1.0))
         };
-        let set = self.contact.filter(|k| p[k] > 0.0);
+        let set = self.contact.filter(&p, |p| p > 0.0);
         p.retain(|&p| p > 0.0);
         (!set.is_empty()).then(|| Guess { set, p, d: d.max(f64::MIN_POSITIVE), far: false })
     }

@@ -5,7 +5,7 @@ use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
 use crate::geometry::CellSet;
 use crate::linear::Factor;
-use crate::real::largest;
+use crate::real::{largest, smallest};
 use contact_model::{Status, Stop};
 
 /// Solves for one load from a guess.
@@ -138,17 +138,12 @@ impl<'a> Solver<'a> {
             Target::Force(_) => {}
             Target::Approach(asked) => now.d = asked,
         }
-        let mut lowest = f64::INFINITY;
-        for g in gap.iter_mut() {
-            *g -= now.d;
-            lowest = lowest.min(*g);
-        }
-        for g in left.iter_mut() {
+        for g in gap.iter_mut().chain(&mut *left) {
             *g -= now.d;
         }
         // Just above the plane: a generous guess must not make every outer iteration evaluate the whole grid.
         *reach = tuning.candidates * now.d;
-        let residuals = Residuals::measure(&now.p, left, lowest, limits.height.unwrap_or(now.d));
+        let residuals = Residuals::measure(&now.p, left, smallest(gap), limits.height.unwrap_or(now.d));
         Evaluated { residuals, complete: !rough && now.d <= state.reach, factored: now.q.is_some() }
     }
 
@@ -158,7 +153,7 @@ impl<'a> Solver<'a> {
         let tuning = *problem.operators.tuning();
         let Continuation { checked, gap, .. } = &*state;
         let noise = tuning.noise * root_mean_square(left);
-        let set = checked.filter_beside(&now.contact, |k, in_contact| in_contact || gap[k] < -noise);
+        let set = checked.filter(gap, |g| g < -noise).union(&now.contact);
         let planner = problem.operators.planner();
         let Some(recipe) = planner.system(&set, now.contact.len(), false) else { return 0 };
         if limits.factor
@@ -180,7 +175,7 @@ impl<'a> Solver<'a> {
         let outcome = workspace.solve(operators, &mut change, fixed_sum, criteria, stop);
         let set = workspace.set();
         set.add_carried(&now.contact, &now.p, &mut change);
-        let contact = set.filter(|k| change[k] > 0.0);
+        let contact = set.filter(&change, |p| p > 0.0);
         change.retain(|&p| p > 0.0);
         let d = now.d;
         self.advance(Pressure { contact, p: change, d, q: None });
@@ -208,7 +203,7 @@ fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Optio
             Target::Approach(d) => d,
         };
         let p: Vec<f64> = q.iter().zip(&w).map(|(q, w)| d * q - w).collect();
-        let contact = set.filter(|k| p[k] > 0.0);
+        let contact = set.filter(&p, |p| p > 0.0);
         if contact.len() == set.len() {
             return Some(Pressure { contact: set, p, d, q: Some(q) });
         }

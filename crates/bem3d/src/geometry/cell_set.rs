@@ -1,7 +1,7 @@
 //! Sets of cells of a grid: work follows the contact, not the grid.
 
 use super::grid::{Grid, Window};
-use crate::tuning::LONG_RUN;
+use crate::tuning::{LANES, LONG_RUN};
 use std::ops::{AddAssign, Range};
 
 /// A set of cells, row by row. Values on it stand one after the other in the order of the cells.
@@ -137,10 +137,57 @@ impl CellSet {
         }))
     }
 
+    /// The cells of a grid whose value, row-major, is kept.
+    pub fn of_grid<T: Copy>(grid: Grid, values: &[T], keep: impl Fn(T) -> bool) -> Self {
+        let mut set = Self::default();
+        for (y, values) in values.chunks_exact(grid.columns).enumerate() {
+            set.push_kept(y, |k| k as u32, values, &keep);
+        }
+        set
+    }
+
+    /// The cells of a grid whose linear index is kept.
+    #[cfg(test)]
+    pub fn numbered(grid: Grid, keep: impl Fn(usize) -> bool) -> Self {
+        let index: Vec<u32> = (0..grid.count() as u32).filter(|&i| keep(i as usize)).collect();
+        Self::from_index(grid, &index)
+    }
+
     /// Adds the cells of the next row that has any.
     fn push_row(&mut self, y: usize, columns: impl IntoIterator<Item = u32>) {
         let first = self.columns.len();
         self.columns.extend(columns);
+        self.end_row(y, first);
+    }
+
+    /// Adds the cells of the next row whose value is kept; `column` gives that of the k-th value.
+    ///
+    /// Cost: little where nothing is kept, and the same for every pattern of the rest: nothing is predicted.
+    fn push_kept<T: Copy>(
+        &mut self,
+        y: usize,
+        column: impl Fn(usize) -> u32,
+        values: &[T],
+        keep: impl Fn(T) -> bool,
+    ) {
+        let first = self.columns.len();
+        self.columns.resize(first + values.len(), 0);
+        let kept = &mut self.columns[first..];
+        let mut count = 0;
+        for (i, values) in values.chunks(LANES).enumerate() {
+            if values.iter().fold(false, |any, &value| any | keep(value)) {
+                for (j, &value) in values.iter().enumerate() {
+                    kept[count] = column(i * LANES + j);
+                    count += usize::from(keep(value));
+                }
+            }
+        }
+        self.columns.truncate(first + count);
+        self.end_row(y, first);
+    }
+
+    /// Makes a row of the columns from `first` on, unless there are none.
+    fn end_row(&mut self, y: usize, first: usize) {
         let row = &self.columns[first..];
         let Some(&x) = row.first() else { return };
         self.rows.push(RowStart { y: y as u32, cells: first as u32, runs: self.runs.len() as u32 });
@@ -200,28 +247,33 @@ impl CellSet {
         Some(Window { x: low as usize, y: first, width, height: last + 1 - first })
     }
 
-    /// The cells at the positions where `keep` says so.
-    pub fn filter(&self, mut keep: impl FnMut(usize) -> bool) -> Self {
-        self.filter_beside(&Self::default(), |k, _| keep(k))
-    }
-
-    /// The cells that `keep` chooses by their position and by whether they belong to `part`, a subset of this set.
-    pub fn filter_beside(&self, part: &Self, mut keep: impl FnMut(usize, bool) -> bool) -> Self {
-        let mut parts = part.rows().peekable();
+    /// The cells whose value is kept.
+    pub fn filter<T: Copy>(&self, values: &[T], keep: impl Fn(T) -> bool) -> Self {
         let mut kept = Self::default();
         for row in self.rows() {
-            let within = parts.next_if(|part| part.y == row.y);
-            let mut within = within.map_or(&[][..], |part| part.columns);
-            kept.push_row(
+            kept.push_kept(row.y, |k| row.columns[k], &values[row.span()], &keep);
+        }
+        kept
+    }
+
+    /// The cells that `other` lacks.
+    pub fn without(&self, other: &Self) -> Self {
+        let mut others = other.rows().peekable();
+        let mut rest = Self::default();
+        for row in self.rows() {
+            while others.next_if(|other| other.y < row.y).is_some() {}
+            let mut taken = others.next_if(|other| other.y == row.y).map_or(&[][..], |other| other.columns);
+            rest.push_row(
                 row.y,
-                row.columns.iter().zip(row.span()).filter_map(|(&x, k)| {
-                    let inside = within.first() == Some(&x);
-                    within = &within[usize::from(inside)..];
-                    keep(k, inside).then_some(x)
+                row.columns.iter().copied().filter(|&x| {
+                    while taken.first().is_some_and(|&first| first < x) {
+                        taken = &taken[1..];
+                    }
+                    taken.first() != Some(&x)
                 }),
             );
         }
-        kept
+        rest
     }
 
     /// The cells of either set.
@@ -316,11 +368,12 @@ mod tests {
             [(0, 0..1), (1, 1..3), (3, 3..4)]
         );
         assert_eq!(all.window(), Some(Window { x: 1, y: 0, width: 3, height: 4 }));
-        let part = all.filter(|k| k != 1);
+        let part = all.filter(&[0, 1, 2, 3], |k| k != 1);
         assert_eq!(index(&part), [1, 7, 13]);
         assert_eq!(all.carry(&part, &[1.0, 2.0, 3.0]), [1.0, 0.0, 2.0, 3.0]);
         assert_eq!(part.carry(&all, &[1.0, 9.0, 2.0, 3.0]), [1.0, 2.0, 3.0]);
-        assert_eq!(index(&all.filter_beside(&part, |_, inside| !inside)), [6]);
+        assert_eq!(index(&all.without(&part)), [6]);
+        assert_eq!(index(&all.without(&set(&[0, 5, 6, 8, 13, 19]))), [1, 7]);
         assert_eq!(set(&[]).window(), None);
         assert_eq!(set(&[9, 14]).window(), Some(Window { x: 1, y: 2, width: 2, height: 2 }));
         assert!(set(&[]).is_empty() && !all.is_empty());
@@ -356,15 +409,18 @@ mod tests {
             set_a.add_carried(&set_b, &values, &mut sums);
             prop_assert_eq!(sums, expected.iter().map(|v| v + 0.5).collect::<Vec<_>>());
             let both = set_a.union(&set_b);
-            let chosen = both.filter_beside(&set_b, |k, inside| inside != k.is_multiple_of(3));
-            let plain: Vec<u32> = index(&both)
-                .into_iter()
-                .enumerate()
-                .filter(|(k, i)| b.binary_search(i).is_ok() != k.is_multiple_of(3))
-                .map(|(_, i)| i)
-                .collect();
-            prop_assert_eq!(index(&chosen), plain.clone());
-            prop_assert_eq!(chosen, CellSet::from_index(grid, &plain), "its rows and runs are those of the list");
+            let plain = |keep: &dyn Fn(usize, u32) -> bool| -> Vec<u32> {
+                index(&both).into_iter().enumerate().filter(|&(k, i)| keep(k, i)).map(|(_, i)| i).collect()
+            };
+            // Rows and runs, too, are those of the list.
+            let others = plain(&|_, i| b.binary_search(&i).is_err());
+            prop_assert_eq!(both.without(&set_b), CellSet::from_index(grid, &others));
+            let order: Vec<usize> = (0..both.len()).collect();
+            let third = plain(&|k, _| k % 40 > 20 || k.is_multiple_of(3));
+            let kept = both.filter(&order, |k| k % 40 > 20 || k.is_multiple_of(3));
+            prop_assert_eq!(kept, CellSet::from_index(grid, &third));
+            let picks = &picks[..grid.count()];
+            prop_assert_eq!(CellSet::of_grid(grid, picks, |pick| pick < density), set_a.clone());
             let window = set_a.window().unwrap_or(grid.window());
             let (mut back, mut twice) = (vec![0.0; a.len()], vec![1.0; a.len()]);
             let values: Vec<f64> = (0..a.len()).map(|k| 1.0 + k as f64).collect();

@@ -19,25 +19,24 @@ impl Symbol {
     ///
     /// Cost: one evaluation of the kernel a lag and two passes of real FFTs.
     pub fn of_kernel(lengths: Lengths, kernel: impl Fn(usize, usize) -> f64) -> Self {
+        Self::of_rows(lengths, |y, row| {
+            for (x, value) in row.iter_mut().enumerate() {
+                *value = kernel(x, y);
+            }
+        })
+    }
+
+    /// The same of a kernel that `fill` writes row by row: at the lags `(0 ..= lx / 2, y)`.
+    pub fn of_rows(lengths: Lengths, fill: impl FnMut(usize, &mut [f64])) -> Self {
         let (half_x, half_y) = (lengths.x / 2 + 1, lengths.y / 2 + 1);
         let mut planner = RealFftPlanner::<f64>::new();
         // table[y][x] -> transform along x -> transpose -> transform along y.
         let mut by_column = vec![0.0; half_x * half_y];
-        even_rows(
-            &mut planner,
-            lengths.x,
-            half_y,
-            |y, row| {
-                for (x, value) in row.iter_mut().enumerate() {
-                    *value = kernel(x, y);
-                }
-            },
-            |y, row| {
-                for (kx, &value) in row.iter().enumerate() {
-                    by_column[kx * half_y + y] = value;
-                }
-            },
-        );
+        even_rows(&mut planner, lengths.x, half_y, fill, |y, row| {
+            for (kx, &value) in row.iter().enumerate() {
+                by_column[kx * half_y + y] = value;
+            }
+        });
         let mut values = vec![0.0; half_x * half_y];
         even_rows(
             &mut planner,

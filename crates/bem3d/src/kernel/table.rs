@@ -1,6 +1,6 @@
 //! The kernel of one grid, free or periodic, and its symbols, shared by all surfaces of that grid.
 
-use super::love::{influence_of_rectangle, smallest_eigenvalue};
+use super::love::{influence_of_rectangle, influence_row, smallest_eigenvalue};
 use super::periodic::Periodic;
 use super::symbol::Symbol;
 use crate::geometry::{Grid, Lengths, Window};
@@ -84,23 +84,34 @@ impl KernelTable {
         self.smallest_eigenvalue
     }
 
-    /// Kernel at a lag.
-    fn at(&self, x: usize, y: usize) -> f64 {
-        if self.is_periodic() {
-            self.periodic().at(x, y)
-        } else {
-            influence_of_rectangle(x, y, self.grid.stretch)
-        }
-    }
-
     /// Displacement of a cell under its own unit pressure.
     pub fn own(&self) -> f64 {
-        self.at(0, 0)
+        if self.is_periodic() {
+            self.periodic().at(0, 0)
+        } else {
+            influence_of_rectangle(0, 0, self.grid.stretch)
+        }
     }
 
     /// Kernel at the lags `(0 .. columns, y)`.
     pub fn row(&self, y: usize) -> &[f64] {
-        self.rows[y].get_or_init(|| (0..self.grid.columns).map(|x| self.at(x, y)).collect())
+        self.rows[y].get_or_init(|| {
+            let mut row = vec![0.0; self.grid.columns].into_boxed_slice();
+            self.fill(y, &mut row);
+            row
+        })
+    }
+
+    /// Writes the kernel at the lags `(0 .., y)`.
+    fn fill(&self, y: usize, row: &mut [f64]) {
+        if self.is_periodic() {
+            let kernel = self.periodic();
+            for (x, value) in row.iter_mut().enumerate() {
+                *value = kernel.at(x, y);
+            }
+        } else {
+            influence_row(y, self.grid.stretch, row);
+        }
     }
 
     /// Circular lengths of a transform that is exact on a window: the period itself where the window needs as much.
@@ -127,8 +138,14 @@ impl KernelTable {
         lock(&self.double).get(lengths, || self.exact_symbol(lengths).scaled())
     }
 
-    /// Scaled symbol of the operator in single precision.
+    /// Scaled symbol of the operator in single precision, rounded from the one in double precision, which certificates need.
     pub fn symbol_f32(&self, lengths: Lengths) -> Arc<Vec<f32>> {
+        let double = self.symbol_f64(lengths);
+        lock(&self.single).get(lengths, || Arc::new(double.iter().map(|&value| value as f32).collect()))
+    }
+
+    /// The same for lengths that no operator in double precision takes.
+    pub fn shortened_symbol(&self, lengths: Lengths) -> Arc<Vec<f32>> {
         lock(&self.single).get(lengths, || self.exact_symbol(lengths).scaled())
     }
 
@@ -147,7 +164,7 @@ impl KernelTable {
 
     /// Symbol of the kernel at the lags of a circular grid, each taken the shorter way round.
     fn exact_symbol(&self, lengths: Lengths) -> Symbol {
-        Symbol::of_kernel(lengths, |x, y| self.at(x, y))
+        Symbol::of_rows(lengths, |y, row| self.fill(y, row))
     }
 }
 

@@ -7,6 +7,7 @@
 
 use crate::geometry::{CellSet, Window};
 use crate::tuning::EXTENSION_LEVELS;
+use std::iter::zip;
 
 /// Sums over blocks of 2^l x 2^l cells of a window, for a set.
 #[derive(Debug, Default)]
@@ -18,6 +19,7 @@ pub struct Extension {
 
 #[derive(Debug, Default)]
 struct Level {
+    /// Blocks in a row, and one more of weight 0 where their number is odd.
     width: usize,
     /// 1 / number of contact cells in the block; 0 for none.
     weight: Vec<f32>,
@@ -34,8 +36,9 @@ impl Extension {
             let (mut width, mut height) = (window.width, window.height);
             while (width > 1 || height > 1) && levels.len() < EXTENSION_LEVELS {
                 (width, height) = (width.div_ceil(2), height.div_ceil(2));
-                let blank = || vec![0.0; width * height];
-                levels.push(Level { width, weight: blank(), value: blank() });
+                let even = width.next_multiple_of(2);
+                let blank = || vec![0.0; even * height];
+                levels.push(Level { width: even, weight: blank(), value: blank() });
             }
             (self.window, self.levels) = (Some(window), levels);
         }
@@ -103,11 +106,11 @@ impl Extension {
                 fine.value.chunks_exact_mut(fine.width).zip(fine.weight.chunks_exact(fine.width)).enumerate()
             {
                 let above = &coarse.value[y / 2 * coarse.width..][..coarse.width];
-                for ((values, weights), above) in row.chunks_mut(2).zip(weights.chunks(2)).zip(above) {
+                for ((pair, weights), above) in zip(pairs_mut(row), pairs(weights)).zip(above) {
                     let passed = decay * above;
-                    for (value, &weight) in values.iter_mut().zip(weights) {
-                        *value = *value * weight + if weight > 0.0 { 0.0 } else { passed };
-                    }
+                    *pair = std::array::from_fn(|i| {
+                        pair[i] * weights[i] + if weights[i] > 0.0 { 0.0 } else { passed }
+                    });
                 }
             }
         }
@@ -123,13 +126,10 @@ impl Extension {
                 fine.value.chunks_exact_mut(fine.width).zip(fine.weight.chunks_exact(fine.width)).enumerate()
             {
                 let above = &mut coarse.value[y / 2 * coarse.width..][..coarse.width];
-                for ((values, weights), above) in row.chunks_mut(2).zip(weights.chunks(2)).zip(above) {
-                    let mut up = 0.0;
-                    for (value, &weight) in values.iter_mut().zip(weights) {
-                        up += if weight > 0.0 { 0.0 } else { *value };
-                        *value *= weight;
-                    }
-                    *above += decay * up;
+                for ((pair, weights), above) in zip(pairs_mut(row), pairs(weights)).zip(above) {
+                    let open = |i: usize| if weights[i] > 0.0 { 0.0 } else { pair[i] };
+                    *above += decay * (open(0) + open(1));
+                    *pair = [pair[0] * weights[0], pair[1] * weights[1]];
                 }
             }
         }
@@ -142,10 +142,8 @@ impl Extension {
             let (fine, coarse) = neighbours(&mut self.levels, l);
             for (y, row) in fine.value.chunks_exact_mut(fine.width).enumerate() {
                 let above = &coarse.value[y / 2 * coarse.width..][..coarse.width];
-                for (pair, above) in row.chunks_mut(2).zip(above) {
-                    for value in pair {
-                        *value += above;
-                    }
+                for (pair, above) in zip(pairs_mut(row), above) {
+                    *pair = [pair[0] + above, pair[1] + above];
                 }
             }
         }
@@ -166,10 +164,11 @@ impl Extension {
         let Some(first) = self.levels.first() else { return row.fill(0.0) };
         let above = &first.value[y / 2 * first.width..][..first.width];
         let (pairs, odd) = row.as_chunks_mut::<2>();
-        for (pair, above) in pairs.iter_mut().zip(above) {
+        let (above, rest) = above.split_at(pairs.len());
+        for (pair, above) in zip(pairs, above) {
             *pair = [factor * above; 2];
         }
-        if let ([value], Some(above)) = (odd, above.last()) {
+        for (value, above) in zip(odd, rest) {
             *value = factor * above;
         }
     }
@@ -178,12 +177,22 @@ impl Extension {
 /// Adds neighbouring pairs of a row to its sums.
 fn gather(row: &[f32], sums: &mut [f32]) {
     let (pairs, odd) = row.as_chunks::<2>();
-    for (sum, pair) in sums.iter_mut().zip(pairs) {
+    let (sums, rest) = sums.split_at_mut(pairs.len());
+    for (sum, pair) in zip(sums, pairs) {
         *sum += pair[0] + pair[1];
     }
-    if let ([value], Some(sum)) = (odd, sums.last_mut()) {
+    for (sum, value) in zip(rest, odd) {
         *sum += value;
     }
+}
+
+/// A row of even length as pairs.
+fn pairs(row: &[f32]) -> &[[f32; 2]] {
+    row.as_chunks().0
+}
+
+fn pairs_mut(row: &mut [f32]) -> &mut [[f32; 2]] {
+    row.as_chunks_mut().0
 }
 
 fn neighbours(levels: &mut [Level], coarse: usize) -> (&mut Level, &mut Level) {

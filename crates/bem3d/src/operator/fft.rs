@@ -3,7 +3,7 @@
 use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::real::{Real, binary_unit};
-use crate::tuning::{ALIASED, CACHE_LINE, TILE};
+use crate::tuning::{ALIASED, CACHE_LINE, SQUARE, TILE};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
@@ -230,9 +230,20 @@ fn to_columns<T: Real>(lines: &[Complex<T>], half: usize, columns: &mut [Complex
     }
 }
 
-/// Reads a tile of rows back from columns: the inverse of [`to_columns`].
+/// Reads a tile of rows back from columns, square by square: the inverse of [`to_columns`].
 fn to_rows<T: Real>(columns: &[Complex<T>], pitch: usize, lines: &mut [Complex<T>], half: usize) {
-    for (k, column) in columns.chunks(pitch).take(half).enumerate() {
+    let squares = half - half % SQUARE;
+    for k in (0..squares).step_by(SQUARE) {
+        for j in (0..TILE).step_by(SQUARE) {
+            let square: [&[Complex<T>]; SQUARE] =
+                std::array::from_fn(|i| &columns[(k + i) * pitch + j..][..SQUARE]);
+            for i in 0..SQUARE {
+                let row = &mut lines[(j + i) * half + k..][..SQUARE];
+                row.copy_from_slice(&square.map(|column| column[i]));
+            }
+        }
+    }
+    for (k, column) in columns.chunks(pitch).enumerate().take(half).skip(squares) {
         for (j, &value) in column[..TILE].iter().enumerate() {
             lines[j * half + k] = value;
         }

@@ -114,11 +114,14 @@ impl Operators {
         self.application(application, window).apply(sources, p, targets, u);
     }
 
-    /// Zeroes `u` on the targets and counts an application, unless there is nothing to apply or nothing to apply it to.
+    /// Makes room for `u` on the targets and counts an application, unless there is nothing to apply or nothing to apply it to.
     fn begin(&mut self, sources: &CellSet, targets: &CellSet, u: &mut Vec<f64>) -> Option<Window> {
-        u.clear();
         u.resize(targets.len(), 0.0);
-        let window = sources.window()?.union(targets.window()?);
+        let (Some(from), Some(to)) = (sources.window(), targets.window()) else {
+            u.fill(0.0);
+            return None;
+        };
+        let window = from.union(to);
         self.applications += 1;
         Some(window)
     }
@@ -163,9 +166,15 @@ fn plan<'a>(
             Planned::TwoLevel(two_level.get_or_insert_with(|| TwoLevel::new(window, split)))
         }
         Application::Fft(lengths) => {
-            let slot = if lengths == table.exact_lengths(window) { single } else { shortened };
-            Planned::Fft(planned(slot, window, tuning, || {
-                FftConvolution::new(window, lengths, table.symbol_f32(lengths))
+            if lengths == table.exact_lengths(window) {
+                let symbol = || table.symbol_f32(lengths);
+                return Planned::Fft(planned(single, window, tuning, || {
+                    FftConvolution::new(window, lengths, symbol())
+                }));
+            }
+            let symbol = || table.shortened_symbol(lengths);
+            Planned::Fft(planned(shortened, window, tuning, || {
+                FftConvolution::new(window, lengths, symbol())
             }))
         }
     }

@@ -420,7 +420,7 @@ fn bowl() -> (Grid, Vec<f64>, Guess) {
             (x * x + y * y) / 20.0 + (i % 3) as f64 / 10.0
         })
         .collect();
-    let set = CellSet::all(grid).filter(|i| z[i] < 0.8);
+    let set = CellSet::of_grid(grid, &z, |z| z < 0.8);
     let p = (0..set.len()).map(|k| 0.2 + (k % 4) as f64 / 10.0).collect();
     (grid, z, Guess { set, p, d: 1.0, far: false })
 }

@@ -14,7 +14,7 @@ const DOUBLE: f64 = 1e-13;
 const SINGLE: f64 = 2e-6;
 
 fn picked(grid: Grid, picks: &[bool]) -> CellSet {
-    CellSet::all(grid).filter(|i| picks[i % picks.len()])
+    CellSet::numbered(grid, |i| picks[i % picks.len()])
 }
 
 fn pressure(n: usize) -> Vec<f64> {
