@@ -1,8 +1,9 @@
-//! A prepared surface behind the common trait: from a load to a state.
+//! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
 use super::prepared::{NAME, Prepared};
-use crate::active_set::Target;
-use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Stop};
+use crate::active_set::{self, Limits, Solved, Target};
+use crate::stiffness::{self, Stiffness};
+use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
 use std::f64::consts::PI;
 
 impl PreparedContact for Prepared {
@@ -51,6 +52,94 @@ impl PreparedContact for Prepared {
             self.solve(load)?;
         }
         self.gap.map(|(_, gap)| gap).ok_or_else(|| Error::unsupported(NAME, "a mean gap"))
+    }
+}
+
+impl Prepared {
+    /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the certificate does: as long as
+    /// undecided cells could change it by more than the tolerance, the contact set is solved further.
+    pub(super) fn settle(
+        &mut self,
+        target: Target,
+        mut limits: Limits,
+        stop: Stop<'_>,
+    ) -> (Solved, Option<Stiffness>) {
+        let tuning = *self.problem.operators.tuning();
+        let guess = self.guess(target, limits, stop);
+        let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
+        // Full contact of a periodic surface has no finite stiffness.
+        let full = self.is_periodic() && solved.contact.len() == self.problem.grid().count();
+        if full || !self.outputs.needs_stiffness() {
+            return (solved, None);
+        }
+        // The last state is not needed any more, and as large as the contact.
+        let last = self.last.take();
+        let k = last.as_ref().and_then(|last| last.tangent.as_ref()).map(|&(_, k)| k);
+        let q = last.and_then(|last| last.tangent_at(&solved, &tuning));
+        let mut tangent = self.tangent(&solved, q, k, stop);
+        for _ in 0..tuning.tightenings {
+            let (error, before) = (self.stiffness_error(&tangent), solved.residuals.worst());
+            if solved.status != Status::Converged || error <= self.options.tolerance || stop() {
+                break;
+            }
+            // The state may be better than it was asked to be: begin there.
+            let share = tuning.tight_aim * self.options.tolerance / error;
+            limits.tolerance = share.clamp(tuning.tighter.0, tuning.tighter.1) * limits.tolerance.min(before);
+            let Solved { contact, p, d, q, residuals, steps, status, continuation } = solved;
+            let again = Solved {
+                contact: contact.clone(),
+                p: p.clone(),
+                q: q.clone(),
+                continuation,
+                d,
+                residuals,
+                steps,
+                status,
+            };
+            let next = active_set::resume(&mut self.problem, target, again, limits, stop);
+            let steps = steps + next.steps;
+            if next.residuals.worst() >= before {
+                let continuation = next.continuation;
+                solved = Solved { contact, p, d, q, residuals, steps, status, continuation };
+                break;
+            }
+            // The tighter state counts as converged when it meets the tolerance that was asked for.
+            let converged = next.residuals.worst() <= self.options.tolerance;
+            let status = if converged { Status::Converged } else { next.status };
+            let q = next.contact.carry(&contact, &tangent.q);
+            let spent = tangent.steps;
+            solved = Solved { status, steps: steps + spent, ..next };
+            tangent = self.tangent(&solved, Some(q), k, stop);
+        }
+        (solved, Some(tangent))
+    }
+
+    /// The stiffness of a state from guesses of q and of k.
+    fn tangent(
+        &mut self,
+        solved: &Solved,
+        mut q: Option<Vec<f64>>,
+        k: Option<f64>,
+        stop: Stop<'_>,
+    ) -> Stiffness {
+        let misjudged = self.problem.operators.tuning().misjudged;
+        let mut expected = k.map_or(1.0, |k| self.magnification(k));
+        let mut steps = 0;
+        if solved.q.is_some() {
+            q.clone_from(&solved.q);
+        }
+        loop {
+            let tolerance = self.options.tolerance / expected;
+            let mut tangent = stiffness::solve(&mut self.problem, solved, q, tolerance, stop);
+            steps += tangent.steps;
+            tangent.steps = steps;
+            let found = self.magnification(tangent.value);
+            if found <= misjudged * expected || solved.q.is_some() || tangent.q.is_empty() || stop() {
+                return tangent;
+            }
+            expected = found;
+            q = Some(tangent.q);
+        }
     }
 }
 
