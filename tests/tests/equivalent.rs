@@ -137,7 +137,11 @@ fn rough_surfaces_slip_as_a_difference_of_normal_contacts() {
     // What the table says of itself bounds the error of the force over mu F.
     let height = cells.prepare(&elastic(&sliding(fractal())), 2).unwrap().normalisation().height.unwrap();
     let profile = Equivalent::new(cells).profile(&sliding(fractal()), 2, 1.5 * height).unwrap();
-    assert!(coarse[0] < profile.doubt(1.5 * height), "{coarse:?} {:e}", profile.doubt(1.5 * height));
+    assert!(
+        coarse[0] < profile.uncertainty(1.5 * height),
+        "{coarse:?} {:e}",
+        profile.uncertainty(1.5 * height)
+    );
     assert!(fine[0] < 0.2 * coarse[0] && fine[1] < coarse[1], "{coarse:?} {fine:?}");
     // The paper's own law is a power: smooth.
     let smooth = beside_a_difference_of_normal_contacts(&PowerLaw, 0.1, 16);
@@ -145,13 +149,13 @@ fn rough_surfaces_slip_as_a_difference_of_normal_contacts() {
 }
 
 /// A cycle of the tangential displacement.
-fn cycle(history: &mut dyn History, normal: Load, amplitude: f64, pieces: i32) -> Result<(Vec<f64>, f64)> {
+fn cycle(history: &mut dyn History, normal: Load, amplitude: f64, segments: i32) -> Result<(Vec<f64>, f64)> {
     let mut forces = Vec::new();
     let (mut work, mut last) = (0.0, (0.0, 0.0));
     let mut lost = 0.0;
-    for i in 0..=5 * pieces {
+    for i in 0..=5 * segments {
         // 0 -> 1 -> -1 -> 1.
-        let t = f64::from(i) / f64::from(pieces);
+        let t = f64::from(i) / f64::from(segments);
         let u = amplitude
             * if t <= 1.0 {
                 t
@@ -169,7 +173,7 @@ fn cycle(history: &mut dyn History, normal: Load, amplitude: f64, pieces: i32) -
         }
         last = (u, tangential.force);
         forces.push(tangential.force);
-        if i == 5 * pieces {
+        if i == 5 * segments {
             lost = tangential.dissipated - lost;
         }
     }
@@ -183,16 +187,16 @@ fn what_a_cycle_takes_is_lost_and_the_loop_closes() {
     let height = history.normalisation().height.unwrap();
     let normal = Load::Approach(height);
     history.advance(Step::normal(0.0, normal)).unwrap();
-    let pieces = 60;
-    let (forces, ratio) = cycle(&mut *history, normal, 0.2 * height, pieces).unwrap();
-    // Trapezia over 60 pieces: second order.
+    let segments = 60;
+    let (forces, ratio) = cycle(&mut *history, normal, 0.2 * height, segments).unwrap();
+    // Trapezia over 60 segments: second order.
     assert_relative_eq!(ratio, 1.0, max_relative = 1e-3);
-    let at = |i: i32| forces[usize::try_from(i * pieces).unwrap()];
+    let at = |i: i32| forces[usize::try_from(i * segments).unwrap()];
     assert_relative_eq!(at(1), -at(3), max_relative = 1e-9);
     assert_relative_eq!(at(1), at(5), max_relative = 1e-9);
     // Masing: from a turn on, the first curve twice as large.
-    for i in 0..=pieces {
-        let (turned, first) = (at(1) - forces[(pieces + 2 * i) as usize], forces[i as usize]);
+    for i in 0..=segments {
+        let (turned, first) = (at(1) - forces[(segments + 2 * i) as usize], forces[i as usize]);
         assert_relative_eq!(turned, 2.0 * first, max_relative = 1e-9, epsilon = 1e-12 * at(1));
     }
 }
@@ -272,17 +276,17 @@ fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
 
 #[test]
 fn history_in_time_and_in_load_give_the_same_rough_contact() {
-    // A force held constant and the approach that it makes, prescribed: the same forces, to the order of the pieces of the path.
+    // A force held constant and the approach that it makes, prescribed: the same forces, to the order of the segments of the path.
     let model = Bem3d { cells: 17, tolerance: 1e-9, ..Bem3d::default() };
     let scene = creeping(fractal());
     let mut by_force = Equivalent::new(model).prepare(&scene, 2).unwrap();
     let force = by_force.normalisation().force(0.1).unwrap();
-    let error = |pieces: u32| {
+    let error = |segments: u32| {
         let mut by_force = Equivalent::new(model).prepare(&scene, 2).unwrap();
         let mut by_approach = Equivalent::new(model).prepare(&scene, 2).unwrap();
         let mut last = 0.0;
-        for i in 0..=pieces {
-            let time = 4.0 * f64::from(i) / f64::from(pieces);
+        for i in 0..=segments {
+            let time = 4.0 * f64::from(i) / f64::from(segments);
             let d =
                 by_force.advance(Step::normal(time, Load::Force(force))).unwrap().normal.approach.unwrap();
             last = by_approach.advance(Step::normal(time, Load::Approach(d))).unwrap().normal.force;

@@ -143,12 +143,12 @@ fn work_along_any_path_is_stored_or_lost() {
         let force = shear(&mut *history, Tangential::Force(0.0)).normal.force;
         let reach = 0.4 * D / SHEAR;
         let (mut work, mut lost, mut last) = (0.0, 0.0, [0.0, 0.0]);
-        let pieces = 200;
+        let segments = 200;
         let mut loops = Vec::new();
         for turn in [0.7, -0.5, 0.9, -0.9, 0.9] {
             let begin = last[0];
-            for i in 1..=pieces {
-                let u = begin + (turn * reach - begin) * f64::from(i) / f64::from(pieces);
+            for i in 1..=segments {
+                let u = begin + (turn * reach - begin) * f64::from(i) / f64::from(segments);
                 let tangential = shear(&mut *history, Tangential::Displacement(u)).tangential.unwrap();
                 work += 0.5 * (tangential.force + last[1]) * (u - last[0]);
                 assert!(tangential.dissipated >= lost - EXACT * force * reach);
@@ -159,7 +159,7 @@ fn work_along_any_path_is_stored_or_lost() {
             }
             loops.push([work, lost]);
         }
-        // From 0.9 to 0.9: a closed loop. Trapezia of 200 pieces, second order.
+        // From 0.9 to 0.9: a closed loop. Trapezia of 200 segments, second order.
         let [one, other] = [loops[2], loops[4]];
         assert_relative_eq!(other[0] - one[0], other[1] - one[1], max_relative = 1e-4);
     }

@@ -79,10 +79,10 @@ fn work_lies_between_the_relaxed_and_the_glassy_energy() {
     // E* Phi <= F <= E*(0) Phi while the contact grows, hence so does the work; what lies above the relaxed energy is dissipated or still held.
     for (model, tolerance) in models() {
         let scene = scene(sphere(), &series());
-        let pieces = 200;
-        let path: Vec<(f64, f64)> = (1..=pieces)
+        let segments = 200;
+        let path: Vec<(f64, f64)> = (1..=segments)
             .map(|i| {
-                let t = f64::from(i) / f64::from(pieces);
+                let t = f64::from(i) / f64::from(segments);
                 // Fast, slow and fast again.
                 (4.0 * t, 0.02 * (t + 0.12 * (12.0 * t).sin() / 2.0).max(0.0))
             })

@@ -7,7 +7,7 @@ mod studies;
 pub use bench::BenchArguments;
 
 use clap::{Parser, Subcommand};
-use figures::{Needs, Request, Wish};
+use figures::{AccuracyTarget, Request, Requirements};
 use sizes::{Both, Lines, Maps, Reduced, Solid};
 use studies::{AccuracyCost, Audit, BudgetCheck, Reference, StabilityArguments, TwoCasesArguments};
 
@@ -75,7 +75,7 @@ pub enum Command {
     /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and picture).
     #[command(after_help = EXPAND)]
     AccuracyCost(AccuracyCost),
-    /// Whether error budgets are honest: random surfaces, loads, grids and tolerances against references (budget-check.csv).
+    /// Coverage of the error budgets: random surfaces, loads, grids and tolerances against references (budget-check.csv).
     #[command(after_help = EXPAND)]
     BudgetCheck(BudgetCheck),
     /// Sec. II's two problems side by side: free and fractal, periodic with a roll-off; with Persson's and Greenwood-Williamson's theories.
@@ -114,7 +114,7 @@ impl Command {
     }
 
     /// The accuracy that a figure is asked for, and which ensembles it needs.
-    pub fn wish(&self) -> Option<(Needs, Wish)> {
+    pub fn target(&self) -> Option<(Requirements, AccuracyTarget)> {
         let (solve, solid, line) = match self {
             Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, true, false),
             Self::ReproduceFig6(a) => (&a.solve, false, true),
@@ -123,7 +123,7 @@ impl Command {
             }
             _ => return None,
         };
-        solve.wish().map(|wish| (Needs { solid, line }, wish))
+        solve.target().map(|target| (Requirements { solid, line }, target))
     }
 
     /// What it asks for.
@@ -257,18 +257,18 @@ mod tests {
 
     #[test]
     fn a_wish_is_a_share_and_a_time() {
-        let wish = |line: &str| parse(line).unwrap().command.wish();
-        let (needs, asked) = wish("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
+        let target = |line: &str| parse(line).unwrap().command.target();
+        let (requirements, asked) = target("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
         assert_eq!(
-            (needs, asked),
-            (Needs { solid: true, line: false }, Wish { accuracy: 0.01, seconds: 7200.0 })
+            (requirements, asked),
+            (Requirements { solid: true, line: false }, AccuracyTarget { accuracy: 0.01, seconds: 7200.0 })
         );
-        let (needs, asked) = wish("verify --accuracy 0.05").unwrap();
+        let (requirements, asked) = target("verify --accuracy 0.05").unwrap();
         assert_eq!(
-            (needs, asked),
-            (Needs { solid: true, line: true }, Wish { accuracy: 0.05, seconds: 600.0 })
+            (requirements, asked),
+            (Requirements { solid: true, line: true }, AccuracyTarget { accuracy: 0.05, seconds: 600.0 })
         );
-        assert!(wish("reproduce-fig6").is_none() && wish("bench").is_none());
+        assert!(target("reproduce-fig6").is_none() && target("bench").is_none());
         for line in [
             "reproduce-fig2 --accuracy 0",
             "reproduce-fig2 --accuracy 100%",

@@ -38,13 +38,13 @@ fn execute(command: Command) -> Result<ExitCode> {
     }
     let name = command.name();
     let reporter = Reporter::new();
-    let wish = command.wish();
-    let run = match wish {
-        Some((needs, wish)) => {
-            let plan = figures::plan(&command.request(), needs, wish, &reporter)?;
+    let target = command.target();
+    let run = match target {
+        Some((requirements, target)) => {
+            let plan = figures::plan(&command.request(), requirements, target, &reporter)?;
             plan.lines.iter().for_each(|line| println!("{line}"));
             let told = plan.lines.len();
-            let settled = figures::settle(plan, needs, wish, &reporter)?;
+            let settled = figures::settle(plan, requirements, target, &reporter)?;
             settled.lines.iter().skip(told).for_each(|line| println!("{line}"));
             // What was solved a moment ago is not solved again.
             Run { fresh: false, ..settled.run }
@@ -83,10 +83,10 @@ fn execute(command: Command) -> Result<ExitCode> {
         }
         Command::Bench(_) | Command::CheckReference(_) | Command::Stability(_) => Vec::new(),
     };
-    if let Some((needs, _)) = wish
+    if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())
     {
-        outcomes.push(figures::state_budgets(&run, needs.solid, needs.line, &reporter)?);
+        outcomes.push(figures::state_budgets(&run, requirements.solid, requirements.line, &reporter)?);
     }
     let typed: Vec<String> = std::env::args().skip(1).collect();
     let manifest =

@@ -248,8 +248,8 @@ impl History for Prepared {
         const SAME: f64 = 1e-12;
         let step = step.validated(self.at.time)?;
         let (state, sphere) = self.press(&step)?;
-        let untouched = self.at.curve == Curve::default();
-        if let (Some((last, _)), false) = (&self.at.pressed, untouched)
+        let unloaded = self.at.curve == Curve::default();
+        if let (Some((last, _)), false) = (&self.at.pressed, unloaded)
             && (state.force - last.force).abs() > SAME * last.force
         {
             let what = "a change of the normal load after a tangential one (the theory holds it constant)";
@@ -257,7 +257,7 @@ impl History for Prepared {
         }
         // After a tangential load the first normal state stays, to the last digit.
         let (state, sphere) = match &self.at.pressed {
-            Some(pressed) if !untouched => pressed.clone(),
+            Some(pressed) if !unloaded => pressed.clone(),
             _ => (state, sphere),
         };
         let mut curve = self.at.curve.clone();

@@ -314,7 +314,7 @@ mod tests {
         }
     }
 
-    /// A slow twin: rectangles in ln q over a regularised integrand, and trapezoids in ln p.
+    /// A reference implementation: rectangles in ln q over a regularised integrand, and trapezoids in ln p.
     #[test]
     fn direct_integration() {
         let (hurst, gamma) = (0.6, 0.45);

@@ -20,7 +20,7 @@ pub enum Error {
         /// What was expected instead.
         expected: Cow<'static, str>,
     },
-    /// An array does not have the promised number of values.
+    /// An array does not have the expected number of values.
     Shape {
         /// The array.
         name: Cow<'static, str>,

@@ -14,7 +14,7 @@ use analysis::{Table, Value};
 use contact_model::never;
 use rayon::prelude::*;
 
-/// One solve and its tight twin.
+/// One solve and its tight half-size grid.
 struct Pair {
     fractal_dimension: f64,
     index: usize,

@@ -4,9 +4,9 @@ use crate::arrays::write_npy;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::forces::Forces;
+use crate::job_queue::run_jobs;
 use crate::meters::{cpu_seconds, peak_memory, reset_peak_memory};
 use crate::npy::read_map;
-use crate::pieces::pieces;
 use crate::sample::number;
 use crate::sweep::collect;
 use bem3d::{Bem3d, Method};
@@ -197,10 +197,9 @@ pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) ->
         files::create_directory(directory)?;
     }
     let order: Vec<usize> = (0..series.len()).collect();
-    let done =
-        pieces(bench.threads, &order, &never, |i, stop| series[i].run(bench, stop, found)).map_err(|e| {
-            Error::parameter("threads", bench.threads, format!("threads that the system grants ({e})"))
-        })?;
+    let done = run_jobs(bench.threads, &order, &never, |i, stop| series[i].run(bench, stop, found)).map_err(
+        |e| Error::parameter("threads", bench.threads, format!("threads that the system grants ({e})")),
+    )?;
     Ok(collect(done)?.into_iter().flatten().collect())
 }
 

@@ -17,7 +17,7 @@ use analysis::{Bootstrap, Table, Value, Window, least_squares};
 use std::path::Path;
 
 /// Surfaces that are solved on the coarser grid as well: enough to know the scatter of a difference to a fifth.
-pub(crate) const TWINS: usize = 12;
+pub(crate) const HALF_GRIDS: usize = 12;
 /// Coarsest grid and shortest line that say anything about a finer one.
 const SMALLEST_TWIN: (usize, usize) = (33, 1 << 10);
 /// 95 % half-width of the distance from the limit of fine grids, in root mean squares of the difference between a grid and one half
@@ -73,7 +73,7 @@ impl Budgeted {
 }
 
 /// The same model on cells (elements) twice as large; `None` where that grid is too coarse to say anything.
-pub(crate) fn twin(numerics: Numerics) -> Option<Numerics> {
+pub(crate) fn half_grid(numerics: Numerics) -> Option<Numerics> {
     match numerics {
         Numerics::Bem3d { cells, tolerance } => {
             let cells = cells.div_ceil(2);
@@ -87,14 +87,14 @@ pub(crate) fn twin(numerics: Numerics) -> Option<Numerics> {
 }
 
 /// The first surfaces of an ensemble on a grid half as fine.
-pub(crate) fn measure_twins(
+pub(crate) fn measure_half_grids(
     run: &Run,
     measured: &Measured,
     store: &Store,
     progress: &dyn Progress,
 ) -> Result<Option<Measured>> {
-    let Some(numerics) = twin(measured.numerics) else { return Ok(None) };
-    let surfaces = measured.series.first().map_or(0, |s| s.units.len()).min(TWINS);
+    let Some(numerics) = half_grid(measured.numerics) else { return Ok(None) };
+    let surfaces = measured.series.first().map_or(0, |s| s.units.len()).min(HALF_GRIDS);
     measure(numerics, surfaces, measured.force_bar(), run, store, progress).map(Some)
 }
 
@@ -103,9 +103,9 @@ pub(crate) fn algebraic(s: &Sample) -> f64 {
     s.certificate.stiffness_error.unwrap_or(0.0) + s.certificate.load_error
 }
 
-/// 95 % half-width from the relative differences between a grid and its twin, for the mean over `surfaces`.
+/// 95 % half-width from the relative differences between a grid and its half-size grid, for the mean over `surfaces`.
 ///
-/// `REACH sqrt(m^2 + s^2/n)`: m the mean difference, s its scatter, n the number of surfaces or of twins, whichever is less. `None` for
+/// `REACH sqrt(m^2 + s^2/n)`: m the mean difference, s its scatter, n the number of surfaces or of half-size grids, whichever is less. `None` for
 /// fewer than two differences.
 pub(crate) fn discretisation(differences: &[f64], surfaces: usize) -> Option<f64> {
     let n = differences.len() as f64;
@@ -168,19 +168,19 @@ pub fn state_budgets(run: &Run, solid: bool, line: bool, progress: &dyn Progress
 }
 
 /// Budgets of every mean k_bar, of alpha and of zeta.
-pub(crate) fn budgets(measured: &Measured, twins: Option<&Measured>) -> Vec<Budgeted> {
+pub(crate) fn budgets(measured: &Measured, half_grids: Option<&Measured>) -> Vec<Budgeted> {
     let mut all = Vec::new();
     for series in &measured.series {
-        let twins = twins.and_then(|t| t.at(series.fractal_dimension));
-        all.extend((0..series.points.len()).filter_map(|j| row(series, twins, j)));
+        let half_grids = half_grids.and_then(|t| t.at(series.fractal_dimension));
+        all.extend((0..series.points.len()).filter_map(|j| row(series, half_grids, j)));
     }
     for law in laws(measured) {
         let (Some(series), Ok(fit)) = (measured.at(law.fractal_dimension), &law.fit) else { continue };
-        let twins = twins.and_then(|t| t.at(law.fractal_dimension));
+        let half_grids = half_grids.and_then(|t| t.at(law.fractal_dimension));
         let inside: Vec<usize> = (0..series.points.len())
             .filter(|&j| (fit.force_bar_min..=fit.force_bar_max).contains(&series.points[j].force_bar))
             .collect();
-        let spread = twins.and_then(|t| law_difference(series, t));
+        let spread = half_grids.and_then(|t| law_difference(series, t));
         let weights = weights(series, &inside);
         let freedom = student(series.units.len().saturating_sub(1));
         let value =
@@ -217,10 +217,10 @@ fn mean_algebraic(series: &Series, j: usize) -> f64 {
     analysis::sum(open.iter().copied()) / open.len().max(1) as f64
 }
 
-fn row(series: &Series, twins: Option<&Series>, j: usize) -> Option<Budgeted> {
+fn row(series: &Series, half_grids: Option<&Series>, j: usize) -> Option<Budgeted> {
     let point = &series.points[j];
     let k = point.stiffness_bar?;
-    let differences = twins.map(|t| differences(series, t, j));
+    let differences = half_grids.map(|t| differences(series, t, j));
     let budget = Budget {
         algebraic: k.mean * mean_algebraic(series, j),
         discretisation: differences.and_then(|d| discretisation(&d, k.count)).map(|d| k.mean * d),
@@ -236,13 +236,13 @@ fn row(series: &Series, twins: Option<&Series>, j: usize) -> Option<Budgeted> {
     })
 }
 
-/// Relative differences of k between a surface and its twin, both converged.
-pub(crate) fn differences(series: &Series, twins: &Series, j: usize) -> Vec<f64> {
+/// Relative differences of k between a surface and its half-size grid, both converged.
+pub(crate) fn differences(series: &Series, half_grids: &Series, j: usize) -> Vec<f64> {
     let k = |s: &Series, i: usize| {
         s.units[i].1.samples.get(j).filter(|s| s.converged()).and_then(|s| s.stiffness_bar)
     };
-    (0..twins.units.len().min(series.units.len()))
-        .filter_map(|i| Some(k(twins, i)? / k(series, i)? - 1.0))
+    (0..half_grids.units.len().min(series.units.len()))
+        .filter_map(|i| Some(k(half_grids, i)? / k(series, i)? - 1.0))
         .collect()
 }
 
@@ -255,15 +255,17 @@ fn weights(series: &Series, inside: &[usize]) -> Vec<(f64, f64)> {
     x.iter().map(|x| (x - mean) / square).map(|w| (w, 1.0 / n - mean * w)).collect()
 }
 
-/// 95 % half-widths of alpha and of ln zeta from the twins, over the forces that both grids resolve.
-fn law_difference(series: &Series, twins: &Series) -> Option<(f64, f64)> {
+/// 95 % half-widths of alpha and of ln zeta from the half-size grids, over the forces that both grids resolve.
+fn law_difference(series: &Series, half_grids: &Series) -> Option<(f64, f64)> {
     let window = Window::default();
-    let (fine, coarse) = (&series.curves, &twins.curves);
+    let (fine, coarse) = (&series.curves, &half_grids.curves);
     let resolved =
         |s: &Series, j: usize| s.points[j].min_contact_cells.is_none_or(|c| c >= window.min_contact_cells);
     let inside: Vec<usize> = (0..series.points.len())
         .filter(|&j| {
-            series.points[j].force_bar <= window.max_force_bar && resolved(series, j) && resolved(twins, j)
+            series.points[j].force_bar <= window.max_force_bar
+                && resolved(series, j)
+                && resolved(half_grids, j)
         })
         .collect();
     let law = |curves: &analysis::Curves, draw: &[usize]| {
@@ -276,7 +278,7 @@ fn law_difference(series: &Series, twins: &Series) -> Option<(f64, f64)> {
         let (a, b) = (law(fine, draw)?, law(coarse, draw)?);
         Some((a.0 - b.0, a.1 - b.1))
     };
-    let surfaces = twins.units.len().min(series.units.len());
+    let surfaces = half_grids.units.len().min(series.units.len());
     let whole: Vec<usize> = (0..surfaces).collect();
     let found = difference(&whole)?;
     let scatter = |part: fn((f64, f64)) -> f64| {
@@ -304,7 +306,7 @@ pub(crate) fn write(path: &Path, measured: &Measured, all: &[Budgeted], header: 
             column(
                 "discretisation",
                 "1",
-                "from the grid and its shortest wave; empty without a coarser twin",
+                "from the grid and its shortest wave; empty without a half-size grid",
             ),
             column("ensemble", "1", "from the number of surfaces (Student); empty for one surface"),
             column("half_width", "1", "algebraic + sqrt(discretisation^2 + ensemble^2)"),
@@ -335,7 +337,7 @@ pub(crate) fn write(path: &Path, measured: &Measured, all: &[Budgeted], header: 
     let header = header
         .with_note(format!(
             "discretisation: {REACH} root mean squares of the relative difference from the same surfaces on a grid half as fine (the first \
-             {TWINS} of them); budget-check measures how often the truth is inside"
+             {HALF_GRIDS} of them); budget-check measures how often the truth is inside"
         ))
         .with_note(reached(all));
     write_csv(path, &table, &header)
@@ -349,7 +351,7 @@ pub(crate) fn reached(all: &[Budgeted]) -> String {
         .filter_map(|b| Some((b, b.relative()?)))
         .collect();
     let Some(worst) = known.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
-        return "accuracy reached: unknown (it takes two surfaces and a grid with a coarser twin)".to_owned();
+        return "accuracy reached: unknown (it takes two surfaces and a grid that can be halved)".to_owned();
     };
     let mut sorted: Vec<f64> = known.iter().map(|k| k.1).collect();
     sorted.sort_by(f64::total_cmp);
@@ -390,9 +392,12 @@ mod tests {
     #[test]
     fn twins_are_half_as_fine() {
         let solid = |cells| Numerics::Bem3d { cells, tolerance: 1e-3 };
-        assert_eq!(twin(solid(2049)), Some(solid(1025)));
-        assert_eq!(twin(solid(64)), None);
-        assert_eq!(twin(Numerics::Mdr1d { elements: 1 << 20 }), Some(Numerics::Mdr1d { elements: 1 << 19 }));
-        assert_eq!(twin(Numerics::Mdr1d { elements: 1024 }), None);
+        assert_eq!(half_grid(solid(2049)), Some(solid(1025)));
+        assert_eq!(half_grid(solid(64)), None);
+        assert_eq!(
+            half_grid(Numerics::Mdr1d { elements: 1 << 20 }),
+            Some(Numerics::Mdr1d { elements: 1 << 19 })
+        );
+        assert_eq!(half_grid(Numerics::Mdr1d { elements: 1024 }), None);
     }
 }

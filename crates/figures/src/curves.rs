@@ -74,8 +74,8 @@ pub(crate) fn budget(
     store: &Store,
     progress: &dyn Progress,
 ) -> Result<(PathBuf, String)> {
-    let twins = budget::measure_twins(run, measured, store, progress)?;
-    let all = budget::budgets(measured, twins.as_ref());
+    let half_grids = budget::measure_half_grids(run, measured, store, progress)?;
+    let all = budget::budgets(measured, half_grids.as_ref());
     let header = describe(Header::new(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
     let path = run.out.join(format!("{name}-budget.csv"));
     budget::write(&path, measured, &all, header)?;

@@ -58,13 +58,13 @@ mod fig7;
 mod files;
 mod forces;
 mod hard_cases;
+mod job_queue;
 mod laws;
 mod manifest;
 mod measured;
 mod meters;
 mod npy;
 mod outcome;
-mod pieces;
 mod plot;
 mod progress;
 mod reference;
@@ -80,7 +80,8 @@ mod unit;
 mod verify;
 
 pub use accuracy::{
-    Depth, Honesty, Needs, Plan, Wish, accuracy_cost, budget_check, plan, redraw_accuracy, settle,
+    AccuracyTarget, Coverage, Depth, Plan, Requirements, accuracy_cost, budget_check, plan, redraw_accuracy,
+    settle,
 };
 pub use all::reproduce_all;
 pub use arrays::{write_grey, write_npy};
@@ -103,13 +104,13 @@ pub use fig7::fig7;
 pub use files::{clean, create_directory, write_whole};
 pub use forces::Forces;
 pub use hard_cases::hard_cases;
+pub use job_queue::{largest_first, run_jobs};
 pub use laws::{Law, laws};
 pub use manifest::{machine, write_manifest};
 pub use measured::{Measured, Series, measure_1d, measure_3d};
 pub use meters::{peak_memory, reset_peak_memory};
 pub use npy::read_map;
 pub use outcome::Outcome;
-pub use pieces::{largest_first, pieces};
 pub use progress::{Progress, Silent};
 pub use reference::{RELATIVE, check_reference};
 pub use reporter::Reporter;

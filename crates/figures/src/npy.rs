@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use contact_model::HeightMap;
 use std::path::Path;
-use surface_io::{Declared, Dimension, Format, Problem, Quantity, Scan, Sides, Treatment};
+use surface_io::{ContentError, Dimension, Format, Preprocessing, Quantity, ReadOptions, Scan, Sides};
 
 /// Reads an NPY array `[row, column]` of numbers as heights on square cells with `sqrt(Lx Ly) = 1`, as they are.
 ///
@@ -15,11 +15,11 @@ use surface_io::{Declared, Dimension, Format, Problem, Quantity, Scan, Sides, Tr
 pub fn read_map(path: &Path) -> Result<HeightMap> {
     let cell = Quantity::new(1.0, Dimension::NONE).map_err(|e| Error::content(path, e.to_string()))?;
     let declared =
-        Declared { format: Some(Format::Npy), cell: Some(Sides::One(cell)), ..Declared::default() };
+        ReadOptions { format: Some(Format::Npy), cell: Some(Sides::One(cell)), ..ReadOptions::default() };
     let scan = Scan::read(path, &declared).map_err(Error::from)?;
-    let map = scan.map(&Treatment::default()).map_err(|error| match error.problem() {
+    let map = scan.map(&Preprocessing::default()).map_err(|error| match error.problem() {
         // What could be done about it elsewhere is not offered here.
-        Some(Problem::Undefined { undefined, points, first }) => Error::content(
+        Some(ContentError::Undefined { undefined, points, first }) => Error::content(
             path,
             format!("{undefined} of {points} numbers are NaN, the first in {first}: expected finite heights"),
         ),

@@ -1,7 +1,7 @@
 //! Units in parallel, results in order.
 
 use crate::error::{Error, Result};
-use crate::pieces::{largest_first, pieces};
+use crate::job_queue::{largest_first, run_jobs};
 use crate::progress::Progress;
 use crate::store::Store;
 use crate::unit::{Models, Unit, UnitResult};
@@ -24,7 +24,7 @@ pub fn sweep(
     progress.begin(what, units.iter().map(Unit::cost).sum());
     let models = Models::default();
     let order = largest_first(units.len(), |i| units[i].cost());
-    let done = pieces(threads, &order, &never, |i, stop| one(&units[i], &models, store, stop, progress))
+    let done = run_jobs(threads, &order, &never, |i, stop| one(&units[i], &models, store, stop, progress))
         .map_err(|e| Error::parameter("threads", threads, format!("threads that the system grants ({e})")))?;
     progress.end();
     collect(done)

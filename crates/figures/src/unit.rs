@@ -211,10 +211,10 @@ mod tests {
     };
 
     /// k = sqrt(F); gives up above F = 1.
-    struct Tired;
-    struct TiredContact;
+    struct Failing;
+    struct FailingContact;
 
-    impl ContactModel for Tired {
+    impl ContactModel for Failing {
         fn name(&self) -> &'static str {
             "tired"
         }
@@ -222,11 +222,11 @@ mod tests {
             &[]
         }
         fn prepare(&self, _: &Scene, _: u64) -> ModelResult<Box<dyn PreparedContact>> {
-            Ok(Box::new(TiredContact))
+            Ok(Box::new(FailingContact))
         }
     }
 
-    impl PreparedContact for TiredContact {
+    impl PreparedContact for FailingContact {
         fn normalisation(&self) -> Normalisation {
             Normalisation { modulus: 1.0, length: 1.0, height: Some(2.0) }
         }
@@ -262,7 +262,7 @@ mod tests {
             seed: 1,
             forces: [0.1, 1.0].into(),
         };
-        let result = unit.solve_with(&Tired, &contact_model::never).unwrap();
+        let result = unit.solve_with(&Failing, &contact_model::never).unwrap();
         approx::assert_relative_eq!(result.samples[0].force, 0.2);
         assert!(result.samples[0].converged() && !result.samples[1].converged());
         assert_eq!(result.samples[1].status, "iteration_limit");

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
 use figures::{
-    CsvFile, Error, Needs, Progress, Request, Run, Silent, Verdict, Wish, fig1, fig2, fig3, fig4, fig5, fig6,
-    fig7, verify,
+    AccuracyTarget, CsvFile, Error, Progress, Request, Requirements, Run, Silent, Verdict, fig1, fig2, fig3,
+    fig4, fig5, fig6, fig7, verify,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -206,7 +206,7 @@ fn means_have_budgets_where_there_is_a_coarser_twin() {
         let sum = algebraic[j].unwrap() + grid[j].unwrap().hypot(ensemble[j].unwrap());
         approx::assert_relative_eq!(width[j].unwrap(), sum, max_relative = 1e-12);
     }
-    // No twin, no claim.
+    // No half-size grid, no claim.
     let coarse = Run { cells: 17, ..run };
     assert!(fig2(&coarse, &Silent).unwrap().reached[0].contains("unknown"));
 }
@@ -221,12 +221,14 @@ fn a_wish_is_met_or_refused_with_its_price() {
         threads: Some(1),
         ..Request::default()
     };
-    let needs = Needs { solid: true, line: false };
-    let plan = |accuracy, seconds| figures::plan(&request, needs, Wish { accuracy, seconds }, &Silent);
+    let requirements = Requirements { solid: true, line: false };
+    let plan = |accuracy, seconds| {
+        figures::plan(&request, requirements, AccuracyTarget { accuracy, seconds }, &Silent)
+    };
     let planned = plan(0.1, 600.0).unwrap();
     assert!(planned.accuracy <= 0.1 && planned.run.surfaces >= 2, "{:?}", planned.lines);
-    let wish = Wish { accuracy: 0.1, seconds: 600.0 };
-    let settled = figures::settle(planned, needs, wish, &Silent).unwrap();
+    let target = AccuracyTarget { accuracy: 0.1, seconds: 600.0 };
+    let settled = figures::settle(planned, requirements, target, &Silent).unwrap();
     let counter = Counter::default();
     fig2(&settled.run, &counter).unwrap();
     assert_eq!(counter.units.into_inner(), counter.reused.into_inner());
@@ -235,6 +237,8 @@ fn a_wish_is_met_or_refused_with_its_price() {
     let refused = plan(1e-4, 60.0).unwrap_err().to_string();
     assert!(refused.starts_with("--accuracy 0.010 %") && refused.contains("the budget buys"), "{refused}");
     let given = Request { cells: Some(65), ..request };
-    let refused = figures::plan(&given, needs, Wish { accuracy: 0.1, seconds: 1.0 }, &Silent).unwrap_err();
+    let refused =
+        figures::plan(&given, requirements, AccuracyTarget { accuracy: 0.1, seconds: 1.0 }, &Silent)
+            .unwrap_err();
     assert!(refused.to_string().starts_with("--cells 65"), "{refused}");
 }

@@ -30,14 +30,14 @@ const BOX_OVER_CONTACT: f64 = 6.0;
 
 /// Time and work of a small twin, scaled. What a small grid refuses is not predicted: its run will tell.
 pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
-    let (grid, size) = (cells(scene, numerics), scene.relief.size());
+    let (grid, size) = (cells(scene, numerics), scene.surface.size());
     let coarse = (grid.columns.max(grid.rows) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);
     let small = numerics.reduced(coarse, CALIBRATION_ELEMENTS, size);
     // Code and memory that are touched for the first time are no part of what grows with N.
     let warm = numerics.reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
     let _ = small_solves(scene, &warm, WARM_CELLS, &contact_model::never);
-    let asked = scene.request.count();
-    let total = (asked * scene.chance.surfaces) as f64;
+    let requested = scene.request.count();
+    let total = (requested * scene.sampling.surfaces) as f64;
     let begin = Instant::now();
     let stop = || begin.elapsed() > CALIBRATION_TIME;
     let (solved, used) = small_solves(scene, &small, coarse, &stop).unwrap_or_default();
@@ -53,13 +53,13 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         Numerics::Mdr1d(m) => (m.elements as f64 / small.size().max(1) as f64, 1.0),
         _ => (1.0, 1.0),
     };
-    let surfaces = scene.chance.surfaces as f64;
+    let surfaces = scene.sampling.surfaces as f64;
     // A line is sorted once, whatever the loads.
     cost.seconds *= time * if matches!(numerics, Numerics::Mdr1d(_)) { surfaces } else { per_state };
     cost.applications *= applications * per_state;
     cost.linear_solves *= per_state;
     cost.fields *= per_state;
-    let outputs = &scene.asked.outputs;
+    let outputs = &scene.requested.outputs;
     if let Numerics::Bem3d(_) | Numerics::Equivalent(_) = numerics {
         let fields =
             [outputs.pressure, outputs.displacement, outputs.gap].iter().filter(|f| **f).count() as f64;
@@ -89,7 +89,7 @@ fn small_solves(
 ) -> contact_model::Result<(Solved, usize)> {
     let seed = scene.seed(0);
     let mut physics = scene.scene(numerics, seed)?;
-    let mut grid = numerics.boundary_elements().map(|elements| elements.grid(scene.relief.size()));
+    let mut grid = numerics.boundary_elements().map(|elements| elements.grid(scene.surface.size()));
     if let Surface::Heights(map) = &physics.surface {
         let thin = thinned(map, coarse)?;
         grid = Some(thin.cells());
@@ -104,9 +104,9 @@ fn small_solves(
             let count = loads.values.len();
             let used = count.min(CALIBRATION_LOADS);
             for i in 0..used {
-                let asked = loads.values[i * (count - 1) / (used - 1).max(1)];
+                let requested = loads.values[i * (count - 1) / (used - 1).max(1)];
                 let Ok(state) =
-                    loads.load(asked, &normalisation).and_then(|load| contact.solve_until(load, stop))
+                    loads.load(requested, &normalisation).and_then(|load| contact.solve_until(load, stop))
                 else {
                     continue;
                 };

@@ -12,7 +12,7 @@ pub(crate) struct State {
     pub model: &'static str,
     pub surface: usize,
     pub index: usize,
-    pub asked: f64,
+    pub requested: f64,
     pub time: Option<f64>,
     pub normalisation: Option<Normalisation>,
     pub normal: Option<ContactState>,
@@ -49,8 +49,8 @@ fn tangential(state: &State, pick: impl Fn(&contact_model::TangentialState) -> O
 #[allow(clippy::too_many_lines)] // One entry per column, nothing else.
 fn kinds(scene: &SceneFile) -> Vec<Kind> {
     let kind = |name, unit, meaning, value: Value1| Kind { name, unit, meaning, value };
-    let outputs = &scene.asked.outputs;
-    let rough = scene.relief.is_rough();
+    let outputs = &scene.requested.outputs;
+    let rough = scene.surface.is_rough();
     let mut list = vec![
         kind("model", "-", "who answers", |s| s.model.into()),
         kind("surface", "1", "number of the surface, from 0", |s| s.surface.into()),
@@ -71,7 +71,7 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
                 Prescribed::Approach => ("m", "approach asked for"),
                 Prescribed::MeanGap => ("m", "mean gap asked for"),
             };
-            list.push(kind("asked", unit, meaning, |s| s.asked.into()));
+            list.push(kind("asked", unit, meaning, |s| s.requested.into()));
         }
     }
     list.push(kind("force", "N", "normal force", |s| normal(s, |n| n.force)));
@@ -85,7 +85,7 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
             normal(s, |n| n.approach)
         }));
     }
-    if scene.asked.mean_gap {
+    if scene.requested.mean_gap {
         list.push(kind("mean_gap", "m", "mean of the gap over the area", |s| s.mean_gap.into()));
     }
     if scene.is_history() {

@@ -1,7 +1,7 @@
 //! `[effects]`: each off unless named.
 
 use crate::entries::{Entries, Entry, Read, System};
-use crate::words::number;
+use crate::human_readable::number;
 use contact_model::{Adhesion, Boundary, Effects, Friction, PronySeries, Relaxing, Rheology};
 use surface_io::Dimension;
 
@@ -120,11 +120,11 @@ fn read_rheology(entry: &Entry<'_>, system: System) -> Read<Rheology> {
             let (w, t) = (weights.list(), times.list());
             if w.len() != t.len() {
                 return Err(times
-                    .trouble(format!("{} weights and {} times", w.len(), t.len()))
+                    .diagnostic(format!("{} weights and {} times", w.len(), t.len()))
                     .with_help("one relaxation time for each weight"));
             }
             let arms = w.iter().zip(&t).map(|(w, t)| arm(w, t)).collect::<Read<Vec<_>>>()?;
-            Rheology::Prony(PronySeries::new(&arms).map_err(|e| weights.trouble(e.to_string()))?)
+            Rheology::Prony(PronySeries::new(&arms).map_err(|e| weights.diagnostic(e.to_string()))?)
         }
     };
     table.finish()?;

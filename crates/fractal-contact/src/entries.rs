@@ -1,6 +1,6 @@
 //! A table of a scene, read key by key: what nobody asks for is an error.
 
-use crate::trouble::Trouble;
+use crate::diagnostic::Diagnostic;
 use std::cell::RefCell;
 use std::ops::Range;
 use surface_io::{Dimension, Quantity};
@@ -8,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Result of reading.
-pub(crate) type Read<T> = Result<T, Trouble>;
+pub(crate) type Read<T> = Result<T, Diagnostic>;
 
 /// Whether numbers carry units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,11 +48,11 @@ impl<'a> Entries<'a> {
     }
 
     /// A mistake of the table itself.
-    pub fn trouble(&self, message: impl Into<String>) -> Trouble {
-        let trouble = Trouble::new(message);
+    pub fn diagnostic(&self, message: impl Into<String>) -> Diagnostic {
+        let diagnostic = Diagnostic::new(message);
         match &self.span {
-            Some(span) => trouble.at(span.clone()),
-            None => trouble,
+            Some(span) => diagnostic.at(span.clone()),
+            None => diagnostic,
         }
     }
 
@@ -74,10 +74,10 @@ impl<'a> Entries<'a> {
             let near = |name: &&str| distance(name, key) <= 1 + key.len() / 4;
             if let Some(found) = self.keys().find(near).and_then(|name| self.entry(name)) {
                 return found
-                    .trouble_at_key(format!("`{key}` is missing in {}", self.title()))
+                    .diagnostic_at_key(format!("`{key}` is missing in {}", self.title()))
                     .with_help(format!("did you mean `{key}` here?"));
             }
-            self.trouble(format!("`{key}` is missing in {}", self.title()))
+            self.diagnostic(format!("`{key}` is missing in {}", self.title()))
                 .with_help(format!("add `{key} = {example}`"))
         })
     }
@@ -94,7 +94,7 @@ impl<'a> Entries<'a> {
             let Some(entry) = self.find(key) else { continue };
             if let Some((first, _)) = &found {
                 return Err(entry
-                    .trouble_at_key(format!("`{first}` and `{key}` are both given in {}", self.title()))
+                    .diagnostic_at_key(format!("`{first}` and `{key}` are both given in {}", self.title()))
                     .with_help(format!(
                         "they say the same thing twice or contradict each other: keep `{first}` or `{key}`"
                     )));
@@ -121,7 +121,7 @@ impl<'a> Entries<'a> {
                 } else {
                     format!("{what} in {}", self.title())
                 };
-                return Err(Trouble::new(format!("`{name}` is no {what}"))
+                return Err(Diagnostic::new(format!("`{name}` is no {what}"))
                     .at(key.span())
                     .with_help(suggestion(name, &known)));
             }
@@ -189,17 +189,17 @@ impl<'a> Entry<'a> {
     }
 
     /// A mistake of this value.
-    pub fn trouble(&self, message: impl Into<String>) -> Trouble {
-        Trouble::new(message).at(self.span())
+    pub fn diagnostic(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(message).at(self.span())
     }
 
     /// A mistake of this key.
-    pub fn trouble_at_key(&self, message: impl Into<String>) -> Trouble {
-        Trouble::new(message).at(self.key_span())
+    pub fn diagnostic_at_key(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(message).at(self.key_span())
     }
 
-    fn wrong(&self, expected: &str, example: &str) -> Trouble {
-        self.trouble(format!("`{}` is {}: expected {expected}", self.path, self.kind()))
+    fn wrong(&self, expected: &str, example: &str) -> Diagnostic {
+        self.diagnostic(format!("`{}` is {}: expected {expected}", self.path, self.kind()))
             .with_help(format!("write {example}"))
     }
 
@@ -270,7 +270,7 @@ impl<'a> Entry<'a> {
             return Err(self.wrong("a word", &example));
         };
         words.iter().find(|(name, _)| *name == text).map(|(_, value)| *value).ok_or_else(|| {
-            self.trouble(format!("`{}` is \"{text}\": no word that is known here", self.path))
+            self.diagnostic(format!("`{}` is \"{text}\": no word that is known here", self.path))
                 .with_help(suggestion(text, &names))
         })
     }
@@ -284,7 +284,7 @@ impl<'a> Entry<'a> {
         };
         match digits.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(self.trouble(format!("`{}` = {digits}: expected a finite number", self.path))),
+            _ => Err(self.diagnostic(format!("`{}` = {digits}: expected a finite number", self.path))),
         }
     }
 
@@ -297,7 +297,7 @@ impl<'a> Entry<'a> {
             _ => None,
         };
         whole.ok_or_else(|| {
-            self.trouble(format!("`{}`: expected a whole number >= {least}", self.path))
+            self.diagnostic(format!("`{}`: expected a whole number >= {least}", self.path))
                 .with_help("write it without a point, quotes or a sign")
         })
     }
@@ -306,7 +306,7 @@ impl<'a> Entry<'a> {
     pub fn quantity(&self, dimension: Dimension, system: System) -> Read<f64> {
         match (system, self.value.get_ref()) {
             (System::None, DeValue::String(text)) => Err(self
-                .trouble(format!(
+                .diagnostic(format!(
                     "`{}` is the text \"{text}\", but the scene has `units = \"none\"`",
                     self.path
                 ))
@@ -315,12 +315,12 @@ impl<'a> Entry<'a> {
                 )),
             (System::None, _) => self.number(),
             (System::Si, DeValue::String(text)) => Quantity::parse_as(text, dimension).map_err(|reason| {
-                self.trouble(format!("`{}`: {reason}", self.path))
+                self.diagnostic(format!("`{}`: {reason}", self.path))
                     .with_help(format!("write {dimension} with its unit, such as {}", example(dimension)))
             }),
             (System::Si, DeValue::Integer(_) | DeValue::Float(_)) => {
                 let value = self.number()?;
-                Err(self.trouble(format!("`{}` = {value} has no unit: expected {dimension}", self.path)).with_help(format!(
+                Err(self.diagnostic(format!("`{}` = {value} has no unit: expected {dimension}", self.path)).with_help(format!(
                     "write it with its unit, such as {}; a dimensionless scene says `units = \"none\"` in [scene]",
                     example(dimension)
                 )))
@@ -343,7 +343,7 @@ impl<'a> Entry<'a> {
         let [x, y] = &values[..] else {
             let example = if system == System::Si { "[\"2 mm\", \"1 mm\"]" } else { "[2, 1]" };
             return Err(self
-                .trouble(format!("`{}` has {} values: expected one, or two", self.path, values.len()))
+                .diagnostic(format!("`{}` has {} values: expected one, or two", self.path, values.len()))
                 .with_help(format!(
                     "along x, then along y, such as {example}; one value where both are the same"
                 )));
@@ -362,7 +362,7 @@ impl<'a> Entry<'a> {
             Ok(value)
         } else {
             Err(self
-                .trouble(format!("`{}` = {}: expected a number > 0", self.path, self.shown()))
+                .diagnostic(format!("`{}` = {}: expected a number > 0", self.path, self.shown()))
                 .with_help("check the sign; zero is not allowed here"))
         }
     }

@@ -1,6 +1,6 @@
 //! The one error type of this crate.
 
-use crate::trouble::Trouble;
+use crate::diagnostic::Diagnostic;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[non_exhaustive]
 pub enum Error {
     /// A mistake in a scene.
-    Scene(Box<Trouble>),
+    Scene(Box<Diagnostic>),
     /// The operating system refused to read or write.
     File {
         /// What was being done.
@@ -60,9 +60,9 @@ impl Error {
     }
 }
 
-impl From<Trouble> for Error {
-    fn from(trouble: Trouble) -> Self {
-        Self::Scene(Box::new(trouble))
+impl From<Diagnostic> for Error {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self::Scene(Box::new(diagnostic))
     }
 }
 
@@ -75,7 +75,7 @@ impl From<figures::Error> for Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Scene(trouble) => write!(f, "{trouble}"),
+            Self::Scene(diagnostic) => write!(f, "{diagnostic}"),
             Self::File { action, path, source } => {
                 write!(f, "error: cannot {action} {}: {source}", path.display())
             }
@@ -90,7 +90,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::Scene(trouble) => Some(trouble),
+            Self::Scene(diagnostic) => Some(diagnostic),
             Self::File { source, .. } => Some(source),
             Self::Model { source, .. } => Some(source),
             Self::Surface(error) => Some(error),

@@ -5,7 +5,7 @@ use crate::plan::Plan;
 use crate::scene_file::SceneFile;
 use std::f64::consts::TAU;
 use std::path::Path;
-use surface_io::{Declared, Scan, Treatment, Undefined, describe};
+use surface_io::{Preprocessing, ReadOptions, Scan, Undefined, describe};
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
 /// (anything else).
@@ -15,7 +15,7 @@ use surface_io::{Declared, Scan, Treatment, Undefined, describe};
 /// # Errors
 /// As [`SceneFile::read`] and [`crate::check`] for scenes; [`Error::Figures`] and [`Error::Surface`] with
 /// what is wrong with the file.
-pub fn info(path: &Path, declared: &Declared) -> Result<String> {
+pub fn info(path: &Path, declared: &ReadOptions) -> Result<String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     match ending {
         "toml" => Ok(Plan::new(&SceneFile::read(path)?)?.to_string()),
@@ -58,10 +58,10 @@ fn table(path: &Path) -> Result<String> {
     Ok(text)
 }
 
-fn surface(path: &Path, declared: &Declared) -> Result<String> {
+fn surface(path: &Path, declared: &ReadOptions) -> Result<String> {
     let scan = Scan::read(path, declared).map_err(Error::Surface)?;
-    let mut text = format!("{}\n", scan.understood());
-    let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };
+    let mut text = format!("{}\n", scan.metadata());
+    let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
     match scan.map(&keep) {
         Ok(map) => {
             let description = describe(&map);

@@ -6,7 +6,7 @@
 //! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`,
 //! `[outputs]`, `[models.NAME]` (numerics) and `[chance]`. [`Plan`] says what will be done, what will not and
 //! why, and what it will cost; [`run`] answers the scene with every model that it names and writes
-//! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`Make`]
+//! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`GeneratedSurface`]
 //! draws a surface into one. The mechanics are those of the model crates; the program `fractal-contact` is a
 //! thin layer on this library.
 //!
@@ -52,7 +52,7 @@
 //!
 //! # Errors
 //!
-//! A mistake in a scene is a [`Trouble`], and so is a note on a key with a new name: what, the line with the
+//! A mistake in a scene is a [`Diagnostic`], and so is a note on a key with a new name: what, the line with the
 //! place underlined, and a remedy. Unknown keys are mistakes. The tables are read key by key rather than
 //! derived, because a derived reader knows neither units nor remedies, and loses the place of a value in an
 //! enum.
@@ -72,36 +72,36 @@
 
 mod calibration;
 mod columns;
+mod diagnostic;
 mod effects;
 mod entries;
 mod error;
+mod generated_surface;
+mod human_readable;
 mod info;
 mod loads;
-mod make;
 mod manifest;
 mod numerics;
 mod outputs;
 mod pictures;
 mod plan;
-mod relief;
 mod run;
 mod scan;
 mod scene_file;
+mod scene_surface;
 mod store;
-mod trouble;
 mod unit;
-mod words;
 
+pub use diagnostic::Diagnostic;
 pub use effects::{EffectLine, effect_lines};
 pub use entries::System;
 pub use error::{Error, Result};
+pub use generated_surface::GeneratedSurface;
 pub use info::info;
 pub use loads::{Loads, Prescribed, Request};
-pub use make::Make;
 pub use numerics::{AnyModel, Numerics};
-pub use outputs::{Asked, Format};
+pub use outputs::{Format, RequestedOutputs};
 pub use plan::{Cost, ModelPlan, Plan, check};
-pub use relief::Relief;
-pub use run::{Halt, Options, Outcome, run};
-pub use scene_file::{Chance, SceneFile};
-pub use trouble::Trouble;
+pub use run::{Options, Outcome, SharedStop, run};
+pub use scene_file::{Sampling, SceneFile};
+pub use scene_surface::SceneSurface;

@@ -91,10 +91,10 @@ pub(crate) fn read_request<'a>(
     let path = scene.find("path");
     match (loads, path) {
         (Some((key, _)), Some(path)) => Err(path
-            .trouble_at_key(format!("`{key}` and `path` are both given in [scene]"))
+            .diagnostic_at_key(format!("`{key}` and `path` are both given in [scene]"))
             .with_help(format!("loads one by one are `{key}`; a history (friction, rheology) is `path`: keep one of them"))),
         (None, None) => Err(scene
-            .trouble("nothing is pressed: [scene] has no load")
+            .diagnostic("nothing is pressed: [scene] has no load")
             .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history")),
         (Some((key, entry)), None) => Ok((Request::Loads(read_loads(key, &entry, system, pulls)?), entry)),
         (None, Some(entry)) => Ok((Request::Path(read_path(&entry, system)?), entry)),
@@ -119,7 +119,7 @@ fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read
             return Ok(value);
         }
         let help = "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull";
-        Err(item.trouble(format!("the load `{key}` = {} is negative", item.shown())).with_help(help))
+        Err(item.diagnostic(format!("the load `{key}` = {} is negative", item.shown())).with_help(help))
     };
     let values = if entry.is_table() {
         let range = entry.table()?;
@@ -132,13 +132,13 @@ fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read
         let number_of = count.count(2)?;
         if number_of > MOST {
             return Err(count
-                .trouble(format!("{number_of} loads: expected at most {MOST}"))
+                .diagnostic(format!("{number_of} loads: expected at most {MOST}"))
                 .with_help("ask for fewer"));
         }
         let (low, high) = (number(&from)?, number(&to)?);
         if !even && (low <= 0.0 || high <= 0.0) {
             return Err(from
-                .trouble(format!(
+                .diagnostic(format!(
                     "a logarithmic range of `{key}` from {} to {} meets zero",
                     from.shown(),
                     to.shown()
@@ -150,7 +150,9 @@ fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read
         entry.list().iter().map(number).collect::<Read<Vec<f64>>>()?
     };
     if values.is_empty() {
-        return Err(entry.trouble(format!("`{key}` is an empty list")).with_help("name at least one load"));
+        return Err(entry
+            .diagnostic(format!("`{key}` is an empty list"))
+            .with_help("name at least one load"));
     }
     Ok(Loads { prescribed, values })
 }
@@ -174,7 +176,7 @@ fn between(low: f64, high: f64, count: usize, even: bool) -> Vec<f64> {
 fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
     if !entry.is_list() {
         return Err(entry
-            .trouble_at_key("`path` is no list of steps")
+            .diagnostic_at_key("`path` is no list of steps")
             .with_help("write [[scene.path]] once for each step"));
     }
     let mut steps: Vec<Step> = Vec::new();
@@ -187,7 +189,7 @@ fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
             Some((_, e)) => Load::Approach(e.quantity(Dimension::LENGTH, system)?),
             None if steps.is_empty() => {
                 return Err(item
-                    .trouble("the first step of the path has no normal load")
+                    .diagnostic("the first step of the path has no normal load")
                     .with_help("give `force` or `approach`"));
             }
             None => last.normal,
@@ -201,26 +203,26 @@ fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
             last = beginning(normal, tangential);
         }
         let states = table.find("states");
-        let pieces = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
+        let count = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
         if let Some(entry) = states
-            && pieces.saturating_add(steps.len() as u64) > MOST
+            && count.saturating_add(steps.len() as u64) > MOST
         {
             return Err(entry
-                .trouble(format!("{pieces} states: expected at most {MOST} along the whole path"))
+                .diagnostic(format!("{count} states: expected at most {MOST} along the whole path"))
                 .with_help("a step is exact however long it is: states in between are for looking at"));
         }
         table.finish()?;
         let end = Step { time, normal, tangential };
         end.validated(last.time)
-            .map_err(|e| item.trouble(e.to_string()).with_help("times never decrease along a path"))?;
-        for i in 1..=pieces {
-            steps.push(if i == pieces { end } else { part(last, end, i as f64 / pieces as f64) });
+            .map_err(|e| item.diagnostic(e.to_string()).with_help("times never decrease along a path"))?;
+        for i in 1..=count {
+            steps.push(if i == count { end } else { part(last, end, i as f64 / count as f64) });
         }
         last = end;
     }
     if steps.is_empty() {
         return Err(entry
-            .trouble("the path has no step")
+            .diagnostic("the path has no step")
             .with_help("write [[scene.path]] once for each step"));
     }
     Ok(steps)

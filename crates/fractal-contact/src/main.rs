@@ -4,7 +4,7 @@ mod arguments;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
-use fractal_contact::{Error, Make, Options, Plan, Result, SceneFile, info, run};
+use fractal_contact::{Error, GeneratedSurface, Options, Plan, Result, SceneFile, info, run};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -34,7 +34,7 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
         }
         Command::Info { file, format, unit, size, cell } => {
             let declared =
-                surface_io::Declared { format, unit, size, cell, ..surface_io::Declared::default() };
+                surface_io::ReadOptions { format, unit, size, cell, ..surface_io::ReadOptions::default() };
             print!("{}", info(&file, &declared)?);
             Ok(ExitCode::SUCCESS)
         }
@@ -49,7 +49,7 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             shortest_wavelength,
             seed,
         } => {
-            let make = Make {
+            let make = GeneratedSurface {
                 cells,
                 rows,
                 size,

@@ -39,14 +39,14 @@ pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: 
     let effects: serde_json::Map<String, Value> =
         plan.effects.iter().map(|e| (e.name.to_owned(), json!({ "on": e.on, "reason": e.reason }))).collect();
     let outputs: serde_json::Map<String, Value> =
-        plan.outputs.iter().map(|(name, asked)| ((*name).to_owned(), json!(asked))).collect();
+        plan.outputs.iter().map(|(name, requested)| ((*name).to_owned(), json!(requested))).collect();
     let whole = json!({
         "project": "fractal-contact",
         "version": env!("CARGO_PKG_VERSION"),
         "formats": { "scene": crate::unit::FORMAT, "figures": figures::FORMAT, "bem3d": bem3d::FORMAT },
         "scene": scene.text,
-        "seed": scene.chance.seed,
-        "surfaces": scene.chance.surfaces,
+        "seed": scene.sampling.seed,
+        "surfaces": scene.sampling.surfaces,
         "effects": effects,
         "outputs": outputs,
         "models": models,

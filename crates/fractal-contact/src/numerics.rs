@@ -206,7 +206,7 @@ impl Numerics {
             Self::Equivalent(_) => format!(
                 "the normal part is that of bem3d on {columns} x {rows} cells; tangential results are exact for round contacts, a few per cent off for \
                  others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
-                 bodies, about two for rough ones (its doubt is in `strategy`)"
+                 bodies, about two for rough ones (its uncertainty is in `strategy`)"
             ),
             Self::Viscoelastic => "exact while the contact grows, which is checked; 1e-12".into(),
         }
@@ -225,18 +225,18 @@ pub(crate) fn read_models<'a>(
         let name = item.text()?;
         let Some(default) = Numerics::ALL.iter().find(|m| m.name() == name) else {
             return Err(item
-                .trouble(format!("there is no model \"{name}\""))
+                .diagnostic(format!("there is no model \"{name}\""))
                 .with_help(suggestion(name, &names)));
         };
         if models.iter().any(|(m, _)| m.name() == name) {
             return Err(item
-                .trouble(format!("the model \"{name}\" is named twice"))
+                .diagnostic(format!("the model \"{name}\" is named twice"))
                 .with_help("name it once"));
         }
         models.push((*default, item));
     }
     if models.is_empty() {
-        return Err(entry.trouble("`models` is empty").with_help(format!("known: {}", names.join(", "))));
+        return Err(entry.diagnostic("`models` is empty").with_help(format!("known: {}", names.join(", "))));
     }
     let Some(options) = options else { return Ok(models) };
     for (numerics, _) in &mut models {
@@ -250,7 +250,7 @@ pub(crate) fn read_models<'a>(
             && let Some(stray) = options.entry(key)
         {
             return Err(stray
-                .trouble_at_key(format!(
+                .diagnostic_at_key(format!(
                     "[models.{key}] says how to compute with a model that `models` does not name"
                 ))
                 .with_help(format!(
@@ -268,7 +268,7 @@ fn at_most(entry: &Entry<'_>, most: usize, help: &str) -> Read<usize> {
     if count <= most as u64 {
         Ok(count as usize)
     } else {
-        Err(entry.trouble(format!("{count}: expected at most {most}")).with_help(help))
+        Err(entry.diagnostic(format!("{count}: expected at most {most}")).with_help(help))
     }
 }
 
@@ -282,7 +282,7 @@ fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
     if let Some(entry) = table.find("tolerance") {
         model.tolerance = entry.positive_number()?;
         if model.tolerance >= 1.0 {
-            return Err(entry.trouble("`tolerance` is not below 1").with_help("1e-6 gives six digits"));
+            return Err(entry.diagnostic("`tolerance` is not below 1").with_help("1e-6 gives six digits"));
         }
     }
     if let Some(entry) = table.find("max_outer_iterations") {
@@ -308,7 +308,7 @@ fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
                     let count = entry.count(1)?;
                     if count > most {
                         return Err(entry
-                            .trouble(format!("`{key}` = {count}: expected at most {most}"))
+                            .diagnostic(format!("`{key}` = {count}: expected at most {most}"))
                             .with_help("16 and 3 by default"));
                     }
                     *value = count as u32;

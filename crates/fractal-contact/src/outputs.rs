@@ -28,7 +28,7 @@ impl Format {
 
 /// What is asked for: of the models, and as files.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Asked {
+pub struct RequestedOutputs {
     /// Of the models.
     pub outputs: Outputs,
     /// The mean gap of periodic contacts.
@@ -43,7 +43,7 @@ pub struct Asked {
     pub curves: bool,
 }
 
-impl Asked {
+impl RequestedOutputs {
     /// Every output with whether it is asked for.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
         let Outputs { stiffness, area, pressure, displacement, gap, contact_patches, conductance } =
@@ -63,28 +63,28 @@ impl Asked {
 }
 
 /// Reads `[outputs]`.
-pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<Asked> {
-    let mut asked = Asked::default();
-    let Some(table) = table else { return Ok(asked) };
+pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<RequestedOutputs> {
+    let mut requested = RequestedOutputs::default();
+    let Some(table) = table else { return Ok(requested) };
     let flag = |key: &'static str| table.find(key).map_or(Ok(false), |e| e.flag());
-    let outputs = &mut asked.outputs;
+    let outputs = &mut requested.outputs;
     outputs.stiffness = flag("stiffness")?;
     outputs.area = flag("area")?;
     outputs.contact_patches = flag("contact_patches")?;
-    asked.mean_gap = flag("mean_gap")?;
-    asked.curves = flag("curves")?;
+    requested.mean_gap = flag("mean_gap")?;
+    requested.curves = flag("curves")?;
     let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
-    asked.pressure = formats("pressure")?;
-    asked.displacement = formats("displacement")?;
-    asked.gap = formats("gap")?;
+    requested.pressure = formats("pressure")?;
+    requested.displacement = formats("displacement")?;
+    requested.gap = formats("gap")?;
     if let Some(entry) = table.find("conductance") {
-        asked.outputs.conductance = read_conductance(&entry, system)?;
+        requested.outputs.conductance = read_conductance(&entry, system)?;
     }
-    asked.outputs.pressure = !asked.pressure.is_empty();
-    asked.outputs.displacement = !asked.displacement.is_empty();
-    asked.outputs.gap = !asked.gap.is_empty();
+    requested.outputs.pressure = !requested.pressure.is_empty();
+    requested.outputs.displacement = !requested.displacement.is_empty();
+    requested.outputs.gap = !requested.gap.is_empty();
     table.finish()?;
-    Ok(asked)
+    Ok(requested)
 }
 
 /// `["npy", "png"]`, one of them, or `false`.
@@ -92,7 +92,7 @@ fn read_formats(entry: &Entry<'_>) -> Read<Vec<Format>> {
     if !entry.is_list() && !entry.is_text() {
         return if entry.flag()? {
             Err(entry
-                .trouble("a field is asked for without a format")
+                .diagnostic("a field is asked for without a format")
                 .with_help("name its files: `[\"npy\"]`, `[\"npy\", \"png\", \"vti\"]`"))
         } else {
             Ok(Vec::new())
@@ -121,7 +121,7 @@ fn read_conductance(entry: &Entry<'_>, system: System) -> Read<Conductance> {
     let values = both.list();
     let [first, second] = &values[..] else {
         return Err(both
-            .trouble(format!("`{key}` has {} values", values.len()))
+            .diagnostic(format!("`{key}` has {} values", values.len()))
             .with_help(format!("two, one for each body: {example}")));
     };
     let (first, second) = (first.positive(dimension, system)?, second.positive(dimension, system)?);

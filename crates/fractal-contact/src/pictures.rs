@@ -64,7 +64,7 @@ fn chart(scene: &SceneFile, table: &Table, x: &str, y: &str) -> Chart {
                 .filter_map(|row| Some((number(row, x)?, number(row, y)?)))
                 .filter(|(x, y)| scene.is_history() || (*x != 0.0 && *y != 0.0))
                 .collect(),
-            scattered: scene.chance.surfaces > 1,
+            scattered: scene.sampling.surfaces > 1,
         })
         .collect();
     let title = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());

@@ -1,13 +1,13 @@
 //! What will be computed, what will not and why, and what it will cost.
 
 use crate::calibration;
+use crate::diagnostic::Diagnostic;
 use crate::effects::{EffectLine, effect_lines};
 use crate::error::Result;
+use crate::human_readable::{memory, number, time};
 use crate::numerics::Numerics;
 use crate::scene_file::SceneFile;
-use crate::trouble::Trouble;
 use crate::unit::{Unit, probe};
-use crate::words::{memory, number, time};
 use contact_model::{Cells, Surface};
 use std::fmt;
 
@@ -47,11 +47,11 @@ pub struct Plan {
     /// The comment at the head of the scene.
     pub shows: String,
     /// What is pressed.
-    pub relief: String,
-    /// What was understood of its file.
-    pub understood: Option<String>,
+    pub surface: String,
+    /// What was metadata of its file.
+    pub metadata: Option<String>,
     /// Remarks on the scene.
-    pub notes: Vec<Trouble>,
+    pub notes: Vec<Diagnostic>,
     /// E*.
     pub modulus: f64,
     /// Whether numbers are in SI.
@@ -79,22 +79,22 @@ pub fn check(scene: &SceneFile) -> Result<()> {
             return Err(scene.at_model(model, refused(scene, &error)).into());
         }
     }
-    if scene.asked.mean_gap && scene.effects.boundary != contact_model::Boundary::Periodic {
-        let trouble = Trouble::new("a mean gap is asked for, but the boundary is free")
+    if scene.requested.mean_gap && scene.effects.boundary != contact_model::Boundary::Periodic {
+        let diagnostic = Diagnostic::new("a mean gap is asked for, but the boundary is free")
             .with_help("add `boundary = \"periodic\"` to [effects], or ask for the `gap` field");
-        return Err(scene.at_output("mean_gap", trouble).into());
+        return Err(scene.at_output("mean_gap", diagnostic).into());
     }
     Ok(())
 }
 
-fn refused(scene: &SceneFile, error: &contact_model::Error) -> Trouble {
+fn refused(scene: &SceneFile, error: &contact_model::Error) -> Diagnostic {
     if !matches!(error, contact_model::Error::Unsupported { .. }) {
-        return Trouble::new(error.to_string()).with_help("check the numbers of [scene] and of the model");
+        return Diagnostic::new(error.to_string()).with_help("check the numbers of [scene] and of the model");
     }
     let able: Vec<&str> = Numerics::ALL
         .iter()
         .filter(|m| m.is_history() == scene.is_history())
-        .map(|m| m.probe(scene.relief.size()))
+        .map(|m| m.probe(scene.surface.size()))
         .filter(|m| probe(scene, m).is_ok())
         .map(|m| m.name())
         .collect();
@@ -103,7 +103,7 @@ fn refused(scene: &SceneFile, error: &contact_model::Error) -> Trouble {
     } else {
         format!("models that answer all of this scene: {}; or remove the effect or output", able.join(", "))
     };
-    Trouble::new(error.to_string()).with_help(help)
+    Diagnostic::new(error.to_string()).with_help(help)
 }
 
 impl Plan {
@@ -119,14 +119,14 @@ impl Plan {
             .map(|m| ModelPlan {
                 name: m.name(),
                 grid: grid(scene, m),
-                accuracy: m.accuracy(scene.relief.is_rough(), cells(scene, m)),
+                accuracy: m.accuracy(scene.surface.is_rough(), cells(scene, m)),
                 predicted: None,
             })
             .collect();
         Ok(Self {
             shows: scene.comment(),
-            relief: scene.relief.describe(),
-            understood: scene.understood.clone(),
+            surface: scene.surface.describe(),
+            metadata: scene.metadata.clone(),
             notes: scene.notes.clone(),
             modulus: scene.modulus,
             units: match scene.system {
@@ -134,9 +134,9 @@ impl Plan {
                 crate::System::None => "none: the scene's own",
             },
             states: scene.request.count(),
-            surfaces: scene.chance.surfaces,
+            surfaces: scene.sampling.surfaces,
             effects: effect_lines(&scene.effects),
-            outputs: scene.asked.lines(),
+            outputs: scene.requested.lines(),
             models,
         })
     }
@@ -173,7 +173,7 @@ impl Plan {
 fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
     match numerics {
         Numerics::Bem3d(_) | Numerics::Equivalent(_) => {
-            let (cells, size) = (cells(scene, numerics), scene.relief.size());
+            let (cells, size) = (cells(scene, numerics), scene.surface.size());
             let Cells { columns, rows } = cells;
             let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
             if dx.to_bits() == dy.to_bits() {
@@ -182,16 +182,16 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
                 format!("{columns} x {rows} cells of {dx:.4e} x {dy:.4e}")
             }
         }
-        Numerics::Mdr1d(m) if scene.relief.is_rough() => format!("a line of {} elements", m.elements),
+        Numerics::Mdr1d(m) if scene.surface.is_rough() => format!("a line of {} elements", m.elements),
         _ => "none: a formula".into(),
     }
 }
 
 /// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.
 pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> Cells {
-    match (&scene.relief, numerics.boundary_elements()) {
-        (crate::Relief::Plain(Surface::Heights(map)), _) => map.cells(),
-        (relief, Some(elements)) => elements.grid(relief.size()),
+    match (&scene.surface, numerics.boundary_elements()) {
+        (crate::SceneSurface::Plain(Surface::Heights(map)), _) => map.cells(),
+        (surface, Some(elements)) => elements.grid(surface.size()),
         _ => Cells { columns: numerics.size(), rows: 1 },
     }
 }
@@ -222,8 +222,8 @@ impl fmt::Display for Plan {
         for note in &self.notes {
             writeln!(f, "{note}\n")?;
         }
-        writeln!(f, "relief    {}", self.relief)?;
-        for line in self.understood.iter().flat_map(|u| u.lines()) {
+        writeln!(f, "surface   {}", self.surface)?;
+        for line in self.metadata.iter().flat_map(|u| u.lines()) {
             writeln!(f, "          {line}")?;
         }
         writeln!(f, "modulus   {} (E*)", number(self.modulus))?;
@@ -233,8 +233,9 @@ impl fmt::Display for Plan {
         for line in &self.effects {
             writeln!(f, "  {:10} {:4} {}", line.name, if line.on { "on" } else { "off" }, line.reason)?;
         }
-        let names = |asked: bool| {
-            let list: Vec<&str> = self.outputs.iter().filter(|(_, a)| *a == asked).map(|(n, _)| *n).collect();
+        let names = |requested: bool| {
+            let list: Vec<&str> =
+                self.outputs.iter().filter(|(_, a)| *a == requested).map(|(n, _)| *n).collect();
             if list.is_empty() { "none".to_owned() } else { list.join(", ") }
         };
         writeln!(

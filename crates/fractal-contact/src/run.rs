@@ -9,12 +9,12 @@ use crate::scene_file::SceneFile;
 use crate::store::Store;
 use crate::unit::{Unit, UnitResult};
 use analysis::{Column, Table, Value};
-use figures::{Header, Progress, largest_first, pieces, write_csv};
+use figures::{Header, Progress, largest_first, run_jobs, write_csv};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Asked from any thread, between iterations: `true` means stop now.
-pub type Halt<'a> = &'a (dyn Fn() -> bool + Sync);
+/// RequestedOutputs from any thread, between iterations: `true` means stop now.
+pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Where and how a scene is run; nothing here changes a number.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,14 +61,14 @@ pub fn run(
     plan: &Plan,
     options: &Options,
     progress: &dyn Progress,
-    stop: Halt<'_>,
+    stop: SharedStop<'_>,
 ) -> Result<Outcome> {
     let start = Instant::now();
     figures::reset_peak_memory();
     let store = Store::open(&options.out, options.fresh)?;
     let columns = columns::columns(scene);
     let units: Vec<Unit> = (0..scene.models.len())
-        .flat_map(|model| (0..scene.chance.surfaces).map(move |surface| Unit { model, surface }))
+        .flat_map(|model| (0..scene.sampling.surfaces).map(move |surface| Unit { model, surface }))
         .collect();
     let results = solve_all(scene, &units, &store, options, progress, columns.len(), stop)?;
     let mut outcome = Outcome { stopped: false, ..Outcome::default() };
@@ -108,12 +108,12 @@ pub fn run(
     let path = options.out.join("results.csv");
     write_csv(&path, &table, &header)?;
     outcome.files.insert(0, path);
-    if scene.asked.outputs.contact_patches {
+    if scene.requested.outputs.contact_patches {
         let path = options.out.join("patches.csv");
         write_csv(&path, &patches, &header)?;
         outcome.files.push(path);
     }
-    if scene.asked.curves {
+    if scene.requested.curves {
         outcome.files.extend(pictures::curves(scene, &table, &options.out)?);
     }
     outcome.actual = actual(scene, &units, &results, &table);
@@ -130,11 +130,11 @@ fn solve_all(
     options: &Options,
     progress: &dyn Progress,
     columns: usize,
-    stop: Halt<'_>,
+    stop: SharedStop<'_>,
 ) -> Result<Vec<Option<UnitResult>>> {
     progress.begin(&title(scene), units.iter().map(|u| u.cost(scene)).sum());
     let order = largest_first(units.len(), |i| units[i].cost(scene));
-    let done = pieces(options.threads, &order, stop, |i, halt| {
+    let done = run_jobs(options.threads, &order, stop, |i, halt| {
         let unit = &units[i];
         if let Some(stored) = store.load(unit, scene, columns) {
             progress.advance(unit.cost(scene), true);
@@ -158,7 +158,7 @@ fn solve_all(
 /// What the tables are called.
 pub(crate) fn title(scene: &SceneFile) -> String {
     let name = scene.path.file_stem().map_or_else(|| "scene".into(), |n| n.to_string_lossy().into_owned());
-    format!("{name}: {}", scene.relief.describe())
+    format!("{name}: {}", scene.surface.describe())
 }
 
 fn header(scene: &SceneFile) -> Header {
@@ -175,7 +175,7 @@ fn header(scene: &SceneFile) -> Header {
         crate::System::Si => "units: SI",
         crate::System::None => "units: none; lengths, forces and moduli in the scene's own",
     });
-    let size = scene.relief.size();
+    let size = scene.surface.size();
     header =
         header.with_note(format!("modulus: {:?} (E*); size: {:?} x {:?}", scene.modulus, size.x, size.y));
     for numerics in &scene.models {
@@ -189,8 +189,8 @@ fn header(scene: &SceneFile) -> Header {
             line.reason
         ));
     }
-    if scene.relief.is_random() {
-        header = header.with_note(format!("seed: {}", scene.chance.seed));
+    if scene.surface.is_random() {
+        header = header.with_note(format!("seed: {}", scene.sampling.seed));
     }
     header
 }

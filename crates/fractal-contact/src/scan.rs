@@ -1,29 +1,29 @@
 //! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
 
+use crate::diagnostic::Diagnostic;
 use crate::entries::{Entries, Entry, Lengths, Read, System};
-use crate::trouble::Trouble;
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    Crop, Decimal, Declared, Detrend, Dimension, Fill, Format, Quantity, Scan, Sides, Treatment, Undefined,
-    Unit,
+    Crop, Decimal, Detrend, Dimension, Fill, Format, Preprocessing, Quantity, ReadOptions, Scan, Sides,
+    Undefined, Unit,
 };
 
 /// A map from a file.
-pub(crate) struct Found {
+pub(crate) struct FileMap {
     pub map: HeightMap,
-    /// What was understood of its file.
-    pub understood: String,
+    /// What was metadata of its file.
+    pub metadata: String,
     /// Remarks on the keys.
-    pub notes: Vec<Trouble>,
+    pub notes: Vec<Diagnostic>,
 }
 
 /// Reads the file of a surface.
-pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) -> Read<Found> {
+pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) -> Read<FileMap> {
     let mut notes = Vec::new();
     let file = table.require("path", "\"heights.npy\"")?;
     let path = directory.join(file.text()?);
-    let mut declared = Declared::default();
+    let mut declared = ReadOptions::default();
     if let Some(entry) = table.find("format") {
         declared.format =
             Some(entry.choice(&[("npy", Format::Npy), ("text", Format::Text), ("xyz", Format::Xyz)])?);
@@ -31,7 +31,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     let unit = |key: &'static str| -> Read<Option<Unit>> {
         let Some(entry) = table.find(key) else { return Ok(None) };
         let unit: Unit = entry.text()?.parse().map_err(|e| {
-            entry.trouble(format!("`{key}`: {e}")).with_help("a unit of length in quotes, such as \"nm\"")
+            entry.diagnostic(format!("`{key}`: {e}")).with_help("a unit of length in quotes, such as \"nm\"")
         })?;
         Ok(Some(unit))
     };
@@ -42,7 +42,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         Some(("cell", entry)) => declared.cell = Some(sides(&entry, system)?),
         Some((_, entry)) => {
             declared.width = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
-            let note = Trouble::note("`width` is now `size`").at(entry.key_span());
+            let note = Diagnostic::note("`width` is now `size`").at(entry.key_span());
             notes.push(note.with_help("write `size = [Lx, Ly]`, or one value where the map is square; `width` is Lx, with square cells"));
         }
         None => {}
@@ -56,26 +56,26 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     if let Some(entry) = table.find("skip_lines") {
         declared.skip_lines = entry.count(0)? as usize;
     }
-    let treatment = read_treatment(table, system)?;
+    let preprocessing = read_treatment(table, system)?;
     table.known_only()?;
     let wrong = |e: surface_io::Error| {
-        let trouble = file.trouble(e.to_string());
+        let diagnostic = file.diagnostic(e.to_string());
         if e.problem().is_none() {
-            return trouble.with_help("a relative path counts from the folder of the scene");
+            return diagnostic.with_help("a relative path counts from the folder of the scene");
         }
-        trouble.with_help("`format`, `unit`, `size`, `cell`, `crop`, `fill`, `undefined`, `missing` in [scene.surface] say how it is meant")
+        diagnostic.with_help("`format`, `unit`, `size`, `cell`, `crop`, `fill`, `undefined`, `missing` in [scene.surface] say how it is meant")
     };
     let scan = Scan::read(&path, &declared).map_err(wrong)?;
-    let understood = scan.understood();
-    let metric = understood.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
-    let map = scan.map(&treatment).map_err(wrong)?;
+    let metadata = scan.metadata();
+    let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
+    let map = scan.map(&preprocessing).map_err(wrong)?;
     if metric != (system == System::Si) {
         let (found, scene) = if metric { ("a unit", "none") } else { ("no unit", "units") };
         return Err(file
-            .trouble(format!("the heights have {found}, but the scene has {scene}"))
+            .diagnostic(format!("the heights have {found}, but the scene has {scene}"))
             .with_help("say `unit = \"nm\"` for heights of a scene with units, `unit = \"none\"` with `units = \"none\"`"));
     }
-    Ok(Found { map, understood: understood.to_string(), notes })
+    Ok(FileMap { map, metadata: metadata.to_string(), notes })
 }
 
 /// One length or two: sides of the map or of a cell.
@@ -88,13 +88,13 @@ fn sides(entry: &Entry<'_>, system: System) -> Read<Sides> {
 
 fn length(entry: &Entry<'_>, value: f64, system: System) -> Read<Quantity> {
     let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
-    Quantity::new(value, dimension).map_err(|e| entry.trouble(e.to_string()))
+    Quantity::new(value, dimension).map_err(|e| entry.diagnostic(e.to_string()))
 }
 
-fn read_treatment(table: &Entries<'_>, system: System) -> Read<Treatment> {
-    let mut treatment = Treatment::default();
+fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
+    let mut preprocessing = Preprocessing::default();
     if let Some(entry) = table.find("crop") {
-        treatment.crop = Some(if entry.is_table() {
+        preprocessing.crop = Some(if entry.is_table() {
             let window = entry.table()?;
             let number =
                 |key: &'static str, least: u64| window.require(key, "0")?.count(least).map(|v| v as usize);
@@ -114,12 +114,12 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Treatment> {
     }
     match table.one_of(&["fill", "undefined"])? {
         Some(("fill", entry)) => {
-            treatment.fill = Some(match entry.as_word() {
+            preprocessing.fill = Some(match entry.as_word() {
                 Some("neighbours") => Fill::Neighbours,
                 Some("plane") => Fill::Plane,
                 _ => {
-                    let value = entry.quantity(Dimension::LENGTH, system).map_err(|trouble| {
-                        trouble.with_help(
+                    let value = entry.quantity(Dimension::LENGTH, system).map_err(|diagnostic| {
+                        diagnostic.with_help(
                             "how undefined points are filled: \"neighbours\", \"plane\" or one height",
                         )
                     })?;
@@ -128,12 +128,12 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Treatment> {
             });
         }
         Some((_, entry)) => {
-            treatment.undefined = Some(entry.choice(&[("no_contact", Undefined::NoContact)])?);
+            preprocessing.undefined = Some(entry.choice(&[("no_contact", Undefined::NoContact)])?);
         }
         None => {}
     }
     if let Some(entry) = table.find("detrend") {
-        treatment.detrend = entry.choice(&[
+        preprocessing.detrend = entry.choice(&[
             ("none", Detrend::Nothing),
             ("mean", Detrend::Mean),
             ("plane", Detrend::Plane),
@@ -141,10 +141,10 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Treatment> {
         ])?;
     }
     if let Some(entry) = table.find("cells") {
-        treatment.cells = Some(entry.count(1)? as usize);
+        preprocessing.cells = Some(entry.count(1)? as usize);
     }
     if let Some(entry) = table.find("rows") {
-        treatment.rows = Some(entry.count(1)? as usize);
+        preprocessing.rows = Some(entry.count(1)? as usize);
     }
-    Ok(treatment)
+    Ok(preprocessing)
 }

@@ -1,13 +1,13 @@
 //! A scene as it stands in a file.
 
+use crate::diagnostic::Diagnostic;
 use crate::effects::read_effects;
 use crate::entries::{Entries, Entry, Read, System};
 use crate::error::{Error, Result};
 use crate::loads::{Prescribed, Request, read_request};
 use crate::numerics::{MOST_CELLS, Numerics, read_models};
-use crate::outputs::{Asked, read_outputs};
-use crate::relief::{Found, Relief, read_relief};
-use crate::trouble::Trouble;
+use crate::outputs::{RequestedOutputs, read_outputs};
+use crate::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
 use contact_model::{Adhesion, Body, Boundary, Effects, Friction, Pair, Rheology, Scene, Surface};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -30,8 +30,8 @@ pub struct SceneFile {
     pub system: System,
     /// The models in the order named.
     pub models: Vec<Numerics>,
-    /// What carries the relief.
-    pub relief: Relief,
+    /// What is pressed.
+    pub surface: SceneSurface,
     /// Effective modulus E*.
     pub modulus: f64,
     /// Both bodies, where they are named.
@@ -41,19 +41,19 @@ pub struct SceneFile {
     /// What is asked of the models.
     pub request: Request,
     /// What is computed and stored.
-    pub asked: Asked,
-    /// Chance.
-    pub chance: Chance,
-    /// What was understood of the surface's file.
-    pub understood: Option<String>,
+    pub requested: RequestedOutputs,
+    /// Sampling.
+    pub sampling: Sampling,
+    /// What was metadata of the surface's file.
+    pub metadata: Option<String>,
     /// Remarks on what stands in the file, such as keys that have a new name.
-    pub notes: Vec<Trouble>,
+    pub notes: Vec<Diagnostic>,
     places: Places,
 }
 
 /// `[chance]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Chance {
+pub struct Sampling {
     /// The master seed.
     pub seed: u64,
     /// Number of surfaces drawn from it.
@@ -73,30 +73,30 @@ impl SceneFile {
     ///
     /// ```
     /// use contact_model::Surface;
-    /// use fractal_contact::{Loads, Numerics, Plan, Prescribed, Relief, Request, SceneFile};
-    /// let body = Relief::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
+    /// use fractal_contact::{Loads, Numerics, Plan, Prescribed, SceneSurface, Request, SceneFile};
+    /// let body = SceneSurface::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
     /// let loads = Request::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
     /// let mut scene = SceneFile::new(vec![Numerics::Hertz], body, 1.0, loads);
-    /// scene.asked.outputs.stiffness = true;
+    /// scene.requested.outputs.stiffness = true;
     /// assert!(Plan::new(&scene).is_ok());
     /// // A closed form has no pressure field.
-    /// scene.asked.outputs.pressure = true;
+    /// scene.requested.outputs.pressure = true;
     /// assert!(Plan::new(&scene).is_err());
     /// ```
-    pub fn new(models: Vec<Numerics>, relief: Relief, modulus: f64, request: Request) -> Self {
+    pub fn new(models: Vec<Numerics>, surface: SceneSurface, modulus: f64, request: Request) -> Self {
         Self {
             path: PathBuf::new(),
             text: String::new(),
             system: System::None,
             models,
-            relief,
+            surface,
             modulus,
             pair: None,
             effects: Effects::default(),
             request,
-            asked: Asked::default(),
-            chance: Chance { seed: 0, surfaces: 1 },
-            understood: None,
+            requested: RequestedOutputs::default(),
+            sampling: Sampling { seed: 0, surfaces: 1 },
+            metadata: None,
             notes: Vec::new(),
             places: Places::default(),
         }
@@ -110,12 +110,15 @@ impl SceneFile {
         let length = std::fs::metadata(path).map_err(Error::file("read", path))?.len();
         if length > LONGEST {
             let message = format!("{length} bytes: a scene is a short text of at most {LONGEST}");
-            return Err(Trouble::new(message).with_help("is this the right file?").placed(path, "").into());
+            return Err(Diagnostic::new(message)
+                .with_help("is this the right file?")
+                .placed(path, "")
+                .into());
         }
         let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
         let Ok(text) = String::from_utf8(bytes) else {
             let help = "`fractal-contact info FILE` says what a surface or a result holds";
-            return Err(Trouble::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());
+            return Err(Diagnostic::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());
         };
         Self::parse(path, text)
     }
@@ -141,7 +144,7 @@ impl SceneFile {
             root.finish()?;
             Ok(scene)
         };
-        let mut scene = read().map_err(|trouble| trouble.placed(path, &text))?;
+        let mut scene = read().map_err(|diagnostic| diagnostic.placed(path, &text))?;
         path.clone_into(&mut scene.path);
         scene.notes = scene.notes.into_iter().map(|note| note.placed(path, &text)).collect();
         scene.text = text;
@@ -151,41 +154,41 @@ impl SceneFile {
     /// The physics that one model is given for one surface.
     ///
     /// # Errors
-    /// As [`Relief::surface`].
+    /// As [`SceneSurface::surface`].
     pub fn scene(&self, numerics: &Numerics, seed: u64) -> contact_model::Result<Scene> {
         Ok(Scene {
-            surface: self.relief.surface(numerics, seed)?,
+            surface: self.surface.for_model(numerics, seed)?,
             modulus: self.modulus,
             pair: self.pair,
             effects: self.effects,
-            outputs: self.asked.outputs,
+            outputs: self.requested.outputs,
         })
     }
 
     /// Seed of surface number `index`, the same that the figures use.
     pub fn seed(&self, index: usize) -> u64 {
-        surface_gen::surface_seed(self.chance.seed, index as u64)
+        surface_gen::surface_seed(self.sampling.seed, index as u64)
     }
 
     /// A mistake at the name of a model.
-    pub(crate) fn at_model(&self, index: usize, trouble: Trouble) -> Trouble {
-        self.placed(trouble, self.places.models.get(index).cloned())
+    pub(crate) fn at_model(&self, index: usize, diagnostic: Diagnostic) -> Diagnostic {
+        self.placed(diagnostic, self.places.models.get(index).cloned())
     }
 
     /// A mistake of an output.
-    pub(crate) fn at_output(&self, name: &str, trouble: Trouble) -> Trouble {
+    pub(crate) fn at_output(&self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
         self.placed(
-            trouble,
+            diagnostic,
             self.places.outputs.iter().find(|(n, _)| *n == name).map(|(_, span)| span.clone()),
         )
     }
 
-    fn placed(&self, trouble: Trouble, span: Option<Range<usize>>) -> Trouble {
-        let trouble = match span {
-            Some(span) => trouble.at(span),
-            None => trouble,
+    fn placed(&self, diagnostic: Diagnostic, span: Option<Range<usize>>) -> Diagnostic {
+        let diagnostic = match span {
+            Some(span) => diagnostic.at(span),
+            None => diagnostic,
         };
-        if self.text.is_empty() { trouble } else { trouble.placed(&self.path, &self.text) }
+        if self.text.is_empty() { diagnostic } else { diagnostic.placed(&self.path, &self.text) }
     }
 
     /// Whether it needs models that remember.
@@ -200,19 +203,19 @@ impl SceneFile {
     }
 }
 
-fn syntax(error: &toml::de::Error) -> Trouble {
+fn syntax(error: &toml::de::Error) -> Diagnostic {
     let message = error.message().lines().collect::<Vec<_>>().join(", ");
-    let trouble = Trouble::new(message)
+    let diagnostic = Diagnostic::new(message)
         .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once");
     match error.span() {
-        Some(span) => trouble.at(span),
-        None => trouble,
+        Some(span) => diagnostic.at(span),
+        None => diagnostic,
     }
 }
 
 fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let Some(scene) = root.table("scene")? else {
-        return Err(Trouble::new("there is no [scene]").with_help(
+        return Err(Diagnostic::new("there is no [scene]").with_help(
             "a scene begins with [scene]: `models`, `modulus` and a load; `fractal-contact --help` shows one",
         ));
     };
@@ -225,16 +228,16 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let effects = read_effects(effects_table, system)?;
     let outputs_table = root.table("outputs")?;
     let output_places = places(outputs_table.as_ref());
-    let asked = read_outputs(outputs_table, system)?;
+    let requested = read_outputs(outputs_table, system)?;
     let (modulus, pair) = read_material(&scene, system)?;
-    let Found { relief, understood, notes } = read_relief(&scene, system, directory)?;
-    check_cells(options.as_ref(), &models, &relief)?;
+    let SurfaceEntry { surface, metadata, notes } = read_surface(&scene, system, directory)?;
+    check_cells(options.as_ref(), &models, &surface)?;
     let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
-    let chance = read_chance(root, &scene, &relief)?;
+    let sampling = read_sampling(root, &scene, &surface)?;
     scene.finish()?;
     let places =
         Places { models: models.iter().map(|(_, entry)| entry.span()).collect(), outputs: output_places };
-    check_request(&request, &request_entry, &relief, &effects)?;
+    check_request(&request, &request_entry, &surface, &effects)?;
     check_histories(&models, &request, &request_entry, &effects)?;
     let models = models.into_iter().map(|(numerics, _)| numerics).collect();
     Ok(SceneFile {
@@ -242,14 +245,14 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
         text: String::new(),
         system,
         models,
-        relief,
+        surface,
         modulus,
         pair,
         effects,
         request,
-        asked,
-        chance,
-        understood,
+        requested,
+        sampling,
+        metadata,
         notes,
         places,
     })
@@ -279,14 +282,14 @@ fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>
             let values = entry.list();
             let [first, second] = &values[..] else {
                 return Err(entry
-                    .trouble(format!("`bodies` names {}", values.len()))
+                    .diagnostic(format!("`bodies` names {}", values.len()))
                     .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
             };
             let pair = Pair { first: read_body(first, system)?, second: read_body(second, system)? };
-            let modulus = pair.modulus().map_err(|e| entry.trouble(e.to_string()))?;
+            let modulus = pair.modulus().map_err(|e| entry.diagnostic(e.to_string()))?;
             Ok((modulus, Some(pair)))
         }
-        None => Err(scene.trouble("[scene] has no material").with_help(
+        None => Err(scene.diagnostic("[scene] has no material").with_help(
             "add `modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
         )),
     }
@@ -303,48 +306,52 @@ fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
     table.finish()?;
     if !(0.0..=0.5).contains(&poisson) {
         return Err(ratio
-            .trouble(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
+            .diagnostic(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
             .with_help("0.5 is incompressible"));
     }
     Ok(Body::Elastic { young, poisson })
 }
 
-fn read_chance(root: &Entries<'_>, scene: &Entries<'_>, relief: &Relief) -> Read<Chance> {
+fn read_sampling(root: &Entries<'_>, scene: &Entries<'_>, surface: &SceneSurface) -> Read<Sampling> {
     let Some(table) = root.table("chance")? else {
-        if relief.is_random() {
+        if surface.is_random() {
             return Err(scene
-                .trouble("the surface is random and no seed is given")
+                .diagnostic("the surface is random and no seed is given")
                 .with_help("add [chance] with `seed = 1`: the same seed is the same surface"));
         }
-        return Ok(Chance { seed: 0, surfaces: 1 });
+        return Ok(Sampling { seed: 0, surfaces: 1 });
     };
     let seed = table.require("seed", "1")?.count(0)?;
     let surfaces = table.find("surfaces");
-    if let (Some(entry), false) = (&surfaces, relief.is_random()) {
+    if let (Some(entry), false) = (&surfaces, surface.is_random()) {
         return Err(entry
-            .trouble_at_key("`surfaces` is given, but nothing here is random")
+            .diagnostic_at_key("`surfaces` is given, but nothing here is random")
             .with_help("remove it: there is one surface"));
     }
     let count = surfaces.as_ref().map_or(Ok(1), |e| e.count(1))?;
     if let (Some(entry), true) = (&surfaces, count > MOST_SURFACES) {
         return Err(entry
-            .trouble(format!("{count} surfaces: expected at most {MOST_SURFACES}"))
+            .diagnostic(format!("{count} surfaces: expected at most {MOST_SURFACES}"))
             .with_help("the mean of 1000 surfaces is good to a per cent"));
     }
     table.finish()?;
-    Ok(Chance { seed, surfaces: count as usize })
+    Ok(Sampling { seed, surfaces: count as usize })
 }
 
 /// A map brings its own cells, and those of a generated surface are not too many.
-fn check_cells(options: Option<&Entries<'_>>, models: &[(Numerics, Entry<'_>)], relief: &Relief) -> Read<()> {
-    let Relief::Plain(Surface::Heights(map)) = relief else {
+fn check_cells(
+    options: Option<&Entries<'_>>,
+    models: &[(Numerics, Entry<'_>)],
+    surface: &SceneSurface,
+) -> Read<()> {
+    let SceneSurface::Plain(Surface::Heights(map)) = surface else {
         for (numerics, name) in models {
             let Some(elements) = numerics.boundary_elements() else { continue };
-            let cells = elements.grid(relief.size());
+            let cells = elements.grid(surface.size());
             if cells.checked_count().is_none_or(|count| count > MOST_CELLS * MOST_CELLS) {
                 let (columns, rows, most) = (cells.columns, cells.rows, MOST_CELLS);
                 return Err(name
-                    .trouble(format!("{columns} x {rows} cells: expected at most {most} x {most}"))
+                    .diagnostic(format!("{columns} x {rows} cells: expected at most {most} x {most}"))
                     .with_help(format!(
                         "give fewer `cells` (columns) or `rows` in [models.{}]; without `rows` cells are nearly square",
                         numerics.name()
@@ -359,7 +366,7 @@ fn check_cells(options: Option<&Entries<'_>>, models: &[(Numerics, Entry<'_>)], 
         for (key, own) in [("cells", map.columns()), ("rows", map.rows())] {
             if let Some(cells) = table.table()?.entry(key) {
                 return Err(cells
-                    .trouble_at_key(format!("`{key}` is given, but the map brings its own {own}"))
+                    .diagnostic_at_key(format!("`{key}` is given, but the map brings its own {own}"))
                     .with_help(
                         "remove it here; `cells` in [scene.surface] averages the map over larger cells",
                     ));
@@ -370,23 +377,30 @@ fn check_cells(options: Option<&Entries<'_>>, models: &[(Numerics, Entry<'_>)], 
 }
 
 /// Loads that contradict the boundary or the surface.
-fn check_request(request: &Request, entry: &Entry<'_>, relief: &Relief, effects: &Effects) -> Read<()> {
+fn check_request(
+    request: &Request,
+    entry: &Entry<'_>,
+    surface: &SceneSurface,
+    effects: &Effects,
+) -> Read<()> {
     let Request::Loads(loads) = request else { return Ok(()) };
     let periodic = effects.boundary == Boundary::Periodic;
     match loads.prescribed {
         Prescribed::Approach if periodic => Err(entry
-            .trouble_at_key("an approach with periodic boundaries: there is no first touch to count from")
+            .diagnostic_at_key("an approach with periodic boundaries: there is no first touch to count from")
             .with_help(
                 "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
             )),
         Prescribed::MeanGap if !periodic => Err(entry
-            .trouble_at_key("a mean gap with free boundaries")
+            .diagnostic_at_key("a mean gap with free boundaries")
             .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]")),
-        Prescribed::ForceBar if !relief.is_rough() || matches!(relief, Relief::Sum { .. }) => Err(entry
-            .trouble_at_key(
-                "`force_bar` counts forces in the rms height of a rough surface, which this body has not",
-            )
-            .with_help("prescribe `force` or `approach`")),
+        Prescribed::ForceBar if !surface.is_rough() || matches!(surface, SceneSurface::Sum { .. }) => {
+            Err(entry
+                .diagnostic_at_key(
+                    "`force_bar` counts forces in the rms height of a rough surface, which this body has not",
+                )
+                .with_help("prescribe `force` or `approach`"))
+        }
         _ => Ok(()),
     }
 }
@@ -403,20 +417,20 @@ fn check_histories(
     for (numerics, model) in models {
         if numerics.is_history() && !path {
             return Err(entry
-                .trouble_at_key(format!("\"{}\" follows a path, and here are loads one by one", numerics.name()))
+                .diagnostic_at_key(format!("\"{}\" follows a path, and here are loads one by one", numerics.name()))
                 .with_help("write [[scene.path]] with `time`, `force` (or `approach`) and `tangential_force` for each step"));
         }
         if !numerics.is_history() && path {
             let known: Vec<&str> =
                 Numerics::ALL.iter().filter(|m| m.is_history()).map(Numerics::name).collect();
             return Err(model
-                .trouble(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
+                .diagnostic(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
                 .with_help(format!("models that follow a path: {}", known.join(", "))));
         }
     }
     if path && !remembers {
         return Err(entry
-            .trouble_at_key("a path, but no effect that depends on it")
+            .diagnostic_at_key("a path, but no effect that depends on it")
             .with_help("add `friction` or `rheology` to [effects], or prescribe `force` or `approach`"));
     }
     Ok(())

@@ -6,8 +6,8 @@ use crate::loads::Request;
 use crate::numerics::{AnyModel, Numerics};
 use crate::outputs::Format;
 use crate::plan::cells;
-use crate::relief::Relief;
 use crate::scene_file::SceneFile;
+use crate::scene_surface::SceneSurface;
 use analysis::Value;
 use contact_model::{Cells, ContactState, Fields, Scene, Step, Stop, Surface};
 use figures::fnv1a_128;
@@ -52,17 +52,17 @@ impl Unit {
 
     /// Everything that decides its numbers.
     pub fn key(&self, scene: &SceneFile) -> String {
-        let relief = match &scene.relief {
-            Relief::Plain(Surface::Heights(map)) => {
+        let surface = match &scene.surface {
+            SceneSurface::Plain(Surface::Heights(map)) => {
                 let bytes: Vec<u8> = map.heights().iter().flat_map(|h| h.to_le_bytes()).collect();
                 format!("map {:?} {:?} {:032x}", map.cells(), map.size(), fnv1a_128(&bytes))
             }
             other => format!("{other:?}"),
         };
-        let SceneFile { modulus, pair, effects, request, asked, system, .. } = scene;
+        let SceneFile { modulus, pair, effects, request, requested, system, .. } = scene;
         format!(
-            "format {FORMAT} {} {}\nversion {}\nmodel {:?}\nrelief {relief}\nmodulus {modulus:?}\npair {pair:?}\neffects {effects:?}\n\
-             request {request:?}\noutputs {asked:?} {system:?}\nsurface {}\nseed {}\n",
+            "format {FORMAT} {} {}\nversion {}\nmodel {:?}\nrelief {surface}\nmodulus {modulus:?}\npair {pair:?}\neffects {effects:?}\n\
+             request {request:?}\noutputs {requested:?} {system:?}\nsurface {}\nseed {}\n",
             figures::FORMAT,
             bem3d::FORMAT,
             env!("CARGO_PKG_VERSION"),
@@ -135,19 +135,19 @@ impl Unit {
     ) -> Result<()> {
         let Request::Loads(loads) = &scene.request else { return Ok(()) };
         let normalisation = contact.normalisation();
-        for (index, &asked) in loads.values.iter().enumerate() {
+        for (index, &requested) in loads.values.iter().enumerate() {
             let mut state = State {
                 model: self.numerics(scene).name(),
                 surface: self.surface,
                 index,
-                asked,
+                requested,
                 normalisation: Some(normalisation),
                 ..State::default()
             };
             let solve = |contact: &mut dyn contact_model::PreparedContact| {
-                let load = loads.load(asked, &normalisation)?;
+                let load = loads.load(requested, &normalisation)?;
                 let found = contact.solve_until(load, stop)?;
-                let gap = scene.asked.mean_gap.then(|| contact.mean_gap(load)).transpose()?;
+                let gap = scene.requested.mean_gap.then(|| contact.mean_gap(load)).transpose()?;
                 Ok((found, gap))
             };
             match solve(contact) {
@@ -233,11 +233,11 @@ impl Unit {
         let Some(fields) = found.fields.take() else { return Ok(()) };
         let Fields { pressure, displacement, gap } = &fields;
         let grid = cells(scene, self.numerics(scene));
-        let asked = &scene.asked;
+        let requested = &scene.requested;
         for (name, values, formats) in [
-            ("pressure", pressure, &asked.pressure),
-            ("displacement", displacement, &asked.displacement),
-            ("gap", gap, &asked.gap),
+            ("pressure", pressure, &requested.pressure),
+            ("displacement", displacement, &requested.displacement),
+            ("gap", gap, &requested.gap),
         ] {
             let Some(values) = values else { continue };
             let values = &on_defined_points(name, values, scene);
@@ -250,7 +250,7 @@ impl Unit {
                         let shape = [grid.rows as u64, grid.columns as u64];
                         figures::write_npy(&path, &shape, values)?;
                     }
-                    Format::Png => figures::write_grey(&path, grid, scene.relief.size(), values)?,
+                    Format::Png => figures::write_grey(&path, grid, scene.surface.size(), values)?,
                     Format::Vti => write_vti(&path, name, scene, grid, values)?,
                 }
                 result.bytes += std::fs::metadata(&path).map_err(Error::file("read", &path))?.len();
@@ -264,7 +264,7 @@ impl Unit {
     /// its own sake is asked of the full one.
     pub fn probe(&self, scene: &SceneFile) -> contact_model::Result<()> {
         let numerics = self.numerics(scene);
-        match probe(scene, &numerics.probe(scene.relief.size())) {
+        match probe(scene, &numerics.probe(scene.surface.size())) {
             Ok(()) => Ok(()),
             Err(error @ contact_model::Error::Unsupported { .. }) => Err(error),
             Err(_) => probe(scene, numerics),
@@ -274,8 +274,8 @@ impl Unit {
 
 /// A field as files have it: there is no gap at an undefined point.
 fn on_defined_points<'a>(name: &str, values: &'a [f64], scene: &SceneFile) -> Cow<'a, [f64]> {
-    match &scene.relief {
-        Relief::Plain(Surface::Heights(map)) if map.undefined() > 0 && name == "gap" => {
+    match &scene.surface {
+        SceneSurface::Plain(Surface::Heights(map)) if map.undefined() > 0 && name == "gap" => {
             let defined = |(h, g): (&f64, &f64)| if h.is_finite() { *g } else { f64::NAN };
             map.heights().iter().zip(values).map(defined).collect()
         }
@@ -290,7 +290,7 @@ fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[
         (crate::System::Si, _) => "m",
     };
     let field = surface_io::Field { name, unit, values };
-    let bytes = surface_io::vti(grid, scene.relief.size(), &[field], surface_io::Encoding::Base64)
+    let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
     Ok(figures::write_whole(path, &bytes)?)
 }
@@ -308,7 +308,7 @@ pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics) -> contact_model::Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Loads, Prescribed, Relief};
+    use crate::{Loads, Prescribed, SceneSurface};
     use contact_model::{HeightMap, SolveReport};
     use std::sync::Arc;
 
@@ -317,11 +317,11 @@ mod tests {
     fn fields_are_arrays_of_rows_and_columns() {
         let heights = vec![1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0];
         let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
-        let relief = Relief::Plain(Surface::Heights(Arc::new(map)));
+        let surface = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
         let loads = Request::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
-        let mut scene = SceneFile::new(vec![Numerics::ALL[0]], relief, 1.0, loads);
+        let mut scene = SceneFile::new(vec![Numerics::ALL[0]], surface, 1.0, loads);
         let all = vec![Format::Npy, Format::Png, Format::Vti];
-        (scene.asked.pressure, scene.asked.gap) = (all.clone(), all);
+        (scene.requested.pressure, scene.requested.gap) = (all.clone(), all);
         let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];
         let gap = vec![0.5, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
         let mut state = ContactState {
@@ -340,14 +340,14 @@ mod tests {
         unit.keep(&scene, &mut state, 0, dir.path(), &mut result).unwrap();
         assert_eq!((result.files.len(), state.fields), (6, None));
         let scan = |name: &str| {
-            surface_io::Scan::read(&dir.path().join(name), &surface_io::Declared::default()).unwrap()
+            surface_io::Scan::read(&dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };
         let read = scan("pressure-bem3d-0-000.npy");
-        assert_eq!((read.understood().rows, read.understood().columns), (2, 3));
+        assert_eq!((read.metadata().rows, read.metadata().columns), (2, 3));
         let values: Vec<f64> = (0..6).filter_map(|i| read.height(i / 3, i % 3)).collect();
         assert_eq!(values, pressure);
         let read = scan("gap-bem3d-0-000.npy");
-        assert_eq!((read.height(1, 1), read.height(0, 0), read.understood().undefined), (None, Some(0.5), 1));
+        assert_eq!((read.height(1, 1), read.height(0, 0), read.metadata().undefined), (None, Some(0.5), 1));
         let vti = std::fs::read_to_string(dir.path().join("gap-bem3d-0-000.vti")).unwrap();
         assert!(vti.contains("WholeExtent=\"0 3 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"2 0.5 2\""), "{vti}");
         assert!(vti.contains("vtkGhostType"));

@@ -4,7 +4,7 @@
 
 use contact_model::{Cells, HeightMap, Size, Surface};
 use figures::{CsvFile, Silent};
-use fractal_contact::{Options, Plan, Relief, SceneFile, run};
+use fractal_contact::{Options, Plan, SceneFile, SceneSurface, run};
 use std::path::Path;
 use std::process::Command;
 
@@ -25,8 +25,8 @@ fn of_file(keys: &str) -> fractal_contact::Result<SceneFile> {
 }
 
 fn map(scene: &SceneFile) -> &HeightMap {
-    match &scene.relief {
-        Relief::Plain(Surface::Heights(map)) => map,
+    match &scene.surface {
+        SceneSurface::Plain(Surface::Heights(map)) => map,
         other => panic!("{other:?}"),
     }
 }
@@ -48,11 +48,11 @@ fn files_take_two_sides_or_the_sides_of_a_cell() {
         // Rows along y.
         assert_eq!((map.heights()[4], map.heights()[6]), (4e-6, f64::NEG_INFINITY));
         assert!(
-            scene.relief.describe().contains("a map of 4 x 3 cells, sides "),
+            scene.surface.describe().contains("a map of 4 x 3 cells, sides "),
             "{}",
-            scene.relief.describe()
+            scene.surface.describe()
         );
-        assert!(scene.relief.describe().ends_with("1 undefined points"));
+        assert!(scene.surface.describe().ends_with("1 undefined points"));
         assert_eq!(scene.notes.len(), usize::from(keys.starts_with("width")));
     }
     let note = of_file("width = \"4 mm\"\nfill = \"plane\"").unwrap().notes[0].to_string();
@@ -106,7 +106,7 @@ fn results_of_a_rectangle() {
         "models = [\"hertz\"]\nmodulus = 2\nmean_pressure = 1e-3\n[scene.body]\nkind = \"sphere\"\nradius = 1\n\
          size = [9, 1]\n[outputs]\nstiffness = true\narea = true\n",
     );
-    assert_eq!(scene.relief.size(), Size { x: 9.0, y: 1.0 });
+    assert_eq!(scene.surface.size(), Size { x: 9.0, y: 1.0 });
     let file = results(&scene);
     approx::assert_relative_eq!(number(&file, "force"), 9e-3, max_relative = ROUNDING);
     let (k, area) = (number(&file, "stiffness"), number(&file, "area"));
@@ -139,7 +139,7 @@ fn columns_and_rows_of_boundary_elements() {
     for (options, cells) in [("cells = 64", [64, 16]), ("cells = 64\nrows = 64", [64, 64])] {
         let scene = of(options);
         let elements = scene.models[0].boundary_elements().unwrap();
-        assert_eq!(elements.grid(scene.relief.size()), cells.into());
+        assert_eq!(elements.grid(scene.surface.size()), cells.into());
         // A sum of a rough surface and a body is drawn on these cells.
         match scene.scene(&scene.models[0], 1).unwrap().surface {
             Surface::Heights(map) => assert_eq!((map.cells(), map.size()), (cells.into(), [4.0, 1.0].into())),
@@ -181,7 +181,7 @@ fn the_program_makes_and_tells_rectangles() {
     for file in ["s.txt", "s.xyz"] {
         let (done, info) = program(&["info", &path(file)]);
         assert!(done && told.iter().all(|line| info.contains(line)), "{info}");
-        assert!(info.contains("size       0.004 m x 0.001 m (said by the file)"), "{info}");
+        assert!(info.contains("size       0.004 m x 0.001 m (from the file)"), "{info}");
         assert!(info.contains("rms height         1.000000e-6"), "{info}");
     }
     let (_, info) = program(&["info", &path("s.npy"), "--unit", "m", "--size", "4 mm x 1 mm"]);
@@ -242,16 +242,16 @@ fn a_rectangle_is_pressed() {
         max_relative = ROUNDING
     );
     let read = |name: &str| {
-        let declared = surface_io::Declared { cell: "1 x 0.5".parse().ok(), ..Default::default() };
+        let declared = surface_io::ReadOptions { cell: "1 x 0.5".parse().ok(), ..Default::default() };
         surface_io::Scan::read(&dir.path().join(name), &declared).unwrap()
     };
     let pressure = read("pressure-bem3d-0-000.npy");
-    assert_eq!((pressure.understood().rows, pressure.understood().columns), (rows, columns));
+    assert_eq!((pressure.metadata().rows, pressure.metadata().columns), (rows, columns));
     let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
     let sum: f64 = cells.map(|(row, column)| pressure.height(row, column).unwrap()).sum();
     approx::assert_relative_eq!(sum * 1e-6 * 0.5e-6, force, max_relative = 1e-5);
     let gap = read("gap-bem3d-0-000.npy");
-    assert_eq!((gap.height(1, 6), gap.understood().undefined), (None, 1));
+    assert_eq!((gap.height(1, 6), gap.metadata().undefined), (None, 1));
     assert!(pressure.height(1, 6).is_some_and(|p| p <= 0.0));
     assert!(Path::new(&dir.path().join("gap-bem3d-0-000.png")).is_file());
 }

@@ -32,7 +32,7 @@ const NAME: &str = "equivalent";
 ///
 /// The nodes lie on one logarithmic lattice of approaches (in rms heights, in sides for bodies without), so histories share
 /// them; the table begins so many decades below the first load after a [`History::restart`] and follows the loads upwards. Its error falls with the
-/// third (x) and fourth (F) order of the spacing where k(d) is smooth; [`Tabulated::doubt`] at the step's approach is in the report's strategy. A pressure field
+/// third (x) and fourth (F) order of the spacing where k(d) is smooth; [`Tabulated::uncertainty`] at the step's approach is in the report's strategy. A pressure field
 /// is refused with rheology (M's is that of an elastic body), and so is a stiffness.
 ///
 /// Cost: one solve of M per node (about 49 at the defaults) at the first step, in ascending order, one per further step and per node that it
@@ -218,7 +218,7 @@ impl History for Prepared {
 
     fn restart(&mut self) {
         match &mut self.effect {
-            Effect::Slip { springs, time, .. } => (*springs, *time) = (springs.untouched(), 0.0),
+            Effect::Slip { springs, time, .. } => (*springs, *time) = (springs.unloaded(), 0.0),
             Effect::Relax(relaxation) => relaxation.restart(),
         }
     }

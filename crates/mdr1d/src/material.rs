@@ -1,4 +1,4 @@
-//! A linear viscoelastic material under pieces of straight load: relaxation and creep, both in closed form.
+//! A linear viscoelastic material under segments of straight load: relaxation and creep, both in closed form.
 //!
 //! With `E*(t) = E* (e + sum w_i exp(-r_i t)) + E* v delta(t)` a load `Phi(t)` (what an elastic contact with modulus 1 would carry)
 //! gives the force `F/E* = e Phi + sum w_i q_i + v Phi'` with `q_i' = Phi' - r_i q_i`: Boltzmann's integral with one memory per arm.
@@ -37,7 +37,7 @@ pub(crate) struct Memory {
     pub force: f64,
 }
 
-/// Phi on a piece, from its value at the beginning: `b s + c s^2/2 + sum m (exp(-x s) - 1)`.
+/// Phi on a segment, from its value at the beginning: `b s + c s^2/2 + sum m (exp(-x s) - 1)`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Creep {
     /// `Phi'(0) = b - sum m x`, without the cancellation.
@@ -139,7 +139,7 @@ impl Material {
         Memory { force, ..self.jumped(memory, by) }
     }
 
-    /// After a piece in which Phi went to `load` and ended with the rate `speed`; `integrals` are `int exp(-r_i (D - s)) Phi'(s) ds`
+    /// After a segment in which Phi went to `load` and ended with the rate `speed`; `integrals` are `int exp(-r_i (D - s)) Phi'(s) ds`
     /// over it.
     pub fn relaxed(
         &self,
@@ -159,7 +159,7 @@ impl Material {
         self.with_force(load, arms, speed)
     }
 
-    /// Phi during a piece of this duration in which the force goes straight from the memory's to `force`.
+    /// Phi during a segment of this duration in which the force goes straight from the memory's to `force`.
     pub fn creep(&self, memory: &Memory, force: f64, duration: f64) -> Creep {
         let slope = (force - memory.force) / duration;
         let moment = |k: i32| self.arms.iter().map(|arm| arm.weight * arm.rate.powi(-k)).sum::<f64>();
@@ -207,7 +207,7 @@ impl Material {
         Creep { start, b, c, modes, noise }
     }
 
-    /// The memory at a time within such a piece.
+    /// The memory at a time within such a segment.
     pub fn crept(&self, memory: &Memory, creep: &Creep, at: f64, force: f64) -> Memory {
         let integrals: Vec<f64> = self.rates().map(|rate| creep.remembered(rate, at)).collect();
         let mut end = self.relaxed(memory, at, memory.load + creep.rise(at), creep.speed(at), &integrals);
@@ -302,7 +302,7 @@ impl Creep {
         self.speed(s) < -ROUNDING * (self.noise + self.b.abs() + self.c.abs() * s + modes)
     }
 
-    /// The first time within the piece from which Phi falls, beyond rounding; found between samples that resolve every rate.
+    /// The first time within the segment from which Phi falls, beyond rounding; found between samples that resolve every rate.
     pub fn first_fall(&self, duration: f64) -> Option<f64> {
         /// Samples per octave of time, and octaves below the shortest time.
         const PER_OCTAVE: i32 = 8;
@@ -406,7 +406,7 @@ mod tests {
 
     #[test]
     fn a_force_and_its_creep_fit_each_other() {
-        // Over pieces of any length the arms give back the force that was asked for, at the end and on the way.
+        // Over segments of any length the arms give back the force that was asked for, at the end and on the way.
         for material in [
             prony(&[(3.0, 2.0)]),
             prony(&[(1.0, 1e-2), (0.5, 1.0), (2.0, 70.0)]),

@@ -197,7 +197,7 @@ impl History for Prepared {
 
     fn restart(&mut self) {
         self.time = 0.0;
-        self.springs = self.springs.untouched();
+        self.springs = self.springs.unloaded();
     }
 }
 

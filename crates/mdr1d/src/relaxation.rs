@@ -131,7 +131,7 @@ fn shrinks(time: f64, from: f64) -> Error {
 
 /// `int_0^D exp(-r (D - s)) 2 a(d_0 + v s) v ds` by Gauss's rule.
 ///
-/// Panels double away from the end of the piece, in units of 1/r, and in d away from 0, and end where x(gamma) has a kink: the decay and
+/// Panels double away from the end of the segment, in units of 1/r, and in d away from 0, and end where x(gamma) has a kink: the decay and
 /// the power of d are smooth on each.
 fn remembered(profile: &impl Shape, from: f64, speed: f64, rate: f64, duration: f64) -> f64 {
     /// exp(-64) is nothing beside the rest.

@@ -1,7 +1,7 @@
 //! The tangential springs of an axisymmetric contact, exactly: what sticks, what slips, what is lost.
 //!
 //! A spring at x has the tangential deflection U(x); its force is G* U, and Coulomb's law holds it within `mu E* (d - g(x))`. Along
-//! a straight piece of a path (d and u linear) a spring moves with the body until it reaches that bound and then along it, so at the
+//! a straight segment of a path (d and u linear) a spring moves with the body until it reaches that bound and then along it, so at the
 //! end `U = clamp(U_0 + Du, -c, c)` with `c = mu E*/G* (d - g)`; a spring that comes into contact on the way begins there with U =
 //! 0. All of this is linear in `g`: with `gamma = g(x)` as the coordinate, U stays a polygon for any path and any profile, and
 //! forces and losses are integrals of polynomials of gamma. Nothing is discretised.
@@ -42,7 +42,7 @@ impl<P: Shape> Springs<P> {
     }
 
     /// The same springs before any contact.
-    pub fn untouched(&self) -> Self {
+    pub fn unloaded(&self) -> Self {
         Self::new(self.profile.clone(), self.bound * self.shear, self.shear)
     }
 
@@ -97,7 +97,7 @@ impl<P: Shape> Springs<P> {
         self.profile.radius(inner.map_or(self.approach, |knot| knot.gamma))
     }
 
-    /// The springs at the end of a straight piece of the path: another approach, another displacement.
+    /// The springs at the end of a straight segment of the path: another approach, another displacement.
     pub fn moved(&self, approach: f64, displacement: f64) -> Self {
         let by = displacement - self.displacement;
         let free = self.free(approach, by);
@@ -205,7 +205,7 @@ impl<P: Shape> Springs<P> {
 
     /// `int (slip x force) dx / G*` of the springs that are in contact at the end, on one side.
     ///
-    /// A spring that ends e beyond its bound has slipped for the share `e/rate` of the piece, against a bound that grew by `growth`
+    /// A spring that ends e beyond its bound has slipped for the share `e/rate` of the segment, against a bound that grew by `growth`
     /// in all of it.
     fn lost_in_contact(&self, free: &[Knot], approach: f64, by: f64, slip: Option<(f64, f64)>) -> f64 {
         let Some((begin, sign)) = slip else { return 0.0 };
@@ -254,7 +254,7 @@ impl<P: Shape> Springs<P> {
             if low >= high {
                 continue;
             }
-            // Where the polygon changes sign, two pieces.
+            // Where the polygon changes sign, two segments.
             let zero = low + (high - low) * (at(low) / (at(low) - at(high)));
             let cuts = if zero > low && zero < high { vec![low, zero, high] } else { vec![low, high] };
             for cut in cuts.windows(2) {

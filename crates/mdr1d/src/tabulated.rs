@@ -10,7 +10,7 @@ use contact_model::{Error, Result};
 /// (Popov, Pohrt, Hess; M. Hess 2011). So any contact whose k never falls with d has an equivalent profile,
 /// `g(x(d)) = d`. Between two states x is the parabola in d that meets both stiffnesses and the difference of
 /// forces where that parabola never falls (x is then good to third order of the spacing, F to fourth), else
-/// two straight pieces that do the same. From first touch to the first state x is a power of d, or a flat
+/// two straight segments that do the same. From first touch to the first state x is a power of d, or a flat
 /// face with a straight flank, as F d/k says.
 ///
 /// ```
@@ -26,7 +26,7 @@ use contact_model::{Error, Result};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tabulated {
-    pieces: Vec<Piece>,
+    segments: Vec<Segment>,
     /// Number of states behind it.
     nodes: usize,
     /// At every state, the largest change of the force at it or a lower one when that state is left out.
@@ -46,7 +46,7 @@ pub(crate) struct Node {
 
 /// x on an interval of the depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
+struct Segment {
     from: f64,
     width: f64,
     /// x at the beginning, and by how much it grows.
@@ -62,13 +62,13 @@ struct Piece {
 enum Form {
     /// `s + c s (1 - s)`, |c| <= 1.
     Parabola(f64),
-    /// `s^m`, m > 0; only in the first piece, from x = 0.
+    /// `s^m`, m > 0; only in the first segment, from x = 0.
     Power(f64),
 }
 
-/// Share of an interval's rise that two straight pieces leave at least on either side.
+/// Share of an interval's rise that two straight segments leave at least on either side.
 const STEEPEST: f64 = 1e-9;
-/// Powers of the first piece: below the first x is constant rather.
+/// Powers of the first segment: below the first x is constant rather.
 const POWERS: (f64, f64) = (0.0625, 64.0);
 /// Shares of the rise between which a parabola that meets them never falls.
 const PARABOLA: (f64, f64) = (1.0 / 3.0, 2.0 / 3.0);
@@ -82,7 +82,7 @@ impl Tabulated {
     /// [`Error::OutOfRange`] where the stiffness falls with the approach, or the force is not convex, by more
     /// than the states' slack.
     pub(crate) fn new(nodes: &[Node]) -> Result<Self> {
-        let mut pieces = Vec::with_capacity(nodes.len() + 1);
+        let mut segments = Vec::with_capacity(nodes.len() + 1);
         let mut last: Option<Node> = None;
         for node in nodes {
             let begin = last.unwrap_or(Node { approach: 0.0, force: 0.0, radius: 0.0, slack: 0.0 });
@@ -99,9 +99,9 @@ impl Tabulated {
                 return Err(shrinks("slope of the chord of F(d) over 2 E* L", chord, low, high));
             }
             if last.is_some() {
-                pieces.extend(between(begin, end, chord));
+                segments.extend(between(begin, end, chord));
             } else {
-                pieces.push(first(end, chord));
+                segments.push(first(end, chord));
             }
             last = Some(end);
         }
@@ -110,14 +110,15 @@ impl Tabulated {
             largest = largest.max(left_out(part));
             (part[1].approach, largest)
         });
-        Ok(Self { pieces, nodes: nodes.len(), doubts: doubts.collect() })
+        Ok(Self { segments, nodes: nodes.len(), doubts: doubts.collect() })
     }
 
     /// Depth g(x) in units of the side; `None` beyond the largest half width that was solved for.
     pub fn depth(&self, x: f64) -> Option<f64> {
         let x = x.abs();
-        let piece = self.pieces.get(self.pieces.partition_point(|piece| piece.start + piece.rise < x))?;
-        Some(piece.from + piece.width * piece.inverse(x))
+        let segment =
+            self.segments.get(self.segments.partition_point(|segment| segment.start + segment.rise < x))?;
+        Some(segment.from + segment.width * segment.inverse(x))
     }
 
     /// Half width `x = k/(2 E*)` at a depth, both in units of the side; that of the last state beyond it.
@@ -125,12 +126,12 @@ impl Tabulated {
         if depth <= 0.0 {
             return 0.0;
         }
-        self.at(depth).map_or(0.0, |(piece, s)| piece.radius(s))
+        self.at(depth).map_or(0.0, |(segment, s)| segment.radius(s))
     }
 
     /// Force over `E* L^2` at a depth up to the last state.
     pub fn force(&self, depth: f64) -> f64 {
-        self.at(depth.max(0.0)).map_or(0.0, |(piece, s)| piece.force_at(s))
+        self.at(depth.max(0.0)).map_or(0.0, |(segment, s)| segment.force_at(s))
     }
 
     /// Number of states that it goes through.
@@ -143,38 +144,38 @@ impl Tabulated {
     ///
     /// A bound of the error that the table makes in F, and in a tangential force over mu F: some ten times
     /// the error itself for smooth bodies (fourth order, twice the spacing).
-    pub fn doubt(&self, depth: f64) -> f64 {
+    pub fn uncertainty(&self, depth: f64) -> f64 {
         let below = self.doubts.partition_point(|(approach, _)| *approach <= depth);
         let change = below.checked_sub(1).map_or(0.0, |last| self.doubts[last].1);
         if change > 0.0 { change / self.force(depth) } else { 0.0 }
     }
 
-    /// The piece at a depth, and where in it.
-    fn at(&self, depth: f64) -> Option<(&Piece, f64)> {
-        let k = self.pieces.partition_point(|piece| piece.from <= depth).max(1) - 1;
-        let piece = self.pieces.get(k)?;
-        Some((piece, ((depth - piece.from) / piece.width).clamp(0.0, 1.0)))
+    /// The segment at a depth, and where in it.
+    fn at(&self, depth: f64) -> Option<(&Segment, f64)> {
+        let k = self.segments.partition_point(|segment| segment.from <= depth).max(1) - 1;
+        let segment = self.segments.get(k)?;
+        Some((segment, ((depth - segment.from) / segment.width).clamp(0.0, 1.0)))
     }
 }
 
 /// From first touch to the first state.
-fn first(end: Node, chord: f64) -> Piece {
+fn first(end: Node, chord: f64) -> Segment {
     let (width, high) = (end.approach, end.radius);
-    let piece = Piece { from: 0.0, width, start: 0.0, rise: high, form: Form::Parabola(0.0), force: 0.0 };
+    let segment = Segment { from: 0.0, width, start: 0.0, rise: high, form: Form::Parabola(0.0), force: 0.0 };
     let power = high / chord - 1.0;
     if power >= POWERS.0 {
-        Piece { form: Form::Power(power.min(POWERS.1)), ..piece }
+        Segment { form: Form::Power(power.min(POWERS.1)), ..segment }
     } else {
         // A flat face and a flank.
         let face = (2.0 * chord - high).clamp(0.0, high);
-        Piece { start: face, rise: high - face, ..piece }
+        Segment { start: face, rise: high - face, ..segment }
     }
 }
 
 /// Between two states.
-fn between(begin: Node, end: Node, chord: f64) -> Vec<Piece> {
+fn between(begin: Node, end: Node, chord: f64) -> Vec<Segment> {
     let (rise, width) = (end.radius - begin.radius, end.approach - begin.approach);
-    let piece = Piece {
+    let segment = Segment {
         from: begin.approach,
         width,
         start: begin.radius,
@@ -185,23 +186,23 @@ fn between(begin: Node, end: Node, chord: f64) -> Vec<Piece> {
     let share = (chord - begin.radius) / rise;
     // No rise at all: NaN or infinite.
     if rise <= 0.0 || !share.is_finite() {
-        return vec![piece];
+        return vec![segment];
     }
     if (PARABOLA.0 - ROUNDING..=PARABOLA.1 + ROUNDING).contains(&share) {
-        return vec![Piece { form: Form::Parabola((6.0 * share - 3.0).clamp(-1.0, 1.0)), ..piece }];
+        return vec![Segment { form: Form::Parabola((6.0 * share - 3.0).clamp(-1.0, 1.0)), ..segment }];
     }
     let share = share.clamp(STEEPEST, 1.0 - STEEPEST);
     // Flat and then a ramp, or a ramp and then flat.
     let turn = if share < 0.5 { 1.0 - 2.0 * share } else { 2.0 * (1.0 - share) };
     let (rises, middle) = if share < 0.5 { ([0.0, rise], begin.radius) } else { ([rise, 0.0], end.radius) };
-    let one = Piece { width: turn * width, rise: rises[0], ..piece };
-    let other = Piece {
+    let one = Segment { width: turn * width, rise: rises[0], ..segment };
+    let other = Segment {
         from: begin.approach + turn * width,
         width: (1.0 - turn) * width,
         start: middle,
         rise: rises[1],
         force: one.force_at(1.0),
-        ..piece
+        ..segment
     };
     vec![one, other]
 }
@@ -210,7 +211,7 @@ fn between(begin: Node, end: Node, chord: f64) -> Vec<Piece> {
 fn left_out(nodes: &[Node]) -> f64 {
     let [begin, node, end] = [nodes[0], nodes[1], nodes[2]];
     let chord = (end.force - begin.force) / (2.0 * (end.approach - begin.approach));
-    let without = Tabulated { pieces: between(begin, end, chord), nodes: 2, doubts: Vec::new() };
+    let without = Tabulated { segments: between(begin, end, chord), nodes: 2, doubts: Vec::new() };
     (without.force(node.approach) - node.force).abs()
 }
 
@@ -219,7 +220,7 @@ fn shrinks(name: &'static str, value: f64, min: f64, max: f64) -> Error {
     Error::OutOfRange { name: name.into(), value, min, max }
 }
 
-impl Piece {
+impl Segment {
     fn radius(&self, s: f64) -> f64 {
         let share = match self.form {
             Form::Parabola(c) => s * (1.0 + c * (1.0 - s)),
@@ -253,7 +254,7 @@ impl Piece {
         }
     }
 
-    /// `int q dx` over a part of the piece, q being a quadratic of gamma.
+    /// `int q dx` over a part of the segment, q being a quadratic of gamma.
     fn integral(&self, [low, high]: [f64; 2], q: impl Fn(f64) -> f64) -> f64 {
         let middle = 0.5 * (low + high);
         match self.form {
@@ -291,22 +292,22 @@ impl Shape for std::sync::Arc<Tabulated> {
             first + s * (slope + s * curve)
         };
         // A flat face: all its springs touch at once.
-        let face = if low <= 0.0 { self.pieces.first().map_or(0.0, |piece| piece.start) } else { 0.0 };
-        let from = self.pieces.partition_point(|piece| piece.from + piece.width <= low);
-        let pieces = self.pieces[from..].iter().take_while(|piece| piece.from < high);
-        let sum: f64 = pieces
-            .filter(|piece| piece.rise > 0.0)
-            .map(|piece| {
-                let part = [low.max(piece.from), high.min(piece.from + piece.width)];
-                if part[0] < part[1] { piece.integral(part, q) } else { 0.0 }
+        let face = if low <= 0.0 { self.segments.first().map_or(0.0, |segment| segment.start) } else { 0.0 };
+        let from = self.segments.partition_point(|segment| segment.from + segment.width <= low);
+        let segments = self.segments[from..].iter().take_while(|segment| segment.from < high);
+        let sum: f64 = segments
+            .filter(|segment| segment.rise > 0.0)
+            .map(|segment| {
+                let part = [low.max(segment.from), high.min(segment.from + segment.width)];
+                if part[0] < part[1] { segment.integral(part, q) } else { 0.0 }
             })
             .sum();
         face * first + sum
     }
 
     fn kinks(&self, from: f64, to: f64) -> Vec<f64> {
-        let begin = self.pieces.partition_point(|piece| piece.from <= from);
-        self.pieces[begin..].iter().map(|piece| piece.from).take_while(|gamma| *gamma < to).collect()
+        let begin = self.segments.partition_point(|segment| segment.from <= from);
+        self.segments[begin..].iter().map(|segment| segment.from).take_while(|gamma| *gamma < to).collect()
     }
 }
 

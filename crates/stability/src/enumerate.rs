@@ -1,4 +1,4 @@
-//! The slow, obviously right twin: try every contact set.
+//! The slow, obviously right reference implementation: try every contact set.
 
 use crate::plain::{PlainSum, eliminate};
 use contact_model::{HeightMap, Load};

@@ -6,7 +6,7 @@
 //! the ends of f64, misleading warm starts, limits). A [`Case`] says why it is hard and what is asserted; [`Case::run`]
 //! solves it and gives a [`Verdict`]: the largest deviation found ([`Verdict::figure`]), the bound that it must keep, and assertions
 //! that do not hold. That a solver comes back is never an assertion: each case compares with a closed form, a symmetry, a bound of
-//! mechanics or a slow twin.
+//! mechanics or a reference implementation.
 //!
 //! # Conventions
 //!
@@ -17,7 +17,7 @@
 //!
 //! # How accurate
 //!
-//! The twins are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`] (projected Gauss-Seidel, to rounding) and
+//! The reference implementations are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`] (projected Gauss-Seidel, to rounding) and
 //! [`PlainSum`]. Bounds are stated beside each case with their reason.
 //!
 //! # How fast

@@ -165,7 +165,7 @@ mod tests {
         SelfAffine::new(fractal_dimension, 1.0, 1.0).unwrap()
     }
 
-    /// The slow twin: Eq. 14 wave by wave, both signs of q, `B_1D = sqrt((2 pi / L_1D) pi q C_2D)`.
+    /// The reference implementation: Eq. 14 wave by wave, both signs of q, `B_1D = sqrt((2 pi / L_1D) pi q C_2D)`.
     fn direct(surface: &SelfAffine, constant: f64, n: usize, seed: u64) -> Vec<f64> {
         let length = line_length(surface.size.length());
         let (q0, floor) = (TAU / surface.size.length(), surface.roll_off.unwrap_or(0.0));

@@ -1,6 +1,6 @@
 //! The one error type of this crate: which file, where in it, which value, what to do.
 
-mod shown;
+mod display;
 
 use crate::format::Format;
 use crate::quantity::{Quantity, QuantityError};
@@ -29,7 +29,7 @@ pub enum Error {
         /// Where.
         path: PathBuf,
         /// What is wrong.
-        problem: Problem,
+        problem: ContentError,
     },
 }
 
@@ -39,13 +39,13 @@ impl Error {
         move |source| Self::System { action, path, source }
     }
 
-    pub(crate) fn content(path: &Path) -> impl FnOnce(Problem) -> Self {
+    pub(crate) fn content(path: &Path) -> impl FnOnce(ContentError) -> Self {
         let path = path.to_owned();
         move |problem| Self::Content { path, problem }
     }
 
     /// The problem, where the system did not refuse.
-    pub fn problem(&self) -> Option<&Problem> {
+    pub fn problem(&self) -> Option<&ContentError> {
         match self {
             Self::Content { problem, .. } => Some(problem),
             Self::System { .. } => None,
@@ -84,7 +84,7 @@ impl fmt::Display for Place {
 /// What is wrong with the content of a file, or with what is asked of it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum Problem {
+pub enum ContentError {
     /// No data at all.
     Empty,
     /// Not a regular file.
@@ -115,10 +115,10 @@ pub enum Problem {
         /// What to do about it.
         remedy: &'static str,
     },
-    /// Not the format that was said.
+    /// Not the format expected.
     NotOfFormat {
-        /// The format said, by the caller or by the name's ending.
-        said: Format,
+        /// The format expected from the request or by the name's ending.
+        expected: Format,
         /// The format that it looks like.
         found: Format,
     },
@@ -246,7 +246,7 @@ pub enum Problem {
         /// Columns.
         columns: f64,
     },
-    /// Undefined points, and nobody said what becomes of them.
+    /// Undefined points without an instruction how to treat them.
     Undefined {
         /// Points without a height.
         undefined: usize,
@@ -260,8 +260,8 @@ pub enum Problem {
         /// All points.
         points: usize,
     },
-    /// Neither the file nor the caller says something.
-    Unsaid {
+    /// Neither the file nor the caller states it.
+    Unspecified {
         /// What.
         what: &'static str,
         /// How to say it.
@@ -276,15 +276,15 @@ pub enum Problem {
         /// The other.
         second: String,
     },
-    /// Something was said that the format has no use for.
+    /// An option that the format has no use for.
     Useless {
-        /// What was said.
+        /// The option.
         what: &'static str,
         /// Why it is of no use.
         reason: &'static str,
     },
-    /// A number that was said makes no sense.
-    Said {
+    /// A number out of its range.
+    OutOfRange {
         /// What.
         what: &'static str,
         /// The number.
@@ -310,7 +310,7 @@ pub enum Problem {
         /// The length.
         value: Quantity,
     },
-    /// A quantity that was said makes no sense.
+    /// A quantity that cannot be read.
     Quantity {
         /// What.
         what: &'static str,
@@ -365,7 +365,7 @@ pub enum Problem {
     Map(contact_model::Error),
 }
 
-impl std::error::Error for Problem {
+impl std::error::Error for ContentError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Quantity { source, .. } | Self::Heading { source, .. } => Some(source),

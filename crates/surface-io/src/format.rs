@@ -1,6 +1,6 @@
 //! Formats of files, and how one is told from another.
 
-use crate::error::Problem;
+use crate::error::ContentError;
 use std::fmt;
 use std::path::Path;
 
@@ -28,7 +28,7 @@ impl fmt::Display for Format {
 /// First bytes of an NPY file.
 pub(crate) const NPY: &[u8] = b"\x93NUMPY";
 
-/// Bytes that [`Format::tell`] wants to see.
+/// Bytes that [`Format::detect`] wants to see.
 pub(crate) const SNIFF: usize = 16;
 
 /// First bytes of files that people try, with what they are and what to do.
@@ -45,11 +45,15 @@ const FOREIGN: [(&[u8], &str, &str); 9] = [
 ];
 
 impl Format {
-    /// The format by what is said, the first bytes and the name's ending; `None` for text that may be a
+    /// The format by request, the first bytes and the name's ending; `None` for text that may be a
     /// matrix or points.
-    pub(crate) fn tell(said: Option<Self>, path: &Path, start: &[u8]) -> Result<Option<Self>, Problem> {
+    pub(crate) fn detect(
+        requested: Option<Self>,
+        path: &Path,
+        start: &[u8],
+    ) -> Result<Option<Self>, ContentError> {
         if start.is_empty() {
-            return Err(Problem::Empty);
+            return Err(ContentError::Empty);
         }
         let ending = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         let by_name = match ending.as_deref() {
@@ -57,22 +61,22 @@ impl Format {
             Some("xyz") => Some(Self::Xyz),
             _ => None,
         };
-        let said = said.or(by_name);
+        let expected = requested.or(by_name);
         if start.starts_with(NPY) {
-            return match said {
+            return match expected {
                 None | Some(Self::Npy) => Ok(Some(Self::Npy)),
-                Some(said) => Err(Problem::NotOfFormat { said, found: Self::Npy }),
+                Some(expected) => Err(ContentError::NotOfFormat { expected, found: Self::Npy }),
             };
         }
         if let Some((_, what, remedy)) = FOREIGN.iter().find(|(magic, ..)| start.starts_with(magic)) {
-            return Err(Problem::Foreign { what, remedy });
+            return Err(ContentError::Foreign { what, remedy });
         }
-        if said == Some(Self::Npy) {
-            return Err(Problem::Header {
+        if expected == Some(Self::Npy) {
+            return Err(ContentError::Header {
                 offset: 0,
                 expected: "the bytes 93 4e 55 4d 50 59 of an NPY file",
             });
         }
-        Ok(said)
+        Ok(expected)
     }
 }

@@ -1,20 +1,20 @@
 //! Surfaces from and to files, and quantities with units.
 //!
 //! Two steps, so that a person can look between them: a [`Scan`] is what a file holds, with undefined points
-//! and in its own unit, and [`Understood`] says what was taken from it; [`Scan::map`] makes a
-//! [`contact_model::HeightMap`] of it, doing only what a [`Treatment`] names.
+//! and in its own unit, and [`Metadata`] says what was taken from it; [`Scan::map`] makes a
+//! [`contact_model::HeightMap`] of it, doing only what a [`Preprocessing`] names.
 //!
 //! ```
-//! use surface_io::{Declared, Fill, Scan, Treatment, Undefined, describe};
+//! use surface_io::{ReadOptions, Fill, Scan, Preprocessing, Undefined, describe};
 //! // Three columns over 3 um and two rows over 1 um: cells of 1 um x 0.5 um.
 //! let file = b"# Width: 3 um\n# Height: 1 um\n# Value units: nm\n1 2 3\n4 nan 8\n";
-//! let scan = Scan::from_bytes("a.txt", file, &Declared::default())?;
-//! assert_eq!(scan.understood().undefined, 1);
-//! // An undefined point is an error until somebody says what becomes of it.
-//! assert!(scan.map(&Treatment::default()).is_err());
-//! let map = scan.map(&Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() })?;
+//! let scan = Scan::from_bytes("a.txt", file, &ReadOptions::default())?;
+//! assert_eq!(scan.metadata().undefined, 1);
+//! // An undefined point is an error until the caller states how to treat it.
+//! assert!(scan.map(&Preprocessing::default()).is_err());
+//! let map = scan.map(&Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() })?;
 //! assert_eq!((map.columns(), map.rows(), map.undefined(), map.size().y), (3, 2, 1, 1e-6));
-//! let map = scan.map(&Treatment { fill: Some(Fill::Neighbours), ..Treatment::default() })?;
+//! let map = scan.map(&Preprocessing { fill: Some(Fill::Neighbours), ..Preprocessing::default() })?;
 //! // Neighbours along y are nearer and weigh 2, those along x 1/2: (2 * 2 + (4 + 8) / 2) / 3.
 //! assert!((map.heights()[4] - 10e-9 / 3.0).abs() < 1e-18);
 //! println!("{}", describe(&map));
@@ -23,12 +23,12 @@
 //!
 //! # Nothing is guessed silently
 //!
-//! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`Declared::format`], everything else as
+//! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
 //!   a text matrix; three columns without either are points or a matrix by their comments, or an error. Other
 //!   files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
 //!   Comments begin with `#` or `%`; of them `Width`, `Height`, `Value units` and `Lateral units` count, as
-//!   Gwyddion's exports and this crate write them. Decimal commas are read when said ([`Decimal::Comma`]). An
+//!   Gwyddion's exports and this crate write them. Decimal commas are read on request ([`Decimal::Comma`]). An
 //!   empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined points.
 //! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
 //!   is a header's width or height without the other, and two that are square cells within the decimals that
@@ -59,7 +59,7 @@
 //! Readers never panic, and hold at most 24 bytes for each byte of the file (a map without digits: single
 //! zeros on a half-empty grid; 1 for NPY, about 2 for text) besides 100 kB. Sizes that a header claims are
 //! compared with the length of the file before anything is allocated, and files beyond
-//! [`Declared::largest_bytes`] are not read. `tests/hostile.rs` counts.
+//! [`ReadOptions::largest_bytes`] are not read. `tests/hostile.rs` counts.
 //!
 //! # Speed
 //!
@@ -82,25 +82,25 @@ mod describe;
 mod error;
 pub mod files;
 mod format;
+mod keyword;
 mod npy;
 mod points;
+mod preprocessing;
 mod quantity;
 mod scan;
 mod sides;
 mod text;
-mod treatment;
 mod vti;
-mod word;
 mod write;
 
 pub use describe::{Absent, Description, describe};
-pub use error::{Error, NumberKind, Place, Problem, Result};
+pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;
+pub use keyword::KeywordError;
 pub use npy::npy;
+pub use preprocessing::{Crop, Detrend, Fill, Preprocessing, Undefined};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
-pub use scan::{Decimal, Declared, Said, Scan, Speaker, Understood};
+pub use scan::{Decimal, Metadata, Origin, ReadOptions, Scan, Sourced};
 pub use sides::Sides;
-pub use treatment::{Crop, Detrend, Fill, Treatment, Undefined};
 pub use vti::{Encoding, Field, vti};
-pub use word::WordError;
 pub use write::{Metric, text, write_map, xyz};

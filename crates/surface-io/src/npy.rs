@@ -9,9 +9,9 @@ mod write;
 
 pub use write::npy;
 
-use crate::error::{Error, Place, Problem, Result};
+use crate::error::{ContentError, Error, Place, Result};
 use crate::format::Format;
-use crate::scan::{Declared, Found};
+use crate::scan::{Found, ReadOptions};
 use header::{Header, Kind, Order};
 use std::io::Read;
 use std::path::Path;
@@ -20,31 +20,36 @@ use std::path::Path;
 const CHUNK: usize = 8192;
 
 /// Reads an array of two dimensions; `length` is that of the whole file.
-pub(crate) fn read(path: &Path, reader: &mut impl Read, length: u64, declared: &Declared) -> Result<Found> {
+pub(crate) fn read(
+    path: &Path,
+    reader: &mut impl Read,
+    length: u64,
+    declared: &ReadOptions,
+) -> Result<Found> {
     let content = Error::content;
     if declared.lateral_unit.is_some() {
         let reason = "an array has no coordinates; give size or cell with a unit";
-        return Err(content(path)(Problem::Useless { what: "lateral_unit", reason }));
+        return Err(content(path)(ContentError::Useless { what: "lateral_unit", reason }));
     }
     if declared.skip_lines > 0 {
         let reason = "an NPY file has no lines";
-        return Err(content(path)(Problem::Useless { what: "skip_lines", reason }));
+        return Err(content(path)(ContentError::Useless { what: "skip_lines", reason }));
     }
     let (header, header_bytes) = Header::read(path, reader, length)?;
     let [rows, columns] = header.shape[..] else {
-        return Err(content(path)(Problem::Shape { found: header.shape }));
+        return Err(content(path)(ContentError::Shape { found: header.shape }));
     };
     if rows == 0 || columns == 0 {
-        return Err(content(path)(Problem::NoCells { rows, columns }));
+        return Err(content(path)(ContentError::NoCells { rows, columns }));
     }
     let found = length - header_bytes;
     let expected = (u128::from(rows) * u128::from(columns)).saturating_mul(header.kind.bytes() as u128);
     if expected != u128::from(found) {
-        return Err(content(path)(Problem::Length { rows, columns, expected, found }));
+        return Err(content(path)(ContentError::Length { rows, columns, expected, found }));
     }
     let (rows, columns) = (rows as usize, columns as usize);
     let mut heights = Vec::new();
-    let refused = |_| content(path)(Problem::Memory { bytes: 8 * (rows * columns) as u128 });
+    let refused = |_| content(path)(ContentError::Memory { bytes: 8 * (rows * columns) as u128 });
     heights.try_reserve_exact(rows * columns).map_err(refused)?;
     heights.resize(rows * columns, 0.0);
     let size = header.kind.bytes();
@@ -61,7 +66,7 @@ pub(crate) fn read(path: &Path, reader: &mut impl Read, length: u64, declared: &
                 Order::Fortran => (i % rows, i / rows),
             };
             heights[row * columns + column] = header.kind.decode(raw).map_err(|value| {
-                content(path)(Problem::Inexact { place: Place::Cell { row, column }, value })
+                content(path)(ContentError::Inexact { place: Place::Cell { row, column }, value })
             })?;
         }
         done += count;

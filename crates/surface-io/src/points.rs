@@ -2,10 +2,10 @@
 
 mod axis;
 
-use crate::error::Problem;
+use crate::error::ContentError;
 use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, Unit};
-use crate::scan::{Declared, Found, check_unit};
+use crate::scan::{Found, ReadOptions, check_unit};
 use crate::sides::Extent;
 use crate::text::Table;
 use axis::Axis;
@@ -22,9 +22,9 @@ const ROUNDED: f64 = 1e-9;
 /// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
 ///
 /// Cost O(n log n) for n points.
-pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem> {
+pub(crate) fn grid(table: &Table, declared: &ReadOptions) -> Result<Found, ContentError> {
     if table.columns != 3 {
-        return Err(Problem::NotPoints { line: table.first_line(), found: table.columns });
+        return Err(ContentError::NotPoints { line: table.first_line(), found: table.columns });
     }
     let unit = table.heading.unit.clone();
     let heights_unit = declared.unit.as_ref().or(unit.as_ref());
@@ -40,13 +40,13 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
     let axis = |name, at: usize| {
         let along = table.values.iter().skip(at).step_by(3).copied();
         if let Some(point) = along.clone().position(|v: f64| v.is_nan()) {
-            return Err(Problem::Coordinate { axis: name, line: table.lines[point] as usize });
+            return Err(ContentError::Coordinate { axis: name, line: table.lines[point] as usize });
         }
         Axis::find(name, along.collect(), spacing[at])
     };
     let (x, y) = (axis('x', 0)?, axis('y', 1)?);
     if x.count * y.count * FULL > points as f64 {
-        return Err(Problem::Sparse { points, rows: y.count, columns: x.count });
+        return Err(ContentError::Sparse { points, rows: y.count, columns: x.count });
     }
     let (rows, columns) = (y.count as usize, x.count as usize);
     let mut heights = vec![f64::NAN; rows * columns];
@@ -56,7 +56,7 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
         let at = y.index(point[1])? * columns + x.index(point[0])?;
         if taken[at] > 0 {
             let [first, second] = [taken[at], table.lines[i]].map(|line| line as usize);
-            return Err(Problem::Duplicate { first, second, at: [point[0], point[1]] });
+            return Err(ContentError::Duplicate { first, second, at: [point[0], point[1]] });
         }
         taken[at] = table.lines[i];
         heights[at] = point[2];
@@ -75,35 +75,39 @@ pub(crate) fn grid(table: &Table, declared: &Declared) -> Result<Found, Problem>
 
 /// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not
 /// guessed at.
-fn lateral_unit(declared: &Declared, table: &Table, heights: Option<&Unit>) -> Result<Option<Unit>, Problem> {
+fn lateral_unit(
+    declared: &ReadOptions,
+    table: &Table,
+    heights: Option<&Unit>,
+) -> Result<Option<Unit>, ContentError> {
     let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
     if let (Some(a), Some(b)) = (file, given)
         && !a.same(b)
     {
-        let (first, second) = (format!("{a} said by the file"), format!("{b} as given"));
-        return Err(Problem::Contradiction { what: "unit of x and y", first, second });
+        let (first, second) = (format!("{a} from the file"), format!("{b} as given"));
+        return Err(ContentError::Contradiction { what: "unit of x and y", first, second });
     }
     let unit = given.clone().or_else(|| file.clone());
     check_unit("lateral_unit", unit.as_ref())?;
     if unit.is_none() && heights.is_some_and(|u| u.dimension() == Dimension::LENGTH) {
         let remedy = "say lateral_unit = \"um\" or another unit of length";
-        return Err(Problem::Unsaid { what: "the unit of x and y", remedy });
+        return Err(ContentError::Unspecified { what: "the unit of x and y", remedy });
     }
     Ok(unit)
 }
 
 /// The given side of a cell in the numbers of the file.
-fn spacing_of(cell: Quantity, lateral: Option<&Unit>) -> Result<f64, Problem> {
+fn spacing_of(cell: Quantity, lateral: Option<&Unit>) -> Result<f64, ContentError> {
     let unit = lateral.cloned().unwrap_or_else(Unit::none);
     if cell.dimension() != unit.dimension() {
         let (first, second) = (format!("cell = {cell}"), format!("x and y have {unit}"));
-        return Err(Problem::Contradiction { what: "side of a cell", first, second });
+        return Err(ContentError::Contradiction { what: "side of a cell", first, second });
     }
     let spacing = cell.value() / unit.to_si(1.0);
     if spacing.is_finite() && spacing > 0.0 {
         Ok(spacing)
     } else {
-        Err(Problem::Said { what: "cell", value: cell.value(), expected: "a length > 0" })
+        Err(ContentError::OutOfRange { what: "cell", value: cell.value(), expected: "a length > 0" })
     }
 }
 
@@ -112,13 +116,13 @@ fn spacing_of(cell: Quantity, lateral: Option<&Unit>) -> Result<f64, Problem> {
 ///
 /// What the comments say replaces what differs from it by roundings of the coordinates only. One spacing
 /// serves both axes where they differ by no more than the points are off their places.
-fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Extent>; 2], Problem> {
+fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Extent>; 2], ContentError> {
     let quantity = |spacing: f64| {
-        Quantity::of(spacing, unit).map_err(|source| Problem::Quantity { what: "spacing", source })
+        Quantity::of(spacing, unit).map_err(|source| ContentError::Quantity { what: "spacing", source })
     };
-    let said = table.heading.sides();
+    let stated = table.heading.sides();
     let mut extents = [None; 2];
-    for ((extent, axis), side) in extents.iter_mut().zip(axes).zip(said) {
+    for ((extent, axis), side) in extents.iter_mut().zip(axes).zip(stated) {
         let spacing = axis.spacing.map(quantity).transpose()?;
         let side = side.map(|side| side.quantity).filter(|side| side.dimension() == unit.dimension());
         *extent = match (spacing, side) {
@@ -135,8 +139,8 @@ fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Exten
         && let (Some(dx), Some(dy)) = (x.spacing, y.spacing)
     {
         // The ends, on which the spacing rests, may be off their places by twice what is seen between them.
-        let doubt = |axis: &Axis, spacing: f64| 4.0 * axis.off * spacing / (axis.count - 1.0).max(1.0);
-        if (dx - dy).abs() <= doubt(x, dx) + doubt(y, dy) + ROUNDED * dx {
+        let uncertainty = |axis: &Axis, spacing: f64| 4.0 * axis.off * spacing / (axis.count - 1.0).max(1.0);
+        if (dx - dy).abs() <= uncertainty(x, dx) + uncertainty(y, dy) + ROUNDED * dx {
             let common = (dx * (x.count - 1.0) + dy * (y.count - 1.0)) / (x.count + y.count - 2.0);
             extents = [Some(Extent::Cell(quantity(common)?)); 2];
         }

@@ -1,6 +1,6 @@
 //! What a file holds before anything is done to it.
 
-use crate::error::{Error, Place, Problem, Result};
+use crate::error::{ContentError, Error, Place, Result};
 use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::sides::{self, Extent, Sides};
@@ -10,9 +10,9 @@ use std::fs::File;
 use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// What the caller says about a file; what contradicts the file is an error.
+/// How to read a file, and what the file itself does not state; a contradiction with the file is an error.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Declared {
+pub struct ReadOptions {
     /// The format, where it is not to be told from the content and the name's ending.
     pub format: Option<Format>,
     /// Unit of the heights.
@@ -36,8 +36,8 @@ pub struct Declared {
     pub largest_bytes: u64,
 }
 
-impl Default for Declared {
-    /// Nothing said, points as decimals, files of up to 8 GiB (a square of 32768 doubles a side).
+impl Default for ReadOptions {
+    /// Nothing stated, points as decimals, files of up to 8 GiB (a square of 32768 doubles a side).
     fn default() -> Self {
         Self {
             format: None,
@@ -65,36 +65,36 @@ pub enum Decimal {
     Comma,
 }
 
-/// A value and who said it.
+/// A value and where it comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Said<T> {
+pub struct Sourced<T> {
     /// The value.
     pub value: T,
-    /// Who said it.
-    pub by: Speaker,
+    /// Where it comes from.
+    pub origin: Origin,
 }
 
-/// Who said something about a file.
+/// Where a statement about a file comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Speaker {
+pub enum Origin {
     /// The file itself.
     File,
     /// The caller.
     Caller,
 }
 
-impl fmt::Display for Speaker {
+impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::File => "said by the file",
+            Self::File => "from the file",
             Self::Caller => "as given",
         })
     }
 }
 
-/// What was understood of a file, for the user to check; shown line by line.
+/// What was metadata of a file, for the user to check; shown line by line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Understood {
+pub struct Metadata {
     /// The format.
     pub format: Format,
     /// Details of it: type of the numbers, order, delimiter.
@@ -103,12 +103,12 @@ pub struct Understood {
     pub rows: usize,
     /// Columns.
     pub columns: usize,
-    /// Sides of the map along x and y; `None` where nobody said them or their cells.
+    /// Sides of the map along x and y; `None` where neither they nor the cells are known.
     pub size: Option<[Quantity; 2]>,
-    /// Sides of one cell along x and y; `None` where nobody said them or the size.
-    pub cell: Option<Said<[Quantity; 2]>>,
-    /// Unit of the heights; `None` where nobody said it.
-    pub unit: Option<Said<Unit>>,
+    /// Sides of one cell along x and y; `None` where neither they nor the size are known.
+    pub cell: Option<Sourced<[Quantity; 2]>>,
+    /// Unit of the heights; `None` where it is unknown.
+    pub unit: Option<Sourced<Unit>>,
     /// Number of undefined points: cells without a height.
     pub undefined: usize,
     /// Lowest and highest height in the file's unit; `None` where no point is defined.
@@ -117,26 +117,30 @@ pub struct Understood {
     pub rms_height: Option<f64>,
 }
 
-impl Understood {
+impl Metadata {
     /// Share of the cells without a height, 0 to 1.
     pub fn undefined_share(&self) -> f64 {
         self.undefined as f64 / (self.rows as f64 * self.columns as f64)
     }
 }
 
-impl fmt::Display for Understood {
+impl fmt::Display for Metadata {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "format     {} ({})", self.format, self.details)?;
         writeln!(f, "shape      {} rows of {}", self.rows, self.columns)?;
         match (&self.size, &self.cell) {
-            (Some([x, y]), Some(Said { value: [dx, dy], by })) => {
-                writeln!(f, "size       {x} x {y} ({by})\ncell       {dx} x {dy}")?;
+            (Some([x, y]), Some(Sourced { value: [dx, dy], origin })) => {
+                writeln!(
+                    f,
+                    "size       {x} x {y} ({origin})
+cell       {dx} x {dy}"
+                )?;
             }
-            _ => writeln!(f, "size       not said")?,
+            _ => writeln!(f, "size       unknown")?,
         }
         match &self.unit {
-            Some(unit) => writeln!(f, "heights    in {} ({})", unit.value, unit.by)?,
-            None => writeln!(f, "heights    unit not said")?,
+            Some(unit) => writeln!(f, "heights    in {} ({})", unit.value, unit.origin)?,
+            None => writeln!(f, "heights    unit unknown")?,
         }
         match (self.range, self.rms_height) {
             (Some([low, high]), Some(rms)) => {
@@ -155,7 +159,7 @@ impl fmt::Display for Understood {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scan {
     path: PathBuf,
-    understood: Understood,
+    metadata: Metadata,
     /// Row-major; NaN is an undefined point and never leaves this crate.
     heights: Vec<f64>,
 }
@@ -180,11 +184,11 @@ impl Scan {
     /// # Errors
     /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the
     /// file or contradicts what is declared.
-    pub fn read(path: &Path, declared: &Declared) -> Result<Self> {
+    pub fn read(path: &Path, declared: &ReadOptions) -> Result<Self> {
         // Looked at before it is opened: opening a pipe waits for a writer.
         let about = std::fs::metadata(path).map_err(Error::system("open", path))?;
         if !about.is_file() {
-            return Err(Error::content(path)(Problem::NotAFile));
+            return Err(Error::content(path)(ContentError::NotAFile));
         }
         let file = File::open(path).map_err(Error::system("open", path))?;
         Self::from_reader(path, BufReader::new(file), about.len(), declared)
@@ -197,21 +201,21 @@ impl Scan {
     /// As [`Scan::read`].
     ///
     /// ```
-    /// use surface_io::{Declared, Scan};
-    /// let scan = Scan::from_bytes("a.txt", b"# Width: 3 um\n1 2 3\n4 nan 6\n", &Declared::default())?;
-    /// assert_eq!((scan.understood().rows, scan.understood().columns), (2, 3));
+    /// use surface_io::{ReadOptions, Scan};
+    /// let scan = Scan::from_bytes("a.txt", b"# Width: 3 um\n1 2 3\n4 nan 6\n", &ReadOptions::default())?;
+    /// assert_eq!((scan.metadata().rows, scan.metadata().columns), (2, 3));
     /// assert_eq!(scan.height(0, 2), Some(3.0));
     /// assert_eq!(scan.height(1, 1), None);
     /// # Ok::<(), surface_io::Error>(())
     /// ```
-    pub fn from_bytes(name: impl AsRef<Path>, bytes: &[u8], declared: &Declared) -> Result<Self> {
+    pub fn from_bytes(name: impl AsRef<Path>, bytes: &[u8], declared: &ReadOptions) -> Result<Self> {
         Self::from_reader(name.as_ref(), Cursor::new(bytes), bytes.len() as u64, declared)
     }
 
-    fn from_reader(path: &Path, mut reader: impl Read, length: u64, declared: &Declared) -> Result<Self> {
+    fn from_reader(path: &Path, mut reader: impl Read, length: u64, declared: &ReadOptions) -> Result<Self> {
         let content = Error::content;
         if length > declared.largest_bytes {
-            let problem = Problem::TooLarge { bytes: length, largest: declared.largest_bytes };
+            let problem = ContentError::TooLarge { bytes: length, largest: declared.largest_bytes };
             return Err(content(path)(problem));
         }
         let mut start = Vec::with_capacity(crate::format::SNIFF);
@@ -220,25 +224,25 @@ impl Scan {
             .take(crate::format::SNIFF as u64)
             .read_to_end(&mut start)
             .map_err(Error::system("read", path))?;
-        let format = Format::tell(declared.format, path, &start).map_err(content(path))?;
+        let format = Format::detect(declared.format, path, &start).map_err(content(path))?;
         let mut reader = Cursor::new(start).chain(reader);
         let found = if format == Some(Format::Npy) {
             npy::read(path, &mut reader, length, declared)?
         } else {
             let mut bytes = Vec::new();
-            let refused = |_| content(path)(Problem::Memory { bytes: length.into() });
+            let refused = |_| content(path)(ContentError::Memory { bytes: length.into() });
             bytes.try_reserve_exact(length as usize).map_err(refused)?;
             // A file that grows while it is read is cut at its length.
             reader.take(length).read_to_end(&mut bytes).map_err(Error::system("read", path))?;
             if bytes.len() as u64 != length {
                 let found = bytes.len() as u64;
-                return Err(content(path)(Problem::Changed { expected: length, found }));
+                return Err(content(path)(ContentError::Changed { expected: length, found }));
             }
             let table = text::Table::read(&bytes, declared).map_err(content(path))?;
             let format = match format {
                 Some(format) => format,
                 None if table.columns == 3 && table.rows() > 3 => {
-                    let ambiguous = Problem::Ambiguous { lines: table.rows() };
+                    let ambiguous = ContentError::Ambiguous { lines: table.rows() };
                     table.heading.format().ok_or(ambiguous).map_err(content(path))?
                 }
                 None => Format::Text,
@@ -254,7 +258,7 @@ impl Scan {
         Self::new(path, found, declared).map_err(content(path))
     }
 
-    fn new(path: &Path, found: Found, declared: &Declared) -> Result<Self, Problem> {
+    fn new(path: &Path, found: Found, declared: &ReadOptions) -> Result<Self, ContentError> {
         let Found { format, details, rows, columns, mut heights, unit, extent } = found;
         if let Some(undefined) = declared.missing {
             for h in &mut heights {
@@ -267,7 +271,7 @@ impl Scan {
         for (i, &h) in heights.iter().enumerate() {
             if h.is_infinite() {
                 let place = Place::Cell { row: i / columns, column: i % columns };
-                return Err(Problem::Infinite { place, value: h });
+                return Err(ContentError::Infinite { place, value: h });
             }
             if h.is_nan() {
                 undefined += 1;
@@ -277,7 +281,7 @@ impl Scan {
             }
         }
         check_unit("unit", declared.unit.as_ref())?;
-        let unit = said(unit, declared.unit.clone(), |a, b| {
+        let unit = sourced(unit, declared.unit.clone(), |a, b| {
             a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
         })?;
         let count = [columns, rows];
@@ -289,25 +293,25 @@ impl Scan {
                         sides::check_axis(axis, file, given[axis], count[axis])?;
                     }
                 }
-                Some((given, Speaker::Caller))
+                Some((given, Origin::Caller))
             }
-            (None, [Some(x), Some(y)]) => Some(([x, y], Speaker::File)),
+            (None, [Some(x), Some(y)]) => Some(([x, y], Origin::File)),
             (None, _) => None,
         };
         let (mut size, mut cell) = (None, None);
-        if let Some(([x, y], by)) = extents {
+        if let Some(([x, y], origin)) = extents {
             size = Some([x.side(columns)?, y.side(rows)?]);
-            cell = Some(Said { value: [x.cell(columns)?, y.cell(rows)?], by });
+            cell = Some(Sourced { value: [x.cell(columns)?, y.cell(rows)?], origin });
         }
         let rms_height = range.map(|range| rms(&heights, columns, undefined, range));
-        let understood =
-            Understood { format, details, rows, columns, size, cell, unit, undefined, range, rms_height };
-        Ok(Self { path: path.to_owned(), understood, heights })
+        let metadata =
+            Metadata { format, details, rows, columns, size, cell, unit, undefined, range, rms_height };
+        Ok(Self { path: path.to_owned(), metadata, heights })
     }
 
-    /// What was understood.
-    pub fn understood(&self) -> &Understood {
-        &self.understood
+    /// What was metadata.
+    pub fn metadata(&self) -> &Metadata {
+        &self.metadata
     }
 
     /// The file, or the name that was given.
@@ -317,8 +321,8 @@ impl Scan {
 
     /// Height of a cell in the file's unit; `None` where it is undefined or outside.
     pub fn height(&self, row: usize, column: usize) -> Option<f64> {
-        let inside = row < self.understood.rows && column < self.understood.columns;
-        let height = inside.then(|| self.heights[row * self.understood.columns + column])?;
+        let inside = row < self.metadata.rows && column < self.metadata.columns;
+        let height = inside.then(|| self.heights[row * self.metadata.columns + column])?;
         (!height.is_nan()).then_some(height)
     }
 
@@ -351,26 +355,26 @@ pub(crate) fn contradiction(
     what: &'static str,
     file: &impl fmt::Display,
     caller: &impl fmt::Display,
-) -> Problem {
-    let (first, second) = (format!("{file} {}", Speaker::File), format!("{caller} {}", Speaker::Caller));
-    Problem::Contradiction { what, first, second }
+) -> ContentError {
+    let (first, second) = (format!("{file} {}", Origin::File), format!("{caller} {}", Origin::Caller));
+    ContentError::Contradiction { what, first, second }
 }
 
-/// What the caller says, checked against the file where both speak; else what the file says.
-fn said<T>(
+/// The value of the caller, checked against that of the file where both exist; else that of the file.
+fn sourced<T>(
     file: Option<T>,
     caller: Option<T>,
-    agree: impl FnOnce(&T, &T) -> Result<(), Problem>,
-) -> Result<Option<Said<T>>, Problem> {
+    agree: impl FnOnce(&T, &T) -> Result<(), ContentError>,
+) -> Result<Option<Sourced<T>>, ContentError> {
     if let (Some(file), Some(caller)) = (&file, &caller) {
         agree(file, caller)?;
     }
-    let caller = caller.map(|value| Said { value, by: Speaker::Caller });
-    Ok(caller.or(file.map(|value| Said { value, by: Speaker::File })))
+    let caller = caller.map(|value| Sourced { value, origin: Origin::Caller });
+    Ok(caller.or(file.map(|value| Sourced { value, origin: Origin::File })))
 }
 
 /// Heights have a length or no unit at all.
-pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), Problem> {
+pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), ContentError> {
     match unit.map(|u| (u, u.dimension())) {
         None | Some((_, Dimension::LENGTH)) => Ok(()),
         // "%" would be a factor without a meaning here.
@@ -378,7 +382,7 @@ pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), 
         Some((u, found)) => {
             let source =
                 crate::QuantityError::Dimension { text: u.to_string(), found, expected: Dimension::LENGTH };
-            Err(Problem::Quantity { what, source })
+            Err(ContentError::Quantity { what, source })
         }
     }
 }

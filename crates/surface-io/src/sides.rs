@@ -1,8 +1,8 @@
 //! Lengths along x and y: as they are given, and what follows for one axis.
 
-use crate::error::Problem;
+use crate::error::ContentError;
 use crate::quantity::{Dimension, Quantity, QuantityError};
-use crate::scan::{Declared, PRINTED};
+use crate::scan::{PRINTED, ReadOptions};
 use std::fmt;
 use std::str::FromStr;
 
@@ -76,7 +76,7 @@ impl FromStr for Sides {
     }
 }
 
-/// How far one axis reaches, as it was said: by one cell or by the whole side.
+/// How far one axis reaches, as it was stated: by one cell or by the whole side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Extent {
     Cell(Quantity),
@@ -85,7 +85,7 @@ pub(crate) enum Extent {
 
 impl Extent {
     /// Side of one of `count` cells.
-    pub(crate) fn cell(self, count: usize) -> Result<Quantity, Problem> {
+    pub(crate) fn cell(self, count: usize) -> Result<Quantity, ContentError> {
         match self {
             Self::Cell(cell) => Ok(cell),
             Self::Side(side) => scaled("cell", side, 1.0 / count as f64, side.value() / count as f64),
@@ -93,7 +93,7 @@ impl Extent {
     }
 
     /// Side of all of `count` cells.
-    pub(crate) fn side(self, count: usize) -> Result<Quantity, Problem> {
+    pub(crate) fn side(self, count: usize) -> Result<Quantity, ContentError> {
         match self {
             Self::Cell(cell) => scaled("size", cell, count as f64, cell.value() * count as f64),
             Self::Side(side) => Ok(side),
@@ -101,7 +101,7 @@ impl Extent {
     }
 
     /// The same length, cell or side, of another extent of as many cells.
-    fn like(self, other: Self, count: usize) -> Result<Quantity, Problem> {
+    fn like(self, other: Self, count: usize) -> Result<Quantity, ContentError> {
         match self {
             Self::Cell(_) => other.cell(count),
             Self::Side(_) => other.side(count),
@@ -115,12 +115,12 @@ impl Extent {
     }
 }
 
-fn scaled(what: &'static str, from: Quantity, by: f64, value: f64) -> Result<Quantity, Problem> {
+fn scaled(what: &'static str, from: Quantity, by: f64, value: f64) -> Result<Quantity, ContentError> {
     if value <= 0.0 {
         // The product of positive numbers is below the range of doubles.
-        return Err(Problem::Said { what, value: from.value() * by, expected: "a length > 0" });
+        return Err(ContentError::OutOfRange { what, value: from.value() * by, expected: "a length > 0" });
     }
-    Quantity::new(value, from.dimension()).map_err(|source| Problem::Quantity { what, source })
+    Quantity::new(value, from.dimension()).map_err(|source| ContentError::Quantity { what, source })
 }
 
 /// Whether two lengths are one within the digits that headers print.
@@ -131,7 +131,7 @@ fn agree(a: Quantity, b: Quantity) -> bool {
 /// What the caller says about the size of a map of `count` columns and rows, directly or by its cells.
 ///
 /// Everything that is given is checked; of several statements the cell counts first, then the size.
-pub(crate) fn given(declared: &Declared, count: [usize; 2]) -> Result<Option<[Extent; 2]>, Problem> {
+pub(crate) fn given(declared: &ReadOptions, count: [usize; 2]) -> Result<Option<[Extent; 2]>, ContentError> {
     let cell =
         declared.cell.map(|cell| positive("cell", ["cell along x", "cell along y"], cell)).transpose()?;
     let size =
@@ -139,7 +139,7 @@ pub(crate) fn given(declared: &Declared, count: [usize; 2]) -> Result<Option<[Ex
     let width = declared.width.map(|w| positive("width", ["width"; 2], w.into())).transpose()?;
     let [columns, rows] = count;
     if let (Some(Sides::One(side)), true) = (declared.size, columns != rows) {
-        return Err(Problem::Contradiction {
+        return Err(ContentError::Contradiction {
             what: "size",
             first: format!("one value, {side}, is that of a square map"),
             second: format!("there are {rows} rows of {columns}: say both sides, size = [Lx, Ly]"),
@@ -165,7 +165,7 @@ pub(crate) fn given(declared: &Declared, count: [usize; 2]) -> Result<Option<[Ex
                     Extent::Side(_) => format!("{name} over {cells} = {cell}"),
                 };
                 let (first, second) = (shown(first, a[axis], x), shown(second, b[axis], y));
-                return Err(Problem::Contradiction { what: CELL[axis], first, second });
+                return Err(ContentError::Contradiction { what: CELL[axis], first, second });
             }
         }
     }
@@ -176,31 +176,36 @@ pub(crate) fn given(declared: &Declared, count: [usize; 2]) -> Result<Option<[Ex
 const CELL: [&str; 2] = ["side of a cell along x", "side of a cell along y"];
 
 /// Checks that what the caller says about an axis is what the file says, within the digits of a header.
-pub(crate) fn check_axis(axis: usize, file: Extent, caller: Extent, count: usize) -> Result<(), Problem> {
-    let (said, given) = (caller.like(file, count)?, caller.length());
-    if agree(said, given) {
+pub(crate) fn check_axis(
+    axis: usize,
+    file: Extent,
+    caller: Extent,
+    count: usize,
+) -> Result<(), ContentError> {
+    let (stated, given) = (caller.like(file, count)?, caller.length());
+    if agree(stated, given) {
         return Ok(());
     }
     let what = if matches!(caller, Extent::Cell(_)) { CELL } else { ["size along x", "size along y"] };
-    Err(crate::scan::contradiction(what[axis], &said, &given))
+    Err(crate::scan::contradiction(what[axis], &stated, &given))
 }
 
 /// Both values, where each is a length > 0, or a number > 0, and both are of one kind.
-fn positive(one: &'static str, each: [&'static str; 2], sides: Sides) -> Result<[Quantity; 2], Problem> {
+fn positive(one: &'static str, each: [&'static str; 2], sides: Sides) -> Result<[Quantity; 2], ContentError> {
     let names = if matches!(sides, Sides::One(_)) { [one; 2] } else { each };
     let both = sides.both();
     for (what, side) in names.into_iter().zip(both) {
         if side.dimension() != Dimension::NONE {
-            side.expect(Dimension::LENGTH).map_err(|source| Problem::Quantity { what, source })?;
+            side.expect(Dimension::LENGTH).map_err(|source| ContentError::Quantity { what, source })?;
         }
         if side.value() <= 0.0 {
-            return Err(Problem::Said { what, value: side.value(), expected: "a length > 0" });
+            return Err(ContentError::OutOfRange { what, value: side.value(), expected: "a length > 0" });
         }
     }
     let [x, y] = both;
     if x.dimension() != y.dimension() {
         let (first, second) = (format!("{x} along x"), format!("{y} along y"));
-        return Err(Problem::Contradiction { what: one, first, second });
+        return Err(ContentError::Contradiction { what: one, first, second });
     }
     Ok(both)
 }

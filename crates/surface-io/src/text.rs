@@ -7,8 +7,8 @@ mod number;
 pub(crate) use heading::Heading;
 pub(crate) use matrix::matrix;
 
-use crate::error::{Place, Problem};
-use crate::scan::{Decimal, Declared};
+use crate::error::{ContentError, Place};
+use crate::scan::{Decimal, ReadOptions};
 use number::Numbers;
 use std::fmt;
 
@@ -84,7 +84,7 @@ impl Table {
     /// Reads all lines.
     ///
     /// Memory: at most 8 bytes for each byte of the text (nothing between two commas), and 4 for each line.
-    pub(crate) fn read(bytes: &[u8], declared: &Declared) -> Result<Self, Problem> {
+    pub(crate) fn read(bytes: &[u8], declared: &ReadOptions) -> Result<Self, ContentError> {
         check_text(bytes)?;
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
         let mut table: Option<Self> = None;
@@ -115,14 +115,14 @@ impl Table {
                 table.line(numbers, data, i + 1, bytes)?;
             }
         }
-        let mut table = table.ok_or(Problem::Empty)?;
+        let mut table = table.ok_or(ContentError::Empty)?;
         table.heading = heading;
         Ok(table)
     }
 
-    fn line(&mut self, numbers: Numbers, data: &[u8], line: usize, all: &[u8]) -> Result<(), Problem> {
+    fn line(&mut self, numbers: Numbers, data: &[u8], line: usize, all: &[u8]) -> Result<(), ContentError> {
         let before = self.values.len();
-        let push = |token: &[u8], value: usize, values: &mut Vec<f64>| -> Result<(), Problem> {
+        let push = |token: &[u8], value: usize, values: &mut Vec<f64>| -> Result<(), ContentError> {
             values.push(numbers.read(token, Place::Line { line, value })?);
             Ok(())
         };
@@ -150,26 +150,26 @@ impl Table {
             // All lines at once, and never more than there can be values in these bytes.
             let lines = all.split(|&b| b == b'\n').count();
             let most = (all.len() + 1).min(found.saturating_mul(lines));
-            let refused = |_| Problem::Memory { bytes: 8 * most as u128 };
+            let refused = |_| ContentError::Memory { bytes: 8 * most as u128 };
             self.values.try_reserve_exact(most - before.min(most)).map_err(refused)?;
             self.lines.try_reserve_exact(lines).map_err(refused)?;
         } else if found != self.columns {
             let (expected, first) = (self.columns, self.first_line());
-            return Err(Problem::Ragged { line, found, expected, first });
+            return Err(ContentError::Ragged { line, found, expected, first });
         }
         Ok(())
     }
 }
 
 /// Refuses bytes that text does not have: control characters, and line ends of one carriage return.
-fn check_text(bytes: &[u8]) -> Result<(), Problem> {
+fn check_text(bytes: &[u8]) -> Result<(), ContentError> {
     let bad = |&(i, b): &(usize, &u8)| match *b {
         b'\t' | b'\n' | 0x0c => false,
         b'\r' => !matches!(bytes.get(i + 1), None | Some(b'\n')),
         b => b < b' ' || b == 0x7f,
     };
     match bytes.iter().enumerate().find(bad) {
-        Some((offset, &byte)) => Err(Problem::Binary { offset, byte }),
+        Some((offset, &byte)) => Err(ContentError::Binary { offset, byte }),
         None => Ok(()),
     }
 }

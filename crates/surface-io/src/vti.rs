@@ -4,7 +4,7 @@
 //! section is its length in bytes as `UInt64` followed by its numbers, both in one run of base64; offsets
 //! count characters of base64 after the underscore.
 
-use crate::error::Problem;
+use crate::error::ContentError;
 use crate::write::Lines;
 use contact_model::{Cells, Size};
 
@@ -40,8 +40,8 @@ const HIDDEN: u8 = 32;
 /// such a point there is no such array.
 ///
 /// # Errors
-/// [`Problem::Said`] for a field of another size or a side that is not positive, [`Problem::NoCells`] for no
-/// rows or columns; [`Problem::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for one
+/// [`ContentError::OutOfRange`] for a field of another size or a side that is not positive, [`ContentError::NoCells`] for no
+/// rows or columns; [`ContentError::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for one
 /// with a NaN: VTK's reader of decimals stops there.
 ///
 /// ```
@@ -57,21 +57,21 @@ pub fn vti(
     size: impl Into<Size>,
     fields: &[Field<'_>],
     encoding: Encoding,
-) -> Result<Vec<u8>, Problem> {
+) -> Result<Vec<u8>, ContentError> {
     let (cells, size) = (cells.into(), size.into());
     let Cells { columns, rows } = cells;
     for (what, side) in [("side along x", size.x), ("side along y", size.y)] {
         if !(side.is_finite() && side > 0.0) {
-            return Err(Problem::Said { what, value: side, expected: "a finite number > 0" });
+            return Err(ContentError::OutOfRange { what, value: side, expected: "a finite number > 0" });
         }
     }
     if columns == 0 || rows == 0 {
-        return Err(Problem::NoCells { rows: rows as u64, columns: columns as u64 });
+        return Err(ContentError::NoCells { rows: rows as u64, columns: columns as u64 });
     }
     for field in fields {
         if cells.checked_count() != Some(field.values.len()) {
             let value = field.values.len() as f64;
-            return Err(Problem::Said {
+            return Err(ContentError::OutOfRange {
                 what: "number of values of a field",
                 value,
                 expected: "rows x columns",
@@ -79,7 +79,11 @@ pub fn vti(
         }
         let wrong = |v: &f64| v.is_infinite() || (v.is_nan() && encoding == Encoding::Ascii);
         if let Some(at) = field.values.iter().position(wrong) {
-            return Err(Problem::NotFinite { field: field.name.to_owned(), at, value: field.values[at] });
+            return Err(ContentError::NotFinite {
+                field: field.name.to_owned(),
+                at,
+                value: field.values[at],
+            });
         }
     }
     let count = fields.first().map_or(0, |f| f.values.len());

@@ -1,6 +1,6 @@
 //! Maps as text.
 
-use crate::error::{Error, Problem, Result};
+use crate::error::{ContentError, Error, Result};
 use crate::quantity::{Dimension, Unit};
 use crate::scan::check_unit;
 use crate::vti::{Encoding, Field, vti};
@@ -14,7 +14,7 @@ use std::path::Path;
 pub enum Metric {
     /// Heights and side in metres.
     Metres,
-    /// Heights and side in one unit that nobody said.
+    /// Heights and side in one unknown unit.
     Unitless,
 }
 
@@ -22,8 +22,8 @@ impl Metric {
     /// The metric of a map made from heights of this unit.
     ///
     /// # Errors
-    /// [`Problem::Quantity`] for a unit that is no length.
-    pub fn of(unit: &Unit) -> Result<Self, Problem> {
+    /// [`ContentError::Quantity`] for a unit that is no length.
+    pub fn of(unit: &Unit) -> Result<Self, ContentError> {
         check_unit("unit", Some(unit))?;
         Ok(if unit.dimension() == Dimension::LENGTH { Self::Metres } else { Self::Unitless })
     }
@@ -70,7 +70,7 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
             vti(map.cells(), map.size(), &[field], Encoding::Base64).map_err(Error::content(path))?
         }
         other => {
-            let problem = Problem::Ending { found: other.chars().take(16).collect() };
+            let problem = ContentError::Ending { found: other.chars().take(16).collect() };
             return Err(Error::content(path)(problem));
         }
     };

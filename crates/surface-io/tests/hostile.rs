@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use surface_io::{Crop, Decimal, Declared, Detrend, Fill, Format, Scan, Treatment, Undefined};
+use surface_io::{Crop, Decimal, Detrend, Fill, Format, Preprocessing, ReadOptions, Scan, Undefined};
 
 thread_local! {
     /// Bytes that this thread holds, and the most that it held.
@@ -53,7 +53,7 @@ static ALLOCATOR: Counting = Counting;
 /// that for points on a half-empty grid.
 const MULTIPLE: usize = 24;
 
-/// Errors, words of `Understood`, the buffer of NPY.
+/// Errors, words of `Metadata`, the buffer of NPY.
 const CONSTANT: usize = 100_000;
 
 /// The most that `read` held beyond what was held before.
@@ -68,22 +68,22 @@ const NAMES: [&str; 4] = ["a.npy", "a.txt", "a.xyz", "a"];
 
 /// Reads the bytes under every name and with several declarations; what is read is treated in all ways.
 fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
-    let plain = Declared::default();
-    let cell = Declared { cell: "1".parse().ok(), ..plain.clone() };
+    let plain = ReadOptions::default();
+    let cell = ReadOptions { cell: "1".parse().ok(), ..plain.clone() };
     let declarations = [
         plain.clone(),
-        Declared { format: Some(Format::Xyz), missing: Some(0.0), skip_lines: 1, ..cell.clone() },
-        Declared { format: Some(Format::Text), decimal: Decimal::Comma, ..cell.clone() },
-        Declared {
+        ReadOptions { format: Some(Format::Xyz), missing: Some(0.0), skip_lines: 1, ..cell.clone() },
+        ReadOptions { format: Some(Format::Text), decimal: Decimal::Comma, ..cell.clone() },
+        ReadOptions {
             unit: "nm".parse().ok(),
             lateral_unit: "um".parse().ok(),
             cell: "1 um x 3 um".parse().ok(),
             ..plain.clone()
         },
-        Declared { size: "7 x 0.5".parse().ok(), ..plain.clone() },
-        Declared { size: "1 nm x 1 m".parse().ok(), unit: "nm".parse().ok(), ..plain.clone() },
-        Declared { cell: "1e-300 x 1e300".parse().ok(), width: "1".parse().ok(), ..plain.clone() },
-        Declared { cell: "1 x 2".parse().ok(), format: Some(Format::Xyz), ..plain },
+        ReadOptions { size: "7 x 0.5".parse().ok(), ..plain.clone() },
+        ReadOptions { size: "1 nm x 1 m".parse().ok(), unit: "nm".parse().ok(), ..plain.clone() },
+        ReadOptions { cell: "1e-300 x 1e300".parse().ok(), width: "1".parse().ok(), ..plain.clone() },
+        ReadOptions { cell: "1 x 2".parse().ok(), format: Some(Format::Xyz), ..plain },
         cell,
     ];
     for name in NAMES {
@@ -98,7 +98,7 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                     continue;
                 }
             };
-            prop_assert!(!scan.understood().to_string().is_empty());
+            prop_assert!(!scan.metadata().to_string().is_empty());
             for detrend in [Detrend::Nothing, Detrend::Plane, Detrend::Quadric] {
                 for (fill, undefined) in [
                     (None, None),
@@ -107,8 +107,9 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                     (None, Some(Undefined::NoContact)),
                 ] {
                     for (crop, rows) in [(None, None), (Some(Crop::Centre), Some(1)), (Some(WINDOW), None)] {
-                        let treatment = Treatment { crop, undefined, fill, detrend, cells: None, rows };
-                        check(&scan, &treatment)?;
+                        let preprocessing =
+                            Preprocessing { crop, undefined, fill, detrend, cells: None, rows };
+                        check(&scan, &preprocessing)?;
                     }
                 }
             }
@@ -121,8 +122,8 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
 const WINDOW: Crop = Crop::Window { row: 1, column: 1, rows: 1, columns: 2 };
 
 /// A map, or a reason why there is none; what is written of it is read as the same map.
-fn check(scan: &Scan, treatment: &Treatment) -> Result<(), TestCaseError> {
-    let map = match scan.map(treatment) {
+fn check(scan: &Scan, preprocessing: &Preprocessing) -> Result<(), TestCaseError> {
+    let map = match scan.map(preprocessing) {
         Ok(map) => map,
         Err(error) => {
             prop_assert!(!error.to_string().is_empty());
@@ -130,11 +131,11 @@ fn check(scan: &Scan, treatment: &Treatment) -> Result<(), TestCaseError> {
         }
     };
     prop_assert_eq!(map.defined().count() + map.undefined(), map.columns() * map.rows());
-    prop_assert!(map.undefined() == 0 || treatment.undefined.is_some());
+    prop_assert!(map.undefined() == 0 || preprocessing.undefined.is_some());
     prop_assert!(!surface_io::describe(&map).to_string().is_empty());
     let text = surface_io::text(&map, surface_io::Metric::Unitless);
-    let again = Scan::from_bytes("b.txt", text.as_bytes(), &Declared::default());
-    let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };
+    let again = Scan::from_bytes("b.txt", text.as_bytes(), &ReadOptions::default());
+    let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
     match again.and_then(|scan| scan.map(&keep)) {
         Ok(again) => prop_assert_eq!(again, map),
         // The smallest numbers that quantities have are normal.
@@ -223,9 +224,9 @@ proptest! {
 fn the_valid_files_are_valid() {
     for which in 0..8 {
         let declared = match which {
-            3 => Declared { decimal: Decimal::Comma, ..Declared::default() },
-            2 | 6 => Declared { format: Some(Format::Xyz), ..Declared::default() },
-            _ => Declared::default(),
+            3 => ReadOptions { decimal: Decimal::Comma, ..ReadOptions::default() },
+            2 | 6 => ReadOptions { format: Some(Format::Xyz), ..ReadOptions::default() },
+            _ => ReadOptions::default(),
         };
         let scan = Scan::from_bytes("a", &valid(which), &declared);
         assert!(scan.is_ok(), "{which}: {scan:?}");
@@ -242,7 +243,7 @@ fn large_claims_allocate_nothing() {
         b"0 0 1\n1e-300 1e-300 2\n1 1 3\n",
     ] {
         for name in NAMES {
-            let (scan, held) = most_held(|| Scan::from_bytes(name, bytes, &Declared::default()));
+            let (scan, held) = most_held(|| Scan::from_bytes(name, bytes, &ReadOptions::default()));
             assert!(held < MULTIPLE * bytes.len() + 5000, "{name}: {held}");
             assert!(scan.is_err() || name != "a.xyz");
         }
@@ -265,7 +266,7 @@ fn real_files_stay_below_the_multiple() {
         ("a.txt", commas, 10),
         ("a.xyz", short.concat().into_bytes(), 10),
     ] {
-        let (scan, held) = most_held(|| Scan::from_bytes(name, &bytes, &Declared::default()));
+        let (scan, held) = most_held(|| Scan::from_bytes(name, &bytes, &ReadOptions::default()));
         assert!(scan.is_ok(), "{scan:?}");
         assert!(
             held <= multiple * bytes.len() + CONSTANT,
@@ -279,9 +280,9 @@ fn real_files_stay_below_the_multiple() {
 /// expected.
 #[test]
 fn impossible_rectangles_are_named() {
-    let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };
-    let error = |name: &str, bytes: &[u8], change: &dyn Fn(&mut Declared)| {
-        let mut declared = Declared { unit: "m".parse().ok(), ..Declared::default() };
+    let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
+    let error = |name: &str, bytes: &[u8], change: &dyn Fn(&mut ReadOptions)| {
+        let mut declared = ReadOptions { unit: "m".parse().ok(), ..ReadOptions::default() };
         change(&mut declared);
         let scan = Scan::from_bytes(name, bytes, &declared).and_then(|scan| scan.map(&keep));
         scan.unwrap_err().to_string()
@@ -317,7 +318,7 @@ fn impossible_rectangles_are_named() {
         ),
         (
             error("a.txt", b"# Width: 2 m\n# Height: 1 m\n1 2\n", &|d| d.size = "2 m x 2 m".parse().ok()),
-            "a.txt: size along y: 1 m said by the file, but 2 m as given",
+            "a.txt: size along y: 1 m from the file, but 2 m as given",
         ),
         (
             error("a.txt", b"# Width: -2 m\n1 2\n", &|_| ()),

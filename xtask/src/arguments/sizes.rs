@@ -1,7 +1,7 @@
 //! Flags that the figures share: sizes, what to solve, where to write.
 
 use clap::{Args, ValueEnum};
-use figures::{Preset, Request, Wish};
+use figures::{AccuracyTarget, Preset, Request};
 use std::path::PathBuf;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -72,8 +72,8 @@ pub struct Solve {
 }
 
 impl Solve {
-    pub(super) fn wish(&self) -> Option<Wish> {
-        self.accuracy.map(|accuracy| Wish { accuracy, seconds: self.budget })
+    pub(super) fn target(&self) -> Option<AccuracyTarget> {
+        self.accuracy.map(|accuracy| AccuracyTarget { accuracy, seconds: self.budget })
     }
 
     pub(super) fn fill(&self, request: &mut Request) {

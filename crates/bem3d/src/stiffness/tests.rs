@@ -41,7 +41,7 @@ fn flat(grid: Grid, tuning: Tuning) -> Problem {
 /// A state with these pressures and gaps on all cells of a grid; contact where the pressure is positive.
 fn state(grid: Grid, p: &[f64], gap: Vec<f64>) -> Solved {
     let checked = CellSet::all(grid);
-    let contact = checked.filter(&p, |p| p > 0.0);
+    let contact = checked.filter(p, |p| p > 0.0);
     let p = p.iter().copied().filter(|&p| p > 0.0).collect();
     // All fields but these are those of a solve that has nothing to do.
     let guess = Guess { set: CellSet::from_index(grid, &[0]), p: vec![1.0], d: 1.0, far: false };

@@ -1,6 +1,6 @@
-//! Are the budgets honest? Random cases against references.
+//! Coverage of the error budgets: random cases against references.
 
-use crate::budget::{TWINS, algebraic, discretisation, twin};
+use crate::budget::{HALF_GRIDS, algebraic, discretisation, half_grid};
 use crate::csv_file::{Header, write_csv};
 use crate::error::{Error, Result};
 use crate::files;
@@ -25,7 +25,7 @@ const FINER: usize = 4;
 const CELLS: [usize; 5] = [65, 97, 129, 193, 257];
 const FORCES: (f64, f64) = (1e-3, 20.0);
 const TOLERANCES: (f64, f64) = (1e-6, 1e-1);
-/// Shares of true errors that an honest 95 % budget may hold.
+/// Shares of true errors that a correct 95 % budget may hold.
 const HONEST: (f64, f64) = (0.90, 0.99);
 /// Most that a budget may be of the median error of cases like it.
 const GENEROUS: f64 = 10.0;
@@ -66,7 +66,7 @@ impl Case {
 
 /// What the check found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Honesty {
+pub struct Coverage {
     /// Cases.
     pub cases: usize,
     /// Share of true errors inside the whole budget.
@@ -77,14 +77,14 @@ pub struct Honesty {
     pub widest: f64,
 }
 
-impl Honesty {
-    /// Whether the share is that of an honest 95 % budget, 90 to 99 %, and no budget more than ten times the median error.
+impl Coverage {
+    /// Whether the share is that of a correct 95 % budget, 90 to 99 %, and no budget more than ten times the median error.
     pub fn holds(&self) -> bool {
         (HONEST.0..=HONEST.1).contains(&self.inside) && self.widest <= GENEROUS
     }
 }
 
-impl std::fmt::Display for Honesty {
+impl std::fmt::Display for Coverage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
@@ -112,7 +112,7 @@ pub fn budget_check(
     threads: usize,
     out: &Path,
     progress: &dyn Progress,
-) -> Result<(Outcome, Honesty)> {
+) -> Result<(Outcome, Coverage)> {
     let start = Instant::now();
     if cases < LIKE {
         return Err(Error::parameter("cases", cases, format!("at least {LIKE}")));
@@ -148,7 +148,7 @@ pub fn budget_check(
 }
 
 /// Shares and ratios.
-fn judge(cases: &[Case]) -> Honesty {
+fn judge(cases: &[Case]) -> Coverage {
     let share = |inside: &dyn Fn(&Case) -> bool| {
         cases.iter().filter(|c| inside(c)).count() as f64 / cases.len().max(1) as f64
     };
@@ -160,7 +160,7 @@ fn judge(cases: &[Case]) -> Honesty {
         errors.sort_by(f64::total_cmp);
         c.budget() / errors[errors.len() / 2]
     };
-    Honesty {
+    Coverage {
         cases: cases.len(),
         inside: share(&|c| c.error() <= c.budget()),
         algebraic_inside: share(&|c| c.algebraic_error() <= c.algebraic + REFERENCE),
@@ -196,9 +196,9 @@ fn case(seed: u64, number: u64) -> Result<Case> {
         if mine.below_floor() || !mine.converged() {
             continue;
         }
-        let Some(coarse) = twin(numerics) else { continue };
+        let Some(coarse) = half_grid(numerics) else { continue };
         let on = |numerics| -> Result<Vec<Sample>> {
-            (0..TWINS as u64).map(|i| solve(numerics, d, surface_seed(seed, i), force_bar)).collect()
+            (0..HALF_GRIDS as u64).map(|i| solve(numerics, d, surface_seed(seed, i), force_bar)).collect()
         };
         let fine = on(numerics)?;
         if fine.iter().any(Sample::below_floor) {

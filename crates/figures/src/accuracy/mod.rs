@@ -16,8 +16,8 @@ mod study;
 mod table;
 mod text;
 
-pub use check::{Honesty, budget_check};
-pub use plan::{Needs, Plan, Wish, plan, settle};
+pub use check::{Coverage, budget_check};
+pub use plan::{AccuracyTarget, Plan, Requirements, plan, settle};
 pub use study::Depth;
 
 use crate::csv_file::{Header, write_csv};

@@ -15,7 +15,7 @@ const SECONDS: (f64, f64) = (1e-5, 1e2);
 /// Errors shown.
 const ERRORS: (f64, f64) = (1e-4, 1.0);
 /// What one may want to know k to.
-pub(crate) const WISHES: [f64; 3] = [0.1, 0.01, 0.001];
+pub(crate) const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// A row of the table as picture and text see it.
 #[derive(Debug, Clone)]
@@ -114,9 +114,9 @@ pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
 fn panel(points: &[Point], family: &str, load: f64, dimensions: &[f64], title: &str) -> Picture {
     let (x, y) = (Axis::Log(SECONDS.0, SECONDS.1), Axis::Log(ERRORS.0, ERRORS.1));
     let mut picture = Picture::new(x, y, "processor seconds", "relative error of k").with_title(title);
-    for wish in WISHES {
-        picture.line(&[(SECONDS.0, wish), (SECONDS.1, wish)], "#bbbbbb", 1.0, &LineStyle::Dashed);
-        picture.note(&format!("{} %", 100.0 * wish), (SECONDS.1 / 5.0, wish * 1.15));
+    for target in TARGETS {
+        picture.line(&[(SECONDS.0, target), (SECONDS.1, target)], "#bbbbbb", 1.0, &LineStyle::Dashed);
+        picture.note(&format!("{} %", 100.0 * target), (SECONDS.1 / 5.0, target * 1.15));
     }
     let here = |p: &&Point, family: &str, d: f64| {
         p.family == family && same(p.force_bar, Some(load)) && same(p.fractal_dimension, Some(d))

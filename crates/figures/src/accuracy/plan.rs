@@ -1,6 +1,6 @@
-//! From a wish for accuracy to the cheapest settings: a pilot run, its scatter and its differences between grids, a table of costs.
+//! From an accuracy target to the cheapest settings: a pilot run, its scatter and its differences between grids, a table of costs.
 //!
-//! The choice rests on counts and on compiled-in costs, never on a clock: the same wish gives the same settings.
+//! The choice rests on counts and on compiled-in costs, never on a clock: the same target gives the same settings.
 
 use crate::budget::{self, Budgeted};
 use crate::error::{Error, Result};
@@ -21,8 +21,8 @@ const PILOT_LINES: usize = 64;
 /// Grids and lines to choose from.
 const GRIDS: [usize; 7] = [65, 129, 257, 513, 1025, 2049, 4097];
 const LINES: [usize; 6] = [1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22];
-/// Tolerance as a part of the wish: both estimates of the algebraic part together take a fifteenth of it.
-const TOLERANCE_PER_WISH: f64 = 1.0 / 30.0;
+/// Tolerance as a part of the target: both estimates of the algebraic part together take a fifteenth of it.
+const TOLERANCE_PER_TARGET: f64 = 1.0 / 30.0;
 const TOLERANCES: (f64, f64) = (1e-6, 1e-3);
 /// The scatter of 16 surfaces is itself known to a fifth only.
 const SAFETY: f64 = 1.15;
@@ -36,7 +36,7 @@ const WIDEST: f64 = 3.0;
 
 /// What one asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wish {
+pub struct AccuracyTarget {
     /// 95 % half-width of each mean k_bar above the floor, relative.
     pub accuracy: f64,
     /// Seconds that it may take.
@@ -45,14 +45,14 @@ pub struct Wish {
 
 /// Which ensembles a command needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Needs {
+pub struct Requirements {
     /// Figs. 2, 4.
     pub solid: bool,
     /// Fig. 6.
     pub line: bool,
 }
 
-/// Settings that should meet a wish.
+/// Settings that should meet a target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// The run with its settings.
@@ -84,7 +84,7 @@ struct Row {
     cells: f64,
     /// Scatter of k from surface to surface, relative.
     scatter: f64,
-    /// Mean and scatter of the relative difference between the pilot's grid and its twin.
+    /// Mean and scatter of the relative difference between the pilot's grid and its half-size grid.
     mean: f64,
     spread: f64,
     /// Contact cells at which these differences were seen: those of the lightest row above the floor for the rows below.
@@ -101,12 +101,17 @@ struct Pilot {
     fall: f64,
 }
 
-/// The cheapest settings that meet a wish, after a pilot of small grids that is stored with the run.
+/// The cheapest settings that meet a target, after a pilot of small grids that is stored with the run.
 ///
 /// # Errors
-/// [`Error::Parameter`] for sizes or a tolerance that were given beside the wish, and for an accuracy outside (0, 1), a budget that is not positive, or a wish beyond the budget, with the accuracy
+/// [`Error::Parameter`] for sizes or a tolerance that were given beside the target, and for an accuracy outside (0, 1), a budget that is not positive, or a target beyond the budget, with the accuracy
 /// that the budget buys; what the pilot's solves refuse.
-pub fn plan(request: &Request, needs: Needs, wish: Wish, progress: &dyn Progress) -> Result<Plan> {
+pub fn plan(
+    request: &Request,
+    requirements: Requirements,
+    target: AccuracyTarget,
+    progress: &dyn Progress,
+) -> Result<Plan> {
     let given = [
         ("cells", request.cells.map(|n| n.to_string())),
         ("surfaces", request.surfaces.map(|n| n.to_string())),
@@ -120,53 +125,61 @@ pub fn plan(request: &Request, needs: Needs, wish: Wish, progress: &dyn Progress
         }
     }
     let run = &Run::new(request)?;
-    if !(wish.accuracy > 0.0 && wish.accuracy < 1.0) {
+    if !(target.accuracy > 0.0 && target.accuracy < 1.0) {
         return Err(Error::parameter(
             "accuracy",
-            wish.accuracy,
+            target.accuracy,
             "a share between 0 and 1, or per cent such as 1%",
         ));
     }
-    if !(wish.seconds > 0.0 && wish.seconds.is_finite()) {
-        return Err(Error::parameter("budget", wish.seconds, "a time such as 90s, 10min or 2h"));
+    if !(target.seconds > 0.0 && target.seconds.is_finite()) {
+        return Err(Error::parameter("budget", target.seconds, "a time such as 90s, 10min or 2h"));
     }
     files::create_directory(&run.out)?;
     let store = Store::open(&run.out, run.fresh)?;
     let mut pilots = Vec::new();
-    if needs.solid {
+    if requirements.solid {
         let numerics = Numerics::Bem3d { cells: PILOT_CELLS, tolerance: crate::run::TOLERANCE };
         let forces = run.forces_3d.values();
         pilots.push(Pilot::new(run, numerics, forces, PILOT_SURFACES, &store, progress)?);
     }
-    if needs.line {
+    if requirements.line {
         let numerics = Numerics::Mdr1d { elements: PILOT_ELEMENTS };
         let forces = run.forces_1d.values();
         pilots.push(Pilot::new(run, numerics, forces, PILOT_LINES, &store, progress)?);
     }
-    choose(run, &pilots, wish)
+    choose(run, &pilots, target)
 }
 
-/// Solves what a plan chose and adds surfaces until the wish is met, as far as the budget goes: the pilot predicts, the run decides.
+/// Solves what a plan chose and adds surfaces until the target is met, as far as the budget goes: the pilot predicts, the run decides.
 ///
 /// The units are stored with the run, so that the figure itself solves nothing again.
 ///
 /// # Errors
 /// What the solver refuses.
-pub fn settle(mut plan: Plan, needs: Needs, wish: Wish, progress: &dyn Progress) -> Result<Plan> {
+pub fn settle(
+    mut plan: Plan,
+    requirements: Requirements,
+    target: AccuracyTarget,
+    progress: &dyn Progress,
+) -> Result<Plan> {
     let store = Store::open(&plan.run.out, false)?;
     let mut spent = plan.seconds;
     loop {
         let mut more = false;
-        for solid in [true, false].into_iter().filter(|solid| if *solid { needs.solid } else { needs.line }) {
+        for solid in [true, false]
+            .into_iter()
+            .filter(|solid| if *solid { requirements.solid } else { requirements.line })
+        {
             let run = &plan.run;
             let measured =
                 if solid { measure_3d(run, &store, progress)? } else { measure_1d(run, &store, progress)? };
-            let twins = budget::measure_twins(run, &measured, &store, progress)?;
-            let all = budget::budgets(&measured, twins.as_ref());
+            let half_grids = budget::measure_half_grids(run, &measured, &store, progress)?;
+            let all = budget::budgets(&measured, half_grids.as_ref());
             let count = if solid { run.surfaces } else { run.lines };
-            let wanted = surfaces_wanted(&all, wish.accuracy, count);
+            let wanted = surfaces_wanted(&all, target.accuracy, count);
             let seconds = plan.seconds * (wanted - count as f64) / count as f64;
-            if wanted > count as f64 && wanted <= MOST_SURFACES && spent + seconds <= wish.seconds {
+            if wanted > count as f64 && wanted <= MOST_SURFACES && spent + seconds <= target.seconds {
                 spent += seconds;
                 plan.lines.push(format!(
                     "{}: {wanted} instead of {count}, for rows that scatter more",
@@ -182,15 +195,15 @@ pub fn settle(mut plan: Plan, needs: Needs, wish: Wish, progress: &dyn Progress)
     }
 }
 
-/// Surfaces that bring every mean above the floor within a wish, a tenth more than the scatter found asks for; no more than there are
+/// Surfaces that bring every mean above the floor within a target, a tenth more than the scatter found asks for; no more than there are
 /// where all are within, or where the rest is not a matter of their number.
-fn surfaces_wanted(all: &[Budgeted], wish: f64, count: usize) -> f64 {
+fn surfaces_wanted(all: &[Budgeted], target: f64, count: usize) -> f64 {
     let open = all
         .iter()
-        .filter(|b| b.force_bar.is_some() && !b.below_floor && b.relative().is_some_and(|r| r > wish));
+        .filter(|b| b.force_bar.is_some() && !b.below_floor && b.relative().is_some_and(|r| r > target));
     let factors = open.map(|b| {
         let (grid, ensemble) = (b.budget.discretisation.unwrap_or(0.0), b.budget.ensemble.unwrap_or(0.0));
-        let room = (wish * b.value - b.budget.algebraic).powi(2) - grid * grid;
+        let room = (target * b.value - b.budget.algebraic).powi(2) - grid * grid;
         if room > 0.0 { 1.1 * ensemble * ensemble / room } else { 1.0 }
     });
     let factor = factors.fold(1.0, f64::max);
@@ -198,21 +211,23 @@ fn surfaces_wanted(all: &[Budgeted], wish: f64, count: usize) -> f64 {
     if factor > 1.0 { (factor * count as f64).ceil().max(count as f64 + 1.0) } else { count as f64 }
 }
 
-fn choose(run: &Run, pilots: &[Pilot], wish: Wish) -> Result<Plan> {
+fn choose(run: &Run, pilots: &[Pilot], target: AccuracyTarget) -> Result<Plan> {
     let at = |accuracy: f64| {
         let choices: Option<Vec<Choice>> = pilots.iter().map(|p| p.cheapest(accuracy, run.threads)).collect();
-        choices.filter(|c| c.iter().map(|c| c.seconds).sum::<f64>() <= wish.seconds)
+        choices.filter(|c| c.iter().map(|c| c.seconds).sum::<f64>() <= target.seconds)
     };
-    if let Some(choices) = at(wish.accuracy) {
+    if let Some(choices) = at(target.accuracy) {
         return Ok(made(run, pilots, &choices));
     }
-    let mut bought = wish.accuracy;
+    let mut bought = target.accuracy;
     while bought < WIDEST && at(bought).is_none() {
         bought *= STEP;
     }
-    let cost =
-        pilots.iter().map(|p| p.cheapest(wish.accuracy, run.threads).map(|c| c.seconds)).sum::<Option<f64>>();
-    let needs =
+    let cost = pilots
+        .iter()
+        .map(|p| p.cheapest(target.accuracy, run.threads).map(|c| c.seconds))
+        .sum::<Option<f64>>();
+    let costs =
         cost.map_or_else(|| "more than the finest grids".to_owned(), |s| format!("about {}", duration(s)));
     let buys = if bought < WIDEST {
         format!("buys {:.2} %", 100.0 * bought)
@@ -224,10 +239,10 @@ fn choose(run: &Run, pilots: &[Pilot], wish: Wish) -> Result<Plan> {
     let hardest = widest.collect::<Vec<_>>().join("; ");
     Err(Error::parameter(
         "accuracy",
-        format!("{:.3} %", 100.0 * wish.accuracy),
+        format!("{:.3} %", 100.0 * target.accuracy),
         format!(
-            "a wish within --budget {}: this one takes {needs}, the budget {buys}; the hardest load is {hardest} (--forces leaves loads out)",
-            duration(wish.seconds)
+            "a target within --budget {}: this one takes {costs}, the budget {buys}; the hardest load is {hardest} (--forces leaves loads out)",
+            duration(target.seconds)
         ),
     ))
 }
@@ -278,16 +293,16 @@ impl Pilot {
         progress: &dyn Progress,
     ) -> Result<Self> {
         let fine = measure(numerics, surfaces, forces, run, store, progress)?;
-        let twins = budget::measure_twins(run, &fine, store, progress)?;
-        Ok(Self::of(&fine, twins.as_ref()))
+        let half_grids = budget::measure_half_grids(run, &fine, store, progress)?;
+        Ok(Self::of(&fine, half_grids.as_ref()))
     }
 
-    fn of(fine: &Measured, twins: Option<&Measured>) -> Self {
+    fn of(fine: &Measured, half_grids: Option<&Measured>) -> Self {
         let mut rows = Vec::new();
         let (mut growths, mut falls) = (Vec::new(), Vec::new());
         for series in &fine.series {
-            let twin = twins.and_then(|t| t.at(series.fractal_dimension));
-            let (found, growth) = series_rows(series, twin);
+            let half_grid = half_grids.and_then(|t| t.at(series.fractal_dimension));
+            let (found, growth) = series_rows(series, half_grid);
             growths.extend(growth);
             let law: Vec<(f64, f64)> =
                 found.iter().filter(|r| size(r) > 0.0).map(|r| (r.cells.ln(), size(r).ln())).collect();
@@ -309,7 +324,7 @@ impl Pilot {
             return None;
         }
         let falls = (cells / row.seen_at).powf(-self.fall);
-        let grid = budget::reach(falls * row.mean, falls * row.spread, count.min(budget::TWINS as f64));
+        let grid = budget::reach(falls * row.mean, falls * row.spread, count.min(budget::HALF_GRIDS as f64));
         Some(2.0 * tolerance + grid.hypot(SAFETY * student95(count) * row.scatter / count.sqrt()))
     }
 
@@ -318,13 +333,13 @@ impl Pilot {
         self.rows.iter().filter_map(|r| self.half_width(r, size, count, tolerance)).reduce(f64::max)
     }
 
-    fn cheapest(&self, wish: f64, threads: usize) -> Option<Choice> {
+    fn cheapest(&self, target: f64, threads: usize) -> Option<Choice> {
         let solid = matches!(self.numerics, Numerics::Bem3d { .. });
-        let tolerance = (wish * TOLERANCE_PER_WISH).clamp(TOLERANCES.0, TOLERANCES.1);
+        let tolerance = (target * TOLERANCE_PER_TARGET).clamp(TOLERANCES.0, TOLERANCES.1);
         let sizes: &[usize] = if solid { &GRIDS } else { &LINES };
         let algebraic = if solid { tolerance } else { 0.0 };
         let choices = sizes.iter().filter_map(|&size| {
-            let enough = |count: f64| self.accuracy(size, count, algebraic).is_some_and(|a| a <= wish);
+            let enough = |count: f64| self.accuracy(size, count, algebraic).is_some_and(|a| a <= target);
             if !enough(MOST_SURFACES) {
                 return None;
             }
@@ -333,10 +348,13 @@ impl Pilot {
                 let middle = f64::floor(f64::midpoint(low, high));
                 if enough(middle) { high = middle } else { low = middle }
             }
-            let twins =
-                if budget::twin(self.with(size, tolerance)).is_some() { budget::TWINS as f64 } else { 0.0 };
+            let half_grids = if budget::half_grid(self.with(size, tolerance)).is_some() {
+                budget::HALF_GRIDS as f64
+            } else {
+                0.0
+            };
             let seconds = (high * self.surface_seconds(size, tolerance)
-                + twins.min(high) * self.surface_seconds(size.div_ceil(2), tolerance))
+                + half_grids.min(high) * self.surface_seconds(size.div_ceil(2), tolerance))
                 / threads.max(1) as f64;
             let accuracy = self.accuracy(size, high, algebraic)?;
             Some(Choice { size, count: high as usize, tolerance, seconds, accuracy })
@@ -387,14 +405,14 @@ fn size(r: &Row) -> f64 {
 }
 
 /// Rows of one fractal dimension: those above the floor as measured, those below from the power laws of the ones above. And how contact
-/// cells grew from the twin to the pilot.
-fn series_rows(series: &Series, twin: Option<&Series>) -> (Vec<Row>, Option<f64>) {
+/// cells grew from the half-size grid to the pilot.
+fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<Row>, Option<f64>) {
     let mut above = Vec::new();
     let mut growth = Vec::new();
     for (j, point) in series.points.iter().enumerate() {
         let (Some(k), Some(cells)) = (point.stiffness_bar, point.min_contact_cells) else { continue };
-        let Some(twin) = twin else { continue };
-        let differences = budget::differences(series, twin, j);
+        let Some(half_grid) = half_grid else { continue };
+        let differences = budget::differences(series, half_grid, j);
         if cells < FLOOR_CELLS || differences.len() < 2 {
             continue;
         }
@@ -403,7 +421,7 @@ fn series_rows(series: &Series, twin: Option<&Series>) -> (Vec<Row>, Option<f64>
         let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
         let scatter = k.relative_error().unwrap_or(0.0) * (k.count as f64).sqrt();
         if let Some(coarse) =
-            twin.points.get(j).and_then(|p| p.min_contact_cells).filter(|c| *c >= FLOOR_CELLS)
+            half_grid.points.get(j).and_then(|p| p.min_contact_cells).filter(|c| *c >= FLOOR_CELLS)
         {
             growth.push((cells as f64 / coarse as f64).log2());
         }
@@ -472,7 +490,7 @@ mod tests {
         assert!((140..=155).contains(&choice.count), "{choice:?}");
         assert!(choice.accuracy <= 0.01 && choice.accuracy > 0.0098);
         assert_relative_eq!(choice.tolerance, 0.01 / 30.0, max_relative = 1e-12);
-        // Differences between grids ask for a finer one, and an impossible wish for none.
+        // Differences between grids ask for a finer one, and an impossible target for none.
         assert!(pilot(0.05, 0.04).cheapest(0.01, 1).unwrap().size > 65);
         assert_eq!(pilot(0.05, 9.0).cheapest(0.01, 1), None);
     }
@@ -481,10 +499,10 @@ mod tests {
     fn a_wish_beyond_the_budget_names_what_it_buys() {
         let run = Run::new(&Request { threads: Some(1), ..Request::default() }).unwrap();
         let pilots = [pilot(0.3, 0.02)];
-        let plan = choose(&run, &pilots, Wish { accuracy: 0.1, seconds: 1e5 }).unwrap();
+        let plan = choose(&run, &pilots, AccuracyTarget { accuracy: 0.1, seconds: 1e5 }).unwrap();
         assert!(plan.accuracy <= 0.1 && plan.lines.len() == 1 && plan.run.surfaces > 2);
-        let wish = Wish { accuracy: 1e-3, seconds: 60.0 };
-        let refused = choose(&run, &pilots, wish).unwrap_err().to_string();
+        let target = AccuracyTarget { accuracy: 1e-3, seconds: 60.0 };
+        let refused = choose(&run, &pilots, target).unwrap_err().to_string();
         assert!(refused.starts_with("--accuracy 0.100 %") && refused.contains("budget buys"), "{refused}");
     }
 
@@ -498,9 +516,9 @@ mod tests {
             budget: budget::Budget { algebraic: 0.0, discretisation: Some(grid), ensemble: Some(ensemble) },
             below_floor,
         };
-        // Twice the wish, from the scatter alone: four times the surfaces and a tenth.
+        // Twice the target, from the scatter alone: four times the surfaces and a tenth.
         assert_relative_eq!(surfaces_wanted(&[row(0.0, 0.4, false)], 0.1, 10), 44.0);
-        // Within the wish, on the floor, or a matter of the grid.
+        // Within the target, on the floor, or a matter of the grid.
         for other in [row(0.0, 0.1, false), row(0.0, 9.0, true), row(0.3, 0.4, false)] {
             assert_relative_eq!(surfaces_wanted(&[other], 0.1, 10), 10.0);
         }

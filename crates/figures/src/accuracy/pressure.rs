@@ -9,11 +9,11 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> Option<f64> {
     if n * n != a.len() || m * m != b.len() {
         return None;
     }
-    let pieces = overlaps(n, m);
+    let parts = overlaps(n, m);
     let mut sum = 0.0;
-    for &(iy, jy, height) in &pieces {
+    for &(iy, jy, height) in &parts {
         let (a, b) = (&a[iy * n..][..n], &b[jy * m..][..m]);
-        let row: f64 = pieces.iter().map(|&(ix, jx, width)| width * (a[ix] - b[jx]).powi(2)).sum();
+        let row: f64 = parts.iter().map(|&(ix, jx, width)| width * (a[ix] - b[jx]).powi(2)).sum();
         sum += height * row;
     }
     let norm = b.iter().map(|v| v * v).sum::<f64>() / (m * m) as f64;
@@ -22,18 +22,18 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> Option<f64> {
 
 /// Pieces of [0, 1] on which both grids are constant: (cell of the first, cell of the second, length).
 fn overlaps(n: usize, m: usize) -> Vec<(usize, usize, f64)> {
-    let mut pieces = Vec::with_capacity(n + m);
+    let mut parts = Vec::with_capacity(n + m);
     let (mut i, mut j, mut start) = (0, 0, 0);
     // In units of 1/(n m): whole numbers, so that ends meet exactly.
     while i < n && j < m {
         let (a, b) = ((i + 1) * m, (j + 1) * n);
         let end = a.min(b);
-        pieces.push((i, j, (end - start) as f64 / (n * m) as f64));
+        parts.push((i, j, (end - start) as f64 / (n * m) as f64));
         start = end;
         i += usize::from(a == end);
         j += usize::from(b == end);
     }
-    pieces
+    parts
 }
 
 #[cfg(test)]

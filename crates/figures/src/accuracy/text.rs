@@ -1,6 +1,6 @@
 //! The text: what it takes, when less is enough, which part dominates. Written from the tables.
 
-use super::picture::{Point, WISHES, read, values};
+use super::picture::{Point, TARGETS, read, values};
 use crate::csv_file::CsvFile;
 use crate::error::Result;
 use std::path::Path;
@@ -72,9 +72,9 @@ fn label(p: &Point) -> String {
 }
 
 /// The cheapest row in three dimensions within an error that every finer grid keeps too: a lucky grid between worse ones is no way.
-fn cheapest<'a>(points: &'a [Point], problem: &Point, wish: f64) -> Option<&'a Point> {
+fn cheapest<'a>(points: &'a [Point], problem: &Point, target: f64) -> Option<&'a Point> {
     let solid = || points.iter().filter(|p| p.same_problem(problem) && p.model == "bem3d");
-    let within = |p: &Point| p.error.is_some_and(|e| e <= wish);
+    let within = |p: &Point| p.error.is_some_and(|e| e <= target);
     // On each grid the row at the tightest tolerance differs from itself by nothing.
     let tight = |p: &Point| p.algebraic.is_some_and(|a| a <= 0.0);
     let kept = |size: Option<f64>| solid().all(|p| p.size <= size || !tight(p) || within(p));
@@ -91,12 +91,12 @@ fn short(points: &[Point]) -> String {
         ("spectrum", "One fractal surface, waves to the end of each grid"),
     ] {
         let all = problems(points, family);
-        let told = WISHES.map(|wish| {
-            let mut found: Vec<&Point> = all.iter().filter_map(|p| cheapest(points, p, wish)).collect();
+        let told = TARGETS.map(|target| {
+            let mut found: Vec<&Point> = all.iter().filter_map(|p| cheapest(points, p, target)).collect();
             found.sort_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)));
             let count = format!(
                 "k within {} % for {} of {} surfaces and loads",
-                100.0 * wish,
+                100.0 * target,
                 found.len(),
                 all.len()
             );
@@ -147,8 +147,8 @@ fn takes(points: &[Point]) -> String {
         [("sphere", "exact"), ("square", "exact"), ("band", "resolved"), ("spectrum", "fractal")]
     {
         for problem in problems(points, family) {
-            let cells = WISHES.map(|wish| {
-                let best = cheapest(points, problem, wish);
+            let cells = TARGETS.map(|target| {
+                let best = cheapest(points, problem, target);
                 best.map_or_else(
                     || "-".to_owned(),
                     |p| {

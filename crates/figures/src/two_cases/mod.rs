@@ -7,8 +7,8 @@ use crate::csv_file::{Header, write_csv};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::forces::Forces;
+use crate::job_queue::run_jobs;
 use crate::outcome::Outcome;
-use crate::pieces::pieces;
 use crate::progress::Progress;
 use crate::sweep::collect;
 use analysis::{Curves, Sample, ensemble};
@@ -232,7 +232,7 @@ fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> 
         .collect();
     progress.begin(&format!("{} surfaces of {} cells a side", units.len(), study.cells), units.len() as u64);
     let order: Vec<usize> = (0..units.len()).collect();
-    let done = pieces(study.threads, &order, &never, |i, stop| {
+    let done = run_jobs(study.threads, &order, &never, |i, stop| {
         let solves = one(study, units[i].0, units[i].1, stop)?;
         progress.advance(1, false);
         Ok(solves)

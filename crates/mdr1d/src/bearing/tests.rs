@@ -6,13 +6,13 @@ use proptest::test_runner::RngSeed;
 /// Rounding of compensated sums of positive terms, and of partial sums of 64 in each lane.
 const ROUNDING: f64 = 1e-14;
 
-/// The slow twin: sums over all elements, force inverted by bisection.
-struct Twin {
+/// The reference implementation: sums over all elements, force inverted by bisection.
+struct Reference {
     depths: Vec<f64>,
     element: f64,
 }
 
-impl Twin {
+impl Reference {
     fn new(line: &Line) -> Self {
         let depths = line.heights().iter().map(|h| line.highest() - h).collect();
         Self { depths, element: line.element() }
@@ -87,11 +87,11 @@ fn flat_lines_and_ties() {
     heights[17] = -1e6;
     heights[18] = 0.5;
     let line = Line::new(1.0, heights).unwrap();
-    let (mut bearing, twin) = (Bearing::new(&line), Twin::new(&line));
+    let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
     for d in [0.1, 0.5, 0.6, 1e5, 1e6 + 1.0, 1e6 + 2.0] {
         let s = bearing.press(Load::Approach(d), 1.0).unwrap();
-        assert_relative_eq!(s.force, twin.force(d, 1.0), max_relative = ROUNDING);
-        assert_eq!(s.elements, twin.elements(d));
+        assert_relative_eq!(s.force, reference.force(d, 1.0), max_relative = ROUNDING);
+        assert_eq!(s.elements, reference.elements(d));
         let back = bearing.press(Load::Force(s.force), 1.0).unwrap();
         assert_relative_eq!(back.approach, d, max_relative = ROUNDING);
     }
@@ -100,16 +100,16 @@ fn flat_lines_and_ties() {
 #[test]
 fn a_long_line_equals_its_twin() {
     let line = long_line(40_000);
-    let (mut bearing, twin) = (Bearing::new(&line), Twin::new(&line));
+    let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
     assert!(bearing.bins.len() > 50);
     let relief = line.highest() - lowest(line.heights());
     for i in 0..60 {
         let d = relief * 1.3 * 10_f64.powf(-f64::from(i) / 10.0);
         let s = bearing.press(Load::Approach(d), 3.0).unwrap();
-        assert_relative_eq!(s.force, twin.force(d, 3.0), max_relative = ROUNDING);
-        assert_eq!(s.elements, twin.elements(d));
+        assert_relative_eq!(s.force, reference.force(d, 3.0), max_relative = ROUNDING);
+        assert_eq!(s.elements, reference.elements(d));
         let by_force = bearing.press(Load::Force(s.force), 3.0).unwrap();
-        assert_relative_eq!(by_force.approach, twin.approach(s.force, 3.0), max_relative = ROUNDING);
+        assert_relative_eq!(by_force.approach, reference.approach(s.force, 3.0), max_relative = ROUNDING);
         assert_eq!(by_force.elements, s.elements);
     }
 }
@@ -229,12 +229,12 @@ proptest! {
     #[test]
     fn equals_the_twin(heights in prop::collection::vec(-1.0_f64..1.0, 1..300), d in 1e-6_f64..3.0) {
         let line = line(heights);
-        let (mut bearing, twin) = (Bearing::new(&line), Twin::new(&line));
+        let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
         let s = bearing.press(Load::Approach(d), 2.0).unwrap();
-        assert_relative_eq!(s.force, twin.force(d, 2.0), max_relative = ROUNDING);
-        prop_assert_eq!(s.elements, twin.elements(d));
+        assert_relative_eq!(s.force, reference.force(d, 2.0), max_relative = ROUNDING);
+        prop_assert_eq!(s.elements, reference.elements(d));
         let back = bearing.press(Load::Force(s.force), 2.0).unwrap();
-        assert_relative_eq!(back.approach, twin.approach(s.force, 2.0), max_relative = ROUNDING);
+        assert_relative_eq!(back.approach, reference.approach(s.force, 2.0), max_relative = ROUNDING);
         assert_relative_eq!(back.approach, d, max_relative = ROUNDING);
     }
 
@@ -242,12 +242,12 @@ proptest! {
     fn kinks_belong_to_the_set_that_carries(heights in grid_heights(), i in 0_usize..200) {
         // At d = z_i exactly, by approach and by force alike, the elements at z_i are not in contact.
         let line = line(heights);
-        let twin = Twin::new(&line);
-        let d = twin.depths[i % twin.depths.len()];
+        let reference = Reference::new(&line);
+        let d = reference.depths[i % reference.depths.len()];
         let mut bearing = Bearing::new(&line);
         let by_approach = bearing.press(Load::Approach(d), 1.0).unwrap();
-        let by_force = bearing.press(Load::Force(twin.force(d, 1.0)), 1.0).unwrap();
-        prop_assert_eq!(by_approach.elements, twin.elements(d));
+        let by_force = bearing.press(Load::Force(reference.force(d, 1.0)), 1.0).unwrap();
+        prop_assert_eq!(by_approach.elements, reference.elements(d));
         prop_assert_eq!(by_force, by_approach);
     }
 

@@ -170,10 +170,10 @@ impl Normal {
         let report = &mut state.report;
         (report.iterations, report.applications, report.work) = (iterations, applications, work);
         report.strategy = format!(
-            "{}; g(x) through {} states, doubt {:.1e}",
+            "{}; g(x) through {} states, uncertainty {:.1e}",
             report.strategy,
             self.table.nodes(),
-            self.table.doubt(approach)
+            self.table.uncertainty(approach)
         );
         state.stiffness = state.stiffness.filter(|_| self.outputs.stiffness);
         state

@@ -194,17 +194,17 @@ fn limits_of_friction_on_a_rough_surface() {
 }
 
 /// Hertz's sphere with a stiffness that is told wrong, and a count of solves.
-struct Told {
+struct Scripted {
     factor: fn(f64) -> f64,
     solves: &'static AtomicUsize,
 }
 
-struct ToldContact {
+struct ScriptedContact {
     factor: fn(f64) -> f64,
     solves: &'static AtomicUsize,
 }
 
-impl ContactModel for Told {
+impl ContactModel for Scripted {
     fn name(&self) -> &'static str {
         "told"
     }
@@ -214,11 +214,11 @@ impl ContactModel for Told {
     fn prepare(&self, scene: &Scene, _: u64) -> Result<Box<dyn PreparedContact>> {
         scene.refuse_effects("told")?;
         assert!(!scene.outputs.any_field());
-        Ok(Box::new(ToldContact { factor: self.factor, solves: self.solves }))
+        Ok(Box::new(ScriptedContact { factor: self.factor, solves: self.solves }))
     }
 }
 
-impl PreparedContact for ToldContact {
+impl PreparedContact for ScriptedContact {
     fn normalisation(&self) -> Normalisation {
         Normalisation { modulus: 1.0, length: 2.0, height: None }
     }
@@ -248,7 +248,7 @@ impl PreparedContact for ToldContact {
 #[test]
 fn contacts_that_do_not_grow_are_refused_and_leave_no_trace() {
     static SOLVES: AtomicUsize = AtomicUsize::new(0);
-    let model = Equivalent::new(Told { factor: |d| if d > 0.005 { 0.8 } else { 1.0 }, solves: &SOLVES });
+    let model = Equivalent::new(Scripted { factor: |d| if d > 0.005 { 0.8 } else { 1.0 }, solves: &SOLVES });
     let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
     let held = Step { time: 0.0, normal: Load::Approach(0.003), tangential: Tangential::Displacement(1e-4) };
     let before = contact.advance(held).unwrap().tangential.unwrap();
@@ -260,7 +260,7 @@ fn contacts_that_do_not_grow_are_refused_and_leave_no_trace() {
 #[test]
 fn a_stop_between_nodes_leaves_no_trace() {
     static SOLVES: AtomicUsize = AtomicUsize::new(0);
-    let model = Equivalent::new(Told { factor: |_| 1.0, solves: &SOLVES });
+    let model = Equivalent::new(Scripted { factor: |_| 1.0, solves: &SOLVES });
     let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
     let step = Step::normal(1.0, Load::Approach(0.01));
     let stop = || SOLVES.load(Ordering::Relaxed) >= 7;
@@ -298,7 +298,7 @@ fn nodes_are_solved_once() {
     let model = Equivalent {
         per_decade: 10,
         decades: 2,
-        ..Equivalent::new(Told { factor: |_| 1.0, solves: &SOLVES })
+        ..Equivalent::new(Scripted { factor: |_| 1.0, solves: &SOLVES })
     };
     let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
     assert_eq!(solves(), 0, "nothing before the first step");

@@ -42,7 +42,7 @@ fn stored(springs: &Springs<Profile>) -> f64 {
 
 #[test]
 fn integrals_of_quadratics() {
-    // int over x in [0.2, 0.5] of (3 - 2 g + g^2) dx with g = x^2, and pieces add up.
+    // int over x in [0.2, 0.5] of (3 - 2 g + g^2) dx with g = x^2, and segments add up.
     let q = |g: f64| 3.0 - 2.0 * g + g * g;
     let values = |low: f64, high: f64| [q(low), q(0.5 * (low + high)), q(high)];
     let antiderivative = |x: f64| 3.0 * x - 2.0 / 3.0 * x.powi(3) + x.powi(5) / 5.0;
@@ -51,7 +51,7 @@ fn integrals_of_quadratics() {
     let parts =
         sphere().integral([0.04, 0.1], values(0.04, 0.1)) + sphere().integral([0.1, 0.25], values(0.1, 0.25));
     assert_relative_eq!(whole, parts, max_relative = 1e-14);
-    // Narrow pieces too: down to a millionth of a millionth.
+    // Narrow segments too: down to a millionth of a millionth.
     let edges = [0.04, 0.0401, 0.040_100_000_1, 0.05, 0.0549, 0.06, 0.1, 0.11, 0.15, 0.25];
     let sum: f64 = edges.windows(2).map(|w| sphere().integral([w[0], w[1]], values(w[0], w[1]))).sum();
     assert_relative_eq!(whole, sum, max_relative = 1e-14);
@@ -134,7 +134,7 @@ fn a_flat_punch_slips_as_a_whole() {
     assert_relative_eq!(lifted.dissipated(), stored(&held), max_relative = ROUNDING);
 }
 
-/// Springs one by one, stepped in short pieces: the slow twin.
+/// Springs one by one, stepped in short segments: the reference implementation.
 struct Discrete {
     half_width: f64,
     u: Vec<f64>,
@@ -146,15 +146,15 @@ impl Discrete {
         Self { half_width, u: vec![0.0; count], lost: 0.0 }
     }
 
-    fn moved(&mut self, profile: Profile, [d0, d1]: [f64; 2], by: f64, pieces: usize) {
+    fn moved(&mut self, profile: Profile, [d0, d1]: [f64; 2], by: f64, segments: usize) {
         let count = self.u.len();
         let dx = self.half_width / count as f64;
-        for piece in 1..=pieces {
-            let d = d0 + (d1 - d0) * piece as f64 / pieces as f64;
+        for segment in 1..=segments {
+            let d = d0 + (d1 - d0) * segment as f64 / segments as f64;
             for (i, u) in self.u.iter_mut().enumerate() {
                 let gamma = profile.depth((i as f64 + 0.5) * dx).unwrap();
                 let limit = (MU / SHEAR * (d - gamma)).max(0.0);
-                let free = if d > gamma { *u + by / pieces as f64 } else { *u };
+                let free = if d > gamma { *u + by / segments as f64 } else { *u };
                 *u = free.clamp(-limit, limit);
                 self.lost += 2.0 * SHEAR * limit.max(0.0) * (free - *u).abs() * dx;
             }
@@ -172,18 +172,18 @@ fn single_springs_converge_to_it() {
         let profile = power(exponent);
         // Pressed, sheared, pressed and sheared obliquely, lifted while sheared back, pressed again.
         let path = [(0.01, 0.0), (0.01, 0.004), (0.014, 0.005), (0.006, -0.001), (0.012, 0.001)];
-        let error = |count: usize, pieces: usize| {
-            let mut twin = Discrete::new(count, profile.at_approach(0.014).radius * 1.01);
+        let error = |count: usize, segments: usize| {
+            let mut reference = Discrete::new(count, profile.at_approach(0.014).radius * 1.01);
             let mut exact = springs(profile);
             for (d, u) in path {
-                twin.moved(profile, [exact.approach, d], u - exact.displacement, pieces);
+                reference.moved(profile, [exact.approach, d], u - exact.displacement, segments);
                 exact = exact.moved(d, u);
             }
-            (twin.force() - exact.force(), twin.lost - exact.dissipated())
+            (reference.force() - exact.force(), reference.lost - exact.dissipated())
         };
         let scale = MU * profile.at_approach(0.01).force;
         let (coarse, fine) = (error(500, 25), error(2000, 100));
-        // A spring's bound is taken at the end of each piece: first order, in the loss and, where the normal load changes, in the force.
+        // A spring's bound is taken at the end of each segment: first order, in the loss and, where the normal load changes, in the force.
         for fine in [fine.0 / scale, fine.1 / (scale * 0.005)] {
             assert!(fine.abs() < 2e-2, "{exponent}: {fine}");
         }
@@ -202,7 +202,7 @@ fn path() -> impl Strategy<Value = Vec<(f64, f64)>> {
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(48) })]
 
-    /// A straight piece may be cut anywhere: the state at its end is exact, so is the loss.
+    /// A straight segment may be cut anywhere: the state at its end is exact, so is the loss.
     #[test]
     fn pieces_of_a_step_add_up(n in 0.5_f64..4.0, path in path(), cut in 0.05_f64..0.95) {
         let (mut whole, mut cuts) = (springs(power(n)), springs(power(n)));

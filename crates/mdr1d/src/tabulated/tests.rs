@@ -49,8 +49,8 @@ fn bodies_come_back_with_third_and_fourth_order() {
         // Measured: 4^3 and 4^4, less where the worst place moves between the nodes.
         assert!(coarse[0] / fine[0] > 40.0 && coarse[1] / fine[1] > 150.0, "{exponent} {coarse:?} {fine:?}");
         assert!(
-            coarse[1] < 2.0 * sampled(exact, 8).doubt(0.05),
-            "the doubt is of the size of the error or above it"
+            coarse[1] < 2.0 * sampled(exact, 8).uncertainty(0.05),
+            "the uncertainty is of the size of the error or above it"
         );
     }
 }
@@ -132,7 +132,7 @@ proptest! {
         }
     }
 
-    /// Integrals beside sums over many springs, in one piece and in two.
+    /// Integrals beside sums over many springs, in one segment and in two.
     #[test]
     fn integrals_beside_sums(
         nodes in convex(), a in 0.0..1.0_f64, b in 0.0..1.0_f64, values in proptest::array::uniform3(-1.0..1.0_f64)

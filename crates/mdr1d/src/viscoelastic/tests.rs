@@ -152,7 +152,7 @@ fn the_time_of_shrinking_is_named() {
     assert!(matches!(contact.advance(Step::normal(3.0, Load::Approach(1.5))), Err(Error::OutOfRange { .. })));
 }
 
-/// Springs one by one, each with its own arm, in short steps: the slow twin.
+/// Springs one by one, each with its own arm, in short steps: the reference implementation.
 fn single_springs(profile: Profile, arm: Relaxing, path: &[(f64, f64)], springs: usize, steps: usize) -> f64 {
     let widest = profile.at_approach(path.last().unwrap().1).radius;
     let dx = widest / springs as f64;
@@ -231,7 +231,7 @@ fn series() -> impl Strategy<Value = Vec<Relaxing>> {
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(32) })]
 
-    /// A straight piece may be cut anywhere, whichever load is prescribed.
+    /// A straight segment may be cut anywhere, whichever load is prescribed.
     #[test]
     fn pieces_of_a_step_add_up(n in 0.5_f64..4.0, arms in series(), cut in 0.01_f64..0.99, log in -3.0_f64..3.0) {
         let rheology = Rheology::Prony(PronySeries::new(&arms).unwrap());
@@ -259,15 +259,15 @@ proptest! {
     fn force_and_approach_are_inverse(arms in series(), log in -2.0_f64..2.0) {
         let rheology = Rheology::Prony(PronySeries::new(&arms).unwrap());
         let (mut by_force, mut by_approach) = (prepare(sphere(), rheology), prepare(sphere(), rheology));
-        // Between the times the approach is not straight: first order pieces would differ, so the path is fine and the bound wide.
-        let pieces = 400;
+        // Between the times the approach is not straight: first order segments would differ, so the path is fine and the bound wide.
+        let segments = 400;
         let mut worst = 0.0_f64;
-        for i in 1..=pieces {
-            let time = 10.0_f64.powf(log) * f64::from(i) / f64::from(pieces);
-            let f = 1e-3 * f64::from(i) / f64::from(pieces);
+        for i in 1..=segments {
+            let time = 10.0_f64.powf(log) * f64::from(i) / f64::from(segments);
+            let f = 1e-3 * f64::from(i) / f64::from(segments);
             let d = approach(&mut *by_force, time, f);
             let back = force(&mut *by_approach, time, d);
-            if i > pieces / 10 {
+            if i > segments / 10 {
                 worst = worst.max((back / f - 1.0).abs());
             }
         }

@@ -1,6 +1,6 @@
 //! The header of an NPY file: magic, version, length, a Python dictionary of three entries.
 
-use crate::error::{Error, Problem, Result};
+use crate::error::{ContentError, Error, Result};
 use crate::format::NPY;
 use std::fmt;
 use std::io::Read;
@@ -70,7 +70,7 @@ pub(super) struct Header {
 impl Header {
     /// Reads the header of a file of the given length; returns its own length too.
     pub(super) fn read(path: &Path, reader: &mut impl Read, length: u64) -> Result<(Self, u64)> {
-        let wrong = |offset, expected| Error::content(path)(Problem::Header { offset, expected });
+        let wrong = |offset, expected| Error::content(path)(ContentError::Header { offset, expected });
         let mut exact = |bytes: &mut [u8], offset, expected| match reader.read_exact(bytes) {
             Ok(()) => Ok(()),
             Err(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => Err(wrong(offset, expected)),
@@ -114,11 +114,11 @@ struct Parser<'a> {
     before: usize,
 }
 
-type Parsed<T> = Result<T, Problem>;
+type Parsed<T> = Result<T, ContentError>;
 
 impl Parser<'_> {
     fn wrong<T>(&self, expected: &'static str) -> Parsed<T> {
-        Err(Problem::Header { offset: self.before + self.at, expected })
+        Err(ContentError::Header { offset: self.before + self.at, expected })
     }
 
     fn peek(&mut self) -> Option<u8> {
@@ -177,10 +177,10 @@ impl Parser<'_> {
 
     fn descr(&mut self) -> Parsed<Kind> {
         if self.peek() == Some(b'[') {
-            return Err(Problem::Type { found: "a structure".into() });
+            return Err(ContentError::Type { found: "a structure".into() });
         }
         let descr = self.string()?;
-        Kind::of(&descr).ok_or_else(|| Problem::Type {
+        Kind::of(&descr).ok_or_else(|| ContentError::Type {
             found: format!("'{}'", descr.chars().take(32).collect::<String>()),
         })
     }

@@ -1,4 +1,4 @@
-use crate::{Declared, Problem, Scan};
+use crate::{ContentError, ReadOptions, Scan};
 use npyz::WriterBuilder as _;
 use proptest::prelude::*;
 
@@ -15,11 +15,11 @@ fn of(kind: &str, order: &str, shape: &str) -> Vec<u8> {
 }
 
 fn scan(bytes: &[u8]) -> crate::Result<Scan> {
-    Scan::from_bytes("a.npy", bytes, &Declared::default())
+    Scan::from_bytes("a.npy", bytes, &ReadOptions::default())
 }
 
 fn heights(scan: &Scan) -> Vec<Option<f64>> {
-    let (rows, columns) = (scan.understood().rows, scan.understood().columns);
+    let (rows, columns) = (scan.metadata().rows, scan.metadata().columns);
     (0..rows * columns).map(|i| scan.height(i / columns, i % columns)).collect()
 }
 
@@ -30,8 +30,8 @@ fn every_type_and_order_of_numbers() {
     let check = |kind: &str, data: Vec<u8>, expected: [f64; 6], details: &str| {
         let scan = scan(&[of(kind, "False", "(2, 3)"), data].concat()).unwrap();
         assert_eq!(heights(&scan), some(expected), "{kind}");
-        assert_eq!(scan.understood().details, details);
-        assert_eq!((scan.understood().rows, scan.understood().columns), (2, 3));
+        assert_eq!(scan.metadata().details, details);
+        assert_eq!((scan.metadata().rows, scan.metadata().columns), (2, 3));
     };
     let f = |to: fn(f64) -> Vec<u8>| numbers.iter().copied().flat_map(to).collect::<Vec<u8>>();
     check("'<f8'", f(|v| v.to_le_bytes().to_vec()), numbers, "float64, little-endian, row by row");
@@ -70,8 +70,8 @@ fn nan_is_an_undefined_point_and_an_infinity_an_error() {
         [of("'<f8'", "False", "(1, 2)"), 1.0_f64.to_le_bytes().to_vec(), v.to_le_bytes().to_vec()].concat()
     };
     let found = scan(&data(f64::NAN)).unwrap();
-    assert_eq!((found.understood().undefined, found.height(0, 1), found.height(0, 2)), (1, None, None));
-    assert_eq!(found.understood().range, Some([1.0, 1.0]));
+    assert_eq!((found.metadata().undefined, found.height(0, 1), found.height(0, 2)), (1, None, None));
+    assert_eq!(found.metadata().range, Some([1.0, 1.0]));
     let error = scan(&data(f64::INFINITY)).unwrap_err().to_string();
     assert_eq!(
         error,
@@ -135,7 +135,7 @@ fn integers_that_no_double_holds_are_named() {
     let big = (1_i64 << 53) + 1;
     let bytes = [of("'<i8'", "False", "(1, 1)"), big.to_le_bytes().to_vec()].concat();
     assert!(
-        matches!(scan(&bytes).unwrap_err().problem(), Some(Problem::Inexact { value, .. }) if *value == i128::from(big))
+        matches!(scan(&bytes).unwrap_err().problem(), Some(ContentError::Inexact { value, .. }) if *value == i128::from(big))
     );
     let bytes = [of("'<i8'", "False", "(1, 1)"), i64::MIN.to_le_bytes().to_vec()].concat();
     assert_eq!(scan(&bytes).unwrap().height(0, 0), Some(-(2_f64.powi(63))));
@@ -144,15 +144,15 @@ fn integers_that_no_double_holds_are_named() {
 #[test]
 fn what_has_no_use_is_refused() {
     let whole = [of("'<f8'", "False", "(1, 1)"), vec![0; 8]].concat();
-    let declared = Declared { skip_lines: 1, ..Declared::default() };
+    let declared = ReadOptions { skip_lines: 1, ..ReadOptions::default() };
     assert!(Scan::from_bytes("a.npy", &whole, &declared).unwrap_err().to_string().contains("has no lines"));
-    let declared = Declared { lateral_unit: Some("um".parse().unwrap()), ..Declared::default() };
+    let declared = ReadOptions { lateral_unit: Some("um".parse().unwrap()), ..ReadOptions::default() };
     assert!(Scan::from_bytes("a.npy", &whole, &declared).unwrap_err().to_string().contains("no coordinates"));
-    let declared = Declared { format: Some(crate::Format::Text), ..Declared::default() };
+    let declared = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
     assert!(
         Scan::from_bytes("a.dat", &whole, &declared).unwrap_err().to_string().contains("correct the name")
     );
-    let declared = Declared { largest_bytes: 10, ..Declared::default() };
+    let declared = ReadOptions { largest_bytes: 10, ..ReadOptions::default() };
     assert!(
         Scan::from_bytes("a.npy", &whole, &declared).unwrap_err().to_string().contains("at most 10 are read")
     );

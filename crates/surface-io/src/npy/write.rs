@@ -1,6 +1,6 @@
 //! Arrays as NPY.
 
-use crate::error::Problem;
+use crate::error::ContentError;
 
 /// Header and data of NumPy's files begin at multiples of this.
 const ALIGNED: usize = 64;
@@ -8,19 +8,23 @@ const ALIGNED: usize = 64;
 /// The bytes of an NPY file: little-endian float64, row-major.
 ///
 /// # Errors
-/// [`Problem::Said`] where the shape does not hold that many values.
+/// [`ContentError::OutOfRange`] where the shape does not hold that many values.
 ///
 /// ```
 /// let bytes = surface_io::npy(&[2, 2], &[1.0, 2.0, 3.0, 4.0])?;
 /// assert_eq!(bytes.len(), 128 + 4 * 8);
 /// assert!(surface_io::npy(&[2, 3], &[1.0]).is_err());
-/// # Ok::<(), surface_io::Problem>(())
+/// # Ok::<(), surface_io::ContentError>(())
 /// ```
-pub fn npy(shape: &[usize], values: &[f64]) -> Result<Vec<u8>, Problem> {
+pub fn npy(shape: &[usize], values: &[f64]) -> Result<Vec<u8>, ContentError> {
     let product = shape.iter().try_fold(1_usize, |n, &axis| n.checked_mul(axis));
     if product != Some(values.len()) {
         let value = values.len() as f64;
-        return Err(Problem::Said { what: "number of values", value, expected: "the product of the shape" });
+        return Err(ContentError::OutOfRange {
+            what: "number of values",
+            value,
+            expected: "the product of the shape",
+        });
     }
     let axes: Vec<String> = shape.iter().map(usize::to_string).collect();
     // Python's tuple of one number has a comma.
@@ -33,7 +37,7 @@ pub fn npy(shape: &[usize], values: &[f64]) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::with_capacity(10 + text.len() + 8 * values.len());
     bytes.extend(crate::format::NPY);
     bytes.extend([1, 0]);
-    let length = u16::try_from(text.len()).map_err(|_| Problem::Said {
+    let length = u16::try_from(text.len()).map_err(|_| ContentError::OutOfRange {
         what: "number of axes",
         value: shape.len() as f64,
         expected: "a few",

@@ -1,6 +1,6 @@
 //! One axis of a regular grid from the coordinates of its points.
 
-use crate::error::Problem;
+use crate::error::ContentError;
 
 /// Coordinates nearer to each other than this share of their range are one: digits that a program rounded in
 /// double precision.
@@ -10,7 +10,7 @@ const SAME: f64 = 1e-9;
 /// digits.
 const OFF_FOUND: f64 = 0.1;
 
-/// The same for spacings that were given: a quarter leaves no doubt which place is meant.
+/// The same for spacings that were given: a quarter leaves no uncertainty which place is meant.
 const OFF_GIVEN: f64 = 0.25;
 
 /// Places `origin + i * spacing`, i = 0 .. count.
@@ -31,14 +31,14 @@ pub(super) struct Axis {
 impl Axis {
     /// The grid of these coordinates: with the given spacing, else with the smallest step between two of
     /// them, refined over their whole range.
-    pub(super) fn find(name: char, mut values: Vec<f64>, given: Option<f64>) -> Result<Self, Problem> {
+    pub(super) fn find(name: char, mut values: Vec<f64>, given: Option<f64>) -> Result<Self, ContentError> {
         values.sort_unstable_by(f64::total_cmp);
         let (Some(&origin), Some(&last)) = (values.first(), values.last()) else {
-            return Err(Problem::Empty);
+            return Err(ContentError::Empty);
         };
         let span = last - origin;
         if !span.is_finite() {
-            return Err(Problem::Overflow { value: origin.abs().max(last.abs()) });
+            return Err(ContentError::Overflow { value: origin.abs().max(last.abs()) });
         }
         let spacing = match given {
             Some(spacing) => Some(spacing),
@@ -47,7 +47,7 @@ impl Axis {
         };
         let count = spacing.map_or(0.0, |s| (span / s).round()) + 1.0;
         if !count.is_finite() {
-            return Err(Problem::Overflow { value: span });
+            return Err(ContentError::Overflow { value: span });
         }
         let allowed = if given.is_some() { OFF_GIVEN } else { OFF_FOUND };
         let mut axis = Self { name, origin, spacing, count, allowed, off: 0.0 };
@@ -59,17 +59,17 @@ impl Axis {
     }
 
     /// Number of the place of a coordinate.
-    pub(super) fn index(&self, value: f64) -> Result<usize, Problem> {
+    pub(super) fn index(&self, value: f64) -> Result<usize, ContentError> {
         self.place(value).map(|place| place as usize)
     }
 
-    fn place(&self, value: f64) -> Result<f64, Problem> {
+    fn place(&self, value: f64) -> Result<f64, ContentError> {
         let Some(spacing) = self.spacing else { return Ok(0.0) };
         let place = (value - self.origin) / spacing;
         if (place - place.round()).abs() <= self.allowed {
             Ok(place.round())
         } else {
-            Err(Problem::Irregular { axis: self.name, value, origin: self.origin, spacing })
+            Err(ContentError::Irregular { axis: self.name, value, origin: self.origin, spacing })
         }
     }
 }

@@ -1,10 +1,10 @@
-use crate::{Declared, Problem, Quantity, Scan};
+use crate::{ContentError, Quantity, ReadOptions, Scan};
 use contact_model::Size;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
 fn read(text: &str) -> crate::Result<Scan> {
-    Scan::from_bytes("a.xyz", text.as_bytes(), &Declared::default())
+    Scan::from_bytes("a.xyz", text.as_bytes(), &ReadOptions::default())
 }
 
 fn error(text: &str) -> String {
@@ -14,7 +14,7 @@ fn error(text: &str) -> String {
 #[test]
 fn points_in_any_order_with_an_undefined_one() {
     let scan = read("1 1 4\n0 0 1\n\n1 0 2 # last\n2 0 3\n0 1 nan\n").unwrap();
-    let found = scan.understood();
+    let found = scan.metadata();
     assert_eq!((found.rows, found.columns, found.undefined), (2, 3, 2));
     assert_eq!(found.details, "5 points, spaces between numbers");
     assert_eq!(found.cell.clone().unwrap().value[0].to_string(), "1");
@@ -30,9 +30,9 @@ fn printed_digits_do_not_bend_the_grid() {
         }
     }
     let scan = read(&text).unwrap();
-    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().undefined), (10, 10, 0));
+    assert_eq!((scan.metadata().rows, scan.metadata().columns, scan.metadata().undefined), (10, 10, 0));
     approx::assert_relative_eq!(
-        scan.understood().cell.clone().unwrap().value[1].value(),
+        scan.metadata().cell.clone().unwrap().value[1].value(),
         1e-3 / 3.0,
         max_relative = 1e-12
     );
@@ -49,13 +49,13 @@ fn noise_needs_a_cell() {
     }
     let complaint = error(&text);
     assert!(complaint.contains("say cell"), "{complaint}");
-    let declared = Declared { cell: "1".parse().ok(), ..Declared::default() };
+    let declared = ReadOptions { cell: "1".parse().ok(), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.xyz", text.as_bytes(), &declared).unwrap();
-    assert_eq!((scan.understood().rows, scan.understood().columns, scan.understood().undefined), (8, 8, 0));
+    assert_eq!((scan.metadata().rows, scan.metadata().columns, scan.metadata().undefined), (8, 8, 0));
     assert_eq!(scan.height(7, 7), Some(63.0));
-    assert!(scan.understood().details.contains("% of a cell off their places"));
+    assert!(scan.metadata().details.contains("% of a cell off their places"));
     for wrong in ["2", "0.4", "0.001", "1e-300"] {
-        let declared = Declared { cell: wrong.parse().ok(), ..Declared::default() };
+        let declared = ReadOptions { cell: wrong.parse().ok(), ..ReadOptions::default() };
         assert!(Scan::from_bytes("a.xyz", text.as_bytes(), &declared).is_err(), "{wrong}");
     }
 }
@@ -74,16 +74,16 @@ fn bad_points_are_named() {
     ] {
         assert!(error(text).contains(expected), "{}: {expected}", error(text));
     }
-    let declared = Declared { size: "3 x 2".parse().ok(), ..Declared::default() };
+    let declared = ReadOptions { size: "3 x 2".parse().ok(), ..ReadOptions::default() };
     let error = Scan::from_bytes("a.xyz", b"0 0 1\n1 0 2\n0 1 3\n1 1 4\n", &declared).unwrap_err();
-    assert_eq!(error.to_string(), "a.xyz: size along x: 2 said by the file, but 3 as given");
-    let declared = Declared { lateral_unit: "mm".parse().ok(), ..Declared::default() };
+    assert_eq!(error.to_string(), "a.xyz: size along x: 2 from the file, but 3 as given");
+    let declared = ReadOptions { lateral_unit: "mm".parse().ok(), ..ReadOptions::default() };
     let text = b"# Lateral units: um\n0 0 1\n";
     assert!(matches!(
         Scan::from_bytes("a.xyz", text, &declared).unwrap_err().problem(),
-        Some(Problem::Contradiction { what: "unit of x and y", .. })
+        Some(ContentError::Contradiction { what: "unit of x and y", .. })
     ));
-    let declared = Declared { cell: "1 um".parse().ok(), ..Declared::default() };
+    let declared = ReadOptions { cell: "1 um".parse().ok(), ..ReadOptions::default() };
     assert!(
         Scan::from_bytes("a.xyz", b"0 0 1\n", &declared)
             .unwrap_err()
@@ -94,7 +94,7 @@ fn bad_points_are_named() {
 
 #[test]
 fn cells_are_oblong_or_square_as_the_points_say() {
-    let cell = |text: &str| read(text).unwrap().understood().cell.clone().unwrap().value.map(Quantity::value);
+    let cell = |text: &str| read(text).unwrap().metadata().cell.clone().unwrap().value.map(Quantity::value);
     assert_eq!(Size::from(cell("0 0 1\n1 0 2\n0 2 3\n1 2 3\n")), [1.0, 2.0].into());
     // Points off their places by 0.5 % leave the spacing of three of them open to 1 %: 1.005 and 0.995 are
     // one.
@@ -105,19 +105,19 @@ fn cells_are_oblong_or_square_as_the_points_say() {
     assert_eq!(Size::from(exact), [1.0, 0.99].into());
     // One row has no spacing along y unless somebody says it.
     let row = "0 0 1\n1 0 2\n2 0 3\n";
-    assert_eq!(read(row).unwrap().understood().cell, None);
-    let said = format!("# Width: 3\n# Height: 0.5\n# Lateral units: none\n# Value units: none\n{row}");
-    assert_eq!(Size::from(cell(&said)), [1.0, 0.5].into());
-    let declared = Declared { cell: "1 x 0.25".parse().ok(), ..Declared::default() };
+    assert_eq!(read(row).unwrap().metadata().cell, None);
+    let headed = format!("# Width: 3\n# Height: 0.5\n# Lateral units: none\n# Value units: none\n{row}");
+    assert_eq!(Size::from(cell(&headed)), [1.0, 0.5].into());
+    let declared = ReadOptions { cell: "1 x 0.25".parse().ok(), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.xyz", row.as_bytes(), &declared).unwrap();
-    assert_eq!(Size::from(scan.understood().size.unwrap().map(Quantity::value)), [3.0, 0.25].into());
+    assert_eq!(Size::from(scan.metadata().size.unwrap().map(Quantity::value)), [3.0, 0.25].into());
 }
 
 #[test]
 fn one_point_has_no_spacing() {
     let scan = read("3 4 5\n").unwrap();
-    assert_eq!((scan.understood().rows, scan.understood().columns), (1, 1));
-    assert_eq!(scan.understood().cell, None);
+    assert_eq!((scan.metadata().rows, scan.metadata().columns), (1, 1));
+    assert_eq!(scan.metadata().cell, None);
 }
 
 proptest! {
@@ -145,12 +145,12 @@ proptest! {
             writeln!(text, "{} {} {}", at(i % columns, spacing.0), at(i / columns, spacing.1), i).unwrap();
         }
         let scan = read(&text).unwrap();
-        prop_assert_eq!((scan.understood().rows, scan.understood().columns), (rows, columns));
-        prop_assert_eq!(scan.understood().undefined, rows * columns - kept.len());
+        prop_assert_eq!((scan.metadata().rows, scan.metadata().columns), (rows, columns));
+        prop_assert_eq!(scan.metadata().undefined, rows * columns - kept.len());
         for i in kept {
             prop_assert_eq!(scan.height(i / columns, i % columns), Some(i as f64));
         }
-        let [dx, dy] = scan.understood().cell.clone().unwrap().value.map(Quantity::value);
+        let [dx, dy] = scan.metadata().cell.clone().unwrap().value.map(Quantity::value);
         // Coordinates are rounded at the size of the origin.
         prop_assert!((dx - spacing.0).abs() <= 1e-12 * (origin.abs() + spacing.0));
         prop_assert!((dy - spacing.1).abs() <= 1e-12 * (origin.abs() + spacing.1));

@@ -1,7 +1,7 @@
 //! What comments say: `# Width: 10 um`, `# Height: 10 um`, `# Value units: m`, as Gwyddion exports them and
 //! this crate writes them.
 
-use crate::error::Problem;
+use crate::error::ContentError;
 use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, QuantityError, Unit};
 
@@ -33,7 +33,7 @@ impl Heading {
     /// Takes what a comment says; the first statement of a kind counts.
     ///
     /// Width and height are words of everyday and count where they are lengths; units count or are an error.
-    pub(super) fn read(&mut self, comment: &[u8], line: usize) -> Result<(), Problem> {
+    pub(super) fn read(&mut self, comment: &[u8], line: usize) -> Result<(), ContentError> {
         if comment.len() > LONGEST {
             return Ok(());
         }
@@ -49,16 +49,16 @@ impl Heading {
                 if let Some(Side { quantity, .. }) = side.filter(negative)
                     && quantity.dimension() == Dimension::LENGTH
                 {
-                    return Err(Problem::Side { line, key, value: quantity });
+                    return Err(ContentError::Side { line, key, value: quantity });
                 }
-                let said = if key == "width" { &mut self.width } else { &mut self.height };
-                *said = said.or(side.filter(|s| !negative(s)));
+                let field = if key == "width" { &mut self.width } else { &mut self.height };
+                *field = field.or(side.filter(|s| !negative(s)));
             }
             "value units" | "lateral units" if !value.trim().is_empty() => {
                 let unit =
-                    unit(value).map_err(|source| Problem::Heading { line, key: key.clone(), source })?;
-                let said = if key == "value units" { &mut self.unit } else { &mut self.lateral_unit };
-                said.get_or_insert(unit);
+                    unit(value).map_err(|source| ContentError::Heading { line, key: key.clone(), source })?;
+                let field = if key == "value units" { &mut self.unit } else { &mut self.lateral_unit };
+                field.get_or_insert(unit);
             }
             _ => {}
         }

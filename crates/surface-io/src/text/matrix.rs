@@ -1,16 +1,16 @@
 //! A text matrix: one row per line.
 
 use super::Table;
-use crate::error::Problem;
+use crate::error::ContentError;
 use crate::format::Format;
-use crate::scan::{Declared, Found};
+use crate::scan::{Found, ReadOptions};
 use crate::sides::Extent;
 
 /// The rows of a table as a map; the first line is row 0.
-pub(crate) fn matrix(table: Table, declared: &Declared) -> Result<Found, Problem> {
+pub(crate) fn matrix(table: Table, declared: &ReadOptions) -> Result<Found, ContentError> {
     if declared.lateral_unit.is_some() {
         let reason = "a matrix has no coordinates; give size or cell with a unit";
-        return Err(Problem::Useless { what: "lateral_unit", reason });
+        return Err(ContentError::Useless { what: "lateral_unit", reason });
     }
     let (rows, columns) = (table.rows(), table.columns);
     let extent = extents(&table, columns, rows)?;
@@ -20,7 +20,7 @@ pub(crate) fn matrix(table: Table, declared: &Declared) -> Result<Found, Problem
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells
 /// are square within the digits that it prints.
-fn extents(table: &Table, columns: usize, rows: usize) -> Result<[Option<Extent>; 2], Problem> {
+fn extents(table: &Table, columns: usize, rows: usize) -> Result<[Option<Extent>; 2], ContentError> {
     let [width, height] = table.heading.sides();
     let cell = |side: Extent, count: usize| side.cell(count).map(Extent::Cell);
     let (Some(across), Some(down)) = (width, height) else {
@@ -38,7 +38,7 @@ fn extents(table: &Table, columns: usize, rows: usize) -> Result<[Option<Extent>
     let (a, b) = (across.quantity, down.quantity);
     if a.dimension() != b.dimension() {
         let (first, second) = (format!("{a} is the width"), format!("{b} is the height"));
-        return Err(Problem::Contradiction { what: "size", first, second });
+        return Err(ContentError::Contradiction { what: "size", first, second });
     }
     let (dx, dy) = (Extent::Side(a).cell(columns)?, Extent::Side(b).cell(rows)?);
     let square = (dx.value() / dy.value() - 1.0).abs() <= across.rounding + down.rounding;

@@ -1,6 +1,6 @@
 //! One number as text.
 
-use crate::error::{NumberKind, Place, Problem};
+use crate::error::{ContentError, NumberKind, Place};
 use crate::scan::Decimal;
 
 /// Words for a missing height, besides an empty place between two delimiters and `nan`; in lower case.
@@ -17,7 +17,7 @@ pub(super) struct Numbers {
 
 impl Numbers {
     /// The number, NaN for a missing one.
-    pub(super) fn read(self, token: &[u8], place: Place) -> Result<f64, Problem> {
+    pub(super) fn read(self, token: &[u8], place: Place) -> Result<f64, ContentError> {
         if token.is_empty() {
             return Ok(f64::NAN);
         }
@@ -31,7 +31,7 @@ impl Numbers {
             Some(value) if value.is_infinite() && token.iter().any(u8::is_ascii_digit) => {
                 Err(wrong(token, place, NumberKind::TooLarge))
             }
-            Some(value) if value.is_infinite() => Err(Problem::Infinite { place, value }),
+            Some(value) if value.is_infinite() => Err(ContentError::Infinite { place, value }),
             Some(value) => Ok(value),
             None if text.is_some_and(missing) => Ok(f64::NAN),
             None => Err(wrong(token, place, self.kind(text))),
@@ -56,8 +56,8 @@ fn missing(text: &str) -> bool {
     MISSING.iter().any(|word| word.eq_ignore_ascii_case(text))
 }
 
-fn wrong(token: &[u8], place: Place, kind: NumberKind) -> Problem {
+fn wrong(token: &[u8], place: Place, kind: NumberKind) -> ContentError {
     // Four bytes are the longest character.
     let shown = String::from_utf8_lossy(&token[..token.len().min(4 * QUOTED)]);
-    Problem::Number { place, text: shown.chars().take(QUOTED).collect(), kind }
+    ContentError::Number { place, text: shown.chars().take(QUOTED).collect(), kind }
 }

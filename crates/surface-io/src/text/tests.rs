@@ -1,16 +1,16 @@
-use crate::{Decimal, Declared, NumberKind, Place, Problem, Quantity, Scan, Speaker};
+use crate::{ContentError, Decimal, NumberKind, Origin, Place, Quantity, ReadOptions, Scan};
 use contact_model::Size;
 
 fn read(text: &[u8]) -> crate::Result<Scan> {
-    Scan::from_bytes("a.txt", text, &Declared::default())
+    Scan::from_bytes("a.txt", text, &ReadOptions::default())
 }
 
 fn heights(scan: &Scan) -> Vec<f64> {
-    let (rows, columns) = (scan.understood().rows, scan.understood().columns);
+    let (rows, columns) = (scan.metadata().rows, scan.metadata().columns);
     (0..rows * columns).map(|i| scan.height(i / columns, i % columns).unwrap_or(f64::MIN)).collect()
 }
 
-fn problem(text: &[u8]) -> Problem {
+fn problem(text: &[u8]) -> ContentError {
     read(text).unwrap_err().problem().unwrap().clone()
 }
 
@@ -32,8 +32,8 @@ fn delimiters_comments_and_line_ends() {
     ] {
         assert_eq!(heights(&read(text.as_bytes()).unwrap()), expected, "{text:?}");
     }
-    assert_eq!(read(b"1;2\n3;4").unwrap().understood().details, "semicolons between numbers");
-    let comma = Declared { decimal: Decimal::Comma, ..Declared::default() };
+    assert_eq!(read(b"1;2\n3;4").unwrap().metadata().details, "semicolons between numbers");
+    let comma = ReadOptions { decimal: Decimal::Comma, ..ReadOptions::default() };
     for text in ["1 2,5\n-3e-9 4\n", "1,0;2,5\n-3e-9;4,\n", "1\t2,5\n-3e-9\t4\n"] {
         assert_eq!(
             heights(&Scan::from_bytes("a.csv", text.as_bytes(), &comma).unwrap()),
@@ -41,7 +41,7 @@ fn delimiters_comments_and_line_ends() {
             "{text:?}"
         );
     }
-    let skipped = Declared { skip_lines: 2, ..Declared::default() };
+    let skipped = ReadOptions { skip_lines: 2, ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.csv", b"map of\nheights\n1 2.5\n-3e-9 4\n", &skipped).unwrap();
     assert_eq!(heights(&scan), expected);
 }
@@ -50,21 +50,21 @@ fn delimiters_comments_and_line_ends() {
 fn undefined_points_are_counted() {
     for text in ["1,,3\n4,nan,6\n", "1,NaN,3\n4,BAD,6", "1\t---\t3\n4\t***\t6\n", "1 n/a 3\n4 - 6\n"] {
         let scan = read(text.as_bytes()).unwrap();
-        assert_eq!((scan.understood().undefined, scan.understood().rows), (2, 2), "{text:?}");
-        assert_eq!(scan.understood().range, Some([1.0, 6.0]));
+        assert_eq!((scan.metadata().undefined, scan.metadata().rows), (2, 2), "{text:?}");
+        assert_eq!(scan.metadata().range, Some([1.0, 6.0]));
     }
-    let declared = Declared { missing: Some(-9999.0), ..Declared::default() };
+    let declared = ReadOptions { missing: Some(-9999.0), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.txt", b"1 -9999\n3 4\n", &declared).unwrap();
-    assert_eq!((scan.understood().undefined, scan.height(0, 1), scan.height(0, 0)), (1, None, Some(1.0)));
+    assert_eq!((scan.metadata().undefined, scan.height(0, 1), scan.height(0, 0)), (1, None, Some(1.0)));
     // Heights 1, 3, 4 about their mean 8/3: squares 25/9, 1/9 and 16/9, mean 14/9.
     approx::assert_relative_eq!(
-        scan.understood().rms_height.unwrap(),
+        scan.metadata().rms_height.unwrap(),
         (14.0_f64 / 9.0).sqrt(),
         max_relative = 1e-15
     );
-    let shown = scan.understood().to_string();
+    let shown = scan.metadata().to_string();
     assert!(
-        shown.contains("undefined  1 of 4 points (25.000 %)") && shown.contains("unit not said"),
+        shown.contains("undefined  1 of 4 points (25.000 %)") && shown.contains("unit unknown"),
         "{shown}"
     );
 }
@@ -76,17 +76,17 @@ fn what_a_heading_says_counts() {
     let latin: Vec<u8> = gwyddion.chars().map(|c| c as u8).collect();
     for bytes in [gwyddion.as_bytes(), &latin] {
         let scan = read(bytes).unwrap();
-        let cell = scan.understood().cell.clone().unwrap();
+        let cell = scan.metadata().cell.clone().unwrap();
         let sides = cell.value.map(Quantity::value);
-        assert_eq!((sides, cell.by), ([5e-6; 2], Speaker::File));
-        assert_eq!(Size::from(scan.understood().size.unwrap().map(Quantity::value)), [10e-6, 5e-6].into());
-        assert_eq!(scan.understood().unit.clone().unwrap().value.to_string(), "m");
+        assert_eq!((sides, cell.origin), ([5e-6; 2], Origin::File));
+        assert_eq!(Size::from(scan.metadata().size.unwrap().map(Quantity::value)), [10e-6, 5e-6].into());
+        assert_eq!(scan.metadata().unit.clone().unwrap().value.to_string(), "m");
     }
     // A number of pixels is no length.
-    assert_eq!(read(b"# Width: 512\n1 2\n3 4\n").unwrap().understood().cell, None);
-    assert_eq!(read(b"# Width: 512 px\n1 2\n3 4\n").unwrap().understood().cell, None);
+    assert_eq!(read(b"# Width: 512\n1 2\n3 4\n").unwrap().metadata().cell, None);
+    assert_eq!(read(b"# Width: 512 px\n1 2\n3 4\n").unwrap().metadata().cell, None);
     let plain = read(b"# Width: 3\n# Value units: none\n1 2\n3 4\n").unwrap();
-    assert_eq!(plain.understood().cell.clone().unwrap().value[1].to_string(), "1.5");
+    assert_eq!(plain.metadata().cell.clone().unwrap().value[1].to_string(), "1.5");
     for (text, expected) in [
         (
             "# c\n# Value units: V\n1\n",
@@ -100,36 +100,36 @@ fn what_a_heading_says_counts() {
         let error = read(text.as_bytes()).unwrap_err().to_string();
         assert!(error.starts_with(expected), "{error}");
     }
-    assert_eq!(read(b"# Value units:\n1\n").unwrap().understood().unit, None);
+    assert_eq!(read(b"# Value units:\n1\n").unwrap().metadata().unit, None);
     let oblong = read(b"# Width: 3 um\n# Height: 2 um\n1 2\n3 4\n").unwrap();
-    let cell = oblong.understood().cell.clone().unwrap().value.map(Quantity::value);
+    let cell = oblong.metadata().cell.clone().unwrap().value.map(Quantity::value);
     assert_eq!(Size::from(cell), [1.5e-6, 1e-6].into());
-    assert!(oblong.understood().to_string().contains("cell       1.5e-6 m x 1e-6 m"));
+    assert!(oblong.metadata().to_string().contains("cell       1.5e-6 m x 1e-6 m"));
     assert_eq!(
         read(b"1 2\n# Width: 3 um\n# Height: -2 um\n3 4\n").unwrap_err().to_string(),
         "a.txt: line 3, height = -2e-6 m: expected a length > 0; skip_lines leaves out a header"
     );
     assert!(matches!(
         problem(b"# Width: 3 um\n# Height: 2\n# Value units: none\n1 2\n3 4\n"),
-        Problem::Contradiction { what: "size", .. }
+        ContentError::Contradiction { what: "size", .. }
     ));
 }
 
 #[test]
 fn contradictions_are_named() {
     let text = b"# Width: 10.00 um\n# Value units: nm\n1 2\n3 4\n";
-    let with = |change: fn(&mut Declared)| {
-        let mut declared = Declared::default();
+    let with = |change: fn(&mut ReadOptions)| {
+        let mut declared = ReadOptions::default();
         change(&mut declared);
         Scan::from_bytes("a.txt", text, &declared).map_err(|e| e.to_string())
     };
     let error = with(|d| d.cell = "6 um".parse().ok()).unwrap_err();
-    assert_eq!(error, "a.txt: side of a cell along x: 5e-6 m said by the file, but 6e-6 m as given");
+    assert_eq!(error, "a.txt: side of a cell along x: 5e-6 m from the file, but 6e-6 m as given");
     let error = with(|d| d.unit = "um".parse().ok()).unwrap_err();
-    assert_eq!(error, "a.txt: unit of the heights: nm said by the file, but um as given");
+    assert_eq!(error, "a.txt: unit of the heights: nm from the file, but um as given");
     // The header prints few digits: what is given within them is taken.
     let scan = with(|d| d.width = "10.01 um".parse().ok()).unwrap();
-    assert_eq!(scan.understood().cell.clone().unwrap().by, Speaker::Caller);
+    assert_eq!(scan.metadata().cell.clone().unwrap().origin, Origin::Caller);
     let error = with(|d| {
         d.width = "10 um".parse().ok();
         d.cell = "4 um".parse().ok();
@@ -194,33 +194,33 @@ fn every_bad_text_says_where_and_what_to_do() {
         assert!(error.starts_with(expected), "{error}\n{expected}");
     }
     let long = problem("x".repeat(1000).as_bytes());
-    let Problem::Number { place, text, kind } = long else { panic!("{long}") };
+    let ContentError::Number { place, text, kind } = long else { panic!("{long}") };
     assert_eq!((place, text.len(), kind), (Place::Line { line: 1, value: 1 }, 32, NumberKind::None));
 }
 
 #[test]
 fn three_columns_with_a_format_are_read() {
     let text = b"1 2 3\n1 2 3\n1 2 3\n1 2 3\n";
-    let declared = Declared { format: Some(crate::Format::Text), ..Declared::default() };
+    let declared = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.txt", text, &declared).unwrap();
-    assert_eq!((scan.understood().rows, scan.understood().columns), (4, 3));
-    assert_eq!(read(b"1 2 3\n4 5 6\n7 8 9\n").unwrap().understood().rows, 3);
+    assert_eq!((scan.metadata().rows, scan.metadata().columns), (4, 3));
+    assert_eq!(read(b"1 2 3\n4 5 6\n7 8 9\n").unwrap().metadata().rows, 3);
     // Comments of a matrix, and of points.
-    let said = read(&[b"# Width: 3 um\n# Height: 4 um\n", &text[..]].concat()).unwrap();
-    assert_eq!((said.understood().format, said.understood().rows), (crate::Format::Text, 4));
-    let said = read(b"# Lateral units: um\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n").unwrap();
-    assert_eq!((said.understood().format, said.understood().rows), (crate::Format::Xyz, 2));
+    let headed = read(&[b"# Width: 3 um\n# Height: 4 um\n", &text[..]].concat()).unwrap();
+    assert_eq!((headed.metadata().format, headed.metadata().rows), (crate::Format::Text, 4));
+    let headed = read(b"# Lateral units: um\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n").unwrap();
+    assert_eq!((headed.metadata().format, headed.metadata().rows), (crate::Format::Xyz, 2));
 }
 
 #[test]
 fn files_that_are_none() {
     let dir = tempfile::tempdir().unwrap();
-    let error = Scan::read(dir.path(), &Declared::default()).unwrap_err().to_string();
+    let error = Scan::read(dir.path(), &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.contains("not a regular file"), "{error}");
-    let error = Scan::read(&dir.path().join("none.txt"), &Declared::default()).unwrap_err().to_string();
+    let error = Scan::read(&dir.path().join("none.txt"), &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.starts_with("cannot open "), "{error}");
     std::fs::write(dir.path().join("a.txt"), "1 2\n3 4\n").unwrap();
-    let scan = Scan::read(&dir.path().join("a.txt"), &Declared::default()).unwrap();
+    let scan = Scan::read(&dir.path().join("a.txt"), &ReadOptions::default()).unwrap();
     assert_eq!(heights(&scan), [1.0, 2.0, 3.0, 4.0]);
 }
 
@@ -230,7 +230,7 @@ fn printed_decimals_do_not_make_cells_oblong() {
     let row = "1 2 3 4 5 6 7\n";
     let cell = |width: &str, height: &str| {
         let text = format!("# Width: {width}\n# Height: {height}\n{}", row.repeat(3));
-        read(text.as_bytes()).unwrap().understood().cell.clone().unwrap().value.map(Quantity::value)
+        read(text.as_bytes()).unwrap().metadata().cell.clone().unwrap().value.map(Quantity::value)
     };
     // 10/7 = 1.428571, 4.29/3 = 1.43: within the last digit of 4.29.
     let [dx, dy] = cell("10.00 um", "4.29 um");
@@ -243,11 +243,11 @@ fn printed_decimals_do_not_make_cells_oblong() {
 
 #[test]
 fn sizes_are_one_value_or_two_and_agree() {
-    let with = |change: &dyn Fn(&mut Declared)| {
-        let mut declared = Declared { unit: "nm".parse().ok(), ..Declared::default() };
+    let with = |change: &dyn Fn(&mut ReadOptions)| {
+        let mut declared = ReadOptions { unit: "nm".parse().ok(), ..ReadOptions::default() };
         change(&mut declared);
         let scan = Scan::from_bytes("a.txt", b"1 2 3 4\n5 6 7 8\n", &declared).map_err(|e| e.to_string())?;
-        let found = scan.understood();
+        let found = scan.metadata();
         Ok::<_, String>((
             found.size.unwrap().map(Quantity::value),
             found.cell.clone().unwrap().value.map(Quantity::value),
@@ -278,17 +278,17 @@ fn sizes_are_one_value_or_two_and_agree() {
     }
     // The file and the caller differ along y only.
     let text = b"# Width: 4 um\n# Height: 1 um\n1 2 3 4\n5 6 7 8\n";
-    let error = |change: &dyn Fn(&mut Declared)| {
-        let mut declared = Declared::default();
+    let error = |change: &dyn Fn(&mut ReadOptions)| {
+        let mut declared = ReadOptions::default();
         change(&mut declared);
         Scan::from_bytes("a.txt", text, &declared).unwrap_err().to_string()
     };
     assert_eq!(
         error(&|d| d.size = "4 um x 2 um".parse().ok()),
-        "a.txt: size along y: 1e-6 m said by the file, but 2e-6 m as given"
+        "a.txt: size along y: 1e-6 m from the file, but 2e-6 m as given"
     );
     assert_eq!(
         error(&|d| d.cell = "1 um".parse().ok()),
-        "a.txt: side of a cell along y: 5e-7 m said by the file, but 1e-6 m as given"
+        "a.txt: side of a cell along y: 5e-7 m from the file, but 1e-6 m as given"
     );
 }

@@ -1,12 +1,12 @@
 use super::*;
-use crate::{Declared, Scan, Treatment, Undefined};
+use crate::{Preprocessing, ReadOptions, Scan, Undefined};
 use proptest::prelude::*;
 
-fn check(name: &str, map: &HeightMap, metric: Metric, declared: &Declared) {
+fn check(name: &str, map: &HeightMap, metric: Metric, declared: &ReadOptions) {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join(name);
     write_map(&path, map, metric).unwrap();
-    let keep = Treatment { undefined: Some(Undefined::NoContact), ..Treatment::default() };
+    let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
     let read = Scan::read(&path, declared).unwrap().map(&keep).unwrap();
     assert_eq!((read.cells(), read.undefined()), (map.cells(), map.undefined()));
     let bits = |map: &HeightMap| [map.size().x.to_bits(), map.size().y.to_bits()];
@@ -34,14 +34,14 @@ proptest! {
             let height = |i: usize| if undefined[i] && i > 0 { f64::NAN } else { heights[i] };
             let heights = (0..columns * rows).map(height).collect();
             let map = HeightMap::with_undefined([columns, rows], [side, side * aspect], heights).unwrap();
-            let (metres, plain) = (Some("m".parse().unwrap()), Declared::default());
+            let (metres, plain) = (Some("m".parse().unwrap()), ReadOptions::default());
             for metric in [Metric::Metres, Metric::Unitless] {
                 check("a.txt", &map, metric, &plain);
                 check("a.xyz", &map, metric, &plain);
             }
             let length = |side: f64| crate::Quantity::new(side, Dimension::LENGTH).unwrap();
             let size = Some([length(map.size().x), length(map.size().y)].into());
-            check("a.npy", &map, Metric::Metres, &Declared { size, unit: metres, ..plain });
+            check("a.npy", &map, Metric::Metres, &ReadOptions { size, unit: metres, ..plain });
         }
     }
 }

@@ -11,15 +11,15 @@ const SHOWN: usize = 100;
 /// the place underlined.
 ///
 /// ```
-/// use fractal_contact::Trouble;
-/// let trouble = Trouble::new("`force = -1`: expected a number > 0").at(0..10).with_help("press, do not pull");
+/// use fractal_contact::Diagnostic;
+/// let diagnostic = Diagnostic::new("`force = -1`: expected a number > 0").at(0..10).with_help("press, do not pull");
 /// assert_eq!(
-///     trouble.placed("a.toml".as_ref(), "force = -1\n").to_string(),
+///     diagnostic.placed("a.toml".as_ref(), "force = -1\n").to_string(),
 ///     "error: `force = -1`: expected a number > 0\n --> a.toml:1:1\n  |\n1 | force = -1\n  | ^^^^^^^^^^\n  = help: press, do not pull"
 /// );
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Trouble {
+pub struct Diagnostic {
     message: String,
     is_note: bool,
     span: Option<Range<usize>>,
@@ -35,7 +35,7 @@ struct Place {
     line: Option<(usize, usize, String, usize)>,
 }
 
-impl Trouble {
+impl Diagnostic {
     /// A mistake of the whole file.
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), is_note: false, span: None, help: None, place: None }
@@ -97,7 +97,7 @@ fn excerpt(text: &str, span: &Range<usize>) -> (usize, usize, String, usize) {
     (number, column, shown, width)
 }
 
-impl fmt::Display for Trouble {
+impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", if self.is_note { "note" } else { "error" }, self.message)?;
         let mut indent = 1;
@@ -129,7 +129,7 @@ impl fmt::Display for Trouble {
     }
 }
 
-impl std::error::Error for Trouble {}
+impl std::error::Error for Diagnostic {}
 
 #[cfg(test)]
 mod tests {
@@ -139,7 +139,7 @@ mod tests {
     fn places_are_counted_in_characters() {
         let text = "a = 1\r\nµ = \"x\"\n";
         let at = text.find('"').unwrap();
-        let shown = Trouble::new("m").at(at..at + 3).placed("f".as_ref(), text).to_string();
+        let shown = Diagnostic::new("m").at(at..at + 3).placed("f".as_ref(), text).to_string();
         assert_eq!(shown, "error: m\n --> f:2:5\n  |\n2 | µ = \"x\"\n  |     ^^^");
     }
 
@@ -148,7 +148,7 @@ mod tests {
         for text in ["", "\n", "é", "a\nb", "\n\n", &"x".repeat(5000)] {
             for start in 0..(text.len() + 2).min(40) {
                 for end in [0, start, start + 1, text.len(), text.len() + 7] {
-                    let shown = Trouble::new("m").at(start..end).placed("f".as_ref(), text).to_string();
+                    let shown = Diagnostic::new("m").at(start..end).placed("f".as_ref(), text).to_string();
                     assert!(shown.lines().count() <= 6 && shown.lines().all(|l| l.chars().count() < 140));
                 }
             }

@@ -1,4 +1,4 @@
-use crate::{Crop, Declared, Detrend, Fill, Scan, Treatment, Undefined};
+use crate::{Crop, Detrend, Fill, Preprocessing, ReadOptions, Scan, Undefined};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use contact_model::HeightMap;
 use proptest::prelude::*;
@@ -19,23 +19,23 @@ fn scan(rows: usize, columns: usize, f: impl Fn(f64, f64) -> f64) -> Scan {
 fn scan_of(cell: &str, rows: usize, columns: usize, f: impl Fn(f64, f64) -> f64) -> Scan {
     let heights: Vec<f64> =
         (0..rows * columns).map(|i| f((i % columns) as f64, (i / columns) as f64)).collect();
-    let declared = Declared { cell: cell.parse().ok(), ..Declared::default() };
+    let declared = ReadOptions { cell: cell.parse().ok(), ..ReadOptions::default() };
     Scan::from_bytes("a.npy", &crate::npy(&[rows, columns], &heights).unwrap(), &declared).unwrap()
 }
 
-fn treated(scan: &Scan, change: impl FnOnce(&mut Treatment)) -> crate::Result<HeightMap> {
-    let mut treatment = Treatment::default();
-    change(&mut treatment);
-    scan.map(&treatment)
+fn preprocessed(scan: &Scan, change: impl FnOnce(&mut Preprocessing)) -> crate::Result<HeightMap> {
+    let mut preprocessing = Preprocessing::default();
+    change(&mut preprocessing);
+    scan.map(&preprocessing)
 }
 
 #[test]
 fn units_are_metres_or_none() {
     let read = |cell: &str, unit: Option<&str>| {
         let unit = unit.map(|u| u.parse().unwrap());
-        let declared = Declared { cell: cell.parse().ok(), unit, ..Declared::default() };
+        let declared = ReadOptions { cell: cell.parse().ok(), unit, ..ReadOptions::default() };
         let scan = Scan::from_bytes("a.txt", b"1 2\n3 4\n", &declared).unwrap();
-        treated(&scan, |_| ()).map_err(|e| e.to_string())
+        preprocessed(&scan, |_| ()).map_err(|e| e.to_string())
     };
     let map = read("0.5 um", Some("nm")).unwrap();
     assert_eq!((map.length().to_bits(), map.heights()), (1e-6_f64.to_bits(), &[1e-9, 2e-9, 3e-9, 4e-9][..]));
@@ -57,13 +57,13 @@ fn units_are_metres_or_none() {
 #[test]
 fn crops_take_what_they_say() {
     let wide = scan(2, 5, |x, y| x + 10.0 * y);
-    let whole = treated(&wide, |_| ()).unwrap();
+    let whole = preprocessed(&wide, |_| ()).unwrap();
     assert_eq!((whole.columns(), whole.rows(), whole.size()), (5, 2, [5.0, 2.0].into()));
     assert_eq!(whole.heights()[5..], [10.0, 11.0, 12.0, 13.0, 14.0]);
-    let map = treated(&wide, |t| t.crop = Some(Crop::Centre)).unwrap();
+    let map = preprocessed(&wide, |t| t.crop = Some(Crop::Centre)).unwrap();
     assert_eq!((map.length().to_bits(), map.heights()), (2_f64.to_bits(), &[1.0, 2.0, 11.0, 12.0][..]));
     let window = |row, column, rows, columns| {
-        treated(&wide, |t| t.crop = Some(Crop::Window { row, column, rows, columns }))
+        preprocessed(&wide, |t| t.crop = Some(Crop::Window { row, column, rows, columns }))
     };
     assert_eq!(window(0, 3, 2, 2).unwrap().heights(), [3.0, 4.0, 13.0, 14.0]);
     assert_eq!(window(1, 4, 1, 1).unwrap().heights(), [14.0]);
@@ -77,7 +77,7 @@ fn crops_take_what_they_say() {
     }
     // A square of oblong cells: 4 columns of 1 and 2 rows of 2.
     let oblong = scan_of("1 x 2", 2, 7, |x, _| x);
-    let map = treated(&oblong, |t| t.crop = Some(Crop::Centre)).unwrap();
+    let map = preprocessed(&oblong, |t| t.crop = Some(Crop::Centre)).unwrap();
     assert_eq!((map.columns(), map.rows(), map.size()), (4, 2, 4.0.into()));
     assert_eq!(map.heights()[..4], [1.0, 2.0, 3.0, 4.0]);
 }
@@ -87,27 +87,27 @@ fn undefined_points_are_refused_unless_filled_or_kept() {
     let hole = |x: f64, y: f64| (2.0..5.0).contains(&x) && (1.0..4.0).contains(&y);
     let plane = |x: f64, y: f64| 3.0 + 0.5 * x - 2.0 * y;
     let holed = scan(7, 7, |x, y| if hole(x, y) { f64::NAN } else { plane(x, y) });
-    let error = treated(&holed, |_| ()).unwrap_err().to_string();
+    let error = preprocessed(&holed, |_| ()).unwrap_err().to_string();
     assert!(error.contains("9 of 49 points are undefined, the first in row 1, column 2"), "{error}");
     for fill in [Fill::Neighbours, Fill::Plane] {
-        let map = treated(&holed, |t| t.fill = Some(fill)).unwrap();
+        let map = preprocessed(&holed, |t| t.fill = Some(fill)).unwrap();
         for (i, h) in map.heights().iter().enumerate() {
             assert_abs_diff_eq!(*h, plane((i % 7) as f64, (i / 7) as f64), epsilon = FILLED);
         }
     }
-    let map = treated(&holed, |t| t.fill = Some(Fill::Value("-7".parse().unwrap()))).unwrap();
+    let map = preprocessed(&holed, |t| t.fill = Some(Fill::Value("-7".parse().unwrap()))).unwrap();
     assert!((map.heights()[7 + 2] + 7.0).abs() <= 0.0);
-    let error = treated(&holed, |t| t.fill = Some(Fill::Value("-7 nm".parse().unwrap()))).unwrap_err();
+    let error = preprocessed(&holed, |t| t.fill = Some(Fill::Value("-7 nm".parse().unwrap()))).unwrap_err();
     assert!(
         error.to_string().contains("fill: -7e-9 m is a length: expected a number without a unit"),
         "{error}"
     );
     let empty = scan(2, 2, |_, _| f64::NAN);
-    let error = treated(&empty, |t| t.fill = Some(Fill::Neighbours)).unwrap_err().to_string();
+    let error = preprocessed(&empty, |t| t.fill = Some(Fill::Neighbours)).unwrap_err().to_string();
     assert!(error.contains("4 of 4 points are undefined: expected one height at least"), "{error}");
-    let error = treated(&empty, |t| t.undefined = Some(Undefined::NoContact)).unwrap_err().to_string();
+    let error = preprocessed(&empty, |t| t.undefined = Some(Undefined::NoContact)).unwrap_err().to_string();
     assert!(error.contains("4 of 4 points are undefined"), "{error}");
-    let error = treated(&holed, |t| {
+    let error = preprocessed(&holed, |t| {
         t.undefined = Some(Undefined::NoContact);
         t.fill = Some(Fill::Plane);
     });
@@ -115,7 +115,10 @@ fn undefined_points_are_refused_unless_filled_or_kept() {
     assert!(error.contains("undefined points: fill is given, but undefined = \"no_contact\" too"), "{error}");
     // Without undefined points no fill is needed and none is done.
     let whole = scan(3, 3, plane);
-    assert_eq!(treated(&whole, |t| t.fill = Some(Fill::Plane)).unwrap(), treated(&whole, |_| ()).unwrap());
+    assert_eq!(
+        preprocessed(&whole, |t| t.fill = Some(Fill::Plane)).unwrap(),
+        preprocessed(&whole, |_| ()).unwrap()
+    );
 }
 
 #[test]
@@ -124,7 +127,7 @@ fn filled_heights_are_the_means_of_their_neighbours() {
     let rough = |x: f64, y: f64| (3.0 * x).sin() + (5.0 * y).cos();
     let missing = |x: f64, y: f64| (x * 7.0 + y * 11.0) % 5.0 < 3.0;
     let holed = scan(12, 12, |x, y| if missing(x, y) { f64::NAN } else { 1e6 + rough(x, y) });
-    let map = treated(&holed, |t| t.fill = Some(Fill::Neighbours)).unwrap();
+    let map = preprocessed(&holed, |t| t.fill = Some(Fill::Neighbours)).unwrap();
     let at = |x: usize, y: usize| map.heights()[y * 12 + x] - 1e6;
     for y in 0..12 {
         for x in 0..12 {
@@ -141,7 +144,7 @@ fn filled_heights_are_the_means_of_their_neighbours() {
         }
     }
     let lone = scan(9, 9, |x, y| if x + y > 0.0 { f64::NAN } else { 4.0 });
-    let map = treated(&lone, |t| t.fill = Some(Fill::Neighbours)).unwrap();
+    let map = preprocessed(&lone, |t| t.fill = Some(Fill::Neighbours)).unwrap();
     assert!(map.heights().iter().all(|h| (h - 4.0).abs() <= 0.0));
 }
 
@@ -149,11 +152,11 @@ fn filled_heights_are_the_means_of_their_neighbours() {
 fn trends_are_what_least_squares_give() {
     let quadric = |x: f64, y: f64| 1e3 + 2.0 * x - 3.0 * y + 0.1 * x * x - 0.2 * x * y + 0.05 * y * y;
     let bent = scan(9, 9, quadric);
-    let flat = treated(&bent, |t| t.detrend = Detrend::Quadric).unwrap();
+    let flat = preprocessed(&bent, |t| t.detrend = Detrend::Quadric).unwrap();
     assert!(flat.heights().iter().all(|h| h.abs() < 1e3 * ROUNDING));
     // With holes, the fit is to what was measured: a filled value of any size does not bend it.
     let holed = scan(9, 9, |x, y| if x > 6.0 { f64::NAN } else { quadric(x, y) });
-    let map = treated(&holed, |t| {
+    let map = preprocessed(&holed, |t| {
         t.detrend = Detrend::Quadric;
         t.fill = Some(Fill::Value("1e6".parse().unwrap()));
     });
@@ -162,50 +165,50 @@ fn trends_are_what_least_squares_give() {
     assert_relative_eq!(map.heights()[8], 1e6 - quadric(8.0, 0.0), max_relative = ROUNDING);
     // A residue orthogonal to the plane stays as it is: x y on a centred square.
     let saddle = scan(5, 5, |x, y| (x - 2.0) * (y - 2.0) + x + 4.0);
-    let map = treated(&saddle, |t| t.detrend = Detrend::Plane).unwrap();
+    let map = preprocessed(&saddle, |t| t.detrend = Detrend::Plane).unwrap();
     for (i, h) in map.heights().iter().enumerate() {
         let (x, y) = ((i % 5) as f64 - 2.0, (i / 5) as f64 - 2.0);
         assert_abs_diff_eq!(*h, x * y, epsilon = 16.0 * ROUNDING);
     }
-    let mean = treated(&scan(2, 2, |x, y| x + 2.0 * y), |t| t.detrend = Detrend::Mean).unwrap();
+    let mean = preprocessed(&scan(2, 2, |x, y| x + 2.0 * y), |t| t.detrend = Detrend::Mean).unwrap();
     assert_eq!(mean.heights(), [-1.5, -0.5, 0.5, 1.5]);
     // Too few places for a plane, and all in one line.
     let line = scan(5, 5, |x, y| if (x - y).abs() > 0.0 { f64::NAN } else { x });
-    let error = treated(&line, |t| {
+    let error = preprocessed(&line, |t| {
         t.detrend = Detrend::Plane;
         t.fill = Some(Fill::Neighbours);
     });
     let error = error.unwrap_err().to_string();
     assert!(error.contains("a trend of 3 unknowns is not determined by the 5 defined points"), "{error}");
-    assert!(treated(&scan(2, 2, |x, _| x), |t| t.detrend = Detrend::Quadric).is_err());
+    assert!(preprocessed(&scan(2, 2, |x, _| x), |t| t.detrend = Detrend::Quadric).is_err());
 }
 
 #[test]
 fn coarser_cells_are_means() {
     let fine = scan(4, 4, |x, y| x + 4.0 * y);
-    let map = treated(&fine, |t| t.cells = Some(2)).unwrap();
+    let map = preprocessed(&fine, |t| t.cells = Some(2)).unwrap();
     assert_eq!((map.heights(), map.length().to_bits()), (&[2.5, 4.5, 10.5, 12.5][..], 4_f64.to_bits()));
     // 3 cells to 2: weights 2/3 and 1/3.
-    let map = treated(&scan(3, 3, |x, _| 3.0 * x * x), |t| t.cells = Some(2)).unwrap();
+    let map = preprocessed(&scan(3, 3, |x, _| 3.0 * x * x), |t| t.cells = Some(2)).unwrap();
     for (h, expected) in map.heights().iter().zip([1.0, 9.0, 1.0, 9.0]) {
         assert_relative_eq!(*h, expected, max_relative = ROUNDING);
     }
     for wrong in [0, 5] {
-        let error = treated(&fine, |t| t.cells = Some(wrong)).unwrap_err().to_string();
+        let error = preprocessed(&fine, |t| t.cells = Some(wrong)).unwrap_err().to_string();
         assert!(error.contains(&format!("{wrong} columns: expected 1 to 4")), "{error}");
-        let error = treated(&fine, |t| t.rows = Some(wrong)).unwrap_err().to_string();
+        let error = preprocessed(&fine, |t| t.rows = Some(wrong)).unwrap_err().to_string();
         assert!(error.contains(&format!("{wrong} rows: expected 1 to 4")), "{error}");
     }
     // Columns and rows each for themselves; half as many rows as columns stay half as many.
     let wide = scan_of("1 x 2", 4, 8, |x, y| x + 10.0 * y);
-    let map = treated(&wide, |t| t.cells = Some(2)).unwrap();
+    let map = preprocessed(&wide, |t| t.cells = Some(2)).unwrap();
     assert_eq!((map.rows(), map.size()), (1, [8.0, 8.0].into()));
     assert_eq!(map.heights(), [16.5, 20.5]);
-    let map = treated(&wide, |t| t.rows = Some(2)).unwrap();
+    let map = preprocessed(&wide, |t| t.rows = Some(2)).unwrap();
     assert_eq!((map.columns(), map.rows(), map.heights()[8]), (8, 2, 25.0));
-    let map = treated(&wide, |t| (t.cells, t.rows) = (Some(1), Some(4))).unwrap();
+    let map = preprocessed(&wide, |t| (t.cells, t.rows) = (Some(1), Some(4))).unwrap();
     assert_eq!(map.heights(), [3.5, 13.5, 23.5, 33.5]);
-    assert_eq!(treated(&fine, |t| t.cells = Some(4)).unwrap(), treated(&fine, |_| ()).unwrap());
+    assert_eq!(preprocessed(&fine, |t| t.cells = Some(4)).unwrap(), preprocessed(&fine, |_| ()).unwrap());
 }
 
 /// Points that are kept undefined stay so through the crop and the trend, and coarse cells follow their
@@ -215,8 +218,8 @@ fn undefined_points_are_kept() {
     let plane = |x: f64, y: f64| 5.0 + x - 2.0 * y;
     let gone = |x: f64, y: f64| x >= 4.0 && y < 1.0;
     let holed = scan_of("1 x 0.5", 3, 6, |x, y| if gone(x, y) { f64::NAN } else { plane(x, y) });
-    let keep = |change: &dyn Fn(&mut Treatment)| {
-        treated(&holed, |t| {
+    let keep = |change: &dyn Fn(&mut Preprocessing)| {
+        preprocessed(&holed, |t| {
             t.undefined = Some(Undefined::NoContact);
             change(t);
         })
@@ -234,7 +237,7 @@ fn undefined_points_are_kept() {
     // Coarse cells of 4 columns: one defined, the other half defined and the mean of that half.
     let part = scan(1, 8, |x, _| if x >= 6.0 { f64::NAN } else { x });
     let coarser = |columns: usize| {
-        treated(&part, |t| (t.undefined, t.cells) = (Some(Undefined::NoContact), Some(columns))).unwrap()
+        preprocessed(&part, |t| (t.undefined, t.cells) = (Some(Undefined::NoContact), Some(columns))).unwrap()
     };
     assert_eq!(coarser(2).heights(), [1.5, 4.5]);
     assert_eq!(coarser(4).heights(), [0.5, 2.5, 4.5, f64::NEG_INFINITY]);
@@ -248,7 +251,7 @@ fn fills_know_the_sides_of_a_cell() {
     let harmonic = |x: f64, y: f64| x * x - (0.25 * y).powi(2);
     let gone = |x: f64, y: f64| (1.0..6.0).contains(&x) && (1.0..9.0).contains(&y);
     let holed = scan_of("1 x 0.25", 10, 7, |x, y| if gone(x, y) { f64::NAN } else { harmonic(x, y) });
-    let map = treated(&holed, |t| t.fill = Some(Fill::Neighbours)).unwrap();
+    let map = preprocessed(&holed, |t| t.fill = Some(Fill::Neighbours)).unwrap();
     for (i, h) in map.heights().iter().enumerate() {
         assert_abs_diff_eq!(*h, harmonic((i % 7) as f64, (i / 7) as f64), epsilon = 36.0 * FILLED);
     }
@@ -257,30 +260,32 @@ fn fills_know_the_sides_of_a_cell() {
 #[test]
 fn cells_that_no_map_has_are_refused() {
     for cell in ["1 x 1e9", "1e9 x 1", "1 x 1.1e4"] {
-        let error = treated(&scan_of(cell, 2, 2, |x, _| x), |t| t.fill = Some(Fill::Neighbours)).unwrap_err();
+        let error =
+            preprocessed(&scan_of(cell, 2, 2, |x, _| x), |t| t.fill = Some(Fill::Neighbours)).unwrap_err();
         assert!(error.to_string().contains("a.npy: dx / dy (ratio of the sides of a cell) = "), "{error}");
     }
-    assert!(treated(&scan_of("1 x 1e4", 2, 2, |x, _| x), |_| ()).is_ok());
+    assert!(preprocessed(&scan_of("1 x 1e4", 2, 2, |x, _| x), |_| ()).is_ok());
 }
 
 #[test]
 fn extreme_heights_stay_finite_or_are_named() {
     let huge = scan(3, 3, |x, y| if x + y > 3.0 { f64::NAN } else { 8e307 * (x - y) / 2.0 });
-    let map = treated(&huge, |t| {
+    let map = preprocessed(&huge, |t| {
         t.detrend = Detrend::Plane;
         t.fill = Some(Fill::Neighbours);
     });
     assert!(map.is_ok());
-    let declared = Declared { cell: "1 m".parse().ok(), unit: "km".parse().ok(), ..Declared::default() };
+    let declared =
+        ReadOptions { cell: "1 m".parse().ok(), unit: "km".parse().ok(), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.txt", b"1e308", &declared).unwrap();
-    assert!(treated(&scan, |_| ()).unwrap_err().to_string().contains("after conversion"));
+    assert!(preprocessed(&scan, |_| ()).unwrap_err().to_string().contains("after conversion"));
     let wide = Scan::from_bytes(
         "a.txt",
         b"1.5e308 -1.5e308\n0 0",
-        &Declared { cell: "1".parse().ok(), ..Declared::default() },
+        &ReadOptions { cell: "1".parse().ok(), ..ReadOptions::default() },
     )
     .unwrap();
-    assert!(treated(&wide, |_| ()).unwrap_err().to_string().contains("relief"));
+    assert!(preprocessed(&wide, |_| ()).unwrap_err().to_string().contains("relief"));
 }
 
 proptest! {
@@ -290,8 +295,8 @@ proptest! {
     fn averaging_keeps_the_mean_and_the_range(cells in 1..12_usize, coarse in 1..12_usize, values in any::<[i16; 144]>()) {
         prop_assume!(coarse <= cells);
         let fine = scan(cells, cells, |x, y| f64::from(values[y as usize * 12 + x as usize]));
-        let map = treated(&fine, |t| t.cells = Some(coarse)).unwrap();
-        let whole = treated(&fine, |_| ()).unwrap();
+        let map = preprocessed(&fine, |t| t.cells = Some(coarse)).unwrap();
+        let whole = preprocessed(&fine, |_| ()).unwrap();
         let mean = |m: &HeightMap| m.heights().iter().sum::<f64>() / m.heights().len() as f64;
         prop_assert!((mean(&map) - mean(&whole)).abs() <= 32768.0 * ROUNDING);
         prop_assert!(map.highest() <= whole.highest() + 32768.0 * ROUNDING);
@@ -302,9 +307,9 @@ proptest! {
     fn a_fit_leaves_nothing_to_fit(cells in 3..10_usize, values in any::<[i16; 100]>()) {
         let rough = scan(cells, cells, |x, y| f64::from(values[y as usize * 10 + x as usize]));
         for detrend in [Detrend::Mean, Detrend::Plane, Detrend::Quadric] {
-            let once = treated(&rough, |t| t.detrend = detrend).unwrap();
+            let once = preprocessed(&rough, |t| t.detrend = detrend).unwrap();
             let again = scan(cells, cells, |x, y| once.heights()[y as usize * cells + x as usize]);
-            let twice = treated(&again, |t| t.detrend = detrend).unwrap();
+            let twice = preprocessed(&again, |t| t.detrend = detrend).unwrap();
             for (a, b) in once.heights().iter().zip(twice.heights()) {
                 prop_assert!((a - b).abs() <= 32768.0 * ROUNDING);
             }

@@ -1,15 +1,15 @@
 //! Words of scenes and command lines.
 
 use crate::format::Format;
+use crate::preprocessing::{Crop, Detrend, Fill, Undefined};
 use crate::quantity::QuantityError;
 use crate::scan::Decimal;
-use crate::treatment::{Crop, Detrend, Fill, Undefined};
 use std::fmt;
 use std::str::FromStr;
 
 /// A word that is not one of those expected.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WordError {
+pub struct KeywordError {
     /// What it should say.
     pub what: &'static str,
     /// The word, shortened.
@@ -20,13 +20,13 @@ pub struct WordError {
     pub quantity: Option<QuantityError>,
 }
 
-impl WordError {
+impl KeywordError {
     fn new(what: &'static str, found: &str, expected: &'static str) -> Self {
         Self { what, found: found.chars().take(32).collect(), expected, quantity: None }
     }
 }
 
-impl fmt::Display for WordError {
+impl fmt::Display for KeywordError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} = {:?}: expected {}", self.what, self.found, self.expected)?;
         match &self.quantity {
@@ -36,104 +36,107 @@ impl fmt::Display for WordError {
     }
 }
 
-impl std::error::Error for WordError {}
+impl std::error::Error for KeywordError {}
 
 impl FromStr for Format {
-    type Err = WordError;
+    type Err = KeywordError;
 
     /// Reads `npy`, `text` or `xyz`.
     ///
     /// # Errors
-    /// [`WordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, WordError> {
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
         match text {
             "npy" => Ok(Self::Npy),
             "text" => Ok(Self::Text),
             "xyz" => Ok(Self::Xyz),
-            other => Err(WordError::new("format", other, "npy, text or xyz")),
+            other => Err(KeywordError::new("format", other, "npy, text or xyz")),
         }
     }
 }
 
 impl FromStr for Decimal {
-    type Err = WordError;
+    type Err = KeywordError;
 
     /// Reads `point` or `comma`.
     ///
     /// # Errors
-    /// [`WordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, WordError> {
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
         match text {
             "point" => Ok(Self::Point),
             "comma" => Ok(Self::Comma),
-            other => Err(WordError::new("decimal", other, "point or comma")),
+            other => Err(KeywordError::new("decimal", other, "point or comma")),
         }
     }
 }
 
 impl FromStr for Detrend {
-    type Err = WordError;
+    type Err = KeywordError;
 
     /// Reads `none`, `mean`, `plane` or `quadric`.
     ///
     /// # Errors
-    /// [`WordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, WordError> {
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
         match text {
             "none" => Ok(Self::Nothing),
             "mean" => Ok(Self::Mean),
             "plane" => Ok(Self::Plane),
             "quadric" => Ok(Self::Quadric),
-            other => Err(WordError::new("detrend", other, "none, mean, plane or quadric")),
+            other => Err(KeywordError::new("detrend", other, "none, mean, plane or quadric")),
         }
     }
 }
 
 impl FromStr for Fill {
-    type Err = WordError;
+    type Err = KeywordError;
 
     /// Reads `neighbours`, `plane` or a height such as `-2 um`.
     ///
     /// # Errors
-    /// [`WordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, WordError> {
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
         match text {
             "neighbours" => Ok(Self::Neighbours),
             "plane" => Ok(Self::Plane),
             other => other.parse().map(Self::Value).map_err(|quantity| {
-                let error = WordError::new("fill", other, "neighbours, plane or a height such as \"-2 um\"");
-                WordError { quantity: Some(quantity), ..error }
+                let error =
+                    KeywordError::new("fill", other, "neighbours, plane or a height such as \"-2 um\"");
+                KeywordError { quantity: Some(quantity), ..error }
             }),
         }
     }
 }
 
 impl FromStr for Undefined {
-    type Err = WordError;
+    type Err = KeywordError;
 
     /// Reads `no_contact`.
     ///
     /// # Errors
-    /// [`WordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, WordError> {
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
         match text {
             "no_contact" => Ok(Self::NoContact),
-            other => {
-                Err(WordError::new("undefined", other, "no_contact (fill gives undefined points a height)"))
-            }
+            other => Err(KeywordError::new(
+                "undefined",
+                other,
+                "no_contact (fill gives undefined points a height)",
+            )),
         }
     }
 }
 
 impl FromStr for Crop {
-    type Err = WordError;
+    type Err = KeywordError;
 
     /// Reads `centre`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are
     /// as many columns as rows.
     ///
     /// # Errors
-    /// [`WordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, WordError> {
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
         if text == "centre" {
             return Ok(Self::Centre);
         }
@@ -141,7 +144,7 @@ impl FromStr for Crop {
         match numbers.as_deref() {
             Ok(&[row, column, cells]) => Ok(Self::Window { row, column, rows: cells, columns: cells }),
             Ok(&[row, column, rows, columns]) => Ok(Self::Window { row, column, rows, columns }),
-            _ => Err(WordError::new(
+            _ => Err(KeywordError::new(
                 "crop",
                 text,
                 "centre, or row, column, rows and columns such as \"10,20,256,512\"",

@@ -1,6 +1,6 @@
 //! Least-squares polynomials in x and y.
 
-use crate::error::Problem;
+use crate::error::ContentError;
 use contact_model::Cells;
 
 /// What is subtracted from the heights.
@@ -45,7 +45,7 @@ impl Detrend {
     }
 
     /// Fits the heights that are not NaN; `None` for nothing to subtract.
-    pub(super) fn fit(self, cells: Cells, heights: &[f64]) -> Result<Option<Trend>, Problem> {
+    pub(super) fn fit(self, cells: Cells, heights: &[f64]) -> Result<Option<Trend>, ContentError> {
         let unknowns = self.unknowns();
         if unknowns == 0 {
             return Ok(None);
@@ -84,7 +84,8 @@ impl Detrend {
                 }
             }
         }
-        let coefficients = solve(&mut matrix, right, unknowns).ok_or(Problem::Trend { present, unknowns })?;
+        let coefficients =
+            solve(&mut matrix, right, unknowns).ok_or(ContentError::Trend { present, unknowns })?;
         Ok(Some(Trend { unknowns, coefficients, unit, middle }))
     }
 }

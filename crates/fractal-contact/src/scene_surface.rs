@@ -1,19 +1,19 @@
-//! What carries the relief: `[scene.surface]`, and `[scene.body]` added to it.
+//! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
 
+use crate::diagnostic::Diagnostic;
 use crate::entries::{Entries, Lengths, Read, System};
+use crate::human_readable::number;
 use crate::numerics::Numerics;
 use crate::scan;
-use crate::trouble::Trouble;
-use crate::words::number;
 use contact_model::{Amplitude, Error, HeightMap, Result, SelfAffine, Size, Surface};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use surface_io::Dimension;
 
-/// The relief of a scene.
+/// What is pressed: a surface, or a random surface on a body.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Relief {
+pub enum SceneSurface {
     /// One surface.
     Plain(Surface),
     /// A random surface on a body: heights add.
@@ -25,7 +25,7 @@ pub enum Relief {
     },
 }
 
-impl Relief {
+impl SceneSurface {
     /// Sides of the nominal contact area.
     pub fn size(&self) -> Size {
         match self {
@@ -73,7 +73,7 @@ impl Relief {
     ///
     /// # Errors
     /// [`Error::Unsupported`] for a sum and a model without cells, and what drawing a surface refuses.
-    pub fn surface(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
+    pub fn for_model(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
         match self {
             Self::Plain(surface) => Ok(surface.clone()),
             Self::Sum { rough, body } => {
@@ -126,53 +126,53 @@ pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
 }
 
 /// `[scene.surface]` and `[scene.body]` as they were read.
-pub(crate) struct Found {
-    pub relief: Relief,
-    /// What was understood of a file.
-    pub understood: Option<String>,
+pub(crate) struct SurfaceEntry {
+    pub surface: SceneSurface,
+    /// What was metadata of a file.
+    pub metadata: Option<String>,
     /// Remarks on the keys.
-    pub notes: Vec<Trouble>,
+    pub notes: Vec<Diagnostic>,
 }
 
-impl From<Relief> for Found {
-    fn from(relief: Relief) -> Self {
-        Self { relief, understood: None, notes: Vec::new() }
+impl From<SceneSurface> for SurfaceEntry {
+    fn from(surface: SceneSurface) -> Self {
+        Self { surface, metadata: None, notes: Vec::new() }
     }
 }
 
 /// Reads `[scene.surface]` and `[scene.body]`.
-pub(crate) fn read_relief(scene: &Entries<'_>, system: System, directory: &Path) -> Read<Found> {
+pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path) -> Read<SurfaceEntry> {
     let surface = scene.table("surface")?;
     let body = scene.table("body")?;
     let Some(surface) = surface else {
         let Some(body) = body else {
             return Err(scene
-                .trouble("nothing is pressed: there is neither [scene.surface] nor [scene.body]")
+                .diagnostic("nothing is pressed: there is neither [scene.surface] nor [scene.body]")
                 .with_help(
                     "describe one: [scene.surface] with `kind = \"self_affine\"` or \"file\", or [scene.body] with `kind = \"sphere\"`",
                 ));
         };
-        return Ok(Relief::Plain(read_body(&body, None, system)?).into());
+        return Ok(SceneSurface::Plain(read_body(&body, None, system)?).into());
     };
     if surface.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == Rough::File {
-        let scan::Found { map, understood, notes } = scan::read_map(&surface, system, directory)?;
+        let scan::FileMap { map, metadata, notes } = scan::read_map(&surface, system, directory)?;
         let map = match body {
             None => map,
             Some(body) => {
                 let body = read_body(&body, Some(map.size()), system)?;
-                add(&map, &body).map_err(|e| scene.trouble(e.to_string()))?
+                add(&map, &body).map_err(|e| scene.diagnostic(e.to_string()))?
             }
         };
-        let relief = Relief::Plain(Surface::Heights(Arc::new(map)));
-        return Ok(Found { relief, understood: Some(understood), notes });
+        let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
+        return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), notes });
     }
     let rough = read_self_affine(&surface, system)?;
     surface.known_only()?;
-    let relief = match body {
-        None => Relief::Plain(Surface::SelfAffine(rough)),
-        Some(body) => Relief::Sum { rough, body: read_body(&body, Some(rough.size), system)? },
+    let sum = match body {
+        None => SceneSurface::Plain(Surface::SelfAffine(rough)),
+        Some(body) => SceneSurface::Sum { rough, body: read_body(&body, Some(rough.size), system)? },
     };
-    Ok(relief.into())
+    Ok(sum.into())
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -192,7 +192,7 @@ fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
         Some((_, e)) => 3.0 - within(&e, e.number()?, 2.0, 3.0)?,
         None => {
             return Err(table
-                .trouble("`fractal_dimension` is missing in [scene.surface]")
+                .diagnostic("`fractal_dimension` is missing in [scene.surface]")
                 .with_help("add `fractal_dimension = 2.4`, or `hurst = 0.6`"));
         }
     };
@@ -204,7 +204,7 @@ fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
         && long < short
     {
         return Err(entry
-            .trouble("`roll_off_wavelength` is below `shortest_wavelength`")
+            .diagnostic("`roll_off_wavelength` is below `shortest_wavelength`")
             .with_help("the roll-off is the longest wave of the fractal range"));
     }
     let wavenumber = |wavelength: f64| 2.0 * PI / wavelength;
@@ -225,7 +225,7 @@ fn read_size(table: &Entries<'_>, system: System) -> Read<Size> {
             Lengths::Two(sides) => sides.into(),
         }),
         Some((_, entry)) if entry.is_list() => Err(entry
-            .trouble(format!("`side` has {} values: it is the one of a square", entry.list().len()))
+            .diagnostic(format!("`side` has {} values: it is the one of a square", entry.list().len()))
             .with_help("both sides of a rectangle are `size = [Lx, Ly]`")),
         Some((_, entry)) => entry.positive(Dimension::LENGTH, system).map(Size::from),
         None => table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system).map(Size::from),
@@ -237,7 +237,7 @@ fn within(entry: &crate::entries::Entry<'_>, value: f64, low: f64, high: f64) ->
         Ok(value)
     } else {
         Err(entry
-            .trouble(format!("{value} is outside [{low}, {high}]"))
+            .diagnostic(format!("{value} is outside [{low}, {high}]"))
             .with_help("D_f = 3 - H lies in [2, 3], H in [0, 1]"))
     }
 }
@@ -269,7 +269,7 @@ fn read_body(table: &Entries<'_>, given: Option<Size>, system: System) -> Read<S
     let size = match (given, table.one_of(&["side", "size"])?) {
         (Some(_), Some((key, entry))) => {
             return Err(entry
-                .trouble_at_key(format!("`{key}` is given for the body, which has that of the surface"))
+                .diagnostic_at_key(format!("`{key}` is given for the body, which has that of the surface"))
                 .with_help("remove it in [scene.body]: the area is that of [scene.surface]"));
         }
         (Some(size), None) => size,

@@ -8,7 +8,7 @@ use surface_io::{Dimension, Metric, Quantity, Sides, describe, write_map};
 
 /// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Make {
+pub struct GeneratedSurface {
     /// Columns.
     pub cells: usize,
     /// Rows; `None`: as many as make the cells nearest to squares.
@@ -27,7 +27,7 @@ pub struct Make {
     pub seed: u64,
 }
 
-impl Make {
+impl GeneratedSurface {
     /// Draws the surface, writes it (`.npy`, `.txt`, `.xyz` or `.vti`) and says in a few lines what it is.
     ///
     /// # Errors

@@ -6,19 +6,19 @@ mod trend;
 
 pub use trend::Detrend;
 
-use crate::error::{Error, Place, Problem, Result};
+use crate::error::{ContentError, Error, Place, Result};
 use crate::quantity::{Dimension, Quantity};
 use crate::scan::Scan;
 use contact_model::{Cells, HeightMap, Size};
 
 /// What is done to a scan, in this order; nothing unless named.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Treatment {
+pub struct Preprocessing {
     /// Which part is taken.
     pub crop: Option<Crop>,
-    /// What becomes of undefined points. Without it and without [`Treatment::fill`] they are an error.
+    /// What becomes of undefined points. Without it and without [`Preprocessing::fill`] they are an error.
     pub undefined: Option<Undefined>,
-    /// Which heights undefined points get; it contradicts [`Treatment::undefined`].
+    /// Which heights undefined points get; it contradicts [`Preprocessing::undefined`].
     pub fill: Option<Fill>,
     /// What is subtracted: fitted to the points that are defined in the file, after the crop.
     pub detrend: Detrend,
@@ -80,104 +80,104 @@ impl Scan {
     ///
     /// # Errors
     /// [`Error::Content`]: undefined points that are neither filled nor kept, or both; sides or unit of the
-    /// heights not said (one of them with a unit and the other without), cells whose sides differ by more
+    /// heights unknown (one of them with a unit and the other without), cells whose sides differ by more
     /// than 1e4, a crop that leaves the map, finer cells, heights that overflow, a trend that the heights do
     /// not determine.
     ///
     /// ```
-    /// use surface_io::{Declared, Detrend, Scan, Treatment};
-    /// let declared = Declared { cell: Some("1 um".parse()?), unit: Some("nm".parse()?), ..Declared::default() };
+    /// use surface_io::{ReadOptions, Detrend, Scan, Preprocessing};
+    /// let declared = ReadOptions { cell: Some("1 um".parse()?), unit: Some("nm".parse()?), ..ReadOptions::default() };
     /// let scan = Scan::from_bytes("a.txt", b"1 2\n3 6\n", &declared)?;
-    /// let map = scan.map(&Treatment { detrend: Detrend::Mean, ..Treatment::default() })?;
+    /// let map = scan.map(&Preprocessing { detrend: Detrend::Mean, ..Preprocessing::default() })?;
     /// assert_eq!((map.columns(), map.length()), (2, 2e-6));
     /// assert_eq!(map.heights()[0], -2e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn map(&self, treatment: &Treatment) -> Result<HeightMap> {
-        self.treated(treatment).map_err(Error::content(self.path()))
+    pub fn map(&self, preprocessing: &Preprocessing) -> Result<HeightMap> {
+        self.preprocessed(preprocessing).map_err(Error::content(self.path()))
     }
 
-    fn treated(&self, treatment: &Treatment) -> Result<HeightMap, Problem> {
-        if let (Some(_), Some(Undefined::NoContact)) = (treatment.fill, treatment.undefined) {
+    fn preprocessed(&self, preprocessing: &Preprocessing) -> Result<HeightMap, ContentError> {
+        if let (Some(_), Some(Undefined::NoContact)) = (preprocessing.fill, preprocessing.undefined) {
             let (first, second) = ("fill is given".into(), "undefined = \"no_contact\" too".into());
-            return Err(Problem::Contradiction { what: "undefined points", first, second });
+            return Err(ContentError::Contradiction { what: "undefined points", first, second });
         }
         let (size, cell) = self.sides()?;
         // Cells that no map may have are refused before anything is fitted to them.
-        Cells::from(1).validate(Size::from(cell)).map_err(Problem::Map)?;
-        let (cells, mut heights) = self.part(treatment.crop, cell)?;
+        Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
+        let (cells, mut heights) = self.part(preprocessing.crop, cell)?;
         let undefined = heights.iter().filter(|h| h.is_nan()).count();
         if undefined == heights.len() {
-            return Err(Problem::AllUndefined { points: heights.len() });
+            return Err(ContentError::AllUndefined { points: heights.len() });
         }
-        if let Some(unit) = &self.understood().unit {
+        if let Some(unit) = &self.metadata().unit {
             for h in &mut heights {
                 *h = unit.value.to_si(*h);
             }
         }
         if let Some(value) = heights.iter().copied().find(|h| h.is_infinite()) {
-            return Err(Problem::Overflow { value });
+            return Err(ContentError::Overflow { value });
         }
-        let trend = treatment.detrend.fit(cells, &heights)?;
+        let trend = preprocessing.detrend.fit(cells, &heights)?;
         if undefined > 0 {
             let first = heights.iter().position(|h| h.is_nan()).unwrap_or(0);
             let first = Place::Cell { row: first / cells.columns, column: first % cells.columns };
-            match (treatment.fill, treatment.undefined) {
+            match (preprocessing.fill, preprocessing.undefined) {
                 (Some(fill), _) => self.fill(fill, cells, cell, &mut heights)?,
                 (None, Some(Undefined::NoContact)) => {}
                 (None, None) => {
-                    return Err(Problem::Undefined { undefined, points: heights.len(), first });
+                    return Err(ContentError::Undefined { undefined, points: heights.len(), first });
                 }
             }
         }
         if let Some(trend) = trend {
             trend.subtract(cells, &mut heights);
         }
-        let whole = cells == Cells { columns: self.understood().columns, rows: self.understood().rows };
+        let whole = cells == Cells { columns: self.metadata().columns, rows: self.metadata().rows };
         let part = [cell[0] * cells.columns as f64, cell[1] * cells.rows as f64];
         let size = if whole { size } else { part };
-        let coarse = coarse(treatment, cells)?;
+        let coarse = coarse(preprocessing, cells)?;
         let heights = resample::coarsen(heights, cells, coarse);
-        let kept = undefined > 0 && treatment.fill.is_none();
+        let kept = undefined > 0 && preprocessing.fill.is_none();
         let map = if kept {
             HeightMap::with_undefined(coarse, size, heights)
         } else {
             HeightMap::new(coarse, size, heights)
         };
-        map.map_err(Problem::Map)
+        map.map_err(ContentError::Map)
     }
 
     /// Sides of the map and of a cell in metres, or in the numbers of the file.
-    fn sides(&self) -> Result<([f64; 2], [f64; 2]), Problem> {
-        let understood = self.understood();
-        let unit = understood.unit.as_ref().map(|u| u.value.dimension());
-        let (Some(size), Some(cell)) = (understood.size, &understood.cell) else {
+    fn sides(&self) -> Result<([f64; 2], [f64; 2]), ContentError> {
+        let metadata = self.metadata();
+        let unit = metadata.unit.as_ref().map(|u| u.value.dimension());
+        let (Some(size), Some(cell)) = (metadata.size, &metadata.cell) else {
             let remedy = "say size = [\"1 mm\", \"2 mm\"] or cell = \"0.5 um\", or numbers where the heights have no unit";
-            return Err(Problem::Unsaid { what: "the size of the map", remedy });
+            return Err(ContentError::Unspecified { what: "the size of the map", remedy });
         };
         let dx = cell.value[0];
         match unit {
-            None if dx.dimension() == Dimension::LENGTH => Err(Problem::Unsaid {
+            None if dx.dimension() == Dimension::LENGTH => Err(ContentError::Unspecified {
                 what: "the unit of the heights",
                 remedy: "say unit = \"nm\" or another unit of length",
             }),
             unit if dx.dimension() == unit.unwrap_or(Dimension::NONE) => {
                 Ok((size.map(Quantity::value), cell.value.map(Quantity::value)))
             }
-            _ => Err(Problem::Contradiction {
+            _ => Err(ContentError::Contradiction {
                 what: "units",
                 first: format!("the side of a cell is {dx}"),
                 second: format!(
                     "the heights have {}",
-                    understood.unit.as_ref().map_or_else(|| "no unit".into(), |u| u.value.to_string())
+                    metadata.unit.as_ref().map_or_else(|| "no unit".into(), |u| u.value.to_string())
                 ),
             }),
         }
     }
 
     /// The heights that are left by a crop.
-    fn part(&self, crop: Option<Crop>, cell: [f64; 2]) -> Result<(Cells, Vec<f64>), Problem> {
-        let (all_rows, all_columns) = (self.understood().rows, self.understood().columns);
+    fn part(&self, crop: Option<Crop>, cell: [f64; 2]) -> Result<(Cells, Vec<f64>), ContentError> {
+        let (all_rows, all_columns) = (self.metadata().rows, self.metadata().columns);
         let (row, column, rows, columns) = match crop {
             None => {
                 let cells = Cells { columns: all_columns, rows: all_rows };
@@ -196,14 +196,20 @@ impl Scan {
         };
         if !inside(row, rows, all_rows) || !inside(column, columns, all_columns) {
             let (cells, shape) = ([rows, columns], [all_rows, all_columns]);
-            return Err(Problem::Crop { from: [row, column], cells, shape });
+            return Err(ContentError::Crop { from: [row, column], cells, shape });
         }
         let part = |row: &[f64]| row[column..column + columns].to_vec();
         let rows_taken = self.heights().chunks_exact(all_columns).skip(row).take(rows);
         Ok((Cells { columns, rows }, rows_taken.flat_map(part).collect()))
     }
 
-    fn fill(&self, fill: Fill, cells: Cells, cell: [f64; 2], heights: &mut [f64]) -> Result<(), Problem> {
+    fn fill(
+        &self,
+        fill: Fill,
+        cells: Cells,
+        cell: [f64; 2],
+        heights: &mut [f64],
+    ) -> Result<(), ContentError> {
         match fill {
             Fill::Neighbours => fill::harmonic(cells, cell[1] / cell[0], heights),
             Fill::Plane => {
@@ -212,9 +218,9 @@ impl Scan {
                 }
             }
             Fill::Value(value) => {
-                let unit = self.understood().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
+                let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
                 let value =
-                    value.expect(unit).map_err(|source| Problem::Quantity { what: "fill", source })?;
+                    value.expect(unit).map_err(|source| ContentError::Quantity { what: "fill", source })?;
                 heights.iter_mut().filter(|h| h.is_nan()).for_each(|h| *h = value);
             }
         }
@@ -223,9 +229,9 @@ impl Scan {
 }
 
 /// Columns and rows after averaging.
-fn coarse(treatment: &Treatment, cells: Cells) -> Result<Cells, Problem> {
+fn coarse(preprocessing: &Preprocessing, cells: Cells) -> Result<Cells, ContentError> {
     let Cells { columns, rows } = cells;
-    let coarse = match (treatment.cells, treatment.rows) {
+    let coarse = match (preprocessing.cells, preprocessing.rows) {
         (None, None) => return Ok(cells),
         (None, Some(rows)) => Cells { columns, rows },
         (Some(columns), Some(rows)) => Cells { columns, rows },
@@ -237,7 +243,7 @@ fn coarse(treatment: &Treatment, cells: Cells) -> Result<Cells, Problem> {
     };
     for (what, asked, found) in [("columns", coarse.columns, columns), ("rows", coarse.rows, rows)] {
         if asked == 0 || asked > found {
-            return Err(Problem::Resample { what, cells: asked, found });
+            return Err(ContentError::Resample { what, cells: asked, found });
         }
     }
     Ok(coarse)

@@ -1,9 +1,9 @@
 //! Problems in words: where, which value, what to do.
 
-use super::{NumberKind, Problem};
+use super::{ContentError, NumberKind};
 use std::fmt;
 
-impl fmt::Display for Problem {
+impl fmt::Display for ContentError {
     #[allow(clippy::too_many_lines)] // One arm per problem is the plainest table of them.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -19,8 +19,8 @@ impl fmt::Display for Problem {
                 write!(f, "no memory for its numbers, {bytes} bytes: crop or average it on a larger machine")
             }
             Self::Foreign { what, remedy } => write!(f, "looks like {what}: {remedy}"),
-            Self::NotOfFormat { said, found } => {
-                write!(f, "said to be {said}, but the content is {found}: correct the name or the format")
+            Self::NotOfFormat { expected, found } => {
+                write!(f, "expected {expected}, but the content is {found}: correct the name or the format")
             }
             Self::Ambiguous { lines } => write!(
                 f,
@@ -99,10 +99,12 @@ impl fmt::Display for Problem {
             Self::AllUndefined { points } => {
                 write!(f, "{points} of {points} points are undefined: expected one height at least")
             }
-            Self::Unsaid { what, remedy } => write!(f, "{what} is neither in the file nor given: {remedy}"),
+            Self::Unspecified { what, remedy } => {
+                write!(f, "{what} is neither in the file nor given: {remedy}")
+            }
             Self::Contradiction { what, first, second } => write!(f, "{what}: {first}, but {second}"),
             Self::Useless { what, reason } => write!(f, "{what} was given: {reason}"),
-            Self::Said { what, value, expected } => write!(f, "{what} = {value}: expected {expected}"),
+            Self::OutOfRange { what, value, expected } => write!(f, "{what} = {value}: expected {expected}"),
             Self::Heading { line, key, source } => {
                 write!(f, "line {line}, {key}: {source}; skip_lines leaves out a header")
             }
