@@ -203,11 +203,14 @@ fn conductance_is_the_stiffness_by_barber() {
 fn shown_scenes_are_scenes() {
     let readme = std::fs::read_to_string(folder().join("../../README.md")).unwrap();
     let shown = readme.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
-    let shown = SceneFile::parse("periodic-theories.toml".as_ref(), shown.to_owned())
-        .unwrap_or_else(|e| panic!("{e}"));
-    let file = SceneFile::read(&folder().join("periodic-theories.toml")).unwrap();
-    assert_eq!((&shown.models, &shown.relief, &shown.request), (&file.models, &file.relief, &file.request));
-    assert_eq!((&shown.effects, &shown.asked, &shown.chance), (&file.effects, &file.asked, &file.chance));
+    let path = folder().join("measured-map.toml");
+    let shown = SceneFile::parse(&path, shown.to_owned()).unwrap_or_else(|e| panic!("{e}"));
+    let file = SceneFile::read(&path).unwrap();
+    assert_eq!((&shown.models, &shown.surface, &shown.request), (&file.models, &file.surface, &file.request));
+    assert_eq!(
+        (&shown.effects, &shown.requested, &shown.sampling),
+        (&file.effects, &file.requested, &file.sampling)
+    );
     let help =
         std::process::Command::new(env!("CARGO_BIN_EXE_fractal-contact")).arg("--help").output().unwrap();
     let help = String::from_utf8(help.stdout).unwrap();
