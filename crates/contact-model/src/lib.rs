@@ -30,6 +30,7 @@
 //! ```
 
 mod error;
+mod fields;
 mod grid;
 mod history;
 mod load;
@@ -45,6 +46,7 @@ mod state;
 mod work;
 
 pub use error::{Error, Result};
+pub use fields::Fields;
 pub use grid::{Cells, HeightMap, Line, Size};
 pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use load::Load;
@@ -56,5 +58,5 @@ pub use pair::{Body, Pair};
 pub use patches::Patches;
 pub use rheology::{PronySeries, Relaxing, Rheology};
 pub use scene::{Adhesion, Amplitude, Boundary, Effects, Friction, Scene, SelfAffine, Surface, line_length};
-pub use state::{Certificate, ContactState, Fields, SolveReport, Status};
+pub use state::{Certificate, ContactState, SolveReport, Status};
 pub use work::Work;

@@ -1,6 +1,7 @@
 //! What is asked for.
 
 use crate::error::{Error, Result, non_negative, positive};
+use crate::state::ContactState;
 
 /// What is computed besides force and approach. What is not asked for is not computed and not stored.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -110,6 +111,22 @@ impl Conductance {
         } else {
             Err(Error::domain("conductance", conductance, "a number within the range of f64"))
         }
+    }
+}
+
+impl ContactState {
+    /// The state with what follows from its stiffness, and without the stiffness where that was not asked for itself.
+    ///
+    /// The last thing that a model does: it computes the stiffness where [`Outputs::needs_stiffness`] says so.
+    ///
+    /// # Errors
+    /// As [`Conductance::of`].
+    pub fn completed(mut self, outputs: &Outputs, modulus: f64) -> Result<Self> {
+        if let Some(stiffness) = self.stiffness {
+            self.conductance = outputs.conductance.of(stiffness, modulus)?;
+        }
+        self.stiffness = self.stiffness.filter(|_| outputs.stiffness);
+        Ok(self)
     }
 }
 

@@ -1,7 +1,6 @@
 //! What comes back from a solve, and its evidence.
 
-use crate::error::Result;
-use crate::outputs::Outputs;
+use crate::fields::Fields;
 use crate::patches::Patches;
 use crate::work::Work;
 use std::fmt;
@@ -25,33 +24,6 @@ pub struct ContactState {
     pub fields: Option<Fields>,
     /// How it was reached and how far it can be trusted.
     pub report: SolveReport,
-}
-
-impl ContactState {
-    /// The state with what follows from its stiffness, and without the stiffness where that was not asked for itself.
-    ///
-    /// The last thing that a model does: it computes the stiffness where [`Outputs::needs_stiffness`] says so.
-    ///
-    /// # Errors
-    /// As [`crate::Conductance::of`].
-    pub fn completed(mut self, outputs: &Outputs, modulus: f64) -> Result<Self> {
-        if let Some(stiffness) = self.stiffness {
-            self.conductance = outputs.conductance.of(stiffness, modulus)?;
-        }
-        self.stiffness = self.stiffness.filter(|_| outputs.stiffness);
-        Ok(self)
-    }
-}
-
-/// Fields on the cells of the map, row-major, `columns * rows` values each.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Fields {
-    /// Pressure p >= 0.
-    pub pressure: Option<Vec<f64>>,
-    /// Displacement u of the elastic surface under each cell centre.
-    pub displacement: Option<Vec<f64>>,
-    /// Gap g = u + z - d; infinite at undefined points.
-    pub gap: Option<Vec<f64>>,
 }
 
 /// The evidence that travels with every state.
@@ -169,6 +141,7 @@ impl fmt::Display for Certificate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outputs::Outputs;
 
     #[test]
     fn completed_states_have_what_was_asked_for() {

@@ -1,6 +1,6 @@
 //! What was done for a state, in counts that no clock changes.
 
-use crate::state::Fields;
+use crate::fields::Fields;
 use std::ops::AddAssign;
 
 /// Work beyond iterations and applications of the operator. Closed forms do none.

@@ -7,12 +7,13 @@ use crate::forces::Forces;
 use crate::job_queue::run_jobs;
 use crate::meters::{cpu_seconds, peak_memory, reset_peak_memory};
 use crate::npy::read_map;
+use crate::npy::unit_area;
 use crate::sample::number;
 use crate::sweep::collect;
 use bem3d::{Bem3d, Method};
 use contact_model::{
     Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
-    Size, Stop, Surface, never,
+    Stop, Surface, never,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -235,12 +236,6 @@ fn series(bench: &Bench) -> Result<Vec<Series>> {
         }
     }
     Ok(all)
-}
-
-/// Sides of a rectangle of square cells with `sqrt(Lx Ly) = 1`.
-pub(crate) fn unit_area(cells: Cells) -> Size {
-    let aspect = cells.columns as f64 / cells.rows as f64;
-    Size { x: aspect.sqrt(), y: aspect.recip().sqrt() }
 }
 
 impl Series {

@@ -4,15 +4,14 @@ use crate::claims;
 use crate::csv_file::{CsvFile, Header, write_csv};
 use crate::curves::describe;
 use crate::error::{Error, Result};
-use crate::measured::{Measured, Series, measure_3d};
+use crate::measured::{Measured, measure_3d, transformed};
 use crate::outcome::Outcome;
 use crate::plot::{Key, Mark, Picture, color, logarithmic};
 use crate::progress::Progress;
 use crate::run::Run;
-use crate::sample::FLOOR_CELLS;
 use crate::session::Session;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
-use analysis::{CollapsePoint, Table};
+use analysis::Table;
 use kuva::plot::line::LineStyle;
 use kuva::plot::scatter::MarkerShape;
 use std::path::{Path, PathBuf};
@@ -31,20 +30,6 @@ pub fn fig4(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     let mut outcome = write(run, &measured)?;
     outcome.claims = claims::collapse(&measured);
     session.close(outcome)
-}
-
-/// The transformed mean curve of one fractal dimension: each point and whether it lies on the one-cell floor.
-pub(crate) fn transformed(series: &Series) -> Vec<(CollapsePoint, bool)> {
-    series
-        .points
-        .iter()
-        .filter_map(|p| {
-            let k = p.stiffness_bar?.mean;
-            let force_tilde = analytic::force_tilde(k, series.fractal_dimension).ok()?;
-            let floor = p.min_contact_cells.is_some_and(|c| c < FLOOR_CELLS);
-            Some((CollapsePoint { force_bar: p.force_bar, force_tilde }, floor))
-        })
-        .collect()
 }
 
 pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {

@@ -3,10 +3,11 @@
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::run::Run;
+use crate::sample::FLOOR_CELLS;
 use crate::store::Store;
 use crate::sweep::sweep;
 use crate::unit::{Numerics, Unit, UnitResult};
-use analysis::{Curves, EnsemblePoint, ensemble};
+use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble};
 use std::sync::Arc;
 
 /// All surfaces of one fractal dimension.
@@ -146,4 +147,17 @@ impl Measured {
     pub fn force_bar(&self) -> &[f64] {
         self.series.first().map_or(&[], |s| s.curves.force_bar())
     }
+}
+/// The transformed mean curve of one fractal dimension: each point and whether it lies on the one-cell floor.
+pub(crate) fn transformed(series: &Series) -> Vec<(CollapsePoint, bool)> {
+    series
+        .points
+        .iter()
+        .filter_map(|p| {
+            let k = p.stiffness_bar?.mean;
+            let force_tilde = analytic::force_tilde(k, series.fractal_dimension).ok()?;
+            let floor = p.min_contact_cells.is_some_and(|c| c < FLOOR_CELLS);
+            Some((CollapsePoint { force_bar: p.force_bar, force_tilde }, floor))
+        })
+        .collect()
 }

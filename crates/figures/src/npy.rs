@@ -1,7 +1,7 @@
 //! Height maps from NPY files.
 
 use crate::error::{Error, Result};
-use contact_model::HeightMap;
+use contact_model::{Cells, HeightMap, Size};
 use std::path::Path;
 use surface_io::{ContentError, Dimension, Format, Preprocessing, Quantity, ReadOptions, Scan, Sides};
 
@@ -25,8 +25,14 @@ pub fn read_map(path: &Path) -> Result<HeightMap> {
         ),
         _ => error.into(),
     })?;
-    let size = crate::bench::unit_area(map.cells());
+    let size = unit_area(map.cells());
     HeightMap::new(map.cells(), size, map.heights().to_vec()).map_err(|e| Error::content(path, e.to_string()))
+}
+
+/// Sides of a rectangle of square cells with `sqrt(Lx Ly) = 1`.
+pub(crate) fn unit_area(cells: Cells) -> Size {
+    let aspect = cells.columns as f64 / cells.rows as f64;
+    Size { x: aspect.sqrt(), y: aspect.recip().sqrt() }
 }
 
 #[cfg(test)]

@@ -72,6 +72,7 @@
 
 mod calibration;
 mod columns;
+mod cost;
 mod diagnostic;
 mod effects;
 mod entries;
@@ -82,6 +83,7 @@ mod info;
 mod loads;
 mod manifest;
 mod numerics;
+mod outcome;
 mod outputs;
 mod pictures;
 mod plan;
@@ -92,6 +94,7 @@ mod scene_surface;
 mod store;
 mod unit;
 
+pub use cost::Cost;
 pub use diagnostic::Diagnostic;
 pub use effects::{EffectLine, effect_lines};
 pub use entries::System;
@@ -100,8 +103,9 @@ pub use generated_surface::GeneratedSurface;
 pub use info::info;
 pub use loads::{Loads, Prescribed, Request};
 pub use numerics::{AnyModel, Numerics};
+pub use outcome::{Options, Outcome};
 pub use outputs::{Format, RequestedOutputs};
-pub use plan::{Cost, ModelPlan, Plan, check};
-pub use run::{Options, Outcome, SharedStop, run};
+pub use plan::{ModelPlan, Plan, check};
+pub use run::{SharedStop, run};
 pub use scene_file::{Sampling, SceneFile};
 pub use scene_surface::SceneSurface;

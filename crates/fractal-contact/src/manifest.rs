@@ -1,8 +1,9 @@
 //! `manifest.json`: the whole scene, what it was run with, what it cost, what to cite.
 
+use crate::cost::Cost;
 use crate::error::{Error, Result};
-use crate::plan::{Cost, Plan};
-use crate::run::{Options, Outcome};
+use crate::outcome::{Options, Outcome};
+use crate::plan::Plan;
 use crate::scene_file::SceneFile;
 use serde_json::{Value, json};
 use std::path::PathBuf;

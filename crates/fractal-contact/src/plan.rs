@@ -1,32 +1,16 @@
 //! What will be computed, what will not and why, and what it will cost.
 
 use crate::calibration;
+use crate::cost::Cost;
 use crate::diagnostic::Diagnostic;
 use crate::effects::{EffectLine, effect_lines};
 use crate::error::Result;
 use crate::human_readable::{memory, number, time};
 use crate::numerics::Numerics;
-use crate::scene_file::SceneFile;
+use crate::scene_file::{SceneFile, cells};
 use crate::unit::{Unit, probe};
-use contact_model::{Cells, Surface};
+use contact_model::Cells;
 use std::fmt;
-
-/// What a run costs, or will cost.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Cost {
-    /// Seconds of one thread.
-    pub seconds: f64,
-    /// Memory of one thread at the peak, bytes; 0 where nothing to speak of.
-    pub memory: f64,
-    /// Applications of the elastic operator.
-    pub applications: f64,
-    /// Linear systems solved.
-    pub linear_solves: f64,
-    /// Fields over the grid.
-    pub fields: f64,
-    /// Their bytes.
-    pub field_bytes: f64,
-}
 
 /// What one model will do.
 #[derive(Debug, Clone, PartialEq)]
@@ -184,15 +168,6 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
         }
         Numerics::Mdr1d(m) if scene.surface.is_rough() => format!("a line of {} elements", m.elements),
         _ => "none: a formula".into(),
-    }
-}
-
-/// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.
-pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> Cells {
-    match (&scene.surface, numerics.boundary_elements()) {
-        (crate::SceneSurface::Plain(Surface::Heights(map)), _) => map.cells(),
-        (surface, Some(elements)) => elements.grid(surface.size()),
-        _ => Cells { columns: numerics.size(), rows: 1 },
     }
 }
 

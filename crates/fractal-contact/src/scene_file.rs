@@ -8,7 +8,7 @@ use crate::loads::{Prescribed, Request, read_request};
 use crate::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::outputs::{RequestedOutputs, read_outputs};
 use crate::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
-use contact_model::{Adhesion, Body, Boundary, Effects, Friction, Pair, Rheology, Scene, Surface};
+use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Pair, Rheology, Scene, Surface};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use surface_io::Dimension;
@@ -434,4 +434,12 @@ fn check_histories(
             .with_help("add `friction` or `rheology` to [effects], or prescribe `force` or `approach`"));
     }
     Ok(())
+}
+/// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.
+pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> Cells {
+    match (&scene.surface, numerics.boundary_elements()) {
+        (SceneSurface::Plain(Surface::Heights(map)), _) => map.cells(),
+        (surface, Some(elements)) => elements.grid(surface.size()),
+        _ => Cells { columns: numerics.size(), rows: 1 },
+    }
 }

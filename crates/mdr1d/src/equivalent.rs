@@ -2,7 +2,7 @@
 
 mod normal;
 
-use self::normal::Normal;
+use self::normal::{NAME, Normal};
 use crate::axisymmetric::RoundContact;
 use crate::material::Material;
 use crate::partial_slip::slips;
@@ -14,8 +14,6 @@ use contact_model::{
     Outputs, Result, Rheology, Scene, Source, Step, Stop, Tangential, TangentialState, never,
 };
 use std::sync::Arc;
-
-const NAME: &str = "equivalent";
 
 /// Friction or rheology of any surface that a model M can press, rough ones too, through the equivalent profile of M's own k(d).
 ///

@@ -1,9 +1,9 @@
 //! Words of scenes and command lines.
 
 use crate::format::Format;
+use crate::options::Decimal;
 use crate::preprocessing::{Crop, Detrend, Fill, Undefined};
 use crate::quantity::QuantityError;
-use crate::scan::Decimal;
 use std::fmt;
 use std::str::FromStr;
 

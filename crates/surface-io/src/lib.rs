@@ -78,14 +78,20 @@
 //! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers,
 //! filters.
 
+mod content;
 mod describe;
+mod detect;
 mod error;
+mod extent;
 pub mod files;
 mod format;
 mod keyword;
+mod lines;
 mod npy;
+mod options;
 mod points;
 mod preprocessing;
+mod provenance;
 mod quantity;
 mod scan;
 mod sides;
@@ -98,9 +104,11 @@ pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;
 pub use keyword::KeywordError;
 pub use npy::npy;
+pub use options::{Decimal, ReadOptions};
 pub use preprocessing::{Crop, Detrend, Fill, Preprocessing, Undefined};
+pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
-pub use scan::{Decimal, Metadata, Origin, ReadOptions, Scan, Sourced};
+pub use scan::{Metadata, Scan};
 pub use sides::Sides;
 pub use vti::{Encoding, Field, vti};
 pub use write::{Metric, text, write_map, xyz};

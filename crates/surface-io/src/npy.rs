@@ -9,9 +9,10 @@ mod write;
 
 pub use write::npy;
 
+use crate::content::FileContent;
 use crate::error::{ContentError, Error, Place, Result};
 use crate::format::Format;
-use crate::scan::{Found, ReadOptions};
+use crate::options::ReadOptions;
 use header::{Header, Kind, Order};
 use std::io::Read;
 use std::path::Path;
@@ -25,7 +26,7 @@ pub(crate) fn read(
     reader: &mut impl Read,
     length: u64,
     declared: &ReadOptions,
-) -> Result<Found> {
+) -> Result<FileContent> {
     let content = Error::content;
     if declared.lateral_unit.is_some() {
         let reason = "an array has no coordinates; give size or cell with a unit";
@@ -76,7 +77,7 @@ pub(crate) fn read(
         Order::Fortran => "column by column",
     };
     let details = format!("{}, {order}", header.kind);
-    Ok(Found { format: Format::Npy, details, rows, columns, heights, unit: None, extent: [None; 2] })
+    Ok(FileContent { format: Format::Npy, details, rows, columns, heights, unit: None, extent: [None; 2] })
 }
 
 /// Doubles hold every integer up to this size.

@@ -2,11 +2,12 @@
 
 mod axis;
 
+use crate::content::{FileContent, check_unit};
 use crate::error::ContentError;
+use crate::extent::Extent;
 use crate::format::Format;
+use crate::options::ReadOptions;
 use crate::quantity::{Dimension, Quantity, Unit};
-use crate::scan::{Found, ReadOptions, check_unit};
-use crate::sides::Extent;
 use crate::text::Table;
 use axis::Axis;
 
@@ -22,7 +23,7 @@ const ROUNDED: f64 = 1e-9;
 /// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
 ///
 /// Cost O(n log n) for n points.
-pub(crate) fn grid(table: &Table, declared: &ReadOptions) -> Result<Found, ContentError> {
+pub(crate) fn grid(table: &Table, declared: &ReadOptions) -> Result<FileContent, ContentError> {
     if table.columns != 3 {
         return Err(ContentError::NotPoints { line: table.first_line(), found: table.columns });
     }
@@ -70,7 +71,7 @@ pub(crate) fn grid(table: &Table, declared: &ReadOptions) -> Result<Found, Conte
     let off =
         if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
     let details = format!("{points} points, {}{off}", table.delimiter);
-    Ok(Found { format: Format::Xyz, details, rows, columns, heights, unit, extent })
+    Ok(FileContent { format: Format::Xyz, details, rows, columns, heights, unit, extent })
 }
 
 /// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not

@@ -1,96 +1,17 @@
 //! What a file holds before anything is done to it.
 
+use crate::content::{FileContent, check_unit};
 use crate::error::{ContentError, Error, Place, Result};
+use crate::extent;
 use crate::format::Format;
-use crate::quantity::{Dimension, Quantity, Unit};
-use crate::sides::{self, Extent, Sides};
+use crate::options::ReadOptions;
+use crate::provenance::{Origin, Sourced, contradiction, sourced};
+use crate::quantity::{Quantity, Unit};
 use crate::{npy, points, text};
 use std::fmt;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
-
-/// How to read a file, and what the file itself does not state; a contradiction with the file is an error.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ReadOptions {
-    /// The format, where it is not to be told from the content and the name's ending.
-    pub format: Option<Format>,
-    /// Unit of the heights.
-    pub unit: Option<Unit>,
-    /// Unit of x and y of points.
-    pub lateral_unit: Option<Unit>,
-    /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights
-    /// have no unit. One value is that of a square map.
-    pub size: Option<Sides>,
-    /// Sides of one cell, dx and dy, instead of the size. One value is that of square cells.
-    pub cell: Option<Sides>,
-    /// Older name of a size of square cells: the length of a row, `columns * cell`.
-    pub width: Option<Quantity>,
-    /// How decimals are written in text.
-    pub decimal: Decimal,
-    /// A number of the file that stands for an undefined point, such as -9999.
-    pub missing: Option<f64>,
-    /// Lines of text to leave out at the beginning.
-    pub skip_lines: usize,
-    /// Longest file that is read, in bytes.
-    pub largest_bytes: u64,
-}
-
-impl Default for ReadOptions {
-    /// Nothing stated, points as decimals, files of up to 8 GiB (a square of 32768 doubles a side).
-    fn default() -> Self {
-        Self {
-            format: None,
-            unit: None,
-            lateral_unit: None,
-            size: None,
-            cell: None,
-            width: None,
-            decimal: Decimal::Point,
-            missing: None,
-            skip_lines: 0,
-            // The header of such a map goes on top.
-            largest_bytes: (8 << 30) + 65536,
-        }
-    }
-}
-
-/// How decimals are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Decimal {
-    /// 1.5
-    #[default]
-    Point,
-    /// 1,5
-    Comma,
-}
-
-/// A value and where it comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sourced<T> {
-    /// The value.
-    pub value: T,
-    /// Where it comes from.
-    pub origin: Origin,
-}
-
-/// Where a statement about a file comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Origin {
-    /// The file itself.
-    File,
-    /// The caller.
-    Caller,
-}
-
-impl fmt::Display for Origin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::File => "from the file",
-            Self::Caller => "as given",
-        })
-    }
-}
 
 /// What was metadata of a file, for the user to check; shown line by line.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,18 +85,6 @@ pub struct Scan {
     heights: Vec<f64>,
 }
 
-/// What a reader of one format found.
-pub(crate) struct Found {
-    pub(crate) format: Format,
-    pub(crate) details: String,
-    pub(crate) rows: usize,
-    pub(crate) columns: usize,
-    pub(crate) heights: Vec<f64>,
-    pub(crate) unit: Option<Unit>,
-    /// Along x and y, where the file says it.
-    pub(crate) extent: [Option<Extent>; 2],
-}
-
 impl Scan {
     /// Reads a file.
     ///
@@ -218,10 +127,10 @@ impl Scan {
             let problem = ContentError::TooLarge { bytes: length, largest: declared.largest_bytes };
             return Err(content(path)(problem));
         }
-        let mut start = Vec::with_capacity(crate::format::SNIFF);
+        let mut start = Vec::with_capacity(crate::detect::SNIFF);
         reader
             .by_ref()
-            .take(crate::format::SNIFF as u64)
+            .take(crate::detect::SNIFF as u64)
             .read_to_end(&mut start)
             .map_err(Error::system("read", path))?;
         let format = Format::detect(declared.format, path, &start).map_err(content(path))?;
@@ -258,8 +167,8 @@ impl Scan {
         Self::new(path, found, declared).map_err(content(path))
     }
 
-    fn new(path: &Path, found: Found, declared: &ReadOptions) -> Result<Self, ContentError> {
-        let Found { format, details, rows, columns, mut heights, unit, extent } = found;
+    fn new(path: &Path, found: FileContent, declared: &ReadOptions) -> Result<Self, ContentError> {
+        let FileContent { format, details, rows, columns, mut heights, unit, extent } = found;
         if let Some(undefined) = declared.missing {
             for h in &mut heights {
                 if h.to_bits() == undefined.to_bits() || (*h - undefined).abs() <= 0.0 {
@@ -285,12 +194,12 @@ impl Scan {
             a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
         })?;
         let count = [columns, rows];
-        let given = sides::given(declared, count)?;
+        let given = extent::given(declared, count)?;
         let extents = match (given, extent) {
             (Some(given), file) => {
                 for axis in 0..2 {
                     if let Some(file) = file[axis] {
-                        sides::check_axis(axis, file, given[axis], count[axis])?;
+                        extent::check_axis(axis, file, given[axis], count[axis])?;
                     }
                 }
                 Some((given, Origin::Caller))
@@ -346,43 +255,4 @@ fn rms(heights: &[f64], columns: usize, undefined: usize, [low, high]: [f64; 2])
     };
     let mean = mean_of(&|h| h);
     unit * mean_of(&|h| (h - mean).powi(2)).sqrt()
-}
-
-/// Headers print lengths with three digits or more: half of the last one.
-pub(crate) const PRINTED: f64 = 5e-3;
-
-pub(crate) fn contradiction(
-    what: &'static str,
-    file: &impl fmt::Display,
-    caller: &impl fmt::Display,
-) -> ContentError {
-    let (first, second) = (format!("{file} {}", Origin::File), format!("{caller} {}", Origin::Caller));
-    ContentError::Contradiction { what, first, second }
-}
-
-/// The value of the caller, checked against that of the file where both exist; else that of the file.
-fn sourced<T>(
-    file: Option<T>,
-    caller: Option<T>,
-    agree: impl FnOnce(&T, &T) -> Result<(), ContentError>,
-) -> Result<Option<Sourced<T>>, ContentError> {
-    if let (Some(file), Some(caller)) = (&file, &caller) {
-        agree(file, caller)?;
-    }
-    let caller = caller.map(|value| Sourced { value, origin: Origin::Caller });
-    Ok(caller.or(file.map(|value| Sourced { value, origin: Origin::File })))
-}
-
-/// Heights have a length or no unit at all.
-pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), ContentError> {
-    match unit.map(|u| (u, u.dimension())) {
-        None | Some((_, Dimension::LENGTH)) => Ok(()),
-        // "%" would be a factor without a meaning here.
-        Some((u, Dimension::NONE)) if *u == Unit::none() => Ok(()),
-        Some((u, found)) => {
-            let source =
-                crate::QuantityError::Dimension { text: u.to_string(), found, expected: Dimension::LENGTH };
-            Err(ContentError::Quantity { what, source })
-        }
-    }
 }

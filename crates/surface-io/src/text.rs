@@ -8,7 +8,7 @@ pub(crate) use heading::Heading;
 pub(crate) use matrix::matrix;
 
 use crate::error::{ContentError, Place};
-use crate::scan::{Decimal, ReadOptions};
+use crate::options::{Decimal, ReadOptions};
 use number::Numbers;
 use std::fmt;
 

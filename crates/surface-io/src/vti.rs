@@ -5,7 +5,7 @@
 //! count characters of base64 after the underscore.
 
 use crate::error::ContentError;
-use crate::write::Lines;
+use crate::lines::Lines;
 use contact_model::{Cells, Size};
 
 /// Numbers on the cells of a rectangle.

@@ -1,12 +1,12 @@
 //! Maps as text.
 
+use crate::content::check_unit;
 use crate::error::{ContentError, Error, Result};
+use crate::lines::Lines;
 use crate::quantity::{Dimension, Unit};
-use crate::scan::check_unit;
 use crate::vti::{Encoding, Field, vti};
 use crate::{files, npy};
 use contact_model::HeightMap;
-use std::fmt::{self, Write as _};
 use std::path::Path;
 
 /// What the numbers of a map are: metres, as [`crate::Scan::map`] gives them, or without a unit.
@@ -137,23 +137,6 @@ fn sides(map: &HeightMap, metric: Metric) -> String {
 /// The heights of a map with NaN at undefined points, as files have them.
 fn with_nan(map: &HeightMap) -> Vec<f64> {
     map.heights().iter().map(|&h| if h.is_finite() { h } else { f64::NAN }).collect()
-}
-
-/// Text that grows.
-pub(crate) struct Lines {
-    pub(crate) text: String,
-}
-
-impl Lines {
-    pub(crate) fn new(mut head: String, more: usize) -> Self {
-        head.reserve(more);
-        Self { text: head }
-    }
-
-    pub(crate) fn add(&mut self, arguments: fmt::Arguments<'_>) {
-        // Writing to a string does not fail.
-        let _ = self.text.write_fmt(arguments);
-    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::limit::{Limit, limit, slope};
 use super::problem::{DIMENSIONS, Family, LOADS, SQUARE};
 use super::row::{Answer, Parts, Row, Way, measure};
-use super::study::{Order, Sizes};
+use super::sizes::{Order, Sizes};
 use crate::error::{Error, Result};
 use crate::meters::cpu_seconds;
 use crate::progress::Progress;

@@ -12,6 +12,7 @@ mod plan;
 mod pressure;
 mod problem;
 mod row;
+mod sizes;
 mod study;
 mod table;
 mod text;
@@ -26,9 +27,9 @@ use crate::files;
 use crate::outcome::Outcome;
 use crate::progress::Progress;
 use contact_model::ContactModel as _;
+use sizes::Sizes;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use study::Sizes;
 
 /// Name of its files.
 const NAME: &str = "accuracy-cost";

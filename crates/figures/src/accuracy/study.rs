@@ -5,6 +5,7 @@ use super::means;
 use super::pressure;
 use super::problem::{Family, Problem, SQUARE_UNCERTAINTY};
 use super::row::{Answer, Parts, Row, Way, mark_pareto, measure};
+use super::sizes::{Order, Sizes};
 use crate::error::Result;
 use crate::progress::Progress;
 use analytic::Hertz;
@@ -22,29 +23,6 @@ pub enum Depth {
     Default,
     /// Up to 2049 cells, hours.
     Thorough,
-}
-
-/// Sizes of a study.
-#[derive(Debug, Clone)]
-pub(crate) struct Sizes {
-    /// Grids for every tolerance of `tolerances`, coarsest first.
-    pub grids: &'static [usize],
-    /// Grids in between, at the tightest tolerance only: they show the order.
-    pub between: &'static [usize],
-    /// Tolerances on every grid but the finest.
-    pub tolerances: &'static [f64],
-    /// Tolerances on the finest grid.
-    pub finest: &'static [f64],
-    /// The grid that sees all of 1e-1 .. 1e-10 and every operator.
-    pub ladder: usize,
-    /// The tolerance of references.
-    pub tight: f64,
-    /// Elements of lines.
-    pub elements: &'static [usize],
-    /// Surfaces (and lines) of an ensemble.
-    pub surfaces: usize,
-    /// Grids of the ensembles.
-    pub ensembles: &'static [usize],
 }
 
 const LADDER: [f64; 10] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
@@ -131,23 +109,6 @@ impl Sizes {
         all.sort_unstable();
         all
     }
-}
-
-/// Where a number goes on ever finer grids.
-#[derive(Debug, Clone)]
-pub(crate) struct Order {
-    pub family: Family,
-    pub fractal_dimension: Option<f64>,
-    pub force_bar: Option<f64>,
-    /// `stiffness`, `approach`, `area`, `pressure`.
-    pub quantity: &'static str,
-    /// Order in the cell: of the extrapolation where established, else the slope of the errors.
-    pub power: Option<f64>,
-    /// Whether errors are known against an exact answer or an established order.
-    pub established: bool,
-    pub limit: Option<Limit>,
-    /// Relative error on the coarsest and on the finest grid.
-    pub errors: [Option<f64>; 2],
 }
 
 /// Everything that was found.

@@ -1,7 +1,8 @@
 //! The study as tables.
 
 use super::row::Row;
-use super::study::{Order, Study};
+use super::sizes::Order;
+use super::study::Study;
 use crate::error::{Error, Result};
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
 use analysis::{Column, Table, Value};

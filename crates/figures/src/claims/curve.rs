@@ -1,10 +1,10 @@
 //! What the curves themselves say: the crossing, saturation, the crossover, the collapse.
 
-use super::{label, stiffness_at, usable};
+use super::common::{label, stiffness_at, usable};
 use crate::claim::Claim;
-use crate::fig4::transformed;
 use crate::laws::laws;
 use crate::measured::Measured;
+use crate::measured::transformed;
 use analysis::{CollapsePoint, Window, collapse as residual, decades_within, sum};
 use analytic::{F_BAR_UL, K_BAR_UL};
 use contact_model::PAPER_STIFFNESS_FACTOR;

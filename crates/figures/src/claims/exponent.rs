@@ -1,6 +1,6 @@
 //! alpha: Eqs. 6 and 24, 1D against 3D, 1D at small forces.
 
-use super::{alpha_allowed, label, usable};
+use super::common::{alpha_allowed, label, usable};
 use crate::claim::Claim;
 use crate::laws::{laws, laws_within};
 use crate::measured::Measured;

@@ -1,6 +1,6 @@
 //! zeta and the crossing point: Eq. 11, Fig. 7.
 
-use super::{alpha_allowed, label, usable};
+use super::common::{alpha_allowed, label, usable};
 use crate::claim::Claim;
 use crate::laws::laws;
 use crate::measured::{Measured, Series};

@@ -2,11 +2,13 @@
 
 mod picture;
 mod reading;
+mod study;
+
+pub use study::TwoCases;
 
 use crate::csv_file::{Header, write_csv};
 use crate::error::{Error, Result};
 use crate::files;
-use crate::forces::Forces;
 use crate::job_queue::run_jobs;
 use crate::outcome::Outcome;
 use crate::progress::Progress;
@@ -14,144 +16,12 @@ use crate::sweep::collect;
 use analysis::{Curves, Sample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
-use contact_model::{Boundary, ContactModel, Load, Scene, SelfAffine, Stop, Surface, never};
+use contact_model::{Boundary, ContactModel, Load, Stop, never};
 use picture::{draw, table};
 use reading::{claim, summary};
-use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
-
-const NAME: &str = "two-cases";
-
-/// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it.
-const SHORTEST: usize = 8;
-
-/// What is solved.
-///
-/// Sec. II of the paper tells two problems apart: fractal up to the size of the system with free edges, where it expects `k ~ F^alpha`, and
-/// a spectrum that ends at a longest wave, of which a periodic patch stands for the rest, where Persson finds `k ~ F`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TwoCases {
-    /// Cells a side.
-    pub cells: usize,
-    /// Surfaces of each case.
-    pub surfaces: usize,
-    /// D_f.
-    pub fractal_dimension: f64,
-    /// Waves a side at the roll-off.
-    pub roll_off: f64,
-    /// Loads F_bar.
-    pub forces: Forces,
-    /// Bound of every certificate.
-    pub tolerance: f64,
-    /// Master seed.
-    pub seed: u64,
-    /// Surfaces solved at the same time, at least 1.
-    pub threads: usize,
-}
-
-/// A boundary and a spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Case {
-    boundary: Boundary,
-    rolls_off: bool,
-}
-
-/// The paper's two cases, and the other two that tell boundary and spectrum apart.
-const CASES: [Case; 4] = [
-    Case { boundary: Boundary::Free, rolls_off: false },
-    Case { boundary: Boundary::Free, rolls_off: true },
-    Case { boundary: Boundary::Periodic, rolls_off: false },
-    Case { boundary: Boundary::Periodic, rolls_off: true },
-];
-
-impl Case {
-    fn name(self) -> &'static str {
-        match (self.boundary, self.rolls_off) {
-            (Boundary::Periodic, true) => "periodic, roll-off",
-            (Boundary::Periodic, false) => "periodic, fractal",
-            (_, true) => "free, roll-off",
-            (_, false) => "free, fractal",
-        }
-    }
-
-    fn color(self) -> &'static str {
-        match (self.boundary, self.rolls_off) {
-            (Boundary::Periodic, true) => "#d6731a",
-            (Boundary::Periodic, false) => "#1d918c",
-            (_, true) => "#8c2d5a",
-            (_, false) => "#30126e",
-        }
-    }
-
-    fn scene(self, study: &TwoCases) -> Result<Scene> {
-        let d = study.fractal_dimension;
-        let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model(format!("D_f = {d:?}")))?;
-        let surface = SelfAffine {
-            roll_off: self.rolls_off.then_some(TAU * study.roll_off),
-            short_cutoff: Some(TAU * study.shortest()),
-            ..surface
-        };
-        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
-        scene.effects.boundary = self.boundary;
-        scene.validate().map_err(Error::model(format!("the case {}", self.name())))?;
-        Ok(scene)
-    }
-}
-
-impl TwoCases {
-    /// Waves a side at the end of the spectrum.
-    fn shortest(&self) -> f64 {
-        (self.cells / SHORTEST) as f64
-    }
-
-    fn command(&self) -> String {
-        format!(
-            "cargo xtask reproduce-two-cases --cells {} --surfaces {} --df {:?} --roll-off {:?} --forces {} --tolerance {:?} --seed {}",
-            self.cells,
-            self.surfaces,
-            self.fractal_dimension,
-            self.roll_off,
-            self.forces.spec(),
-            self.tolerance,
-            self.seed
-        )
-    }
-
-    fn check(&self) -> Result<()> {
-        if self.threads == 0 {
-            return Err(Error::parameter("threads", 0, "at least one thread"));
-        }
-        if self.surfaces == 0 {
-            return Err(Error::parameter("surfaces", 0, "at least one surface"));
-        }
-        if self.cells < 4 * SHORTEST {
-            return Err(Error::parameter("cells", self.cells, format!("at least {}", 4 * SHORTEST)));
-        }
-        if !(self.roll_off > 1.0 && self.roll_off < self.shortest()) {
-            let expected = format!("between 1 and {} waves a side (cells / {SHORTEST})", self.shortest());
-            return Err(Error::parameter("roll-off", self.roll_off, expected));
-        }
-        Ok(())
-    }
-}
-
-/// One curve: k_bar over F_bar.
-struct Curve {
-    case: Case,
-    model: &'static str,
-    points: Vec<Point>,
-}
-
-struct Point {
-    force_bar: f64,
-    stiffness_bar: f64,
-    standard_error: Option<f64>,
-    surfaces: usize,
-    left_out: usize,
-    area: Option<f64>,
-    min_contact_cells: Option<usize>,
-}
+use study::{CASES, Case, Curve, NAME, Point, SHORTEST};
 
 /// Solves the two cases (and the two mixed ones) with boundary elements, Persson's and Greenwood and Williamson's theories, and
 /// writes `two-cases.csv`, `.svg`, `.png` and `.md` into a directory.
@@ -327,6 +197,7 @@ mod tests {
     use super::reading::{difference, loads_between, proportional, slopes};
     use super::*;
     use crate::csv_file::CsvFile;
+    use crate::forces::Forces;
     use crate::progress::Silent;
 
     fn small() -> TwoCases {

@@ -1,7 +1,7 @@
 //! The table of the two cases, and the pictures drawn from it.
 
 use super::reading::slopes;
-use super::{CASES, Curve, NAME};
+use super::study::{CASES, Curve, NAME};
 use crate::csv_file::CsvFile;
 use crate::error::{Error, Result};
 use crate::plot::{Key, Mark, Picture, logarithmic};

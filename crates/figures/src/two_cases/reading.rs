@@ -1,6 +1,6 @@
 //! What the curves say about the paper's belief.
 
-use super::{Curve, Point, TwoCases};
+use super::study::{Curve, Point, TwoCases};
 use crate::claim::{Claim, plain};
 use crate::sample::FLOOR_CELLS;
 use analysis::{Bootstrap, Curves, Window, fit};

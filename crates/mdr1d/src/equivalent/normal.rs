@@ -1,12 +1,13 @@
 //! The elastic contact behind an equivalent profile: solved once per node and once per step.
 
-use super::NAME;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Stop,
     Work,
 };
 use std::sync::Arc;
+
+pub(super) const NAME: &str = "equivalent";
 
 /// The elastic contact of M and the profile that its states give; lengths in L, forces in E* L^2.
 pub(super) struct Normal {

@@ -1,7 +1,7 @@
 //! The header of an NPY file: magic, version, length, a Python dictionary of three entries.
 
+use crate::detect::NPY;
 use crate::error::{ContentError, Error, Result};
-use crate::format::NPY;
 use std::fmt;
 use std::io::Read;
 use std::path::Path;

@@ -1,13 +1,14 @@
 //! A text matrix: one row per line.
 
 use super::Table;
+use crate::content::FileContent;
 use crate::error::ContentError;
+use crate::extent::Extent;
 use crate::format::Format;
-use crate::scan::{Found, ReadOptions};
-use crate::sides::Extent;
+use crate::options::ReadOptions;
 
 /// The rows of a table as a map; the first line is row 0.
-pub(crate) fn matrix(table: Table, declared: &ReadOptions) -> Result<Found, ContentError> {
+pub(crate) fn matrix(table: Table, declared: &ReadOptions) -> Result<FileContent, ContentError> {
     if declared.lateral_unit.is_some() {
         let reason = "a matrix has no coordinates; give size or cell with a unit";
         return Err(ContentError::Useless { what: "lateral_unit", reason });
@@ -15,7 +16,7 @@ pub(crate) fn matrix(table: Table, declared: &ReadOptions) -> Result<Found, Cont
     let (rows, columns) = (table.rows(), table.columns);
     let extent = extents(&table, columns, rows)?;
     let (details, unit) = (table.delimiter.to_string(), table.heading.unit.clone());
-    Ok(Found { format: Format::Text, details, rows, columns, heights: table.values, unit, extent })
+    Ok(FileContent { format: Format::Text, details, rows, columns, heights: table.values, unit, extent })
 }
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells

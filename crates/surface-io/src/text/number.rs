@@ -1,7 +1,7 @@
 //! One number as text.
 
 use crate::error::{ContentError, NumberKind, Place};
-use crate::scan::Decimal;
+use crate::options::Decimal;
 
 /// Words for a missing height, besides an empty place between two delimiters and `nan`; in lower case.
 const MISSING: [&str; 10] = ["na", "n/a", "null", "none", "bad", "nodata", "-", "--", "---", "***"];

@@ -1,0 +1,44 @@
+//! Grids and tolerances of the study, and the orders that it finds.
+
+use super::limit::Limit;
+use super::problem::Family;
+
+/// Sizes of a study.
+#[derive(Debug, Clone)]
+pub(crate) struct Sizes {
+    /// Grids for every tolerance of `tolerances`, coarsest first.
+    pub grids: &'static [usize],
+    /// Grids in between, at the tightest tolerance only: they show the order.
+    pub between: &'static [usize],
+    /// Tolerances on every grid but the finest.
+    pub tolerances: &'static [f64],
+    /// Tolerances on the finest grid.
+    pub finest: &'static [f64],
+    /// The grid that sees all of 1e-1 .. 1e-10 and every operator.
+    pub ladder: usize,
+    /// The tolerance of references.
+    pub tight: f64,
+    /// Elements of lines.
+    pub elements: &'static [usize],
+    /// Surfaces (and lines) of an ensemble.
+    pub surfaces: usize,
+    /// Grids of the ensembles.
+    pub ensembles: &'static [usize],
+}
+
+/// Where a number goes on ever finer grids.
+#[derive(Debug, Clone)]
+pub(crate) struct Order {
+    pub family: Family,
+    pub fractal_dimension: Option<f64>,
+    pub force_bar: Option<f64>,
+    /// `stiffness`, `approach`, `area`, `pressure`.
+    pub quantity: &'static str,
+    /// Order in the cell: of the extrapolation where established, else the slope of the errors.
+    pub power: Option<f64>,
+    /// Whether errors are known against an exact answer or an established order.
+    pub established: bool,
+    pub limit: Option<Limit>,
+    /// Relative error on the coarsest and on the finest grid.
+    pub errors: [Option<f64>; 2],
+}

@@ -1,0 +1,138 @@
+//! The two problems and what is found of them.
+
+use crate::error::{Error, Result};
+use crate::forces::Forces;
+use contact_model::{Boundary, Scene, SelfAffine, Surface};
+use std::f64::consts::TAU;
+
+pub(super) const NAME: &str = "two-cases";
+
+/// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it.
+pub(super) const SHORTEST: usize = 8;
+
+/// What is solved.
+///
+/// Sec. II of the paper tells two problems apart: fractal up to the size of the system with free edges, where it expects `k ~ F^alpha`, and
+/// a spectrum that ends at a longest wave, of which a periodic patch stands for the rest, where Persson finds `k ~ F`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TwoCases {
+    /// Cells a side.
+    pub cells: usize,
+    /// Surfaces of each case.
+    pub surfaces: usize,
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// Waves a side at the roll-off.
+    pub roll_off: f64,
+    /// Loads F_bar.
+    pub forces: Forces,
+    /// Bound of every certificate.
+    pub tolerance: f64,
+    /// Master seed.
+    pub seed: u64,
+    /// Surfaces solved at the same time, at least 1.
+    pub threads: usize,
+}
+
+/// A boundary and a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Case {
+    pub(super) boundary: Boundary,
+    pub(super) rolls_off: bool,
+}
+
+/// The paper's two cases, and the other two that tell boundary and spectrum apart.
+pub(super) const CASES: [Case; 4] = [
+    Case { boundary: Boundary::Free, rolls_off: false },
+    Case { boundary: Boundary::Free, rolls_off: true },
+    Case { boundary: Boundary::Periodic, rolls_off: false },
+    Case { boundary: Boundary::Periodic, rolls_off: true },
+];
+
+impl Case {
+    pub(super) fn name(self) -> &'static str {
+        match (self.boundary, self.rolls_off) {
+            (Boundary::Periodic, true) => "periodic, roll-off",
+            (Boundary::Periodic, false) => "periodic, fractal",
+            (_, true) => "free, roll-off",
+            (_, false) => "free, fractal",
+        }
+    }
+
+    pub(super) fn color(self) -> &'static str {
+        match (self.boundary, self.rolls_off) {
+            (Boundary::Periodic, true) => "#d6731a",
+            (Boundary::Periodic, false) => "#1d918c",
+            (_, true) => "#8c2d5a",
+            (_, false) => "#30126e",
+        }
+    }
+
+    pub(super) fn scene(self, study: &TwoCases) -> Result<Scene> {
+        let d = study.fractal_dimension;
+        let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model(format!("D_f = {d:?}")))?;
+        let surface = SelfAffine {
+            roll_off: self.rolls_off.then_some(TAU * study.roll_off),
+            short_cutoff: Some(TAU * study.shortest()),
+            ..surface
+        };
+        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+        scene.effects.boundary = self.boundary;
+        scene.validate().map_err(Error::model(format!("the case {}", self.name())))?;
+        Ok(scene)
+    }
+}
+
+impl TwoCases {
+    /// Waves a side at the end of the spectrum.
+    pub(super) fn shortest(&self) -> f64 {
+        (self.cells / SHORTEST) as f64
+    }
+
+    pub(super) fn command(&self) -> String {
+        format!(
+            "cargo xtask reproduce-two-cases --cells {} --surfaces {} --df {:?} --roll-off {:?} --forces {} --tolerance {:?} --seed {}",
+            self.cells,
+            self.surfaces,
+            self.fractal_dimension,
+            self.roll_off,
+            self.forces.spec(),
+            self.tolerance,
+            self.seed
+        )
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        if self.threads == 0 {
+            return Err(Error::parameter("threads", 0, "at least one thread"));
+        }
+        if self.surfaces == 0 {
+            return Err(Error::parameter("surfaces", 0, "at least one surface"));
+        }
+        if self.cells < 4 * SHORTEST {
+            return Err(Error::parameter("cells", self.cells, format!("at least {}", 4 * SHORTEST)));
+        }
+        if !(self.roll_off > 1.0 && self.roll_off < self.shortest()) {
+            let expected = format!("between 1 and {} waves a side (cells / {SHORTEST})", self.shortest());
+            return Err(Error::parameter("roll-off", self.roll_off, expected));
+        }
+        Ok(())
+    }
+}
+
+/// One curve: k_bar over F_bar.
+pub(super) struct Curve {
+    pub(super) case: Case,
+    pub(super) model: &'static str,
+    pub(super) points: Vec<Point>,
+}
+
+pub(super) struct Point {
+    pub(super) force_bar: f64,
+    pub(super) stiffness_bar: f64,
+    pub(super) standard_error: Option<f64>,
+    pub(super) surfaces: usize,
+    pub(super) left_out: usize,
+    pub(super) area: Option<f64>,
+    pub(super) min_contact_cells: Option<usize>,
+}

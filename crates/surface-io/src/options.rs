@@ -1,0 +1,60 @@
+//! How a file is read.
+
+use crate::format::Format;
+use crate::quantity::{Quantity, Unit};
+use crate::sides::Sides;
+
+/// How to read a file, and what the file itself does not state; a contradiction with the file is an error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadOptions {
+    /// The format, where it is not to be told from the content and the name's ending.
+    pub format: Option<Format>,
+    /// Unit of the heights.
+    pub unit: Option<Unit>,
+    /// Unit of x and y of points.
+    pub lateral_unit: Option<Unit>,
+    /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights
+    /// have no unit. One value is that of a square map.
+    pub size: Option<Sides>,
+    /// Sides of one cell, dx and dy, instead of the size. One value is that of square cells.
+    pub cell: Option<Sides>,
+    /// Older name of a size of square cells: the length of a row, `columns * cell`.
+    pub width: Option<Quantity>,
+    /// How decimals are written in text.
+    pub decimal: Decimal,
+    /// A number of the file that stands for an undefined point, such as -9999.
+    pub missing: Option<f64>,
+    /// Lines of text to leave out at the beginning.
+    pub skip_lines: usize,
+    /// Longest file that is read, in bytes.
+    pub largest_bytes: u64,
+}
+
+impl Default for ReadOptions {
+    /// Nothing stated, points as decimals, files of up to 8 GiB (a square of 32768 doubles a side).
+    fn default() -> Self {
+        Self {
+            format: None,
+            unit: None,
+            lateral_unit: None,
+            size: None,
+            cell: None,
+            width: None,
+            decimal: Decimal::Point,
+            missing: None,
+            skip_lines: 0,
+            // The header of such a map goes on top.
+            largest_bytes: (8 << 30) + 65536,
+        }
+    }
+}
+
+/// How decimals are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Decimal {
+    /// 1.5
+    #[default]
+    Point,
+    /// 1,5
+    Comma,
+}
