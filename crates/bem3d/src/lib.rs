@@ -49,7 +49,7 @@
 //! | certificate | exact sums or double-precision transforms, always |
 //!
 //! The energy `r' G^-1 r` that the preconditioner bounds also bounds the error of k (`stiffness`). Every tuned constant is in
-//! `tuning`, with its meaning, unit and date.
+//! `tuning`, with its meaning and unit.
 //!
 //! # How accurate
 //!
@@ -63,9 +63,9 @@
 //!
 //! Work follows the contact: a few hundred cells take milliseconds on any grid. A dense load takes 30 to 60 applications of G
 //! for three digits and 60 to 110 for eight, k included, nearly independent of the number of cells and of the load; one
-//! application cost about 2 ms at N = 512 and 45 ms at N = 2049 (single precision, one thread of an AMD EPYC of 2024, measured
-//! before this engine, which takes 4 to 32 % longer for a sweep).
-//! `cargo xtask bench` prints the work of each load on any surface; README has tables. The two-level operator is for square
+//! application cost about 2 ms at N = 512 and 45 ms at N = 2049 (single precision, one thread of an AMD EPYC of 2024, first
+//! engine; sweeps with this one are 3 to 10 % faster on the machine on which both were run).
+//! `cargo xtask bench` prints the work of each load on any surface; the book has tables. The two-level operator is for square
 //! cells with free boundaries; oblong cells and periodic maps take transforms instead.
 //!
 //! # What it does not do

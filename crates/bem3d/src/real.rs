@@ -50,26 +50,24 @@ pub fn binary_unit(values: &[f64]) -> f64 {
 
 /// Largest magnitude.
 pub fn largest<T: Real>(values: &[T]) -> T {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [T::default(); LANES];
-    for chunk in chunks {
-        for (lane, &value) in lanes.iter_mut().zip(chunk) {
-            *lane = lane.or_larger(value);
-        }
-    }
-    lanes.iter().chain(rest).fold(T::default(), |a, &b| a.or_larger(b))
+    fold(values, T::default(), T::or_larger)
 }
 
 /// Smallest number; infinite if there is none.
 pub fn smallest(values: &[f64]) -> f64 {
+    fold(values, f64::INFINITY, |smallest, value| if value < smallest { value } else { smallest })
+}
+
+/// Folds values in an order that a vector loop can take; `start` changes nothing.
+fn fold<T: Copy>(values: &[T], start: T, take: impl Fn(T, T) -> T) -> T {
     let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [f64::INFINITY; LANES];
+    let mut lanes = [start; LANES];
     for chunk in chunks {
         for (lane, &value) in lanes.iter_mut().zip(chunk) {
-            *lane = if value < *lane { value } else { *lane };
+            *lane = take(*lane, value);
         }
     }
-    lanes.iter().chain(rest).fold(f64::INFINITY, |m, &value| m.min(value))
+    lanes.iter().chain(rest).fold(start, |a, &b| take(a, b))
 }
 
 /// Scalar product, in double precision over blocks: rounding stays far below that of a transform.

@@ -154,7 +154,7 @@ impl SceneFile {
     /// The physics that one model is given for one surface.
     ///
     /// # Errors
-    /// As [`SceneSurface::surface`].
+    /// As [`SceneSurface::for_model`].
     pub fn scene(&self, numerics: &Numerics, seed: u64) -> contact_model::Result<Scene> {
         Ok(Scene {
             surface: self.surface.for_model(numerics, seed)?,

@@ -35,15 +35,11 @@ impl Candidates {
         if d > self.cap {
             let cap = CANDIDATES_AHEAD * d;
             if self.more_than(self.grid.count() / LISTED_CANDIDATES, cap) {
-                return self.scan(d);
+                return CellSet::of_grid(self.grid, &self.z, |z| z < d);
             }
-            (self.list, self.cap) = (self.scan(cap), cap);
+            (self.list, self.cap) = (CellSet::of_grid(self.grid, &self.z, |z| z < cap), cap);
         }
         self.list.filter(&self.gaps(&self.list), |z| z < d)
-    }
-
-    fn scan(&self, d: f64) -> CellSet {
-        CellSet::of_grid(self.grid, &self.z, |z| z < d)
     }
 
     /// Whether more than `count` cells lie below d.

@@ -85,30 +85,20 @@ impl Prepared {
             // The state may be better than it was asked to be: begin there.
             let share = tuning.tight_aim * self.options.tolerance / error;
             limits.tolerance = share.clamp(tuning.tighter.0, tuning.tighter.1) * limits.tolerance.min(before);
-            let Solved { contact, p, d, q, residuals, steps, status, continuation } = solved;
-            let again = Solved {
-                contact: contact.clone(),
-                p: p.clone(),
-                q: q.clone(),
-                continuation,
-                d,
-                residuals,
-                steps,
-                status,
-            };
+            let continuation = std::mem::take(&mut solved.continuation);
+            let again = Solved { continuation, ..solved.clone() };
             let next = active_set::resume(&mut self.problem, target, again, limits, stop);
-            let steps = steps + next.steps;
+            solved.steps += next.steps;
             if next.residuals.worst() >= before {
-                let continuation = next.continuation;
-                solved = Solved { contact, p, d, q, residuals, steps, status, continuation };
+                solved.continuation = next.continuation;
                 break;
             }
             // The tighter state counts as converged when it meets the tolerance that was asked for.
             let converged = next.residuals.worst() <= self.options.tolerance;
             let status = if converged { Status::Converged } else { next.status };
-            let q = next.contact.carry(&contact, &tangent.q);
-            let spent = tangent.steps;
-            solved = Solved { status, steps: steps + spent, ..next };
+            let q = next.contact.carry(&solved.contact, &tangent.q);
+            let steps = solved.steps + tangent.steps;
+            solved = Solved { steps, status, ..next };
             tangent = self.tangent(&solved, Some(q), k, stop);
         }
         (solved, Some(tangent))

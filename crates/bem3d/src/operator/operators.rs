@@ -121,9 +121,8 @@ impl Operators {
             u.fill(0.0);
             return None;
         };
-        let window = from.union(to);
         self.applications += 1;
-        Some(window)
+        Some(from.union(to))
     }
 
     /// The influence matrix and, where the recipe has one, the transform of its torus inverse.
@@ -166,15 +165,11 @@ fn plan<'a>(
             Planned::TwoLevel(two_level.get_or_insert_with(|| TwoLevel::new(window, split)))
         }
         Application::Fft(lengths) => {
-            if lengths == table.exact_lengths(window) {
-                let symbol = || table.symbol_f32(lengths);
-                return Planned::Fft(planned(single, window, tuning, || {
-                    FftConvolution::new(window, lengths, symbol())
-                }));
-            }
-            let symbol = || table.shortened_symbol(lengths);
-            Planned::Fft(planned(shortened, window, tuning, || {
-                FftConvolution::new(window, lengths, symbol())
+            let exact = lengths == table.exact_lengths(window);
+            let slot = if exact { single } else { shortened };
+            Planned::Fft(planned(slot, window, tuning, || {
+                let symbol = if exact { table.symbol_f32(lengths) } else { table.shortened_symbol(lengths) };
+                FftConvolution::new(window, lengths, symbol)
             }))
         }
     }
