@@ -1,9 +1,9 @@
 //! Every tuned constant of this crate: meaning, unit and value.
 //!
-//! All but `extended` and `kept_candidates` come from the engine before this one with their values unchanged. Their dates, machines and
-//! measuring commands were not recorded one by one and have not been measured again; the tables of `data/bench` show what that engine
-//! cost with them. None of these numbers changes what a result converges to: they choose between ways to it and decide when an
-//! iteration evaluates the exact gap. Results that are compared bit by bit need the same values.
+//! All but `extended` and `kept_candidates` come from the first engine with their values unchanged, set between 2026-11-20 and
+//! 2026-11-21. The benchmarks of those days (`data/bench`) are of a two-core AMD EPYC of 2024; which command measured which constant was
+//! not recorded. None of these numbers changes what a result converges to: they choose between ways to it and decide when an iteration
+//! evaluates the exact gap. Results that are compared bit by bit need the same values.
 
 /// Constants that a solve reads; [`Tuning::DEFAULT`] is what is shipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
