@@ -7,6 +7,9 @@ use crate::extent::Extent;
 use crate::format::Format;
 use crate::options::ReadOptions;
 
+/// Rounding of a quotient of two lengths.
+const EXACT: f64 = 4.0 * f64::EPSILON;
+
 /// The rows of a table as a map; the first line is row 0.
 pub(crate) fn matrix(table: Table, declared: &ReadOptions) -> Result<FileContent, ContentError> {
     if declared.lateral_unit.is_some() {
@@ -42,6 +45,8 @@ fn extents(table: &Table, columns: usize, rows: usize) -> Result<[Option<Extent>
         return Err(ContentError::Contradiction { what: "size", first, second });
     }
     let (dx, dy) = (Extent::Side(a).cell(columns)?, Extent::Side(b).cell(rows)?);
-    let square = (dx.value() / dy.value() - 1.0).abs() <= across.rounding + down.rounding;
+    let off = (dx.value() / dy.value() - 1.0).abs();
+    // A height that is square to the last digits of a double is kept as it stands: what is written is read as the same map.
+    let square = off > EXACT && off <= across.rounding + down.rounding;
     Ok([Some(Extent::Side(a)), Some(if square { Extent::Cell(dx) } else { Extent::Side(b) })])
 }
