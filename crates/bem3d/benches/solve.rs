@@ -24,7 +24,7 @@ fn applications(c: &mut Criterion) {
     group.finish();
 }
 
-/// Forces that end in a factored set, in scattered and in dense contact at N = 257, D_f = 2.4, and the single-level twin.
+/// Forces that end in a factored set, in scattered and in dense contact at N = 257, D_f = 2.4, and the same on a single level.
 fn solves(c: &mut Criterion) {
     let Ok(surface) = SelfAffine::new(2.4, 1.0, 1.0) else { return };
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);

@@ -14,7 +14,7 @@ use analysis::{Table, Value};
 use contact_model::never;
 use rayon::prelude::*;
 
-/// One solve and its tight half-size grid.
+/// One solve and its repetition to a tight tolerance.
 struct Pair {
     fractal_dimension: f64,
     index: usize,

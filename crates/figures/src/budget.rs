@@ -103,7 +103,7 @@ pub(crate) fn algebraic(s: &Sample) -> f64 {
     s.certificate.stiffness_error.unwrap_or(0.0) + s.certificate.load_error
 }
 
-/// 95 % half-width from the relative differences between a grid and its half-size grid, for the mean over `surfaces`.
+/// 95 % half-width from the relative differences between a grid and the one of half its size, for the mean over `surfaces`.
 ///
 /// `REACH sqrt(m^2 + s^2/n)`: m the mean difference, s its scatter, n the number of surfaces or of half-size grids, whichever is less. `None` for
 /// fewer than two differences.
@@ -236,7 +236,7 @@ fn row(series: &Series, half_grids: Option<&Series>, j: usize) -> Option<Budgete
     })
 }
 
-/// Relative differences of k between a surface and its half-size grid, both converged.
+/// Relative differences of k between a surface and itself on the half-size grid, both converged.
 pub(crate) fn differences(series: &Series, half_grids: &Series, j: usize) -> Vec<f64> {
     let k = |s: &Series, i: usize| {
         s.units[i].1.samples.get(j).filter(|s| s.converged()).and_then(|s| s.stiffness_bar)

@@ -186,7 +186,7 @@ fn an_unwritable_directory_is_named_and_nothing_is_left() {
 }
 
 #[test]
-fn means_have_budgets_where_there_is_a_coarser_twin() {
+fn means_have_budgets_where_the_grid_can_be_halved() {
     let dir = tempfile::tempdir().unwrap();
     let request = Request {
         cells: Some(65),
@@ -206,7 +206,7 @@ fn means_have_budgets_where_there_is_a_coarser_twin() {
         let sum = algebraic[j].unwrap() + grid[j].unwrap().hypot(ensemble[j].unwrap());
         approx::assert_relative_eq!(width[j].unwrap(), sum, max_relative = 1e-12);
     }
-    // No half-size grid, no claim.
+    // Without a half-size grid there is no budget.
     let coarse = Run { cells: 17, ..run };
     assert!(fig2(&coarse, &Silent).unwrap().reached[0].contains("unknown"));
 }

@@ -29,7 +29,7 @@ const LIGHT_BYTES: f64 = 50.0;
 const FILLED_BYTES: f64 = 150.0;
 const BOX_OVER_CONTACT: f64 = 6.0;
 
-/// Time and work of a small twin, scaled. What a small grid refuses is not predicted: its run will tell.
+/// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
 pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let (grid, size) = (cells(scene, numerics), scene.surface.size());
     let coarse = (grid.columns.max(grid.rows) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);

@@ -32,7 +32,7 @@ pub struct Plan {
     pub shows: String,
     /// What is pressed.
     pub surface: String,
-    /// What was metadata of its file.
+    /// Metadata of its file.
     pub metadata: Option<String>,
     /// Remarks on the scene.
     pub notes: Vec<Diagnostic>,

@@ -14,7 +14,7 @@ use analysis::{Column, Table, Value};
 use figures::{Header, Progress, largest_first, run_jobs, write_csv};
 use std::time::Instant;
 
-/// RequestedOutputs from any thread, between iterations: `true` means stop now.
+/// Polled from any thread, between iterations: `true` means stop now.
 pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.

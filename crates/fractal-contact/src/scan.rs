@@ -12,7 +12,7 @@ use surface_io::{
 /// A map from a file.
 pub(crate) struct FileMap {
     pub map: HeightMap,
-    /// What was metadata of its file.
+    /// Metadata of its file.
     pub metadata: String,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,

@@ -42,9 +42,9 @@ pub struct SceneFile {
     pub request: Request,
     /// What is computed and stored.
     pub requested: RequestedOutputs,
-    /// Sampling.
+    /// Seed and number of surfaces.
     pub sampling: Sampling,
-    /// What was metadata of the surface's file.
+    /// Metadata of the surface's file.
     pub metadata: Option<String>,
     /// Remarks on what stands in the file, such as keys that have a new name.
     pub notes: Vec<Diagnostic>,

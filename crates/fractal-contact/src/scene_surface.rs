@@ -128,7 +128,7 @@ pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
 /// `[scene.surface]` and `[scene.body]` as they were read.
 pub(crate) struct SurfaceEntry {
     pub surface: SceneSurface,
-    /// What was metadata of a file.
+    /// Metadata of its file.
     pub metadata: Option<String>,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,

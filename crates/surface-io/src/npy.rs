@@ -2,7 +2,7 @@
 //!
 //! Own code: `npyz` 0.9 takes a time exponential in the nesting of brackets in a header (a hundred of them do
 //! not end), multiplies the lengths of the axes unchecked, and reserves the length of the header before it
-//! looks at the file. It is the twin in the tests.
+//! looks at the file. It is the reference implementation in the tests.
 
 mod header;
 mod write;

@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// What was metadata of a file, for the user to check; shown line by line.
+/// Metadata of a file, for the user to check; shown line by line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metadata {
     /// The format.
@@ -218,7 +218,7 @@ impl Scan {
         Ok(Self { path: path.to_owned(), metadata, heights })
     }
 
-    /// What was metadata.
+    /// The metadata.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
     }

@@ -162,7 +162,7 @@ impl CellSet {
 
     /// Adds the cells of the next row whose value is kept; `column` gives that of the k-th value.
     ///
-    /// Cost: little where nothing is kept, and the same for every pattern of the rest: nothing is predicted.
+    /// Cost: a comparison a cell where nothing is kept; elsewhere no branch depends on the pattern.
     fn push_kept<T: Copy>(
         &mut self,
         y: usize,

@@ -84,7 +84,7 @@ struct Row {
     cells: f64,
     /// Scatter of k from surface to surface, relative.
     scatter: f64,
-    /// Mean and scatter of the relative difference between the pilot's grid and its half-size grid.
+    /// Mean and scatter of the relative difference between the pilot's grid and the one of half its size.
     mean: f64,
     spread: f64,
     /// Contact cells at which these differences were seen: those of the lightest row above the floor for the rows below.

@@ -144,7 +144,7 @@ impl Problem {
         Some((0..cells * cells).map(|i| pressure(at(i % cells), at(i / cells))).collect())
     }
 
-    /// The one-dimensional half-size grid where it is another scene: a flat line of the length that stands for the square.
+    /// The scene of the one-dimensional model where it is another one: a flat line of the length that stands for the square.
     pub fn line(&self, elements: usize) -> Result<Scene> {
         let mut scene = self.scene.clone();
         scene.outputs.pressure = false;

@@ -38,7 +38,7 @@ pub(super) fn against_the_scaling(measured: &Measured) -> Vec<Claim> {
         measured,
         "Eq. 24",
         |d| analytic::exponent_scaling(3.0 - d),
-        "1/(1 + H), called exact in Sec. IV; the zoom argument requirements a contact that is one region of a nonplanar surface, \
+        "1/(1 + H), called exact in Sec. IV; the zoom argument needs a contact that is one region of a nonplanar surface, \
          which fails towards D_f = 3",
     )
 }

@@ -98,7 +98,7 @@ fn flat_lines_and_ties() {
 }
 
 #[test]
-fn a_long_line_equals_its_twin() {
+fn a_long_line_equals_the_sums() {
     let line = long_line(40_000);
     let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
     assert!(bearing.bins.len() > 50);
@@ -227,7 +227,7 @@ proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(64) })]
 
     #[test]
-    fn equals_the_twin(heights in prop::collection::vec(-1.0_f64..1.0, 1..300), d in 1e-6_f64..3.0) {
+    fn equals_the_sums(heights in prop::collection::vec(-1.0_f64..1.0, 1..300), d in 1e-6_f64..3.0) {
         let line = line(heights);
         let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
         let s = bearing.press(Load::Approach(d), 2.0).unwrap();

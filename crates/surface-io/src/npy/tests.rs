@@ -170,10 +170,10 @@ proptest! {
         for (a, b) in read.iter().zip(&values) {
             prop_assert!(a.map_or(b.is_nan(), |a| a.to_bits() == b.to_bits()));
         }
-        let twin = npyz::NpyFile::new(&bytes[..]).unwrap();
-        prop_assert_eq!(twin.shape(), &[rows as u64, columns as u64]);
-        let twin: Vec<f64> = twin.into_vec().unwrap();
-        prop_assert!(twin.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits()));
+        let reference = npyz::NpyFile::new(&bytes[..]).unwrap();
+        prop_assert_eq!(reference.shape(), &[rows as u64, columns as u64]);
+        let reference: Vec<f64> = reference.into_vec().unwrap();
+        prop_assert!(reference.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits()));
     }
 
     #[test]
