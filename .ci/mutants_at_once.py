@@ -34,6 +34,8 @@ pub fn on(n: u32) -> bool {
 }
 #[cold]
 fn read(n: u32) -> bool {
+    // The environment is read once per mutant: this runs inside inner loops.
+    if ON.load(Relaxed) == REACH && SEEN[n as usize].load(Relaxed) { return false; }
     let reach = std::env::var("MUTANT_REACH");
     if ON.load(Relaxed) == UNREAD {
         let number = std::env::var("MUTANT").ok().and_then(|v| v.parse().ok()).unwrap_or(REACH - 1);
@@ -47,7 +49,7 @@ fn read(n: u32) -> bool {
     false
 }
 '''
-PROFILE = '\n[profile.mutants]\ninherits = "test"\ndebug = false\n[profile.mutants.package.{crate}]\nopt-level = 1\n'
+PROFILE = '\n[profile.mutants]\ninherits = "test"\ndebug = false\n[profile.mutants.package.{crate}]\nopt-level = 2\n'
 COPIED = ['Cargo.toml', 'Cargo.lock', 'clippy.toml', 'rustfmt.toml', 'crates', 'tests', 'xtask', 'data']
 
 

@@ -7,7 +7,7 @@ mod studies;
 pub use bench::BenchArguments;
 
 use clap::{Parser, Subcommand};
-use figures::{AccuracyTarget, Request, Requirements};
+use evaluation::{AccuracyTarget, Request, Requirements};
 use sizes::{Both, Lines, Maps, Reduced, Solid};
 use studies::{AccuracyCost, Audit, BudgetCheck, Reference, StabilityArguments, TwoCasesArguments};
 
@@ -154,7 +154,7 @@ mod tests {
     use super::bench::{SCALING_CELLS, SCALING_CSV};
     use super::*;
     use clap::CommandFactory as _;
-    use figures::{Preset, Surfaces};
+    use evaluation::{Preset, Surfaces};
 
     fn parse(line: &str) -> Result<Arguments, clap::Error> {
         Arguments::try_parse_from(std::iter::once("xtask").chain(line.split_whitespace()))

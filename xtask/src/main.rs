@@ -10,7 +10,8 @@ mod arguments;
 
 use arguments::{Arguments, BenchArguments, Command};
 use clap::Parser as _;
-use figures::{BenchRow, Outcome, Reporter, Result, Run};
+use evaluation::{BenchRow, Outcome, Run};
+use runs::{Reporter, Result};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -41,17 +42,17 @@ fn execute(command: Command) -> Result<ExitCode> {
     let target = command.target();
     let run = match target {
         Some((requirements, target)) => {
-            let plan = figures::plan(&command.request(), requirements, target, &reporter)?;
+            let plan = evaluation::plan(&command.request(), requirements, target, &reporter)?;
             plan.lines.iter().for_each(|line| println!("{line}"));
             let told = plan.lines.len();
-            let settled = figures::settle(plan, requirements, target, &reporter)?;
+            let settled = evaluation::settle(plan, requirements, target, &reporter)?;
             settled.lines.iter().skip(told).for_each(|line| println!("{line}"));
             // What was solved a moment ago is not solved again.
             Run { fresh: false, ..settled.run }
         }
         None => Run::new(&command.request())?,
     };
-    let mut dishonest = false;
+    let mut coverage_fails = false;
     let mut outcomes = match command {
         Command::ReproduceFig1(_) => vec![figures::fig1(&run, &reporter)?],
         Command::ReproduceFig2(_) => vec![figures::fig2(&run, &reporter)?],
@@ -62,22 +63,22 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
         Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
-        Command::AccuracyCost(options) if options.redraw => vec![figures::redraw_accuracy(&options.out)?],
+        Command::AccuracyCost(options) if options.redraw => vec![evaluation::redraw_accuracy(&options.out)?],
         Command::AccuracyCost(options) => {
-            vec![figures::accuracy_cost(options.depth(), options.seed, &options.out, &reporter)?]
+            vec![evaluation::accuracy_cost(options.depth(), options.seed, &options.out, &reporter)?]
         }
         Command::ReproduceTwoCases(options) => {
             vec![figures::two_cases(&options.study()?, &options.out, &reporter)?]
         }
         Command::BudgetCheck(options) => {
-            let (outcome, honesty) =
-                figures::budget_check(options.cases, options.seed, run.threads, &run.out, &reporter)?;
-            println!("{honesty}");
-            dishonest = !honesty.holds();
+            let (outcome, coverage) =
+                evaluation::budget_check(options.cases, options.seed, run.threads, &run.out, &reporter)?;
+            println!("{coverage}");
+            coverage_fails = !coverage.holds();
             vec![outcome]
         }
         Command::Audit(options) => {
-            let (outcome, summary) = figures::audit(&run, options.share, options.tight, &reporter)?;
+            let (outcome, summary) = evaluation::audit(&run, options.share, options.tight, &reporter)?;
             println!("{summary}");
             vec![outcome]
         }
@@ -86,13 +87,13 @@ fn execute(command: Command) -> Result<ExitCode> {
     if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())
     {
-        outcomes.push(figures::state_budgets(&run, requirements.solid, requirements.line, &reporter)?);
+        outcomes.push(evaluation::state_budgets(&run, requirements.solid, requirements.line, &reporter)?);
     }
     let typed: Vec<String> = std::env::args().skip(1).collect();
     let manifest =
-        figures::write_manifest(&run, name, &format!("cargo xtask {}", typed.join(" ")), &outcomes)?;
+        evaluation::write_manifest(&run, name, &format!("cargo xtask {}", typed.join(" ")), &outcomes)?;
     let code = report(&outcomes, &manifest);
-    Ok(if dishonest { ExitCode::from(3) } else { code })
+    Ok(if coverage_fails { ExitCode::from(3) } else { code })
 }
 
 /// Prints what was made and what the paper says to it.
@@ -110,13 +111,13 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
     let claims = verified.map_or_else(
         || {
             let mut all: Vec<_> = outcomes.iter().flat_map(|o| o.claims.iter().cloned()).collect();
-            figures::sort(&mut all);
+            evaluation::sort(&mut all);
             all
         },
         |o| o.claims.clone(),
     );
     if !claims.is_empty() {
-        println!("\nThe paper beside these numbers:\n\n{}", figures::plain(&claims));
+        println!("\nThe paper beside these numbers:\n\n{}", evaluation::plain(&claims));
     }
     let seconds: f64 = outcomes.iter().map(|o| o.seconds).sum();
     let missing = outcomes.iter().map(|o| o.not_converged).max().unwrap_or(0);
@@ -135,10 +136,10 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
 fn bench(options: &BenchArguments) -> Result<ExitCode> {
     let (csv, plot) = options.files();
     if let Some(directory) = csv.as_deref().and_then(Path::parent) {
-        figures::create_directory(directory)?;
+        runs::files::create_directory(directory)?;
     }
     let table = Mutex::new(Table::default());
-    let rows = figures::bench(&options.bench()?, &|row| {
+    let rows = evaluation::bench(&options.bench()?, &|row| {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
         let Ok(mut table) = table.lock() else { return Ok(()) };
         if table.rows.is_empty() {
@@ -149,10 +150,10 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
         csv.as_deref().map_or(Ok(()), |path| table.write(path))
     })?;
     if let Some(path) = &csv {
-        figures::write_bench(path, &rows)?;
+        evaluation::write_bench(path, &rows)?;
         println!("{}", path.display());
         if let Some(picture) = &plot {
-            let drawn = figures::plot_bench(path, picture)?;
+            let drawn = evaluation::plot_bench(path, picture)?;
             drawn.files.iter().for_each(|file| println!("{}", file.display()));
             drawn.slopes.iter().for_each(|slope| println!("{slope}"));
         }
@@ -180,7 +181,7 @@ impl Table {
         if self.written.is_some_and(|(end, took)| start.duration_since(end) < 20 * took) {
             return Ok(());
         }
-        figures::write_bench(path, &self.rows)?;
+        evaluation::write_bench(path, &self.rows)?;
         self.written = Some((Instant::now(), start.elapsed()));
         Ok(())
     }
@@ -218,7 +219,7 @@ fn printed(row: &BenchRow) -> [(&'static str, usize); PRINTED.len()] {
 fn line(row: &BenchRow) -> Result<String> {
     let fields = row.fields()?;
     let field =
-        |name: &str| figures::BENCH_COLUMNS.iter().position(|c| *c == name).map_or("", |i| &fields[i]);
+        |name: &str| evaluation::BENCH_COLUMNS.iter().position(|c| *c == name).map_or("", |i| &fields[i]);
     let short = |name: &str| match (name, field(name).parse::<f64>()) {
         ("approach_over_h" | "mean_gap_over_h" | "stiffness_bar", Ok(v)) => format!("{v:.10}"),
         ("duality_gap" | "stiffness_error" | "force_bar", Ok(v)) => format!("{v:.2e}"),
@@ -230,8 +231,8 @@ fn line(row: &BenchRow) -> Result<String> {
 
 /// Prints the table of hard cases; one that fails does not stop the others.
 fn stability(thorough: bool, out: &Path) -> Result<ExitCode> {
-    let effort = if thorough { figures::Effort::Thorough } else { figures::Effort::Quick };
-    let (verdicts, files) = figures::hard_cases(&figures::cases(), effort, out, &Reporter::new())?;
+    let effort = if thorough { stability::Effort::Thorough } else { stability::Effort::Quick };
+    let (verdicts, files) = evaluation::hard_cases(&stability::cases(), effort, out, &Reporter::new())?;
     for v in &verdicts {
         let figure = v.figure.map_or_else(|| "no figure".to_owned(), |f| format!("{f:.1e}"));
         println!("{:<6}  {:<38} {figure:>9} of {:.0e}", v.status.as_str(), v.case.name, v.case.bound);

@@ -14,8 +14,8 @@ mod plateau;
 mod scaling;
 mod speed;
 
-use crate::claim::Claim;
-use crate::measured::Measured;
+use evaluation::Claim;
+use evaluation::Measured;
 
 pub(crate) use paper::paper_against_itself;
 pub(crate) use plateau::plateaus;

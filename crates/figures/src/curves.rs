@@ -1,50 +1,14 @@
 //! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
 
-use crate::budget;
-use crate::csv_file::{CsvFile, Header, write_csv};
-use crate::error::Result;
-use crate::measured::Measured;
-use crate::plot::{Axis, Key, Mark, Picture, color, logarithmic};
-use crate::progress::Progress;
-use crate::run::{Flag, Run, list};
-use crate::store::Store;
-use crate::tables;
+use evaluation::Measured;
+use evaluation::{Flag, Run, describe, header};
+use evaluation::{curves_table, samples_table};
 use kuva::plot::line::LineStyle;
 use kuva::plot::scatter::MarkerShape;
+use plots::{Axis, Key, Mark, Picture, color, logarithmic};
+use runs::Result;
+use runs::{CsvFile, write_csv};
 use std::path::{Path, PathBuf};
-
-pub(crate) const FLAGS_3D: [Flag; 6] =
-    [Flag::Cells, Flag::Surfaces, Flag::FractalDimensions, Flag::Forces, Flag::Tolerance, Flag::Seed];
-pub(crate) const FLAGS_1D: [Flag; 5] =
-    [Flag::Elements, Flag::Lines, Flag::FractalDimensions, Flag::Forces, Flag::Seed];
-
-/// Header lines about an ensemble.
-pub(crate) fn describe(mut header: Header, run: &Run, measured: &[&Measured]) -> Header {
-    header = header
-        .with_note("normalisation: F_bar = F/(E* h L) with the measured rms height h of each surface, k_bar = k/(1.1419 E* L)")
-        .with_note("surfaces: fixed amplitudes, uniform phases, no roll-off, spectrum to the end of the grid on a circle")
-        .with_note(format!("fractal_dimensions: {}", list(&run.dimensions())))
-        .with_note(format!("seed: {} (surface i: surface_seed(seed, i); D_f does not enter)", run.seed));
-    for m in measured {
-        let (size, count, forces) = match m.numerics {
-            crate::Numerics::Bem3d { cells, tolerance } => {
-                (format!("{cells} cells a side, tolerance {tolerance:?}"), run.surfaces, &run.forces_3d)
-            }
-            crate::Numerics::Mdr1d { elements } => {
-                (format!("{elements} elements"), run.lines, &run.forces_1d)
-            }
-        };
-        header = header
-            .with_sources(m.numerics.model().sources())
-            .with_note(format!(
-                "{}: {size}, {count} surfaces per D_f, loads {}",
-                m.numerics.name(),
-                forces.spec()
-            ))
-            .with_note(format!("{}: {} solves not converged", m.numerics.name(), m.not_converged()));
-    }
-    header
-}
 
 /// Writes `name.csv`, `name-samples.csv`, `name.svg`, `name.png`.
 pub(crate) fn write(
@@ -54,32 +18,15 @@ pub(crate) fn write(
     run: &Run,
     measured: &Measured,
 ) -> Result<Vec<PathBuf>> {
-    let header = describe(Header::new(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
+    let header = describe(header(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
     let csv = run.out.join(format!("{name}.csv"));
     let samples = run.out.join(format!("{name}-samples.csv"));
-    write_csv(&csv, &tables::curves(title, measured)?, &header)?;
-    let all = tables::samples(&format!("{title}: every surface and load"), measured)?;
+    write_csv(&csv, &curves_table(title, measured)?, &header)?;
+    let all = samples_table(&format!("{title}: every surface and load"), measured)?;
     write_csv(&samples, &all, &header)?;
     let mut files = vec![csv.clone(), samples];
     files.extend(draw(name, title, &csv, run.over.as_deref(), &run.out)?);
     Ok(files)
-}
-
-/// Writes `name-budget.csv`; its path, and to what k is known.
-pub(crate) fn budget(
-    name: &'static str,
-    flags: &[Flag],
-    run: &Run,
-    measured: &Measured,
-    store: &Store,
-    progress: &dyn Progress,
-) -> Result<(PathBuf, String)> {
-    let half_grids = budget::measure_half_grids(run, measured, store, progress)?;
-    let all = budget::budgets(measured, half_grids.as_ref());
-    let header = describe(Header::new(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
-    let path = run.out.join(format!("{name}-budget.csv"));
-    budget::write(&path, measured, &all, header)?;
-    Ok((path, format!("{name}: {}", budget::reached(&all))))
 }
 
 /// The curves of a CSV file: (D_f, points with their floor mark).

@@ -1,19 +1,21 @@
 //! Fig. 1: what the surfaces look like.
 
-use crate::arrays::{Image, base64, encode_grey, grey, write_npy};
-use crate::csv_file::{CsvFile, Header, write_csv};
-use crate::error::{Error, Result};
-use crate::files;
-use crate::outcome::Outcome;
-use crate::plot::{pixels_per_unit, raster};
-use crate::progress::Progress;
-use crate::run::{Flag, Run, list};
-use crate::session::Session;
-use crate::tables::{FRACTAL_DIMENSION, column};
 use analysis::Table;
 use contact_model::{HeightMap, SelfAffine};
+use evaluation::Outcome;
+use evaluation::Session;
+use evaluation::header;
+use evaluation::{FRACTAL_DIMENSION, column};
+use evaluation::{Flag, Run, list};
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
+use plots::{Image, base64, encode_grey, grey};
+use plots::{pixels_per_unit, raster};
+use runs::Progress;
+use runs::files;
+use runs::write_npy;
+use runs::{CsvFile, write_csv};
+use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Flags that decide what Fig. 1 holds.
@@ -56,7 +58,7 @@ pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     }
     progress.end();
     let kept = n.min(CSV_SIDE);
-    let header = Header::new(run.command("reproduce-fig1", &FLAGS))
+    let header = header(run.command("reproduce-fig1", &FLAGS))
         .with_note(format!("fractal_dimensions: {}", list(&dimensions)))
         .with_note(format!("seed: {} (surface 0: {seed}; the same phases for every D_f)", run.seed))
         .with_note(format!(
@@ -96,7 +98,7 @@ fn flipped(values: &[u8], side: usize) -> Vec<u8> {
 fn full_size(out: &Path, d: f64, map: &HeightMap) -> Result<[PathBuf; 2]> {
     let n = map.columns();
     let npy = out.join(format!("fig1-df{d:?}.npy"));
-    write_npy(&npy, &[n as u64, n as u64], map.heights())?;
+    write_npy(&npy, &[n, n], map.heights())?;
     let png = out.join(format!("fig1-df{d:?}.png"));
     files::write_whole(&png, &encode_grey(&png, n, &flipped(&grey(map.heights()), n))?)?;
     Ok([npy, png])

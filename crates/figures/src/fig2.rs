@@ -2,14 +2,15 @@
 
 use crate::claims;
 use crate::curves;
-use crate::error::Result;
-use crate::measured::{Measured, measure_3d};
-use crate::outcome::Outcome;
-use crate::progress::Progress;
-use crate::run::Run;
-use crate::session::Session;
+use evaluation::Outcome;
+use evaluation::Run;
+use evaluation::Session;
+use evaluation::write_budget;
+use evaluation::{Measured, measure_3d};
+use runs::Progress;
+use runs::Result;
 
-use crate::curves::FLAGS_3D as FLAGS;
+use evaluation::FLAGS_3D as FLAGS;
 
 /// Solves the 3D ensemble and writes `fig2.csv`, `fig2-samples.csv`, `fig2-budget.csv`, `fig2.svg`, `fig2.png`.
 ///
@@ -23,7 +24,7 @@ pub fn fig2(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     let session = Session::open(run)?;
     let measured = measure_3d(run, &session.store, progress)?;
     let mut outcome = write(run, &measured)?;
-    outcome.add_budget(curves::budget("fig2", &FLAGS, run, &measured, &session.store, progress)?);
+    outcome.add_budget(write_budget("fig2", &FLAGS, run, &measured, &session.store, progress)?);
     outcome.claims = claims::curves_3d(&measured);
     session.close(outcome)
 }

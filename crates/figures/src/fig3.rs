@@ -1,20 +1,21 @@
 //! Fig. 3: the exponent alpha over the fractal dimension.
 
 use crate::claims;
-use crate::csv_file::{CsvFile, Header, write_csv};
-use crate::curves::describe;
-use crate::error::{Error, Result};
-use crate::laws::{Law, dense_dimensions, laws};
-use crate::measured::{Measured, measure_1d, measure_3d};
-use crate::outcome::Outcome;
-use crate::plot::{Axis, Key, Mark, Picture};
-use crate::progress::Progress;
-use crate::run::{Flag, Run};
-use crate::session::Session;
-use crate::tables::{FRACTAL_DIMENSION, column};
 use analysis::{Table, Value, Window};
+use evaluation::Outcome;
+use evaluation::Session;
+use evaluation::describe;
+use evaluation::{FRACTAL_DIMENSION, column};
+use evaluation::{Flag, Run};
+use evaluation::{Law, dense_dimensions, laws};
+use evaluation::{Measured, measure_1d, measure_3d};
 use kuva::plot::line::LineStyle;
 use kuva::plot::scatter::MarkerShape;
+use plots::{Axis, Key, Mark, Picture};
+use runs::Header;
+use runs::Progress;
+use runs::{CsvFile, write_csv};
+use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Colours of the two models, here and in Fig. 7.
@@ -63,7 +64,7 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
 
 pub(crate) fn header(name: &str, run: &Run, solid: &Measured, line: &Measured) -> Header {
     let bootstrap = analysis::Bootstrap::default();
-    describe(Header::new(run.command(&format!("reproduce-{name}"), &Flag::ALL)), run, &[solid, line])
+    describe(evaluation::header(run.command(&format!("reproduce-{name}"), &Flag::ALL)), run, &[solid, line])
         .with_note(format!(
             "fit: ln of the arithmetic mean of k_bar over ln F_bar, equal weights, {}",
             Window::default()

@@ -1,22 +1,23 @@
 //! Fig. 4: the collapse of all curves.
 
 use crate::claims;
-use crate::csv_file::{CsvFile, Header, write_csv};
-use crate::curves::describe;
-use crate::error::{Error, Result};
-use crate::measured::{Measured, measure_3d, transformed};
-use crate::outcome::Outcome;
-use crate::plot::{Key, Mark, Picture, color, logarithmic};
-use crate::progress::Progress;
-use crate::run::Run;
-use crate::session::Session;
-use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
 use analysis::Table;
+use evaluation::Outcome;
+use evaluation::Run;
+use evaluation::Session;
+use evaluation::describe;
+use evaluation::header;
+use evaluation::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
+use evaluation::{Measured, measure_3d, transformed};
 use kuva::plot::line::LineStyle;
 use kuva::plot::scatter::MarkerShape;
+use plots::{Key, Mark, Picture, color, logarithmic};
+use runs::Progress;
+use runs::{CsvFile, write_csv};
+use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
-use crate::curves::FLAGS_3D as FLAGS;
+use evaluation::FLAGS_3D as FLAGS;
 
 /// Transforms the 3D ensemble (solving what is not stored) and writes `fig4.csv`, `fig4.svg`, `fig4.png`.
 ///
@@ -52,7 +53,7 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
         for (p, floor) in transformed(series) {
             let d = series.fractal_dimension;
             let row = vec![
-                measured.numerics.name().into(),
+                measured.discretisation.name().into(),
                 d.into(),
                 p.force_bar.into(),
                 p.force_tilde.into(),
@@ -62,7 +63,7 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
         }
     }
     let csv = run.out.join("fig4.csv");
-    let header = describe(Header::new(run.command("reproduce-fig4", &FLAGS)), run, &[measured]);
+    let header = describe(header(run.command("reproduce-fig4", &FLAGS)), run, &[measured]);
     write_csv(&csv, &table, &header)?;
     let mut outcome = Outcome::new("fig4");
     outcome.files = vec![csv.clone()];
@@ -86,7 +87,7 @@ fn draw(title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
             .with_title(title)
             .with_legend_below();
     let ends: Vec<f64> = rows.iter().map(|r| r.1).filter(|f| *f <= 1.0).collect();
-    if let Some((low, high)) = crate::plot::extent(ends) {
+    if let Some((low, high)) = plots::extent(ends) {
         picture.line(&[(low, low), (high, high)], "#222222", 1.4, &LineStyle::Dashed);
     }
     for series in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {

@@ -1,18 +1,19 @@
 //! Fig. 5: what the equivalent lines look like.
 
-use crate::arrays::write_npy;
-use crate::csv_file::{CsvFile, Header, write_csv};
-use crate::error::{Error, Result};
-use crate::outcome::Outcome;
-use crate::plot::{Axis, Picture, extent, save};
-use crate::progress::Progress;
-use crate::run::{Flag, Run, list};
-use crate::session::Session;
-use crate::tables::{FRACTAL_DIMENSION, column};
 use analysis::Table;
 use contact_model::{Line, SelfAffine};
+use evaluation::Outcome;
+use evaluation::Session;
+use evaluation::header;
+use evaluation::{FRACTAL_DIMENSION, column};
+use evaluation::{Flag, Run, list};
 use kuva::plot::line::LineStyle;
 use kuva::render::figure::Figure;
+use plots::{Axis, Picture, extent, save};
+use runs::Progress;
+use runs::write_npy;
+use runs::{CsvFile, write_csv};
+use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Flags that decide what Fig. 5 holds.
@@ -62,12 +63,12 @@ pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
             table.push(row).map_err(Error::model("a height"))?;
         }
         let npy = run.out.join(format!("fig5-df{d:?}.npy"));
-        write_npy(&npy, &[run.elements as u64], line.heights())?;
+        write_npy(&npy, &[run.elements], line.heights())?;
         outcome.files.push(npy);
         progress.advance(cost, false);
     }
     progress.end();
-    let header = Header::new(run.command("reproduce-fig5", &FLAGS))
+    let header = header(run.command("reproduce-fig5", &FLAGS))
         .with_note(format!("fractal_dimensions: {}", list(&dimensions)))
         .with_note(format!("seed: {} (line 0: {seed}; the same phases for every D_f)", run.seed))
         .with_note(format!(

@@ -2,14 +2,15 @@
 
 use crate::claims;
 use crate::curves;
-use crate::error::Result;
-use crate::measured::{Measured, measure_1d};
-use crate::outcome::Outcome;
-use crate::progress::Progress;
-use crate::run::Run;
-use crate::session::Session;
+use evaluation::Outcome;
+use evaluation::Run;
+use evaluation::Session;
+use evaluation::write_budget;
+use evaluation::{Measured, measure_1d};
+use runs::Progress;
+use runs::Result;
 
-use crate::curves::FLAGS_1D as FLAGS;
+use evaluation::FLAGS_1D as FLAGS;
 
 /// Solves the 1D ensemble and writes `fig6.csv`, `fig6-samples.csv`, `fig6-budget.csv`, `fig6.svg`, `fig6.png`.
 ///
@@ -21,7 +22,7 @@ pub fn fig6(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     let session = Session::open(run)?;
     let measured = measure_1d(run, &session.store, progress)?;
     let mut outcome = write(run, &measured)?;
-    outcome.add_budget(curves::budget("fig6", &FLAGS, run, &measured, &session.store, progress)?);
+    outcome.add_budget(write_budget("fig6", &FLAGS, run, &measured, &session.store, progress)?);
     outcome.claims = claims::curves_1d(&measured);
     session.close(outcome)
 }

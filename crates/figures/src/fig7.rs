@@ -1,18 +1,18 @@
 //! Fig. 7: the factor zeta over the fractal dimension.
 
 use crate::claims;
-use crate::csv_file::{CsvFile, write_csv};
-use crate::error::Result;
 use crate::fig3::{both, columns, formula, header, push, series};
-use crate::laws::{dense_dimensions, laws};
-use crate::measured::{Measured, measure_1d, measure_3d};
-use crate::outcome::Outcome;
-use crate::plot::{Axis, Key, Picture};
-use crate::progress::Progress;
-use crate::run::Run;
-use crate::session::Session;
 use analysis::Table;
+use evaluation::Outcome;
+use evaluation::Run;
+use evaluation::Session;
+use evaluation::{Measured, measure_1d, measure_3d};
+use evaluation::{dense_dimensions, laws};
 use kuva::plot::line::LineStyle;
+use plots::{Axis, Key, Picture};
+use runs::Progress;
+use runs::Result;
+use runs::{CsvFile, write_csv};
 use std::path::{Path, PathBuf};
 
 /// Fits both ensembles (solving what is not stored) and writes `fig7.csv`, `fig7.svg`, `fig7.png`.

@@ -1,10 +1,10 @@
 //! A small run against stored numbers: what continuous integration compares.
 
-use crate::csv_file::CsvFile;
-use crate::error::{Error, Result};
-use crate::progress::Progress;
-use crate::run::{Request, Run};
 use crate::{fig2, fig6};
+use evaluation::{Request, Run};
+use runs::CsvFile;
+use runs::Progress;
+use runs::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -51,9 +51,9 @@ pub fn check_reference(
         let fresh = scratch.join(format!("{}.csv", outcome.name));
         let stored = reference.join(format!("quick-{}.csv", outcome.name));
         if bless {
-            crate::files::create_directory(reference)?;
+            runs::files::create_directory(reference)?;
             let bytes = fs::read(&fresh).map_err(Error::file("read", &fresh))?;
-            crate::files::write_whole(&stored, &bytes)?;
+            runs::files::write_whole(&stored, &bytes)?;
         } else {
             differences.extend(compare(outcome.name, &CsvFile::read(&stored)?, &CsvFile::read(&fresh)?));
         }

@@ -1,16 +1,17 @@
 //! Every claim of the paper beside what was found.
 
-use crate::claim::{Claim, markdown, readme_table, sort, table};
 use crate::claims;
-use crate::csv_file::{Header, write_csv};
-use crate::curves::describe;
-use crate::error::Result;
-use crate::files;
-use crate::measured::{Measured, measure_1d, measure_3d};
-use crate::outcome::Outcome;
-use crate::progress::Progress;
-use crate::run::{Flag, Run};
-use crate::session::Session;
+use evaluation::Outcome;
+use evaluation::Session;
+use evaluation::describe;
+use evaluation::header;
+use evaluation::{Claim, claims_table, markdown, readme_table, sort};
+use evaluation::{Flag, Run};
+use evaluation::{Measured, measure_1d, measure_3d};
+use runs::Progress;
+use runs::Result;
+use runs::files;
+use runs::write_csv;
 
 /// Judges every claim (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
 /// `verify-table.md`, disagreements first.
@@ -49,10 +50,10 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     sort(&mut claims);
     let command = run.command("verify", &Flag::ALL);
     let title = "Claims of the paper beside what was found, disagreements first";
-    let header = describe(Header::new(command.clone()), run, &[solid, line])
+    let header = describe(header(command.clone()), run, &[solid, line])
         .with_note("the row on run times depends on the machine, all others do not");
     let csv = run.out.join("verify.csv");
-    write_csv(&csv, &table(title, &claims)?, &header)?;
+    write_csv(&csv, &claims_table(title, &claims)?, &header)?;
     let notes: String = header.notes.iter().map(|n| format!("- {n}\n")).collect();
     let text = format!("# {title}\n\n`{command}`\n\n{notes}\n{}", markdown(&claims));
     let md = run.out.join("verify.md");

@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
-use figures::{
-    AccuracyTarget, CsvFile, Error, Progress, Request, Requirements, Run, Silent, Verdict, fig1, fig2, fig3,
-    fig4, fig5, fig6, fig7, verify,
-};
+use evaluation::{AccuracyTarget, Request, Requirements, Run, Verdict};
+use figures::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
+use runs::{CsvFile, Error, Progress, Silent};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -100,7 +99,7 @@ fn other_figures_reuse_units_and_other_parameters_do_not() {
     let run = run(dir.path());
     fig2(&run, &Silent).unwrap();
     fig6(&run, &Silent).unwrap();
-    let reused = |run: &Run, figure: fn(&Run, &dyn Progress) -> figures::Result<figures::Outcome>| {
+    let reused = |run: &Run, figure: fn(&Run, &dyn Progress) -> runs::Result<evaluation::Outcome>| {
         let counter = Counter::default();
         figure(run, &counter).unwrap();
         (counter.units.into_inner(), counter.reused.into_inner())
@@ -223,12 +222,12 @@ fn a_wish_is_met_or_refused_with_its_price() {
     };
     let requirements = Requirements { solid: true, line: false };
     let plan = |accuracy, seconds| {
-        figures::plan(&request, requirements, AccuracyTarget { accuracy, seconds }, &Silent)
+        evaluation::plan(&request, requirements, AccuracyTarget { accuracy, seconds }, &Silent)
     };
     let planned = plan(0.1, 600.0).unwrap();
     assert!(planned.accuracy <= 0.1 && planned.run.surfaces >= 2, "{:?}", planned.lines);
     let target = AccuracyTarget { accuracy: 0.1, seconds: 600.0 };
-    let settled = figures::settle(planned, requirements, target, &Silent).unwrap();
+    let settled = evaluation::settle(planned, requirements, target, &Silent).unwrap();
     let counter = Counter::default();
     fig2(&settled.run, &counter).unwrap();
     assert_eq!(counter.units.into_inner(), counter.reused.into_inner());
@@ -238,7 +237,7 @@ fn a_wish_is_met_or_refused_with_its_price() {
     assert!(refused.starts_with("--accuracy 0.010 %") && refused.contains("the budget buys"), "{refused}");
     let given = Request { cells: Some(65), ..request };
     let refused =
-        figures::plan(&given, requirements, AccuracyTarget { accuracy: 0.1, seconds: 1.0 }, &Silent)
+        evaluation::plan(&given, requirements, AccuracyTarget { accuracy: 0.1, seconds: 1.0 }, &Silent)
             .unwrap_err();
     assert!(refused.to_string().starts_with("--cells 65"), "{refused}");
 }

@@ -2,8 +2,6 @@
 
 use crate::diagnostic::Diagnostic;
 use std::fmt;
-use std::io;
-use std::path::{Path, PathBuf};
 
 /// Result of everything in this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -14,26 +12,10 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub enum Error {
     /// A mistake in a scene.
     Scene(Box<Diagnostic>),
-    /// The operating system refused to read or write.
-    File {
-        /// What was being done.
-        action: &'static str,
-        /// Where.
-        path: PathBuf,
-        /// Its reason.
-        source: io::Error,
-    },
-    /// A model refused its numbers.
-    Model {
-        /// What was being computed.
-        what: String,
-        /// The reason, with the value.
-        source: contact_model::Error,
-    },
     /// A surface cannot be read or written.
     Surface(surface_io::Error),
-    /// A table or a picture could not be made.
-    Figures(figures::Error),
+    /// A model refused its numbers, or a file could not be read or written.
+    Run(runs::Error),
     /// An argument of the command line.
     Argument {
         /// The argument.
@@ -48,16 +30,6 @@ impl Error {
     pub fn is_scene(&self) -> bool {
         matches!(self, Self::Scene(_))
     }
-
-    pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
-        let path = path.to_owned();
-        move |source| Self::File { action, path, source }
-    }
-
-    pub(crate) fn model(what: impl Into<String>) -> impl FnOnce(contact_model::Error) -> Self {
-        let what = what.into();
-        move |source| Self::Model { what, source }
-    }
 }
 
 impl From<Diagnostic> for Error {
@@ -66,9 +38,9 @@ impl From<Diagnostic> for Error {
     }
 }
 
-impl From<figures::Error> for Error {
-    fn from(error: figures::Error) -> Self {
-        Self::Figures(error)
+impl From<runs::Error> for Error {
+    fn from(error: runs::Error) -> Self {
+        Self::Run(error)
     }
 }
 
@@ -76,12 +48,8 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Scene(diagnostic) => write!(f, "{diagnostic}"),
-            Self::File { action, path, source } => {
-                write!(f, "error: cannot {action} {}: {source}", path.display())
-            }
-            Self::Model { what, source } => write!(f, "error: {what}: {source}"),
             Self::Surface(error) => write!(f, "error: {error}"),
-            Self::Figures(error) => write!(f, "error: {error}"),
+            Self::Run(error) => write!(f, "error: {error}"),
             Self::Argument { name, reason } => write!(f, "error: {name}: {reason}"),
         }
     }
@@ -91,10 +59,8 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Scene(diagnostic) => Some(diagnostic),
-            Self::File { source, .. } => Some(source),
-            Self::Model { source, .. } => Some(source),
             Self::Surface(error) => Some(error),
-            Self::Figures(error) => Some(error),
+            Self::Run(error) => Some(error),
             Self::Argument { .. } => None,
         }
     }

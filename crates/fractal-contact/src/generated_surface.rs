@@ -31,7 +31,7 @@ impl GeneratedSurface {
     /// Draws the surface, writes it (`.npy`, `.txt`, `.xyz` or `.vti`) and says in a few lines what it is.
     ///
     /// # Errors
-    /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Model`] for numbers
+    /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Run`] for numbers
     /// that make no sense, [`Error::Surface`] for another ending or a file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<String> {
         let mut units: Option<Dimension> = None;
@@ -64,12 +64,13 @@ impl GeneratedSurface {
         let short_cutoff = wavenumber("--shortest-wavelength", &self.shortest_wavelength)?;
         let metric = if units == Some(Dimension::LENGTH) { Metric::Metres } else { Metric::Unitless };
         let surface =
-            SelfAffine::new(self.fractal_dimension, size, rms).map_err(Error::model("the surface"))?;
+            SelfAffine::new(self.fractal_dimension, size, rms).map_err(runs::Error::model("the surface"))?;
         let surface = SelfAffine { amplitude: Amplitude::RmsHeight(rms), roll_off, short_cutoff, ..surface };
         let seed = surface_gen::surface_seed(self.seed, 0);
         let nearly_square = Cells::nearly_square(self.cells, size);
         let cells = self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square });
-        let map = surface_gen::self_affine_map(&surface, cells, seed).map_err(Error::model("the surface"))?;
+        let map =
+            surface_gen::self_affine_map(&surface, cells, seed).map_err(runs::Error::model("the surface"))?;
         write_map(path, &map, metric).map_err(Error::Surface)?;
         let unit = if metric == Metric::Metres { "m" } else { "none" };
         Ok(format!("{}\nunit               {unit}\n{}\n", path.display(), describe(&map)))

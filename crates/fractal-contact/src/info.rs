@@ -13,7 +13,7 @@ use surface_io::{Preprocessing, ReadOptions, Scan, Undefined, describe};
 /// `declared` is what the caller says about a surface's file; undefined points are told, not filled.
 ///
 /// # Errors
-/// As [`SceneFile::read`] and [`crate::check`] for scenes; [`Error::Figures`] and [`Error::Surface`] with
+/// As [`SceneFile::read`] and [`crate::check`] for scenes; [`Error::Run`] and [`Error::Surface`] with
 /// what is wrong with the file.
 pub fn info(path: &Path, declared: &ReadOptions) -> Result<String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
@@ -30,7 +30,7 @@ fn explains_itself(path: &Path) -> bool {
 }
 
 fn table(path: &Path) -> Result<String> {
-    let file = figures::CsvFile::read(path)?;
+    let file = runs::CsvFile::read(path)?;
     let mut text = format!("{} rows of {} columns\n\n", file.rows.len(), file.columns.len());
     for line in &file.comments {
         text += &format!("{line}\n");

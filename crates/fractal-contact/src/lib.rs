@@ -12,7 +12,7 @@
 //!
 //! ```
 //! use fractal_contact::{Options, Plan, SceneFile, run};
-//! use figures::{CsvFile, Silent};
+//! use runs::{CsvFile, Silent};
 //!
 //! // Hertz: F = (4/3) E* sqrt(R) d^1.5 = 1 at d = 0.8254818122 (E* = R = 1).
 //! let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\", \"mdr1d\"]\nmodulus = 1\nforce = 1\n\
@@ -91,8 +91,8 @@ mod run;
 mod scan;
 mod scene_file;
 mod scene_surface;
-mod store;
 mod unit;
+mod unit_job;
 
 pub use cost::Cost;
 pub use diagnostic::Diagnostic;

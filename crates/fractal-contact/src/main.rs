@@ -93,8 +93,7 @@ fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
         eprintln!("stopping: the states so far are written; once more ends at once");
     })
     .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
-    let outcome =
-        run(&scene, &plan, options, &figures::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
+    let outcome = run(&scene, &plan, options, &runs::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
     for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
         if let Some(predicted) = &planned.predicted {
             eprintln!("{name}\n  predicted  {predicted}");

@@ -1,7 +1,7 @@
 //! `manifest.json`: the whole scene, what it was run with, what it cost, what to cite.
 
 use crate::cost::Cost;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::outcome::{Options, Outcome};
 use crate::plan::Plan;
 use crate::scene_file::SceneFile;
@@ -10,7 +10,6 @@ use std::path::PathBuf;
 
 /// Writes it.
 pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: &Outcome) -> Result<PathBuf> {
-    let path = options.out.join("manifest.json");
     let cite: Vec<Value> = scene
         .models
         .iter()
@@ -35,8 +34,6 @@ pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: 
             })
         })
         .collect();
-    let files: Vec<String> =
-        outcome.files.iter().filter_map(|f| Some(f.file_name()?.to_string_lossy().into_owned())).collect();
     let effects: serde_json::Map<String, Value> =
         plan.effects.iter().map(|e| (e.name.to_owned(), json!({ "on": e.on, "reason": e.reason }))).collect();
     let outputs: serde_json::Map<String, Value> =
@@ -44,7 +41,7 @@ pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: 
     let whole = json!({
         "project": "fractal-contact",
         "version": env!("CARGO_PKG_VERSION"),
-        "formats": { "scene": crate::unit::FORMAT, "figures": figures::FORMAT, "bem3d": bem3d::FORMAT },
+        "formats": { "scene": crate::unit::FORMAT, "bem3d": bem3d::FORMAT },
         "scene": scene.text,
         "seed": scene.sampling.seed,
         "surfaces": scene.sampling.surfaces,
@@ -56,16 +53,13 @@ pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: 
         "states": outcome.states,
         "failed": outcome.failed,
         "notes": outcome.notes,
-        "files": files,
+        "files": runs::file_names(&outcome.files),
         "threads": options.threads,
         "wall_seconds": outcome.seconds,
         "peak_memory_bytes": outcome.peak_memory,
-        "machine": figures::machine(),
+        "machine": runs::machine(),
     });
-    let text = serde_json::to_string_pretty(&whole)
-        .map_err(|e| Error::Argument { name: "manifest.json", reason: e.to_string() })?;
-    figures::write_whole(&path, (text + "\n").as_bytes())?;
-    Ok(path)
+    Ok(runs::write_manifest(&options.out, &whole)?)
 }
 
 fn cost(cost: &Cost) -> Value {

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::scene_file::SceneFile;
 use analysis::{Table, Value};
-use figures::{Chart, Curve};
+use plots::{Chart, Curve};
 use std::path::{Path, PathBuf};
 
 /// What is drawn over what: of loads, and of paths.

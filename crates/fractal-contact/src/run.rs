@@ -2,16 +2,16 @@
 
 use crate::columns;
 use crate::cost::Cost;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::manifest;
 use crate::outcome::{Options, Outcome};
 use crate::pictures;
 use crate::plan::Plan;
 use crate::scene_file::SceneFile;
-use crate::store::Store;
 use crate::unit::{Unit, UnitResult};
+use crate::unit_job::UnitJob;
 use analysis::{Column, Table, Value};
-use figures::{Header, Progress, largest_first, run_jobs, write_csv};
+use runs::{Header, Progress, Store, run_stored, write_csv};
 use std::time::Instant;
 
 /// Polled from any thread, between iterations: `true` means stop now.
@@ -24,7 +24,7 @@ pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 /// `stop` says so, the states so far are written and [`Outcome::stopped`] is true.
 ///
 /// # Errors
-/// As [`crate::check`]; [`Error::Model`] for what only shows at full size; files that cannot be written.
+/// As [`crate::check`]; [`Error::Run`] for what only shows at full size; files that cannot be written.
 pub fn run(
     scene: &SceneFile,
     plan: &Plan,
@@ -33,13 +33,19 @@ pub fn run(
     stop: SharedStop<'_>,
 ) -> Result<Outcome> {
     let start = Instant::now();
-    figures::reset_peak_memory();
+    runs::reset_peak_memory();
+    runs::files::create_directory(&options.out)?;
+    runs::files::clean(&options.out)?;
     let store = Store::open(&options.out, options.fresh)?;
     let columns = columns::columns(scene);
     let units: Vec<Unit> = (0..scene.models.len())
         .flat_map(|model| (0..scene.sampling.surfaces).map(move |surface| Unit { model, surface }))
         .collect();
-    let results = solve_all(scene, &units, &store, options, progress, columns.len(), stop)?;
+    let jobs: Vec<UnitJob<'_>> = (units.iter())
+        .map(|&unit| UnitJob { unit, scene, out: &options.out, columns: columns.len() })
+        .collect();
+    let done = run_stored(&title(scene), &jobs, &store, options.threads, progress, stop)?;
+    let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
     let mut outcome = Outcome { stopped: false, ..Outcome::default() };
     let mut table = Table::new(title(scene), columns);
     let mut patches = patches_table(scene);
@@ -57,7 +63,7 @@ pub fn run(
             {
                 outcome.notes.push(text.clone());
             }
-            table.push(row.clone()).map_err(Error::model("a row"))?;
+            table.push(row.clone()).map_err(runs::Error::model("a row"))?;
         }
         for (state, areas) in &result.patches {
             for area in areas {
@@ -67,7 +73,7 @@ pub fn run(
                     (*state).into(),
                     (*area).into(),
                 ];
-                patches.push(row).map_err(Error::model("a patch"))?;
+                patches.push(row).map_err(runs::Error::model("a patch"))?;
             }
         }
         outcome.files.extend(result.files.iter().map(|f| options.out.join(f)));
@@ -86,42 +92,10 @@ pub fn run(
         outcome.files.extend(pictures::curves(scene, &table, &options.out)?);
     }
     outcome.actual = actual(scene, &units, &results, &table);
-    outcome.peak_memory = figures::peak_memory();
+    outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
     outcome.files.push(manifest::write(scene, plan, options, &outcome)?);
     Ok(outcome)
-}
-
-fn solve_all(
-    scene: &SceneFile,
-    units: &[Unit],
-    store: &Store,
-    options: &Options,
-    progress: &dyn Progress,
-    columns: usize,
-    stop: SharedStop<'_>,
-) -> Result<Vec<Option<UnitResult>>> {
-    progress.begin(&title(scene), units.iter().map(|u| u.cost(scene)).sum());
-    let order = largest_first(units.len(), |i| units[i].cost(scene));
-    let done = run_jobs(options.threads, &order, stop, |i, halt| {
-        let unit = &units[i];
-        if let Some(stored) = store.load(unit, scene, columns) {
-            progress.advance(unit.cost(scene), true);
-            return Ok(stored);
-        }
-        let result = unit.solve(scene, &options.out, halt)?;
-        if result.whole {
-            store.save(unit, scene, &result)?;
-            progress.advance(unit.cost(scene), false);
-        }
-        Ok(result)
-    })
-    .map_err(|e| Error::Argument {
-        name: "--threads",
-        reason: format!("{} threads are not granted ({e})", options.threads),
-    })?;
-    progress.end();
-    done.into_iter().map(Option::transpose).collect()
 }
 
 /// What the tables are called.

@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::effects::read_effects;
 use crate::entries::{Entries, Entry, Read, System};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::loads::{Prescribed, Request, read_request};
 use crate::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::outputs::{RequestedOutputs, read_outputs};
@@ -105,9 +105,9 @@ impl SceneFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read, [`Error::Scene`] with the place of the first mistake.
+    /// [`Error::Run`] where it cannot be read, [`Error::Scene`] with the place of the first mistake.
     pub fn read(path: &Path) -> Result<Self> {
-        let length = std::fs::metadata(path).map_err(Error::file("read", path))?.len();
+        let length = std::fs::metadata(path).map_err(runs::Error::file("read", path))?.len();
         if length > LONGEST {
             let message = format!("{length} bytes: a scene is a short text of at most {LONGEST}");
             return Err(Diagnostic::new(message)
@@ -115,7 +115,7 @@ impl SceneFile {
                 .placed(path, "")
                 .into());
         }
-        let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
+        let bytes = std::fs::read(path).map_err(runs::Error::file("read", path))?;
         let Ok(text) = String::from_utf8(bytes) else {
             let help = "`fractal-contact info FILE` says what a surface or a result holds";
             return Err(Diagnostic::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());

@@ -10,13 +10,13 @@ use crate::scene_file::cells;
 use crate::scene_surface::SceneSurface;
 use analysis::Value;
 use contact_model::{Cells, ContactState, Fields, Scene, Step, Stop, Surface};
-use figures::fnv1a_128;
+use runs::fnv1a_128;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Number of the format of stored units; it changes with anything that changes a row.
-pub(crate) const FORMAT: u32 = 1;
+pub(crate) const FORMAT: u32 = 2;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,9 +61,8 @@ impl Unit {
         };
         let SceneFile { modulus, pair, effects, request, requested, system, .. } = scene;
         format!(
-            "format {FORMAT} {} {}\nversion {}\nmodel {:?}\nrelief {surface}\nmodulus {modulus:?}\npair {pair:?}\neffects {effects:?}\n\
+            "format {FORMAT} {}\nversion {}\nmodel {:?}\nrelief {surface}\nmodulus {modulus:?}\npair {pair:?}\neffects {effects:?}\n\
              request {request:?}\noutputs {requested:?} {system:?}\nsurface {}\nseed {}\n",
-            figures::FORMAT,
             bem3d::FORMAT,
             env!("CARGO_PKG_VERSION"),
             self.numerics(scene),
@@ -91,34 +90,34 @@ impl Unit {
     /// others go on.
     ///
     /// # Errors
-    /// [`Error::Model`] where the scene cannot be prepared, and files that cannot be written. A stop is no
+    /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is no
     /// error: the result is then not whole.
     pub fn solve(&self, scene: &SceneFile, out: &Path, stop: Stop<'_>) -> Result<UnitResult> {
         let start = Instant::now();
         let numerics = self.numerics(scene);
         let what = || format!("{}, surface {}", numerics.name(), self.surface);
         let seed = scene.seed(self.surface);
-        let physics = scene.scene(numerics, seed).map_err(Error::model(what()))?;
+        let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
         let mut result = UnitResult { whole: true, ..UnitResult::default() };
         match (numerics.model(), &scene.request) {
             (AnyModel::Contact(model), Request::Loads(_)) => {
-                let mut contact = model.prepare(&physics, seed).map_err(Error::model(what()))?;
+                let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
                 self.loads(scene, contact.as_mut(), out, stop, &mut result)?;
             }
             (AnyModel::History(model), Request::Path(steps)) => {
-                let mut contact = model.prepare(&physics, seed).map_err(Error::model(what()))?;
+                let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
                 self.path(scene, contact.as_mut(), steps, stop, &mut result);
             }
             // Reading a scene refuses these; one built in code may have them.
             (AnyModel::Contact(model), Request::Path(_)) => {
                 let refused =
                     contact_model::Error::unsupported(model.name(), "a path: it answers loads one by one");
-                return Err(Error::model(what())(refused));
+                return Err(runs::Error::model(what())(refused).into());
             }
             (AnyModel::History(model), Request::Loads(_)) => {
                 let refused =
                     contact_model::Error::unsupported(model.name(), "loads one by one: it follows a path");
-                return Err(Error::model(what())(refused));
+                return Err(runs::Error::model(what())(refused).into());
             }
         }
         result.seconds = start.elapsed().as_secs_f64();
@@ -247,13 +246,13 @@ impl Unit {
                 let path = out.join(&file);
                 match format {
                     Format::Npy => {
-                        let shape = [grid.rows as u64, grid.columns as u64];
-                        figures::write_npy(&path, &shape, values)?;
+                        let shape = [grid.rows, grid.columns];
+                        runs::write_npy(&path, &shape, values)?;
                     }
-                    Format::Png => figures::write_grey(&path, grid, scene.surface.size(), values)?,
+                    Format::Png => plots::write_grey(&path, grid, scene.surface.size(), values)?,
                     Format::Vti => write_vti(&path, name, scene, grid, values)?,
                 }
-                result.bytes += std::fs::metadata(&path).map_err(Error::file("read", &path))?.len();
+                result.bytes += std::fs::metadata(&path).map_err(runs::Error::file("read", &path))?.len();
                 result.files.push(file.into());
             }
         }
@@ -292,7 +291,7 @@ fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[
     let field = surface_io::Field { name, unit, values };
     let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
-    Ok(figures::write_whole(path, &bytes)?)
+    Ok(runs::files::write_whole(path, &bytes)?)
 }
 
 /// Whether a model takes a scene.

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
-use figures::{Progress, Silent};
 use fractal_contact::{Options, Plan, SceneFile, run};
+use runs::{Progress, Silent};
 use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -157,7 +157,7 @@ fn an_interrupt_keeps_the_states_so_far() {
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    let file = figures::CsvFile::read(&dir.path().join("out/results.csv")).unwrap();
+    let file = runs::CsvFile::read(&dir.path().join("out/results.csv")).unwrap();
     assert!(file.rows.len() >= 9);
     assert!(std::fs::read_to_string(path("out/manifest.json")).unwrap().contains("\"complete\": false"));
 }

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
 use contact_model::{Cells, HeightMap, Size, Surface};
-use figures::{CsvFile, Silent};
 use fractal_contact::{Options, Plan, SceneFile, SceneSurface, run};
+use runs::{CsvFile, Silent};
 use std::path::Path;
 use std::process::Command;
 

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
-use figures::{CsvFile, Silent};
 use fractal_contact::{Options, Outcome, Plan, SceneFile, run};
+use runs::{CsvFile, Silent};
 use std::path::{Path, PathBuf};
 
 /// Two exact solutions of one contact, each good to about 1e-12.
@@ -150,7 +150,7 @@ fn stored_fields_are_those_of_the_states() {
     let states = patches.numbers("state").unwrap();
     let areas = patches.numbers("area").unwrap();
     for (state, (force, area)) in forces.iter().zip(column(&file, "bem3d", "area")).enumerate() {
-        let map = figures::read_map(&dir.path().join(format!("pressure-bem3d-0-{state:03}.npy"))).unwrap();
+        let map = runs::read_map(&dir.path().join(format!("pressure-bem3d-0-{state:03}.npy"))).unwrap();
         let cell = 0.5e-6_f64;
         let carried: f64 = map.heights().iter().sum::<f64>() * cell * cell;
         approx::assert_relative_eq!(carried, *force, max_relative = CARRIED);
@@ -162,7 +162,7 @@ fn stored_fields_are_those_of_the_states() {
             .sum();
         approx::assert_relative_eq!(sum, area, max_relative = EXACT);
         // Where cells press, there is no gap.
-        let gap = figures::read_map(&dir.path().join(format!("gap-bem3d-0-{state:03}.npy"))).unwrap();
+        let gap = runs::read_map(&dir.path().join(format!("gap-bem3d-0-{state:03}.npy"))).unwrap();
         for (p, g) in map.heights().iter().zip(gap.heights()) {
             assert!(*p <= 0.0 || g.abs() < 1e-4 * 60e-9, "{p} {g}");
         }

@@ -1,8 +1,9 @@
 //! Flags of the bench.
 
+use bem3d::Method;
 use clap::{Args, ValueEnum};
 use contact_model::Boundary;
-use figures::{Bench, Forces, Method, Surfaces};
+use evaluation::{Bench, Forces, Surfaces};
 use std::path::PathBuf;
 
 pub(super) const HELP: &str = "\
@@ -134,8 +135,8 @@ impl BenchArguments {
     /// What it asks for.
     ///
     /// # Errors
-    /// [`figures::Error::Parameter`] naming the value that makes no sense.
-    pub fn bench(&self) -> figures::Result<Bench> {
+    /// [`runs::Error::Parameter`] naming the value that makes no sense.
+    pub fn bench(&self) -> runs::Result<Bench> {
         let surfaces = match &self.surface {
             Some(path) => Surfaces::File(path.clone()),
             None => Surfaces::SelfAffine {

@@ -1,7 +1,7 @@
 //! Flags that the figures share: sizes, what to solve, where to write.
 
 use clap::{Args, ValueEnum};
-use figures::{AccuracyTarget, Preset, Request};
+use evaluation::{AccuracyTarget, Preset, Request};
 use std::path::PathBuf;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

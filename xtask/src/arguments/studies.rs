@@ -2,7 +2,8 @@
 
 use super::sizes::Solid;
 use clap::{Args, ValueEnum};
-use figures::{Depth, Forces, TwoCases};
+use evaluation::{Depth, Forces};
+use figures::TwoCases;
 use std::path::PathBuf;
 
 /// Flags of the second look.
@@ -36,7 +37,7 @@ pub struct AccuracyCost {
     #[arg(long, value_enum, default_value = "default")]
     preset: DepthName,
     /// Master seed.
-    #[arg(long, default_value_t = figures::SEED)]
+    #[arg(long, default_value_t = evaluation::SEED)]
     pub seed: u64,
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
@@ -64,7 +65,7 @@ pub struct BudgetCheck {
     #[arg(long, value_name = "COUNT", default_value_t = 100)]
     pub cases: usize,
     /// Master seed.
-    #[arg(long, default_value_t = figures::SEED)]
+    #[arg(long, default_value_t = evaluation::SEED)]
     pub seed: u64,
     /// Threads; 0 is one per core. Changes no byte of the CSV.
     #[arg(long, default_value_t = 0)]
@@ -96,7 +97,7 @@ pub struct TwoCasesArguments {
     #[arg(long, default_value_t = 1e-4, allow_hyphen_values = true)]
     tolerance: f64,
     /// Master seed.
-    #[arg(long, default_value_t = figures::SEED)]
+    #[arg(long, default_value_t = evaluation::SEED)]
     seed: u64,
     /// Surfaces solved at the same time (default: all cores).
     #[arg(long, allow_hyphen_values = true)]
@@ -110,8 +111,8 @@ impl TwoCasesArguments {
     /// What it asks for.
     ///
     /// # Errors
-    /// [`figures::Error::Parameter`] for a list of loads that is none.
-    pub fn study(&self) -> figures::Result<TwoCases> {
+    /// [`runs::Error::Parameter`] for a list of loads that is none.
+    pub fn study(&self) -> runs::Result<TwoCases> {
         Ok(TwoCases {
             cells: self.cells,
             surfaces: self.surfaces,

@@ -1,9 +1,9 @@
 //! A = kappa F/(E* |grad h|).
 
-use crate::claim::Claim;
-use crate::measured::{Measured, Series};
-use crate::sample::FLOOR_CELLS;
 use contact_model::SelfAffine;
+use evaluation::Claim;
+use evaluation::FLOOR_CELLS;
+use evaluation::{Measured, Series};
 
 /// Proportionality is a statement about small areas.
 const LARGEST_FRACTION: f64 = 0.1;
@@ -53,7 +53,7 @@ pub(super) fn proportionality(measured: &Measured) -> Vec<Claim> {
             )),
             None => claims.push(Claim::not_tested(exponent_name, 1.0, "the areas do not vary")),
         }
-        match kappa(d, measured.numerics.size(), &points) {
+        match kappa(d, measured.discretisation.size(), &points) {
             Some((kappa, slope)) => claims.push(Claim::compare(
                 kappa_name,
                 2.0,

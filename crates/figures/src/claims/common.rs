@@ -1,8 +1,8 @@
 //! What several groups of claims need.
 
-use crate::laws::Law;
-use crate::measured::{Measured, Series};
 use analysis::{Bootstrap, PowerLaw, interpolate};
+use evaluation::Law;
+use evaluation::{Measured, Series};
 
 /// Uncertainty of alpha that independent values have (data/paper/VALUES.md).
 pub(super) fn alpha_allowed(d: f64) -> f64 {
@@ -11,7 +11,7 @@ pub(super) fn alpha_allowed(d: f64) -> f64 {
 
 /// How a model is called in a claim.
 pub(super) fn label(measured: &Measured) -> &'static str {
-    if measured.numerics.name() == "bem3d" { "3D" } else { "1D" }
+    if measured.discretisation.name() == "bem3d" { "3D" } else { "1D" }
 }
 
 /// k_bar at any force of the curve, with the standard error of its mean.

@@ -1,13 +1,13 @@
 //! What the curves themselves say: the crossing, saturation, the crossover, the collapse.
 
 use super::common::{label, stiffness_at, usable};
-use crate::claim::Claim;
-use crate::laws::laws;
-use crate::measured::Measured;
-use crate::measured::transformed;
 use analysis::{CollapsePoint, Window, collapse as residual, decades_within, sum};
 use analytic::{F_BAR_UL, K_BAR_UL};
 use contact_model::PAPER_STIFFNESS_FACTOR;
+use evaluation::Claim;
+use evaluation::Measured;
+use evaluation::laws;
+use evaluation::transformed;
 
 /// k_bar at F_bar = 0.086, where "all curves collapse for k_bar = 0.18".
 pub(super) fn near_the_crossing(measured: &Measured) -> Vec<Claim> {
@@ -52,7 +52,7 @@ pub(super) fn conductance(measured: &Measured) -> Vec<Claim> {
 pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
     let mut claims = Vec::new();
     // The plateau of the grid itself: data/paper/VALUES.md for N x N cells, 2/sqrt(pi) for a line.
-    let n = measured.numerics.size() as f64;
+    let n = measured.discretisation.size() as f64;
     let plateau = if label(measured) == "3D" {
         1.152_298_5 - 0.4025 / n + 0.12 / n.powf(1.59)
     } else {
@@ -83,7 +83,7 @@ pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
                     "\"long before a full material contact\", \"a relatively small real contact area suffices\" (Sec. I); half is our \
                      reading; a smooth surface (small D_f) does touch almost everywhere, and so does one without its finer waves: \
                      here {} cells a side",
-                    measured.numerics.size()
+                    measured.discretisation.size()
                 ),
             ));
         }
@@ -160,7 +160,7 @@ pub(super) fn collapse(solid: &Measured) -> Vec<Claim> {
     }
     let longest = curves.iter().map(|(d, c)| (*d, decades_within(c, 1.5))).max_by(|a, b| a.1.total_cmp(&b.1));
     let claim = "decades of F_bar over which Eq. 12 holds within a factor 1.5";
-    let cells = solid.numerics.size();
+    let cells = solid.discretisation.size();
     claims.push(match longest {
         Some((d, decades)) if decades >= 3.75 || cells >= 2049 => Claim::judge(
             claim,

@@ -1,10 +1,10 @@
 //! alpha: Eqs. 6 and 24, 1D against 3D, 1D at small forces.
 
 use super::common::{alpha_allowed, label, usable};
-use crate::claim::Claim;
-use crate::laws::{laws, laws_within};
-use crate::measured::Measured;
 use analysis::{PowerLaw, Window};
+use evaluation::Claim;
+use evaluation::Measured;
+use evaluation::{laws, laws_within};
 
 fn window(fit: &PowerLaw) -> String {
     format!("fit over {:.1e} .. {:.1e}, {} loads", fit.force_bar_min, fit.force_bar_max, fit.points)

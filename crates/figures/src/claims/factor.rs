@@ -1,11 +1,11 @@
 //! zeta and the crossing point: Eq. 11, Fig. 7.
 
 use super::common::{alpha_allowed, label, usable};
-use crate::claim::Claim;
-use crate::laws::laws;
-use crate::measured::{Measured, Series};
 use analysis::{Bootstrap, PowerLaw, Window, crossing as cross, fit};
 use analytic::{F_BAR_UL, K_BAR_UL};
+use evaluation::Claim;
+use evaluation::laws;
+use evaluation::{Measured, Series};
 
 /// 0.18 is printed with two digits: +-0.005 is 2.8 %.
 const PRINTED: f64 = 0.028;

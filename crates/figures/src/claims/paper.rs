@@ -1,6 +1,6 @@
 //! Where the paper disagrees with itself.
 
-use crate::claim::Claim;
+use evaluation::Claim;
 
 /// The abstract prints two digits of each exponent.
 const PRINTED: f64 = 0.005;

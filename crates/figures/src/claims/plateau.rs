@@ -1,10 +1,10 @@
 //! Both plateaus, by solving full contact.
 
-use crate::claim::Claim;
-use crate::error::{Error, Result};
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Surface};
+use evaluation::Claim;
 use mdr1d::Mdr1d;
+use runs::{Error, Result};
 
 /// Half a unit of the last digit of 1.1419.
 const PRINTED: f64 = 5e-5;

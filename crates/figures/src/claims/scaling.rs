@@ -1,10 +1,10 @@
 //! Eq. 7 and the zoom argument of Eqs. 19 to 24, as small solves under scaling.
 
-use crate::claim::Claim;
-use crate::error::{Error, Result};
 use bem3d::Bem3d;
 use contact_model::{ContactModel, ContactState, Load, Scene, SelfAffine, Surface};
+use evaluation::Claim;
 use mdr1d::Mdr1d;
+use runs::{Error, Result};
 
 /// Tolerance of the solves here; differences may be ten times that.
 const TOLERANCE: f64 = 1e-8;

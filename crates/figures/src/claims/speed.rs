@@ -1,7 +1,7 @@
 //! How long both models took.
 
-use crate::claim::Claim;
-use crate::measured::Measured;
+use evaluation::Claim;
+use evaluation::Measured;
 
 /// "Several weeks" over "a few seconds": three weeks over ten seconds, to the nearest power of ten.
 const PAPER: f64 = 1e5;
@@ -14,11 +14,11 @@ pub(crate) fn speed(solid: &Measured, line: &Measured) -> Claim {
     let sizes = format!(
         "{t3:.1} s for {} surfaces of {} cells a side, {t1:.1} s for {} lines of {} elements (sum over units; depends on the machine)",
         count(solid),
-        solid.numerics.size(),
+        solid.discretisation.size(),
         count(line),
-        line.numerics.size()
+        line.discretisation.size()
     );
-    let mut claim = if solid.numerics.size() < 2049 || line.numerics.size() < 1 << 20 {
+    let mut claim = if solid.discretisation.size() < 2049 || line.discretisation.size() < 1 << 20 {
         Claim::not_tested(
             claim,
             PAPER,

@@ -6,19 +6,20 @@ mod study;
 
 pub use study::TwoCases;
 
-use crate::csv_file::{Header, write_csv};
-use crate::error::{Error, Result};
-use crate::files;
-use crate::job_queue::run_jobs;
-use crate::outcome::Outcome;
-use crate::progress::Progress;
-use crate::sweep::collect;
 use analysis::{Curves, Sample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
 use contact_model::{Boundary, ContactModel, Load, Stop, never};
+use evaluation::Outcome;
+use evaluation::header;
 use picture::{draw, table};
 use reading::{claim, summary};
+use runs::Progress;
+use runs::collect;
+use runs::files;
+use runs::run_jobs;
+use runs::write_csv;
+use runs::{Error, Result};
 use std::path::Path;
 use std::time::Instant;
 use study::{CASES, Case, Curve, NAME, Point, SHORTEST};
@@ -50,7 +51,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
             curves.push(theory(study, case, model)?);
         }
     }
-    let header = Header::new(study.command())
+    let header = header(study.command())
         .with_sources(Bem3d::default().sources())
         .with_sources(Persson::default().sources())
         .with_sources(GreenwoodWilliamson::default().sources())
@@ -106,9 +107,6 @@ fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> 
         let solves = one(study, units[i].0, units[i].1, stop)?;
         progress.advance(1, false);
         Ok(solves)
-    })
-    .map_err(|e| {
-        Error::parameter("threads", study.threads, format!("threads that the system grants ({e})"))
     })?;
     progress.end();
     Ok(collect(done)?.chunks(study.surfaces).map(<[_]>::to_vec).collect())
@@ -196,9 +194,9 @@ fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curv
 mod tests {
     use super::reading::{difference, loads_between, proportional, slopes};
     use super::*;
-    use crate::csv_file::CsvFile;
-    use crate::forces::Forces;
-    use crate::progress::Silent;
+    use evaluation::Forces;
+    use runs::CsvFile;
+    use runs::Silent;
 
     fn small() -> TwoCases {
         TwoCases {

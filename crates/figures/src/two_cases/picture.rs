@@ -2,15 +2,15 @@
 
 use super::reading::slopes;
 use super::study::{CASES, Curve, NAME};
-use crate::csv_file::CsvFile;
-use crate::error::{Error, Result};
-use crate::plot::{Key, Mark, Picture, logarithmic};
-use crate::sample::FLOOR_CELLS;
-use crate::tables::column;
 use analysis::{Table, Value};
 use contact_model::PAPER_STIFFNESS_FACTOR;
+use evaluation::FLOOR_CELLS;
+use evaluation::column;
 use kuva::plot::line::LineStyle;
 use kuva::plot::scatter::MarkerShape;
+use plots::{Key, Mark, Picture, logarithmic};
+use runs::CsvFile;
+use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Stiffness above which the pictures end: towards full contact of a periodic square it has no limit.

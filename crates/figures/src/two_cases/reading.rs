@@ -1,10 +1,10 @@
 //! What the curves say about the paper's belief.
 
 use super::study::{Curve, Point, TwoCases};
-use crate::claim::{Claim, plain};
-use crate::sample::FLOOR_CELLS;
 use analysis::{Bootstrap, Curves, Window, fit};
 use contact_model::Boundary;
+use evaluation::FLOOR_CELLS;
+use evaluation::{Claim, plain};
 
 /// Shares of the square in contact between which the theories of random surfaces are compared: many summits, far from full contact.
 const AREAS: [f64; 2] = [0.01, 0.2];

@@ -1,8 +1,8 @@
 //! The two problems and what is found of them.
 
-use crate::error::{Error, Result};
-use crate::forces::Forces;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
+use evaluation::Forces;
+use runs::{Error, Result};
 use std::f64::consts::TAU;
 
 pub(super) const NAME: &str = "two-cases";

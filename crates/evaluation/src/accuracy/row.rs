@@ -1,0 +1,211 @@
+//! One way to answer one problem: what it gave, what it cost, how far off it is.
+
+use super::problem::Family;
+use contact_model::{ContactModel, ContactState, Load, Scene, never};
+use runs::{Error, Result};
+use runs::{cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
+
+/// How an answer is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Way {
+    /// Boundary elements.
+    Solid { cells: usize, tolerance: f64, method: bem3d::Method },
+    /// The one-dimensional reduction.
+    Line { elements: usize },
+    /// A closed form, by name.
+    Formula(&'static str),
+}
+
+impl Way {
+    pub fn model(&self) -> &'static str {
+        match self {
+            Self::Solid { .. } => "bem3d",
+            Self::Line { .. } => "mdr1d",
+            Self::Formula(name) => name,
+        }
+    }
+
+    pub fn size(&self) -> Option<usize> {
+        match *self {
+            Self::Solid { cells, .. } => Some(cells),
+            Self::Line { elements } => Some(elements),
+            Self::Formula(_) => None,
+        }
+    }
+
+    pub fn tolerance(&self) -> Option<f64> {
+        match *self {
+            Self::Solid { tolerance, .. } => Some(tolerance),
+            _ => None,
+        }
+    }
+
+    pub fn method(&self) -> &'static str {
+        match self {
+            Self::Solid { method: bem3d::Method::Auto, .. } => "auto",
+            Self::Solid { method: bem3d::Method::Iterative, .. } => "iterative",
+            Self::Solid { method: bem3d::Method::SingleLevel, .. } => "single-level",
+            _ => "",
+        }
+    }
+}
+
+/// What a way gave and what it cost.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Answer {
+    /// k in units of E* L.
+    pub stiffness: Option<f64>,
+    /// d in rms heights (in sides for bodies without one).
+    pub approach: Option<f64>,
+    /// Contact area over A0.
+    pub area: Option<f64>,
+    pub pressure: Option<Vec<f64>>,
+    pub contact_cells: Option<usize>,
+    pub cpu_seconds: Option<f64>,
+    pub bytes: Option<u64>,
+    pub iterations: usize,
+    pub applications: usize,
+    pub status: String,
+}
+
+/// The four contributions to the error of k, relative.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Parts {
+    /// What the tightest tolerance on the same grid changes.
+    pub algebraic: Option<f64>,
+    /// What the limit of fine grids changes (waves included that only they carry).
+    pub discretisation: Option<f64>,
+    /// What three dimensions change.
+    pub model: Option<f64>,
+    /// Standard error of the mean of 60 surfaces.
+    pub ensemble: Option<f64>,
+}
+
+/// A row of the table.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    pub family: Family,
+    pub fractal_dimension: Option<f64>,
+    pub force_bar: Option<f64>,
+    pub way: Way,
+    /// Surfaces in the answer.
+    pub surfaces: usize,
+    pub answer: Answer,
+    /// Relative errors of k, d, area, and L2 of the pressure.
+    pub errors: [Option<f64>; 4],
+    /// How certain the reference of k is, relative.
+    pub reference_error: Option<f64>,
+    pub parts: Parts,
+    /// No row of the same problem is both cheaper and nearer.
+    pub pareto: bool,
+}
+
+impl Row {
+    pub fn new(family: Family, problem: (Option<f64>, Option<f64>), way: Way, answer: Answer) -> Self {
+        Self {
+            family,
+            fractal_dimension: problem.0,
+            force_bar: problem.1,
+            way,
+            surfaces: 1,
+            answer,
+            errors: [None; 4],
+            reference_error: None,
+            parts: Parts::default(),
+            pareto: false,
+        }
+    }
+
+    pub fn converged(&self) -> bool {
+        self.answer.status == contact_model::Status::Converged.as_str()
+    }
+}
+
+/// Prepares and solves from nothing, with the meters running. A model that does not claim this load or surface gives `None`.
+pub(crate) fn measure(
+    model: &dyn ContactModel,
+    scene: &Scene,
+    load: Load,
+    seed: u64,
+) -> Result<Option<Answer>> {
+    reset_peak_memory();
+    let before = resident_memory();
+    let start = cpu_seconds();
+    let found = (|| {
+        let mut contact = model.prepare(scene, seed)?;
+        let state = match contact.solve_until(load, &never) {
+            Err(contact_model::Error::NotConverged { best }) => *best,
+            other => other?,
+        };
+        Ok((state, contact.normalisation()))
+    })();
+    let seconds = cpu_seconds().zip(start).map(|(end, start)| end - start);
+    let bytes = peak_memory().zip(before).map(|(peak, before)| peak.saturating_sub(before));
+    let (state, normalisation) = match found {
+        Err(contact_model::Error::OutOfRange { .. } | contact_model::Error::Unsupported { .. }) => {
+            return Ok(None);
+        }
+        other => other.map_err(Error::model(model.name()))?,
+    };
+    let ContactState { approach, stiffness, area, fields, report, .. } = state;
+    Ok(Some(Answer {
+        stiffness: stiffness.map(|k| k / (normalisation.modulus * normalisation.length)),
+        approach,
+        area: area.map(|a| normalisation.contact_fraction(a)),
+        pressure: fields.and_then(|f| f.pressure),
+        contact_cells: report.contact_cells,
+        cpu_seconds: seconds,
+        bytes,
+        iterations: report.iterations,
+        applications: report.applications,
+        status: report.status.as_str().to_owned(),
+    }))
+}
+
+/// Marks in each problem the rows that no other beats in both seconds and error of k. Rows without a clock and rows
+/// that missed their tolerance do not compete.
+pub(crate) fn mark_pareto(rows: &mut [Row]) {
+    let key =
+        |r: &Row| (r.family.as_str(), r.fractal_dimension.map(f64::to_bits), r.force_bar.map(f64::to_bits));
+    let candidates: Vec<(usize, f64, f64)> = rows
+        .iter()
+        .enumerate()
+        .filter(|(_, r)| r.converged())
+        .filter_map(|(i, r)| {
+            // A number out of a book takes no time.
+            let free = matches!(r.way, Way::Formula(_)).then_some(0.0);
+            Some((i, r.answer.cpu_seconds.or(free)?, r.errors[0]?))
+        })
+        .collect();
+    let beaten = |&(i, t, e): &(usize, f64, f64)| {
+        candidates
+            .iter()
+            .any(|&(j, u, f)| key(&rows[i]) == key(&rows[j]) && ((u < t && f <= e) || (u <= t && f < e)))
+    };
+    let front: Vec<usize> = candidates.iter().filter(|c| !beaten(c)).map(|c| c.0).collect();
+    for i in front {
+        rows[i].pareto = true;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front() {
+        let row = |seconds, error, family| {
+            let answer =
+                Answer { cpu_seconds: Some(seconds), status: "converged".into(), ..Answer::default() };
+            let mut row = Row::new(family, (None, None), Way::Formula("f"), answer);
+            row.errors[0] = Some(error);
+            row
+        };
+        let (a, b) = (Family::Sphere, Family::Square);
+        let mut rows =
+            [row(1.0, 0.1, a), row(2.0, 0.2, a), row(3.0, 0.01, a), row(9.0, 0.5, b), row(0.1, 0.0, a)];
+        rows[4].answer.status = "stagnated".into();
+        mark_pareto(&mut rows);
+        assert_eq!(rows.map(|r| r.pareto), [true, false, true, true, false]);
+    }
+}

@@ -1,0 +1,339 @@
+//! The text: what it takes, when less is enough, which part dominates. Written from the tables.
+
+use super::picture::{Point, TARGETS, read, values};
+use runs::CsvFile;
+use runs::Result;
+use std::path::Path;
+
+/// The paper's settings, and the tolerance of its preset here.
+const PAPER_CELLS: f64 = 2049.0;
+const PAPER_TOLERANCE: f64 = 1e-3;
+
+pub(crate) fn text(csv: &Path, order: &Path) -> Result<String> {
+    let points = read(csv)?;
+    let orders = Orders::read(order)?;
+    let command =
+        CsvFile::read(csv)?.comments.into_iter().find_map(|c| Some(c.strip_prefix("command: ")?.to_owned()));
+    let mut text = format!(
+        "# What accuracy costs in time\n\n`{}` made this text, the picture and the tables \
+         ([rows](accuracy-cost.csv), [limits and orders](accuracy-order.csv)). Errors are relative and never below the uncertainty \
+         of their reference; seconds are processor seconds of one thread, everything from nothing.\n\n\
+         ![Relative error of k over processor seconds](accuracy-cost.png)\n\n",
+        command.unwrap_or_default()
+    );
+    text += &short(&points);
+    text += &takes(&points);
+    text += &less(&points);
+    text += &parts(&points, &orders);
+    text += &orders.text();
+    Ok(text)
+}
+
+fn percent(v: f64) -> String {
+    let v = 100.0 * v;
+    match v {
+        _ if v >= 10.0 => format!("{v:.0} %"),
+        _ if v >= 1.0 => format!("{v:.1} %"),
+        _ if v >= 0.01 => format!("{v:.2} %"),
+        _ if v <= 0.0 => "0".to_owned(),
+        _ => format!("{v:.0e} %"),
+    }
+}
+
+fn maybe(v: Option<f64>) -> String {
+    v.map_or_else(|| "-".to_owned(), percent)
+}
+
+fn seconds(v: Option<f64>) -> String {
+    match v {
+        Some(v) if v >= 1.0 => format!("{v:.1} s"),
+        Some(v) if v >= 1e-3 => format!("{:.0} ms", 1e3 * v),
+        Some(v) => format!("{:.0} us", 1e6 * v),
+        None => "no time".to_owned(),
+    }
+}
+
+/// The problems of a family, in order.
+fn problems<'a>(points: &'a [Point], family: &str) -> Vec<&'a Point> {
+    let mut all: Vec<&Point> = Vec::new();
+    for p in points.iter().filter(|p| p.family == family) {
+        if !all.iter().any(|q| q.same_problem(p)) {
+            all.push(p);
+        }
+    }
+    all
+}
+
+fn label(p: &Point) -> String {
+    match (p.fractal_dimension, p.force_bar) {
+        (Some(d), Some(f)) => format!("{d:?} | {f:?}"),
+        _ => format!("{} | -", p.family),
+    }
+}
+
+/// The cheapest row in three dimensions within an error that every finer grid keeps too: a lucky grid between worse ones is no way.
+fn cheapest<'a>(points: &'a [Point], problem: &Point, target: f64) -> Option<&'a Point> {
+    let solid = || points.iter().filter(|p| p.same_problem(problem) && p.model == "bem3d");
+    let within = |p: &Point| p.error.is_some_and(|e| e <= target);
+    // On each grid the row at the tightest tolerance differs from itself by nothing.
+    let tight = |p: &Point| p.algebraic.is_some_and(|a| a <= 0.0);
+    let kept = |size: Option<f64>| solid().all(|p| p.size <= size || !tight(p) || within(p));
+    solid()
+        .filter(|p| p.seconds.is_some() && within(p) && kept(p.size))
+        .min_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)))
+}
+
+/// The picture in a few sentences.
+fn short(points: &[Point]) -> String {
+    let mut text = String::new();
+    for (family, words) in [
+        ("band", "One surface whose waves the grids resolve"),
+        ("spectrum", "One fractal surface, waves to the end of each grid"),
+    ] {
+        let all = problems(points, family);
+        let told = TARGETS.map(|target| {
+            let mut found: Vec<&Point> = all.iter().filter_map(|p| cheapest(points, p, target)).collect();
+            found.sort_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)));
+            let count = format!(
+                "k within {} % for {} of {} surfaces and loads",
+                100.0 * target,
+                found.len(),
+                all.len()
+            );
+            match (found.first(), found.last()) {
+                (Some(first), Some(last)) => {
+                    let finest = found.iter().filter_map(|p| p.size).fold(0.0, f64::max);
+                    let times = format!("{} to {}", seconds(first.seconds), seconds(last.seconds));
+                    format!("{count} in {times}, at most {finest:.0} cells a side")
+                }
+                _ => count,
+            }
+        });
+        text += &format!("- {words}: {}.\n", told.join("; "));
+    }
+    let means = problems(points, "mean");
+    for (model, words) in
+        [("mdr1d", "The 1D reduction"), ("power_law", "Eq. 12"), ("plateau", "The rigid square")]
+    {
+        let of = |problem: &&&Point| {
+            let row = points.iter().rfind(|p| p.same_problem(problem) && p.model == model)?;
+            Some((row.force_bar?, row.error?))
+        };
+        let found: Vec<(f64, f64)> = means.iter().filter_map(|p| of(&p)).collect();
+        let (mut loads, mut told) = (values(points, |p| p.force_bar), Vec::new());
+        loads.retain(|f| found.iter().any(|e| e.0.total_cmp(f).is_eq()));
+        for load in loads {
+            let errors: Vec<f64> =
+                found.iter().filter(|e| e.0.total_cmp(&load).is_eq()).map(|e| e.1).collect();
+            let (low, high) =
+                errors.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), e| (a.min(*e), b.max(*e)));
+            told.push(format!("{} to {} at F_bar = {load:?}", percent(low), percent(high)));
+        }
+        if !told.is_empty() {
+            text += &format!("- {words} has the mean of k over surfaces to {}.\n", told.join(", "));
+        }
+    }
+    text + "\n"
+}
+
+fn takes(points: &[Point]) -> String {
+    let mut text = "## What it takes\n\nThe cheapest way in three dimensions to k of one surface within 10 %, 1 % and 0.1 %: cells a \
+        side, tolerance, seconds. *Resolved*: the shortest wave is at least 16 cells long on the coarsest grid. *Fractal*: waves to the \
+        end of each grid, error against the limit of fine grids. Every finer grid of \
+        the study keeps the same error. A dash: not reached with these sizes.\n\n\
+        | surface | D_f | F_bar | 10 % | 1 % | 0.1 % | limit known to |\n|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for (family, word) in
+        [("sphere", "exact"), ("square", "exact"), ("band", "resolved"), ("spectrum", "fractal")]
+    {
+        for problem in problems(points, family) {
+            let cells = TARGETS.map(|target| {
+                let best = cheapest(points, problem, target);
+                best.map_or_else(
+                    || "-".to_owned(),
+                    |p| {
+                        let method =
+                            if p.method == "auto" { String::new() } else { format!(" ({})", p.method) };
+                        let (cells, tolerance) = (p.size.unwrap_or(0.0), p.tolerance.unwrap_or(0.0));
+                        format!("{cells:.0}, {tolerance:.0e}{method}, {}", seconds(p.seconds))
+                    },
+                )
+            });
+            let limit = problem
+                .reference_error
+                .map_or_else(|| "-".to_owned(), |e| if e > 0.0 { percent(e) } else { "exactly".into() });
+            text += &format!("| {word} | {} | {} | {limit} |\n", label(problem), cells.join(" | "));
+        }
+    }
+    text + "\n"
+}
+
+fn less(points: &[Point]) -> String {
+    let mut text = "## When less is enough\n\nError of the mean of k over surfaces by one-dimensional lines (as many lines as surfaces, \
+        the most elements of the study), by Eq. 12 (where it is claimed to hold) and by the plateau of the rigid square. The last column \
+        is what 60 surfaces in three dimensions leave open.\n\n\
+        | D_f | F_bar | 1D | seconds of all lines | Eq. 12 | plateau | 60 surfaces | mean known to |\n|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for problem in problems(points, "mean") {
+        let of = |model: &str| points.iter().rfind(|p| p.same_problem(problem) && p.model == model);
+        let line = of("mdr1d");
+        let error = |p: Option<&Point>| maybe(p.and_then(|p| p.model_error));
+        text += &format!(
+            "| {} | {} | {} | {} | {} | {} | {} |\n",
+            label(problem),
+            error(line),
+            seconds(line.and_then(|p| p.seconds)),
+            error(of("power_law")),
+            error(of("plateau")),
+            maybe(of("bem3d").and_then(|p| p.ensemble)),
+            maybe(problem.reference_error),
+        );
+    }
+    text + "\n"
+}
+
+fn parts(points: &[Point], orders: &Orders) -> String {
+    let mut text = format!(
+        "## Which part dominates at the paper's settings\n\n{PAPER_CELLS:.0} cells a side, 60 surfaces; algebraic at the tolerance \
+         {PAPER_TOLERANCE:e} of its preset here (the largest over the grids of the study), discretisation carried from the finest \
+         grid of the study to {PAPER_CELLS:.0} cells by its order, ensemble the standard error of the mean of 60 surfaces, model what \
+         the 1D reduction would add.\n\n\
+         | D_f | F_bar | algebraic | discretisation | ensemble | model (1D) | dominates in 3D |\n|---|---|---|---|---|---|---|\n"
+    );
+    let mut counts = [0_usize; 3];
+    for problem in problems(points, "spectrum") {
+        let (d, f) = (problem.fractal_dimension, problem.force_bar);
+        let algebraic = points
+            .iter()
+            .filter(|p| {
+                p.same_problem(problem)
+                    && p.tolerance.is_some_and(|t| (t / PAPER_TOLERANCE - 1.0).abs() < 1e-9)
+            })
+            .filter_map(|p| p.algebraic)
+            .reduce(f64::max);
+        let discretisation = orders.at("spectrum", d, f).map(Sequence::carried);
+        let mean = |of: fn(&Point) -> Option<f64>, model: &str| {
+            let mean = |p: &&Point| {
+                p.family == "mean" && p.fractal_dimension == d && p.force_bar == f && p.model == model
+            };
+            points.iter().filter(mean).filter_map(of).next_back()
+        };
+        let ensemble = mean(|p| p.ensemble, "bem3d");
+        let model = mean(|p| p.model_error, "mdr1d");
+        let all = [("algebraic", algebraic), ("discretisation", discretisation), ("ensemble", ensemble)];
+        let largest =
+            all.iter().enumerate().max_by(|a, b| a.1.1.unwrap_or(0.0).total_cmp(&b.1.1.unwrap_or(0.0)));
+        let word = largest.map_or("-", |(i, (name, _))| {
+            counts[i] += 1;
+            name
+        });
+        text += &format!(
+            "| {} | {} | {} | {} | {} | {word} |\n",
+            label(problem),
+            maybe(algebraic),
+            maybe(discretisation),
+            maybe(ensemble),
+            maybe(model)
+        );
+    }
+    let total: usize = counts.iter().sum();
+    text + &format!(
+        "\nOf {total} rows the ensemble dominates {}, the discretisation {}, the algebraic error {}.\n\n",
+        counts[2], counts[1], counts[0]
+    )
+}
+
+/// A row of the second table.
+struct Sequence {
+    family: String,
+    fractal_dimension: Option<f64>,
+    force_bar: Option<f64>,
+    quantity: String,
+    order: Option<f64>,
+    established: bool,
+    limit_error: Option<f64>,
+    errors: [Option<f64>; 2],
+    finest: f64,
+}
+
+impl Sequence {
+    /// The error of the finest grid, or the uncertainty of the limit, carried to the paper's grid by the order (the square root of
+    /// the cell where none is seen).
+    fn carried(&self) -> f64 {
+        let error = self.errors[1].unwrap_or(0.0).max(self.limit_error.unwrap_or(0.0));
+        error * (self.finest / PAPER_CELLS).powf(self.order.unwrap_or(0.5).max(0.0))
+    }
+}
+
+struct Orders(Vec<Sequence>);
+
+impl Orders {
+    fn read(path: &Path) -> Result<Self> {
+        let file = CsvFile::read(path)?;
+        // The finest grid is in the header: references at tolerance T on [.., N] cells a side.
+        let finest = file
+            .comments
+            .iter()
+            .find_map(|c| c.split_once("] cells a side")?.0.rsplit([',', '[']).next()?.trim().parse().ok())
+            .unwrap_or(PAPER_CELLS);
+        let number = |name: &str| file.numbers(name);
+        let (d, f, order) = (number("fractal_dimension")?, number("force_bar")?, number("order")?);
+        let (limit_error, first, last) =
+            (number("limit_error")?, number("error_coarsest")?, number("error_finest")?);
+        let (family, quantity) = (file.texts("family")?, file.texts("quantity")?);
+        let established = file.texts("established")?;
+        let rows = (0..d.len()).map(|i| Sequence {
+            family: family[i].to_owned(),
+            fractal_dimension: d[i],
+            force_bar: f[i],
+            quantity: quantity[i].to_owned(),
+            order: order[i],
+            established: established[i] == "true",
+            limit_error: limit_error[i],
+            errors: [first[i], last[i]],
+            finest,
+        });
+        Ok(Self(rows.collect()))
+    }
+
+    fn at(&self, family: &str, d: Option<f64>, f: Option<f64>) -> Option<&Sequence> {
+        self.0.iter().find(|s| {
+            s.family == family && s.quantity == "stiffness" && s.fractal_dimension == d && s.force_bar == f
+        })
+    }
+
+    fn text(&self) -> String {
+        let mut text = "## Orders\n\nError ~ cell^order; in brackets where it is only the slope of the errors, not established by four \
+            grids or more that follow one power (the limit is then the finest grid's value, the pressure's always). Then the errors on \
+            the coarsest and on the finest grid.\n\n\
+            | surface | D_f | F_bar | k | d | area | pressure (L2) |\n|---|---|---|---|---|---|---|\n"
+            .to_owned();
+        let mut done: Vec<(&str, Option<f64>, Option<f64>)> = Vec::new();
+        for s in self.0.iter().filter(|s| s.family != "mean") {
+            let key = (s.family.as_str(), s.fractal_dimension, s.force_bar);
+            if done.contains(&key) {
+                continue;
+            }
+            done.push(key);
+            let cell = |quantity: &str| {
+                let found = self.0.iter().find(|t| {
+                    (t.family.as_str(), t.fractal_dimension, t.force_bar) == key && t.quantity == quantity
+                });
+                found.map_or_else(String::new, |t| {
+                    let order = t.order.map_or_else(|| "-".to_owned(), |o| format!("{o:.1}"));
+                    let order = if t.established { order } else { format!("({order})") };
+                    format!("{order}: {}, {}", maybe(t.errors[0]), maybe(t.errors[1]))
+                })
+            };
+            let number = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:?}"));
+            text += &format!(
+                "| {} | {} | {} | {} |\n",
+                s.family,
+                number(s.fractal_dimension),
+                number(s.force_bar),
+                ["stiffness", "approach", "area", "pressure"].map(cell).join(" | ")
+            );
+        }
+        text
+    }
+}

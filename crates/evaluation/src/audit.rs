@@ -1,0 +1,166 @@
+//! A second look at stored solves: some of them again, from nothing and to a tight tolerance.
+
+use crate::header::{FLAGS_3D as FLAGS, header};
+use crate::measured::measure_3d;
+use crate::outcome::Outcome;
+use crate::run::Run;
+use crate::session::Session;
+use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
+use crate::unit::{Discretisation, Unit, UnitResult};
+use analysis::{Table, Value};
+use contact_model::{Stop, never};
+use runs::Progress;
+use runs::{Error, Result};
+use runs::{collect, run_jobs, write_csv};
+
+/// One solve and its repetition to a tight tolerance.
+struct Pair {
+    fractal_dimension: f64,
+    index: usize,
+    force_bar: f64,
+    /// k_bar as stored and from the tight solve.
+    stiffness_bar: [f64; 2],
+    /// Error of k as stored.
+    claimed: f64,
+}
+
+impl Pair {
+    fn difference(&self) -> f64 {
+        (self.stiffness_bar[0] / self.stiffness_bar[1] - 1.0).abs()
+    }
+}
+
+/// Solves a random share of the 3D ensemble of a run again, each from nothing with the given tolerance, and writes `audit.csv`.
+///
+/// Which solves is decided by the master seed alone. Returns the outcome and one line that says how far the stored k are from the
+/// tight ones.
+///
+/// # Errors
+/// [`Error::Parameter`] for a share outside (0, 1] or a tolerance that is not tighter than the run's; what the solver refuses.
+pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> Result<(Outcome, String)> {
+    if !(share > 0.0 && share <= 1.0) {
+        return Err(Error::parameter("share", share, "a number above 0, at most 1"));
+    }
+    if !(tolerance >= 1e-12 && tolerance < run.tolerance) {
+        let expected = format!("a number from 1e-12 to below the run's {:?}", run.tolerance);
+        return Err(Error::parameter("audit-tolerance", tolerance, expected));
+    }
+    let session = Session::open(run)?;
+    let measured = measure_3d(run, &session.store, progress)?;
+    let units: Vec<&(Unit, UnitResult)> = measured.series.iter().flat_map(|s| &s.units).collect();
+    let loads = measured.force_bar().len();
+    let wanted = ((share * (units.len() * loads) as f64).ceil() as usize).max(1);
+    // The smallest hashes: a sample without replacement that does not depend on any order.
+    let mut all: Vec<(u64, usize, usize)> = (0..units.len())
+        .flat_map(|u| (0..loads).map(move |j| (u, j)))
+        .map(|(u, j)| (surface_gen::surface_seed(run.seed ^ 0xa0d1, (u * loads + j) as u64), u, j))
+        .collect();
+    all.sort_unstable();
+    all.truncate(wanted);
+    progress.begin(&format!("{wanted} solves again, to {tolerance:?}"), wanted as u64);
+    let order: Vec<usize> = (0..all.len()).collect();
+    let done = run_jobs(run.threads, &order, &never, |i, stop| {
+        let (_, u, j) = all[i];
+        let pair = again(units[u], j, tolerance, stop)?;
+        progress.advance(1, false);
+        Ok(pair)
+    })?;
+    progress.end();
+    let pairs: Vec<Pair> = collect(done)?.into_iter().flatten().collect();
+    let largest = pairs.iter().map(Pair::difference).fold(0.0, f64::max);
+    let inside = pairs.iter().filter(|p| p.difference() <= p.claimed + tolerance).count();
+    let summary = format!(
+        "{} solves again to {tolerance:?}: largest relative difference of k {largest:.1e}, {inside} within their own claim",
+        pairs.len()
+    );
+    let mut outcome = Outcome::new("audit");
+    let path = run.out.join("audit.csv");
+    let header =
+        header(format!("{} --share {share} --audit-tolerance {tolerance}", run.command("audit", &FLAGS)))
+            .with_note(summary.clone());
+    write_csv(&path, &table(&pairs)?, &header)?;
+    outcome.files.push(path);
+    Ok((session.close(outcome)?, summary))
+}
+
+/// One load of one unit from nothing. `None` where the stored or the tight solve has no stiffness to compare.
+fn again(
+    (unit, result): &(Unit, UnitResult),
+    load: usize,
+    tolerance: f64,
+    stop: Stop<'_>,
+) -> Result<Option<Pair>> {
+    let Discretisation::Bem3d { cells, .. } = unit.discretisation else { return Ok(None) };
+    let stored = &result.samples[load];
+    let alone = Unit {
+        discretisation: Discretisation::Bem3d { cells, tolerance },
+        forces: [stored.force_bar].into(),
+        ..unit.clone()
+    };
+    let tight = alone.solve(stop)?;
+    let tight = tight.samples.first().filter(|s| s.converged()).and_then(|s| s.stiffness_bar);
+    Ok(stored.stiffness_bar.zip(tight).filter(|_| stored.converged()).map(|(a, b)| Pair {
+        fractal_dimension: unit.fractal_dimension,
+        index: unit.index,
+        force_bar: stored.force_bar,
+        stiffness_bar: [a, b],
+        claimed: stored.certificate.stiffness_error.unwrap_or(0.0),
+    }))
+}
+
+fn table(pairs: &[Pair]) -> Result<Table> {
+    let columns = vec![
+        column("fractal_dimension", "1", FRACTAL_DIMENSION),
+        column("surface", "1", "number of the surface in its ensemble"),
+        column("force_bar", "1", FORCE_BAR),
+        column("stiffness_bar", "1", "k/(1.1419 E* L) as in fig2-samples.csv (Eq. 8)"),
+        column("stiffness_bar_tight", "1", "the same from nothing to the tight tolerance"),
+        column("relative_difference", "1", "of the two"),
+        column("claimed_error", "1", "estimated relative error of the first"),
+    ];
+    let mut table = Table::new("Stored stiffnesses beside tight solves", columns);
+    for p in pairs {
+        let row = vec![
+            Value::Number(p.fractal_dimension),
+            Value::Count(p.index as u64),
+            Value::Number(p.force_bar),
+            Value::Number(p.stiffness_bar[0]),
+            Value::Number(p.stiffness_bar[1]),
+            Value::Number(p.difference()),
+            Value::Number(p.claimed),
+        ];
+        table.push(row).map_err(Error::model("audit.csv"))?;
+    }
+    Ok(table)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Preset, Request};
+    use runs::{CsvFile, Silent};
+
+    #[test]
+    fn loose_solves_keep_their_promise() {
+        let dir = tempfile::tempdir().unwrap();
+        let request = Request {
+            preset: Preset::Quick,
+            cells: Some(65),
+            surfaces: Some(2),
+            fractal_dimensions: Some(vec![2.2, 2.8]),
+            forces: Some("1e-2:20:5".into()),
+            tolerance: Some(1e-3),
+            out: Some(dir.path().to_owned()),
+            ..Request::default()
+        };
+        let run = Run::new(&request).unwrap();
+        let (outcome, summary) = audit(&run, 0.5, 1e-9, &Silent).unwrap();
+        assert!(summary.starts_with("10 solves again"), "{summary}");
+        let file = CsvFile::read(&outcome.files[0]).unwrap();
+        for difference in file.numbers("relative_difference").unwrap().into_iter().flatten() {
+            assert!(difference < 1e-3, "{difference}");
+        }
+        assert!(audit(&run, 0.0, 1e-9, &Silent).is_err());
+        assert!(audit(&run, 0.1, 1e-2, &Silent).is_err());
+    }
+}

@@ -1,0 +1,463 @@
+//! What an answer costs: one row per surface, tolerance and load, with the work, the time, the memory and the certificate.
+
+use crate::forces::Forces;
+use bem3d::{Bem3d, Method};
+use contact_model::{
+    Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
+    Stop, Surface, never,
+};
+use runs::collect;
+use runs::files;
+use runs::number;
+use runs::read_map;
+use runs::run_jobs;
+use runs::unit_area;
+use runs::write_npy;
+use runs::{Error, Result};
+use runs::{cpu_seconds, peak_memory, reset_peak_memory};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What is measured.
+#[derive(Debug, Clone)]
+pub struct Bench {
+    /// Which reliefs.
+    pub surfaces: Surfaces,
+    /// Loads F_bar: solved from the smallest up, rows in the order in which they were written.
+    pub forces: Forces,
+    /// Tolerances, each a series of its own.
+    pub tolerances: Vec<f64>,
+    /// Edges of the square.
+    pub boundary: Boundary,
+    /// How the linear systems are solved.
+    pub method: Method,
+    /// Each load from nothing, set-up included; else one prepared contact under increasing loads.
+    pub cold: bool,
+    /// Series solved at the same time, at least 1. One solve runs on one thread.
+    pub threads: usize,
+    /// Directory for the pressure of each row (NPY, row-major, in units of E*).
+    pub pressure: Option<PathBuf>,
+}
+
+/// Reliefs of a bench.
+#[derive(Debug, Clone)]
+pub enum Surfaces {
+    /// A map as it is, with square cells and `sqrt(Lx Ly) = 1`.
+    File(PathBuf),
+    /// Self-affine surfaces without roll-off, every size with every fractal dimension.
+    SelfAffine {
+        /// Columns.
+        cells: Vec<usize>,
+        /// Rows of square cells on a rectangle of area 1; `None`: as many as columns.
+        rows: Option<usize>,
+        /// D_f.
+        fractal_dimensions: Vec<f64>,
+        /// Seed of the surface itself.
+        seed: u64,
+    },
+}
+
+/// One solve.
+#[derive(Debug, Clone)]
+pub struct BenchRow {
+    /// File name, or `self-affine`.
+    pub surface: String,
+    /// D_f and seed of a generated surface.
+    pub drawn: Option<(f64, u64)>,
+    /// Columns and rows of the map.
+    pub cells: Cells,
+    /// F/(E* h L) with the measured rms height.
+    pub force_bar: f64,
+    /// Asked for.
+    pub tolerance: f64,
+    /// The state, converged or the best that was reached.
+    pub state: ContactState,
+    /// Mean gap, where the square repeats itself.
+    pub mean_gap: Option<f64>,
+    /// Normalisation of this surface.
+    pub normalisation: Normalisation,
+    /// Wall-clock seconds: the first row of a prepared contact includes preparing it.
+    pub seconds: f64,
+    /// Seconds of the processor on this thread, where the platform tells.
+    pub cpu_seconds: Option<f64>,
+    /// Largest resident memory of the process during this row, in bytes, where the platform tells (with what other threads hold; since
+    /// the start of the process where the count cannot be set back).
+    pub peak_memory: Option<u64>,
+    /// Whether it was solved from nothing.
+    pub cold: bool,
+}
+
+/// Columns of the table, in order.
+pub const BENCH_COLUMNS: [&str; 26] = [
+    "cells",
+    "force_bar",
+    "approach_over_h",
+    "stiffness_bar",
+    "contact_cells",
+    "penetration",
+    "duality_gap",
+    "iterations",
+    "applications",
+    "seconds",
+    "strategy",
+    "status",
+    "tolerance",
+    "complementarity",
+    "load_error",
+    "stiffness_error",
+    "stiffness",
+    "mean_gap_over_h",
+    "cpu_seconds",
+    "peak_memory_bytes",
+    "start",
+    "surface",
+    "fractal_dimension",
+    "seed",
+    "rows",
+    "version",
+];
+
+impl BenchRow {
+    /// The row as text, in the order of [`BENCH_COLUMNS`]; absent is empty.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when a value does not fit in a double.
+    pub fn fields(&self) -> Result<[String; BENCH_COLUMNS.len()]> {
+        let report = &self.state.report;
+        let certificate = &report.certificate;
+        let text = |v: Option<f64>| v.map(number).unwrap_or_default();
+        let approach = match self.state.approach {
+            Some(d) if self.normalisation.height.is_some_and(|h| h > 0.0) => {
+                Some(self.normalisation.approach_over_h(d).map_err(Error::model("approach"))?)
+            }
+            _ => None,
+        };
+        let mean_gap = match (self.mean_gap, self.normalisation.height) {
+            (Some(gap), Some(h)) if h > 0.0 => Some(gap / h),
+            _ => None,
+        };
+        Ok([
+            self.cells.columns.to_string(),
+            number(self.force_bar),
+            text(approach),
+            text(self.state.stiffness.map(|k| self.normalisation.stiffness_bar(k))),
+            report.contact_cells.map(|n| n.to_string()).unwrap_or_default(),
+            number(certificate.penetration),
+            number(certificate.duality_gap),
+            report.iterations.to_string(),
+            report.applications.to_string(),
+            number(self.seconds),
+            report.strategy.clone(),
+            report.status.as_str().to_owned(),
+            number(self.tolerance),
+            number(certificate.complementarity),
+            number(certificate.load_error),
+            text(certificate.stiffness_error),
+            text(self.state.stiffness),
+            text(mean_gap),
+            text(self.cpu_seconds),
+            self.peak_memory.map(|b| b.to_string()).unwrap_or_default(),
+            if self.cold { "cold" } else { "warm" }.to_owned(),
+            self.surface.clone(),
+            text(self.drawn.map(|(d, _)| d)),
+            self.drawn.map(|(_, seed)| seed.to_string()).unwrap_or_default(),
+            self.cells.rows.to_string(),
+            env!("CARGO_PKG_VERSION").to_owned(),
+        ])
+    }
+
+    /// Whether it met its tolerance.
+    pub fn converged(&self) -> bool {
+        self.state.report.status == contact_model::Status::Converged
+    }
+}
+
+/// One relief at one tolerance.
+struct Series {
+    surface: String,
+    drawn: Option<(f64, u64)>,
+    cells: Cells,
+    scene: Scene,
+    seed: u64,
+    model: Bem3d,
+}
+
+/// Solves everything, loads from the smallest up, and hands out each row as soon as it is there. The rows that it gives stand in the
+/// order asked for: surfaces, tolerances, loads.
+///
+/// # Errors
+/// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model
+/// refuses; whatever `found` says. The first of them stops everything.
+pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) -> Result<Vec<BenchRow>> {
+    if bench.threads == 0 {
+        return Err(Error::parameter("threads", 0, "at least one thread"));
+    }
+    let series = series(bench)?;
+    if let Some(directory) = &bench.pressure {
+        files::create_directory(directory)?;
+    }
+    let order: Vec<usize> = (0..series.len()).collect();
+    let done = run_jobs(bench.threads, &order, &never, |i, stop| series[i].run(bench, stop, found))?;
+    Ok(collect(done)?.into_iter().flatten().collect())
+}
+
+fn series(bench: &Bench) -> Result<Vec<Series>> {
+    let mut reliefs = Vec::new();
+    match &bench.surfaces {
+        Surfaces::File(path) => {
+            let map = read_map(path)?;
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            reliefs.push((name, None, map.cells(), 0, Surface::Heights(Arc::new(map))));
+        }
+        Surfaces::SelfAffine { cells, rows, fractal_dimensions, seed } => {
+            for &d in fractal_dimensions {
+                for &columns in cells {
+                    let cells = Cells { columns, rows: rows.unwrap_or(columns) };
+                    let surface = SelfAffine::new(d, unit_area(cells), 1.0)
+                        .map_err(Error::model(format!("D_f = {d:?}")))?;
+                    let surface = Surface::SelfAffine(surface);
+                    reliefs.push(("self-affine".to_owned(), Some((d, *seed)), cells, *seed, surface));
+                }
+            }
+        }
+    }
+    let mut all = Vec::new();
+    for (surface, drawn, cells, seed, relief) in reliefs {
+        for &tolerance in &bench.tolerances {
+            let mut scene = Scene::new(relief.clone(), 1.0);
+            scene.effects.boundary = bench.boundary;
+            scene.outputs.pressure = bench.pressure.is_some();
+            let (columns, rows) = (cells.columns, Some(cells.rows));
+            let model = Bem3d { cells: columns, rows, tolerance, method: bench.method, ..Bem3d::default() };
+            all.push(Series { surface: surface.clone(), drawn, cells, scene, seed, model });
+        }
+    }
+    Ok(all)
+}
+
+impl Series {
+    fn prepare(&self) -> Result<Box<dyn PreparedContact>> {
+        self.model.prepare(&self.scene, self.seed).map_err(Error::model(format!("bem3d on {}", self.surface)))
+    }
+
+    fn run(
+        &self,
+        bench: &Bench,
+        stop: Stop<'_>,
+        found: &(dyn Fn(&BenchRow) -> Result<()> + Sync),
+    ) -> Result<Vec<BenchRow>> {
+        let mut rows = Vec::with_capacity(bench.forces.values().len());
+        let mut contact: Option<Box<dyn PreparedContact>> = None;
+        for &force_bar in bench.forces.values() {
+            let fresh = contact.is_none() || bench.cold;
+            if fresh {
+                contact = None; // Its memory first.
+            }
+            reset_peak_memory();
+            let cpu = cpu_seconds();
+            let start = Instant::now();
+            let prepared = match &mut contact {
+                Some(prepared) => prepared,
+                none => none.insert(self.prepare()?),
+            };
+            let normalisation = prepared.normalisation();
+            let what = || format!("bem3d on {} at F_bar = {force_bar:?}", self.surface);
+            let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what()))?);
+            let state = match prepared.solve_until(load, stop) {
+                Err(contact_model::Error::NotConverged { best }) => *best,
+                other => other.map_err(Error::model(what()))?,
+            };
+            // Known from the solve.
+            let mean_gap = match bench.boundary {
+                Boundary::Periodic => Some(prepared.mean_gap(load).map_err(Error::model(what()))?),
+                _ => None,
+            };
+            let seconds = start.elapsed().as_secs_f64();
+            let mut row = BenchRow {
+                surface: self.surface.clone(),
+                drawn: self.drawn,
+                cells: self.cells,
+                force_bar,
+                tolerance: self.model.tolerance,
+                state,
+                mean_gap,
+                normalisation,
+                seconds,
+                cpu_seconds: cpu.zip(cpu_seconds()).map(|(a, b)| b - a),
+                peak_memory: peak_memory(),
+                cold: fresh,
+            };
+            if let Some(directory) = &bench.pressure {
+                self.save_pressure(directory, &mut row)?;
+            }
+            found(&row)?;
+            rows.push(row);
+        }
+        let place =
+            |row: &BenchRow| bench.forces.asked().iter().position(|f| f.total_cmp(&row.force_bar).is_eq());
+        rows.sort_by_key(place);
+        Ok(rows)
+    }
+
+    /// Writes the field and forgets it: a bench of many loads would keep them all.
+    fn save_pressure(&self, directory: &Path, row: &mut BenchRow) -> Result<()> {
+        let Some(pressure) = row.state.fields.take().and_then(|f| f.pressure) else { return Ok(()) };
+        let stem = Path::new(&self.surface)
+            .file_stem()
+            .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let drawn = row
+            .drawn
+            .map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells.columns))
+            .unwrap_or_default();
+        let name = format!("pressure_{stem}{drawn}_F{:?}_tol{:?}.npy", row.force_bar, row.tolerance);
+        let shape = [row.cells.rows, row.cells.columns];
+        write_npy(&directory.join(name), &shape, &pressure)
+    }
+}
+
+/// The table as CSV, column names first.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be written (the file appears whole or not at all).
+pub fn write_bench(path: &Path, rows: &[BenchRow]) -> Result<()> {
+    let mut bytes = Vec::new();
+    let mut writer = csv::Writer::from_writer(&mut bytes);
+    let failed = |e: csv::Error| Error::content(path, e.to_string());
+    writer.write_record(BENCH_COLUMNS).map_err(failed)?;
+    for row in rows {
+        writer.write_record(row.fields()?).map_err(failed)?;
+    }
+    writer.flush().map_err(Error::file("write", path))?;
+    drop(writer);
+    files::write_whole(path, &bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::sync::Mutex;
+
+    fn small() -> Bench {
+        Bench {
+            surfaces: Surfaces::SelfAffine {
+                cells: vec![17],
+                rows: None,
+                fractal_dimensions: vec![2.4],
+                seed: 3,
+            },
+            forces: Forces::parse("1,0.01").unwrap(),
+            tolerances: vec![1e-6],
+            boundary: Boundary::Free,
+            method: Method::Auto,
+            cold: false,
+            threads: 1,
+            pressure: None,
+        }
+    }
+
+    #[test]
+    fn rows_are_written_whole() {
+        let dir = tempfile::tempdir().unwrap();
+        let pressure = dir.path().join("fields");
+        let solved = Mutex::new(Vec::new());
+        let rows = bench(&Bench { pressure: Some(pressure.clone()), ..small() }, &|row| {
+            solved.lock().unwrap().push(row.force_bar);
+            Ok(())
+        })
+        .unwrap();
+        // Asked for as "1,0.01", solved from the smallest up.
+        assert_eq!(solved.into_inner().unwrap(), [0.01, 1.0]);
+        assert_eq!(rows.iter().map(|r| r.force_bar).collect::<Vec<_>>(), [1.0, 0.01]);
+        assert!(rows.iter().all(BenchRow::converged));
+        let path = dir.path().join("bench.csv");
+        write_bench(&path, &rows).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with("cells,force_bar,approach_over_h,stiffness_bar,contact_cells,penetration,duality_gap,iterations,applications,seconds,strategy,status,"));
+        assert_eq!(text.lines().count(), 3);
+        assert_eq!(fs::read_dir(pressure).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_rectangle_has_its_rows() {
+        let surfaces =
+            Surfaces::SelfAffine { cells: vec![24], rows: Some(6), fractal_dimensions: vec![2.2], seed: 1 };
+        for row in bench(&Bench { surfaces, ..small() }, &|_| Ok(())).unwrap() {
+            assert!(row.converged());
+            approx::assert_relative_eq!(row.normalisation.length, 1.0, max_relative = 1e-15);
+            let fields = row.fields().unwrap();
+            let field = |name: &str| &fields[BENCH_COLUMNS.iter().position(|c| *c == name).unwrap()];
+            assert_eq!((field("cells").as_str(), field("rows").as_str()), ("24", "6"));
+        }
+    }
+
+    #[test]
+    fn cold_and_warm_rows_agree() {
+        let warm = bench(&small(), &|_| Ok(())).unwrap();
+        let cold = bench(&Bench { cold: true, threads: 2, ..small() }, &|_| Ok(())).unwrap();
+        for (a, b) in warm.iter().zip(&cold) {
+            approx::assert_relative_eq!(
+                a.state.stiffness.unwrap(),
+                b.state.stiffness.unwrap(),
+                max_relative = 1e-5
+            );
+        }
+        assert!(cold.iter().all(|r| r.cold) && !warm[0].cold && warm[1].cold);
+    }
+
+    #[test]
+    fn rows_stand_in_the_order_asked_for_whatever_the_threads() {
+        let surfaces = Surfaces::SelfAffine {
+            cells: vec![17, 9],
+            rows: None,
+            fractal_dimensions: vec![2.4, 2.0],
+            seed: 3,
+        };
+        let many = Bench { surfaces, tolerances: vec![1e-6, 1e-3], ..small() };
+        let numbers = |threads| {
+            let rows = bench(&Bench { threads, ..many.clone() }, &|_| Ok(())).unwrap();
+            let row = |r: &BenchRow| (r.cells, r.drawn, r.tolerance, r.force_bar, r.state.stiffness);
+            rows.iter().map(row).collect::<Vec<_>>()
+        };
+        assert_eq!(numbers(1), numbers(3));
+        assert_eq!(numbers(1).len(), 16);
+    }
+
+    #[test]
+    fn a_row_that_cannot_be_kept_stops_the_rest() {
+        let count = Mutex::new(0);
+        let error = bench(&small(), &|_| {
+            *count.lock().unwrap() += 1;
+            Err(Error::parameter("csv", "full", "room on the disk"))
+        });
+        assert!(error.unwrap_err().to_string().contains("room on the disk"));
+        assert_eq!(*count.lock().unwrap(), 1);
+    }
+
+    #[test]
+    fn a_load_that_gives_up_has_its_row() {
+        // Beyond double precision: reached or not, every load has its row and its certificate.
+        let tired = Bench { method: Method::SingleLevel, tolerances: vec![1e-15], ..small() };
+        let rows = bench(&tired, &|_| Ok(())).unwrap();
+        assert_eq!(rows.len(), 2);
+        for row in &rows {
+            let fields = row.fields().unwrap();
+            assert_eq!(fields[11] == "converged", row.converged());
+            assert!(fields[..12].iter().all(|f| !f.is_empty()));
+        }
+    }
+
+    #[test]
+    fn a_periodic_square_has_mean_gaps_and_no_approach() {
+        let periodic = Bench { boundary: Boundary::Periodic, ..small() };
+        let rows = bench(&periodic, &|_| Ok(())).unwrap();
+        let column = |name: &str| BENCH_COLUMNS.iter().position(|c| *c == name).unwrap();
+        let (approach, gap) = (column("approach_over_h"), column("mean_gap_over_h"));
+        for row in rows {
+            let fields = row.fields().unwrap();
+            assert!(row.converged() && fields[approach].is_empty());
+            assert!(fields[gap].parse::<f64>().unwrap() > 0.0);
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
+
+use kuva::plot::line::LineStyle;
+use kuva::plot::scatter::MarkerShape;
+use plots::{Key, Mark, Picture, color, logarithmic};
+use runs::CsvFile;
+use runs::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// Marks of the loads or of the sizes, smallest first.
+const MARKS: [MarkerShape; 5] = [
+    MarkerShape::Circle,
+    MarkerShape::Square,
+    MarkerShape::Triangle,
+    MarkerShape::Diamond,
+    MarkerShape::Cross,
+];
+
+/// Colour of loads and sizes in the legend, and of maps from files, which have no fractal dimension of their own.
+const NEUTRAL: &str = "#555555";
+
+/// What the pictures of a bench hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BenchPlot {
+    /// Files written.
+    pub files: Vec<PathBuf>,
+    /// The fitted powers of each curve: `seconds ~ cells^a, iterations ~ cells^b` (least squares in logarithms).
+    pub slopes: Vec<String>,
+}
+
+/// One solve as the picture sees it.
+#[derive(Debug, Clone, PartialEq)]
+struct Point {
+    surface: String,
+    fractal_dimension: Option<f64>,
+    tolerance: f64,
+    force_bar: f64,
+    cells: f64,
+    seconds: f64,
+    iterations: f64,
+    converged: bool,
+}
+
+/// What the horizontal axis counts; the other one tells the curves apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Over {
+    Cells,
+    Force,
+}
+
+impl Over {
+    fn of(self, p: &Point) -> f64 {
+        match self {
+            Self::Cells => p.cells,
+            Self::Force => p.force_bar,
+        }
+    }
+
+    fn other(self) -> Self {
+        match self {
+            Self::Cells => Self::Force,
+            Self::Force => Self::Cells,
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Cells => "cells a side",
+            Self::Force => "force  F / (E* h L)",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Cells => "cells",
+            Self::Force => "F_bar",
+        }
+    }
+
+    /// Different values, increasing.
+    fn values(self, points: &[Point]) -> Vec<f64> {
+        let mut values: Vec<f64> = points.iter().map(|p| self.of(p)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values
+    }
+}
+
+/// Draws seconds over cells from a table of [`crate::write_bench`], as SVG and PNG; over force where all rows have one size, and in a
+/// second picture (`NAME-force`) where there are several of both. Solves that did not converge are hollow and in no fit.
+///
+/// # Errors
+/// [`Error::File`] or [`Error::Content`] for a table that cannot be read, [`Error::Parameter`] for a picture without a name.
+pub fn plot_bench(csv: &Path, picture: &Path) -> Result<BenchPlot> {
+    let name = picture.file_stem().and_then(|s| s.to_str());
+    let name =
+        name.ok_or_else(|| Error::parameter("plot", picture.display(), "a file name such as bench.svg"))?;
+    let directory = picture.parent().map_or_else(PathBuf::new, Path::to_owned);
+    let points = read(csv)?;
+    let mut plot = BenchPlot::default();
+    let (sizes, loads) = (Over::Cells.values(&points).len(), Over::Force.values(&points).len());
+    if sizes > 1 {
+        draw(&points, Over::Cells, &directory, name, &mut plot)?;
+    }
+    if loads > 1 || sizes == 1 {
+        let name = if sizes > 1 { format!("{name}-force") } else { name.to_owned() };
+        draw(&points, Over::Force, &directory, &name, &mut plot)?;
+    }
+    Ok(plot)
+}
+
+fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut BenchPlot) -> Result<()> {
+    let other = over.other();
+    let others = other.values(points);
+    let y = logarithmic(points.iter().map(|p| p.seconds));
+    let mut drawing =
+        Picture::new(logarithmic(points.iter().map(|p| over.of(p))), y, over.label(), "seconds")
+            .with_title("Cost of one certified solve with its stiffness");
+    let tolerances = points.iter().any(|p| p.tolerance.total_cmp(&points[0].tolerance).is_ne());
+    let mut known = Vec::new();
+    for mut curve in curves(points, other) {
+        curve.sort_by(|a, b| over.of(a).total_cmp(&over.of(b)));
+        let first = curve[0].clone();
+        let color = first.fractal_dimension.map_or_else(|| NEUTRAL.to_owned(), color);
+        let what = first.fractal_dimension.map_or_else(|| first.surface.clone(), |d| format!("D_f = {d:?}"));
+        let rank = others.iter().position(|v| v.total_cmp(&other.of(&first)).is_eq()).unwrap_or(0);
+        let mark = MARKS[rank % MARKS.len()];
+        let (done, open): (Vec<Point>, Vec<Point>) = curve.into_iter().partition(|p| p.converged);
+        let at = |points: &[Point]| points.iter().map(|p| (over.of(p), p.seconds)).collect::<Vec<_>>();
+        drawing.line(&at(&done), &color, 1.2, &LineStyle::Solid);
+        drawing.points(&at(&done), &color, 4.0, Mark::Solid(mark));
+        drawing.points(&at(&open), &color, 4.0, Mark::Hollow(mark));
+        if !known.contains(&what) {
+            drawing.legend(&what, &color, Key::Mark(MARKS[0]));
+            known.push(what.clone());
+        }
+        let power = |of: fn(&Point) -> f64| slope(done.iter().map(|p| (over.of(p), of(p))));
+        if let (Some(a), Some(b)) = (power(|p| p.seconds), power(|p| p.iterations)) {
+            let mut curve = format!("{what}, {} = {}", other.name(), shown(other.of(&first)));
+            if tolerances {
+                curve += &format!(", tolerance {:?}", first.tolerance);
+            }
+            let over = over.name();
+            plot.slopes.push(format!("{curve}: seconds ~ {over}^{a:.2}, iterations ~ {over}^{b:.2}"));
+        }
+    }
+    if others.len() > 1 {
+        for (rank, value) in others.iter().enumerate() {
+            let label = format!("{} = {}", other.name(), shown(*value));
+            drawing.legend(&label, NEUTRAL, Key::Mark(MARKS[rank % MARKS.len()]));
+        }
+    }
+    plot.files.extend(drawing.save(directory, name)?);
+    Ok(())
+}
+
+/// Points of one relief, one tolerance and one value of `other`, in the order in which they come.
+fn curves(points: &[Point], other: Over) -> Vec<Vec<Point>> {
+    let mut curves: Vec<Vec<Point>> = Vec::new();
+    for p in points {
+        let same = |c: &&mut Vec<Point>| {
+            let q = &c[0];
+            q.surface == p.surface
+                && q.fractal_dimension == p.fractal_dimension
+                && q.tolerance.total_cmp(&p.tolerance).is_eq()
+                && other.of(q).total_cmp(&other.of(p)).is_eq()
+        };
+        match curves.iter_mut().find(same) {
+            Some(curve) => curve.push(p.clone()),
+            None => curves.push(vec![p.clone()]),
+        }
+    }
+    curves
+}
+
+/// Whole numbers without their `.0`.
+fn shown(value: f64) -> String {
+    if value.fract().abs() > 0.0 { format!("{value:?}") } else { format!("{value}") }
+}
+
+fn read(csv: &Path) -> Result<Vec<Point>> {
+    let file = CsvFile::read(csv)?;
+    let columns = ["fractal_dimension", "tolerance", "force_bar", "cells", "seconds", "iterations"];
+    let [d, tolerance, force, cells, seconds, iterations] = columns.map(|name| file.numbers(name));
+    let (d, tolerance, force) = (d?, tolerance?, force?);
+    let (cells, seconds, iterations) = (cells?, seconds?, iterations?);
+    let (surface, status) = (file.texts("surface")?, file.texts("status")?);
+    let rows = (0..force.len()).filter_map(|i| {
+        Some(Point {
+            surface: surface[i].to_owned(),
+            fractal_dimension: d[i],
+            tolerance: tolerance[i]?,
+            force_bar: force[i]?,
+            cells: cells[i]?,
+            seconds: seconds[i]?,
+            iterations: iterations[i]?,
+            converged: status[i] == contact_model::Status::Converged.as_str(),
+        })
+    });
+    let points: Vec<Point> = rows.collect();
+    if points.is_empty() {
+        return Err(Error::content(csv, "no rows to draw"));
+    }
+    Ok(points)
+}
+
+/// Least-squares slope of ln y over ln x; `None` for fewer than two different x.
+fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let logs: Vec<(f64, f64)> =
+        points.filter(|p| p.0 > 0.0 && p.1 > 0.0).map(|p| (p.0.ln(), p.1.ln())).collect();
+    let n = logs.len() as f64;
+    let (x, y) = (logs.iter().map(|p| p.0).sum::<f64>() / n, logs.iter().map(|p| p.1).sum::<f64>() / n);
+    let (xy, xx) =
+        logs.iter().fold((0.0, 0.0), |(a, b), p| (a + (p.0 - x) * (p.1 - y), b + (p.0 - x).powi(2)));
+    (xx > 0.0).then(|| xy / xx)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slope_of_a_power_is_its_exponent() {
+        let points = [1.0, 2.0, 5.0].map(|x: f64| (x, 3.0 * x.powf(1.5)));
+        approx::assert_relative_eq!(slope(points.into_iter()).unwrap(), 1.5, max_relative = 1e-12);
+        assert_eq!(slope([(2.0, 1.0)].into_iter()), None);
+    }
+
+    #[test]
+    fn pictures_are_drawn_from_the_table() {
+        let dir = tempfile::tempdir().unwrap();
+        let (csv, svg) = (dir.path().join("bench.csv"), dir.path().join("bench.svg"));
+        let head = "cells,force_bar,seconds,iterations,status,tolerance,surface,fractal_dimension\n";
+        let several = "64,1,0.1,10,converged,1e-6,self-affine,2.4\n128,1,0.4,10,converged,1e-6,self-affine,2.4\n\
+                       64,0.1,0.01,5,converged,1e-6,self-affine,2.4\n128,0.1,0.02,6,iteration_limit,1e-6,self-affine,2.4\n";
+        std::fs::write(&csv, format!("{head}{several}")).unwrap();
+        let plot = plot_bench(&csv, &svg).unwrap();
+        assert_eq!(plot.slopes[0], "D_f = 2.4, F_bar = 1: seconds ~ cells^2.00, iterations ~ cells^0.00");
+        // One point of the lighter load is left over the sizes, two over the loads at 64 cells.
+        assert_eq!(plot.slopes.len(), 2);
+        assert_eq!(plot.slopes[1], "D_f = 2.4, cells = 64: seconds ~ F_bar^1.00, iterations ~ F_bar^0.30");
+        assert_eq!(plot.files.len(), 4);
+        assert!(plot.files.iter().all(|f| f.exists()));
+
+        // A map has one size and no fractal dimension; tolerances are curves of their own.
+        let map = "64,1,0.1,10,converged,1e-6,map.npy,\n64,10,1,10,converged,1e-6,map.npy,\n\
+                   64,1,0.1,10,converged,1e-3,map.npy,\n64,10,0.1,10,converged,1e-3,map.npy,\n";
+        std::fs::write(&csv, format!("{head}{map}")).unwrap();
+        let plot = plot_bench(&csv, &svg).unwrap();
+        assert_eq!((plot.files.len(), plot.slopes.len()), (2, 2));
+        assert_eq!(
+            plot.slopes[1],
+            "map.npy, cells = 64, tolerance 0.001: seconds ~ F_bar^0.00, iterations ~ F_bar^0.00"
+        );
+
+        std::fs::write(&csv, head).unwrap();
+        assert!(plot_bench(&csv, &svg).unwrap_err().to_string().contains("no rows"));
+        assert!(plot_bench(&dir.path().join("none.csv"), Path::new("x.svg")).is_err());
+    }
+}

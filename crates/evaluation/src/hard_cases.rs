@@ -1,0 +1,121 @@
+//! The table of hard cases: what was asserted and what was reached.
+
+use crate::tables::column;
+use analysis::{Table, Value};
+use contact_model::ContactModel as _;
+use runs::Progress;
+use runs::files::{create_directory, write_whole};
+use runs::{Error, Result};
+use runs::{Header, write_csv};
+use stability::{Case, Effort, Verdict};
+use std::path::{Path, PathBuf};
+
+/// Solves hard cases ([`stability::cases`]) and writes `stability.csv` and `stability.md` into `out`. Gives the verdicts in the order of
+/// the cases, and the files.
+///
+/// # Errors
+/// [`Error::File`] where a file cannot be written. A case that fails is no error but a row.
+pub fn hard_cases(
+    cases: &[Case],
+    effort: Effort,
+    out: &Path,
+    progress: &dyn Progress,
+) -> Result<(Vec<Verdict>, Vec<PathBuf>)> {
+    create_directory(out)?;
+    progress.begin(&format!("{} hard cases", cases.len()), cases.len() as u64);
+    let verdicts = stability::run(cases, effort, &|_| progress.advance(1, false));
+    progress.end();
+    let [csv, text] = ["stability.csv", "stability.md"].map(|name| out.join(name));
+    let command = format!("cargo xtask stability{}", effort.pick("", " --thorough"));
+    let header = Header { command, ..Header::default() }.with_sources(bem3d::Bem3d::default().sources());
+    write_csv(&csv, &table(&verdicts)?, &header)?;
+    write_whole(&text, markdown(&verdicts, effort).as_bytes())?;
+    Ok((verdicts, vec![csv, text]))
+}
+
+fn table(verdicts: &[Verdict]) -> Result<Table> {
+    let columns = vec![
+        column("case", "-", "name of the case"),
+        column("why", "-", "why a solver may fail here"),
+        column("asserted", "-", "what must hold besides the certificate of every state"),
+        column("figure", "1", "largest deviation found; empty where it is no finite number"),
+        column("bound", "1", "largest figure that passes; 0 where bits or counts are compared"),
+        column("status", "-", "passed, or failed: the figure is beyond its bound or an assertion is broken"),
+    ];
+    let mut table = Table::new("Hard cases and what they reach", columns);
+    for v in verdicts {
+        let row: Vec<Value> = vec![
+            v.case.name.into(),
+            v.case.why.into(),
+            v.case.asserted.into(),
+            v.figure.into(),
+            v.case.bound.into(),
+            v.status.as_str().into(),
+        ];
+        table.push(row).map_err(Error::model("stability.csv"))?;
+    }
+    Ok(table)
+}
+
+fn markdown(verdicts: &[Verdict], effort: Effort) -> String {
+    let passed = verdicts.iter().filter(|v| v.passed()).count();
+    let mut text = format!(
+        "# Hard cases\n\n{passed} of {} pass{}. A figure is the largest relative deviation from what is asserted, or the number of things that \
+         differ where the bound is 0; every state meets its tolerance, and most have a witness by plain sums besides.\n\n\
+         | case | why it is hard | what is asserted | figure reached | bound | |\n|---|---|---|---|---|---|\n",
+        verdicts.len(),
+        effort.pick("", ", thorough")
+    );
+    for v in verdicts {
+        let figure = v.figure.map_or_else(|| "none".to_owned(), short);
+        let cells =
+            [v.case.name, v.case.why, v.case.asserted, &figure, &short(v.case.bound), v.status.as_str()];
+        // A bar inside a cell would end it.
+        text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
+    }
+    for v in verdicts.iter().filter(|v| !v.broken.is_empty()) {
+        text += &format!("\n{}:\n\n", v.case.name);
+        v.broken.iter().for_each(|line| text += &format!("- {}\n", line.replace('\n', " ")));
+    }
+    text
+}
+
+/// Two digits; 0 where nothing differs.
+fn short(v: f64) -> String {
+    if v.abs() > 0.0 { format!("{v:.1e}") } else { "0".to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use runs::{CsvFile, Silent};
+
+    #[test]
+    fn the_table_has_a_row_for_every_case_in_their_order() {
+        let dir = tempfile::tempdir().unwrap();
+        let cases: Vec<Case> = stability::cases().into_iter().take(3).collect();
+        let (verdicts, files) = hard_cases(&cases, Effort::Quick, dir.path(), &Silent).unwrap();
+        assert_eq!(verdicts.len(), 3);
+        let csv = CsvFile::read(&files[0]).unwrap();
+        assert_eq!(csv.columns, ["case", "why", "asserted", "figure", "bound", "status"]);
+        assert_eq!(csv.texts("case").unwrap(), cases.iter().map(|c| c.name).collect::<Vec<_>>());
+        assert_eq!(csv.texts("status").unwrap(), ["passed"; 3]);
+        assert_eq!(csv.numbers("figure").unwrap(), verdicts.iter().map(|v| v.figure).collect::<Vec<_>>());
+        assert_eq!(csv.numbers("bound").unwrap(), cases.iter().map(|c| Some(c.bound)).collect::<Vec<_>>());
+        assert!(csv.comments.contains(&"command: cargo xtask stability".to_owned()));
+        let text = std::fs::read_to_string(&files[1]).unwrap();
+        assert!(text.contains("3 of 3 pass.") && text.contains("| one cell |"), "{text}");
+    }
+
+    #[test]
+    fn a_failed_case_is_a_row_with_its_reason() {
+        let mut case = stability::cases()[1];
+        case.bound = 1e-30;
+        let mut verdict = case.run(Effort::Quick);
+        verdict.broken.push("k is | off".to_owned());
+        let text = markdown(&[verdict.clone()], Effort::Thorough);
+        assert!(text.contains("0 of 1 pass, thorough.") && text.contains("| failed |"), "{text}");
+        assert!(text.ends_with("- k is | off\n"), "{text}");
+        assert_eq!(table(&[Verdict { figure: None, ..verdict }]).unwrap().rows()[0][3], Value::Empty);
+    }
+}

@@ -1,0 +1,48 @@
+//! The header of every CSV about ensembles: the paper, the command, the ensembles.
+
+use crate::measured::Measured;
+use crate::run::{Flag, Run, list};
+use crate::unit::Discretisation;
+use runs::Header;
+
+/// The work that everything here reproduces.
+pub const PAPER: &str = "R. Pohrt, V. L. Popov, A. E. Filippov, Normal contact stiffness of elastic solids with fractal rough \
+     surfaces for one- and three-dimensional systems, Phys. Rev. E 86, 026710 (2012)";
+
+/// A header with the paper as its first source.
+pub fn header(command: String) -> Header {
+    Header { sources: vec![PAPER.to_owned()], ..Header::new(command) }
+}
+
+/// The flags that decide the bytes of a 3D ensemble.
+pub const FLAGS_3D: [Flag; 6] =
+    [Flag::Cells, Flag::Surfaces, Flag::FractalDimensions, Flag::Forces, Flag::Tolerance, Flag::Seed];
+/// The flags that decide the bytes of a 1D ensemble.
+pub const FLAGS_1D: [Flag; 5] =
+    [Flag::Elements, Flag::Lines, Flag::FractalDimensions, Flag::Forces, Flag::Seed];
+
+/// Header lines about an ensemble.
+pub fn describe(mut header: Header, run: &Run, measured: &[&Measured]) -> Header {
+    header = header
+        .with_note("normalisation: F_bar = F/(E* h L) with the measured rms height h of each surface, k_bar = k/(1.1419 E* L)")
+        .with_note("surfaces: fixed amplitudes, uniform phases, no roll-off, spectrum to the end of the grid on a circle")
+        .with_note(format!("fractal_dimensions: {}", list(&run.dimensions())))
+        .with_note(format!("seed: {} (surface i: surface_seed(seed, i); D_f does not enter)", run.seed));
+    for m in measured {
+        let (size, count, forces) = match m.discretisation {
+            Discretisation::Bem3d { cells, tolerance } => {
+                (format!("{cells} cells a side, tolerance {tolerance:?}"), run.surfaces, &run.forces_3d)
+            }
+            Discretisation::Mdr1d { elements } => (format!("{elements} elements"), run.lines, &run.forces_1d),
+        };
+        header = header
+            .with_sources(m.discretisation.model().sources())
+            .with_note(format!(
+                "{}: {size}, {count} surfaces per D_f, loads {}",
+                m.discretisation.name(),
+                forces.spec()
+            ))
+            .with_note(format!("{}: {} solves not converged", m.discretisation.name(), m.not_converged()));
+    }
+    header
+}

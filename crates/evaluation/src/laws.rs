@@ -1,0 +1,39 @@
+//! What Figs. 3 and 7 have in common: the fitted power laws.
+
+use crate::measured::Measured;
+use analysis::{Bootstrap, NoFit, PowerLaw, Window, fit};
+
+/// A fitted law, or why there is none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// `bem3d` or `mdr1d`.
+    pub model: &'static str,
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// The fit.
+    pub fit: Result<PowerLaw, NoFit>,
+}
+
+/// Power laws of an ensemble, one per fractal dimension, over the standard window; errors by bootstrap over surfaces.
+pub fn laws(measured: &Measured) -> Vec<Law> {
+    laws_within(measured, &Window::default())
+}
+
+/// The same over another window.
+pub fn laws_within(measured: &Measured, window: &Window) -> Vec<Law> {
+    let law = |s: &crate::measured::Series| Law {
+        model: measured.discretisation.name(),
+        fractal_dimension: s.fractal_dimension,
+        fit: fit(&s.curves, window, &Bootstrap::default()),
+    };
+    measured.series.iter().map(law).collect()
+}
+
+/// 2.0, 2.05 .. 3.0 and the given ones: where formulas are tabulated.
+pub fn dense_dimensions(given: &[f64]) -> Vec<f64> {
+    let mut all: Vec<f64> = (0..=20).map(|i| f64::from(200 + 5 * i) / 100.0).collect();
+    all.extend_from_slice(given);
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| a.total_cmp(b).is_eq());
+    all
+}

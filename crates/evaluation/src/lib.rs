@@ -1,0 +1,68 @@
+//! Ensembles of rough surfaces and what they are worth: error budgets, accuracy targets, benchmarks, audits, hard cases.
+//!
+//! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and checked. [`measure_3d`] and
+//! [`measure_1d`] solve an ensemble, [`state_budgets`] states to what its means are known, [`plan`] and [`settle`] choose the sizes that
+//! meet an accuracy target, [`accuracy_cost`] shows what accuracy costs, [`budget_check`] whether the budgets hold, [`audit`] solves
+//! stored states again, [`bench()`] measures time, [`hard_cases`] writes the table of the registry `stability`.
+//!
+//! # Conventions
+//!
+//! * `F_bar = F/(E* h L)` with the **measured** rms height h of each surface; `k_bar = k/(1.1419 E* L)` (Eqs. 8, 10).
+//! * Means are arithmetic over the surfaces whose solve converged; the logarithmic mean stands beside. A solve that does not
+//!   converge is in the samples with its status, and in no mean.
+//! * Fewer than 10 contact cells are the one-cell floor of the grid: kept in every CSV, marked, left out of lines and fits.
+//!
+//! # Units of work
+//!
+//! The unit of work is one surface under all its loads ([`Unit`]), solved from the smallest load upwards with one prepared contact and
+//! kept in the result store of the run (`runs::Store`) under everything that decides its numbers. Other commands reuse it.
+//!
+//! # What it does not do
+//!
+//! No mechanics of its own, no figure of the paper (that is `figures`), no argument parsing (that is `xtask`).
+
+#![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
+
+mod accuracy;
+mod audit;
+mod bench;
+mod bench_plot;
+mod budget;
+mod claim;
+mod forces;
+mod hard_cases;
+mod header;
+mod laws;
+mod manifest;
+mod measured;
+mod outcome;
+mod run;
+mod sample;
+mod session;
+mod sweep;
+mod tables;
+mod unit;
+
+pub use accuracy::{
+    AccuracyTarget, Coverage, Depth, Plan, Requirements, accuracy_cost, budget_check, plan, redraw_accuracy,
+    settle,
+};
+pub use audit::audit;
+pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, write_bench};
+pub use bench_plot::{BenchPlot, plot_bench};
+pub use budget::{Budget, Budgeted, state_budgets, write_budget};
+pub use claim::{Claim, Verdict, claims_table, markdown, plain, readme_table, short, sort};
+pub use forces::Forces;
+pub use hard_cases::hard_cases;
+pub use header::{FLAGS_1D, FLAGS_3D, PAPER, describe, header};
+pub use laws::{Law, dense_dimensions, laws, laws_within};
+pub use manifest::write_manifest;
+pub use measured::{Measured, Series, measure_1d, measure_3d, transformed};
+pub use outcome::Outcome;
+pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, list};
+pub use runs::{Error, Result};
+pub use sample::{FIELDS, FLOOR_CELLS, Sample};
+pub use session::Session;
+pub use sweep::sweep;
+pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column, curves_table, samples_table};
+pub use unit::{Discretisation, FORMAT, Models, Unit, UnitResult};

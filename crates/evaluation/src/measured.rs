@@ -1,0 +1,163 @@
+//! An ensemble of one model over all fractal dimensions.
+
+use crate::run::Run;
+use crate::sample::FLOOR_CELLS;
+use crate::sweep::sweep;
+use crate::unit::{Discretisation, Unit, UnitResult};
+use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble};
+use runs::Progress;
+use runs::Store;
+use runs::{Error, Result};
+use std::sync::Arc;
+
+/// All surfaces of one fractal dimension.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// The units, in the order of their index.
+    pub units: Vec<(Unit, UnitResult)>,
+    /// Converged stiffnesses on common forces.
+    pub curves: Curves,
+    /// Their means.
+    pub points: Vec<EnsemblePoint>,
+}
+
+/// An ensemble of one model: what Figs. 2 and 6 show, and Figs. 3, 4, 7 evaluate.
+#[derive(Debug, Clone)]
+pub struct Measured {
+    /// How it was solved.
+    pub discretisation: Discretisation,
+    /// One series per fractal dimension, increasing.
+    pub series: Vec<Series>,
+}
+
+/// The 3D ensemble of a run, from the store where it is there.
+///
+/// # Errors
+/// See [`sweep`].
+pub fn measure_3d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
+    let discretisation = Discretisation::Bem3d { cells: run.cells, tolerance: run.tolerance };
+    measure(discretisation, run.surfaces, run.forces_3d.values(), run, store, progress)
+}
+
+/// The 1D ensemble of a run, from the store where it is there.
+///
+/// # Errors
+/// See [`sweep`].
+pub fn measure_1d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
+    let discretisation = Discretisation::Mdr1d { elements: run.elements };
+    measure(discretisation, run.lines, run.forces_1d.values(), run, store, progress)
+}
+
+pub fn measure(
+    discretisation: Discretisation,
+    surfaces: usize,
+    forces: &[f64],
+    run: &Run,
+    store: &Store,
+    progress: &dyn Progress,
+) -> Result<Measured> {
+    let forces: Arc<[f64]> = forces.into();
+    let dimensions = run.dimensions();
+    // Surface by surface, so that an interrupted run holds whole ensembles of fewer surfaces.
+    let units: Vec<Unit> = (0..surfaces)
+        .flat_map(|index| {
+            let seed = surface_gen::surface_seed(run.seed, index as u64);
+            let forces = &forces;
+            dimensions.iter().map(move |&fractal_dimension| Unit {
+                discretisation,
+                fractal_dimension,
+                index,
+                seed,
+                forces: Arc::clone(forces),
+            })
+        })
+        .collect();
+    let (kind, size) = match discretisation {
+        Discretisation::Bem3d { cells, .. } => ("surfaces", format!("{cells} x {cells} cells")),
+        Discretisation::Mdr1d { elements } => ("lines", format!("{elements} elements")),
+    };
+    let what = format!("{}: {} {kind} of {size}, {} loads", discretisation.name(), units.len(), forces.len());
+    let results = sweep(&what, &units, store, run.threads, progress)?;
+    let mut pairs: Vec<Vec<(Unit, UnitResult)>> = dimensions.iter().map(|_| Vec::new()).collect();
+    for (i, pair) in units.into_iter().zip(results).enumerate() {
+        pairs[i % dimensions.len()].push(pair);
+    }
+    let series = pairs
+        .into_iter()
+        .zip(&dimensions)
+        .map(|(units, &d)| Series::new(d, units, &forces))
+        .collect::<Result<_>>()?;
+    Ok(Measured { discretisation, series })
+}
+
+impl Series {
+    fn new(fractal_dimension: f64, units: Vec<(Unit, UnitResult)>, forces: &[f64]) -> Result<Self> {
+        let rows = units
+            .iter()
+            .map(|(_, result)| {
+                let sample = |s: &crate::sample::Sample| {
+                    let stiffness_bar = s.stiffness_bar.filter(|_| s.converged())?;
+                    Some(analysis::Sample { stiffness_bar, contact_cells: s.contact_cells })
+                };
+                result.samples.iter().map(sample).collect()
+            })
+            .collect();
+        let what = || format!("the ensemble at D_f = {fractal_dimension:?}");
+        let curves = Curves::new(forces.to_vec(), rows).map_err(|e| Error::model(what())(e))?;
+        let points = ensemble(&curves);
+        Ok(Self { fractal_dimension, units, curves, points })
+    }
+
+    /// Arithmetic mean of k_bar over the converged surfaces at each force.
+    pub fn means(&self) -> Vec<Option<f64>> {
+        self.points.iter().map(|p| p.stiffness_bar.map(|s| s.mean)).collect()
+    }
+
+    /// Mean contact fraction over the converged surfaces at force number `j`, where the model claims an area.
+    pub fn contact_fraction(&self, j: usize) -> Option<f64> {
+        let fractions: Vec<f64> = (self.units.iter())
+            .map(|(_, r)| &r.samples[j])
+            .filter(|s| s.converged())
+            .filter_map(|s| s.contact_fraction)
+            .collect();
+        (!fractions.is_empty()).then(|| analysis::sum(fractions.iter().copied()) / fractions.len() as f64)
+    }
+}
+
+impl Measured {
+    /// Solves that did not meet their tolerance.
+    pub fn not_converged(&self) -> usize {
+        let samples = self.series.iter().flat_map(|s| &s.units).flat_map(|(_, r)| &r.samples);
+        samples.filter(|s| !s.converged()).count()
+    }
+
+    /// Seconds of all its units together, whenever they were solved.
+    pub fn seconds(&self) -> f64 {
+        analysis::sum(self.series.iter().flat_map(|s| &s.units).map(|(_, r)| r.seconds))
+    }
+
+    /// The series of this fractal dimension.
+    pub fn at(&self, fractal_dimension: f64) -> Option<&Series> {
+        self.series.iter().find(|s| (s.fractal_dimension - fractal_dimension).abs() < 1e-9)
+    }
+
+    /// The common forces.
+    pub fn force_bar(&self) -> &[f64] {
+        self.series.first().map_or(&[], |s| s.curves.force_bar())
+    }
+}
+/// The transformed mean curve of one fractal dimension: each point and whether it lies on the one-cell floor.
+pub fn transformed(series: &Series) -> Vec<(CollapsePoint, bool)> {
+    series
+        .points
+        .iter()
+        .filter_map(|p| {
+            let k = p.stiffness_bar?.mean;
+            let force_tilde = analytic::force_tilde(k, series.fractal_dimension).ok()?;
+            let floor = p.min_contact_cells.is_some_and(|c| c < FLOOR_CELLS);
+            Some((CollapsePoint { force_bar: p.force_bar, force_tilde }, floor))
+        })
+        .collect()
+}

@@ -1,0 +1,39 @@
+//! What a command leaves behind.
+
+use crate::claim::Claim;
+use std::path::PathBuf;
+
+/// What a figure (or the verification) made.
+#[derive(Debug, Clone, Default)]
+pub struct Outcome {
+    /// `fig1` .. `fig7`, `verify`.
+    pub name: &'static str,
+    /// Files written, in order.
+    pub files: Vec<PathBuf>,
+    /// The paper's claims that these numbers can judge.
+    pub claims: Vec<Claim>,
+    /// Solves that did not meet their tolerance; they are in the samples and left out of every mean.
+    pub not_converged: usize,
+    /// One line each: to what the numbers are known.
+    pub reached: Vec<String>,
+    /// Wall-clock seconds of this command.
+    pub seconds: f64,
+    /// Seconds of all 3D units together, whenever they were solved.
+    pub bem3d_seconds: Option<f64>,
+    /// Seconds of all 1D units together.
+    pub mdr1d_seconds: Option<f64>,
+}
+
+impl Outcome {
+    /// Nothing made yet.
+    #[must_use]
+    pub fn new(name: &'static str) -> Self {
+        Self { name, ..Self::default() }
+    }
+
+    /// A file of budgets and what it says in one line.
+    pub fn add_budget(&mut self, (path, reached): (PathBuf, String)) {
+        self.files.push(path);
+        self.reached.push(reached);
+    }
+}

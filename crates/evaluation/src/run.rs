@@ -1,0 +1,371 @@
+//! One run: plain parameters, checked.
+
+use crate::forces::Forces;
+use runs::{Error, Result};
+use std::path::PathBuf;
+
+/// Sizes of a run before single parameters are overridden.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Preset {
+    /// Well under a minute; for a first look and for continuous integration.
+    Quick,
+    /// A few minutes on two cores; all six fractal dimensions.
+    #[default]
+    Default,
+    /// The paper's own sizes: 2049 cells a side, 60 surfaces, 2^20 elements, 500 lines.
+    Paper,
+    /// Where the paper saw no technical possibility in three dimensions: 16385 cells a side, a few surfaces, light loads. Takes
+    /// 4 to 5 GB for each surface in work.
+    Extended,
+}
+
+impl Preset {
+    /// The word on the command line.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Default => "default",
+            Self::Paper => "paper",
+            Self::Extended => "extended",
+        }
+    }
+
+    // At least three loads a decade, both models to F_bar = 20, and the two loads at which values are quoted.
+    fn sizes(self) -> Sizes {
+        match self {
+            Self::Quick => Sizes {
+                cells: 129,
+                surfaces: 8,
+                elements: 1 << 16,
+                lines: 40,
+                forces_3d: "1e-4:20:17,0.086,1",
+                forces_1d: "1e-6:20:23,0.086,1",
+                tolerance: TOLERANCE,
+            },
+            Self::Default => Sizes {
+                cells: 513,
+                surfaces: 40,
+                elements: 1 << 18,
+                lines: 200,
+                forces_3d: "1e-6:20:23,0.086,1",
+                forces_1d: "1e-8:20:29,0.086,1",
+                tolerance: TOLERANCE,
+            },
+            Self::Paper => Sizes {
+                cells: 2049,
+                surfaces: 60,
+                elements: 1 << 20,
+                lines: 500,
+                forces_3d: "1e-8:20:29,0.086,1",
+                forces_1d: "1e-9:20:42,0.086,1",
+                // The scatter from surface to surface is a hundred times larger.
+                tolerance: 1e-3,
+            },
+            Self::Extended => Sizes {
+                cells: 16385,
+                surfaces: 4,
+                elements: 1 << 20,
+                lines: 500,
+                forces_3d: "1e-9:1e-2:22",
+                forces_1d: "1e-9:20:42,0.086,1",
+                tolerance: 1e-3,
+            },
+        }
+    }
+}
+
+struct Sizes {
+    cells: usize,
+    surfaces: usize,
+    elements: usize,
+    lines: usize,
+    forces_3d: &'static str,
+    forces_1d: &'static str,
+    tolerance: f64,
+}
+
+/// What the caller asks for; `None` is the preset's own value.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Request {
+    /// Sizes to start from.
+    pub preset: Preset,
+    /// Cells a side of each map.
+    pub cells: Option<usize>,
+    /// Surfaces per fractal dimension (3D).
+    pub surfaces: Option<usize>,
+    /// Elements of each line.
+    pub elements: Option<usize>,
+    /// Lines per fractal dimension (1D).
+    pub lines: Option<usize>,
+    /// Fractal dimensions.
+    pub fractal_dimensions: Option<Vec<f64>>,
+    /// Loads F_bar of both models, in the words of [`Forces::parse`].
+    pub forces: Option<String>,
+    /// Tolerance of the 3D solver.
+    pub tolerance: Option<f64>,
+    /// Master seed.
+    pub seed: Option<u64>,
+    /// Number of threads; 0 or `None` is one per core.
+    pub threads: Option<usize>,
+    /// Directory of the results; `out` by default.
+    pub out: Option<PathBuf>,
+    /// Ignore stored units.
+    pub fresh: bool,
+    /// A `fig2.csv` or `fig6.csv` of another run, drawn under the curves.
+    pub over: Option<PathBuf>,
+}
+
+/// Everything that decides what a figure holds (and, last, what does not: threads, directory, fresh).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The preset that the sizes started from.
+    pub preset: Preset,
+    /// Cells a side of each map, N.
+    pub cells: usize,
+    /// Surfaces per fractal dimension (3D).
+    pub surfaces: usize,
+    /// Elements of each line.
+    pub elements: usize,
+    /// Lines per fractal dimension (1D).
+    pub lines: usize,
+    /// Fractal dimensions, increasing; `None`: each figure's own.
+    pub fractal_dimensions: Option<Vec<f64>>,
+    /// Loads of the 3D model.
+    pub forces_3d: Forces,
+    /// Loads of the 1D model.
+    pub forces_1d: Forces,
+    /// Whether the loads were given rather than taken from the preset.
+    pub forces_given: bool,
+    /// Tolerance of the 3D solver (certificate and stiffness error at most this).
+    pub tolerance: f64,
+    /// Master seed; surface number i has the seed `surface_gen::surface_seed(seed, i)`.
+    pub seed: u64,
+    /// Number of threads.
+    pub threads: usize,
+    /// Directory of the results.
+    pub out: PathBuf,
+    /// Ignore stored units.
+    pub fresh: bool,
+    /// A table of another run that is drawn under the curves.
+    pub over: Option<PathBuf>,
+}
+
+/// The paper's six fractal dimensions.
+pub const FRACTAL_DIMENSIONS: [f64; 6] = [2.0, 2.2, 2.4, 2.6, 2.8, 3.0];
+
+/// Default master seed: the paper's volume and article.
+pub const SEED: u64 = 86_026_710;
+
+/// Tolerance of the 3D solver for figures of the smaller presets.
+pub const TOLERANCE: f64 = 1e-4;
+
+impl Run {
+    /// Expands the preset, applies what was asked for, checks it.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the first value that makes no sense.
+    ///
+    /// ```
+    /// use evaluation::{Preset, Request, Run};
+    /// let run = Run::new(&Request { preset: Preset::Paper, surfaces: Some(2), ..Request::default() })?;
+    /// assert_eq!((run.cells, run.surfaces), (2049, 2));
+    /// let none = Run::new(&Request { cells: Some(0), ..Request::default() });
+    /// assert_eq!(none.unwrap_err().to_string(), "--cells 0: expected a whole number from 3 to 65536");
+    /// # Ok::<(), evaluation::Error>(())
+    /// ```
+    pub fn new(request: &Request) -> Result<Self> {
+        let sizes = request.preset.sizes();
+        let forces = |preset| Forces::parse(request.forces.as_deref().unwrap_or(preset));
+        let tolerance = request.tolerance.unwrap_or(sizes.tolerance);
+        if !(1e-12..=0.1).contains(&tolerance) {
+            return Err(Error::parameter("tolerance", tolerance, "a number from 1e-12 to 0.1"));
+        }
+        Ok(Self {
+            preset: request.preset,
+            // Fewer than 3 cells a side hold no wave besides the Nyquist one, which has no phase: no relief.
+            cells: within("cells", request.cells.unwrap_or(sizes.cells), 3, 1 << 16)?,
+            surfaces: within("surfaces", request.surfaces.unwrap_or(sizes.surfaces), 1, 1_000_000)?,
+            elements: within("elements", request.elements.unwrap_or(sizes.elements), 3, 1 << 31)?,
+            lines: within("lines", request.lines.unwrap_or(sizes.lines), 1, 10_000_000)?,
+            fractal_dimensions: request.fractal_dimensions.as_deref().map(dimensions).transpose()?,
+            forces_3d: forces(sizes.forces_3d)?,
+            forces_1d: forces(sizes.forces_1d)?,
+            forces_given: request.forces.is_some(),
+            tolerance,
+            seed: request.seed.unwrap_or(SEED),
+            threads: threads(request.threads)?,
+            out: request.out.clone().unwrap_or_else(|| PathBuf::from("out")),
+            fresh: request.fresh,
+            over: request.over.clone(),
+        })
+    }
+
+    /// The fractal dimensions asked for, or the paper's six.
+    pub fn dimensions(&self) -> Vec<f64> {
+        self.fractal_dimensions.clone().unwrap_or_else(|| FRACTAL_DIMENSIONS.to_vec())
+    }
+
+    /// The command that makes the same bytes, with every parameter of `flags` written out.
+    ///
+    /// What does not change them (threads, directory, fresh) is left out.
+    pub fn command(&self, name: &str, flags: &[Flag]) -> String {
+        let mut text = format!("cargo xtask {name} --preset {}", self.preset.as_str());
+        for flag in flags {
+            if let Some(value) = self.value(*flag) {
+                text += &format!(" --{} {value}", flag.as_str());
+            }
+        }
+        text
+    }
+
+    fn value(&self, flag: Flag) -> Option<String> {
+        Some(match flag {
+            Flag::Cells => self.cells.to_string(),
+            Flag::Surfaces => self.surfaces.to_string(),
+            Flag::Elements => self.elements.to_string(),
+            Flag::Lines => self.lines.to_string(),
+            Flag::FractalDimensions => return self.fractal_dimensions.as_deref().map(list),
+            Flag::Forces => return self.forces_given.then(|| self.forces_3d.spec().to_owned()),
+            Flag::Tolerance => format!("{:?}", self.tolerance),
+            Flag::Seed => self.seed.to_string(),
+        })
+    }
+}
+
+/// A parameter that changes results, and so belongs into a header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flag {
+    /// `--cells`
+    Cells,
+    /// `--surfaces`
+    Surfaces,
+    /// `--elements`
+    Elements,
+    /// `--lines`
+    Lines,
+    /// `--fractal-dimensions`
+    FractalDimensions,
+    /// `--forces`
+    Forces,
+    /// `--tolerance`
+    Tolerance,
+    /// `--seed`
+    Seed,
+}
+
+impl Flag {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Cells,
+        Self::Surfaces,
+        Self::Elements,
+        Self::Lines,
+        Self::FractalDimensions,
+        Self::Forces,
+        Self::Tolerance,
+        Self::Seed,
+    ];
+
+    /// The word on the command line, without its dashes.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Cells => "cells",
+            Self::Surfaces => "surfaces",
+            Self::Elements => "elements",
+            Self::Lines => "lines",
+            Self::FractalDimensions => "fractal-dimensions",
+            Self::Forces => "forces",
+            Self::Tolerance => "tolerance",
+            Self::Seed => "seed",
+        }
+    }
+}
+
+/// `2.0,2.2`: shortest digits that read back to the same numbers.
+pub fn list(values: &[f64]) -> String {
+    values.iter().map(|v| format!("{v:?}")).collect::<Vec<_>>().join(",")
+}
+
+fn within(name: &'static str, value: usize, min: usize, max: usize) -> Result<usize> {
+    if (min..=max).contains(&value) {
+        Ok(value)
+    } else {
+        Err(Error::parameter(name, value, format!("a whole number from {min} to {max}")))
+    }
+}
+
+fn dimensions(asked: &[f64]) -> Result<Vec<f64>> {
+    let name = "fractal-dimensions";
+    if asked.is_empty() {
+        return Err(Error::parameter(name, "(nothing)", "at least one number in [2, 3]"));
+    }
+    for &d in asked {
+        if !(2.0..=3.0).contains(&d) {
+            return Err(Error::parameter(name, d, "numbers in [2, 3]"));
+        }
+    }
+    let mut sorted = asked.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup_by(|a, b| a.total_cmp(b).is_eq());
+    Ok(sorted)
+}
+
+fn threads(asked: Option<usize>) -> Result<usize> {
+    match asked {
+        None | Some(0) => Ok(std::thread::available_parallelism().map_or(1, usize::from)),
+        Some(n) => within("threads", n, 1, 4096),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_expand_and_are_overridden() {
+        for preset in [Preset::Quick, Preset::Default, Preset::Paper] {
+            let run = Run::new(&Request { preset, ..Request::default() }).unwrap();
+            for forces in [run.forces_3d.values(), run.forces_1d.values()] {
+                assert_eq!(forces.last(), Some(&20.0));
+                assert!(forces.contains(&0.086) && forces.contains(&1.0));
+                let decades = (20.0 / forces[0]).log10();
+                assert!(forces.len() as f64 >= 3.0 * decades, "{preset:?}");
+            }
+        }
+        let paper = Run::new(&Request { preset: Preset::Paper, ..Request::default() }).unwrap();
+        assert_eq!((paper.cells, paper.surfaces, paper.elements, paper.lines), (2049, 60, 1 << 20, 500));
+        assert_eq!((paper.forces_3d.values()[0], paper.forces_1d.values()[0]), (1e-8, 1e-9));
+        assert_eq!(paper.dimensions(), FRACTAL_DIMENSIONS);
+    }
+
+    #[test]
+    fn bad_values_are_named() {
+        let bad = |r: Request| Run::new(&r).unwrap_err().to_string();
+        let base = Request::default;
+        assert!(bad(Request { surfaces: Some(0), ..base() }).starts_with("--surfaces 0: expected"));
+        assert!(bad(Request { lines: Some(0), ..base() }).starts_with("--lines 0"));
+        assert!(bad(Request { elements: Some(0), ..base() }).starts_with("--elements 0"));
+        assert!(bad(Request { tolerance: Some(f64::NAN), ..base() }).starts_with("--tolerance NaN"));
+        let d = |v| Request { fractal_dimensions: Some(v), ..base() };
+        assert_eq!(bad(d(vec![1.9])), "--fractal-dimensions 1.9: expected numbers in [2, 3]");
+        assert!(bad(d(vec![])).contains("at least one"));
+        assert!(bad(d(vec![f64::NAN])).contains("NaN"));
+        assert!(bad(Request { forces: Some("-1".into()), ..base() }).starts_with("--forces -1"));
+    }
+
+    #[test]
+    fn the_command_says_what_matters_and_nothing_else() {
+        let request = Request {
+            fractal_dimensions: Some(vec![2.4, 2.0, 2.4]),
+            forces: Some("1e-2, 1".into()),
+            threads: Some(3),
+            ..Request::default()
+        };
+        let run = Run::new(&request).unwrap();
+        assert_eq!(
+            run.command("reproduce-fig2", &[Flag::Cells, Flag::FractalDimensions, Flag::Forces, Flag::Seed]),
+            "cargo xtask reproduce-fig2 --preset default --cells 513 --fractal-dimensions 2.0,2.4 \
+             --forces 1e-2,1 --seed 86026710"
+        );
+    }
+}

@@ -1,0 +1,105 @@
+//! Units in parallel, results in order.
+
+use crate::sample::{FIELDS, Sample};
+use crate::unit::{Models, Unit, UnitResult};
+use contact_model::{Stop, never};
+use runs::{Error, Job, Progress, Result, Store, collect, number, run_stored};
+
+/// Solves all units that the store does not hold, one per thread, the largest first, and gives the results in the order of
+/// `units`. The results do not depend on `threads`.
+///
+/// Each finished unit is stored at once: an interruption loses those in flight.
+///
+/// # Errors
+/// The first error in the order of `units`; units that finished before stay stored.
+pub fn sweep(
+    what: &str,
+    units: &[Unit],
+    store: &Store,
+    threads: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<UnitResult>> {
+    let models = Models::default();
+    let jobs: Vec<UnitJob<'_>> = units.iter().map(|unit| UnitJob { unit, models: &models }).collect();
+    collect(run_stored(what, &jobs, store, threads, progress, &never)?)
+}
+
+/// A unit with what all of them share.
+struct UnitJob<'a> {
+    unit: &'a Unit,
+    models: &'a Models,
+}
+
+impl Job for UnitJob<'_> {
+    type Output = UnitResult;
+    type Error = Error;
+
+    fn key(&self) -> String {
+        self.unit.key()
+    }
+
+    fn cost(&self) -> u64 {
+        self.unit.cost()
+    }
+
+    fn solve(&self, stop: Stop<'_>) -> Result<UnitResult> {
+        self.unit.solve_among(self.models, stop)
+    }
+
+    fn encode(&self, result: &UnitResult) -> Option<String> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        table.write_record(FIELDS).ok()?;
+        for sample in &result.samples {
+            table.write_record(sample.fields()).ok()?;
+        }
+        let table = String::from_utf8(table.into_inner().ok()?).ok()?;
+        let (height, seconds) = (number(result.rms_height), number(result.seconds));
+        Some(format!("# measured_rms_height {height}\n# seconds {seconds}\n{table}"))
+    }
+
+    fn decode(&self, text: &str) -> Option<UnitResult> {
+        let (height, rest) = text.strip_prefix("# measured_rms_height ")?.split_once('\n')?;
+        let (seconds, table) = rest.strip_prefix("# seconds ")?.split_once('\n')?;
+        let finite = |t: &str| t.parse::<f64>().ok().filter(|v| v.is_finite());
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        if reader.headers().ok()?.iter().ne(FIELDS) {
+            return None;
+        }
+        let samples: Vec<Sample> = reader
+            .records()
+            .map(|record| record.ok().and_then(|r| Sample::from_fields(r.iter())))
+            .collect::<Option<_>>()?;
+        // The loads are part of the key; the rows must be those loads.
+        let solved = samples.iter().map(|s| s.force_bar.to_bits());
+        if solved.ne(self.unit.forces.iter().map(|f| f.to_bits())) {
+            return None;
+        }
+        Some(UnitResult { rms_height: finite(height)?, seconds: finite(seconds)?, samples })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::tests::sample;
+    use crate::unit::Discretisation;
+
+    #[test]
+    fn units_come_back_bit_for_bit() {
+        let discretisation = Discretisation::Mdr1d { elements: 64 };
+        let unit =
+            Unit { discretisation, fractal_dimension: 2.4, index: 0, seed: 1, forces: [0.1, 1.0].into() };
+        let job = UnitJob { unit: &unit, models: &Models::default() };
+        let result =
+            UnitResult { rms_height: 1.0 / 3.0, seconds: 0.25, samples: vec![sample(0.1), sample(1.0)] };
+        let text = job.encode(&result).unwrap();
+        assert_eq!(job.decode(&text), Some(result));
+        let without_a_row: String =
+            text.lines().filter(|l| !l.starts_with("0.1,")).flat_map(|l| [l, "\n"]).collect();
+        for bad in
+            [without_a_row, text.replace("0.25", "inf"), text.replace("force_bar", "load"), String::new()]
+        {
+            assert_eq!(job.decode(&bad), None, "{bad}");
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! One unit of work: one surface under all its loads.
+
+use crate::sample::Sample;
+use bem3d::Bem3d;
+use contact_model::{ContactModel, Load, Outputs, Scene, SelfAffine, Stop, Surface};
+use mdr1d::{Ensemble, Mdr1d};
+use runs::{Error, Result};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+/// Number of the format of stored units. Raise it when the numbers of `surface-gen` or `mdr1d`, or the fields of a [`Sample`],
+/// change; `bem3d` has its own number, which enters the key too.
+pub const FORMAT: u32 = 2;
+
+/// How a surface is discretised, and by which model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Discretisation {
+    /// Boundary elements.
+    Bem3d {
+        /// Cells a side.
+        cells: usize,
+        /// Tolerance.
+        tolerance: f64,
+    },
+    /// The one-dimensional reduction.
+    Mdr1d {
+        /// Elements of the line.
+        elements: usize,
+    },
+}
+
+impl Discretisation {
+    /// Name of the model.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Bem3d { .. } => "bem3d",
+            Self::Mdr1d { .. } => "mdr1d",
+        }
+    }
+
+    /// Cells a side, or elements.
+    pub fn size(&self) -> usize {
+        match *self {
+            Self::Bem3d { cells, .. } => cells,
+            Self::Mdr1d { elements } => elements,
+        }
+    }
+
+    /// The model itself.
+    pub fn model(&self) -> Box<dyn ContactModel> {
+        match *self {
+            Self::Bem3d { cells, tolerance } => Box::new(Bem3d { cells, tolerance, ..Bem3d::default() }),
+            Self::Mdr1d { elements } => Box::new(Mdr1d { elements }),
+        }
+    }
+}
+
+/// Models that units share: what a line's ensemble plans once serves all its lines.
+#[derive(Debug, Default)]
+pub struct Models {
+    /// By D_f and number of elements.
+    lines: Mutex<Vec<(f64, usize, Arc<Ensemble>)>>,
+}
+
+impl Models {
+    /// The model of a unit.
+    fn of(&self, unit: &Unit, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
+        let Discretisation::Mdr1d { elements } = unit.discretisation else {
+            return Ok(Arc::from(unit.discretisation.model()));
+        };
+        let d = unit.fractal_dimension;
+        // A poisoned lock means that another thread panicked while it only pushed.
+        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((.., ensemble)) =
+            lines.iter().find(|(of, n, _)| of.total_cmp(&d).is_eq() && *n == elements)
+        {
+            let ensemble: Arc<dyn ContactModel> = ensemble.clone();
+            return Ok(ensemble);
+        }
+        let ensemble = Arc::new(Ensemble::new(surface, elements)?);
+        lines.push((d, elements, Arc::clone(&ensemble)));
+        Ok(ensemble)
+    }
+}
+
+/// One surface and its loads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unit {
+    /// How it is solved.
+    pub discretisation: Discretisation,
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// Number of the surface in its ensemble.
+    pub index: usize,
+    /// Its own seed.
+    pub seed: u64,
+    /// Loads F_bar, increasing.
+    pub forces: Arc<[f64]>,
+}
+
+/// What a unit gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnitResult {
+    /// Measured rms height of this surface, in which F_bar is counted.
+    pub rms_height: f64,
+    /// Wall-clock seconds of preparing and solving (goes into the manifest and the run-time claim, never into a figure).
+    pub seconds: f64,
+    /// One sample per load.
+    pub samples: Vec<Sample>,
+}
+
+impl Unit {
+    /// Everything that decides the numbers, as text: physics, discretisation, seed, loads, formats. Two units with the same text have
+    /// the same result.
+    ///
+    /// ```
+    /// use evaluation::{Discretisation, Unit};
+    /// let discretisation = Discretisation::Mdr1d { elements: 64 };
+    /// let unit = Unit { discretisation, fractal_dimension: 2.5, index: 0, seed: 7, forces: [0.1, 1.0].into() };
+    /// assert!(unit.key().contains("fractal_dimension 2.5\n") && unit.key().contains("seed 7\n"));
+    /// assert!(!unit.key().contains("index")); // the seed says which surface it is
+    /// ```
+    pub fn key(&self) -> String {
+        let discretisation = match self.discretisation {
+            Discretisation::Bem3d { cells, tolerance } => {
+                format!(
+                    "model bem3d\nmodel_format {}\ncells {cells}\ntolerance {tolerance:?}\n",
+                    bem3d::FORMAT
+                )
+            }
+            Discretisation::Mdr1d { elements } => format!("model mdr1d\nelements {elements}\n"),
+        };
+        let forces: Vec<String> = self.forces.iter().map(|f| format!("{f:?}")).collect();
+        format!(
+            "format {FORMAT}\n{discretisation}surface self-affine, no roll-off, spectrum to the end of the grid\n\
+             side 1.0\nrms_height 1.0\nmodulus 1.0\nfractal_dimension {:?}\nseed {}\nforce_bar {}\n",
+            self.fractal_dimension,
+            self.seed,
+            forces.join(" "),
+        )
+    }
+
+    /// Relative cost, a guess that orders the work and moves the progress bar.
+    pub fn cost(&self) -> u64 {
+        let n = self.discretisation.size() as u64;
+        let loads = self.forces.len() as u64;
+        match self.discretisation {
+            // Loads times the transforms of N x N; small sets are cheaper, which a guess may ignore.
+            Discretisation::Bem3d { .. } => 1 + n * n * loads * u64::from(n.ilog2()) / 100,
+            // One sort and one transform; the loads cost nothing beside them.
+            Discretisation::Mdr1d { .. } => 1 + n * u64::from(n.ilog2()) / 100,
+        }
+    }
+
+    /// Solves the unit from the smallest load upwards with one prepared contact. A solve that does not converge is recorded with
+    /// its status.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for anything that a model refuses.
+    pub fn solve(&self, stop: Stop<'_>) -> Result<UnitResult> {
+        self.solve_among(&Models::default(), stop)
+    }
+
+    /// The same with what other units have planned.
+    ///
+    /// # Errors
+    /// As [`Unit::solve`].
+    pub fn solve_among(&self, models: &Models, stop: Stop<'_>) -> Result<UnitResult> {
+        let what = || format!("{} at D_f = {:?}", self.discretisation.name(), self.fractal_dimension);
+        let surface = self.surface().map_err(|e| Error::model(what())(e))?;
+        let model = models.of(self, &surface).map_err(|e| Error::model(what())(e))?;
+        self.solve_with(&*model, stop)
+    }
+
+    fn surface(&self) -> contact_model::Result<SelfAffine> {
+        SelfAffine::new(self.fractal_dimension, 1.0, 1.0)
+    }
+
+    fn solve_with(&self, model: &dyn ContactModel, stop: Stop<'_>) -> Result<UnitResult> {
+        let start = Instant::now();
+        let what =
+            || format!("{} at D_f = {:?}, surface {}", model.name(), self.fractal_dimension, self.index);
+        let surface = self.surface().map_err(|e| Error::model(what())(e))?;
+        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+        // A rough line has no area to claim.
+        let area = matches!(self.discretisation, Discretisation::Bem3d { .. });
+        scene.outputs = Outputs { stiffness: true, area, ..Outputs::default() };
+        let solve = || {
+            let mut contact = model.prepare(&scene, self.seed)?;
+            let normalisation = contact.normalisation();
+            let mut samples = Vec::with_capacity(self.forces.len());
+            for &force_bar in self.forces.iter() {
+                let load = Load::Force(normalisation.force(force_bar)?);
+                let state = match contact.solve_until(load, stop) {
+                    Err(contact_model::Error::NotConverged { best }) => *best,
+                    other => other?,
+                };
+                samples.push(Sample::new(force_bar, &state, &normalisation)?);
+            }
+            Ok((normalisation.rms_height()?, samples))
+        };
+        let (rms_height, samples) = solve().map_err(|e| Error::model(what())(e))?;
+        Ok(UnitResult { rms_height, seconds: start.elapsed().as_secs_f64(), samples })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::{
+        Certificate, ContactState, Normalisation, PreparedContact, Result as ModelResult, SolveReport,
+        Source, Status,
+    };
+
+    /// k = sqrt(F); gives up above F = 1.
+    struct Failing;
+    struct FailingContact;
+
+    impl ContactModel for Failing {
+        fn name(&self) -> &'static str {
+            "tired"
+        }
+        fn sources(&self) -> &'static [Source] {
+            &[]
+        }
+        fn prepare(&self, _: &Scene, _: u64) -> ModelResult<Box<dyn PreparedContact>> {
+            Ok(Box::new(FailingContact))
+        }
+    }
+
+    impl PreparedContact for FailingContact {
+        fn normalisation(&self) -> Normalisation {
+            Normalisation { modulus: 1.0, length: 1.0, height: Some(2.0) }
+        }
+        fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelResult<ContactState> {
+            let Load::Force(force) = load else { panic!("units prescribe forces") };
+            let mut report = SolveReport::exact("closed form");
+            report.certificate = Certificate { duality_gap: 0.5, ..Default::default() };
+            let stiffness = Some(force.sqrt());
+            let mut state = ContactState {
+                force,
+                approach: None,
+                stiffness,
+                area: None,
+                conductance: None,
+                patches: None,
+                fields: None,
+                report,
+            };
+            if force > 1.0 {
+                state.report.status = Status::IterationLimit;
+                return Err(contact_model::Error::NotConverged { best: Box::new(state) });
+            }
+            Ok(state)
+        }
+    }
+
+    #[test]
+    fn a_solve_that_gives_up_is_recorded_with_its_status() {
+        let unit = Unit {
+            discretisation: Discretisation::Mdr1d { elements: 8 },
+            fractal_dimension: 2.0,
+            index: 0,
+            seed: 1,
+            forces: [0.1, 1.0].into(),
+        };
+        let result = unit.solve_with(&Failing, &contact_model::never).unwrap();
+        approx::assert_relative_eq!(result.samples[0].force, 0.2);
+        assert!(result.samples[0].converged() && !result.samples[1].converged());
+        assert_eq!(result.samples[1].status, "iteration_limit");
+        assert_eq!(result.samples[1].approach_over_h, None);
+    }
+
+    #[test]
+    fn every_parameter_is_in_the_key() {
+        let unit = Unit {
+            discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-4 },
+            fractal_dimension: 2.0,
+            index: 0,
+            seed: 1,
+            forces: [0.1, 1.0].into(),
+        };
+        let others = [
+            Unit { discretisation: Discretisation::Bem3d { cells: 9, tolerance: 1e-4 }, ..unit.clone() },
+            Unit { discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-5 }, ..unit.clone() },
+            Unit { discretisation: Discretisation::Mdr1d { elements: 8 }, ..unit.clone() },
+            Unit { fractal_dimension: 2.2, ..unit.clone() },
+            Unit { seed: 2, ..unit.clone() },
+            Unit { forces: [0.1].into(), ..unit.clone() },
+        ];
+        for other in &others {
+            assert_ne!(unit.key(), other.key());
+            assert!(other.cost() > 0);
+        }
+    }
+}

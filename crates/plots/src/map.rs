@@ -1,0 +1,240 @@
+//! Maps as grey-scale PNG.
+
+use contact_model::{Cells, Size};
+use runs::files;
+use runs::{Error, Result};
+use std::path::Path;
+
+/// Most pixels along a side of a picture whose cells are oblong; one with square cells has a pixel for each.
+const MOST_PIXELS: f64 = 4096.0;
+
+/// Writes a map of values (row-major, columns along x and rows along y) on a rectangle of the given size as a
+/// PNG, y upwards: the lowest value is white, the highest black, undefined points (NaN) are transparent.
+///
+/// The picture has the aspect ratio of the rectangle. A pixel is a square of the shorter side of a cell, or
+/// larger where the picture would have more than 4096 of them along a side.
+///
+/// # Errors
+/// [`Error::Content`] for another number of values than cells, no cells or a size that is not positive,
+/// [`Error::File`] when it cannot be written.
+pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, values: &[f64]) -> Result<()> {
+    let (cells, size) = (cells.into(), size.into());
+    let Cells { columns, rows } = cells;
+    if values.is_empty() || cells.checked_count() != Some(values.len()) {
+        let message = format!("{} values are no map of {rows} rows x {columns} columns", values.len());
+        return Err(Error::content(path, message));
+    }
+    cells.validate(size).map_err(|e| Error::content(path, e.to_string()))?;
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    // Halves, because the range of finite numbers may overflow.
+    let shade = |v: f64| {
+        let t = if high > low { (0.5 * v - 0.5 * low) / (0.5 * high - 0.5 * low) } else { 0.0 };
+        (255.0 * (1.0 - t.clamp(0.0, 1.0))).round() as u8
+    };
+    let [width, height] = pixels(cells, size);
+    let transparent = values.iter().any(|v| !v.is_finite());
+    let mut bytes = Vec::with_capacity(width * height * if transparent { 2 } else { 1 });
+    for y in (0..height).rev() {
+        let row = &values[y * rows / height * columns..][..columns];
+        for x in 0..width {
+            let value = row[x * columns / width];
+            let defined = value.is_finite();
+            bytes.push(if defined { shade(value) } else { 255 });
+            if transparent {
+                bytes.push(if defined { 255 } else { 0 });
+            }
+        }
+    }
+    let picture = if transparent {
+        encode(path, width, &bytes, png::ColorType::GrayscaleAlpha, 2)?
+    } else {
+        encode_grey(path, width, &bytes)?
+    };
+    files::write_whole(path, &picture)
+}
+
+/// Width and height in pixels of a picture of these cells.
+fn pixels(cells: Cells, size: Size) -> [usize; 2] {
+    let (dx, dy) = (size.x / cells.columns as f64, size.y / cells.rows as f64);
+    if (dx / dy - 1.0).abs() < SQUARE {
+        return [cells.columns, cells.rows];
+    }
+    let pixel = dx.min(dy).max(size.x.max(size.y) / MOST_PIXELS);
+    [size.x, size.y].map(|side| ((side / pixel).round() as usize).max(1))
+}
+
+/// Cells whose sides differ by less than this are square in a picture: a pixel over the most of them.
+const SQUARE: f64 = 1.0 / MOST_PIXELS;
+
+/// Grey values of heights, darker = higher, for optimal contrast: the lowest and highest 0.5 % are white and black.
+///
+/// A map without relief is white. Cost O(n log n).
+pub fn grey(heights: &[f64]) -> Vec<u8> {
+    let mut sorted = heights.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let at = |share: f64| sorted.get((share * (sorted.len().saturating_sub(1)) as f64) as usize).copied();
+    let (low, high) = (at(0.005).unwrap_or(0.0), at(0.995).unwrap_or(0.0));
+    let shade = |h: &f64| {
+        let t = if high > low { ((h - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
+        (255.0 * (1.0 - t)).round() as u8
+    };
+    heights.iter().map(shade).collect()
+}
+
+/// Encodes a grey-scale picture, first row on top.
+///
+/// # Errors
+/// [`Error::Content`] where the encoder refuses.
+pub fn encode_grey(path: &Path, width: usize, pixels: &[u8]) -> Result<Vec<u8>> {
+    encode(path, width, pixels, png::ColorType::Grayscale, 1)
+}
+
+fn encode(
+    path: &Path,
+    width: usize,
+    pixels: &[u8],
+    color: png::ColorType,
+    channels: usize,
+) -> Result<Vec<u8>> {
+    let failed = |e: png::EncodingError| Error::content(path, e.to_string());
+    let height = pixels.len() / channels / width.max(1);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_color(color);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(pixels).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}
+
+/// An 8-bit picture in memory.
+#[derive(Debug)]
+pub struct Image {
+    /// In pixels.
+    pub width: usize,
+    channels: usize,
+    color: png::ColorType,
+    pixels: Vec<u8>,
+}
+
+impl Image {
+    /// Decodes an 8-bit PNG.
+    ///
+    /// # Errors
+    /// [`Error::Content`] where it is no such picture.
+    pub fn decode(path: &Path, bytes: &[u8]) -> Result<Self> {
+        let failed = |e: png::DecodingError| Error::content(path, e.to_string());
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().map_err(failed)?;
+        let size = reader.output_buffer_size().ok_or_else(|| Error::content(path, "picture too large"))?;
+        let mut pixels = vec![0; size];
+        let info = reader.next_frame(&mut pixels).map_err(failed)?;
+        pixels.truncate(info.buffer_size());
+        let (width, color) = (info.width as usize, info.color_type);
+        Ok(Self { width, channels: color.samples(), color, pixels })
+    }
+
+    /// Paints a square grey map of `side` x `side` values (first row on top) over the pixel square at (x, y), nearest value.
+    pub fn paint(&mut self, x: usize, y: usize, size: usize, grey: &[u8], side: usize) {
+        for row in 0..size {
+            for column in 0..size {
+                let value = grey[(row * side / size) * side + column * side / size];
+                let at = ((y + row) * self.width + x + column) * self.channels;
+                if let Some(pixel) = self.pixels.get_mut(at..at + self.channels) {
+                    pixel.fill(255);
+                    let colors = if self.channels > 2 { 3 } else { 1 };
+                    pixel[..colors].fill(value);
+                }
+            }
+        }
+    }
+
+    /// The bytes of a PNG; `path` is for errors.
+    ///
+    /// # Errors
+    /// [`Error::Content`] where the encoder refuses.
+    pub fn encode(&self, path: &Path) -> Result<Vec<u8>> {
+        encode(path, self.width, &self.pixels, self.color, self.channels)
+    }
+}
+
+/// Base64 (RFC 4648), for pictures inside an SVG.
+pub fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let word = chunk.iter().fold(0_u32, |w, b| (w << 8) | u32::from(*b)) << (8 * (3 - chunk.len()));
+        for i in 0..4 {
+            if i <= chunk.len() {
+                text.push(char::from(LETTERS[(word >> (18 - 6 * i)) as usize & 63]));
+            } else {
+                text.push('=');
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_of_the_rfc() {
+        for (plain, coded) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
+
+    #[test]
+    fn higher_is_darker() {
+        let g = grey(&[0.0, 1.0, 2.0]);
+        assert!(g[0] > g[1] && g[1] >= g[2]);
+        assert_eq!(grey(&[1.0, 1.0]), [255, 255]);
+        assert_eq!(grey(&[]), [0_u8; 0]);
+    }
+
+    #[test]
+    fn pictures_keep_the_shape_of_the_rectangle() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.png");
+        let image = |cells: [usize; 2], size: [f64; 2], values: &[f64]| {
+            write_grey(&path, cells, size, values).unwrap();
+            let image = Image::decode(&path, &std::fs::read(&path).unwrap()).unwrap();
+            (image.width, image.pixels.len() / image.channels / image.width, image.pixels)
+        };
+        // Row 0 is at y = 0, at the bottom.
+        assert_eq!(image([2, 1], [2.0, 1.0], &[0.0, 1.0]), (2, 1, vec![255, 0]));
+        assert_eq!(image([1, 2], [1.0, 2.0], &[0.0, 1.0]), (1, 2, vec![0, 255]));
+        // Cells of 2 x 1: four pixels across, two up.
+        assert_eq!(
+            image([2, 2], [4.0, 2.0], &[0.0, 1.0, 1.0, 0.0]),
+            (4, 2, vec![0, 0, 255, 255, 255, 255, 0, 0])
+        );
+        // An undefined point is transparent.
+        assert_eq!(image([2, 1], [2.0, 1.0], &[f64::NAN, 1.0]), (2, 1, vec![255, 0, 255, 255]));
+        assert_eq!(image([2, 1], [2.0, 1.0], &[f64::NAN; 2]).2, [255, 0, 255, 0]);
+        // Long rectangles do not become large files.
+        let (width, height, _) = image([1, 2], [5e3, 1.0], &[0.0, 1.0]);
+        assert_eq!((width, height), (4096, 1));
+        assert!(
+            write_grey(&path, [2, 2], 1.0, &[0.0; 3]).is_err() && write_grey(&path, 0, 1.0, &[]).is_err()
+        );
+        assert!(write_grey(&path, [1, 2], [1.0, 1e9], &[0.0; 2]).is_err());
+    }
+
+    #[test]
+    fn pictures_come_back() {
+        let path = Path::new("p.png");
+        let bytes = encode_grey(path, 2, &[0, 50, 100, 150]).unwrap();
+        let mut image = Image::decode(path, &bytes).unwrap();
+        image.paint(1, 0, 1, &[7], 1);
+        let again = Image::decode(path, &image.encode(path).unwrap()).unwrap();
+        assert_eq!((again.width, again.pixels), (2, vec![0, 7, 100, 150]));
+        assert!(Image::decode(path, b"no picture").is_err());
+    }
+}

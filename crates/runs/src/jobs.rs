@@ -1,0 +1,160 @@
+//! Jobs in parallel, results in their places; finished ones kept in a result store.
+
+use crate::error::Error;
+use crate::progress::Progress;
+use crate::store::Store;
+use contact_model::Stop;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// Runs the jobs of `order` on some threads, those that stand first in it first, and gives their results by number; `None` where none was begun.
+///
+/// After a failure, or when `stop` says so, no further job begins, and those in flight are told by their own closure.
+///
+/// One loop per thread rather than a parallel iterator: a thread that waits inside a job then never begins another one (whose time
+/// would contain the first), and those without a job help the others.
+///
+/// # Errors
+/// [`Error::Parameter`] where the system does not grant the threads.
+pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
+    threads: usize,
+    order: &[usize],
+    stop: &(dyn Fn() -> bool + Sync),
+    job: impl Fn(usize, Stop<'_>) -> Result<T, E> + Sync,
+) -> Result<Vec<Option<Result<T, E>>>, Error> {
+    let results: Vec<OnceLock<Result<T, E>>> = order.iter().map(|_| OnceLock::new()).collect();
+    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let halt = || failed.load(Ordering::Relaxed) || stop();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.max(1))
+        .build()
+        .map_err(|e| Error::parameter("threads", threads, format!("threads that the system grants ({e})")))?;
+    pool.broadcast(|_| {
+        while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if halt() {
+                return;
+            }
+            let result = job(i, &halt);
+            failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            // Each number is taken once.
+            let _ = results[i].set(result);
+        }
+    });
+    Ok(results.into_iter().map(OnceLock::into_inner).collect())
+}
+
+/// The numbers of jobs, the most expensive first; equal costs keep their order, so that one of each kind comes early.
+pub fn largest_first<C: Ord>(count: usize, cost: impl Fn(usize) -> C) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(cost(i)));
+    order
+}
+
+/// All results, or the error that started it.
+///
+/// # Errors
+/// The first error that is not the stop of the others.
+pub fn collect<T>(done: Vec<Option<Result<T, Error>>>) -> Result<Vec<T>, Error> {
+    let mut results = Vec::with_capacity(done.len());
+    let mut stopped = None;
+    for result in done.into_iter().flatten() {
+        match result {
+            Ok(result) => results.push(result),
+            // Others that were in flight were told to stop: their reason is not the reason.
+            Err(e @ Error::Model { source: contact_model::Error::Stopped { .. }, .. }) => {
+                stopped.get_or_insert(e);
+            }
+            Err(e) => return Err(e),
+        }
+    }
+    stopped.map_or(Ok(results), Err)
+}
+
+/// One independent piece of work, done on one thread and kept in a result store.
+pub trait Job: Sync {
+    /// What it gives.
+    type Output: Send + Sync;
+    /// Why it fails.
+    type Error: From<Error> + Send + Sync;
+
+    /// Everything that decides the numbers, as text. Two jobs with the same key have the same output.
+    fn key(&self) -> String;
+
+    /// Relative cost, an estimate that orders the work and moves the progress bar.
+    fn cost(&self) -> u64;
+
+    /// Does the work; polls `stop` between iterations.
+    ///
+    /// # Errors
+    /// Whatever ends the whole command.
+    fn solve(&self, stop: Stop<'_>) -> Result<Self::Output, Self::Error>;
+
+    /// The output as lines of text that [`Job::decode`] reads back bit for bit; `None` for what is not worth storing or not complete.
+    fn encode(&self, output: &Self::Output) -> Option<String>;
+
+    /// Reads an output back; `None` where the text is no output of this job.
+    fn decode(&self, text: &str) -> Option<Self::Output>;
+}
+
+/// Does all jobs that the store does not hold, the most expensive first, and gives the results in the order of `jobs`; `None` where a
+/// failure or `stop` came first. The results do not depend on `threads`.
+///
+/// Each finished job is stored at once: an interruption loses those in flight.
+///
+/// # Errors
+/// [`Error::Parameter`] where the system does not grant the threads; errors of single jobs are in their places.
+#[allow(clippy::type_complexity)] // A list of what became of each job.
+pub fn run_stored<J: Job>(
+    what: &str,
+    jobs: &[J],
+    store: &Store,
+    threads: usize,
+    progress: &dyn Progress,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<Option<Result<J::Output, J::Error>>>, Error> {
+    progress.begin(what, jobs.iter().map(Job::cost).sum());
+    let order = largest_first(jobs.len(), |i| jobs[i].cost());
+    let done = run_jobs(threads, &order, stop, |i, stop| {
+        let (job, key) = (&jobs[i], jobs[i].key());
+        if let Some(stored) = store.load(&key).and_then(|text| job.decode(&text)) {
+            progress.advance(job.cost(), true);
+            return Ok(stored);
+        }
+        let output = job.solve(stop)?;
+        if let Some(text) = job.encode(&output) {
+            store.save(&key, &text)?;
+        }
+        progress.advance(job.cost(), false);
+        Ok(output)
+    })?;
+    progress.end();
+    Ok(done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::never;
+
+    #[test]
+    fn results_are_in_their_places_for_any_number_of_threads() {
+        let order = largest_first(7, |i| i % 3);
+        assert_eq!(order, [2, 5, 1, 4, 0, 3, 6]);
+        for threads in [0, 1, 2, 4] {
+            let squares = run_jobs::<_, ()>(threads, &order, &never, |i, _| Ok(i * i)).unwrap();
+            assert_eq!(squares.into_iter().flatten().flatten().collect::<Vec<_>>(), [0, 1, 4, 9, 16, 25, 36]);
+        }
+    }
+
+    #[test]
+    fn a_failure_and_a_stop_begin_nothing_more() {
+        let order = largest_first(3, |_| 0);
+        let failing = run_jobs(1, &order, &never, |i, halt| {
+            assert!(!halt());
+            if i == 1 { Err("no") } else { Ok(i) }
+        });
+        assert_eq!(failing.unwrap(), [Some(Ok(0)), Some(Err("no")), None]);
+        let stopped = run_jobs::<usize, ()>(1, &order, &|| true, |i, _| Ok(i)).unwrap();
+        assert_eq!(stopped, [None, None, None]);
+    }
+}

@@ -1,0 +1,42 @@
+//! Jobs, result store, CSV, manifest and progress: what every long command shares.
+//!
+//! # Jobs
+//!
+//! A [`Job`] is one independent piece of work with a key (everything that decides its numbers) and a cost. [`run_stored`] does a list
+//! of them, one per thread, the most expensive first. Each finished job is kept in the [`Store`] at once, whole or not at all, and
+//! checked on reading: a damaged or foreign result is computed again. Results have the same bytes for any number of threads.
+//!
+//! # Files
+//!
+//! * [`files`]: written whole or not at all.
+//! * CSV ([`write_csv`], [`CsvFile`]): `#` lines with title, columns and units, sources, parameters, version and the command that
+//!   makes the same bytes; shortest decimals that read back to the same bits; absent is empty, never NaN. No times and no machine:
+//!   those are in `manifest.json` ([`machine`]).
+//! * NPY maps for `bench` ([`read_map`], [`write_npy`]).
+//!
+//! # What it does not do
+//!
+//! No mechanics, no pictures, no argument parsing.
+
+#![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
+
+mod csv_file;
+mod error;
+pub mod files;
+mod jobs;
+mod manifest;
+mod meters;
+mod npy;
+mod progress;
+mod reporter;
+mod store;
+
+pub use csv_file::{CsvFile, Header, number, write_csv};
+pub use error::{Error, Result};
+pub use jobs::{Job, collect, largest_first, run_jobs, run_stored};
+pub use manifest::{file_names, machine, write_manifest};
+pub use meters::{cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
+pub use npy::{read_map, unit_area, write_npy};
+pub use progress::{Progress, Silent};
+pub use reporter::Reporter;
+pub use store::{Store, fnv1a_128};

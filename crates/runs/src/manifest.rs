@@ -1,0 +1,32 @@
+//! `manifest.json`: how and where the files of a directory were made.
+
+use crate::error::{Error, Result};
+use crate::files;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Writes `manifest.json` into a directory, whole; gives its path.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be written.
+pub fn write_manifest(directory: &Path, content: &Value) -> Result<PathBuf> {
+    let path = directory.join("manifest.json");
+    let text = serde_json::to_string_pretty(content).map_err(|e| Error::content(&path, e.to_string()))?;
+    files::write_whole(&path, (text + "\n").as_bytes())?;
+    Ok(path)
+}
+
+/// The names of files without their directories.
+pub fn file_names(files: &[PathBuf]) -> Vec<String> {
+    files.iter().filter_map(|f| Some(f.file_name()?.to_string_lossy().into_owned())).collect()
+}
+
+/// What the computer is, as far as the system tells.
+pub fn machine() -> Value {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cpu = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
+        let line = text.lines().find(|l| l.starts_with("model name"))?;
+        Some(line.split_once(':')?.1.trim().to_owned())
+    });
+    json!({ "os": std::env::consts::OS, "architecture": std::env::consts::ARCH, "cores": cores, "cpu": cpu })
+}

@@ -1,0 +1,115 @@
+//! The result store: `DIR/.units/<hash>.csv`, one file per job, written whole and checked on reading.
+
+use crate::error::Result;
+use crate::files;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// First line of every stored result.
+const TITLE: &str = "# fractal-contact unit: one surface under all its loads";
+
+/// Where the results of finished jobs are kept, each under a key that names everything that decides its numbers.
+#[derive(Debug, Clone)]
+pub struct Store {
+    directory: PathBuf,
+    fresh: bool,
+}
+
+impl Store {
+    /// Opens (and creates) `out/.units` and removes what interrupted runs left half-written. With `fresh` nothing stored is read.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when the directory cannot be made or read.
+    pub fn open(out: &Path, fresh: bool) -> Result<Self> {
+        let directory = out.join(".units");
+        files::create_directory(&directory)?;
+        files::clean(&directory)?;
+        Ok(Self { directory, fresh })
+    }
+
+    fn path(&self, key: &str) -> PathBuf {
+        self.directory.join(format!("{:032x}.csv", fnv1a_128(key.as_bytes())))
+    }
+
+    /// The text stored under this key, if the file is there, whole and of the same key: anything else is as good as absent.
+    pub fn load(&self, key: &str) -> Option<String> {
+        if self.fresh {
+            return None;
+        }
+        let text = fs::read_to_string(self.path(key)).ok()?;
+        let (body, digest) = text.split_at(text.rfind("# whole ")?);
+        let digest = u128::from_str_radix(digest.strip_prefix("# whole ")?.trim_end(), 16).ok()?;
+        let whole = digest == fnv1a_128(body.as_bytes());
+        body.strip_prefix(&head(key)).filter(|_| whole).map(str::to_owned)
+    }
+
+    /// Stores a text of whole lines.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when it cannot be written.
+    pub fn save(&self, key: &str, text: &str) -> Result<()> {
+        let body = head(key) + text;
+        let digest = fnv1a_128(body.as_bytes());
+        files::write_whole(&self.path(key), format!("{body}# whole {digest:032x}\n").as_bytes())
+    }
+}
+
+fn head(key: &str) -> String {
+    let key: String = key.lines().flat_map(|line| ["# ", line, "\n"]).collect();
+    format!("{TITLE}\n{key}")
+}
+
+/// FNV-1a of 128 bits (Fowler, Noll, Vo; offset basis and prime of draft-eastlake-fnv): the same for ever, unlike the hasher of
+/// the standard library. It names files; on reading the whole key is compared.
+///
+/// ```
+/// // The published test vector of the letter a.
+/// assert_eq!(runs::fnv1a_128(b"a"), 0xd228_cb69_6f1a_8caf_7891_2b70_4e4a_8964);
+/// ```
+pub fn fnv1a_128(bytes: &[u8]) -> u128 {
+    const BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+    const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
+    bytes.iter().fold(BASIS, |hash, &byte| (hash ^ u128::from(byte)).wrapping_mul(PRIME))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KEY: &str = "seed 1\nload 2\n";
+    const TEXT: &str = "a,b\n1,0.25\n";
+
+    #[test]
+    fn results_come_back_byte_for_byte() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = Store::open(dir.path(), false).unwrap();
+        assert_eq!(store.load(KEY), None);
+        store.save(KEY, TEXT).unwrap();
+        assert_eq!(store.load(KEY).as_deref(), Some(TEXT));
+        assert_eq!(store.load("seed 2\nload 2\n"), None);
+        assert_eq!(Store::open(dir.path(), true).unwrap().load(KEY), None);
+    }
+
+    #[test]
+    fn damaged_and_foreign_results_are_as_good_as_absent() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = Store::open(dir.path(), false).unwrap();
+        let path = store.path(KEY);
+        store.save(KEY, TEXT).unwrap();
+        let whole = fs::read_to_string(&path).unwrap();
+        for cut in 0..whole.len() - 1 {
+            fs::write(&path, &whole[..cut]).unwrap();
+            assert_eq!(store.load(KEY), None, "{cut} bytes");
+        }
+        fs::write(&path, whole.replace("0.25", "0.26")).unwrap();
+        assert_eq!(store.load(KEY), None);
+        fs::write(&path, [0xff, 0xfe]).unwrap();
+        assert_eq!(store.load(KEY), None);
+        // Whole, but of another key, under the name of this one.
+        store.save("seed 2\n", TEXT).unwrap();
+        fs::copy(store.path("seed 2\n"), &path).unwrap();
+        assert_eq!(store.load(KEY), None);
+        fs::write(&path, whole).unwrap();
+        assert!(store.load(KEY).is_some());
+    }
+}
