@@ -30,7 +30,7 @@ fn check(map: &HeightMap, cells: &[usize], load: Load) {
     for method in [Method::Auto, Method::Iterative] {
         let model = Bem3d { tolerance: TOLERANCE, method, ..Bem3d::default() };
         let state = model.prepare(&scene, 0).unwrap().solve(load).unwrap();
-        let pressure = state.fields.unwrap().pressure.unwrap();
+        let pressure = state.fields.unwrap().pressure.unwrap().into_values();
         let found: Vec<usize> = (0..pressure.len()).filter(|&i| pressure[i] > 0.0).collect();
         assert_eq!(found, one.contact, "{method:?} {load:?} {map:?}");
         // The certificate bounds gaps in units of the rms height; a gap times a cell's own stiffness (1.7 at most) is a force.

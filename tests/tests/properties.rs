@@ -66,7 +66,10 @@ fn any_load(map: &HeightMap, exponent: f64, is_force: bool) -> Load {
 fn fields(map: &HeightMap, state: &ContactState) -> (Vec<f64>, Vec<f64>) {
     let fields = state.fields.clone().unwrap();
     let area = map.dx() * map.dx();
-    (fields.pressure.unwrap().iter().map(|p| p * area).collect(), fields.displacement.unwrap())
+    (
+        fields.pressure.unwrap().values().iter().map(|p| p * area).collect(),
+        fields.displacement.unwrap().into_values(),
+    )
 }
 
 fn contact(map: &HeightMap, state: &ContactState) -> Vec<usize> {
@@ -109,7 +112,7 @@ proptest! {
         let (here, turned) = (solve(&drawn, load), turn(&drawn));
         let there = solve(&turned, load);
         assert_same(&drawn, &here, &there);
-        let field = |of: &ContactState| HeightMap::new(drawn.columns(), 1.0, of.fields.clone().unwrap().pressure.unwrap()).unwrap();
+        let field = |of: &ContactState| HeightMap::new(drawn.columns(), 1.0, of.pressure().unwrap().values().to_vec()).unwrap();
         let (expected, found) = (turn(&field(&here)), field(&there));
         // A gap left by the certificate, times the stiffness of a cell over its area.
         let slack = SAME * (unit(&drawn) / drawn.dx() * 2.0 + found.highest());

@@ -110,7 +110,7 @@ fn patches_are_the_area_in_pieces() {
     assert!(patches.count() > 1 && patches.count() < state.report.contact_cells.unwrap());
     // Beside the pressure map.
     let pressure = state.fields.unwrap().pressure.unwrap();
-    let index: Vec<u32> = (0..).zip(&pressure).filter(|(_, p)| **p > 0.0).map(|(i, _)| i).collect();
+    let index: Vec<u32> = (0..).zip(pressure.values()).filter(|(_, p)| **p > 0.0).map(|(i, _)| i).collect();
     let sizes = surface_gen::patches(CELLS, &index, Boundary::Free);
     assert_eq!(sizes.len(), patches.count());
     let cell = sum / index.len() as f64;

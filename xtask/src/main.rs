@@ -210,7 +210,7 @@ const PRINTED: [(&str, usize); 16] = [
 /// [`PRINTED`] with the mean gap in the place of the approach where the square repeats itself.
 fn printed(row: &BenchRow) -> [(&'static str, usize); PRINTED.len()] {
     let replace = |(name, width)| match name {
-        "approach_over_h" if row.mean_gap.is_some() => ("mean_gap_over_h", width),
+        "approach_over_h" if row.state.mean_gap.is_some() => ("mean_gap_over_h", width),
         _ => (name, width),
     };
     PRINTED.map(replace)

@@ -272,26 +272,19 @@ impl History for Prepared {
                 Tangential::Displacement(u) => (curve.now.t * sphere.limit, u),
                 other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
             };
-            TangentialState {
-                force,
-                displacement,
-                stick_radius: Some(curve.stick() * sphere.contact_radius),
-                dissipated: curve.dissipated * sphere.limit * sphere.reach,
-            }
+            TangentialState::new(force, displacement)
+                .with_stick_radius(curve.stick() * sphere.contact_radius)
+                .with_dissipated(curve.dissipated * sphere.limit * sphere.reach)
         } else {
             if step.tangential != Tangential::Force(0.0) && step.tangential != Tangential::Displacement(0.0) {
                 let what = "a tangential load without a normal one";
                 return Err(Error::unsupported(NAME, what));
             }
-            TangentialState { force: 0.0, displacement: 0.0, stick_radius: Some(0.0), dissipated: 0.0 }
+            TangentialState::new(0.0, 0.0).with_stick_radius(0.0).with_dissipated(0.0)
         };
         self.at = At { time: step.time, pressed: Some((state.clone(), sphere)), curve };
-        Ok(HistoryState {
-            time: step.time,
-            normal: state,
-            contact_radius: Some(sphere.map_or(0.0, |sphere| sphere.contact_radius)),
-            tangential: Some(tangential),
-        })
+        let radius = sphere.map_or(0.0, |sphere| sphere.contact_radius);
+        Ok(HistoryState::new(step.time, state).with_contact_radius(radius).with_tangential(tangential))
     }
 
     fn restart(&mut self) {

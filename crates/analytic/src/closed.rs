@@ -80,17 +80,11 @@ impl<L: Law> PreparedContact for Closed<L> {
             point.area.filter(|_| self.outputs.area).map(|area| nondimensional.area(area)).transpose()?;
         let mut report = SolveReport::exact(self.strategy);
         report.certificate.stiffness_error = stiffness.map(|_| self.stiffness_error);
-        ContactState {
-            force,
-            approach: Some(approach),
-            stiffness,
-            area,
-            conductance: None,
-            patches: None,
-            fields: None,
-            report,
-        }
-        .completed(&self.outputs, self.normalisation.modulus)
+        ContactState::new(force, report)
+            .with_approach(approach)
+            .with_stiffness(stiffness)
+            .with_area(area)
+            .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 

@@ -334,17 +334,11 @@ impl PreparedContact for Prepared {
         let area = self.outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
         let mut report = SolveReport::exact("closed form (JKR)");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
-        ContactState {
-            force,
-            approach: Some(approach),
-            stiffness,
-            area,
-            conductance: None,
-            patches: None,
-            fields: None,
-            report,
-        }
-        .completed(&self.outputs, self.normalisation.modulus)
+        ContactState::new(force, report)
+            .with_approach(approach)
+            .with_stiffness(stiffness)
+            .with_area(area)
+            .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 

@@ -86,25 +86,17 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
             .transpose()?;
         let mut report = SolveReport::exact(self.strategy);
         report.certificate.stiffness_error = stiffness.map(|_| self.law.stiffness_error());
-        ContactState {
-            force,
-            approach: None,
-            stiffness,
-            area,
-            conductance: None,
-            patches: None,
-            fields: None,
-            report,
-        }
-        .completed(&self.outputs, self.normalisation.modulus)
-    }
-
-    fn mean_gap(&mut self, load: Load) -> Result<f64> {
-        let pressure = self.press(load)?;
-        match load {
-            Load::MeanGap(gap) => Ok(gap),
-            _ => self.nondimensional.approach(self.law.gap(pressure)?),
-        }
+        let gap = |p: f64| self.law.gap(p).and_then(|gap| nondimensional.approach(gap));
+        let mean_gap = match load {
+            Load::MeanGap(gap) => Some(gap),
+            // Some theories have none without load.
+            _ => gap(pressure).ok(),
+        };
+        ContactState::new(force, report)
+            .with_mean_gap(mean_gap)
+            .with_stiffness(stiffness)
+            .with_area(area)
+            .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 

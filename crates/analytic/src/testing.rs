@@ -67,7 +67,7 @@ pub(crate) fn check_periodic(model: &dyn ContactModel, scene: &Scene, pressure: 
     let mut contact = model.prepare(scene, 0).unwrap();
     let here = contact.solve(Load::Force(pressure)).unwrap();
     assert!(here.approach.is_none());
-    let mut gap = |p: f64| contact.mean_gap(Load::Force(p)).unwrap();
+    let mut gap = |p: f64| contact.solve(Load::Force(p)).unwrap().mean_gap.unwrap();
     // Central difference: its error is e^2 times third derivatives in ln p, a few thousand at most.
     let e = 1e-5;
     let (middle, wide, narrow) = (gap(pressure), gap(pressure * (1.0 - e)), gap(pressure * (1.0 + e)));

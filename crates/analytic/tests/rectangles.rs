@@ -105,7 +105,9 @@ fn a_wave_counts_along_x() {
     };
     same(&Westergaard, scene, Load::Force(0.1));
     same(&Westergaard, scene, Load::MeanGap(0.003));
-    let gap = |size| Westergaard.prepare(&scene(size), 0).unwrap().mean_gap(Load::Force(0.1)).unwrap();
+    let gap = |size| {
+        Westergaard.prepare(&scene(size), 0).unwrap().solve(Load::Force(0.1)).unwrap().mean_gap.unwrap()
+    };
     assert_relative_eq!(gap(SIZES[0]), gap(SIZES[1]), max_relative = ROUNDING);
     // Eight and a half waves along x, whole ones along y.
     let e = Westergaard.prepare(&scene(Size { x: 4.25, y: 1.0 }), 0).map(|_| ()).unwrap_err();

@@ -73,6 +73,25 @@ impl Error {
     pub fn unsupported(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
         Self::Unsupported { model, what: what.into() }
     }
+
+    /// The state reached where a solve did not converge, which has its status and certificate; any other error stays one.
+    ///
+    /// # Errors
+    /// The error itself.
+    ///
+    /// ```
+    /// use contact_model::{ContactState, Error, SolveReport};
+    /// let best = Box::new(ContactState::new(1.0, SolveReport::exact("test")));
+    /// let result = Err(Error::NotConverged { best }).or_else(Error::into_best);
+    /// assert_eq!(result.unwrap().force, 1.0);
+    /// assert!(Error::domain("force", -1.0, "a number >= 0").into_best().is_err());
+    /// ```
+    pub fn into_best(self) -> Result<ContactState> {
+        match self {
+            Self::NotConverged { best } => Ok(*best),
+            other => Err(other),
+        }
+    }
 }
 
 impl fmt::Display for Error {

@@ -1,12 +1,121 @@
 //! Fields on the cells of a map.
 
-/// Fields on the cells of the map, row-major, `columns * rows` values each.
+use crate::error::{Error, Result};
+use crate::grid::{Cells, Size};
+
+/// One number per cell of a rectangle, row-major (`values[iy * columns + ix]`: rows along y, as NPY arrays `[row, column]`).
+///
+/// ```
+/// use contact_model::Field;
+/// let field = Field::new([3, 2], [6.0, 1.0], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0])?;
+/// assert_eq!((field.columns(), field.rows(), field.dx(), field.dy()), (3, 2, 2.0, 0.5));
+/// assert_eq!((field.at(2, 1), field.row(1)), (5.0, &[3.0, 4.0, 5.0][..]));
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    cells: Cells,
+    size: Size,
+    values: Vec<f64>,
+}
+
+impl Field {
+    /// Takes `columns * rows` values on a rectangle of the given size.
+    ///
+    /// # Errors
+    /// Those of [`Cells::validate`]; [`Error::Shape`] for another number of values.
+    pub fn new(cells: impl Into<Cells>, size: impl Into<Size>, values: Vec<f64>) -> Result<Self> {
+        let (cells, size) = (cells.into(), size.into());
+        cells.validate(size)?;
+        if cells.checked_count() != Some(values.len()) {
+            let expected = format!("{} rows x {} columns", cells.rows, cells.columns).into();
+            return Err(Error::Shape { name: "values".into(), found: values.len(), expected });
+        }
+        Ok(Self { cells, size, values })
+    }
+
+    /// Numbers of columns and rows.
+    pub fn cells(&self) -> Cells {
+        self.cells
+    }
+
+    /// Number of columns, along x.
+    pub fn columns(&self) -> usize {
+        self.cells.columns
+    }
+
+    /// Number of rows, along y.
+    pub fn rows(&self) -> usize {
+        self.cells.rows
+    }
+
+    /// Sides of the rectangle.
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// Side of one cell along x.
+    pub fn dx(&self) -> f64 {
+        self.size.x / self.cells.columns as f64
+    }
+
+    /// Side of one cell along y.
+    pub fn dy(&self) -> f64 {
+        self.size.y / self.cells.rows as f64
+    }
+
+    /// The values, row-major.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The values, row-major, to be changed.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    /// The values, row-major, without a copy.
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
+    }
+
+    /// The value of cell (ix, iy); panics outside the map, as indexing does.
+    pub fn at(&self, ix: usize, iy: usize) -> f64 {
+        self.row(iy)[ix]
+    }
+
+    /// One row; panics outside the map, as indexing does.
+    pub fn row(&self, iy: usize) -> &[f64] {
+        &self.values[iy * self.cells.columns..][..self.cells.columns]
+    }
+
+    /// Integral over the rectangle, `sum values dx dy`: of a pressure the force.
+    pub fn integral(&self) -> f64 {
+        self.values.iter().sum::<f64>() * self.dx() * self.dy()
+    }
+}
+
+/// Fields of a state on the cells of its map.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Fields {
     /// Pressure p >= 0.
-    pub pressure: Option<Vec<f64>>,
+    pub pressure: Option<Field>,
     /// Displacement u of the elastic surface under each cell centre.
-    pub displacement: Option<Vec<f64>>,
+    pub displacement: Option<Field>,
     /// Gap g = u + z - d; infinite at undefined points.
-    pub gap: Option<Vec<f64>>,
+    pub gap: Option<Field>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_number_of_values_is_named() {
+        let e = Field::new([3, 2], 1.0, vec![0.0; 5]).unwrap_err();
+        assert_eq!(e.to_string(), "values has 5 values: expected 2 rows x 3 columns");
+        assert!(Field::new(0, 1.0, vec![]).is_err());
+        approx::assert_relative_eq!(Field::new(2, [3.0, 1.0], vec![2.0; 4]).unwrap().integral(), 6.0);
+    }
 }

@@ -67,6 +67,7 @@ impl Step {
 
 /// The state at the end of a step.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct HistoryState {
     /// Its time.
     pub time: f64,
@@ -78,8 +79,28 @@ pub struct HistoryState {
     pub tangential: Option<TangentialState>,
 }
 
+impl HistoryState {
+    /// A state without a radius and a tangential part yet.
+    pub fn new(time: f64, normal: ContactState) -> Self {
+        Self { time, normal, contact_radius: None, tangential: None }
+    }
+
+    /// With a contact radius.
+    #[must_use]
+    pub fn with_contact_radius(self, radius: impl Into<Option<f64>>) -> Self {
+        Self { contact_radius: radius.into(), ..self }
+    }
+
+    /// With a tangential part.
+    #[must_use]
+    pub fn with_tangential(self, tangential: impl Into<Option<TangentialState>>) -> Self {
+        Self { tangential: tangential.into(), ..self }
+    }
+}
+
 /// The tangential part of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct TangentialState {
     /// Tangential force.
     pub force: f64,
@@ -90,6 +111,25 @@ pub struct TangentialState {
     pub stick_radius: Option<f64>,
     /// Energy that friction has dissipated since the first step, >= 0.
     pub dissipated: f64,
+}
+
+impl TangentialState {
+    /// A state in which nothing slipped yet and no stick radius is known.
+    pub fn new(force: f64, displacement: f64) -> Self {
+        Self { force, displacement, stick_radius: None, dissipated: 0.0 }
+    }
+
+    /// With a stick radius.
+    #[must_use]
+    pub fn with_stick_radius(self, radius: impl Into<Option<f64>>) -> Self {
+        Self { stick_radius: radius.into(), ..self }
+    }
+
+    /// With the energy that friction has dissipated since the first step.
+    #[must_use]
+    pub fn with_dissipated(self, dissipated: f64) -> Self {
+        Self { dissipated, ..self }
+    }
 }
 
 /// A way to answer what happens along a path: plan once. Which effect it is about is in the scene.

@@ -46,7 +46,7 @@ mod state;
 mod work;
 
 pub use error::{Error, Result};
-pub use fields::Fields;
+pub use fields::{Field, Fields};
 pub use grid::{Cells, HeightMap, Line, Size};
 pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use load::Load;

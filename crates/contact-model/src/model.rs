@@ -78,15 +78,39 @@ pub trait PreparedContact: Send {
         self.solve_until(load, &never)
     }
 
-    /// Mean gap over the square in the state at a load, a length; for periodic boundaries, where a state has no approach.
+    /// Solves for loads in their order and gives each result to the observer with its number, as soon as it is there.
     ///
-    /// Computed only when asked for. The contact of a flat with heights h has the mean gap `mean(u + z) - d` of its gap field.
+    /// A load that does not converge or that the model refuses is an error that the observer gets; the sweep goes on unless the observer
+    /// returns an error, which ends it. [`Error::into_best`] takes the state of a load that did not converge.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] unless the contact is periodic and its model claims a mean gap; otherwise as
-    /// [`PreparedContact::solve_until`].
-    fn mean_gap(&mut self, load: Load) -> Result<f64> {
-        let _ = load;
-        Err(Error::unsupported("of this contact", "a mean gap"))
+    /// [`Error::Stopped`] where `stop` says so (the observer does not get it), or the error of the observer.
+    ///
+    /// ```
+    /// use contact_model::{Load, PreparedContact, Result, never};
+    /// /// Stiffness under each force; `None` where the model refuses it.
+    /// fn stiffnesses(contact: &mut dyn PreparedContact, forces: &[f64]) -> Result<Vec<Option<f64>>> {
+    ///     let loads: Vec<Load> = forces.iter().map(|&f| Load::Force(f)).collect();
+    ///     let mut found = Vec::new();
+    ///     contact.sweep(&loads, &never, &mut |_, state| {
+    ///         found.push(state.ok().and_then(|s| s.stiffness));
+    ///         Ok(())
+    ///     })?;
+    ///     Ok(found)
+    /// }
+    /// ```
+    fn sweep(
+        &mut self,
+        loads: &[Load],
+        stop: Stop<'_>,
+        observer: &mut dyn FnMut(usize, Result<ContactState>) -> Result<()>,
+    ) -> Result<()> {
+        for (i, &load) in loads.iter().enumerate() {
+            match self.solve_until(load, stop) {
+                Err(stopped @ Error::Stopped { .. }) => return Err(stopped),
+                result => observer(i, result)?,
+            }
+        }
+        Ok(())
     }
 }

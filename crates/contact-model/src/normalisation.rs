@@ -1,6 +1,7 @@
 //! The only place that divides by `E* h L`.
 
 use crate::error::{Error, Result};
+use crate::load::Load;
 
 /// The paper's saturation stiffness, `k_s = 1.1419 E* L` (Sec. II), in which `k_bar` is counted.
 ///
@@ -34,6 +35,14 @@ impl Normalisation {
     /// As [`Normalisation::force_bar`].
     pub fn force(&self, force_bar: f64) -> Result<f64> {
         Ok(force_bar * self.force_unit()?)
+    }
+
+    /// The forces of a list of `F_bar`, as [`crate::PreparedContact::sweep`] takes them.
+    ///
+    /// # Errors
+    /// As [`Normalisation::force_bar`].
+    pub fn loads(&self, force_bar: &[f64]) -> Result<Vec<Load>> {
+        force_bar.iter().map(|&f| self.force(f).map(Load::Force)).collect()
     }
 
     /// `k_bar = k / (1.1419 E* L)` (Eq. 8), dimensionless.

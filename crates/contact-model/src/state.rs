@@ -1,17 +1,29 @@
 //! What comes back from a solve, and its evidence.
 
-use crate::fields::Fields;
+use crate::fields::{Field, Fields};
 use crate::patches::Patches;
 use crate::work::Work;
 use std::fmt;
 
 /// One contact state. `None`: the model does not claim it, or it was not asked for.
+///
+/// A model makes it with [`ContactState::new`] and what else it knows:
+///
+/// ```
+/// use contact_model::{ContactState, SolveReport};
+/// let state = ContactState::new(1.0, SolveReport::exact("closed form")).with_approach(0.5).with_area(2.0);
+/// assert_eq!((state.approach, state.area, state.stiffness), (Some(0.5), Some(2.0), None));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ContactState {
     /// Normal force F; negative where adhesion holds against a pull.
     pub force: f64,
-    /// Approach d from first touch; `None` with periodic boundaries ([`crate::PreparedContact::mean_gap`]).
+    /// Approach d from first touch; `None` with periodic boundaries.
     pub approach: Option<f64>,
+    /// Mean gap, with periodic boundaries: the distance of the mean planes, `mean(u + z) - d` over the defined points; `None` with free
+    /// boundaries and where a theory has none (without load).
+    pub mean_gap: Option<f64>,
     /// Incremental stiffness k = dF/dd on the contact set of this state. With periodic boundaries -dF/d(mean gap).
     pub stiffness: Option<f64>,
     /// Real contact area.
@@ -26,8 +38,77 @@ pub struct ContactState {
     pub report: SolveReport,
 }
 
+impl ContactState {
+    /// A state of which only the force is known yet.
+    pub fn new(force: f64, report: SolveReport) -> Self {
+        Self {
+            force,
+            approach: None,
+            mean_gap: None,
+            stiffness: None,
+            area: None,
+            conductance: None,
+            patches: None,
+            fields: None,
+            report,
+        }
+    }
+
+    /// With an approach; `None` takes it away.
+    #[must_use]
+    pub fn with_approach(self, approach: impl Into<Option<f64>>) -> Self {
+        Self { approach: approach.into(), ..self }
+    }
+
+    /// With a mean gap.
+    #[must_use]
+    pub fn with_mean_gap(self, mean_gap: impl Into<Option<f64>>) -> Self {
+        Self { mean_gap: mean_gap.into(), ..self }
+    }
+
+    /// With a stiffness.
+    #[must_use]
+    pub fn with_stiffness(self, stiffness: impl Into<Option<f64>>) -> Self {
+        Self { stiffness: stiffness.into(), ..self }
+    }
+
+    /// With a real contact area.
+    #[must_use]
+    pub fn with_area(self, area: impl Into<Option<f64>>) -> Self {
+        Self { area: area.into(), ..self }
+    }
+
+    /// With connected contact areas.
+    #[must_use]
+    pub fn with_patches(self, patches: impl Into<Option<Patches>>) -> Self {
+        Self { patches: patches.into(), ..self }
+    }
+
+    /// Pressure, where asked for.
+    pub fn pressure(&self) -> Option<&Field> {
+        self.fields.as_ref()?.pressure.as_ref()
+    }
+
+    /// Displacement of the elastic surface, where asked for.
+    pub fn displacement(&self) -> Option<&Field> {
+        self.fields.as_ref()?.displacement.as_ref()
+    }
+
+    /// Gap, where asked for; infinite at undefined points.
+    pub fn gap(&self) -> Option<&Field> {
+        self.fields.as_ref()?.gap.as_ref()
+    }
+
+    /// With fields.
+    #[must_use]
+    pub fn with_fields(self, fields: impl Into<Option<Fields>>) -> Self {
+        Self { fields: fields.into(), ..self }
+    }
+}
+
 /// The evidence that travels with every state.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SolveReport {
     /// How the solve ended.
     pub status: Status,
@@ -35,7 +116,7 @@ pub struct SolveReport {
     pub strategy: String,
     /// Iterations of the linear solvers, all stages together (0 for direct and closed forms).
     pub iterations: usize,
-    /// Applications of the elastic operator K on the fine grid, all precisions and the certificate together.
+    /// Applications of the influence matrix G on the fine grid, all precisions and the certificate together.
     pub applications: usize,
     /// Number of cells (elements) in contact, where the model has any.
     pub contact_cells: Option<usize>,
@@ -46,6 +127,11 @@ pub struct SolveReport {
 }
 
 impl SolveReport {
+    /// Report of a solve that ended like this; the rest is what a formula would have.
+    pub fn new(status: Status, strategy: impl Into<String>) -> Self {
+        Self { status, ..Self::exact(strategy) }
+    }
+
     /// Report of a model that evaluates a formula: nothing iterated, nothing approximated beyond rounding.
     pub fn exact(strategy: impl Into<String>) -> Self {
         Self {
@@ -145,16 +231,7 @@ mod tests {
 
     #[test]
     fn completed_states_have_what_was_asked_for() {
-        let state = ContactState {
-            force: 1.0,
-            approach: Some(1.0),
-            stiffness: Some(2.0),
-            area: None,
-            conductance: None,
-            patches: None,
-            fields: None,
-            report: SolveReport::exact("test"),
-        };
+        let state = ContactState::new(1.0, SolveReport::exact("test")).with_approach(1.0).with_stiffness(2.0);
         let conductance = crate::Conductance::Electrical { first: 1.0, second: 0.0 };
         let outputs = Outputs { conductance, ..Outputs::default() };
         let done = state.clone().completed(&outputs, 0.5).unwrap();

@@ -20,16 +20,18 @@ impl Work {
     /// So many linear solves and the fields of a state.
     ///
     /// ```
-    /// use contact_model::{Fields, Work};
-    /// let fields = Fields { gap: Some(vec![0.0; 9]), ..Fields::default() };
+    /// use contact_model::{Field, Fields, Work};
+    /// let mut fields = Fields::default();
+    /// fields.gap = Some(Field::new(3, 1.0, vec![0.0; 9])?);
     /// assert_eq!(Work::of(2, Some(&fields)), Work { linear_solves: 2, fields: 1, bytes: 72 });
+    /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn of(linear_solves: usize, fields: Option<&Fields>) -> Self {
         let mut work = Self { linear_solves, ..Self::default() };
         if let Some(Fields { pressure, displacement, gap }) = fields {
             for field in [pressure, displacement, gap].into_iter().flatten() {
                 work.fields += 1;
-                work.bytes += size_of_val(field.as_slice());
+                work.bytes += size_of_val(field.values());
             }
         }
         work

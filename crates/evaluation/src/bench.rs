@@ -73,8 +73,6 @@ pub struct BenchRow {
     pub tolerance: f64,
     /// The state, converged or the best that was reached.
     pub state: ContactState,
-    /// Mean gap, where the square repeats itself.
-    pub mean_gap: Option<f64>,
     /// Normalisation of this surface.
     pub normalisation: Normalisation,
     /// Wall-clock seconds: the first row of a prepared contact includes preparing it.
@@ -133,7 +131,7 @@ impl BenchRow {
             }
             _ => None,
         };
-        let mean_gap = match (self.mean_gap, self.normalisation.height) {
+        let mean_gap = match (self.state.mean_gap, self.normalisation.height) {
             (Some(gap), Some(h)) if h > 0.0 => Some(gap / h),
             _ => None,
         };
@@ -264,15 +262,8 @@ impl Series {
             let normalisation = prepared.normalisation();
             let what = || format!("bem3d on {} at F_bar = {force_bar:?}", self.surface);
             let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what()))?);
-            let state = match prepared.solve_until(load, stop) {
-                Err(contact_model::Error::NotConverged { best }) => *best,
-                other => other.map_err(Error::model(what()))?,
-            };
-            // Known from the solve.
-            let mean_gap = match bench.boundary {
-                Boundary::Periodic => Some(prepared.mean_gap(load).map_err(Error::model(what()))?),
-                _ => None,
-            };
+            let state = prepared.solve_until(load, stop).or_else(contact_model::Error::into_best);
+            let state = state.map_err(Error::model(what()))?;
             let seconds = start.elapsed().as_secs_f64();
             let mut row = BenchRow {
                 surface: self.surface.clone(),
@@ -281,7 +272,6 @@ impl Series {
                 force_bar,
                 tolerance: self.model.tolerance,
                 state,
-                mean_gap,
                 normalisation,
                 seconds,
                 cpu_seconds: cpu.zip(cpu_seconds()).map(|(a, b)| b - a),
@@ -311,8 +301,7 @@ impl Series {
             .map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells.columns))
             .unwrap_or_default();
         let name = format!("pressure_{stem}{drawn}_F{:?}_tol{:?}.npy", row.force_bar, row.tolerance);
-        let shape = [row.cells.rows, row.cells.columns];
-        write_npy(&directory.join(name), &shape, &pressure)
+        write_npy(&directory.join(name), &[pressure.rows(), pressure.columns()], pressure.values())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::sample::Sample;
 use bem3d::Bem3d;
-use contact_model::{ContactModel, Load, Outputs, Scene, SelfAffine, Stop, Surface};
+use contact_model::{ContactModel, Outputs, Scene, SelfAffine, Stop, Surface};
 use mdr1d::{Ensemble, Mdr1d};
 use runs::{Error, Result};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -188,15 +188,13 @@ impl Unit {
         let solve = || {
             let mut contact = model.prepare(&scene, self.seed)?;
             let normalisation = contact.normalisation();
-            let mut samples = Vec::with_capacity(self.forces.len());
-            for &force_bar in self.forces.iter() {
-                let load = Load::Force(normalisation.force(force_bar)?);
-                let state = match contact.solve_until(load, stop) {
-                    Err(contact_model::Error::NotConverged { best }) => *best,
-                    other => other?,
-                };
-                samples.push(Sample::new(force_bar, &state, &normalisation)?);
-            }
+            let loads = normalisation.loads(&self.forces)?;
+            let mut samples = Vec::with_capacity(loads.len());
+            contact.sweep(&loads, stop, &mut |i, state| {
+                let state = state.or_else(contact_model::Error::into_best)?;
+                samples.push(Sample::new(self.forces[i], &state, &normalisation)?);
+                Ok(())
+            })?;
             Ok((normalisation.rms_height()?, samples))
         };
         let (rms_height, samples) = solve().map_err(|e| Error::model(what())(e))?;
@@ -208,7 +206,7 @@ impl Unit {
 mod tests {
     use super::*;
     use contact_model::{
-        Certificate, ContactState, Normalisation, PreparedContact, Result as ModelResult, SolveReport,
+        Certificate, ContactState, Load, Normalisation, PreparedContact, Result as ModelResult, SolveReport,
         Source, Status,
     };
 
@@ -237,16 +235,7 @@ mod tests {
             let mut report = SolveReport::exact("closed form");
             report.certificate = Certificate { duality_gap: 0.5, ..Default::default() };
             let stiffness = Some(force.sqrt());
-            let mut state = ContactState {
-                force,
-                approach: None,
-                stiffness,
-                area: None,
-                conductance: None,
-                patches: None,
-                fields: None,
-                report,
-            };
+            let mut state = ContactState::new(force, report).with_stiffness(stiffness);
             if force > 1.0 {
                 state.report.status = Status::IterationLimit;
                 return Err(contact_model::Error::NotConverged { best: Box::new(state) });

@@ -17,7 +17,6 @@ pub(crate) struct State {
     pub normalisation: Option<Normalisation>,
     pub normal: Option<ContactState>,
     pub history: Option<HistoryState>,
-    pub mean_gap: Option<f64>,
     pub status: Option<Status>,
     /// Why there is no state.
     pub note: Option<String>,
@@ -86,7 +85,7 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
         }));
     }
     if scene.requested.mean_gap {
-        list.push(kind("mean_gap", "m", "mean of the gap over the area", |s| s.mean_gap.into()));
+        list.push(kind("mean_gap", "m", "mean of the gap over the area", |s| normal(s, |n| n.mean_gap)));
     }
     if scene.is_history() {
         list.push(kind("contact_radius", "m", "of a round contact", |s| {

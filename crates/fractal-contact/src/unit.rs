@@ -9,7 +9,7 @@ use crate::scene_file::SceneFile;
 use crate::scene_file::cells;
 use crate::scene_surface::SceneSurface;
 use analysis::Value;
-use contact_model::{Cells, ContactState, Fields, Scene, Step, Stop, Surface};
+use contact_model::{Cells, ContactState, Field, Fields, Load, Scene, Step, Stop, Surface};
 use runs::fnv1a_128;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -132,38 +132,28 @@ impl Unit {
         stop: Stop<'_>,
         result: &mut UnitResult,
     ) -> Result<()> {
-        let Request::Loads(loads) = &scene.request else { return Ok(()) };
+        let Request::Loads(requests) = &scene.request else { return Ok(()) };
         let normalisation = contact.normalisation();
-        for (index, &requested) in loads.values.iter().enumerate() {
+        let mut written = Ok(());
+        let mut row = |index: usize, found: contact_model::Result<ContactState>| {
             let mut state = State {
                 model: self.numerics(scene).name(),
                 surface: self.surface,
                 index,
-                requested,
+                requested: requests.values[index],
                 normalisation: Some(normalisation),
                 ..State::default()
             };
-            let solve = |contact: &mut dyn contact_model::PreparedContact| {
-                let load = loads.load(requested, &normalisation)?;
-                let found = contact.solve_until(load, stop)?;
-                let gap = scene.requested.mean_gap.then(|| contact.mean_gap(load)).transpose()?;
-                Ok((found, gap))
-            };
-            match solve(contact) {
-                Ok((mut found, gap)) => {
-                    state.mean_gap = gap;
+            match found {
+                Ok(mut found) => {
                     state.status = Some(found.report.status);
-                    self.keep(scene, &mut found, index, out, result)?;
+                    written = self.keep(scene, &mut found, index, out, result);
                     state.normal = Some(found);
-                }
-                Err(contact_model::Error::Stopped { .. }) => {
-                    result.whole = false;
-                    return Ok(());
                 }
                 Err(contact_model::Error::NotConverged { best }) => {
                     result.failed += 1;
                     state.status = Some(best.report.status);
-                    state.normal = Some(ContactState { fields: None, patches: None, ..*best });
+                    state.normal = Some(best.with_fields(None).with_patches(None));
                 }
                 Err(other) => {
                     result.failed += 1;
@@ -171,7 +161,17 @@ impl Unit {
                 }
             }
             result.rows.push(columns::row(scene, &state));
-        }
+            // A file that cannot be written ends the sweep; its error is the one that is returned.
+            if written.is_ok() { Ok(()) } else { Err(contact_model::Error::Stopped { best: None }) }
+        };
+        let load = |&value: &f64| requests.load(value, &normalisation);
+        let swept = match requests.values.iter().map(load).collect::<contact_model::Result<Vec<Load>>>() {
+            Ok(loads) => contact.sweep(&loads, stop, &mut row),
+            // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
+            Err(error) => (0..requests.values.len()).try_for_each(|i| row(i, Err(error.clone()))),
+        };
+        written?;
+        result.whole = swept.is_ok();
         Ok(())
     }
 
@@ -230,27 +230,23 @@ impl Unit {
             result.patches.push((index, patches.areas().to_vec()));
         }
         let Some(fields) = found.fields.take() else { return Ok(()) };
-        let Fields { pressure, displacement, gap } = &fields;
-        let grid = cells(scene, self.numerics(scene));
+        let Fields { pressure, displacement, gap, .. } = &fields;
         let requested = &scene.requested;
-        for (name, values, formats) in [
+        for (name, field, formats) in [
             ("pressure", pressure, &requested.pressure),
             ("displacement", displacement, &requested.displacement),
             ("gap", gap, &requested.gap),
         ] {
-            let Some(values) = values else { continue };
-            let values = &on_defined_points(name, values, scene);
+            let Some(field) = field else { continue };
+            let values = &on_defined_points(name, field, scene);
             for format in formats {
                 let model = self.numerics(scene).name();
                 let file = format!("{name}-{model}-{}-{index:03}.{}", self.surface, format.extension());
                 let path = out.join(&file);
                 match format {
-                    Format::Npy => {
-                        let shape = [grid.rows, grid.columns];
-                        runs::write_npy(&path, &shape, values)?;
-                    }
-                    Format::Png => plots::write_grey(&path, grid, scene.surface.size(), values)?,
-                    Format::Vti => write_vti(&path, name, scene, grid, values)?,
+                    Format::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
+                    Format::Png => plots::write_grey(&path, field.cells(), field.size(), values)?,
+                    Format::Vti => write_vti(&path, name, scene, field.cells(), values)?,
                 }
                 result.bytes += std::fs::metadata(&path).map_err(runs::Error::file("read", &path))?.len();
                 result.files.push(file.into());
@@ -272,13 +268,13 @@ impl Unit {
 }
 
 /// A field as files have it: there is no gap at an undefined point.
-fn on_defined_points<'a>(name: &str, values: &'a [f64], scene: &SceneFile) -> Cow<'a, [f64]> {
+fn on_defined_points<'a>(name: &str, field: &'a Field, scene: &SceneFile) -> Cow<'a, [f64]> {
     match &scene.surface {
         SceneSurface::Plain(Surface::Heights(map)) if map.undefined() > 0 && name == "gap" => {
             let defined = |(h, g): (&f64, &f64)| if h.is_finite() { *g } else { f64::NAN };
-            map.heights().iter().zip(values).map(defined).collect()
+            map.heights().iter().zip(field.values()).map(defined).collect()
         }
-        _ => Cow::Borrowed(values),
+        _ => Cow::Borrowed(field.values()),
     }
 }
 
@@ -288,7 +284,7 @@ fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[
         (crate::System::Si, "pressure") => "Pa",
         (crate::System::Si, _) => "m",
     };
-    let field = surface_io::Field { name, unit, values };
+    let field = surface_io::DataArray { name, unit, values };
     let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
     Ok(runs::files::write_whole(path, &bytes)?)
@@ -323,16 +319,10 @@ mod tests {
         (scene.requested.pressure, scene.requested.gap) = (all.clone(), all);
         let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];
         let gap = vec![0.5, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
-        let mut state = ContactState {
-            force: 1.0,
-            approach: None,
-            stiffness: None,
-            area: None,
-            conductance: None,
-            patches: None,
-            fields: Some(Fields { pressure: Some(pressure.clone()), gap: Some(gap), displacement: None }),
-            report: SolveReport::exact("test"),
-        };
+        let mut fields = Fields::default();
+        let field = |values: &[f64]| Field::new([3, 2], [6.0, 1.0], values.to_vec()).ok();
+        (fields.pressure, fields.gap) = (field(&pressure), field(&gap));
+        let mut state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
         let mut result = UnitResult::default();
         let unit = Unit { model: 0, surface: 0 };

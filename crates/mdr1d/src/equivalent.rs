@@ -246,25 +246,22 @@ fn slip(
         Tangential::Displacement(u) => springs.moved(node.approach, nondimensional.length_in(u)),
         other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
     };
-    let tangential = TangentialState {
-        force: match step.tangential {
+    let tangential = TangentialState::new(
+        match step.tangential {
             Tangential::Force(force) => force,
             _ => normal.signed(next.force() * ratio)?,
         },
-        displacement: match step.tangential {
+        match step.tangential {
             Tangential::Displacement(u) => u,
             _ => nondimensional.approach(next.displacement().abs())?.copysign(next.displacement()),
         },
-        stick_radius: Some(nondimensional.approach(next.stick_radius())?),
-        // E* L^3: a force times a length.
-        dissipated: nondimensional.approach(nondimensional.force(next.dissipated())?)?,
-    };
-    let state = HistoryState {
-        time: step.time,
-        normal: normal.reported(state, node.approach),
-        contact_radius: Some(nondimensional.approach(node.radius)?),
-        tangential: Some(tangential),
-    };
+    )
+    .with_stick_radius(nondimensional.approach(next.stick_radius())?)
+    // E* L^3: a force times a length.
+    .with_dissipated(nondimensional.approach(nondimensional.force(next.dissipated())?)?);
+    let state = HistoryState::new(step.time, normal.reported(state, node.approach))
+        .with_contact_radius(nondimensional.approach(node.radius)?)
+        .with_tangential(tangential);
     Ok((next, state))
 }
 
@@ -318,12 +315,8 @@ fn relax(
     let certificate = &mut state.report.certificate;
     certificate.load_error = certificate.load_error.max(at.residual);
     let radius = nondimensional.approach(at.contact.radius)?;
-    let state = HistoryState {
-        time: step.time,
-        normal: normal.reported(state, at.contact.approach),
-        contact_radius: Some(radius),
-        tangential: None,
-    };
+    let state =
+        HistoryState::new(step.time, normal.reported(state, at.contact.approach)).with_contact_radius(radius);
     relaxation.at = at;
     Ok(state)
 }

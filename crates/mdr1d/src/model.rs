@@ -213,17 +213,10 @@ impl PreparedContact for Rough {
             SolveReport::exact(format!("order statistics of {} elements", self.bearing.elements()));
         report.contact_cells = Some(support.elements);
         report.certificate.stiffness_error = self.outputs.needs_stiffness().then_some(0.0);
-        ContactState {
-            force: support.force,
-            approach: Some(support.approach),
-            stiffness: self.outputs.needs_stiffness().then_some(support.stiffness),
-            area: None,
-            conductance: None,
-            patches: None,
-            fields: None,
-            report,
-        }
-        .completed(&self.outputs, self.normalisation.modulus)
+        ContactState::new(support.force, report)
+            .with_approach(support.approach)
+            .with_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
+            .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 
@@ -335,17 +328,11 @@ impl PreparedContact for Body {
         let area = self.outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("closed form of the profile g(x)");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
-        ContactState {
-            force,
-            approach: Some(approach),
-            stiffness,
-            area,
-            conductance: None,
-            patches: None,
-            fields: None,
-            report,
-        }
-        .completed(&self.outputs, self.normalisation.modulus)
+        ContactState::new(force, report)
+            .with_approach(approach)
+            .with_stiffness(stiffness)
+            .with_area(area)
+            .completed(&self.outputs, self.normalisation.modulus)
     }
 }
 

@@ -157,42 +157,30 @@ impl History for Prepared {
         let area = self.outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("springs of the profile g(x), a polygon in g");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
-        let normal = ContactState {
-            force: if let Load::Force(force) = step.normal {
-                force
-            } else {
-                nondimensional.force(contact.force)?
-            },
-            approach: Some(nondimensional.approach(contact.approach)?),
-            stiffness,
-            area,
-            conductance: None,
-            patches: None,
-            fields: None,
+        let normal = ContactState::new(
+            if let Load::Force(force) = step.normal { force } else { nondimensional.force(contact.force)? },
             report,
-        }
+        )
+        .with_approach(nondimensional.approach(contact.approach)?)
+        .with_stiffness(stiffness)
+        .with_area(area)
         .completed(&self.outputs, self.normalisation.modulus)?;
         let displacement = springs.displacement();
-        let tangential = TangentialState {
-            force: match step.tangential {
+        let tangential = TangentialState::new(
+            match step.tangential {
                 Tangential::Force(force) => force,
                 _ => self.force(springs.force())?,
             },
-            displacement: match step.tangential {
+            match step.tangential {
                 Tangential::Displacement(u) => u,
                 _ => nondimensional.approach(displacement.abs())?.copysign(displacement),
             },
-            stick_radius: Some(nondimensional.approach(springs.stick_radius())?),
-            // E* L^3: a force times a length.
-            dissipated: nondimensional.approach(nondimensional.force(springs.dissipated())?)?,
-        };
+        )
+        .with_stick_radius(nondimensional.approach(springs.stick_radius())?)
+        // E* L^3: a force times a length.
+        .with_dissipated(nondimensional.approach(nondimensional.force(springs.dissipated())?)?);
         (self.time, self.springs) = (step.time, springs);
-        Ok(HistoryState {
-            time: step.time,
-            normal,
-            contact_radius: Some(radius),
-            tangential: Some(tangential),
-        })
+        Ok(HistoryState::new(step.time, normal).with_contact_radius(radius).with_tangential(tangential))
     }
 
     fn restart(&mut self) {

@@ -137,27 +137,22 @@ impl History for Prepared {
         let radius = nondimensional.approach(at.contact.radius)?;
         let mut report = SolveReport::exact("Boltzmann's integral over the profile g(x)");
         report.certificate.load_error = at.residual;
-        let normal = ContactState {
-            force: match step.normal {
+        let mut normal = ContactState::new(
+            match step.normal {
                 Load::Force(force) => force,
                 _ => nondimensional.force(at.memory.force)?,
             },
-            approach: Some(match step.normal {
-                Load::Approach(approach) => approach,
-                _ => nondimensional.approach(at.contact.approach)?,
-            }),
-            stiffness: None,
-            area: self.outputs.area.then(|| nondimensional.area(at.contact.area())).transpose()?,
-            conductance: self
-                .outputs
-                .conductance
-                .of(nondimensional.stiffness(at.contact.stiffness())?, self.normalisation.modulus)?,
-            patches: None,
-            fields: None,
             report,
-        };
+        )
+        .with_approach(match step.normal {
+            Load::Approach(approach) => approach,
+            _ => nondimensional.approach(at.contact.approach)?,
+        })
+        .with_area(self.outputs.area.then(|| nondimensional.area(at.contact.area())).transpose()?);
+        let stiffness = nondimensional.stiffness(at.contact.stiffness())?;
+        normal.conductance = self.outputs.conductance.of(stiffness, self.normalisation.modulus)?;
         self.relaxation.at = at;
-        Ok(HistoryState { time: step.time, normal, contact_radius: Some(radius), tangential: None })
+        Ok(HistoryState::new(step.time, normal).with_contact_radius(radius))
     }
 
     fn restart(&mut self) {

@@ -1,6 +1,6 @@
 //! What a case found.
 
-use contact_model::{ContactState, Error, Result};
+use contact_model::{ContactState, Error, Field, Result};
 
 /// Broken assertions that are kept in words.
 const KEPT: usize = 5;
@@ -76,7 +76,7 @@ impl Ledger {
 
 fn bits(state: &ContactState) -> Vec<u64> {
     let numbers = [Some(state.force), state.approach, state.stiffness, state.area];
-    let pressure = state.fields.as_ref().and_then(|f| f.pressure.as_deref()).unwrap_or_default();
+    let pressure = state.pressure().map_or(&[][..], Field::values);
     numbers.iter().flatten().chain(pressure).map(|v| v.to_bits()).collect()
 }
 
@@ -96,12 +96,20 @@ pub fn stiffness(state: &ContactState) -> Result<f64> {
     known("stiffness", state.stiffness)
 }
 
+/// The mean gap of a state.
+///
+/// # Errors
+/// [`Error::Shape`] where it has none.
+pub fn mean_gap(state: &ContactState) -> Result<f64> {
+    known("mean gap", state.mean_gap)
+}
+
 /// The pressure field of a state.
 ///
 /// # Errors
 /// [`Error::Shape`] where it has none.
 pub fn pressure(state: &ContactState) -> Result<&[f64]> {
-    known("pressure", state.fields.as_ref().and_then(|f| f.pressure.as_deref()))
+    known("pressure", state.pressure().map(Field::values))
 }
 
 fn known<T>(name: &'static str, value: Option<T>) -> Result<T> {

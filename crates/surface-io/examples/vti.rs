@@ -3,7 +3,7 @@
 
 use contact_model::SelfAffine;
 use surface_gen::self_affine_map;
-use surface_io::{Encoding, Field, files, vti};
+use surface_io::{DataArray, Encoding, files, vti};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let name = std::env::args().nth(1).unwrap_or_else(|| "rough.vti".into());
@@ -13,8 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let slope: Vec<f64> =
         (0..n * n).map(|i| (heights[i / n * n + (i % n + 1) % n] - heights[i]) / cell).collect();
     let fields = [
-        Field { name: "height", unit: "m", values: heights },
-        Field { name: "slope along x", unit: "", values: &slope },
+        DataArray { name: "height", unit: "m", values: heights },
+        DataArray { name: "slope along x", unit: "", values: &slope },
     ];
     files::write_whole(name.as_ref(), &vti(map.cells(), map.size(), &fields, Encoding::Base64)?)?;
     files::write_whole(

@@ -110,5 +110,5 @@ pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
 pub use scan::{Metadata, Scan};
 pub use sides::Sides;
-pub use vti::{Encoding, Field, vti};
+pub use vti::{DataArray, Encoding, vti};
 pub use write::{Metric, text, write_map, xyz};

@@ -10,7 +10,7 @@ use contact_model::{Cells, Size};
 
 /// Numbers on the cells of a rectangle.
 #[derive(Debug, Clone, Copy)]
-pub struct Field<'a> {
+pub struct DataArray<'a> {
     /// Name, such as `pressure`.
     pub name: &'a str,
     /// Unit, such as `Pa`; it is written behind the name. Empty or `none` for none.
@@ -45,8 +45,8 @@ const HIDDEN: u8 = 32;
 /// with a NaN: VTK's reader of decimals stops there.
 ///
 /// ```
-/// use surface_io::{Encoding, Field, vti};
-/// let field = Field { name: "height", unit: "m", values: &[0.0, 1.0, 2.0, 3.0] };
+/// use surface_io::{Encoding, DataArray, vti};
+/// let field = DataArray { name: "height", unit: "m", values: &[0.0, 1.0, 2.0, 3.0] };
 /// let file = String::from_utf8(vti(2, [1.0, 4.0], &[field], Encoding::Ascii)?)?;
 /// assert!(file.contains("WholeExtent=\"0 2 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"0.5 2 0.5\""));
 /// assert!(file.contains("<DataArray type=\"Float64\" Name=\"height [m]\" format=\"ascii\">\n0 1\n2 3\n</DataArray>"));
@@ -55,7 +55,7 @@ const HIDDEN: u8 = 32;
 pub fn vti(
     cells: impl Into<Cells>,
     size: impl Into<Size>,
-    fields: &[Field<'_>],
+    fields: &[DataArray<'_>],
     encoding: Encoding,
 ) -> Result<Vec<u8>, ContentError> {
     let (cells, size) = (cells.into(), size.into());
@@ -156,7 +156,7 @@ pub fn vti(
 }
 
 /// Name and unit, safe in an attribute.
-fn title(field: &Field<'_>) -> String {
+fn title(field: &DataArray<'_>) -> String {
     let unit = if matches!(field.unit, "" | "none") { String::new() } else { format!(" [{}]", field.unit) };
     let mut safe = String::new();
     for c in field.name.chars().chain(unit.chars()) {

@@ -4,7 +4,7 @@ use crate::content::check_unit;
 use crate::error::{ContentError, Error, Result};
 use crate::lines::Lines;
 use crate::quantity::{Dimension, Unit};
-use crate::vti::{Encoding, Field, vti};
+use crate::vti::{DataArray, Encoding, vti};
 use crate::{files, npy};
 use contact_model::HeightMap;
 use std::path::Path;
@@ -66,7 +66,7 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
         "xyz" => xyz(map, metric).into_bytes(),
         "vti" => {
             let values = with_nan(map);
-            let field = Field { name: "height", unit: metric.name(), values: &values };
+            let field = DataArray { name: "height", unit: metric.name(), values: &values };
             vti(map.cells(), map.size(), &[field], Encoding::Base64).map_err(Error::content(path))?
         }
         other => {

@@ -12,7 +12,6 @@ impl PreparedContact for Prepared {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.gap = None;
         let units = self.nondimensional;
         let target = match load.validated()? {
             Load::Force(f) => Target::Force(held("force", f, units.force_in(f) / PI)?),
@@ -20,9 +19,7 @@ impl PreparedContact for Prepared {
                 Target::Approach(held("approach", d, units.approach_in(d))?)
             }
             Load::MeanGap(gap) if self.is_periodic() => {
-                let state = self.at_mean_gap(held("mean gap", gap, units.approach_in(gap))?, stop)?;
-                self.gap = Some((load, gap));
-                return Ok(state);
+                return self.at_mean_gap(held("mean gap", gap, units.approach_in(gap))?, stop);
             }
             Load::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
@@ -31,27 +28,15 @@ impl PreparedContact for Prepared {
             other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
         };
         if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
-            self.gap = Some((load, units.approach(self.mean)?));
             return self.no_contact();
         }
         self.begin_count();
         let (solved, tangent) = self.settle(target, self.limits(), stop);
-        self.gap = Some((load, units.approach(self.gap_of(&solved))?));
         let miss = match target {
             Target::Force(asked) => ((solved.p.iter().sum::<f64>() - asked) / asked).abs(),
             Target::Approach(_) => 0.0,
         };
         self.state(solved, tangent, miss, stop)
-    }
-
-    fn mean_gap(&mut self, load: Load) -> Result<f64> {
-        if !self.is_periodic() {
-            return Err(Error::unsupported(NAME, "a mean gap (free boundaries)"));
-        }
-        if self.gap.is_none_or(|(at, _)| at != load) {
-            self.solve(load)?;
-        }
-        self.gap.map(|(_, gap)| gap).ok_or_else(|| Error::unsupported(NAME, "a mean gap"))
     }
 }
 

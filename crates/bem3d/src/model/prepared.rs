@@ -6,7 +6,7 @@ use crate::geometry::Grid;
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
-    Boundary, HeightMap, Load, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Stop,
+    Boundary, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size, Stop,
 };
 use std::sync::Arc;
 
@@ -26,8 +26,8 @@ pub struct Prepared {
     /// Mean of z over the defined points.
     pub(super) mean: f64,
     pub(super) last: Option<LastState>,
-    /// Mean gap at the load solved last, with periodic boundaries.
-    pub(super) gap: Option<(Load, f64)>,
+    /// Sides of the map.
+    pub(super) size: Size,
 }
 
 impl Prepared {
@@ -63,7 +63,7 @@ impl Prepared {
             normalisation,
             mean,
             last: None,
-            gap: None,
+            size: map.size(),
         })
     }
 

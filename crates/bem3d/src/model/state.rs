@@ -5,7 +5,7 @@ use crate::active_set::Solved;
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
 use contact_model::{
-    Certificate, ContactState, Error, Fields, Patches, Result, SolveReport, Status, Stop, Work,
+    Certificate, ContactState, Error, Field, Fields, Patches, Result, SolveReport, Status, Stop, Work,
 };
 use std::f64::consts::PI;
 
@@ -34,33 +34,27 @@ impl Prepared {
             other => other,
         };
         let fields = self.fields(&solved)?;
-        let report = SolveReport {
-            work: Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref()),
-            status,
-            strategy: self.strategy(&solved),
-            iterations: solved.steps + tangent.as_ref().map_or(0, |t| t.steps),
-            applications: std::mem::take(&mut self.problem.operators.applications),
-            contact_cells: Some(solved.contact.len()),
-            certificate,
-        };
-        let state = ContactState {
-            force: self.nondimensional.force(PI * force)?,
-            approach: if periodic { None } else { Some(self.nondimensional.approach(solved.d)?) },
-            stiffness: match &tangent {
-                Some(t) => Some(self.nondimensional.stiffness(PI * t.value * self.magnification(t.value))?),
-                None => None,
-            },
-            area: if self.outputs.area {
-                Some(self.nondimensional.area(solved.contact.len() as f64)?)
-            } else {
-                None
-            },
-            conductance: None,
-            patches: self.patches(&solved.contact)?,
-            fields,
-            report,
-        }
-        .completed(&self.outputs, self.normalisation.modulus)?;
+        let units = self.nondimensional;
+        let mut report = SolveReport::new(status, self.strategy(&solved));
+        report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
+        report.iterations = solved.steps + tangent.as_ref().map_or(0, |t| t.steps);
+        report.applications = std::mem::take(&mut self.problem.operators.applications);
+        report.contact_cells = Some(solved.contact.len());
+        report.certificate = certificate;
+        let approach = (!periodic).then(|| units.approach(solved.d)).transpose()?;
+        let mean_gap = periodic.then(|| units.approach(self.gap_of(&solved))).transpose()?;
+        let stiffness = (tangent.as_ref())
+            .map(|t| units.stiffness(PI * t.value * self.magnification(t.value)))
+            .transpose()?;
+        let area = self.outputs.area.then(|| units.area(solved.contact.len() as f64)).transpose()?;
+        let state = ContactState::new(units.force(PI * force)?, report)
+            .with_approach(approach)
+            .with_mean_gap(mean_gap)
+            .with_stiffness(stiffness)
+            .with_area(area)
+            .with_patches(self.patches(&solved.contact)?)
+            .with_fields(fields)
+            .completed(&self.outputs, self.normalisation.modulus)?;
         if status == Status::Converged {
             self.remember(solved, tangent);
             Ok(state)
@@ -82,7 +76,7 @@ impl Prepared {
             for (i, &value) in solved.contact.index(grid).zip(&solved.p) {
                 p[i] = self.nondimensional.pressure(PI * value)?;
             }
-            fields.pressure = Some(p);
+            fields.pressure = Some(self.field(p)?);
         }
         if self.outputs.displacement || self.outputs.gap {
             let mut u = Vec::new();
@@ -92,13 +86,20 @@ impl Prepared {
             let height = self.height;
             if self.outputs.gap {
                 let z = self.problem.candidates.z();
-                fields.gap = Some(u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect());
+                let gap = u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect();
+                fields.gap = Some(self.field(gap)?);
             }
             if self.outputs.displacement {
-                fields.displacement = Some(u.iter().map(|u| (u - shift) * height).collect());
+                let displacement = u.iter().map(|u| (u - shift) * height).collect();
+                fields.displacement = Some(self.field(displacement)?);
             }
         }
         Ok(Some(fields))
+    }
+
+    fn field(&self, values: Vec<f64>) -> Result<Field> {
+        let grid = self.problem.grid();
+        Field::new([grid.columns, grid.rows], self.size, values)
     }
 
     /// Connected patches of the contact set, where asked for.
@@ -117,28 +118,30 @@ impl Prepared {
 
     /// The state before first touch, and at it.
     pub(super) fn no_contact(&self) -> Result<ContactState> {
-        let grid = self.problem.grid();
-        let zeros = |wanted: bool| wanted.then(|| vec![0.0; grid.count()]);
-        let gap = |z: &[f64], height: f64| z.iter().map(|z| z * height).collect();
-        let fields = self.outputs.any_field().then(|| Fields {
-            pressure: zeros(self.outputs.pressure),
-            displacement: zeros(self.outputs.displacement),
-            gap: self.outputs.gap.then(|| gap(self.problem.candidates.z(), self.height)),
-        });
+        let zeros = || self.field(vec![0.0; self.problem.grid().count()]);
+        let fields = if self.outputs.any_field() {
+            let mut fields = Fields::default();
+            fields.pressure = self.outputs.pressure.then(zeros).transpose()?;
+            fields.displacement = self.outputs.displacement.then(zeros).transpose()?;
+            let z = self.problem.candidates.z().iter();
+            let gap = || self.field(z.map(|z| z * self.height).collect());
+            fields.gap = self.outputs.gap.then(gap).transpose()?;
+            Some(fields)
+        } else {
+            None
+        };
         let mut report = SolveReport::exact("no contact");
         report.contact_cells = Some(0);
         report.work = Work::of(0, fields.as_ref());
-        ContactState {
-            force: 0.0,
-            approach: (!self.is_periodic()).then_some(0.0),
-            stiffness: self.outputs.needs_stiffness().then_some(0.0),
-            area: self.outputs.area.then_some(0.0),
-            conductance: None,
-            patches: self.outputs.contact_patches.then(Patches::default),
-            fields,
-            report,
-        }
-        .completed(&self.outputs, self.normalisation.modulus)
+        let mean_gap = self.is_periodic().then(|| self.nondimensional.approach(self.mean)).transpose()?;
+        ContactState::new(0.0, report)
+            .with_approach((!self.is_periodic()).then_some(0.0))
+            .with_mean_gap(mean_gap)
+            .with_stiffness(self.outputs.needs_stiffness().then_some(0.0))
+            .with_area(self.outputs.area.then_some(0.0))
+            .with_patches(self.outputs.contact_patches.then(Patches::default))
+            .with_fields(fields)
+            .completed(&self.outputs, self.normalisation.modulus)
     }
 
     /// How a state was found, in one short phrase.

@@ -1,7 +1,7 @@
 //! One way to answer one problem: what it gave, what it cost, how far off it is.
 
 use super::problem::Family;
-use contact_model::{ContactModel, ContactState, Load, Scene, never};
+use contact_model::{ContactModel, ContactState, Field, Load, Scene};
 use runs::{Error, Result};
 use runs::{cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
 
@@ -133,10 +133,7 @@ pub(crate) fn measure(
     let start = cpu_seconds();
     let found = (|| {
         let mut contact = model.prepare(scene, seed)?;
-        let state = match contact.solve_until(load, &never) {
-            Err(contact_model::Error::NotConverged { best }) => *best,
-            other => other?,
-        };
+        let state = contact.solve(load).or_else(contact_model::Error::into_best)?;
         Ok((state, contact.normalisation()))
     })();
     let seconds = cpu_seconds().zip(start).map(|(end, start)| end - start);
@@ -152,7 +149,7 @@ pub(crate) fn measure(
         stiffness: stiffness.map(|k| k / (normalisation.modulus * normalisation.length)),
         approach,
         area: area.map(|a| normalisation.contact_fraction(a)),
-        pressure: fields.and_then(|f| f.pressure),
+        pressure: fields.and_then(|f| f.pressure).map(Field::into_values),
         contact_cells: report.contact_cells,
         cpu_seconds: seconds,
         bytes,

@@ -9,7 +9,7 @@ pub use study::TwoCases;
 use analysis::{Curves, Sample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
-use contact_model::{Boundary, ContactModel, Load, Stop, never};
+use contact_model::{Boundary, ContactModel, ContactState, Stop, never};
 use evaluation::Outcome;
 use evaluation::header;
 use picture::{draw, table};
@@ -116,28 +116,28 @@ fn one(study: &TwoCases, case: Case, seed: u64, stop: Stop<'_>) -> Result<Solves
     let mut scene = case.scene(study)?;
     scene.outputs.area = true;
     let model = Bem3d { cells: study.cells, tolerance: study.tolerance, ..Bem3d::default() };
-    let what = |force: f64| format!("bem3d ({}, seed {seed}) at F_bar = {force:?}", case.name());
-    let mut contact = model.prepare(&scene, seed).map_err(Error::model(what(0.0)))?;
-    let normalisation = contact.normalisation();
-    let forces = study.forces.values().iter();
-    forces
-        .map(|&force_bar| {
-            let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what(force_bar)))?);
-            let state = match contact.solve_until(load, stop) {
-                Ok(state) => state,
-                Err(contact_model::Error::NotConverged { .. }) => return Ok(Solve::NotConverged),
-                Err(error) => return Err(Error::model(what(force_bar))(error)),
-            };
-            let contact_cells = state.report.contact_cells;
-            Ok(match state.stiffness.zip(state.area) {
-                Some((k, area)) => Solve::Sample(
-                    Sample { stiffness_bar: normalisation.stiffness_bar(k), contact_cells },
+    let mut solves = Vec::new();
+    let mut solve = || {
+        let mut contact = model.prepare(&scene, seed)?;
+        let normalisation = contact.normalisation();
+        contact.sweep(&normalisation.loads(study.forces.values())?, stop, &mut |_, state| {
+            solves.push(match state {
+                Err(contact_model::Error::NotConverged { .. }) => Solve::NotConverged,
+                Err(error) => return Err(error),
+                Ok(ContactState { stiffness: Some(k), area: Some(area), report, .. }) => Solve::Sample(
+                    Sample {
+                        stiffness_bar: normalisation.stiffness_bar(k),
+                        contact_cells: report.contact_cells,
+                    },
                     area,
                 ),
-                None => Solve::FullContact,
-            })
+                Ok(_) => Solve::FullContact,
+            });
+            Ok(())
         })
-        .collect()
+    };
+    solve().map_err(Error::model(format!("bem3d ({}, seed {seed})", case.name())))?;
+    Ok(solves)
 }
 
 fn mean_curve(case: Case, means: &Curves, surfaces: &[Solves]) -> Curve {
@@ -165,28 +165,29 @@ fn mean_curve(case: Case, means: &Curves, surfaces: &[Solves]) -> Curve {
 fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curve> {
     let mut scene = case.scene(study)?;
     scene.outputs.area = true;
-    let what = || format!("{} ({})", model.name(), case.name());
-    let mut contact = model.prepare(&scene, 0).map_err(Error::model(what()))?;
-    let normalisation = contact.normalisation();
     let mut points = Vec::new();
-    for &force_bar in study.forces.values() {
-        let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what()))?);
-        let state = match contact.solve(load) {
-            Ok(state) => state,
-            Err(contact_model::Error::OutOfRange { .. }) => continue,
-            Err(error) => return Err(Error::model(what())(error)),
-        };
-        let Some(k) = state.stiffness else { continue };
-        points.push(Point {
-            force_bar,
-            stiffness_bar: normalisation.stiffness_bar(k),
-            standard_error: None,
-            surfaces: 0,
-            left_out: 0,
-            area: state.area,
-            min_contact_cells: None,
-        });
-    }
+    let mut solve = || {
+        let mut contact = model.prepare(&scene, 0)?;
+        let normalisation = contact.normalisation();
+        let forces = study.forces.values();
+        contact.sweep(&normalisation.loads(forces)?, &never, &mut |i, state| {
+            match state {
+                Ok(ContactState { stiffness: Some(k), area, .. }) => points.push(Point {
+                    force_bar: forces[i],
+                    stiffness_bar: normalisation.stiffness_bar(k),
+                    standard_error: None,
+                    surfaces: 0,
+                    left_out: 0,
+                    area,
+                    min_contact_cells: None,
+                }),
+                Ok(_) | Err(contact_model::Error::OutOfRange { .. }) => {}
+                Err(error) => return Err(error),
+            }
+            Ok(())
+        })
+    };
+    solve().map_err(Error::model(format!("{} ({})", model.name(), case.name())))?;
     Ok(Curve { case, model: model.name(), points })
 }
 

@@ -232,16 +232,9 @@ impl PreparedContact for ScriptedContact {
             Load::Force(f) => (0.75 * f).powf(2.0 / 3.0),
             other => return Err(Error::unsupported("told", format!("{other:?}"))),
         };
-        Ok(ContactState {
-            force: 4.0 / 3.0 * d.powf(1.5),
-            approach: Some(d),
-            stiffness: Some(2.0 * d.sqrt() * (self.factor)(d)),
-            area: None,
-            conductance: None,
-            patches: None,
-            fields: None,
-            report: SolveReport::exact("told"),
-        })
+        Ok(ContactState::new(4.0 / 3.0 * d.powf(1.5), SolveReport::exact("told"))
+            .with_approach(d)
+            .with_stiffness(2.0 * d.sqrt() * (self.factor)(d)))
     }
 }
 

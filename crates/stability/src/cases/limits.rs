@@ -7,7 +7,7 @@ use crate::plain::PlainSum;
 use crate::press::{SAME, press, press_both, press_by, tight, watched};
 use bem3d::love::influence;
 use bem3d::{Bem3d, Method};
-use contact_model::{ContactModel, Error, Line, Load, Result, Scene, Status, Surface};
+use contact_model::{ContactModel, Error, Field, Line, Load, Result, Scene, Status, Surface};
 use mdr1d::Mdr1d;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -105,7 +105,7 @@ fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
                     .filter(|(_, f)| *f > 0.0)
                     .collect();
                 let exact = PlainSum::of(&rough).displacement(&forces);
-                let found = state.fields.and_then(|f| f.displacement).unwrap_or_default();
+                let found = state.displacement().map_or(&[][..], Field::values);
                 ledger.must(found.len() == exact.len(), || format!("{} displacements", found.len()));
                 for (a, b) in found.iter().zip(&exact) {
                     ledger.near("displacement", *a, *b);

@@ -1,7 +1,7 @@
 //! The square that repeats itself.
 
 use crate::case::{Case, Effort};
-use crate::ledger::{Ledger, pressure, stiffness};
+use crate::ledger::{Ledger, mean_gap, pressure, stiffness};
 use crate::maps::{map, rough_map};
 use crate::press::{tight, watched};
 use contact_model::{Boundary, ContactModel, HeightMap, Load, PreparedContact, Result};
@@ -39,13 +39,13 @@ fn any_origin(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         for force in [1e-4, 0.03, 0.3, 1.5] {
             let state = contact.solve(Load::Force(force))?;
             ledger.must(state.report.certificate.meets(tight().tolerance), || format!("{:?}", state.report));
-            let gap = contact.mean_gap(Load::Force(force))?;
+            let gap = mean_gap(&state)?;
             let largest = pressure(&state)?.iter().fold(0.0_f64, |a, &p| a.max(p));
             for (dx, dy) in [(1, 0), (7, 13), (cells / 2, cells / 2)] {
                 let mut other = prepare(&rolled(here.heights(), dx, dy)?)?;
                 let there = other.solve(Load::Force(force))?;
                 ledger.near("k", stiffness(&there)?, stiffness(&state)?);
-                ledger.enter((other.mean_gap(Load::Force(force))? - gap).abs());
+                ledger.enter((mean_gap(&there)? - gap).abs());
                 let expected = rolled(pressure(&state)?, dx, dy)?;
                 for (a, b) in expected.heights().iter().zip(pressure(&there)?) {
                     ledger.enter((a - b).abs() / largest);
@@ -66,7 +66,7 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             ledger.must(state.report.certificate.meets(tight().tolerance), || format!("{:?}", state.report));
             ledger.must(state.report.contact_cells == Some(cells * cells), || format!("{:?}", state.report));
             ledger.must(state.stiffness.is_none(), || format!("k {:?} in full contact", state.stiffness));
-            ledger.enter(contact.mean_gap(Load::Force(force))?);
+            ledger.enter(mean_gap(&state)?);
             Ok(pressure(&state)?.to_vec())
         };
         let (one, other) = (press(light)?, press(heavy)?);

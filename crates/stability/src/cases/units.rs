@@ -123,7 +123,7 @@ fn divided(mut state: ContactState, force: f64, height: f64, stiffness: f64, pre
     state.approach = state.approach.map(|d| d / height);
     state.stiffness = state.stiffness.map(|k| k / stiffness);
     if let Some(p) = state.fields.as_mut().and_then(|f| f.pressure.as_mut()) {
-        for p in p {
+        for p in p.values_mut() {
             *p /= pressure;
         }
     }

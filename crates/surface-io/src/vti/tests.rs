@@ -41,10 +41,10 @@ fn base64_of_the_rfc() {
 fn a_reader_finds_every_field_at_its_offset() {
     let fields: Vec<Vec<f64>> =
         [1e-9, 70e9, -0.0].iter().map(|s| (0..9).map(|i| s * f64::from(i) / 7.0).collect()).collect();
-    let named: Vec<Field<'_>> = fields
+    let named: Vec<DataArray<'_>> = fields
         .iter()
         .zip(["gap", "p <&\">", "third"])
-        .map(|(values, name)| Field { name, unit: "m", values })
+        .map(|(values, name)| DataArray { name, unit: "m", values })
         .collect();
     let file = String::from_utf8(vti(3, 0.25, &named, Encoding::Base64).unwrap()).unwrap();
     assert!(file.contains("Name=\"p &lt;&amp;&quot;&gt; [m]\""));
@@ -72,8 +72,10 @@ fn appended(file: &str) -> (&str, Vec<usize>) {
 #[test]
 fn rectangles_with_undefined_points() {
     let (gap, height) = ([f64::NAN, 1.0, 2.0, 3.0, 4.0, 5.0], [1.0, 2.0, 3.0, f64::NAN, 5.0, 6.0]);
-    let fields =
-        [Field { name: "gap", unit: "", values: &gap }, Field { name: "height", unit: "", values: &height }];
+    let fields = [
+        DataArray { name: "gap", unit: "", values: &gap },
+        DataArray { name: "height", unit: "", values: &height },
+    ];
     let file = String::from_utf8(vti([3, 2], [6.0, 1.0], &fields, Encoding::Base64).unwrap()).unwrap();
     assert!(file.contains("WholeExtent=\"0 3 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"2 0.5 2\""), "{file}");
     assert!(file.contains("<DataArray type=\"UInt8\" Name=\"vtkGhostType\""));
@@ -88,7 +90,7 @@ fn rectangles_with_undefined_points() {
 #[test]
 fn decimals_are_exact_and_plain() {
     let values = [1e-9, 1.0 / 3.0, -2.5e12, 0.0];
-    let field = Field { name: "p", unit: "none", values: &values };
+    let field = DataArray { name: "p", unit: "none", values: &values };
     let file = String::from_utf8(vti(2, 1.0, &[field], Encoding::Ascii).unwrap()).unwrap();
     let data = file.split_once("Name=\"p\" format=\"ascii\">\n").unwrap().1.split_once("</").unwrap().0;
     let read: Vec<f64> = data.split_whitespace().map(|t| t.parse().unwrap()).collect();
@@ -98,7 +100,7 @@ fn decimals_are_exact_and_plain() {
 
 #[test]
 fn what_no_viewer_shows_is_refused() {
-    let field = |values| Field { name: "gap", unit: "", values };
+    let field = |values| DataArray { name: "gap", unit: "", values };
     let error = |cells: usize, size: f64, values| {
         vti(cells, size, &[field(values)], Encoding::Base64).unwrap_err().to_string()
     };
