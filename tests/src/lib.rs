@@ -28,10 +28,7 @@ mod problem;
 pub use deviation::{Deviation, Prescribed, deviation};
 pub use order::order;
 pub use problem::{Case, Problem, problems};
-pub use stability::{
-    SmallContact, embedded, every_contact_set, map, mirrored, relief, rotated, rough, rough_map, scene,
-    stretched, transposed,
-};
+pub use stability::{SmallContact, embedded, every_contact_set, map, relief, rough, rough_map, scene};
 
 /// The examples of README.md are tests too.
 #[cfg(doctest)]

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
-use analysis::{Bootstrap, Curves, Sample, Window, fit};
+use analysis::{Bootstrap, Curves, Sample, Window, fit_power_law};
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Scene, Surface};
 use mdr1d::Mdr1d;
@@ -26,7 +26,7 @@ fn exponent(model: &dyn ContactModel, n: f64, least: f64) -> f64 {
         })
         .collect();
     let curves = Curves::new(force, vec![row]).unwrap();
-    fit(&curves, &Window::default(), &Bootstrap::default()).unwrap().alpha
+    fit_power_law(&curves, &Window::PAPER, &Bootstrap::default()).unwrap().alpha
 }
 
 /// `F = 2 E* d a n/(n + 1)`, `d = kappa_n c a^n`.

@@ -22,7 +22,7 @@ const CELLS: [usize; 4] = [32, 64, 128, 256];
 fn periodic(surface: Surface) -> Scene {
     let mut scene = Scene::new(surface, 1.0);
     scene.effects.boundary = Boundary::Periodic;
-    scene.outputs.area = true;
+    (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
     scene
 }
 
@@ -205,8 +205,12 @@ fn what_a_periodic_square_takes_and_refuses() {
     assert!(apart.force == 0.0 && apart.approach.is_none());
     let first = contact.solve(Load::Force(0.0)).unwrap().mean_gap.unwrap();
     assert!(first > 1.0, "the mean depth below the highest point, in rms heights: {first}");
-    let mut free = model(16, 1e-8).prepare(&Scene::new(rough(None), 1.0), 0).unwrap();
-    assert_eq!(free.solve(Load::Force(1.0)).unwrap().mean_gap, None);
+    let mut free = Scene::new(rough(None), 1.0);
+    assert_eq!(model(16, 1e-8).prepare(&free, 0).unwrap().solve(Load::Force(1.0)).unwrap().mean_gap, None);
+    free.outputs.mean_gap = true;
+    assert!(matches!(model(16, 1e-8).prepare(&free, 0), Err(Error::Unsupported { .. })));
+    free.outputs.mean_gap = false;
+    let mut free = model(16, 1e-8).prepare(&free, 0).unwrap();
     assert!(matches!(free.solve(Load::MeanGap(1.0)), Err(Error::Unsupported { .. })));
     // Flat: full contact at once, and no stiffness to speak of.
     let flat = periodic(Surface::Flat { size: 1.0.into() });

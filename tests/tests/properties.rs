@@ -8,7 +8,7 @@ use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed};
 use stability::PlainSum;
-use tests::{map, mirrored, relief, rotated, rough_map, scene, transposed};
+use tests::{map, relief, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;
 /// The certificate bounds gaps weighted by pressure in rms heights; an approach is one weighted by the tangent's pressure, up to ten times
@@ -101,12 +101,12 @@ proptest! {
         let turn = |of: &HeightMap| {
             let mut of = of.clone();
             for _ in 0..turns {
-                of = rotated(&of).unwrap();
+                of = of.rotated();
             }
             if mirror {
-                of = mirrored(&of).unwrap();
+                of = of.mirrored();
             }
-            if transpose { transposed(&of).unwrap() } else { of }
+            if transpose { of.transposed() } else { of }
         };
         let load = any_load(&drawn, exponent, is_force);
         let (here, turned) = (solve(&drawn, load), turn(&drawn));

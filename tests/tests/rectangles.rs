@@ -26,6 +26,7 @@ fn prepared(map: &HeightMap, boundary: Boundary, method: Method) -> Box<dyn Prep
     let mut scene = scene(map.clone());
     (scene.outputs.pressure, scene.outputs.area) = (true, true);
     scene.effects.boundary = boundary;
+    scene.outputs.mean_gap = boundary == Boundary::Periodic;
     solver(method).prepare(&scene, 0).unwrap()
 }
 

@@ -251,7 +251,7 @@ mod tests {
 
         // Values that the words allow and the bench refuses.
         for line in ["bench --forces -1", "bench --forces 1:2"] {
-            assert!(bench(line).bench().unwrap_err().to_string().starts_with("--forces"), "{line}");
+            assert!(bench(line).bench().unwrap_err().to_string().starts_with("forces = "), "{line}");
         }
     }
 

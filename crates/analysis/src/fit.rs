@@ -10,17 +10,15 @@ use std::fmt;
 pub struct Window {
     /// Smallest F_bar.
     pub min_force_bar: f64,
-    /// Largest F_bar; the paper's upper limit of its power law is 0.086.
+    /// Largest F_bar.
     pub max_force_bar: f64,
     /// Every surface must have at least this many cells in contact (where the model has cells): fewer is the one-cell floor.
     pub min_contact_cells: usize,
 }
 
-impl Default for Window {
-    /// `F_bar <= 0.086`, at least 10 contact cells on every surface.
-    fn default() -> Self {
-        Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 }
-    }
+impl Window {
+    /// The paper's power-law range, `F_bar <= 0.086`, with at least 10 contact cells on every surface.
+    pub const PAPER: Self = Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 };
 }
 
 impl fmt::Display for Window {
@@ -104,7 +102,7 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 ///
 /// # Errors
 /// [`NoFit`] when the window holds fewer than three forces.
-pub fn fit(curves: &Curves, window: &Window, bootstrap: &Bootstrap) -> Result<PowerLaw, NoFit> {
+pub fn fit_power_law(curves: &Curves, window: &Window, bootstrap: &Bootstrap) -> Result<PowerLaw, NoFit> {
     let inside = points_inside(curves, window);
     let too_few = NoFit::TooFewPoints { points: inside.len(), window: *window };
     if inside.len() < 3 {
@@ -183,7 +181,7 @@ mod tests {
         #[test]
         fn a_power_law_body_gives_its_exponent(n in 0.2..4.0_f64, zeta in 0.1..10.0_f64) {
             // Exactly (data/paper/VALUES.md): dlnk/dlnF = 1/(n + 1) for f = c r^n.
-            let law = fit(&power(&[zeta], 1.0 / (n + 1.0), |_| None), &Window::default(), &Bootstrap::default());
+            let law = fit_power_law(&power(&[zeta], 1.0 / (n + 1.0), |_| None), &Window::PAPER, &Bootstrap::default());
             let law = law.unwrap();
             assert_relative_eq!(law.alpha, 1.0 / (n + 1.0), max_relative = ROUNDING);
             assert_relative_eq!(law.zeta, zeta, max_relative = ROUNDING);
@@ -193,7 +191,8 @@ mod tests {
 
     #[test]
     fn the_window_leaves_the_floor_out() {
-        let law = fit(&power(&[1.0, 2.0], 0.6, |j| Some(4 * j)), &Window::default(), &Bootstrap::default());
+        let law =
+            fit_power_law(&power(&[1.0, 2.0], 0.6, |j| Some(4 * j)), &Window::PAPER, &Bootstrap::default());
         let law = law.unwrap();
         assert_relative_eq!(law.force_bar_min, 10f64.powf(-4.5), max_relative = ROUNDING);
         // From j = 3 (12 cells, 10^-4.5) to j = 9 (10^-1.5 <= 0.086).
@@ -204,11 +203,11 @@ mod tests {
 
     #[test]
     fn too_few_points_are_a_reason_and_not_a_nan() {
-        let none = fit(&power(&[1.0], 0.5, |_| Some(9)), &Window::default(), &Bootstrap::default());
+        let none = fit_power_law(&power(&[1.0], 0.5, |_| Some(9)), &Window::PAPER, &Bootstrap::default());
         let reason = none.unwrap_err().to_string();
         assert!(reason.starts_with("0 forces in the window (F_bar <= 0.086, all"), "{reason}");
         let empty = Curves::new(vec![], vec![vec![]]).unwrap();
-        assert!(fit(&empty, &Window::default(), &Bootstrap::default()).is_err());
+        assert!(fit_power_law(&empty, &Window::PAPER, &Bootstrap::default()).is_err());
         assert_eq!(least_squares(&[]), None);
         assert_eq!(least_squares(&[(1.0, 1.0), (1.0, 2.0)]), None);
         assert_eq!(least_squares(&[(1.0, f64::NAN), (2.0, 2.0)]), None);
@@ -220,19 +219,19 @@ mod tests {
         let mut rows = full.surfaces().to_vec();
         rows[1][2] = None;
         let holed = Curves::new(full.force_bar().to_vec(), rows).unwrap();
-        let points = |c| fit(c, &Window::default(), &Bootstrap::default()).unwrap().points;
+        let points = |c| fit_power_law(c, &Window::PAPER, &Bootstrap::default()).unwrap().points;
         assert_eq!(points(&holed) + 1, points(&full));
     }
 
     #[test]
     fn errors_are_reproducible() {
         let curves = power(&[1.0, 1.2, 0.9, 1.4], 0.55, |_| Some(50));
-        let w = Window::default();
+        let w = Window::PAPER;
         let b = Bootstrap::default();
-        assert_eq!(fit(&curves, &w, &b), fit(&curves, &w, &b));
+        assert_eq!(fit_power_law(&curves, &w, &b), fit_power_law(&curves, &w, &b));
         assert_ne!(
-            fit(&curves, &w, &b).unwrap().zeta_se,
-            fit(&curves, &w, &Bootstrap { seed: 1, ..b }).unwrap().zeta_se
+            fit_power_law(&curves, &w, &b).unwrap().zeta_se,
+            fit_power_law(&curves, &w, &Bootstrap { seed: 1, ..b }).unwrap().zeta_se
         );
     }
 }

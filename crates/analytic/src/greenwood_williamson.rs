@@ -280,7 +280,7 @@ mod tests {
     fn scene(surface: SelfAffine) -> Scene {
         let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
         scene.effects.boundary = Boundary::Periodic;
-        scene.outputs.area = true;
+        (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
         scene
     }
 

@@ -63,6 +63,9 @@ mod testing;
 pub mod westergaard;
 
 pub use cattaneo_mindlin::CattaneoMindlin;
+// All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
+#[doc(no_inline)]
+pub use contact_model::*;
 pub use flat_punch::FlatPunch;
 pub use greenwood_williamson::GreenwoodWilliamson;
 pub use hertz::Hertz;

@@ -88,6 +88,7 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
         report.certificate.stiffness_error = stiffness.map(|_| self.law.stiffness_error());
         let gap = |p: f64| self.law.gap(p).and_then(|gap| nondimensional.approach(gap));
         let mean_gap = match load {
+            _ if !self.outputs.mean_gap => None,
             Load::MeanGap(gap) => Some(gap),
             // Some theories have none without load.
             _ => gap(pressure).ok(),

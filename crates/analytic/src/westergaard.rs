@@ -33,7 +33,7 @@ const WHOLE_WAVES: f64 = 1e-9;
 /// let surface = Surface::Sine { amplitude: 0.01, wavelength: 1.0, size: 1.0.into() };
 /// let mut scene = Scene::new(surface, 1.0);
 /// scene.effects.boundary = Boundary::Periodic;
-/// scene.outputs.area = true;
+/// (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
 /// let mut contact = Westergaard.prepare(&scene, 0)?;
 /// // Half of p* = 0.01 pi: half the square, as asin sqrt(1/2) = pi/4; mean gap 0.01 (1 - 1/2 - ln(2)/2).
 /// let load = Load::Force(0.005 * std::f64::consts::PI);
@@ -252,7 +252,7 @@ mod tests {
     fn scene(amplitude: f64, wavelength: f64, side: f64, modulus: f64) -> Scene {
         let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size: side.into() }, modulus);
         scene.effects.boundary = Boundary::Periodic;
-        scene.outputs.area = true;
+        (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
         scene
     }
 

@@ -101,6 +101,7 @@ fn a_wave_counts_along_x() {
     let scene = |size: Size| {
         let mut scene = Scene::new(Surface::Sine { amplitude: 0.01, wavelength: 0.5, size }, 2.0);
         scene.effects.boundary = Boundary::Periodic;
+        scene.outputs.mean_gap = true;
         scene
     };
     same(&Westergaard, scene, Load::Force(0.1));

@@ -14,8 +14,7 @@
 //! approximation. `L = sqrt(Lx Ly)` in `F_bar` and `k_bar`.
 //!
 //! ```
-//! use bem3d::Bem3d;
-//! use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};
+//! use bem3d::{Bem3d, ContactModel, Load, Scene, SelfAffine, Surface};
 //!
 //! let surface = Surface::SelfAffine(SelfAffine::new(2.4, [2.0, 1.0], 1.0)?); // D_f, sides, rms height
 //! let model = Bem3d { cells: 90, tolerance: 1e-6, ..Bem3d::default() }; // 90 x 45 cells
@@ -25,12 +24,12 @@
 //! let k_bar = normalisation.stiffness_bar(state.stiffness.unwrap());
 //! assert!(k_bar > 0.4 && k_bar < 1.0);
 //! assert!(state.report.certificate.meets(1e-6));
-//! # Ok::<(), contact_model::Error>(())
+//! # Ok::<(), bem3d::Error>(())
 //! ```
 //!
 //! With [`contact_model::Boundary::Periodic`] the rectangle repeats itself. G is then the exact periodic kernel of zero mean
 //! (the same pressure on the same cells, summed over all images); states have no approach but a mean gap
-//! ([`contact_model::PreparedContact::mean_gap`]), which can also be prescribed, and `k = -dF/d(mean gap)`. Full contact has
+//! ([`contact_model::ContactState::mean_gap`]), which can also be prescribed, and `k = -dF/d(mean gap)`. Full contact has
 //! no finite stiffness: it stays `None` there. Every number of cells is solved on its own period.
 //!
 //! # How
@@ -83,6 +82,9 @@ mod real;
 mod stiffness;
 mod tuning;
 
+// All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
+#[doc(no_inline)]
+pub use contact_model::*;
 pub use kernel::love;
 pub use model::{Bem3d, Method};
 

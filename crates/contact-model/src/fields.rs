@@ -1,7 +1,7 @@
 //! Fields on the cells of a map.
 
+use crate::cells::{Cells, Size};
 use crate::error::{Error, Result};
-use crate::grid::{Cells, Size};
 
 /// One number per cell of a rectangle, row-major (`values[iy * columns + ix]`: rows along y, as NPY arrays `[row, column]`).
 ///

@@ -29,10 +29,13 @@
 //! # Ok::<(), contact_model::Error>(())
 //! ```
 
+mod cells;
 mod error;
 mod fields;
-mod grid;
+mod height_map;
+mod heights;
 mod history;
+mod line;
 mod load;
 mod model;
 mod nondimensionalisation;
@@ -45,10 +48,12 @@ mod scene;
 mod state;
 mod work;
 
+pub use cells::{Cells, Size};
 pub use error::{Error, Result};
 pub use fields::{Field, Fields};
-pub use grid::{Cells, HeightMap, Line, Size};
+pub use height_map::HeightMap;
 pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
+pub use line::Line;
 pub use load::Load;
 pub use model::{ContactModel, PreparedContact, Source, Stop, never};
 pub use nondimensionalisation::Nondimensionalisation;

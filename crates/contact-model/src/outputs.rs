@@ -11,6 +11,8 @@ pub struct Outputs {
     pub stiffness: bool,
     /// Real contact area.
     pub area: bool,
+    /// Mean gap; with periodic boundaries only, where a state has no approach.
+    pub mean_gap: bool,
     /// Pressure field.
     pub pressure: bool,
     /// Displacement field.

@@ -1,7 +1,9 @@
 //! Physics: what is pressed, which effects count, what is asked.
 
+use crate::cells::Size;
 use crate::error::{Error, Result, non_negative, positive};
-use crate::grid::{HeightMap, Line, Size};
+use crate::height_map::HeightMap;
+use crate::line::Line;
 use crate::outputs::Outputs;
 use crate::pair::Pair;
 use crate::rheology::Rheology;
@@ -62,6 +64,10 @@ impl Scene {
         }
         self.effects.validate()?;
         self.outputs.conductance.resistivity()?;
+        if self.outputs.mean_gap && self.effects.boundary != Boundary::Periodic {
+            let what = "a mean gap: its states have an approach";
+            return Err(Error::unsupported("of free boundaries", what));
+        }
         self.surface.validate()
     }
 

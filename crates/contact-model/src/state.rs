@@ -21,8 +21,8 @@ pub struct ContactState {
     pub force: f64,
     /// Approach d from first touch; `None` with periodic boundaries.
     pub approach: Option<f64>,
-    /// Mean gap, with periodic boundaries: the distance of the mean planes, `mean(u + z) - d` over the defined points; `None` with free
-    /// boundaries and where a theory has none (without load).
+    /// Mean gap, where asked for: the distance of the mean planes, `mean(u + z) - d` over the defined points. `None` also where a theory has
+    /// none (without load).
     pub mean_gap: Option<f64>,
     /// Incremental stiffness k = dF/dd on the contact set of this state. With periodic boundaries -dF/d(mean gap).
     pub stiffness: Option<f64>,

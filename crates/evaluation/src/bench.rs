@@ -226,6 +226,7 @@ fn series(bench: &Bench) -> Result<Vec<Series>> {
             let mut scene = Scene::new(relief.clone(), 1.0);
             scene.effects.boundary = bench.boundary;
             scene.outputs.pressure = bench.pressure.is_some();
+            scene.outputs.mean_gap = bench.boundary == Boundary::Periodic;
             let (columns, rows) = (cells.columns, Some(cells.rows));
             let model = Bem3d { cells: columns, rows, tolerance, method: bench.method, ..Bem3d::default() };
             all.push(Series { surface: surface.clone(), drawn, cells, scene, seed, model });

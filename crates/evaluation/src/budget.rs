@@ -265,7 +265,7 @@ fn weights(series: &Series, inside: &[usize]) -> Vec<(f64, f64)> {
 
 /// 95 % half-widths of alpha and of ln zeta from the half-size grids, over the forces that both grids resolve.
 fn law_difference(series: &Series, half_grids: &Series) -> Option<(f64, f64)> {
-    let window = Window::default();
+    let window = Window::PAPER;
     let (fine, coarse) = (&series.curves, &half_grids.curves);
     let resolved =
         |s: &Series, j: usize| s.points[j].min_contact_cells.is_none_or(|c| c >= window.min_contact_cells);

@@ -108,7 +108,7 @@ mod tests {
             ["", "a", "-1", "0", "nan", "inf", "1:2", "2:1:5", "1:1:5", "1:2:1", "1:2:x", "1:2:3:4", "1,,2"]
         {
             let error = Forces::parse(bad).unwrap_err().to_string();
-            assert!(error.starts_with("--forces ") && error.contains("expected"), "{bad}: {error}");
+            assert!(error.starts_with("forces = ") && error.contains("expected"), "{bad}: {error}");
         }
         assert!(Forces::parse("1:2:99999999999").is_err());
     }

@@ -1,7 +1,7 @@
 //! What Figs. 3 and 7 have in common: the fitted power laws.
 
 use crate::measured::Measured;
-use analysis::{Bootstrap, NoFit, PowerLaw, Window, fit};
+use analysis::{Bootstrap, NoFit, PowerLaw, Window, fit_power_law};
 
 /// A fitted law, or why there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Law {
 
 /// Power laws of an ensemble, one per fractal dimension, over the standard window; errors by bootstrap over surfaces.
 pub fn laws(measured: &Measured) -> Vec<Law> {
-    laws_within(measured, &Window::default())
+    laws_within(measured, &Window::PAPER)
 }
 
 /// The same over another window.
@@ -24,7 +24,7 @@ pub fn laws_within(measured: &Measured, window: &Window) -> Vec<Law> {
     let law = |s: &crate::measured::Series| Law {
         model: measured.discretisation.name(),
         fractal_dimension: s.fractal_dimension,
-        fit: fit(&s.curves, window, &Bootstrap::default()),
+        fit: fit_power_law(&s.curves, window, &Bootstrap::default()),
     };
     measured.series.iter().map(law).collect()
 }

@@ -170,7 +170,7 @@ impl Run {
     /// let run = Run::new(&Request { preset: Preset::Paper, surfaces: Some(2), ..Request::default() })?;
     /// assert_eq!((run.cells, run.surfaces), (2049, 2));
     /// let none = Run::new(&Request { cells: Some(0), ..Request::default() });
-    /// assert_eq!(none.unwrap_err().to_string(), "--cells 0: expected a whole number from 3 to 65536");
+    /// assert_eq!(none.unwrap_err().to_string(), "cells = 0: expected a whole number from 3 to 65536");
     /// # Ok::<(), evaluation::Error>(())
     /// ```
     pub fn new(request: &Request) -> Result<Self> {
@@ -342,15 +342,15 @@ mod tests {
     fn bad_values_are_named() {
         let bad = |r: Request| Run::new(&r).unwrap_err().to_string();
         let base = Request::default;
-        assert!(bad(Request { surfaces: Some(0), ..base() }).starts_with("--surfaces 0: expected"));
-        assert!(bad(Request { lines: Some(0), ..base() }).starts_with("--lines 0"));
-        assert!(bad(Request { elements: Some(0), ..base() }).starts_with("--elements 0"));
-        assert!(bad(Request { tolerance: Some(f64::NAN), ..base() }).starts_with("--tolerance NaN"));
+        assert!(bad(Request { surfaces: Some(0), ..base() }).starts_with("surfaces = 0: expected"));
+        assert!(bad(Request { lines: Some(0), ..base() }).starts_with("lines = 0"));
+        assert!(bad(Request { elements: Some(0), ..base() }).starts_with("elements = 0"));
+        assert!(bad(Request { tolerance: Some(f64::NAN), ..base() }).starts_with("tolerance = NaN"));
         let d = |v| Request { fractal_dimensions: Some(v), ..base() };
-        assert_eq!(bad(d(vec![1.9])), "--fractal-dimensions 1.9: expected numbers in [2, 3]");
+        assert_eq!(bad(d(vec![1.9])), "fractal-dimensions = 1.9: expected numbers in [2, 3]");
         assert!(bad(d(vec![])).contains("at least one"));
         assert!(bad(d(vec![f64::NAN])).contains("NaN"));
-        assert!(bad(Request { forces: Some("-1".into()), ..base() }).starts_with("--forces -1"));
+        assert!(bad(Request { forces: Some("-1".into()), ..base() }).starts_with("forces = -1"));
     }
 
     #[test]

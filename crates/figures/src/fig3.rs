@@ -67,7 +67,7 @@ pub(crate) fn header(name: &str, run: &Run, solid: &Measured, line: &Measured) -
     describe(evaluation::header(run.command(&format!("reproduce-{name}"), &Flag::ALL)), run, &[solid, line])
         .with_note(format!(
             "fit: ln of the arithmetic mean of k_bar over ln F_bar, equal weights, {}",
-            Window::default()
+            Window::PAPER
         ))
         .with_note(format!(
             "errors: bootstrap over surfaces, {} resamples; curves of different D_f share phases, their errors are correlated",

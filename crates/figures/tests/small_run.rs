@@ -234,10 +234,10 @@ fn a_wish_is_met_or_refused_with_its_price() {
     let file = CsvFile::read(&dir.path().join("fig2-budget.csv")).unwrap();
     assert!(file.numbers("relative").unwrap().iter().all(|r| r.unwrap() <= 0.1));
     let refused = plan(1e-4, 60.0).unwrap_err().to_string();
-    assert!(refused.starts_with("--accuracy 0.010 %") && refused.contains("the budget buys"), "{refused}");
+    assert!(refused.starts_with("accuracy = 0.010 %") && refused.contains("the budget buys"), "{refused}");
     let given = Request { cells: Some(65), ..request };
     let refused =
         evaluation::plan(&given, requirements, AccuracyTarget { accuracy: 0.1, seconds: 1.0 }, &Silent)
             .unwrap_err();
-    assert!(refused.to_string().starts_with("--cells 65"), "{refused}");
+    assert!(refused.to_string().starts_with("cells = 65"), "{refused}");
 }

@@ -1,111 +1,44 @@
-//! Scenes: a short text file says what is pressed, what is asked and which effects count; only that is
-//! computed.
+//! Normal contact of elastic bodies with rough surfaces: one crate for the whole of it.
 //!
-//! # What it computes
+//! # Modules
 //!
-//! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`,
-//! `[outputs]`, `[models.NAME]` (numerics) and `[chance]`. [`Plan`] says what will be done, what will not and
-//! why, and what it will cost; [`run`] answers the scene with every model that it names and writes
-//! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`GeneratedSurface`]
-//! draws a surface into one. The mechanics are those of the model crates; the program `fractal-contact` is a
-//! thin layer on this library.
+//! | module | what it has |
+//! |---|---|
+//! | the root | scenes, loads, states, height maps and the traits of all models (`contact-model`), and the two solvers |
+//! | [`bem3d`] | exact contact in three dimensions by boundary elements, free or periodic |
+//! | [`mdr1d`] | the one-dimensional reduction; friction and rheology on top of any model ([`Equivalent`]) |
+//! | [`analytic`] | closed forms and theories: Hertz, JKR, Westergaard, Persson, Greenwood and Williamson, ... |
+//! | [`surface_gen`] | self-affine surfaces from a seed, and what is measured on a surface |
+//! | [`analysis`] | means, fits with errors, tables |
+//! | [`surface_io`] | measured surfaces from files, fields into files |
+//! | `scenes` | text files that name what is pressed and what is asked, and the program `fractal-contact` |
 //!
 //! ```
-//! use fractal_contact::{Options, Plan, SceneFile, run};
-//! use runs::{CsvFile, Silent};
+//! use fractal_contact::{Bem3d, ContactModel, HeightMap, Load, Scene, Surface};
 //!
-//! // Hertz: F = (4/3) E* sqrt(R) d^1.5 = 1 at d = 0.8254818122 (E* = R = 1).
-//! let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\", \"mdr1d\"]\nmodulus = 1\nforce = 1\n\
-//!             [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n";
-//! let scene = SceneFile::parse("hertz.toml".as_ref(), text.into())?;
-//! let out = std::env::temp_dir().join(format!("fractal-contact-doc-{}", std::process::id()));
-//! let options = Options { out: out.clone(), threads: 1, fresh: false };
-//! let outcome = run(&scene, &Plan::new(&scene)?, &options, &Silent, &contact_model::never)?;
-//! let approach = CsvFile::read(&outcome.files[0])?.numbers("approach")?;
-//! assert!(approach.iter().flatten().all(|d| (d - 0.8254818122).abs() < 1e-9));
-//! # std::fs::remove_dir_all(out).ok();
+//! // Two waves on a rectangle of 2 x 1, heights in the same unit; E* = 1.
+//! let wave = |k: usize, n: usize| (std::f64::consts::TAU * (k as f64 + 0.5) / n as f64).cos();
+//! let map = HeightMap::from_fn([64, 32], [2.0, 1.0], |ix, iy| 0.01 * (wave(ix, 64) + wave(iy, 32)))?;
+//! let scene = Scene::new(Surface::Heights(map.into()), 1.0);
+//! let mut contact = Bem3d::default().prepare(&scene, 0)?;
+//! let state = contact.solve(Load::Force(0.01))?;
+//! println!("k = {:?}, certificate: {}", state.stiffness, state.report.certificate);
 //! # Ok::<(), fractal_contact::Error>(())
 //! ```
 //!
-//! # Conventions
+//! # Features
 //!
-//! * Physical scenes give every dimensional number with its unit (`"70 GPa"`), results are in SI; `units =
-//!   "none"` takes plain numbers in any consistent units. A number without a unit is an error, as is a unit
-//!   where there should be none.
-//! * Loads are `force`, `force_bar` (F/(E* h L) with each surface's own measured rms height; rough surfaces
-//!   only), `mean_pressure`, `approach` or, with periodic boundaries, `mean_gap`: one number, a list, or `{
-//!   from, to, count }`, logarithmic unless `spacing = "linear"`. They are solved in the order given;
-//!   increasing is the fastest.
-//! * What depends on the path (friction, rheology) takes `[[scene.path]]` instead: ends of straight pieces,
-//!   each with `states` points; what a step does not name stays as it was.
-//! * `[scene.surface]` is random (`self_affine`) or a `file`; `[scene.body]` is a sphere, cone, ...; with
-//!   both, heights add.
-//! * `side = s` is a square, `size = [Lx, Ly]` a rectangle; L is `sqrt(Lx Ly)`, mean pressure and contact
-//!   fraction are over `Lx Ly`. Undefined points of a file are an error unless they are filled or kept
-//!   (`undefined = "no_contact"`). NPY arrays are `[row, column]`, rows along y.
-//! * Effects and outputs are off unless named. What a model lacks is an error before anything is computed,
-//!   with the models that have it.
-//! * A load outside a model's range has its row with the reason (`status` is `refused`), and the others go
-//!   on.
-//! * `results.csv` has the same bytes for any number of threads and after any interruption; times and the
-//!   machine are in `manifest.json`.
-//!
-//! # Errors
-//!
-//! A mistake in a scene is a [`Diagnostic`], and so is a note on a key with a new name: what, the line with the
-//! place underlined, and a remedy. Unknown keys are mistakes. The tables are read key by key rather than
-//! derived, because a derived reader knows neither units nor remedies, and loses the place of a value in an
-//! enum.
-//!
-//! # How accurate, how fast
-//!
-//! As the models are; the plan says so for each. Reading, planning and writing take milliseconds. The
-//! prediction of cost solves a few of the loads on a grid of a quarter of the cells (at most 257, at most 3
-//! s) and scales by measured exponents: within a factor of three.
-//!
-//! # What it does not do
-//!
-//! No mechanics of its own, no distribution over machines (a model on a surface is the unit that one would
-//! distribute), no means over surfaces (`figures` has them): one row per state.
+//! `scenes` (default): scenes and their files, pictures and result store. `program` (default): the program. `rayon` (default):
+//! surfaces are drawn on several threads. `faer` (default): small contact sets are solved by a Cholesky factor.
+//! Without default features the solvers and theories remain.
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 
-mod calibration;
-mod columns;
-mod cost;
-mod diagnostic;
-mod effects;
-mod entries;
-mod error;
-mod generated_surface;
-mod human_readable;
-mod info;
-mod loads;
-mod manifest;
-mod numerics;
-mod outcome;
-mod outputs;
-mod pictures;
-mod plan;
-mod run;
-mod scan;
-mod scene_file;
-mod scene_surface;
-mod unit;
-mod unit_job;
+pub use contact_model::*;
 
-pub use cost::Cost;
-pub use diagnostic::Diagnostic;
-pub use effects::{EffectLine, effect_lines};
-pub use entries::System;
-pub use error::{Error, Result};
-pub use generated_surface::GeneratedSurface;
-pub use info::info;
-pub use loads::{Loads, Prescribed, Request};
-pub use numerics::{AnyModel, Numerics};
-pub use outcome::{Options, Outcome};
-pub use outputs::{Format, RequestedOutputs};
-pub use plan::{ModelPlan, Plan, check};
-pub use run::{SharedStop, run};
-pub use scene_file::{Sampling, SceneFile};
-pub use scene_surface::SceneSurface;
+pub use bem3d::Bem3d;
+pub use mdr1d::{Equivalent, Mdr1d};
+pub use {analysis, analytic, bem3d, mdr1d, surface_gen, surface_io};
+
+#[cfg(feature = "scenes")]
+pub mod scenes;

@@ -4,7 +4,7 @@ mod arguments;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
-use fractal_contact::{Error, GeneratedSurface, Options, Plan, Result, SceneFile, info, run};
+use fractal_contact::scenes::{Error, GeneratedSurface, Options, Plan, Result, SceneFile, info, run};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
-use fractal_contact::{Plan, SceneFile};
+use fractal_contact::scenes::{Plan, SceneFile};
 use std::path::{Path, PathBuf};
 
 /// Lines and columns of a screen.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
-use fractal_contact::{Options, Plan, SceneFile, run};
+use fractal_contact::scenes::{Options, Plan, SceneFile, run};
 use runs::{Progress, Silent};
 use std::path::Path;
 use std::process::{Command, Output};

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
 use contact_model::{Cells, HeightMap, Size, Surface};
-use fractal_contact::{Options, Plan, SceneFile, SceneSurface, run};
+use fractal_contact::scenes::{Options, Plan, SceneFile, SceneSurface, run};
 use runs::{CsvFile, Silent};
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +12,7 @@ use std::process::Command;
 const ROUNDING: f64 = 1e-12;
 
 /// A scene of one file in a folder with `map.npy`: 3 rows of 4 heights, of which [1, 2] is undefined.
-fn of_file(keys: &str) -> fractal_contact::Result<SceneFile> {
+fn of_file(keys: &str) -> fractal_contact::scenes::Result<SceneFile> {
     let dir = tempfile::tempdir().unwrap();
     let mut heights: Vec<f64> = (0..12).map(f64::from).collect();
     heights[6] = f64::NAN;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
-use fractal_contact::{Options, Outcome, Plan, SceneFile, run};
+use fractal_contact::scenes::{Options, Outcome, Plan, SceneFile, run};
 use runs::{CsvFile, Silent};
 use std::path::{Path, PathBuf};
 

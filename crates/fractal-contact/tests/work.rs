@@ -4,7 +4,7 @@
 #![allow(unsafe_code)] // A counting allocator has to be one; it only counts and passes on.
 
 use contact_model::{ContactModel as _, Load};
-use fractal_contact::{Options, Outcome, Plan, SceneFile, run};
+use fractal_contact::scenes::{Options, Outcome, Plan, SceneFile, run};
 use runs::Silent;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;

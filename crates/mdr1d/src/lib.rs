@@ -48,7 +48,7 @@
 //! not a line.
 //!
 //! ```
-//! use contact_model::{ContactModel, Load, Scene, Surface};
+//! use mdr1d::{ContactModel, Load, Scene, Surface};
 //! // A sphere of radius 1 on a square of side 1 at d = 0.01: a = 0.1, k = 2 E* a, F = (4/3) E* a^3.
 //! let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 3.0);
 //! let mut contact = mdr1d::Mdr1d::default().prepare(&scene, 0)?;
@@ -74,7 +74,10 @@ mod tabulated;
 mod viscoelastic;
 
 pub use axisymmetric::Profile;
+// All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
 pub use bearing::{Bearing, Support};
+#[doc(no_inline)]
+pub use contact_model::*;
 pub use equivalent::Equivalent;
 pub use model::{Ensemble, Mdr1d};
 pub use partial_slip::PartialSlip;

@@ -13,7 +13,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub enum Error {
     /// A parameter that makes no sense.
     Parameter {
-        /// The parameter, as on the command line without its dashes.
+        /// The parameter; programs call their flags the same.
         name: &'static str,
         /// The value found.
         value: String,
@@ -72,7 +72,7 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Parameter { name, value, expected } => write!(f, "--{name} {value}: expected {expected}"),
+            Self::Parameter { name, value, expected } => write!(f, "{name} = {value}: expected {expected}"),
             Self::File { action, path, source } => write!(f, "cannot {action} {}: {source}", path.display()),
             Self::Content { path, reason } => write!(f, "{}: {reason}", path.display()),
             Self::Model { what, source } => write!(f, "{what}: {source}"),

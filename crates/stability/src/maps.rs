@@ -55,40 +55,6 @@ pub fn relief(kind: u8, cells: usize, noise: &[f64]) -> Result<HeightMap> {
     })
 }
 
-/// The map with x reversed.
-///
-/// # Errors
-/// None for a map.
-pub fn mirrored(of: &HeightMap) -> Result<HeightMap> {
-    let (n, h) = (of.columns(), of.heights());
-    map(n, of.length(), |x, y| h[y * n + n - 1 - x])
-}
-
-/// The map with x and y exchanged.
-///
-/// # Errors
-/// None for a map.
-pub fn transposed(of: &HeightMap) -> Result<HeightMap> {
-    let (n, h) = (of.columns(), of.heights());
-    map(n, of.length(), |x, y| h[x * n + y])
-}
-
-/// The map turned by 90 degrees.
-///
-/// # Errors
-/// None for a map.
-pub fn rotated(of: &HeightMap) -> Result<HeightMap> {
-    mirrored(&transposed(of)?)
-}
-
-/// The map with lateral lengths times `lateral` and heights times `vertical`.
-///
-/// # Errors
-/// Those of [`HeightMap::new`] where a factor is not positive or overflows.
-pub fn stretched(of: &HeightMap, lateral: f64, vertical: f64) -> Result<HeightMap> {
-    HeightMap::new(of.columns(), of.length() * lateral, of.heights().iter().map(|h| h * vertical).collect())
-}
-
 /// The map with its cells unchanged in the middle of `factor` times as many a side, all new ones at `height`.
 ///
 /// # Errors

@@ -4,6 +4,7 @@ use crate::phases::{Stream, Turns};
 use crate::spectrum::MapSpectrum;
 use crate::turn::Circle;
 use contact_model::{Cells, Error, HeightMap, Result, SelfAffine, Size};
+#[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner};
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
@@ -105,19 +106,23 @@ impl MapGenerator {
             gathered: vec![C::new(0.0, 0.0); ROWS * (nx / 2 + 1)],
             fft: self.along_x.make_scratch_vec(),
         };
+        #[cfg(feature = "rayon")]
         if parallel {
             columns.par_chunks_exact_mut(ny).enumerate().for_each_init(column_scratch, fill);
             heights
                 .par_chunks_mut(ROWS * nx)
                 .enumerate()
                 .for_each_init(row_scratch, |scratch, (i, rows)| self.rows(&columns, i, rows, scratch));
-        } else {
-            let mut scratch = column_scratch();
-            columns.chunks_exact_mut(ny).enumerate().for_each(|item| fill(&mut scratch, item));
-            let mut scratch = row_scratch();
-            for (i, rows) in heights.chunks_mut(ROWS * nx).enumerate() {
-                self.rows(&columns, i, rows, &mut scratch);
-            }
+            drop(columns);
+            return HeightMap::new(self.cells, self.size, heights);
+        }
+        #[cfg(not(feature = "rayon"))]
+        let _ = parallel;
+        let mut scratch = column_scratch();
+        columns.chunks_exact_mut(ny).enumerate().for_each(|item| fill(&mut scratch, item));
+        let mut scratch = row_scratch();
+        for (i, rows) in heights.chunks_mut(ROWS * nx).enumerate() {
+            self.rows(&columns, i, rows, &mut scratch);
         }
         drop(columns);
         HeightMap::new(self.cells, self.size, heights)

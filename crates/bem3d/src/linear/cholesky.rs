@@ -2,15 +2,33 @@
 
 use crate::geometry::CellSet;
 use crate::kernel::KernelTable;
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Mat, Side};
+#[cfg(feature = "faer")]
+use faer::{Mat, Side, linalg::solvers::Llt, linalg::solvers::Solve};
+
+/// There is no factor without the feature `faer`: every set is then solved by iteration.
+#[cfg(not(feature = "faer"))]
+#[derive(Debug)]
+pub enum Factor {}
+
+#[cfg(not(feature = "faer"))]
+impl Factor {
+    pub fn new(_: &KernelTable, _: &CellSet) -> Option<Self> {
+        None
+    }
+
+    pub fn solve_pair(&self, _: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        match *self {}
+    }
+}
 
 /// The factor of G on one set.
+#[cfg(feature = "faer")]
 #[derive(Debug)]
 pub struct Factor {
     factor: Llt<f64>,
 }
 
+#[cfg(feature = "faer")]
 impl Factor {
     /// Assembles and factors G on a set of n cells; `None` if rounding makes it indefinite (never seen).
     ///
@@ -33,7 +51,7 @@ impl Factor {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "faer"))]
 mod tests {
     use super::*;
     use crate::geometry::Grid;

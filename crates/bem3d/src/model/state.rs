@@ -42,7 +42,7 @@ impl Prepared {
         report.contact_cells = Some(solved.contact.len());
         report.certificate = certificate;
         let approach = (!periodic).then(|| units.approach(solved.d)).transpose()?;
-        let mean_gap = periodic.then(|| units.approach(self.gap_of(&solved))).transpose()?;
+        let mean_gap = self.outputs.mean_gap.then(|| units.approach(self.gap_of(&solved))).transpose()?;
         let stiffness = (tangent.as_ref())
             .map(|t| units.stiffness(PI * t.value * self.magnification(t.value)))
             .transpose()?;
@@ -133,7 +133,7 @@ impl Prepared {
         let mut report = SolveReport::exact("no contact");
         report.contact_cells = Some(0);
         report.work = Work::of(0, fields.as_ref());
-        let mean_gap = self.is_periodic().then(|| self.nondimensional.approach(self.mean)).transpose()?;
+        let mean_gap = self.outputs.mean_gap.then(|| self.nondimensional.approach(self.mean)).transpose()?;
         ContactState::new(0.0, report)
             .with_approach((!self.is_periodic()).then_some(0.0))
             .with_mean_gap(mean_gap)

@@ -205,7 +205,7 @@ fn case(seed: u64, number: u64) -> Result<Case> {
         let truth = |cells| {
             let exact = solve(Discretisation::Bem3d { cells, tolerance: REFERENCE }, d, surface, force_bar)?;
             exact.stiffness_bar.filter(|_| exact.converged()).ok_or_else(|| {
-                Error::parameter("cases", number, "a reference that meets its tolerance (another --seed)")
+                Error::parameter("cases", number, "a reference that meets its tolerance (another seed)")
             })
         };
         return Ok(Case {

@@ -121,7 +121,7 @@ pub fn plan(
     ];
     for (name, value) in given {
         if let Some(value) = value {
-            return Err(Error::parameter(name, value, "nothing beside --accuracy, which chooses it"));
+            return Err(Error::parameter(name, value, "nothing beside an accuracy target, which chooses it"));
         }
     }
     let run = &Run::new(request)?;
@@ -241,7 +241,7 @@ fn choose(run: &Run, pilots: &[Pilot], target: AccuracyTarget) -> Result<Plan> {
         "accuracy",
         format!("{:.3} %", 100.0 * target.accuracy),
         format!(
-            "a target within --budget {}: this one takes {costs}, the budget {buys}; the hardest load is {hardest} (--forces leaves loads out)",
+            "a target within the time budget of {}: this one takes {costs}, the budget {buys}; the hardest load is {hardest}",
             duration(target.seconds)
         ),
     ))
@@ -509,7 +509,7 @@ mod tests {
         assert!(plan.accuracy <= 0.1 && plan.lines.len() == 1 && plan.run.surfaces > 2);
         let target = AccuracyTarget { accuracy: 1e-3, seconds: 60.0 };
         let refused = choose(&run, &pilots, target).unwrap_err().to_string();
-        assert!(refused.starts_with("--accuracy 0.100 %") && refused.contains("budget buys"), "{refused}");
+        assert!(refused.starts_with("accuracy = 0.100 %") && refused.contains("budget buys"), "{refused}");
     }
 
     #[test]

@@ -127,7 +127,7 @@ pub(super) fn collapse(solid: &Measured) -> Vec<Claim> {
         })
         .collect();
     let all: Vec<Vec<CollapsePoint>> = curves.iter().map(|c| c.1.clone()).collect();
-    let window = Window::default();
+    let window = Window::PAPER;
     let names = [
         "collapse of Fig. 4: scatter of ln F_tilde between D_f",
         "collapse of Fig. 4: rms distance from Eq. 12",

@@ -68,8 +68,8 @@ pub(super) fn line_against_solid(solid: &Measured, line: &Measured) -> Vec<Claim
 
 /// The 1D power law "down to 1e-7": the exponent of the lowest decades is that of the others.
 pub(super) fn down_to_small_forces(line: &Measured) -> Vec<Claim> {
-    let low = Window { min_force_bar: 1e-7 * (1.0 - 1e-9), max_force_bar: 1e-4, ..Window::default() };
-    let high = Window { min_force_bar: 1e-4, ..Window::default() };
+    let low = Window { min_force_bar: 1e-7 * (1.0 - 1e-9), max_force_bar: 1e-4, ..Window::PAPER };
+    let high = Window { min_force_bar: 1e-4, ..Window::PAPER };
     laws_within(line, &low)
         .iter()
         .zip(&laws_within(line, &high))

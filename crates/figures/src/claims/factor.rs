@@ -1,7 +1,7 @@
 //! zeta and the crossing point: Eq. 11, Fig. 7.
 
 use super::common::{alpha_allowed, label, usable};
-use analysis::{Bootstrap, PowerLaw, Window, crossing as cross, fit};
+use analysis::{Bootstrap, PowerLaw, Window, crossing as cross, fit_power_law};
 use analytic::{F_BAR_UL, K_BAR_UL};
 use evaluation::Claim;
 use evaluation::laws;
@@ -103,7 +103,7 @@ pub(super) fn crossing(solid: &Measured) -> Vec<Claim> {
     let redrawn = |s: &Series, l: &PowerLaw, draw: &[usize]| {
         let window =
             Window { min_force_bar: l.force_bar_min, max_force_bar: l.force_bar_max, min_contact_cells: 0 };
-        fit(&s.curves.resampled(draw), &window, &once).ok().map(|l| (l.alpha, l.zeta))
+        fit_power_law(&s.curves.resampled(draw), &window, &once).ok().map(|l| (l.alpha, l.zeta))
     };
     let surfaces = solid.series.first().map_or(0, |s| s.units.len());
     let error = |pick: fn(&analysis::Crossing) -> f64| {

@@ -1,7 +1,7 @@
 //! What the curves say about the paper's belief.
 
 use super::study::{Curve, Point, TwoCases};
-use analysis::{Bootstrap, Curves, Window, fit};
+use analysis::{Bootstrap, Curves, Window, fit_power_law};
 use contact_model::Boundary;
 use evaluation::FLOOR_CELLS;
 use evaluation::{Claim, plain};
@@ -28,12 +28,7 @@ pub(super) fn claim(study: &TwoCases, curve: &Curve, means: &Curves) -> Option<C
     let case = curve.case;
     let (window, expected, tolerance, why) = if !case.rolls_off {
         let expected = analytic::exponent_fit(study.fractal_dimension);
-        (
-            Window::default(),
-            expected,
-            0.05,
-            "Sec. II: a power law wherever there is no cut-off; Eq. 6".to_owned(),
-        )
+        (Window::PAPER, expected, 0.05, "Sec. II: a power law wherever there is no cut-off; Eq. 6".to_owned())
     } else if case.boundary == Boundary::Periodic {
         let window = loads_between(curve);
         let [low, high] = AREAS;
@@ -44,7 +39,7 @@ pub(super) fn claim(study: &TwoCases, curve: &Curve, means: &Curves) -> Option<C
         return None;
     };
     let name = format!("exponent of k over F, {}", case.name());
-    Some(match fit(means, &window, &Bootstrap::default()) {
+    Some(match fit_power_law(means, &window, &Bootstrap::default()) {
         Ok(law) => {
             Claim::within(name, expected, law.alpha, law.alpha_se, tolerance, format!("{why}; {window}"))
         }
@@ -65,7 +60,7 @@ pub(super) fn loads_between(curve: &Curve) -> Window {
     Window {
         min_force_bar: inside().fold(f64::INFINITY, f64::min),
         max_force_bar: inside().fold(0.0, f64::max),
-        ..Window::default()
+        ..Window::PAPER
     }
 }
 

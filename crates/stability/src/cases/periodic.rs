@@ -26,6 +26,7 @@ pub(super) const CASES: [Case; 2] = [
 fn prepare(map: &HeightMap) -> Result<Box<dyn PreparedContact>> {
     let mut scene = watched(map);
     scene.effects.boundary = Boundary::Periodic;
+    scene.outputs.mean_gap = true;
     tight().prepare(&scene, 0)
 }
 

@@ -3,7 +3,7 @@
 use super::few::faces;
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, pressure, stiffness};
-use crate::maps::{map, mirrored, rough_map, transposed};
+use crate::maps::{map, rough_map};
 use crate::plain::PlainSum;
 use crate::press::{against_relaxation, press, press_both, tight};
 use contact_model::{ContactModel, HeightMap, Load, Result};
@@ -130,7 +130,7 @@ fn symmetric(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             for force in [1e-9, 1e-4, 1e-2, 1.0] {
                 let state = press_both(ledger, &map, Load::Force(force))?;
                 let p = HeightMap::new(cells, 1.0, pressure(&state)?.to_vec())?;
-                for turned in [mirrored(&p)?, transposed(&p)?] {
+                for turned in [p.mirrored(), p.transposed()] {
                     let worst = p
                         .heights()
                         .iter()

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, stiffness};
-use crate::maps::{map, rough_map, stretched};
+use crate::maps::{map, rough_map};
 use crate::press::{tight, watched};
 use contact_model::{ContactModel, ContactState, Error, HeightMap, Load, Result};
 
@@ -78,7 +78,7 @@ fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let here = rough_map(2.4, effort.pick(32, 128), 9)?;
     for exponent in [-500, 500] {
         let factor = 2_f64.powi(exponent);
-        let there = stretched(&here, 1.0, factor)?;
+        let there = here.scaled(1.0, factor)?;
         for size in [1e-6, 0.3, 20.0] {
             for (here_load, there_load) in [
                 (Load::Force(size), Load::Force(size * factor)),
@@ -95,7 +95,7 @@ fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 fn neutral(ledger: &mut Ledger, effort: Effort, normalisation: &[(f64, f64, f64)]) -> Result<()> {
     let here = rough_map(2.4, effort.pick(33, 129), 5)?;
     for &(modulus, lateral, vertical) in normalisation {
-        let there = stretched(&here, lateral, vertical)?;
+        let there = here.scaled(lateral, vertical)?;
         for size in [1e-6, 0.1, 20.0] {
             let force = modulus * lateral * vertical;
             for (here_load, there_load) in [
@@ -136,7 +136,7 @@ fn beyond(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for (modulus, lateral, vertical) in
         [(1e150, 1e150, 1e150), (1e-150, 1e-150, 1e-150), (1e160, 1e160, 1e-160), (1e300, 1e20, 1.0)]
     {
-        let there = stretched(&map, lateral, vertical)?;
+        let there = map.scaled(lateral, vertical)?;
         let found = solve(&there, modulus, Load::Approach(vertical));
         let honest = match &found {
             Err(Error::Domain { value, .. }) => !value.is_finite() || value.abs() <= 0.0,
@@ -146,7 +146,7 @@ fn beyond(ledger: &mut Ledger, _: Effort) -> Result<()> {
         ledger.count(usize::from(!honest));
     }
     // The force alone is beyond f64 where the stiffness is not asked for; d and k of a light one are fine.
-    let there = stretched(&map, 1e100, 1e100)?;
+    let there = map.scaled(1e100, 1e100)?;
     let state = solve(&there, 1e100, Load::Force(1e295))?;
     let here = solve(&map, 1.0, Load::Force(1e-5))?;
     let same = (approach(&state)? / 1e100 / approach(&here)? - 1.0).abs() < NEUTRAL

@@ -1,10 +1,10 @@
 //! `manifest.json`: the whole scene, what it was run with, what it cost, what to cite.
 
-use crate::cost::Cost;
-use crate::error::Result;
-use crate::outcome::{Options, Outcome};
-use crate::plan::Plan;
-use crate::scene_file::SceneFile;
+use crate::scenes::cost::Cost;
+use crate::scenes::error::Result;
+use crate::scenes::outcome::{Options, Outcome};
+use crate::scenes::plan::Plan;
+use crate::scenes::scene_file::SceneFile;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -41,7 +41,7 @@ pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: 
     let whole = json!({
         "project": "fractal-contact",
         "version": env!("CARGO_PKG_VERSION"),
-        "formats": { "scene": crate::unit::FORMAT, "bem3d": bem3d::FORMAT },
+        "formats": { "scene": crate::scenes::unit::FORMAT, "bem3d": bem3d::FORMAT },
         "scene": scene.text,
         "seed": scene.sampling.seed,
         "surfaces": scene.sampling.surfaces,

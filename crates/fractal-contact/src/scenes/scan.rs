@@ -1,7 +1,7 @@
 //! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
 
-use crate::diagnostic::Diagnostic;
-use crate::entries::{Entries, Entry, Lengths, Read, System};
+use crate::scenes::diagnostic::Diagnostic;
+use crate::scenes::entries::{Entries, Entry, Lengths, Read, System};
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{

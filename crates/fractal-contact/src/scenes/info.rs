@@ -1,8 +1,8 @@
 //! What a file holds: a scene, a surface or a table of results.
 
-use crate::error::{Error, Result};
-use crate::plan::Plan;
-use crate::scene_file::SceneFile;
+use crate::scenes::error::{Error, Result};
+use crate::scenes::plan::Plan;
+use crate::scenes::scene_file::SceneFile;
 use std::f64::consts::TAU;
 use std::path::Path;
 use surface_io::{Preprocessing, ReadOptions, Scan, Undefined, describe};
@@ -13,7 +13,7 @@ use surface_io::{Preprocessing, ReadOptions, Scan, Undefined, describe};
 /// `declared` is what the caller says about a surface's file; undefined points are told, not filled.
 ///
 /// # Errors
-/// As [`SceneFile::read`] and [`crate::check`] for scenes; [`Error::Run`] and [`Error::Surface`] with
+/// As [`SceneFile::read`] and [`crate::scenes::check`] for scenes; [`Error::Run`] and [`Error::Surface`] with
 /// what is wrong with the file.
 pub fn info(path: &Path, declared: &ReadOptions) -> Result<String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();

@@ -1,13 +1,13 @@
 //! A scene as it stands in a file.
 
-use crate::diagnostic::Diagnostic;
-use crate::effects::read_effects;
-use crate::entries::{Entries, Entry, Read, System};
-use crate::error::Result;
-use crate::loads::{Prescribed, Request, read_request};
-use crate::numerics::{MOST_CELLS, Numerics, read_models};
-use crate::outputs::{RequestedOutputs, read_outputs};
-use crate::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
+use crate::scenes::diagnostic::Diagnostic;
+use crate::scenes::effects::read_effects;
+use crate::scenes::entries::{Entries, Entry, Read, System};
+use crate::scenes::error::Result;
+use crate::scenes::loads::{Prescribed, Request, read_request};
+use crate::scenes::numerics::{MOST_CELLS, Numerics, read_models};
+use crate::scenes::outputs::{RequestedOutputs, read_outputs};
+use crate::scenes::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
 use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Pair, Rheology, Scene, Surface};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -215,9 +215,8 @@ fn syntax(error: &toml::de::Error) -> Diagnostic {
 
 fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let Some(scene) = root.table("scene")? else {
-        return Err(Diagnostic::new("there is no [scene]").with_help(
-            "a scene begins with [scene]: `models`, `modulus` and a load; `fractal-contact --help` shows one",
-        ));
+        return Err(Diagnostic::new("there is no [scene]")
+            .with_help("a scene begins with [scene]: `models`, `modulus` and a load"));
     };
     let system = scene
         .find("units")

@@ -1,6 +1,6 @@
 //! The models by name, and what `[models.NAME]` says about their numerics.
 
-use crate::entries::{Entries, Entry, Read, suggestion};
+use crate::scenes::entries::{Entries, Entry, Read, suggestion};
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,

@@ -1,13 +1,13 @@
 //! One model and one surface under all loads, or along the whole path.
 
-use crate::columns::{self, State};
-use crate::error::{Error, Result};
-use crate::loads::Request;
-use crate::numerics::{AnyModel, Numerics};
-use crate::outputs::Format;
-use crate::scene_file::SceneFile;
-use crate::scene_file::cells;
-use crate::scene_surface::SceneSurface;
+use crate::scenes::columns::{self, State};
+use crate::scenes::error::{Error, Result};
+use crate::scenes::loads::Request;
+use crate::scenes::numerics::{AnyModel, Numerics};
+use crate::scenes::outputs::Format;
+use crate::scenes::scene_file::SceneFile;
+use crate::scenes::scene_file::cells;
+use crate::scenes::scene_surface::SceneSurface;
 use analysis::Value;
 use contact_model::{Cells, ContactState, Field, Fields, Load, Scene, Step, Stop, Surface};
 use runs::fnv1a_128;
@@ -280,9 +280,9 @@ fn on_defined_points<'a>(name: &str, field: &'a Field, scene: &SceneFile) -> Cow
 
 fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[f64]) -> Result<()> {
     let unit = match (scene.system, name) {
-        (crate::System::None, _) => "",
-        (crate::System::Si, "pressure") => "Pa",
-        (crate::System::Si, _) => "m",
+        (crate::scenes::System::None, _) => "",
+        (crate::scenes::System::Si, "pressure") => "Pa",
+        (crate::scenes::System::Si, _) => "m",
     };
     let field = surface_io::DataArray { name, unit, values };
     let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
@@ -303,7 +303,7 @@ pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics) -> contact_model::Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Loads, Prescribed, SceneSurface};
+    use crate::scenes::{Loads, Prescribed, SceneSurface};
     use contact_model::{HeightMap, SolveReport};
     use std::sync::Arc;
 

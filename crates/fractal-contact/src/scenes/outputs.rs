@@ -1,6 +1,6 @@
 //! `[outputs]`: what is not asked for is not computed and not stored.
 
-use crate::entries::{Entries, Entry, Read, System};
+use crate::scenes::entries::{Entries, Entry, Read, System};
 use contact_model::{Conductance, Outputs};
 use surface_io::Dimension;
 
@@ -31,8 +31,6 @@ impl Format {
 pub struct RequestedOutputs {
     /// Of the models.
     pub outputs: Outputs,
-    /// The mean gap of periodic contacts.
-    pub mean_gap: bool,
     /// Formats of the pressure field.
     pub pressure: Vec<Format>,
     /// Formats of the displacement field.
@@ -46,14 +44,14 @@ pub struct RequestedOutputs {
 impl RequestedOutputs {
     /// Every output with whether it is asked for.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
-        let Outputs { stiffness, area, pressure, displacement, gap, contact_patches, conductance } =
+        let Outputs { stiffness, area, mean_gap, pressure, displacement, gap, contact_patches, conductance } =
             self.outputs;
         vec![
             ("stiffness", stiffness),
             ("area", area),
             ("conductance", conductance != Conductance::Off),
             ("contact_patches", contact_patches),
-            ("mean_gap", self.mean_gap),
+            ("mean_gap", mean_gap),
             ("pressure", pressure),
             ("displacement", displacement),
             ("gap", gap),
@@ -71,7 +69,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     outputs.stiffness = flag("stiffness")?;
     outputs.area = flag("area")?;
     outputs.contact_patches = flag("contact_patches")?;
-    requested.mean_gap = flag("mean_gap")?;
+    requested.outputs.mean_gap = flag("mean_gap")?;
     requested.curves = flag("curves")?;
     let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
     requested.pressure = formats("pressure")?;

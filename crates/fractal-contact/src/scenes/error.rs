@@ -1,6 +1,6 @@
 //! The one error type of this crate.
 
-use crate::diagnostic::Diagnostic;
+use crate::scenes::diagnostic::Diagnostic;
 use std::fmt;
 
 /// Result of everything in this crate.

@@ -1,14 +1,14 @@
 //! What will be computed, what will not and why, and what it will cost.
 
-use crate::calibration;
-use crate::cost::Cost;
-use crate::diagnostic::Diagnostic;
-use crate::effects::{EffectLine, effect_lines};
-use crate::error::Result;
-use crate::human_readable::{memory, number, time};
-use crate::numerics::Numerics;
-use crate::scene_file::{SceneFile, cells};
-use crate::unit::{Unit, probe};
+use crate::scenes::calibration;
+use crate::scenes::cost::Cost;
+use crate::scenes::diagnostic::Diagnostic;
+use crate::scenes::effects::{EffectLine, effect_lines};
+use crate::scenes::error::Result;
+use crate::scenes::human_readable::{memory, number, time};
+use crate::scenes::numerics::Numerics;
+use crate::scenes::scene_file::{SceneFile, cells};
+use crate::scenes::unit::{Unit, probe};
 use contact_model::Cells;
 use std::fmt;
 
@@ -55,18 +55,18 @@ pub struct Plan {
 /// Checks that every model can answer the scene, on small grids.
 ///
 /// # Errors
-/// [`crate::Error::Scene`] at the name of the first model that cannot, with those that can.
+/// [`crate::scenes::Error::Scene`] at the name of the first model that cannot, with those that can.
 pub fn check(scene: &SceneFile) -> Result<()> {
+    if scene.requested.outputs.mean_gap && scene.effects.boundary != contact_model::Boundary::Periodic {
+        let diagnostic = Diagnostic::new("a mean gap is asked for, but the boundary is free")
+            .with_help("add `boundary = \"periodic\"` to [effects], or ask for the `gap` field");
+        return Err(scene.at_output("mean_gap", diagnostic).into());
+    }
     for model in 0..scene.models.len() {
         let unit = Unit { model, surface: 0 };
         if let Err(error) = unit.probe(scene) {
             return Err(scene.at_model(model, refused(scene, &error)).into());
         }
-    }
-    if scene.requested.mean_gap && scene.effects.boundary != contact_model::Boundary::Periodic {
-        let diagnostic = Diagnostic::new("a mean gap is asked for, but the boundary is free")
-            .with_help("add `boundary = \"periodic\"` to [effects], or ask for the `gap` field");
-        return Err(scene.at_output("mean_gap", diagnostic).into());
     }
     Ok(())
 }
@@ -114,8 +114,8 @@ impl Plan {
             notes: scene.notes.clone(),
             modulus: scene.modulus,
             units: match scene.system {
-                crate::System::Si => "SI (m, N, Pa, s)",
-                crate::System::None => "none: the scene's own",
+                crate::scenes::System::Si => "SI (m, N, Pa, s)",
+                crate::scenes::System::None => "none: the scene's own",
             },
             states: scene.request.count(),
             surfaces: scene.sampling.surfaces,

@@ -1,7 +1,7 @@
 //! Curves drawn from the rows of the table.
 
-use crate::error::Result;
-use crate::scene_file::SceneFile;
+use crate::scenes::error::Result;
+use crate::scenes::scene_file::SceneFile;
 use analysis::{Table, Value};
 use plots::{Chart, Curve};
 use std::path::{Path, PathBuf};

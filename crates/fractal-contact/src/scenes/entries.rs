@@ -1,6 +1,6 @@
 //! A table of a scene, read key by key: what nobody asks for is an error.
 
-use crate::diagnostic::Diagnostic;
+use crate::scenes::diagnostic::Diagnostic;
 use std::cell::RefCell;
 use std::ops::Range;
 use surface_io::{Dimension, Quantity};

@@ -1,8 +1,8 @@
 //! The columns of `results.csv`: those that a scene asks for.
 
-use crate::entries::System;
-use crate::loads::{Prescribed, Request};
-use crate::scene_file::SceneFile;
+use crate::scenes::entries::System;
+use crate::scenes::loads::{Prescribed, Request};
+use crate::scenes::scene_file::SceneFile;
 use analysis::{Column, Value};
 use contact_model::{Boundary, Conductance, ContactState, Friction, HistoryState, Normalisation, Status};
 
@@ -84,7 +84,7 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
             normal(s, |n| n.approach)
         }));
     }
-    if scene.requested.mean_gap {
+    if scene.requested.outputs.mean_gap {
         list.push(kind("mean_gap", "m", "mean of the gap over the area", |s| normal(s, |n| n.mean_gap)));
     }
     if scene.is_history() {

@@ -1,10 +1,10 @@
 //! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
 
-use crate::diagnostic::Diagnostic;
-use crate::entries::{Entries, Lengths, Read, System};
-use crate::human_readable::number;
-use crate::numerics::Numerics;
-use crate::scan;
+use crate::scenes::diagnostic::Diagnostic;
+use crate::scenes::entries::{Entries, Lengths, Read, System};
+use crate::scenes::human_readable::number;
+use crate::scenes::numerics::Numerics;
+use crate::scenes::scan;
 use contact_model::{Amplitude, Error, HeightMap, Result, SelfAffine, Size, Surface};
 use std::f64::consts::PI;
 use std::path::Path;
@@ -232,7 +232,7 @@ fn read_size(table: &Entries<'_>, system: System) -> Read<Size> {
     }
 }
 
-fn within(entry: &crate::entries::Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
+fn within(entry: &crate::scenes::entries::Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
     if (low..=high).contains(&value) {
         Ok(value)
     } else {

@@ -1,7 +1,7 @@
 //! `[effects]`: each off unless named.
 
-use crate::entries::{Entries, Entry, Read, System};
-use crate::human_readable::number;
+use crate::scenes::entries::{Entries, Entry, Read, System};
+use crate::scenes::human_readable::number;
 use contact_model::{Adhesion, Boundary, Effects, Friction, PronySeries, Relaxing, Rheology};
 use surface_io::Dimension;
 

@@ -1,10 +1,10 @@
 //! The cost of a run, predicted from small solves of the same kind.
 
-use crate::cost::Cost;
-use crate::loads::Request;
-use crate::numerics::{AnyModel, Numerics};
-use crate::scene_file::SceneFile;
-use crate::scene_file::cells;
+use crate::scenes::cost::Cost;
+use crate::scenes::loads::Request;
+use crate::scenes::numerics::{AnyModel, Numerics};
+use crate::scenes::scene_file::SceneFile;
+use crate::scenes::scene_file::cells;
 use contact_model::{Cells, HeightMap, Surface};
 use std::time::{Duration, Instant};
 

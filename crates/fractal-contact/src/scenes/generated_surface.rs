@@ -1,6 +1,6 @@
 //! A generated surface as a file.
 
-use crate::error::{Error, Result};
+use crate::scenes::error::{Error, Result};
 use contact_model::{Amplitude, Cells, SelfAffine, Size};
 use std::f64::consts::PI;
 use std::path::Path;
@@ -52,16 +52,16 @@ impl GeneratedSurface {
             }
             Ok(quantity.value())
         };
-        let [x, y] = self.size.parse::<Sides>().map_err(|e| wrong("--size", e))?.both();
-        let size = Size { x: known_length("--size", x)?, y: known_length("--size", y)? };
+        let [x, y] = self.size.parse::<Sides>().map_err(|e| wrong("size", e))?.both();
+        let size = Size { x: known_length("size", x)?, y: known_length("size", y)? };
         let mut length =
             |name: &'static str, text: &str| known_length(name, text.parse().map_err(|e| wrong(name, e))?);
-        let rms = length("--rms-height", &self.rms_height)?;
+        let rms = length("rms-height", &self.rms_height)?;
         let mut wavenumber = |name, text: &Option<String>| -> Result<Option<f64>> {
             text.as_deref().map(|t| Ok(2.0 * PI / length(name, t)?)).transpose()
         };
-        let roll_off = wavenumber("--roll-off-wavelength", &self.roll_off_wavelength)?;
-        let short_cutoff = wavenumber("--shortest-wavelength", &self.shortest_wavelength)?;
+        let roll_off = wavenumber("roll-off-wavelength", &self.roll_off_wavelength)?;
+        let short_cutoff = wavenumber("shortest-wavelength", &self.shortest_wavelength)?;
         let metric = if units == Some(Dimension::LENGTH) { Metric::Metres } else { Metric::Unitless };
         let surface =
             SelfAffine::new(self.fractal_dimension, size, rms).map_err(runs::Error::model("the surface"))?;

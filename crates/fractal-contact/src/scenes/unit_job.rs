@@ -1,8 +1,8 @@
 //! A model and a surface as a job, and its result as text.
 
-use crate::error::{Error, Result};
-use crate::scene_file::SceneFile;
-use crate::unit::{Unit, UnitResult};
+use crate::scenes::error::{Error, Result};
+use crate::scenes::scene_file::SceneFile;
+use crate::scenes::unit::{Unit, UnitResult};
 use analysis::Value;
 use contact_model::Stop;
 use runs::Job;

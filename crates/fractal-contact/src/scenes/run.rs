@@ -1,15 +1,15 @@
 //! From a scene to its files.
 
-use crate::columns;
-use crate::cost::Cost;
-use crate::error::Result;
-use crate::manifest;
-use crate::outcome::{Options, Outcome};
-use crate::pictures;
-use crate::plan::Plan;
-use crate::scene_file::SceneFile;
-use crate::unit::{Unit, UnitResult};
-use crate::unit_job::UnitJob;
+use crate::scenes::columns;
+use crate::scenes::cost::Cost;
+use crate::scenes::error::Result;
+use crate::scenes::manifest;
+use crate::scenes::outcome::{Options, Outcome};
+use crate::scenes::pictures;
+use crate::scenes::plan::Plan;
+use crate::scenes::scene_file::SceneFile;
+use crate::scenes::unit::{Unit, UnitResult};
+use crate::scenes::unit_job::UnitJob;
 use analysis::{Column, Table, Value};
 use runs::{Header, Progress, Store, run_stored, write_csv};
 use std::time::Instant;
@@ -24,7 +24,7 @@ pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 /// `stop` says so, the states so far are written and [`Outcome::stopped`] is true.
 ///
 /// # Errors
-/// As [`crate::check`]; [`Error::Run`] for what only shows at full size; files that cannot be written.
+/// As [`crate::scenes::check`]; [`Error::Run`] for what only shows at full size; files that cannot be written.
 pub fn run(
     scene: &SceneFile,
     plan: &Plan,
@@ -115,8 +115,8 @@ fn header(scene: &SceneFile) -> Header {
         header = header.with_note(scene.comment());
     }
     header = header.with_note(match scene.system {
-        crate::System::Si => "units: SI",
-        crate::System::None => "units: none; lengths, forces and moduli in the scene's own",
+        crate::scenes::System::Si => "units: SI",
+        crate::scenes::System::None => "units: none; lengths, forces and moduli in the scene's own",
     });
     let size = scene.surface.size();
     header =
@@ -124,7 +124,7 @@ fn header(scene: &SceneFile) -> Header {
     for numerics in &scene.models {
         header = header.with_note(format!("model: {numerics:?}"));
     }
-    for line in crate::effects::effect_lines(&scene.effects) {
+    for line in crate::scenes::effects::effect_lines(&scene.effects) {
         header = header.with_note(format!(
             "effect {}: {} ({})",
             line.name,
@@ -139,7 +139,7 @@ fn header(scene: &SceneFile) -> Header {
 }
 
 fn patches_table(scene: &SceneFile) -> Table {
-    let area = if scene.system == crate::System::Si { "m^2" } else { "scene" };
+    let area = if scene.system == crate::scenes::System::Si { "m^2" } else { "scene" };
     let column = |name, unit, meaning| Column { name, unit, meaning };
     let columns = vec![
         column("model", "-", "who answers"),

@@ -1,145 +1,9 @@
-//! Sampled surfaces: a rectangular map of cells and a line of elements.
+//! Heights on a rectangular map of cells.
 
-use crate::error::{Error, Result, positive};
+use crate::cells::{Cells, Size};
+use crate::error::{Error, Result};
+use crate::heights::{check_heights, check_relief, highest};
 use std::ops::Range;
-
-/// Largest ratio of the sides of a cell. Beyond it the influence coefficients lose too many digits, and no
-/// instrument samples like that.
-const LARGEST_CELL_ASPECT: f64 = 1e4;
-
-/// Sides of a rectangle: Lx along x and Ly along y, in one length unit.
-///
-/// ```
-/// use contact_model::Size;
-/// let size = Size { x: 4.0, y: 1.0 };
-/// assert_eq!((size.length(), size.area()), (2.0, 4.0));
-/// assert_eq!(Size::from(3.0), Size { x: 3.0, y: 3.0 });
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Size {
-    /// Lx.
-    pub x: f64,
-    /// Ly.
-    pub y: f64,
-}
-
-impl Size {
-    /// `L = sqrt(Lx Ly)`, the length in `F_bar` and `k_bar`; the side of a square to the last bit.
-    pub fn length(self) -> f64 {
-        geometric_mean(self.x, self.y)
-    }
-
-    /// Nominal contact area `A0 = Lx Ly`.
-    pub fn area(self) -> f64 {
-        self.x * self.y
-    }
-
-    /// Whether both sides are the same.
-    pub fn is_square(self) -> bool {
-        self.x.to_bits() == self.y.to_bits()
-    }
-
-    /// Shorter side.
-    pub fn shorter(self) -> f64 {
-        self.x.min(self.y)
-    }
-
-    /// Checks both sides.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] for a side that is not positive and finite: `side` where both are the same, else
-    /// `side along x` or `side along y`.
-    pub fn validate(self) -> Result<()> {
-        if self.is_square() {
-            return positive("side", self.x).map(|_| ());
-        }
-        positive("side along x", self.x)?;
-        positive("side along y", self.y).map(|_| ())
-    }
-}
-
-/// A square.
-impl From<f64> for Size {
-    fn from(side: f64) -> Self {
-        Self { x: side, y: side }
-    }
-}
-
-/// `[Lx, Ly]`.
-impl From<[f64; 2]> for Size {
-    fn from([x, y]: [f64; 2]) -> Self {
-        Self { x, y }
-    }
-}
-
-/// Number of cells of a grid: columns along x, rows along y.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Cells {
-    /// Number of columns.
-    pub columns: usize,
-    /// Number of rows.
-    pub rows: usize,
-}
-
-impl Cells {
-    /// The grid with this number of columns whose cells are nearest to squares.
-    ///
-    /// ```
-    /// use contact_model::{Cells, Size};
-    /// assert_eq!(Cells::nearly_square(64, Size { x: 4.0, y: 3.0 }), Cells { columns: 64, rows: 48 });
-    /// assert_eq!(Cells::nearly_square(64, Size::from(0.1)), Cells::from(64));
-    /// ```
-    pub fn nearly_square(columns: usize, size: Size) -> Self {
-        let rows =
-            if size.is_square() { columns } else { (columns as f64 * (size.y / size.x)).round() as usize };
-        Self { columns, rows: rows.max(usize::from(columns > 0)) }
-    }
-
-    /// Columns times rows, unless no `usize` holds it.
-    pub fn checked_count(self) -> Option<usize> {
-        self.columns.checked_mul(self.rows)
-    }
-
-    /// Checks that these cells can divide a rectangle of this size.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] for no columns or rows, a side that is not positive, or cells whose sides differ by
-    /// a factor of more than 1e4.
-    ///
-    /// ```
-    /// use contact_model::{Cells, Size};
-    /// assert!(Cells { columns: 100, rows: 1 }.validate(Size { x: 2.0, y: 1.0 }).is_ok());
-    /// assert!(Cells { columns: 1, rows: 1 }.validate(Size { x: 1e5, y: 1.0 }).is_err());
-    /// ```
-    pub fn validate(self, size: Size) -> Result<()> {
-        for (name, count) in [("columns", self.columns), ("rows", self.rows)] {
-            if count == 0 {
-                return Err(Error::domain(name, 0.0, "at least 1"));
-            }
-        }
-        size.validate()?;
-        let aspect = (size.x / self.columns as f64) / (size.y / self.rows as f64);
-        if !(1.0 / LARGEST_CELL_ASPECT..=LARGEST_CELL_ASPECT).contains(&aspect) {
-            let expected = format!("between 1/{LARGEST_CELL_ASPECT} and {LARGEST_CELL_ASPECT}");
-            return Err(Error::domain("dx / dy (ratio of the sides of a cell)", aspect, expected));
-        }
-        Ok(())
-    }
-}
-
-/// As many rows as columns.
-impl From<usize> for Cells {
-    fn from(cells: usize) -> Self {
-        Self { columns: cells, rows: cells }
-    }
-}
-
-/// `[columns, rows]`.
-impl From<[usize; 2]> for Cells {
-    fn from([columns, rows]: [usize; 2]) -> Self {
-        Self { columns, rows }
-    }
-}
 
 /// Heights on a rectangle of equal cells, row-major (`heights[iy * columns + ix]`: rows along y, as NPY
 /// arrays `[row, column]`).
@@ -374,15 +238,71 @@ impl HeightMap {
         }
         Ok(Self { cells, size, heights, undefined })
     }
+
+    /// The sum of two maps on the same rectangle and cells; a point is undefined where it is in one of them.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for other cells, [`Error::Domain`] for another size or where no point is left.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// let wave = HeightMap::from_fn([2, 1], 1.0, |ix, _| ix as f64)?;
+    /// assert_eq!(wave.plus(&wave.scaled(1.0, 10.0)?)?.heights(), [0.0, 11.0]);
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn plus(&self, other: &Self) -> Result<Self> {
+        self.combined(other, |a, b| a + b)
+    }
+
+    /// The difference of two maps, as [`HeightMap::plus`].
+    ///
+    /// # Errors
+    /// As [`HeightMap::plus`].
+    pub fn minus(&self, other: &Self) -> Result<Self> {
+        self.combined(other, |a, b| a - b)
+    }
+
+    fn combined(&self, other: &Self, of: impl Fn(f64, f64) -> f64) -> Result<Self> {
+        if other.cells != self.cells {
+            let Cells { columns, rows } = self.cells;
+            let (name, expected) = ("heights of the other map", format!("{rows} rows x {columns} columns"));
+            return Err(Error::Shape {
+                name: name.into(),
+                found: other.heights.len(),
+                expected: expected.into(),
+            });
+        }
+        for (name, mine, found) in [("x", self.size.x, other.size.x), ("y", self.size.y, other.size.y)] {
+            if mine.total_cmp(&found).is_ne() {
+                let name = format!("side of the other map along {name}");
+                return Err(Error::domain(name, found, format!("{mine}")));
+            }
+        }
+        let pairs = self.heights.iter().zip(&other.heights);
+        let defined =
+            |(&a, &b): (&f64, &f64)| if a.is_finite() && b.is_finite() { of(a, b) } else { f64::NAN };
+        Self::with_undefined(self.cells, self.size, pairs.map(defined).collect())
+    }
+
+    /// The map with lateral lengths times `lateral` and heights times `vertical`.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where a lateral factor is not positive or a height overflows.
+    pub fn scaled(&self, lateral: f64, vertical: f64) -> Result<Self> {
+        let size = Size { x: self.size.x * lateral, y: self.size.y * lateral };
+        let heights = self.heights.iter().map(|h| if h.is_finite() { h * vertical } else { f64::NAN });
+        Self::with_undefined(self.cells, size, heights.collect())
+    }
+
+    /// The map turned by 90 degrees: transposed, then mirrored.
+    #[must_use]
+    pub fn rotated(&self) -> Self {
+        self.transposed().mirrored()
+    }
 }
 
 fn no_point() -> Error {
     Error::domain("defined points", 0.0, "at least 1 (every height of the map is undefined)")
-}
-
-/// `sqrt(a b)` without overflow on the way; a itself where both are the same.
-fn geometric_mean(a: f64, b: f64) -> f64 {
-    if a.to_bits() == b.to_bits() { a } else { a.sqrt() * b.sqrt() }
 }
 
 fn place(cells: Cells, i: usize) -> String {
@@ -399,81 +319,10 @@ fn checked_grid(cells: Cells, size: Size, heights: usize) -> Result<(Cells, Size
     Ok((cells, size))
 }
 
-/// Heights of `n` equal elements along a line of the given length, finite by construction.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Line {
-    length: f64,
-    heights: Vec<f64>,
-}
-
-impl Line {
-    /// Takes the heights of the elements of a line of the given length (same length unit).
-    ///
-    /// # Errors
-    /// [`Error::Domain`] for a length that is not positive, a height that is NaN or infinite or a relief that
-    /// overflows; [`Error::Shape`] for no heights at all.
-    pub fn new(length: f64, heights: Vec<f64>) -> Result<Self> {
-        positive("length", length)?;
-        if heights.is_empty() {
-            return Err(Error::Shape { name: "heights".into(), found: 0, expected: "at least 1".into() });
-        }
-        check_heights(&heights, |i| format!("heights[{i}]"))?;
-        Ok(Self { length, heights })
-    }
-
-    /// Number of elements.
-    pub fn elements(&self) -> usize {
-        self.heights.len()
-    }
-
-    /// Length of the line, `L_1D`.
-    pub fn length(&self) -> f64 {
-        self.length
-    }
-
-    /// Length of one element, `dx = L_1D / n`.
-    pub fn element(&self) -> f64 {
-        self.length / self.heights.len() as f64
-    }
-
-    /// The heights along the line.
-    pub fn heights(&self) -> &[f64] {
-        &self.heights
-    }
-
-    /// Highest value.
-    pub fn highest(&self) -> f64 {
-        highest(&self.heights)
-    }
-}
-
-fn highest(heights: &[f64]) -> f64 {
-    heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-}
-
-fn check_heights(heights: &[f64], place: impl Fn(usize) -> String) -> Result<()> {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (i, &h) in heights.iter().enumerate() {
-        if !h.is_finite() {
-            return Err(Error::domain(place(i), h, "a finite height"));
-        }
-        low = low.min(h);
-        high = high.max(h);
-    }
-    check_relief(low, high)
-}
-
-fn check_relief(low: f64, high: f64) -> Result<()> {
-    if (high - low).is_finite() {
-        Ok(())
-    } else {
-        Err(Error::domain("relief (highest minus lowest height)", high - low, "a finite number"))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::line::Line;
 
     #[test]
     fn bad_maps_are_named() {
