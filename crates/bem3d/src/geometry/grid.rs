@@ -159,6 +159,16 @@ mod tests {
     }
 
     #[test]
+    fn a_ratio_of_sides_that_misses_one_by_rounding_is_a_square_cell() {
+        let map = |width: f64| HeightMap::new([3, 10], [width, 1.0], vec![0.0; 30]).unwrap();
+        let rounded = map(0.1 + 0.2);
+        assert!(rounded.dx().total_cmp(&rounded.dy()).is_ne() && Grid::of(&rounded).has_square_cells());
+        let (oblong, tall) = (Grid::of(&map(0.33)), Grid::of(&map(0.27)));
+        assert!(!oblong.has_square_cells() && !tall.has_square_cells());
+        approx::assert_relative_eq!(oblong.stretch, 1.1_f64.sqrt(), max_relative = 1e-14);
+    }
+
+    #[test]
     fn good_lengths_are_even_and_smooth() {
         assert_eq!([1, 2, 7, 4096, 4097, 2049].map(good_length), [2, 2, 8, 4096, 4320, 2160]);
     }

@@ -221,6 +221,20 @@ mod tests {
     }
 
     #[test]
+    fn the_symbol_of_oblong_cells_is_the_sum_over_the_waves() {
+        let weights = alternating_weights();
+        for stretch in [3.0f64, 0.4] {
+            let grid = Grid { columns: 420, rows: 390, stretch };
+            let ((a, b), symbol) = (grid.cell(), symbol(grid));
+            for (kx, ky) in [(1, 0), (0, 1), (7, 190), (210, 195), (209, 3), (100, 100)] {
+                let (x, y) = (TAU * kx as f64 / 420.0, TAU * ky as f64 / 390.0);
+                let sum = first(x, y, a, b) + aliases(&weights, x, y, a, b);
+                assert_relative_eq!(symbol[kx * 196 + ky], sum, max_relative = 1e-12);
+            }
+        }
+    }
+
+    #[test]
     fn no_wave_is_softer_than_the_checkerboard() {
         for (columns, rows, stretch) in [(40, 40, 1.0), (30, 42, 2.0), (31, 8, 0.4), (12, 13, 5.0)] {
             let grid = Grid { columns, rows, stretch };

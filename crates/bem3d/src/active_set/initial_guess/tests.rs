@@ -1,6 +1,8 @@
 //! The tangent of the last state beside the state that it predicts, and coarse grids beside the fine one.
 
 use super::*;
+use crate::active_set::residuals::Residuals;
+use crate::active_set::state::Continuation;
 use crate::kernel::love::influence;
 use crate::stiffness;
 use approx::assert_relative_eq;
@@ -257,4 +259,34 @@ fn a_coarse_grid_is_the_mean_of_its_defined_cells() {
     let (a, b) = narrow.grid().cell();
     assert_eq!((narrow.grid().columns, narrow.grid().rows), (25, 24));
     assert_relative_eq!(a / b, 2.0 * 1.5 * 1.5, max_relative = 1e-14);
+    // And the other way: rows in pairs, columns as they are.
+    let flat = coarser(&problem(Grid { columns: 24, rows: 49, stretch: 1.5 }, vec![1.0; 49 * 24]));
+    let (a, b) = flat.grid().cell();
+    assert_eq!((flat.grid().columns, flat.grid().rows), (24, 25));
+    assert_relative_eq!(a / b, 0.5 * 1.5 * 1.5, max_relative = 1e-14);
+}
+
+#[test]
+fn a_coarse_pressure_goes_to_the_fine_cells_below_the_plane() {
+    let grid = Grid::square(64, 64);
+    let mut z = vec![1.0; grid.count()];
+    // Two of the four fine cells of coarse cell (0, 0) lie below the plane, one in it and one above it; none of those of (1, 0).
+    (z[0], z[1], z[64]) = (0.0, 0.2, 0.5);
+    let problem = problem(grid, z);
+    let solved = Solved {
+        contact: CellSet::from_index(Grid::square(32, 32), &[0, 1]),
+        p: vec![1.0, 3.0],
+        d: 0.5,
+        q: None,
+        residuals: Residuals::default(),
+        steps: 0,
+        status: Status::Converged,
+        continuation: Continuation::default(),
+    };
+    let guess = prolonged(&problem, &solved);
+    assert_eq!(guess.set, CellSet::from_index(grid, &[0, 1, 2, 3, 66, 67]));
+    // Forces are counted in the side of a cell: twice the pressure on a quarter of the area.
+    for (p, expected) in guess.p.iter().zip([1.0, 1.0, 1.5, 1.5, 1.5, 1.5]) {
+        assert_relative_eq!(*p, expected);
+    }
 }
