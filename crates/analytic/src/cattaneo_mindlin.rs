@@ -2,7 +2,7 @@
 
 use crate::closed::ROUNDED_UP;
 use crate::hertz::Hertz;
-use crate::memory::{Curve, Goal, held, lost, reached};
+use crate::memory::{Goal, SlipCurve, held, lost, reached};
 use contact_model::{
     Adhesion, Boundary, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState,
     Normalisation, Outputs, PreparedContact, Result, Rheology, Scene, Source, Step, Surface, Tangential,
@@ -93,7 +93,7 @@ impl HistoryModel for CattaneoMindlin {
             shear_modulus: pair.shear_modulus()?,
             coefficient,
             outputs: scene.outputs,
-            at: At::default(),
+            at: SlipPathEnd::default(),
         }))
     }
 }
@@ -101,9 +101,9 @@ impl HistoryModel for CattaneoMindlin {
 /// A sphere under a constant normal load, first loading: everything in the caller's units.
 ///
 /// ```
-/// use analytic::cattaneo_mindlin::Sphere;
+/// use analytic::cattaneo_mindlin::SlidingSphere;
 /// // mu F = 1, a = 1, G* = 3/4: u = 1 - (1 - T)^(2/3), c = (1 - T)^(1/3).
-/// let sphere = Sphere::new(2.0, 0.5, 1.0, 0.75)?;
+/// let sphere = SlidingSphere::new(2.0, 0.5, 1.0, 0.75)?;
 /// assert!((sphere.displacement(0.875)? - 0.75).abs() < 1e-15);
 /// assert!((sphere.stick_radius(0.875)? - 0.5).abs() < 1e-15);
 /// assert!((sphere.force(0.75)? - 0.875).abs() < 1e-15);
@@ -112,7 +112,7 @@ impl HistoryModel for CattaneoMindlin {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sphere {
+pub struct SlidingSphere {
     /// mu F.
     limit: f64,
     /// `3 mu F/(4 G* a)`: the displacement at which gross slip begins.
@@ -120,7 +120,7 @@ pub struct Sphere {
     contact_radius: f64,
 }
 
-impl Sphere {
+impl SlidingSphere {
     /// Normal force F > 0, coefficient mu > 0, contact radius a > 0, shear modulus G* > 0 of the pair
     /// ([`contact_model::Pair::shear_modulus`]).
     ///
@@ -155,7 +155,7 @@ impl Sphere {
     /// `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`, odd in T.
     ///
     /// # Errors
-    /// As [`Sphere::stick_radius`].
+    /// As [`SlidingSphere::stick_radius`].
     pub fn displacement(&self, tangential_force: f64) -> Result<f64> {
         let t = self.share(tangential_force)?;
         Ok(self.reach * reached(t.abs()).copysign(t))
@@ -180,7 +180,7 @@ impl Sphere {
     /// of it.
     ///
     /// # Errors
-    /// As [`Sphere::stick_radius`].
+    /// As [`SlidingSphere::stick_radius`].
     pub fn energy_per_cycle(&self, tangential_force: f64) -> Result<f64> {
         let t = self.share(tangential_force)?.abs();
         Ok(4.0 * self.limit * self.reach * lost(t))
@@ -205,11 +205,11 @@ impl Sphere {
 
 /// Where the history stands.
 #[derive(Debug, Clone, Default)]
-struct At {
+struct SlipPathEnd {
     time: f64,
     /// Normal state and the sphere under it, once there is one.
-    pressed: Option<(ContactState, Option<Sphere>)>,
-    curve: Curve,
+    pressed: Option<(ContactState, Option<SlidingSphere>)>,
+    curve: SlipCurve,
 }
 
 struct Prepared {
@@ -217,12 +217,12 @@ struct Prepared {
     shear_modulus: f64,
     coefficient: f64,
     outputs: Outputs,
-    at: At,
+    at: SlipPathEnd,
 }
 
 impl Prepared {
     /// The state under the normal load, with its contact radius.
-    fn press(&mut self, step: &Step) -> Result<(ContactState, Option<Sphere>)> {
+    fn press(&mut self, step: &Step) -> Result<(ContactState, Option<SlidingSphere>)> {
         let mut state = self.normal.solve(step.normal)?;
         let radius = 0.5 * state.stiffness.unwrap_or(0.0) / self.normal.normalisation().modulus;
         if !self.outputs.stiffness {
@@ -230,7 +230,7 @@ impl Prepared {
             state.report.certificate.stiffness_error = None;
         }
         let sphere = if state.force > 0.0 {
-            Some(Sphere::new(state.force, self.coefficient, radius, self.shear_modulus)?)
+            Some(SlidingSphere::new(state.force, self.coefficient, radius, self.shear_modulus)?)
         } else {
             None
         };
@@ -248,7 +248,7 @@ impl History for Prepared {
         const SAME: f64 = 1e-12;
         let step = step.validated(self.at.time)?;
         let (state, sphere) = self.press(&step)?;
-        let unloaded = self.at.curve == Curve::default();
+        let unloaded = self.at.curve == SlipCurve::default();
         if let (Some((last, _)), false) = (&self.at.pressed, unloaded)
             && (state.force - last.force).abs() > SAME * last.force
         {
@@ -282,13 +282,13 @@ impl History for Prepared {
             }
             TangentialState::new(0.0, 0.0).with_stick_radius(0.0).with_dissipated(0.0)
         };
-        self.at = At { time: step.time, pressed: Some((state.clone(), sphere)), curve };
+        self.at = SlipPathEnd { time: step.time, pressed: Some((state.clone(), sphere)), curve };
         let radius = sphere.map_or(0.0, |sphere| sphere.contact_radius);
         Ok(HistoryState::new(step.time, state).with_contact_radius(radius).with_tangential(tangential))
     }
 
     fn restart(&mut self) {
-        self.at = At::default();
+        self.at = SlipPathEnd::default();
     }
 }
 
@@ -371,7 +371,7 @@ mod tests {
         let last = tangential(&mut *contact, Tangential::Force(top));
         assert_relative_eq!(last.displacement, first.displacement, max_relative = 1e-12);
         let state = contact.advance(at(Tangential::Force(top))).unwrap();
-        let sphere = Sphere::new(FORCE, MU, state.contact_radius.unwrap(), 2.0 / 3.0).unwrap();
+        let sphere = SlidingSphere::new(FORCE, MU, state.contact_radius.unwrap(), 2.0 / 3.0).unwrap();
         let energy = sphere.energy_per_cycle(top).unwrap();
         assert_relative_eq!(area, energy, max_relative = 1e-5);
         assert_relative_eq!(last.dissipated - first.dissipated, energy, max_relative = 1e-10);
@@ -428,7 +428,7 @@ mod tests {
         let cone = Scene { surface: Surface::Cone { slope: 0.1, size: 1.0.into() }, ..scene(MU) };
         assert!(matches!(refused(&cone), Error::Unsupported { .. }));
         assert!(matches!(refused(&scene(0.0)), Error::Domain { .. }));
-        assert!(Sphere::new(1.0, 0.5, 0.0, 1.0).is_err());
+        assert!(SlidingSphere::new(1.0, 0.5, 0.0, 1.0).is_err());
     }
 
     proptest! {
@@ -440,7 +440,7 @@ mod tests {
             const SPRINGS: usize = 4000;
             let mut springs = vec![0.0; SPRINGS];
             let x = |i: usize| (i as f64 + 0.5) / SPRINGS as f64;
-            let mut curve = Curve::default();
+            let mut curve = SlipCurve::default();
             let (mut last, mut lost) = (0.0, 0.0);
             for u in path {
                 curve.go(Goal::Displacement(u));
@@ -463,7 +463,7 @@ mod tests {
         /// Force and displacement drive the same curve.
         #[test]
         fn both_controls_agree(path in proptest::collection::vec(-0.99_f64..0.99, 1..12)) {
-            let (mut by_force, mut by_displacement) = (Curve::default(), Curve::default());
+            let (mut by_force, mut by_displacement) = (SlipCurve::default(), SlipCurve::default());
             for t in path {
                 by_force.go(Goal::Force(t));
                 by_displacement.go(Goal::Displacement(by_force.now.u));

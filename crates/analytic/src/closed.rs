@@ -7,16 +7,16 @@ use contact_model::{
 
 /// A closed form between force, approach and stiffness, in the [`Nondimensionalisation`] of its [`Closed`];
 /// loads are positive.
-pub(crate) trait Law: Send {
+pub(crate) trait ClosedLaw: Send {
     /// State at a force.
-    fn at_force(&self, force: f64) -> Result<Point>;
+    fn at_force(&self, force: f64) -> Result<ClosedState>;
     /// State at an approach.
-    fn at_approach(&self, approach: f64) -> Result<Point>;
+    fn at_approach(&self, approach: f64) -> Result<ClosedState>;
 }
 
-/// One state of a [`Law`].
+/// One state of a [`ClosedLaw`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Point {
+pub(crate) struct ClosedState {
     pub force: f64,
     pub approach: f64,
     pub stiffness: f64,
@@ -37,7 +37,7 @@ pub(crate) struct Closed<L> {
     pub stiffness_error: f64,
 }
 
-impl<L: Law> PreparedContact for Closed<L> {
+impl<L: ClosedLaw> PreparedContact for Closed<L> {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }
@@ -53,7 +53,7 @@ impl<L: Law> PreparedContact for Closed<L> {
             _ => return Err(Error::unsupported(self.model, format!("the load {load:?}"))),
         };
         let point = if asked <= 0.0 {
-            Point { force: 0.0, approach: 0.0, stiffness: 0.0, area: Some(0.0) }
+            ClosedState { force: 0.0, approach: 0.0, stiffness: 0.0, area: Some(0.0) }
         } else if value.is_finite() && value > 0.0 {
             match load {
                 Load::Force(_) => self.law.at_force(value)?,

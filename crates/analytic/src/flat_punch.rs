@@ -1,6 +1,6 @@
 //! Rigid flat punches: the circle (Boussinesq) and the square.
 
-use crate::closed::{self, Closed, Law, Point};
+use crate::closed::{self, Closed, ClosedLaw, ClosedState};
 use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Source, Surface};
 use std::f64::consts::PI;
 
@@ -89,15 +89,15 @@ struct Face {
     area: f64,
 }
 
-impl Law for Face {
-    fn at_force(&self, force: f64) -> Result<Point> {
+impl ClosedLaw for Face {
+    fn at_force(&self, force: f64) -> Result<ClosedState> {
         let Self { stiffness, area } = *self;
-        Ok(Point { force, approach: force / stiffness, stiffness, area: Some(area) })
+        Ok(ClosedState { force, approach: force / stiffness, stiffness, area: Some(area) })
     }
 
-    fn at_approach(&self, approach: f64) -> Result<Point> {
+    fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let Self { stiffness, area } = *self;
-        Ok(Point { force: stiffness * approach, approach, stiffness, area: Some(area) })
+        Ok(ClosedState { force: stiffness * approach, approach, stiffness, area: Some(area) })
     }
 }
 

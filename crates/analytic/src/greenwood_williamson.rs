@@ -125,7 +125,11 @@ impl ContactModel for GreenwoodWilliamson {
         let (modulus, length, height) = (scene.modulus, surface.size.length(), spectrum.rms_height());
         Ok(Box::new(Periodic {
             model: NAME,
-            law: Law { summits: Summits::scaled(&spectrum), heights: self.heights, gauss: Gauss::new() },
+            law: AsperityModel {
+                summits: Summits::scaled(&spectrum),
+                heights: self.heights,
+                gauss: Gauss::new(),
+            },
             nondimensional: Nondimensionalisation::new(modulus, length, height)?,
             normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
@@ -174,7 +178,7 @@ fn gaussian(gauss: &Gauss, j: f64, t: f64) -> f64 {
 }
 
 /// In units of the rms height and the side.
-struct Law {
+struct AsperityModel {
     summits: Summits,
     heights: SummitHeights,
     gauss: Gauss,
@@ -183,7 +187,7 @@ struct Law {
 /// The flat is never further from the mean plane of the summits than this many s: there F is below the smallest f64.
 const FARTHEST: f64 = 37.0;
 
-impl Law {
+impl AsperityModel {
     /// `ln F_j(t)` with 2 j = `twice`.
     fn logarithm(&self, twice: u32, t: f64) -> f64 {
         match self.heights {
@@ -225,7 +229,7 @@ impl Law {
     }
 }
 
-impl PeriodicLaw for Law {
+impl PeriodicLaw for AsperityModel {
     fn admit(&self, pressure: f64) -> Result<()> {
         let max = self.pressure_at(0.0);
         if pressure <= max * crate::closed::ROUNDED_UP {

@@ -1,6 +1,6 @@
 //! Hertz: a sphere (paraboloid `z = r^2 / (2 R)`).
 
-use crate::closed::{self, Closed, Law, Point};
+use crate::closed::{self, Closed, ClosedLaw, ClosedState};
 use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
 use std::f64::consts::PI;
 
@@ -42,7 +42,7 @@ impl ContactModel for Hertz {
         let (nondimensional, normalisation) = closed::of_body(scene)?;
         Ok(Box::new(Closed {
             model: NAME,
-            law: Sphere { radius: radius / size.length(), size },
+            law: HertzSphere { radius: radius / size.length(), size },
             nondimensional,
             normalisation,
             outputs: scene.outputs,
@@ -53,25 +53,25 @@ impl ContactModel for Hertz {
 }
 
 /// `radius` in units of `L = size.length()`.
-struct Sphere {
+struct HertzSphere {
     radius: f64,
     size: Size,
 }
 
-impl Sphere {
-    fn point(&self, force: f64, approach: f64, contact: f64) -> Result<Point> {
+impl HertzSphere {
+    fn point(&self, force: f64, approach: f64, contact: f64) -> Result<ClosedState> {
         closed::within(contact, self.size)?;
-        Ok(Point { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
+        Ok(ClosedState { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
     }
 }
 
-impl Law for Sphere {
-    fn at_force(&self, force: f64) -> Result<Point> {
+impl ClosedLaw for HertzSphere {
+    fn at_force(&self, force: f64) -> Result<ClosedState> {
         let contact = (0.75 * force * self.radius).cbrt();
         self.point(force, 0.75 * force / contact, contact)
     }
 
-    fn at_approach(&self, approach: f64) -> Result<Point> {
+    fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let contact = (approach * self.radius).sqrt();
         self.point(4.0 / 3.0 * approach * contact, approach, contact)
     }

@@ -20,7 +20,7 @@ const NAME: &str = "jkr";
 ///
 /// The stiffness is that of the contact set, `k = 2 E* a`: what an oscillation too small to move the edge
 /// sees, and what a conductance follows from. The slope of the equilibrium curve, where the edge moves, is
-/// [`Sphere::slope`]. Takes [`Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
+/// [`AdhesiveSphere::slope`]. Takes [`Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
 ///
 /// ```
 /// use analytic::Jkr;
@@ -63,7 +63,7 @@ impl ContactModel for Jkr {
             other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
         };
         let (_, normalisation) = closed::of_body(scene)?;
-        let sphere = Sphere::new(radius, scene.modulus, work)?;
+        let sphere = AdhesiveSphere::new(radius, scene.modulus, work)?;
         Ok(Box::new(Prepared {
             sphere,
             largest: 0.5 * size.shorter() / radius,
@@ -78,15 +78,15 @@ impl ContactModel for Jkr {
 /// where it ends.
 ///
 /// ```
-/// use analytic::jkr::Sphere;
-/// let sphere = Sphere::new(1.0, 1.0, 0.01)?;
+/// use analytic::jkr::AdhesiveSphere;
+/// let sphere = AdhesiveSphere::new(1.0, 1.0, 0.01)?;
 /// let pulled = sphere.pull_off_at_force()?;
 /// assert!((pulled.force + 1.5 * std::f64::consts::PI * 0.01).abs() < 1e-15);
 /// assert!(sphere.slope(pulled.radius)?.abs() < 1e-12);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sphere {
+pub struct AdhesiveSphere {
     /// Lengths in R, moduli in E*.
     nondimensional: Nondimensionalisation,
     /// `w / (E* R)`.
@@ -104,7 +104,7 @@ pub struct PullOff {
     pub radius: f64,
 }
 
-impl Sphere {
+impl AdhesiveSphere {
     /// Radius of curvature R > 0, modulus E* > 0, work of adhesion w >= 0 (energy per area).
     ///
     /// # Errors
@@ -135,7 +135,7 @@ impl Sphere {
     /// `d = a^2/R - sqrt(2 pi w a/E*)` at a contact radius a.
     ///
     /// # Errors
-    /// As [`Sphere::force`].
+    /// As [`AdhesiveSphere::force`].
     pub fn approach(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
         signed(self.approach_of(a), |approach| self.nondimensional.approach(approach))
@@ -196,7 +196,7 @@ impl Sphere {
     /// Pull-off under a prescribed approach: `F = -5/6 pi w R` at `a^3 = pi w R^2/(8 E*)`.
     ///
     /// # Errors
-    /// As [`Sphere::pull_off_at_force`].
+    /// As [`AdhesiveSphere::pull_off_at_force`].
     pub fn pull_off_at_approach(&self) -> Result<PullOff> {
         self.pull_off(self.smallest_radius(), -5.0 / 6.0 * PI * self.work)
     }
@@ -293,7 +293,7 @@ fn signed(value: f64, convert: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 }
 
 struct Prepared {
-    sphere: Sphere,
+    sphere: AdhesiveSphere,
     /// Half the shorter side over R.
     largest: f64,
     size: Size,
@@ -358,7 +358,7 @@ mod tests {
 
     #[test]
     fn reference_numbers() {
-        let sphere = Sphere::new(1.0, 1.0, 0.01).unwrap();
+        let sphere = AdhesiveSphere::new(1.0, 1.0, 0.01).unwrap();
         let by_force = sphere.pull_off_at_force().unwrap();
         assert_relative_eq!(by_force.force, -0.047_123_889_8, max_relative = 1e-9);
         assert_relative_eq!(sphere.radius_at_force(0.0).unwrap(), 0.520_939_707_9, max_relative = PRINTED);
@@ -381,7 +381,7 @@ mod tests {
     #[test]
     fn beyond_the_pull_off_is_an_error_that_names_it() {
         let scene = scene(4.0, 1.0, 1.0, 0.01);
-        let sphere = Sphere::new(1.0, 1.0, 0.01).unwrap();
+        let sphere = AdhesiveSphere::new(1.0, 1.0, 0.01).unwrap();
         let (force, approach) =
             (sphere.pull_off_at_force().unwrap().force, sphere.pull_off_at_approach().unwrap().approach);
         assert!(pressed(&Jkr, &scene, Load::Force(force)).is_ok());
@@ -392,7 +392,9 @@ mod tests {
         }
         assert!(matches!(pressed(&Jkr, &scene, Load::Approach(4.0)), Err(Error::OutOfRange { .. })));
         assert!(pressed(&Jkr, &scene, Load::Force(f64::NAN)).is_err());
-        assert!(Sphere::new(1.0, 1.0, -1.0).is_err() && Sphere::new(1.0, 1.0, f64::NAN).is_err());
+        assert!(
+            AdhesiveSphere::new(1.0, 1.0, -1.0).is_err() && AdhesiveSphere::new(1.0, 1.0, f64::NAN).is_err()
+        );
         assert!(sphere.slope(0.0).is_err() && sphere.force(-1.0).is_err());
     }
 
@@ -443,7 +445,7 @@ mod tests {
 
         #[test]
         fn both_loads_go_back_to_the_contact_radius(a in 1e-3_f64..0.5, work in 1e-9_f64..1e-2) {
-            let sphere = Sphere::new(1.0, 1.0, work).unwrap();
+            let sphere = AdhesiveSphere::new(1.0, 1.0, work).unwrap();
             let (by_force, by_approach) = (sphere.pull_off_at_force().unwrap(), sphere.pull_off_at_approach().unwrap());
             // At a fold a root loses half its digits; a tenth away from it the loss is one digit.
             if a > 1.1 * by_force.radius {
@@ -467,7 +469,7 @@ mod tests {
         /// surfaces have gained.
         #[test]
         fn energy(a in 0.3_f64..0.5, work in 1e-4_f64..1e-2) {
-            let sphere = Sphere::new(1.0, 1.0, work).unwrap();
+            let sphere = AdhesiveSphere::new(1.0, 1.0, work).unwrap();
             let start = sphere.pull_off_at_approach().unwrap().radius;
             // U(a) = int over springs E* (d - g)^2 dx - pi w a^2, with g = x^2: exact polynomials of a and d.
             let energy = |a: f64| {

@@ -39,7 +39,7 @@ pub(crate) fn lost(t: f64) -> f64 {
 
 /// A point of the curve: force over mu F, displacement over the reach.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Point {
+pub(crate) struct SlipPoint {
     pub t: f64,
     pub u: f64,
 }
@@ -52,7 +52,7 @@ pub(crate) enum Goal {
 }
 
 impl Goal {
-    fn from(self, point: Point) -> f64 {
+    fn from(self, point: SlipPoint) -> f64 {
         match self {
             Self::Force(t) => t - point.t,
             Self::Displacement(u) => u - point.u,
@@ -62,19 +62,19 @@ impl Goal {
 
 /// The curve so far.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Curve {
-    pub now: Point,
+pub(crate) struct SlipCurve {
+    pub now: SlipPoint,
     /// Sign of the last motion, 0 before any.
     direction: f64,
     /// Turns that are not closed, the first one on the curve of first loading.
-    pub turns: Vec<Point>,
+    pub turns: Vec<SlipPoint>,
     /// Displacement at which first loading begins: it moves with gross slip.
     origin: f64,
     /// Over mu F and the reach.
     pub dissipated: f64,
 }
 
-impl Curve {
+impl SlipCurve {
     /// Moves to a goal; a force is within [-1, 1].
     pub fn go(&mut self, goal: Goal) {
         let way = goal.from(self.now);
@@ -89,9 +89,9 @@ impl Curve {
         loop {
             // Where this branch ends, and the turn before its own that is closed there.
             let end = match self.turns[..] {
-                [] => Point { t: direction, u: self.origin + direction },
+                [] => SlipPoint { t: direction, u: self.origin + direction },
                 // Back to first loading on the other side.
-                [turn] => Point { t: -turn.t, u: 2.0 * self.origin - turn.u },
+                [turn] => SlipPoint { t: -turn.t, u: 2.0 * self.origin - turn.u },
                 [.., earlier, _] => earlier,
             };
             if goal.from(end) * direction < 0.0 {
@@ -121,15 +121,15 @@ impl Curve {
     fn along(&mut self, goal: Goal) {
         let (start, scale) = match self.turns.last() {
             Some(turn) => (*turn, 2.0),
-            None => (Point { t: 0.0, u: self.origin }, 1.0),
+            None => (SlipPoint { t: 0.0, u: self.origin }, 1.0),
         };
         let share = |t: f64| ((t - start.t).abs() / scale).min(1.0);
         let before = lost(share(self.now.t));
         self.now = match goal {
-            Goal::Force(t) => Point { t, u: start.u + self.direction * scale * reached(share(t)) },
+            Goal::Force(t) => SlipPoint { t, u: start.u + self.direction * scale * reached(share(t)) },
             Goal::Displacement(u) => {
                 let part = ((u - start.u).abs() / scale).min(1.0);
-                Point { t: start.t + self.direction * scale * held(part), u }
+                SlipPoint { t: start.t + self.direction * scale * held(part), u }
             }
         };
         self.dissipated += scale * (lost(share(self.now.t)) - before).max(0.0);

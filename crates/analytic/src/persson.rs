@@ -83,7 +83,7 @@ impl ContactModel for Persson {
         let (modulus, length, height) = (scene.modulus, surface.size.length(), spectrum.rms_height());
         Ok(Box::new(Periodic {
             model: NAME,
-            law: Law::new(&spectrum, self.checked()?),
+            law: PressureDiffusion::new(&spectrum, self.checked()?),
             nondimensional: Nondimensionalisation::new(modulus, length, height)?,
             normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
@@ -110,7 +110,7 @@ impl Persson {
     pub fn decay_length(&self, spectrum: &Spectrum) -> Result<f64> {
         let gamma = self.checked()?;
         // Over all waves at p = 0, where P = 0 and the exponential is 1.
-        Ok(Law::new(spectrum, gamma).light() * spectrum.rms_height())
+        Ok(PressureDiffusion::new(spectrum, gamma).light() * spectrum.rms_height())
     }
 
     fn checked(self) -> Result<f64> {
@@ -126,14 +126,14 @@ impl Persson {
 ///
 /// With `y = 1/w`, `dG = 2 y dy = pi q^3 C dq`: `sqrt(pi) q^2 C w dq = (2/sqrt(pi)) dy/q`, and `w p = p/y`. The integrand is smooth:
 /// geometric panels from the longest wave and from y = 0 resolve any p.
-struct Law {
+struct PressureDiffusion {
     gamma: f64,
     /// `g/sqrt(2)`.
     slope: f64,
     /// `(y, weight)` with the weight `(2/sqrt(pi)) dy/q`.
     nodes: Vec<(f64, f64)>,
     gauss: Gauss,
-    /// [`Law::tail`] at multiples of [`PANEL`].
+    /// [`PressureDiffusion::tail`] at multiples of [`PANEL`].
     tails: Vec<f64>,
 }
 
@@ -150,7 +150,7 @@ const LIGHTEST: f64 = -600.0;
 /// Relative error of the quadratures, from twice as many panels.
 const QUADRATURE: f64 = 1e-11;
 
-impl Law {
+impl PressureDiffusion {
     fn new(spectrum: &Spectrum, gamma: f64) -> Self {
         let gauss = Gauss::new();
         let mut edges: Vec<f64> =
@@ -210,7 +210,7 @@ fn partial(t: f64) -> f64 {
     p * (p / t) * (-t * t).exp()
 }
 
-impl PeriodicLaw for Law {
+impl PeriodicLaw for PressureDiffusion {
     fn admit(&self, pressure: f64) -> Result<()> {
         if pressure <= CLOSED * self.slope {
             Ok(())
@@ -283,8 +283,8 @@ mod tests {
         scene
     }
 
-    fn law(hurst: f64, roll_off: Option<f64>, range: f64, gamma: f64) -> Law {
-        Law::new(&Spectrum::new(&surface(hurst, roll_off, range)).unwrap(), gamma)
+    fn law(hurst: f64, roll_off: Option<f64>, range: f64, gamma: f64) -> PressureDiffusion {
+        PressureDiffusion::new(&Spectrum::new(&surface(hurst, roll_off, range)).unwrap(), gamma)
     }
 
     #[test]
@@ -405,8 +405,8 @@ mod tests {
     fn more_panels_change_nothing() {
         // Halve every panel of the slopes.
         let spectrum = Spectrum::new(&surface(1.0, Some(2.0), 1e4)).unwrap();
-        let mut fine = Law::new(&spectrum, 0.45);
-        let coarse = Law::new(&spectrum, 0.45);
+        let mut fine = PressureDiffusion::new(&spectrum, 0.45);
+        let coarse = PressureDiffusion::new(&spectrum, 0.45);
         let mut edges: Vec<f64> =
             spectrum.ladder().into_iter().skip(1).map(|q| spectrum.running_slope(q)).collect();
         let first = edges[0];

@@ -1,6 +1,6 @@
 //! The paper's own fits for self-affine surfaces: Eqs. 6, 11, 12, 13 and 24, and the ordinate of Fig. 4.
 
-use crate::closed::{self, Closed, Law, Point, ROUNDED_UP};
+use crate::closed::{self, Closed, ClosedLaw, ClosedState, ROUNDED_UP};
 use contact_model::{
     Amplitude, ContactModel, Error, Nondimensionalisation, Normalisation, PAPER_STIFFNESS_FACTOR,
     PreparedContact, Result, Scene, Source, Surface,
@@ -182,17 +182,17 @@ impl Fit {
     }
 }
 
-impl Law for Fit {
-    fn at_force(&self, force: f64) -> Result<Point> {
+impl ClosedLaw for Fit {
+    fn at_force(&self, force: f64) -> Result<ClosedState> {
         within_power_law(force)?;
         let stiffness = self.factor * force.powf(self.alpha);
-        Ok(Point { force, approach: force / ((1.0 - self.alpha) * stiffness), stiffness, area: None })
+        Ok(ClosedState { force, approach: force / ((1.0 - self.alpha) * stiffness), stiffness, area: None })
     }
 
-    fn at_approach(&self, approach: f64) -> Result<Point> {
+    fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let rest = 1.0 - self.alpha;
         let force = (rest * self.factor * approach).powf(rest.recip());
-        Ok(Point { approach, ..self.at_force(force)? })
+        Ok(ClosedState { approach, ..self.at_force(force)? })
     }
 }
 

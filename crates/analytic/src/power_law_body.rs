@@ -1,6 +1,6 @@
 //! Galin: a power-law body `z = c r^n`, the cone among them.
 
-use crate::closed::{self, Closed, Law, Point};
+use crate::closed::{self, Closed, ClosedLaw, ClosedState};
 use crate::gamma::half_step_ratio;
 use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
 use std::f64::consts::PI;
@@ -67,7 +67,7 @@ impl ContactModel for PowerLawBody {
         let (nondimensional, normalisation) = closed::of_body(scene)?;
         Ok(Box::new(Closed {
             model: NAME,
-            law: Body { exponent, depth, size: scene.surface.size() },
+            law: PowerLawShape { exponent, depth, size: scene.surface.size() },
             nondimensional,
             normalisation,
             outputs: scene.outputs,
@@ -96,31 +96,31 @@ pub fn kappa(exponent: f64) -> Result<f64> {
 }
 
 /// `d = depth a^exponent` in units of `L = size.length()`.
-struct Body {
+struct PowerLawShape {
     exponent: f64,
     depth: f64,
     size: Size,
 }
 
-impl Body {
+impl PowerLawShape {
     /// `F / (2 d a)`.
     fn share(&self) -> f64 {
         self.exponent / (self.exponent + 1.0)
     }
 
-    fn point(&self, force: f64, approach: f64, contact: f64) -> Result<Point> {
+    fn point(&self, force: f64, approach: f64, contact: f64) -> Result<ClosedState> {
         closed::within(contact, self.size)?;
-        Ok(Point { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
+        Ok(ClosedState { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
     }
 }
 
-impl Law for Body {
-    fn at_force(&self, force: f64) -> Result<Point> {
+impl ClosedLaw for PowerLawShape {
+    fn at_force(&self, force: f64) -> Result<ClosedState> {
         let contact = (force / (2.0 * self.share()) / self.depth).powf((self.exponent + 1.0).recip());
         self.point(force, force / (2.0 * self.share()) / contact, contact)
     }
 
-    fn at_approach(&self, approach: f64) -> Result<Point> {
+    fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let contact = (approach / self.depth).powf(self.exponent.recip());
         self.point(2.0 * self.share() * approach * contact, approach, contact)
     }

@@ -79,7 +79,14 @@ impl ContactModel for Mdr1d {
             let nondimensional = Nondimensionalisation::new(modulus, length, length)?;
             let normalisation = Normalisation { modulus, length, height: None };
             let (adhesive, size) = (adhesive(profile, scene)?, scene.surface.size());
-            return Ok(Box::new(Body { profile, size, adhesive, nondimensional, normalisation, outputs }));
+            return Ok(Box::new(RoundBody {
+                profile,
+                size,
+                adhesive,
+                nondimensional,
+                normalisation,
+                outputs,
+            }));
         }
         if scene.effects.adhesion != Adhesion::Off {
             let what = format!(
@@ -98,10 +105,10 @@ impl ContactModel for Mdr1d {
         match &scene.surface {
             Surface::SelfAffine(surface) => {
                 let line = surface_gen::self_affine_line(surface, self.elements, seed)?;
-                Ok(Box::new(Rough::new(Bearing::new(&line), &line, length, modulus, outputs)))
+                Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, modulus, outputs)))
             }
             Surface::Line { line, .. } => {
-                Ok(Box::new(Rough::new(Bearing::new(line), line, length, modulus, outputs)))
+                Ok(Box::new(RoughLine::new(Bearing::new(line), line, length, modulus, outputs)))
             }
             other => Err(Error::unsupported(NAME, other.kind())),
         }
@@ -168,14 +175,14 @@ impl ContactModel for Ensemble {
         let spare = self.spare.lock().ok().and_then(|mut spare| spare.pop());
         let mut bearing = spare.unwrap_or_else(Bearing::empty);
         bearing.rebuild(&line);
-        let mut rough = Rough::new(bearing, &line, self.surface.size.length(), scene.modulus, outputs);
+        let mut rough = RoughLine::new(bearing, &line, self.surface.size.length(), scene.modulus, outputs);
         rough.home = Some(Arc::clone(&self.spare));
         Ok(Box::new(rough))
     }
 }
 
 /// A rough line.
-struct Rough {
+struct RoughLine {
     bearing: Bearing,
     normalisation: Normalisation,
     outputs: Outputs,
@@ -183,7 +190,7 @@ struct Rough {
     home: Option<Arc<Mutex<Vec<Bearing>>>>,
 }
 
-impl Rough {
+impl RoughLine {
     fn new(bearing: Bearing, line: &Line, length: f64, modulus: f64, outputs: Outputs) -> Self {
         let height = surface_gen::rms_height(line.heights());
         let normalisation = Normalisation { modulus, length, height: Some(height) };
@@ -191,7 +198,7 @@ impl Rough {
     }
 }
 
-impl Drop for Rough {
+impl Drop for RoughLine {
     fn drop(&mut self) {
         if let Some(mut spare) = self.home.as_ref().and_then(|home| home.lock().ok()) {
             spare.push(std::mem::replace(&mut self.bearing, Bearing::empty()));
@@ -199,7 +206,7 @@ impl Drop for Rough {
     }
 }
 
-impl PreparedContact for Rough {
+impl PreparedContact for RoughLine {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }
@@ -238,7 +245,7 @@ fn adhesive(profile: Profile, scene: &Scene) -> Result<Option<Adhesive>> {
 }
 
 /// An axisymmetric body.
-struct Body {
+struct RoundBody {
     profile: Profile,
     size: Size,
     adhesive: Option<Adhesive>,
@@ -247,7 +254,7 @@ struct Body {
     outputs: Outputs,
 }
 
-impl Body {
+impl RoundBody {
     /// The state under a load >= 0, and whether it has to be a contact.
     fn press(&self, load: Load) -> Result<(RoundContact, bool)> {
         match load.validated()? {
@@ -293,7 +300,7 @@ impl Body {
     }
 }
 
-impl PreparedContact for Body {
+impl PreparedContact for RoundBody {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }

@@ -7,7 +7,7 @@ use contact_model::{Body, Error, Pair, Result, Rheology};
 
 /// Where a history stands; lengths in L, forces in E* L^2.
 #[derive(Debug, Clone)]
-pub(crate) struct At {
+pub(crate) struct RelaxedState {
     pub time: f64,
     /// The elastic contact with this approach.
     pub contact: RoundContact,
@@ -20,7 +20,7 @@ pub(crate) struct At {
 #[derive(Debug, Clone)]
 pub(crate) struct Relaxation {
     material: Material,
-    pub at: At,
+    pub at: RelaxedState,
     model: &'static str,
 }
 
@@ -29,7 +29,7 @@ impl Relaxation {
     pub fn new(material: Material, model: &'static str) -> Self {
         let memory = material.fresh();
         let contact = RoundContact::NONE;
-        Self { at: At { time: 0.0, contact, memory, residual: 0.0 }, material, model }
+        Self { at: RelaxedState { time: 0.0, contact, memory, residual: 0.0 }, material, model }
     }
 
     /// Back to no contact at time 0.
@@ -43,7 +43,7 @@ impl Relaxation {
         time: f64,
         approach: f64,
         press: impl FnOnce(f64) -> Result<(RoundContact, P)>,
-    ) -> Result<At> {
+    ) -> Result<RelaxedState> {
         let (from, duration) = (&self.at, time - self.at.time);
         if approach < from.contact.approach * (1.0 - ROUNDED_DOWN) {
             return Err(shrinks(time, from.time));
@@ -67,7 +67,7 @@ impl Relaxation {
         } else {
             self.material.jumped(&from.memory, contact.force - from.contact.force)
         };
-        Ok(At { time, contact: RoundContact { approach, ..contact }, memory, residual: 0.0 })
+        Ok(RelaxedState { time, contact: RoundContact { approach, ..contact }, memory, residual: 0.0 })
     }
 
     /// The history after a step by force; `press` gives the elastic contact under a force.
@@ -76,7 +76,7 @@ impl Relaxation {
         time: f64,
         force: f64,
         press: impl FnOnce(f64) -> Result<RoundContact>,
-    ) -> Result<At> {
+    ) -> Result<RelaxedState> {
         let (from, duration) = (&self.at, time - self.at.time);
         let (memory, residual) = if duration > 0.0 {
             let creep = self.material.creep(&from.memory, force, duration);
@@ -95,7 +95,7 @@ impl Relaxation {
         // Rounding, and the tolerance of whoever presses, never make the contact shrink.
         let contact = press(memory.load.max(from.memory.load))?;
         let approach = contact.approach.max(from.contact.approach);
-        Ok(At { time, contact: RoundContact { approach, ..contact }, memory, residual })
+        Ok(RelaxedState { time, contact: RoundContact { approach, ..contact }, memory, residual })
     }
 }
 

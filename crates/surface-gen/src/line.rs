@@ -23,11 +23,11 @@ pub struct LineGenerator {
     amplitudes: Arc<[f64]>,
     transform: Arc<dyn ComplexToReal<f64>>,
     /// Work space of lines drawn before: fresh memory costs twice the transform itself.
-    spare: Arc<Mutex<Vec<Workspace>>>,
+    spare: Arc<Mutex<Vec<LineWorkspace>>>,
 }
 
 #[derive(Debug)]
-struct Workspace {
+struct LineWorkspace {
     spectrum: Vec<C>,
     scratch: Vec<C>,
 }
@@ -83,7 +83,7 @@ impl LineGenerator {
     pub fn line(&self, seed: u64) -> Result<Line> {
         let n = self.elements;
         let spare = self.spare.lock().ok().and_then(|mut spare| spare.pop());
-        let mut space = spare.unwrap_or_else(|| Workspace {
+        let mut space = spare.unwrap_or_else(|| LineWorkspace {
             spectrum: self.transform.make_input_vec(),
             scratch: self.transform.make_scratch_vec(),
         });

@@ -13,7 +13,7 @@ use crate::content::FileContent;
 use crate::error::{ContentError, Error, Place, Result};
 use crate::format::Format;
 use crate::options::ReadOptions;
-use header::{Header, Kind, Order};
+use header::{AxisOrder, NpyHeader, NumberType};
 use std::io::Read;
 use std::path::Path;
 
@@ -36,7 +36,7 @@ pub(crate) fn read(
         let reason = "an NPY file has no lines";
         return Err(content(path)(ContentError::Useless { what: "skip_lines", reason }));
     }
-    let (header, header_bytes) = Header::read(path, reader, length)?;
+    let (header, header_bytes) = NpyHeader::read(path, reader, length)?;
     let [rows, columns] = header.shape[..] else {
         return Err(content(path)(ContentError::Shape { found: header.shape }));
     };
@@ -63,8 +63,8 @@ pub(crate) fn read(
         for (i, raw) in bytes.chunks_exact(size).enumerate() {
             let i = done + i;
             let (row, column) = match header.order {
-                Order::C => (i / columns, i % columns),
-                Order::Fortran => (i % rows, i / rows),
+                AxisOrder::C => (i / columns, i % columns),
+                AxisOrder::Fortran => (i % rows, i / rows),
             };
             heights[row * columns + column] = header.kind.decode(raw).map_err(|value| {
                 content(path)(ContentError::Inexact { place: Place::Cell { row, column }, value })
@@ -73,8 +73,8 @@ pub(crate) fn read(
         done += count;
     }
     let order = match header.order {
-        Order::C => "row by row",
-        Order::Fortran => "column by column",
+        AxisOrder::C => "row by row",
+        AxisOrder::Fortran => "column by column",
     };
     let details = format!("{}, {order}", header.kind);
     Ok(FileContent { format: Format::Npy, details, rows, columns, heights, unit: None, extent: [None; 2] })
@@ -83,7 +83,7 @@ pub(crate) fn read(
 /// Doubles hold every integer up to this size.
 const EXACT: i128 = 1 << 53;
 
-impl Kind {
+impl NumberType {
     /// The number in these bytes, or the integer that no double holds.
     fn decode(self, raw: &[u8]) -> Result<f64, i128> {
         let mut word = [0; 8];

@@ -8,8 +8,8 @@ use crate::extent::Extent;
 use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::quantity::{Dimension, Quantity, Unit};
-use crate::text::Table;
-use axis::Axis;
+use crate::text::TextTable;
+use axis::GridAxis;
 
 /// Share of the places of a grid that must have a height: a wrong spacing leaves most of them empty.
 const FULL: f64 = 0.5;
@@ -23,7 +23,7 @@ const ROUNDED: f64 = 1e-9;
 /// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
 ///
 /// Cost O(n log n) for n points.
-pub(crate) fn grid(table: &Table, declared: &ReadOptions) -> Result<FileContent, ContentError> {
+pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<FileContent, ContentError> {
     if table.columns != 3 {
         return Err(ContentError::NotPoints { line: table.first_line(), found: table.columns });
     }
@@ -43,7 +43,7 @@ pub(crate) fn grid(table: &Table, declared: &ReadOptions) -> Result<FileContent,
         if let Some(point) = along.clone().position(|v: f64| v.is_nan()) {
             return Err(ContentError::Coordinate { axis: name, line: table.lines[point] as usize });
         }
-        Axis::find(name, along.collect(), spacing[at])
+        GridAxis::find(name, along.collect(), spacing[at])
     };
     let (x, y) = (axis('x', 0)?, axis('y', 1)?);
     if x.count * y.count * FULL > points as f64 {
@@ -78,7 +78,7 @@ pub(crate) fn grid(table: &Table, declared: &ReadOptions) -> Result<FileContent,
 /// guessed at.
 fn lateral_unit(
     declared: &ReadOptions,
-    table: &Table,
+    table: &TextTable,
     heights: Option<&Unit>,
 ) -> Result<Option<Unit>, ContentError> {
     let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
@@ -117,7 +117,11 @@ fn spacing_of(cell: Quantity, lateral: Option<&Unit>) -> Result<f64, ContentErro
 ///
 /// What the comments say replaces what differs from it by roundings of the coordinates only. One spacing
 /// serves both axes where they differ by no more than the points are off their places.
-fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Extent>; 2], ContentError> {
+fn extents(
+    table: &TextTable,
+    axes: [&GridAxis; 2],
+    unit: &Unit,
+) -> Result<[Option<Extent>; 2], ContentError> {
     let quantity = |spacing: f64| {
         Quantity::of(spacing, unit).map_err(|source| ContentError::Quantity { what: "spacing", source })
     };
@@ -140,7 +144,8 @@ fn extents(table: &Table, axes: [&Axis; 2], unit: &Unit) -> Result<[Option<Exten
         && let (Some(dx), Some(dy)) = (x.spacing, y.spacing)
     {
         // The ends, on which the spacing rests, may be off their places by twice what is seen between them.
-        let uncertainty = |axis: &Axis, spacing: f64| 4.0 * axis.off * spacing / (axis.count - 1.0).max(1.0);
+        let uncertainty =
+            |axis: &GridAxis, spacing: f64| 4.0 * axis.off * spacing / (axis.count - 1.0).max(1.0);
         if (dx - dy).abs() <= uncertainty(x, dx) + uncertainty(y, dy) + ROUNDED * dx {
             let common = (dx * (x.count - 1.0) + dy * (y.count - 1.0)) / (x.count + y.count - 2.0);
             extents = [Some(Extent::Cell(quantity(common)?)); 2];

@@ -147,7 +147,7 @@ impl Scan {
                 let found = bytes.len() as u64;
                 return Err(content(path)(ContentError::Changed { expected: length, found }));
             }
-            let table = text::Table::read(&bytes, declared).map_err(content(path))?;
+            let table = text::TextTable::read(&bytes, declared).map_err(content(path))?;
             let format = match format {
                 Some(format) => format,
                 None if table.columns == 3 && table.rows() > 3 => {

@@ -59,7 +59,7 @@ impl fmt::Display for Delimiter {
 
 /// Lines of equally many numbers; NaN is an undefined point.
 #[derive(Debug)]
-pub(crate) struct Table {
+pub(crate) struct TextTable {
     pub(crate) columns: usize,
     pub(crate) values: Vec<f64>,
     pub(crate) delimiter: Delimiter,
@@ -71,7 +71,7 @@ pub(crate) struct Table {
 /// A mark that some editors put before UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-impl Table {
+impl TextTable {
     pub(crate) fn rows(&self) -> usize {
         self.values.len() / self.columns
     }

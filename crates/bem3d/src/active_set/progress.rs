@@ -28,7 +28,7 @@ pub enum Decision {
 
 /// The history that decisions rest on.
 #[derive(Debug)]
-pub struct Progress {
+pub struct OuterProgress {
     limits: Limits,
     /// Smallest residuals so far, of complete evaluations.
     pub best: f64,
@@ -38,7 +38,7 @@ pub struct Progress {
     since_best: usize,
 }
 
-impl Progress {
+impl OuterProgress {
     /// Nothing is known yet; `rough`: whether the first gap is evaluated in single precision.
     pub fn new(limits: Limits, rough: bool) -> Self {
         Self { limits, best: f64::INFINITY, rough, iteration: 0, since_best: 0 }
@@ -101,12 +101,12 @@ mod tests {
 
     /// The first decision.
     fn first(evaluated: Evaluated, d: f64) -> Decision {
-        Progress::new(TIGHT, false).judge(evaluated, d, &TUNING, &never)
+        OuterProgress::new(TIGHT, false).judge(evaluated, d, &TUNING, &never)
     }
 
     /// The decisions on a series of evaluations at an approach of 1.
     fn judged(limits: Limits, errors: &[f64]) -> Vec<Decision> {
-        let mut progress = Progress::new(limits, false);
+        let mut progress = OuterProgress::new(limits, false);
         errors.iter().map(|&error| progress.judge(seen(error), 1.0, &TUNING, &never)).collect()
     }
 
@@ -133,8 +133,8 @@ mod tests {
         assert_eq!(factored(5e-10), CONVERGED);
         assert_eq!(factored(2e-9), Decision::Continue { best: true });
         // A converged state is not stopped any more.
-        assert_eq!(Progress::new(TIGHT, false).judge(good, 1.0, &TUNING, &|| true), CONVERGED);
-        let stopped = Progress::new(TIGHT, false).judge(seen(1.0), 1.0, &TUNING, &|| true);
+        assert_eq!(OuterProgress::new(TIGHT, false).judge(good, 1.0, &TUNING, &|| true), CONVERGED);
+        let stopped = OuterProgress::new(TIGHT, false).judge(seen(1.0), 1.0, &TUNING, &|| true);
         assert_eq!(stopped, Decision::End(Status::Stopped));
     }
 
@@ -163,7 +163,7 @@ mod tests {
             (0..decisions.len()).filter(|&i| decisions[i] == best).collect()
         };
         assert_eq!(best(&judged(TIGHT, &[1.0, 0.95, TUNING.better, 0.5, 0.46, 0.44])), [0, 3, 5]);
-        let mut progress = Progress::new(TIGHT, false);
+        let mut progress = OuterProgress::new(TIGHT, false);
         progress.judge(seen(1.0), 1.0, &TUNING, &never);
         let incomplete = Evaluated { complete: false, ..seen(0.1) };
         assert_eq!(progress.judge(incomplete, 1.0, &TUNING, &never), Decision::Continue { best: false });
@@ -188,13 +188,13 @@ mod tests {
             (0.5, 1e-6, 1.0, 0.4 / noise, true),
             (0.5, 1e-6, 4.0, 1.0 / noise, true),
         ] {
-            let mut progress = Progress::new(Limits { tolerance, height: Some(height), ..TIGHT }, false);
+            let mut progress = OuterProgress::new(Limits { tolerance, height: Some(height), ..TIGHT }, false);
             assert!(!progress.rough);
             progress.judge(seen(error), d, &TUNING, &never);
             assert_eq!(progress.rough, rough, "{error} {tolerance} {height} {d}");
         }
         // Without a height gaps are compared with the approach, whatever its unit.
-        let mut progress = Progress::new(Limits { height: None, ..TIGHT }, true);
+        let mut progress = OuterProgress::new(Limits { height: None, ..TIGHT }, true);
         assert!(progress.rough);
         progress.judge(seen(0.5), 1e-30, &TUNING, &never);
         assert!(progress.rough);

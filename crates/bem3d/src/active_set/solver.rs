@@ -1,6 +1,6 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating cells.
 
-use super::progress::{Decision, Evaluated, Progress, criteria};
+use super::progress::{Decision, Evaluated, OuterProgress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
 use crate::geometry::CellSet;
@@ -83,7 +83,7 @@ impl<'a> Solver<'a> {
 
     fn iterate(mut self, mut known: Option<Evaluated>, rough: bool, stop: Stop<'_>) -> Solved {
         let tuning = *self.problem.operators.tuning();
-        let mut progress = Progress::new(self.limits, rough);
+        let mut progress = OuterProgress::new(self.limits, rough);
         let mut steps = 0;
         let (status, last) = loop {
             let evaluated = known.take().unwrap_or_else(|| self.evaluate(progress.rough));

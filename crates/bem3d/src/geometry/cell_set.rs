@@ -11,7 +11,7 @@ use std::ops::{AddAssign, Range};
 pub struct CellSet {
     rows: Vec<RowStart>,
     columns: Vec<u32>,
-    runs: Vec<Run>,
+    runs: Vec<ColumnRun>,
 }
 
 /// Where a row begins in the lists of its set.
@@ -24,24 +24,24 @@ struct RowStart {
 
 /// Neighbouring cells of one row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Run {
+struct ColumnRun {
     x: u32,
     length: u32,
 }
 
 /// The cells of a set in one row of the grid.
 #[derive(Debug, Clone, Copy)]
-pub struct Row<'a> {
+pub struct SetRow<'a> {
     /// Row of the grid.
     pub y: usize,
     /// Position of its first cell.
     start: usize,
     /// Columns of its cells.
     pub columns: &'a [u32],
-    runs: &'a [Run],
+    runs: &'a [ColumnRun],
 }
 
-impl Row<'_> {
+impl SetRow<'_> {
     /// Positions of its cells in the list of the set.
     pub fn span(&self) -> Range<usize> {
         self.start..self.start + self.columns.len()
@@ -195,12 +195,12 @@ impl CellSet {
         if row.len() < LONG_RUN * (breaks + 1) {
             return;
         }
-        let mut run = Run { x, length: 1 };
+        let mut run = ColumnRun { x, length: 1 };
         for &x in &row[1..] {
             if x == run.x + run.length {
                 run.length += 1;
             } else {
-                self.runs.push(std::mem::replace(&mut run, Run { x, length: 1 }));
+                self.runs.push(std::mem::replace(&mut run, ColumnRun { x, length: 1 }));
             }
         }
         self.runs.push(run);
@@ -217,10 +217,10 @@ impl CellSet {
     }
 
     /// The rows of the grid that hold cells of the set, in order.
-    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> + Clone {
+    pub fn rows(&self) -> impl Iterator<Item = SetRow<'_>> + Clone {
         let end = RowStart { y: u32::MAX, cells: self.columns.len() as u32, runs: self.runs.len() as u32 };
         let next = self.rows.iter().skip(1).copied().chain(std::iter::once(end));
-        self.rows.iter().zip(next).map(|(row, next)| Row {
+        self.rows.iter().zip(next).map(|(row, next)| SetRow {
             y: row.y as usize,
             start: row.cells as usize,
             columns: &self.columns[row.cells as usize..next.cells as usize],
@@ -311,7 +311,7 @@ impl CellSet {
         &self,
         other: &Self,
         values: &[T],
-        mut show: impl FnMut(Row<'_>, &[T], usize),
+        mut show: impl FnMut(SetRow<'_>, &[T], usize),
     ) {
         let window = self.window().into_iter().chain(other.window()).reduce(Window::union);
         let Some(window) = window else { return };
@@ -327,7 +327,7 @@ impl CellSet {
     }
 }
 
-fn columns(row: Option<Row<'_>>) -> &[u32] {
+fn columns(row: Option<SetRow<'_>>) -> &[u32] {
     row.map_or(&[], |row| row.columns)
 }
 

@@ -3,5 +3,5 @@
 mod cell_set;
 mod grid;
 
-pub use cell_set::{CellSet, Row};
+pub use cell_set::{CellSet, SetRow};
 pub use grid::{Grid, Lengths, Window};

@@ -3,7 +3,7 @@
 //! A mean pressure on every copy would sink an infinite half-space without limit; displacements are counted from their mean, which
 //! leaves a kernel of zero mean. That kernel is no inverse M-matrix, and cells outside `z < d` may penetrate. Adding a constant c to
 //! it changes neither the pressure under a given force nor the gap, only where the plane is counted from (`d + c F`), and with
-//! [`Periodic::shift`] every entry is positive, so that what the elimination and the candidates of the free kernel rely on holds
+//! [`PeriodicKernel::shift`] every entry is positive, so that what the elimination and the candidates of the free kernel rely on holds
 //! again (`tests/tests/periodic.rs` checks the results).
 
 use super::alternating::{TERMS, alternating_weights};
@@ -23,7 +23,7 @@ const SHIFT_OVER_DEPTH: f64 = 1.25;
 
 /// The kernel at the lags `0 ..= n/2` in both directions, a constant added.
 #[derive(Debug)]
-pub struct Periodic {
+pub struct PeriodicKernel {
     grid: Grid,
     /// Whether x and y may be exchanged.
     symmetric: bool,
@@ -31,7 +31,7 @@ pub struct Periodic {
     shift: f64,
 }
 
-impl Periodic {
+impl PeriodicKernel {
     /// Kernel of a grid. Exact to rounding: the displacement at cell centres under uniform pressure on cells.
     ///
     /// Cost: some 25 multiplications a cell and a real transform of the grid; up to 5000 a row or column more for oblong cells.
@@ -187,8 +187,8 @@ mod tests {
     use crate::kernel::love::{SMALLEST_EIGENVALUE, influence_of_rectangle, smallest_eigenvalue};
     use approx::assert_relative_eq;
 
-    fn kernel(columns: usize, rows: usize, stretch: f64) -> Periodic {
-        Periodic::new(Grid { columns, rows, stretch })
+    fn kernel(columns: usize, rows: usize, stretch: f64) -> PeriodicKernel {
+        PeriodicKernel::new(Grid { columns, rows, stretch })
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The kernel of one grid, free or periodic, and its symbols, shared by all surfaces of that grid.
 
 use super::love::{influence_of_rectangle, influence_row, smallest_eigenvalue};
-use super::periodic::Periodic;
+use super::periodic::PeriodicKernel;
 use super::symbol::Symbol;
 use crate::geometry::{Grid, Lengths, Window};
 use crate::tuning::KEPT_SYMBOLS;
@@ -18,7 +18,7 @@ pub struct KernelTable {
     boundary: Boundary,
     smallest_eigenvalue: f64,
     /// Made at the first use where the rectangle repeats itself.
-    periodic: OnceLock<Periodic>,
+    periodic: OnceLock<PeriodicKernel>,
     rows: Vec<OnceLock<Box<[f64]>>>,
     double: Mutex<Kept<f64>>,
     single: Mutex<Kept<f32>>,
@@ -70,11 +70,11 @@ impl KernelTable {
         self.boundary == Boundary::Periodic
     }
 
-    fn periodic(&self) -> &Periodic {
-        self.periodic.get_or_init(|| Periodic::new(self.grid))
+    fn periodic(&self) -> &PeriodicKernel {
+        self.periodic.get_or_init(|| PeriodicKernel::new(self.grid))
     }
 
-    /// The constant in the kernel: nothing with free boundaries, [`Periodic::shift`] with periodic ones.
+    /// The constant in the kernel: nothing with free boundaries, [`PeriodicKernel::shift`] with periodic ones.
     pub fn shift(&self) -> f64 {
         if self.is_periodic() { self.periodic().shift() } else { 0.0 }
     }

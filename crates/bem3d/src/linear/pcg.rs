@@ -31,7 +31,7 @@ pub struct Energy {
 
 /// What an iteration took and found, in the units of the residual given.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Outcome {
+pub struct PcgOutcome {
     /// Steps.
     pub steps: usize,
     /// Applications of the influence matrix: one a step, and one that told nothing where the precision ended the iteration.
@@ -104,7 +104,7 @@ pub fn pcg<T: Real>(
     fixed_sum: bool,
     criteria: StoppingCriteria,
     stop: Stop<'_>,
-) -> Outcome {
+) -> PcgOutcome {
     v.x.fill(T::default());
     let factor = preconditioner.energy_factor();
     let total = if fixed_sum { v.weigh(preconditioner) } else { 0.0 };
@@ -159,7 +159,7 @@ pub fn pcg<T: Real>(
     if pending {
         add(&mut v.x, step, &v.t);
     }
-    Outcome { steps, applications, energy: factor * start.max(0.0) }
+    PcgOutcome { steps, applications, energy: factor * start.max(0.0) }
 }
 
 fn add<T: Real>(a: &mut [T], factor: T, b: &[T]) {

@@ -1,7 +1,7 @@
 //! Linear systems in the precision and with the preconditioner of their recipe.
 
 use super::extension::Extension;
-use super::pcg::{Energy, Outcome, StoppingCriteria, Vectors, pcg};
+use super::pcg::{Energy, PcgOutcome, StoppingCriteria, Vectors, pcg};
 use super::preconditioner::{Identity, TorusInverse};
 use crate::geometry::CellSet;
 use crate::operator::{Conditioning, Operators, Recipe};
@@ -57,11 +57,11 @@ impl Workspace {
         fixed_sum: bool,
         criteria: StoppingCriteria,
         stop: Stop<'_>,
-    ) -> Outcome {
+    ) -> PcgOutcome {
         operators.solves += 1;
         // In units of its own size: its square neither overflows nor underflows.
         let unit = largest(right);
-        let Some(recipe) = self.recipe.filter(|_| unit > 0.0) else { return Outcome::default() };
+        let Some(recipe) = self.recipe.filter(|_| unit > 0.0) else { return PcgOutcome::default() };
         let square = unit * unit;
         let criteria = StoppingCriteria {
             floor: criteria.floor / unit,
@@ -89,7 +89,7 @@ impl Workspace {
             outcome
         };
         operators.applications += outcome.applications;
-        Outcome { energy: outcome.energy * square, ..outcome }
+        PcgOutcome { energy: outcome.energy * square, ..outcome }
     }
 }
 

@@ -151,7 +151,7 @@ impl TwoLevel {
         let radius = self.split.radius();
         let mut near_rows = sources.rows();
         for target in targets.rows() {
-            let above = |row: &crate::geometry::Row<'_>| row.y + radius <= target.y;
+            let above = |row: &crate::geometry::SetRow<'_>| row.y + radius <= target.y;
             while near_rows.clone().next().is_some_and(|row| above(&row)) {
                 near_rows.next();
             }

@@ -14,14 +14,14 @@ const MOST_AXES: usize = 64;
 
 /// Type of the numbers, one that this crate reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Kind {
+pub(super) struct NumberType {
     /// `f`, `i` or `u`.
     pub(super) letter: u8,
     size: u8,
     pub(super) little: bool,
 }
 
-impl Kind {
+impl NumberType {
     pub(super) fn bytes(self) -> usize {
         usize::from(self.size)
     }
@@ -39,7 +39,7 @@ impl Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for NumberType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = match self.letter {
             b'f' => "float",
@@ -53,7 +53,7 @@ impl fmt::Display for Kind {
 
 /// Which index runs fastest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Order {
+pub(super) enum AxisOrder {
     /// The last one.
     C,
     /// The first one.
@@ -61,13 +61,13 @@ pub(super) enum Order {
 }
 
 #[derive(Debug)]
-pub(super) struct Header {
-    pub(super) kind: Kind,
-    pub(super) order: Order,
+pub(super) struct NpyHeader {
+    pub(super) kind: NumberType,
+    pub(super) order: AxisOrder,
     pub(super) shape: Vec<u64>,
 }
 
-impl Header {
+impl NpyHeader {
     /// Reads the header of a file of the given length; returns its own length too.
     pub(super) fn read(path: &Path, reader: &mut impl Read, length: u64) -> Result<(Self, u64)> {
         let wrong = |offset, expected| Error::content(path)(ContentError::Header { offset, expected });
@@ -137,7 +137,7 @@ impl Parser<'_> {
         }
     }
 
-    fn dictionary(&mut self) -> Parsed<Header> {
+    fn dictionary(&mut self) -> Parsed<NpyHeader> {
         let (mut descr, mut order, mut shape) = (None, None, None);
         self.take(b'{', "{")?;
         while self.peek() != Some(b'}') {
@@ -162,7 +162,7 @@ impl Parser<'_> {
         let (Some(kind), Some(order), Some(shape)) = (descr, order, shape) else {
             return self.wrong("the keys descr, fortran_order and shape before }");
         };
-        Ok(Header { kind, order, shape })
+        Ok(NpyHeader { kind, order, shape })
     }
 
     fn string(&mut self) -> Parsed<String> {
@@ -175,23 +175,23 @@ impl Parser<'_> {
         Ok(String::from_utf8_lossy(&self.text[from..from + length]).into_owned())
     }
 
-    fn descr(&mut self) -> Parsed<Kind> {
+    fn descr(&mut self) -> Parsed<NumberType> {
         if self.peek() == Some(b'[') {
             return Err(ContentError::Type { found: "a structure".into() });
         }
         let descr = self.string()?;
-        Kind::of(&descr).ok_or_else(|| ContentError::Type {
+        NumberType::of(&descr).ok_or_else(|| ContentError::Type {
             found: format!("'{}'", descr.chars().take(32).collect::<String>()),
         })
     }
 
-    fn order(&mut self) -> Parsed<Order> {
+    fn order(&mut self) -> Parsed<AxisOrder> {
         self.peek();
         let rest = &self.text[self.at..];
         let (length, order) = if rest.starts_with(b"True") {
-            (4, Order::Fortran)
+            (4, AxisOrder::Fortran)
         } else if rest.starts_with(b"False") {
-            (5, Order::C)
+            (5, AxisOrder::C)
         } else {
             return self.wrong("True or False");
         };

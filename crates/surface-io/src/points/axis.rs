@@ -15,7 +15,7 @@ const OFF_GIVEN: f64 = 0.25;
 
 /// Places `origin + i * spacing`, i = 0 .. count.
 #[derive(Debug)]
-pub(super) struct Axis {
+pub(super) struct GridAxis {
     name: char,
     origin: f64,
     /// `None` where all coordinates are one and nothing was given.
@@ -28,7 +28,7 @@ pub(super) struct Axis {
     pub(super) off: f64,
 }
 
-impl Axis {
+impl GridAxis {
     /// The grid of these coordinates: with the given spacing, else with the smallest step between two of
     /// them, refined over their whole range.
     pub(super) fn find(name: char, mut values: Vec<f64>, given: Option<f64>) -> Result<Self, ContentError> {

@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 
 /// One symbol: its dimension, its power of ten and a factor that is no power of ten.
-pub(super) struct Symbol {
+pub(super) struct UnitSymbol {
     pub(super) text: &'static str,
     pub(super) dimension: Dimension,
     pub(super) exponent: i32,
@@ -18,12 +18,12 @@ pub(super) enum Prefixed {
     No,
 }
 
-const fn symbol(text: &'static str, powers: [i8; 5], exponent: i32) -> Symbol {
-    Symbol { text, dimension: Dimension::of(powers), exponent, factor: 1.0, prefixed: Prefixed::Yes }
+const fn symbol(text: &'static str, powers: [i8; 5], exponent: i32) -> UnitSymbol {
+    UnitSymbol { text, dimension: Dimension::of(powers), exponent, factor: 1.0, prefixed: Prefixed::Yes }
 }
 
-const fn other(text: &'static str, powers: [i8; 5], exponent: i32, factor: f64) -> Symbol {
-    Symbol { text, dimension: Dimension::of(powers), exponent, factor, prefixed: Prefixed::No }
+const fn other(text: &'static str, powers: [i8; 5], exponent: i32, factor: f64) -> UnitSymbol {
+    UnitSymbol { text, dimension: Dimension::of(powers), exponent, factor, prefixed: Prefixed::No }
 }
 
 /// Prefixes and their powers of ten; hecto and deca are left out (h is the hour).
@@ -43,7 +43,7 @@ pub(super) const PREFIXES: [(&str, i32); 12] = [
 ];
 
 /// No prefixed symbol equals another symbol (a test looks).
-pub(super) const SYMBOLS: [Symbol; 17] = [
+pub(super) const SYMBOLS: [UnitSymbol; 17] = [
     symbol("m", [1, 0, 0, 0, 0], 0),
     symbol("g", [0, 1, 0, 0, 0], -3),
     symbol("s", [0, 0, 1, 0, 0], 0),
@@ -64,7 +64,7 @@ pub(super) const SYMBOLS: [Symbol; 17] = [
 ];
 
 /// The symbol and the power of ten of its prefix.
-pub(super) fn find(text: &str) -> Option<(&'static Symbol, i32)> {
+pub(super) fn find(text: &str) -> Option<(&'static UnitSymbol, i32)> {
     all()
         .find(|(_, prefix, symbol)| text.strip_prefix(*prefix).is_some_and(|rest| rest == symbol.text))
         .map(|(power, _, symbol)| (symbol, power))
@@ -78,7 +78,7 @@ pub(super) fn alike(text: &str) -> Vec<String> {
         .collect()
 }
 
-pub(super) fn all() -> impl Iterator<Item = (i32, &'static str, &'static Symbol)> {
+pub(super) fn all() -> impl Iterator<Item = (i32, &'static str, &'static UnitSymbol)> {
     SYMBOLS.iter().flat_map(|symbol| {
         let allowed = move |(prefix, _): &&(&str, i32)| prefix.is_empty() || symbol.prefixed == Prefixed::Yes;
         PREFIXES.iter().filter(allowed).map(move |&(prefix, power)| (power, prefix, symbol))

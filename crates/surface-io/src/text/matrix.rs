@@ -1,6 +1,6 @@
 //! A text matrix: one row per line.
 
-use super::Table;
+use super::TextTable;
 use crate::content::FileContent;
 use crate::error::ContentError;
 use crate::extent::Extent;
@@ -11,7 +11,7 @@ use crate::options::ReadOptions;
 const EXACT: f64 = 4.0 * f64::EPSILON;
 
 /// The rows of a table as a map; the first line is row 0.
-pub(crate) fn matrix(table: Table, declared: &ReadOptions) -> Result<FileContent, ContentError> {
+pub(crate) fn matrix(table: TextTable, declared: &ReadOptions) -> Result<FileContent, ContentError> {
     if declared.lateral_unit.is_some() {
         let reason = "a matrix has no coordinates; give size or cell with a unit";
         return Err(ContentError::Useless { what: "lateral_unit", reason });
@@ -24,7 +24,7 @@ pub(crate) fn matrix(table: Table, declared: &ReadOptions) -> Result<FileContent
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells
 /// are square within the digits that it prints.
-fn extents(table: &Table, columns: usize, rows: usize) -> Result<[Option<Extent>; 2], ContentError> {
+fn extents(table: &TextTable, columns: usize, rows: usize) -> Result<[Option<Extent>; 2], ContentError> {
     let [width, height] = table.heading.sides();
     let cell = |side: Extent, count: usize| side.cell(count).map(Extent::Cell);
     let (Some(across), Some(down)) = (width, height) else {

@@ -66,7 +66,7 @@ fn endless(steps: usize) -> StoppingCriteria {
 
 struct Solution {
     x: Vec<f64>,
-    outcome: Outcome,
+    outcome: PcgOutcome,
 }
 
 fn solve_on(
