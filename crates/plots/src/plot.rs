@@ -135,6 +135,16 @@ impl Picture {
         self.legend.push(label, color, key);
     }
 
+    /// Whether nothing is drawn between the axes.
+    pub fn is_empty(&self) -> bool {
+        self.drawn.iter().all(|d| matches!(d, Drawn::Points { points, .. } | Drawn::Line { points, .. } if points.is_empty()))
+    }
+
+    /// The horizontal and the vertical axis.
+    pub fn axes(&self) -> (Axis, Axis) {
+        (self.axes[0], self.axes[1])
+    }
+
     /// Writes `NAME.svg` and `NAME.png`.
     ///
     /// # Errors

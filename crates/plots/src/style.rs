@@ -60,12 +60,14 @@ pub enum Mark {
     Solid(Shape),
     /// An outline around white.
     Hollow(Shape),
+    /// An outline around whatever lies below.
+    Ring(Shape),
 }
 
 impl Mark {
     pub(crate) fn shape(self) -> Shape {
         match self {
-            Self::Solid(shape) | Self::Hollow(shape) => shape,
+            Self::Solid(shape) | Self::Hollow(shape) | Self::Ring(shape) => shape,
         }
     }
 }
