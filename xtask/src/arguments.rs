@@ -9,7 +9,7 @@ pub use bench::BenchArguments;
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
 use sizes::{Both, Lines, Maps, Reduced, Solid};
-use studies::{AccuracyCost, Audit, BudgetCheck, Reference, StabilityArguments, TwoCasesArguments};
+use studies::{AccuracyCost, Audit, BudgetCheck, Redraw, Reference, StabilityArguments, TwoCasesArguments};
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
 ///
@@ -84,6 +84,8 @@ pub enum Command {
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
+    /// Every picture of directories again from their tables; solves nothing and touches no table.
+    Redraw(Redraw),
     /// A small fixed run of Figs. 2 and 6 against the numbers in data/reference (for continuous integration).
     CheckReference(Reference),
     /// Hard cases: why each is hard, what is asserted, the figure reached (stability.csv, stability.md).
@@ -108,6 +110,7 @@ impl Command {
             Self::ReproduceTwoCases(_) => "reproduce-two-cases",
             Self::Audit(_) => "audit",
             Self::Bench(_) => "bench",
+            Self::Redraw(_) => "redraw",
             Self::CheckReference(_) => "check-reference",
             Self::Stability(_) => "stability",
         }
@@ -138,7 +141,7 @@ impl Command {
                 a.fill(&mut request);
             }
             Self::Audit(a) => a.solid.fill(&mut request),
-            Self::Bench(_) => {}
+            Self::Bench(_) | Self::Redraw(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),
             Self::AccuracyCost(a) => request.out = Some(a.out.clone()),
@@ -214,6 +217,8 @@ mod tests {
             "bench --method magic",
             "bench --preset paper",
             "stability --preset quick",
+            "redraw",
+            "accuracy-cost --redraw",
             "reproduce-fig2 --unknown",
             "",
         ] {

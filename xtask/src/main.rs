@@ -1,5 +1,5 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `check-reference`, `stability`.
+//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `redraw`, `check-reference`, `stability`.
 //!
 //! Argument parsing and exit codes; the figures are in the crate `figures`.
 //!
@@ -37,6 +37,13 @@ fn execute(command: Command) -> Result<ExitCode> {
     if let Command::Bench(options) = &command {
         return bench(options);
     }
+    if let Command::Redraw(options) = &command {
+        for directory in &options.directories {
+            let files = figures::redraw(directory, &options.beside())?;
+            files.iter().for_each(|file| println!("{}", file.display()));
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
     let name = command.name();
     let reporter = Reporter::new();
     let target = command.target();
@@ -63,7 +70,6 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
         Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
-        Command::AccuracyCost(options) if options.redraw => vec![evaluation::redraw_accuracy(&options.out)?],
         Command::AccuracyCost(options) => {
             vec![evaluation::accuracy_cost(options.depth(), options.seed, &options.out, &reporter)?]
         }
@@ -82,7 +88,9 @@ fn execute(command: Command) -> Result<ExitCode> {
             println!("{summary}");
             vec![outcome]
         }
-        Command::Bench(_) | Command::CheckReference(_) | Command::Stability(_) => Vec::new(),
+        Command::Bench(_) | Command::Redraw(_) | Command::CheckReference(_) | Command::Stability(_) => {
+            Vec::new()
+        }
     };
     if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())

@@ -1,23 +1,12 @@
 //! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
 
-use kuva::plot::line::LineStyle;
-use kuva::plot::scatter::MarkerShape;
-use plots::{Key, Mark, Picture, color, logarithmic};
+use plots::{Key, LineStyle, Mark, NEUTRAL, Picture, Shape, color, logarithmic, number};
 use runs::CsvFile;
 use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Marks of the loads or of the sizes, smallest first.
-const MARKS: [MarkerShape; 5] = [
-    MarkerShape::Circle,
-    MarkerShape::Square,
-    MarkerShape::Triangle,
-    MarkerShape::Diamond,
-    MarkerShape::Cross,
-];
-
-/// Colour of loads and sizes in the legend, and of maps from files, which have no fractal dimension of their own.
-const NEUTRAL: &str = "#555555";
+const MARKS: [Shape; 5] = [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Cross];
 
 /// What the pictures of a bench hold.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -65,8 +54,8 @@ impl Over {
 
     fn label(self) -> &'static str {
         match self {
-            Self::Cells => "cells a side",
-            Self::Force => "force  F / (E* h L)",
+            Self::Cells => "cells per side $N$",
+            Self::Force => "normalised force $\\bar{F} = F/(E^* h L)$",
         }
     }
 
@@ -74,6 +63,14 @@ impl Over {
         match self {
             Self::Cells => "cells",
             Self::Force => "F_bar",
+        }
+    }
+
+    /// Its symbol in a picture.
+    fn symbol(self) -> &'static str {
+        match self {
+            Self::Cells => "N",
+            Self::Force => "\\bar{F}",
         }
     }
 
@@ -113,9 +110,15 @@ fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut B
     let other = over.other();
     let others = other.values(points);
     let y = logarithmic(points.iter().map(|p| p.seconds));
+    let along = over.values(points);
     let mut drawing =
-        Picture::new(logarithmic(points.iter().map(|p| over.of(p))), y, over.label(), "seconds")
-            .with_title("Cost of one certified solve with its stiffness");
+        Picture::new(logarithmic(along.iter().copied()), y, over.label(), "wall-clock time (s)")
+            .with_title("Time of one certified solve with its stiffness")
+            .with_subtitle(&tolerance_words(points));
+    // Sizes of grids are few and odd: each has its own label.
+    if over == Over::Cells && along.len() <= 8 {
+        drawing = drawing.with_x_ticks(&along);
+    }
     let tolerances = points.iter().any(|p| p.tolerance.total_cmp(&points[0].tolerance).is_ne());
     let mut known = Vec::new();
     for mut curve in curves(points, other) {
@@ -127,11 +130,14 @@ fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut B
         let mark = MARKS[rank % MARKS.len()];
         let (done, open): (Vec<Point>, Vec<Point>) = curve.into_iter().partition(|p| p.converged);
         let at = |points: &[Point]| points.iter().map(|p| (over.of(p), p.seconds)).collect::<Vec<_>>();
-        drawing.line(&at(&done), &color, 1.2, &LineStyle::Solid);
-        drawing.points(&at(&done), &color, 4.0, Mark::Solid(mark));
-        drawing.points(&at(&open), &color, 4.0, Mark::Hollow(mark));
+        drawing.line(&at(&done), &color, 1.4, LineStyle::Solid);
+        drawing.points(&at(&done), &color, 4.6, Mark::Solid(mark));
+        drawing.points(&at(&open), &color, 4.6, Mark::Hollow(mark));
         if !known.contains(&what) {
-            drawing.legend(&what, &color, Key::Mark(MARKS[0]));
+            let label = first
+                .fractal_dimension
+                .map_or_else(|| what.clone(), |d| format!("$D_{{\\rm{{f}}}} = {d:?}$"));
+            drawing.legend(&label, &color, Key::Line(LineStyle::Solid));
             known.push(what.clone());
         }
         let power = |of: fn(&Point) -> f64| slope(done.iter().map(|p| (over.of(p), of(p))));
@@ -146,8 +152,8 @@ fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut B
     }
     if others.len() > 1 {
         for (rank, value) in others.iter().enumerate() {
-            let label = format!("{} = {}", other.name(), shown(*value));
-            drawing.legend(&label, NEUTRAL, Key::Mark(MARKS[rank % MARKS.len()]));
+            let label = format!("${} = {}$", other.symbol(), number(*value).replace('$', ""));
+            drawing.legend(&label, NEUTRAL, Key::Mark(Mark::Solid(MARKS[rank % MARKS.len()])));
         }
     }
     plot.files.extend(drawing.save(directory, name)?);
@@ -171,6 +177,38 @@ fn curves(points: &[Point], other: Over) -> Vec<Vec<Point>> {
         }
     }
     curves
+}
+
+/// The tolerance of all solves, or how many there are.
+fn tolerance_words(points: &[Point]) -> String {
+    let mut all: Vec<f64> = points.iter().map(|p| p.tolerance).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    let all: Vec<String> = all.into_iter().map(number).collect();
+    format!("tolerance of the certificate: {}", all.join(", "))
+}
+
+/// Draws again every picture of a bench in a directory: of each table of [`crate::write_bench`] with an SVG or PNG of its name.
+///
+/// # Errors
+/// As [`plot_bench`]; a directory that cannot be read.
+pub fn redraw_benches(directory: &Path) -> Result<Vec<PathBuf>> {
+    let mut tables: Vec<PathBuf> = std::fs::read_dir(directory)
+        .map_err(Error::file("read", directory))?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|p| p.extension().is_some_and(|e| e == "csv"))
+        .filter(|p| ["svg", "png"].iter().any(|e| p.with_extension(e).exists()))
+        .collect();
+    tables.sort();
+    let mut files = Vec::new();
+    for csv in tables {
+        let file = CsvFile::read(&csv)?;
+        // Other tables have pictures of their own.
+        if ["cells", "seconds", "strategy"].iter().all(|name| file.column(name).is_ok()) {
+            files.extend(plot_bench(&csv, &csv.with_extension("svg"))?.files);
+        }
+    }
+    Ok(files)
 }
 
 /// Whole numbers without their `.0`.

@@ -49,7 +49,7 @@ pub use accuracy::{
 };
 pub use audit::audit;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, write_bench};
-pub use bench_plot::{BenchPlot, plot_bench};
+pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
 pub use budget::{Budget, Budgeted, state_budgets, write_budget};
 pub use claim::{Claim, Verdict, claims_table, markdown, plain, readme_table, short, sort};
 pub use forces::Forces;

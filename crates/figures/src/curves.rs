@@ -1,11 +1,10 @@
 //! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
 
+use crate::words;
 use evaluation::Measured;
 use evaluation::{Flag, Run, describe, header};
 use evaluation::{curves_table, samples_table};
-use kuva::plot::line::LineStyle;
-use kuva::plot::scatter::MarkerShape;
-use plots::{Axis, Key, Mark, Picture, color, logarithmic};
+use plots::{Axis, Key, LineStyle, Mark, NEUTRAL, Picture, REFERENCE, Shape, color, logarithmic, shape};
 use runs::Result;
 use runs::{CsvFile, write_csv};
 use std::path::{Path, PathBuf};
@@ -25,79 +24,143 @@ pub(crate) fn write(
     let all = samples_table(&format!("{title}: every surface and load"), measured)?;
     write_csv(&samples, &all, &header)?;
     let mut files = vec![csv.clone(), samples];
-    files.extend(draw(name, title, &csv, run.over.as_deref(), &run.out)?);
+    files.extend(draw(name, &csv, run.over.as_deref(), &run.out)?);
     Ok(files)
 }
 
-/// The curves of a CSV file: (D_f, points with their floor mark).
-type CurvePoints = (f64, Vec<(f64, f64, bool)>);
+/// A mean of a CSV file.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    force: f64,
+    stiffness: f64,
+    error: Option<f64>,
+    below_floor: bool,
+}
 
-fn read(csv: &Path) -> Result<Vec<CurvePoints>> {
-    let file = CsvFile::read(csv)?;
+/// The means of one fractal dimension.
+type CurvePoints = (f64, Vec<Point>);
+
+fn read(file: &CsvFile) -> Result<Vec<CurvePoints>> {
     let d = file.numbers("fractal_dimension")?;
     let force = file.numbers("force_bar")?;
     let k = file.numbers("stiffness_bar")?;
+    let error = file.numbers("stiffness_bar_se")?;
     let floor = file.texts("below_floor")?;
     let mut curves: Vec<CurvePoints> = Vec::new();
     for i in 0..d.len() {
-        let (Some(d), Some(f), Some(k)) = (d[i], force[i], k[i]) else { continue };
+        let (Some(d), Some(force), Some(stiffness)) = (d[i], force[i], k[i]) else { continue };
         if curves.last().is_none_or(|c| c.0.total_cmp(&d).is_ne()) {
             curves.push((d, Vec::new()));
         }
         if let Some(curve) = curves.last_mut() {
-            curve.1.push((f, k, floor[i] == "true"));
+            curve.1.push(Point { force, stiffness, error: error[i], below_floor: floor[i] == "true" });
         }
     }
     Ok(curves)
 }
 
-fn draw(name: &str, title: &str, csv: &Path, over: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
-    let curves = read(csv)?;
-    let below = over.map(read).transpose()?.unwrap_or_default();
-    let points = || curves.iter().chain(&below).flat_map(|c| &c.1);
-    let x = logarithmic(points().map(|p| p.0));
-    let y = logarithmic(points().map(|p| p.1));
-    let mut picture = Picture::new(x, y, "force  F / (E* h L)", "stiffness  k / (1.1419 E* L)")
-        .with_title(title)
-        .with_legend_below();
-    let circle = MarkerShape::Circle;
-    for (d, points) in &below {
-        let inside: Vec<(f64, f64)> = points.iter().filter(|p| !p.2).map(|p| (p.0, p.1)).collect();
-        picture.line(&inside, &color(*d), 1.0, &LineStyle::Solid);
-        picture.points(&inside, &color(*d), 2.6, Mark::Hollow(MarkerShape::Square));
+/// Draws `name.svg` and `name.png` from a table of Fig. 2 or 6; `over` is a coarser run of the same figure, drawn beneath.
+pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
+    let file = CsvFile::read(csv)?;
+    let curves = read(&file)?;
+    let below = over.map(CsvFile::read).transpose()?;
+    let coarse = below.as_ref().map(read).transpose()?.unwrap_or_default();
+    let points = || curves.iter().chain(&coarse).flat_map(|c| &c.1);
+    let (x, y) = (logarithmic(points().map(|p| p.force)), logarithmic(points().map(|p| p.stiffness)));
+    let one = file.texts("model")?.first() == Some(&"mdr1d");
+    let (model, cells) = if one { ("mdr1d", "elements") } else { ("bem3d", "cells") };
+    let mut title = words::title(&file);
+    if below.is_some() {
+        title = title.replacen(':', " continued to smaller forces:", 1);
+    }
+    let mut picture = Picture::new(x, y, words::FORCE, words::STIFFNESS)
+        .with_title(&title)
+        .with_subtitle(&words::ensemble(&file, model).unwrap_or_default());
+    for (d, points) in &curves {
+        let inside: Vec<(f64, f64, f64)> = (points.iter().filter(|p| !p.below_floor))
+            .filter_map(|p| p.error.map(|e| (p.force, p.stiffness - 2.0 * e, p.stiffness + 2.0 * e)))
+            .collect();
+        picture.band(&inside, &color(*d));
+    }
+    for (d, points) in &coarse {
+        picture.line(&above_floor(points), &color(*d), 1.2, LineStyle::Solid);
+    }
+    for (d, _) in &curves {
+        picture.line(&paper_law(*d, x, y), &color(*d), 1.1, LineStyle::Dashed);
     }
     for (d, points) in &curves {
-        let color = color(*d);
-        let inside: Vec<(f64, f64)> = points.iter().filter(|p| !p.2).map(|p| (p.0, p.1)).collect();
-        let floor: Vec<(f64, f64)> = points.iter().filter(|p| p.2).map(|p| (p.0, p.1)).collect();
-        picture.line(&paper_law(*d, x, y), &color, 1.0, &LineStyle::Dashed);
-        picture.line(&inside, &color, 1.8, &LineStyle::Solid);
-        picture.points(&inside, &color, 3.4, Mark::Solid(circle));
-        picture.points(&floor, &color, 3.0, Mark::Hollow(circle));
-        picture.legend(&format!("D_f = {d:?}"), &color, Key::Mark(circle));
+        let (color, shape) = (color(*d), shape(*d));
+        let marked = apart(points);
+        let floor = marked.iter().filter(|p| p.below_floor).map(|p| (p.force, p.stiffness));
+        picture.line(&above_floor(points), &color, 1.8, LineStyle::Solid);
+        picture.points(&floor.collect::<Vec<_>>(), &color, 3.0, Mark::Hollow(shape));
+        picture.points(&above_floor(&marked), &color, 3.8, Mark::Solid(shape));
+        picture.legend(&words::dimension(*d), &color, Key::Curve(Mark::Solid(shape)));
     }
-    picture.legend("paper, Eq. 12", "#444444", Key::Dashed);
-    if let Some(over) = over {
-        let name = over.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        picture.legend(
-            &format!("squares: {name} of the other run"),
-            "#444444",
-            Key::Mark(MarkerShape::Square),
-        );
+    picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
+    let ring = Mark::Ring(Shape::Circle);
+    picture.points(&[(analytic::F_BAR_UL, analytic::K_BAR_UL)], REFERENCE, 10.0, ring);
+    let crossing = format!("paper: curves cross at $({}, {})$", analytic::F_BAR_UL, analytic::K_BAR_UL);
+    picture.legend(&crossing, REFERENCE, Key::Sized(ring, 7.0));
+    if curves.iter().flat_map(|c| &c.1).any(|p| p.error.is_some()) {
+        picture.legend("shaded: ± 2 standard errors", NEUTRAL, Key::Band);
     }
-    if curves.iter().flat_map(|c| &c.1).any(|p| p.2) {
-        picture.legend("fewer than 10 contact cells", "", Key::Open);
+    if let Some(coarse) = &below {
+        let label = format!("thin, no marks: {}", words::ensemble(coarse, model).unwrap_or_default());
+        picture.legend(&label, NEUTRAL, Key::Line(LineStyle::Solid));
+    }
+    if curves.iter().flat_map(|c| &c.1).any(|p| p.below_floor) {
+        let label = format!("fewer than {} contact {cells}", evaluation::FLOOR_CELLS);
+        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(Shape::Circle)));
     }
     picture.save(out, name)
 }
 
+fn above_floor(points: &[Point]) -> Vec<(f64, f64)> {
+    points.iter().filter(|p| !p.below_floor).map(|p| (p.force, p.stiffness)).collect()
+}
+
+/// The points without those of single loads that stand beside one of the regular loads: their marks would lie on each other.
+fn apart(points: &[Point]) -> Vec<Point> {
+    let step = |a: &Point, b: &Point| (b.force / a.force).ln();
+    let mut steps: Vec<f64> = points.windows(2).map(|w| step(&w[0], &w[1])).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(&regular) = steps.get(steps.len() / 2) else { return points.to_vec() };
+    let mut kept: Vec<Point> = Vec::new();
+    for (i, p) in points.iter().enumerate() {
+        let close = |a: &Point, b: &Point| step(a, b) < 0.4 * regular;
+        let off = |from: Option<&Point>, p: &Point| from.map_or(0.0, |f| (step(f, p) - regular).abs());
+        let before = i.checked_sub(1).and_then(|i| points.get(i));
+        match (before, points.get(i + 1)) {
+            // Of two that are close, the one a regular step behind the point before both stays.
+            (_, Some(next)) if close(p, next) && off(before, p) > off(before, next) => {}
+            (Some(last), _) if close(last, p) && kept.last().is_some_and(|k| close(k, p)) => {}
+            _ => kept.push(*p),
+        }
+    }
+    kept
+}
+
 /// Eq. 12 where it is claimed to hold, `k_bar <= 0.18`, within the axes.
 fn paper_law(d: f64, x: Axis, y: Axis) -> Vec<(f64, f64)> {
-    let (Axis::Log(x0, _) | Axis::Linear(x0, _), Axis::Log(y0, _) | Axis::Linear(y0, _)) = (x, y);
+    let (x0, y0) = (x.ends().0, y.ends().0);
     let alpha = analytic::exponent_fit(d);
     let law = |f: f64| analytic::K_BAR_UL * (f / analytic::F_BAR_UL).powf(alpha);
     let inverse = |k: f64| analytic::F_BAR_UL * (k / analytic::K_BAR_UL).powf(1.0 / alpha);
-    // Just inside the frame, so that rounding does not put the end outside.
-    let start = x0.max(inverse(y0)) * (1.0 + 1e-9);
-    vec![(start, law(start).max(y0)), (analytic::F_BAR_UL, analytic::K_BAR_UL)]
+    let start = x0.max(inverse(y0));
+    vec![(start, law(start)), (analytic::F_BAR_UL, analytic::K_BAR_UL)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn single_loads_beside_regular_ones_have_no_mark() {
+        let point = |force: f64| Point { force, stiffness: 1.0, error: None, below_floor: false };
+        let forces = [0.0440, 0.086, 0.0946, 0.2032, 0.4366, 0.9382, 1.0, 2.016, 4.332];
+        let kept: Vec<f64> = apart(&forces.map(point)).iter().map(|p| p.force).collect();
+        assert_eq!(kept, [0.0440, 0.0946, 0.2032, 0.4366, 0.9382, 2.016, 4.332]);
+        assert_eq!(apart(&[point(1.0)]).len(), 1);
+    }
 }

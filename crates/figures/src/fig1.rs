@@ -1,5 +1,6 @@
 //! Fig. 1: what the surfaces look like.
 
+use crate::words;
 use analysis::Table;
 use contact_model::{HeightMap, SelfAffine};
 use evaluation::Outcome;
@@ -7,10 +8,7 @@ use evaluation::Session;
 use evaluation::header;
 use evaluation::{FRACTAL_DIMENSION, column};
 use evaluation::{Flag, Run, list};
-use kuva::backend::svg::SvgBackend;
-use kuva::render::render::{Primitive, Scene, TextAnchor};
-use plots::{Image, base64, encode_grey, grey};
-use plots::{pixels_per_unit, raster};
+use plots::{GreyMap, encode_grey, grey, save_maps};
 use runs::Progress;
 use runs::files;
 use runs::write_npy;
@@ -67,7 +65,7 @@ pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     let csv = run.out.join("fig1.csv");
     write_csv(&csv, &table, &header)?;
     outcome.files.push(csv.clone());
-    outcome.files.extend(panel(&csv, &run.out)?);
+    outcome.files.extend(draw(&csv, &run.out)?);
     session.close(outcome)
 }
 
@@ -104,62 +102,23 @@ fn full_size(out: &Path, d: f64, map: &HeightMap) -> Result<[PathBuf; 2]> {
     Ok([npy, png])
 }
 
-/// Side of one map in the panel, and the space around it.
-const MAP: f64 = 260.0;
-const GAP: f64 = 22.0;
-const TITLE: f64 = 34.0;
-
-fn panel(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+/// Draws `fig1.svg` and `fig1.png` from the table.
+pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let d: Vec<f64> = file.numbers("fractal_dimension")?.into_iter().flatten().collect();
     let heights: Vec<f64> = file.numbers("height")?.into_iter().flatten().collect();
-    let mut maps: Vec<(f64, Vec<u8>, usize)> = Vec::new();
+    let mut maps = Vec::new();
     let mut start = 0;
     for group in d.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
         let side = group.len().isqrt();
         let shades = grey(&heights[start..start + group.len()]);
-        maps.push((group[0], flipped(&shades, side), side));
+        maps.push(GreyMap { label: words::dimension(group[0]), shades: flipped(&shades, side), side });
         start += group.len();
     }
-    let columns = maps.len().clamp(1, 3);
-    let rows = maps.len().div_ceil(columns);
-    let place = |i: usize| {
-        (GAP + (i % columns) as f64 * (MAP + GAP), TITLE + (i / columns) as f64 * (MAP + GAP + TITLE))
-    };
-    let mut scene = Scene::new(GAP + columns as f64 * (MAP + GAP), rows as f64 * (MAP + GAP + TITLE));
-    scene.font_family = Some("DejaVu Sans, Verdana, Arial, sans-serif".to_owned());
-    for (i, (d, ..)) in maps.iter().enumerate() {
-        let (x, y) = place(i);
-        scene.add(Primitive::Text {
-            x: x + MAP / 2.0,
-            y: y - 9.0,
-            content: format!("D_f = {d:?}"),
-            size: 17,
-            anchor: TextAnchor::Middle,
-            rotate: None,
-            bold: false,
-            color: None,
-        });
-    }
-    let (svg, png) = (out.join("fig1.svg"), out.join("fig1.png"));
-    // The raster backend knows no images, and a rectangle per cell would be a file of many megabytes: paint the maps ourselves.
-    let mut image = Image::decode(&png, &raster(&scene, &png)?)?;
-    let mut pictures = String::new();
-    for (i, (_, shades, side)) in maps.iter().enumerate() {
-        let (x, y) = place(i);
-        let scale = pixels_per_unit();
-        image.paint(x as usize * scale, y as usize * scale, MAP as usize * scale, shades, *side);
-        let data = base64(&encode_grey(&png, *side, shades)?);
-        pictures += &format!(
-            "<image x=\"{x}\" y=\"{y}\" width=\"{MAP}\" height=\"{MAP}\" style=\"image-rendering:pixelated\" \
-             href=\"data:image/png;base64,{data}\"/>\n"
-        );
-    }
-    let text = SvgBackend::new().render_scene(&scene);
-    let end = text.rfind("</svg>").ok_or_else(|| Error::content(&svg, "no end of the picture"))?;
-    files::write_whole(&svg, format!("{}{pictures}{}", &text[..end], &text[end..]).as_bytes())?;
-    files::write_whole(&png, &image.encode(&png)?)?;
-    Ok(vec![svg, png])
+    let cells = words::flag(&file, "--cells").map(|n| format!("{n} × {n} cells, "));
+    let below =
+        format!("{}the same phases for every $D_{{\\rm{{f}}}}$; darker is higher", cells.unwrap_or_default());
+    save_maps(maps, &words::title(&file), &below, out, "fig1")
 }
 
 #[cfg(test)]

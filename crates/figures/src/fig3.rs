@@ -1,6 +1,8 @@
 //! Fig. 3: the exponent alpha over the fractal dimension.
 
 use crate::claims;
+use crate::fitted;
+use crate::words;
 use analysis::{Table, Value, Window};
 use evaluation::Outcome;
 use evaluation::Session;
@@ -9,18 +11,12 @@ use evaluation::{FRACTAL_DIMENSION, column};
 use evaluation::{Flag, Run};
 use evaluation::{Law, dense_dimensions, laws};
 use evaluation::{Measured, measure_1d, measure_3d};
-use kuva::plot::line::LineStyle;
-use kuva::plot::scatter::MarkerShape;
-use plots::{Axis, Key, Mark, Picture};
+use plots::{Axis, Key, LineStyle, Picture, REFERENCE};
 use runs::Header;
 use runs::Progress;
 use runs::{CsvFile, write_csv};
 use runs::{Error, Result};
 use std::path::{Path, PathBuf};
-
-/// Colours of the two models, here and in Fig. 7.
-pub(crate) const COLOR_3D: &str = "#1b4f9c";
-pub(crate) const COLOR_1D: &str = "#c2410c";
 
 /// Fits both ensembles (solving what is not stored) and writes `fig3.csv`, `fig3.svg`, `fig3.png`.
 ///
@@ -55,7 +51,7 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     write_csv(&csv, &table, &header("fig3", run, solid, line))?;
     let mut outcome = Outcome::new("fig3");
     outcome.files = vec![csv.clone()];
-    outcome.files.extend(draw(&csv, &run.out)?);
+    outcome.files.extend(draw(&csv, None, &run.out)?);
     outcome.not_converged = solid.not_converged() + line.not_converged();
     outcome.bem3d_seconds = Some(solid.seconds());
     outcome.mdr1d_seconds = Some(line.seconds());
@@ -125,40 +121,23 @@ pub(crate) fn formula(table: &mut Table, model: &str, d: f64, value: f64, note: 
     table.push(row).map_err(Error::model("a formula"))
 }
 
-/// Points of one model in a CSV: (D_f, value, error).
-pub(crate) fn series(file: &CsvFile, model: &str, value: &str) -> Result<Vec<(f64, f64, Option<f64>)>> {
-    let (models, d) = (file.texts("model")?, file.numbers("fractal_dimension")?);
-    let (v, e) = (file.numbers(value)?, file.numbers(&format!("{value}_se"))?);
-    Ok((0..d.len()).filter(|&i| models[i] == model).filter_map(|i| Some((d[i]?, v[i]?, e[i]))).collect())
-}
-
-/// Both models as points with error bars.
-pub(crate) fn both(picture: &mut Picture, file: &CsvFile, value: &str) -> Result<()> {
-    for (model, color, shape, label) in [
-        ("bem3d", COLOR_3D, MarkerShape::Circle, "3D boundary elements"),
-        ("mdr1d", COLOR_1D, MarkerShape::Square, "1D reduction"),
-    ] {
-        let points = series(file, model, value)?;
-        let bare: Vec<(f64, f64)> = points.iter().map(|p| (p.0, p.1)).collect();
-        picture.errors(&points, color);
-        picture.points(&bare, color, 5.0, Mark::Solid(shape));
-        picture.legend(label, color, Key::Mark(shape));
-    }
-    Ok(())
-}
-
-fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+/// Draws `fig3.svg` and `fig3.png` from the table; `finer` is a table of Fig. 2 whose exponents stand beside.
+pub(crate) fn draw(csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let axes = (Axis::Linear(1.9, 3.1), Axis::Linear(0.4, 1.05));
-    let mut picture = Picture::new(axes.0, axes.1, "fractal dimension D_f", "exponent \u{3b1}")
-        .with_title("Fig. 3: exponent of the power law over the fractal dimension");
-    let bare = |model| -> Result<Vec<(f64, f64)>> {
-        Ok(series(&file, model, "alpha")?.into_iter().map(|p| (p.0, p.1)).collect())
-    };
-    picture.line(&bare("paper_fit")?, "#222222", 1.6, &LineStyle::Solid);
-    picture.line(&bare("scaling")?, "#222222", 1.6, &LineStyle::Dashed);
-    both(&mut picture, &file, "alpha")?;
-    picture.legend("paper, Eq. 6: 0.266 D_f", "#222222", Key::Line);
-    picture.legend("paper, Eq. 24: 1/(1 + H)", "#222222", Key::Dashed);
+    let axes = (Axis::Linear(1.9, 3.1), Axis::Linear(0.42, 1.05));
+    let title = "Fig. 3: exponent of $\\bar{k} = ζ \\bar{F}^α$ over the fractal dimension";
+    let mut picture = Picture::new(axes.0, axes.1, words::DIMENSION, "exponent $α$")
+        .with_size(800.0, 560.0)
+        .with_title(title)
+        .with_legend_below();
+    picture.line(&fitted::formula(&file, "paper_fit", "alpha")?, REFERENCE, 1.6, LineStyle::Solid);
+    picture.line(&fitted::formula(&file, "scaling", "alpha")?, REFERENCE, 1.6, LineStyle::Dashed);
+    fitted::points(&mut picture, &file, finer, "alpha")?;
+    picture.legend("paper, Eq. 6: $α = 0.266 D_{\\rm{f}}$", REFERENCE, Key::Line(LineStyle::Solid));
+    picture.legend(
+        "paper, Eq. 24: $α = 1/(1 + H)$, $H = 3 - D_{\\rm{f}}$",
+        REFERENCE,
+        Key::Line(LineStyle::Dashed),
+    );
     picture.save(out, "fig3")
 }

@@ -1,6 +1,7 @@
 //! Fig. 4: the collapse of all curves.
 
 use crate::claims;
+use crate::words;
 use analysis::Table;
 use evaluation::Outcome;
 use evaluation::Run;
@@ -9,9 +10,7 @@ use evaluation::describe;
 use evaluation::header;
 use evaluation::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
 use evaluation::{Measured, measure_3d, transformed};
-use kuva::plot::line::LineStyle;
-use kuva::plot::scatter::MarkerShape;
-use plots::{Key, Mark, Picture, color, logarithmic};
+use plots::{Axis, Key, LineStyle, Mark, NEUTRAL, Picture, REFERENCE, Shape, color, logarithmic, shape};
 use runs::Progress;
 use runs::{CsvFile, write_csv};
 use runs::{Error, Result};
@@ -67,41 +66,50 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
     write_csv(&csv, &table, &header)?;
     let mut outcome = Outcome::new("fig4");
     outcome.files = vec![csv.clone()];
-    outcome.files.extend(draw(title, &csv, &run.out)?);
+    outcome.files.extend(draw(&csv, &run.out)?);
     outcome.not_converged = measured.not_converged();
     outcome.bem3d_seconds = Some(measured.seconds());
     Ok(outcome)
 }
 
-fn draw(title: &str, csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+/// Draws `fig4.svg` and `fig4.png` from the table: F_tilde over F_bar would be six curves on one diagonal, their ratio shows them apart.
+pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let (d, f) = (file.numbers("fractal_dimension")?, file.numbers("force_bar")?);
     let (t, floor) = (file.numbers("force_tilde")?, file.texts("below_floor")?);
     let rows: Vec<(f64, f64, f64, bool)> =
-        (0..d.len()).filter_map(|i| Some((d[i]?, f[i]?, t[i]?, floor[i] == "true"))).collect();
-    // Both axes from the loads: the floor would stretch them for nothing.
-    let x = logarithmic(rows.iter().map(|r| r.1));
-    let y = logarithmic(rows.iter().filter(|r| !r.3).map(|r| r.2).chain(rows.iter().map(|r| r.1)));
-    let mut picture =
-        Picture::new(x, y, "force  F / (E* h L)", "0.086 (k / 0.18 k_s)^(1 / 0.266 D_f),  k_s = 1.1419 E* L")
-            .with_title(title)
-            .with_legend_below();
-    let ends: Vec<f64> = rows.iter().map(|r| r.1).filter(|f| *f <= 1.0).collect();
-    if let Some((low, high)) = plots::extent(ends) {
-        picture.line(&[(low, low), (high, high)], "#222222", 1.4, &LineStyle::Dashed);
-    }
+        (0..d.len()).filter_map(|i| Some((d[i]?, f[i]?, t[i]? / f[i]?, floor[i] == "true"))).collect();
+    let solid = || rows.iter().filter(|r| !r.3);
+    let x = logarithmic(solid().map(|r| r.1));
+    let highest = solid().map(|r| r.2).fold(1.0, f64::max);
+    let y = Axis::Linear(0.0, 1.12 * highest);
+    let label = "$\\tilde{F}/\\bar{F}$,   $\\tilde{F} = 0.086 (\\bar{k}/0.18)^{1/(0.266 D_{\\rm{f}})}$";
+    let mut picture = Picture::new(x, y, words::FORCE, label)
+        .with_title(&words::title(&file))
+        .with_subtitle(&words::ensemble(&file, "bem3d").unwrap_or_default());
+    let law = [(x.ends().0, 1.0), (analytic::F_BAR_UL, 1.0)];
+    picture.line(&law, REFERENCE, 1.5, LineStyle::Dashed);
+    picture.line(
+        &[(analytic::F_BAR_UL, 0.0), (analytic::F_BAR_UL, y.ends().1)],
+        NEUTRAL,
+        1.0,
+        LineStyle::Dotted,
+    );
     for series in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
-        let color = color(series[0].0);
+        let (color, shape) = (color(series[0].0), shape(series[0].0));
         let select = |on_floor: bool| -> Vec<(f64, f64)> {
             series.iter().filter(|r| r.3 == on_floor).map(|r| (r.1, r.2)).collect()
         };
-        picture.points(&select(true), &color, 3.0, Mark::Hollow(MarkerShape::Circle));
-        picture.points(&select(false), &color, 3.6, Mark::Solid(MarkerShape::Circle));
-        picture.legend(&format!("D_f = {:?}", series[0].0), &color, Key::Mark(MarkerShape::Circle));
+        picture.line(&select(false), &color, 1.5, LineStyle::Solid);
+        picture.points(&select(true), &color, 3.2, Mark::Hollow(shape));
+        picture.points(&select(false), &color, 4.0, Mark::Solid(shape));
+        picture.legend(&words::dimension(series[0].0), &color, Key::Curve(Mark::Solid(shape)));
     }
-    picture.legend("paper, Eq. 12", "#222222", Key::Dashed);
-    if rows.iter().any(|r| r.3) {
-        picture.legend("fewer than 10 contact cells", "", Key::Open);
+    picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
+    picture.legend("its upper limit $\\bar{F} = 0.086$", NEUTRAL, Key::Line(LineStyle::Dotted));
+    if rows.iter().any(|r| r.3 && x.holds(r.1) && y.holds(r.2)) {
+        let label = format!("fewer than {} contact cells", evaluation::FLOOR_CELLS);
+        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(Shape::Circle)));
     }
     picture.save(out, "fig4")
 }

@@ -1,5 +1,6 @@
 //! Fig. 5: what the equivalent lines look like.
 
+use crate::words;
 use analysis::Table;
 use contact_model::{Line, SelfAffine};
 use evaluation::Outcome;
@@ -7,9 +8,7 @@ use evaluation::Session;
 use evaluation::header;
 use evaluation::{FRACTAL_DIMENSION, column};
 use evaluation::{Flag, Run, list};
-use kuva::plot::line::LineStyle;
-use kuva::render::figure::Figure;
-use plots::{Axis, Picture, extent, save};
+use plots::{Axis, LineStyle, Panels, Picture, extent};
 use runs::Progress;
 use runs::write_npy;
 use runs::{CsvFile, write_csv};
@@ -102,32 +101,29 @@ fn extremes(line: &Line) -> Vec<usize> {
     kept
 }
 
-fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+/// Draws `fig5.svg` and `fig5.png` from the table.
+pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let (d, x, h) = (file.numbers("fractal_dimension")?, file.numbers("x")?, file.numbers("height")?);
     let rows: Vec<(f64, f64, f64)> = (0..d.len()).filter_map(|i| Some((d[i]?, x[i]?, h[i]?))).collect();
-    let (mut plots, mut layouts) = (Vec::new(), Vec::new());
-    for (panel, curve) in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()).enumerate() {
+    let curves: Vec<_> = rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()).collect();
+    let mut pictures = Vec::new();
+    for (panel, curve) in curves.iter().enumerate() {
         let (low, high) = extent(curve.iter().map(|r| r.2)).unwrap_or((-1.0, 1.0));
         let margin = 0.08 * (high - low).max(1e-3);
-        let axes =
-            (Axis::Linear(0.0, contact_model::line_length(1.0)), Axis::Linear(low - margin, high + margin));
+        let x = Axis::Linear(0.0, contact_model::line_length(1.0));
         let letter = char::from(b'a' + panel as u8);
-        let mut picture = Picture::new(axes.0, axes.1, "x / L", "height / h")
-            .with_size(760.0, 260.0)
-            .with_title(&format!("({letter})  D_f = {:?}", curve[0].0));
+        let below = if panel + 1 == curves.len() { "position $x/L$" } else { "" };
+        let mut picture = Picture::new(x, Axis::Linear(low - margin, high + margin), below, "height $z/h$")
+            .with_size(800.0, 225.0)
+            .with_subtitle(&format!("({letter})  {}", words::dimension(curve[0].0)));
         let points: Vec<(f64, f64)> = curve.iter().map(|r| (r.1, r.2)).collect();
-        picture.line(&points, "#1f2937", 0.8, &LineStyle::Solid);
-        let (p, l) = picture.parts();
-        plots.push(p);
-        layouts.push(l);
+        picture.line(&points, "#1f2937", 0.7, LineStyle::Solid);
+        pictures.push(picture);
     }
-    let scene = Figure::new(plots.len().max(1), 1)
-        .with_cell_size(760.0, 260.0)
-        .with_plots(plots)
-        .with_layouts(layouts)
-        .render();
-    save(scene, out, "fig5")
+    let size = words::flag(&file, "--elements").and_then(|n| n.parse().ok()).map(words::elements);
+    let title = format!("{}{}", words::title(&file), size.map_or_else(String::new, |s| format!(", {s}")));
+    Panels { pictures, columns: 1, title, ..Panels::default() }.save(out, "fig5")
 }
 
 #[cfg(test)]

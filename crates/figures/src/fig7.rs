@@ -1,15 +1,16 @@
 //! Fig. 7: the factor zeta over the fractal dimension.
 
 use crate::claims;
-use crate::fig3::{both, columns, formula, header, push, series};
+use crate::fig3::{columns, formula, header, push};
+use crate::fitted;
+use crate::words;
 use analysis::Table;
 use evaluation::Outcome;
 use evaluation::Run;
 use evaluation::Session;
 use evaluation::{Measured, measure_1d, measure_3d};
 use evaluation::{dense_dimensions, laws};
-use kuva::plot::line::LineStyle;
-use plots::{Axis, Key, Picture};
+use plots::{Axis, Key, LineStyle, Picture, REFERENCE};
 use runs::Progress;
 use runs::Result;
 use runs::{CsvFile, write_csv};
@@ -43,27 +44,31 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     write_csv(&csv, &table, &header("fig7", run, solid, line))?;
     let mut outcome = Outcome::new("fig7");
     outcome.files = vec![csv.clone()];
-    outcome.files.extend(draw(&csv, &run.out)?);
+    outcome.files.extend(draw(&csv, None, &run.out)?);
     outcome.not_converged = solid.not_converged() + line.not_converged();
     outcome.bem3d_seconds = Some(solid.seconds());
     outcome.mdr1d_seconds = Some(line.seconds());
     Ok(outcome)
 }
 
-fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+/// Draws `fig7.svg` and `fig7.png` from the table; `finer` is a table of Fig. 2 whose factors stand beside.
+pub(crate) fn draw(csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let law: Vec<(f64, f64)> = series(&file, "paper_fit", "zeta")?.into_iter().map(|p| (p.0, p.1)).collect();
+    let law = fitted::formula(&file, "paper_fit", "zeta")?;
     let mut highest: f64 = 1.8;
     for model in ["bem3d", "mdr1d"] {
-        for (_, v, e) in series(&file, model, "zeta")? {
-            highest = highest.max(v + e.unwrap_or(0.0));
+        for p in fitted::series(&file, model, "zeta")? {
+            highest = highest.max(p.value + p.error.unwrap_or(0.0));
         }
     }
     let axes = (Axis::Linear(1.9, 3.1), Axis::Linear(0.4, (highest * 5.0).ceil() / 5.0));
-    let mut picture = Picture::new(axes.0, axes.1, "fractal dimension D_f", "factor \u{3b6}")
-        .with_title("Fig. 7: factor of the power law over the fractal dimension");
-    picture.line(&law, "#222222", 1.6, &LineStyle::Dashed);
-    both(&mut picture, &file, "zeta")?;
-    picture.legend("paper, Eq. 11: 0.18/0.086^(0.266 D_f)", "#222222", Key::Dashed);
+    let mut picture = Picture::new(axes.0, axes.1, words::DIMENSION, "factor $ζ$")
+        .with_size(800.0, 560.0)
+        .with_title("Fig. 7: factor of $\\bar{k} = ζ \\bar{F}^α$ over the fractal dimension")
+        .with_legend_below();
+    picture.line(&law, REFERENCE, 1.6, LineStyle::Dashed);
+    fitted::points(&mut picture, &file, finer, "zeta")?;
+    let label = "paper, Eq. 11: $ζ = 0.18/0.086^{0.266 D_{\\rm{f}}}$";
+    picture.legend(label, REFERENCE, Key::Line(LineStyle::Dashed));
     picture.save(out, "fig7")
 }

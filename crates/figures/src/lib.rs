@@ -2,7 +2,7 @@
 //!
 //! [`fig1`] .. [`fig7`] take the parameters of one command ([`evaluation::Run`]), compute, write their CSV, draw their picture from that
 //! CSV, and give an [`evaluation::Outcome`] with the paper's own claims beside the numbers ([`evaluation::Claim`]). [`verify`] judges them all, [`reproduce_all`] makes everything, [`check_reference`] compares a small run
-//! with stored numbers.
+//! with stored numbers, [`redraw`] renews pictures from their tables.
 //!
 //! Normalisation, means, units of work and the store are those of `evaluation`; CSV files those of `runs`.
 //!
@@ -31,9 +31,12 @@ mod fig4;
 mod fig5;
 mod fig6;
 mod fig7;
+mod fitted;
+mod redraw;
 mod reference;
 mod two_cases;
 mod verify;
+mod words;
 
 pub use all::reproduce_all;
 pub use fig1::fig1;
@@ -43,6 +46,7 @@ pub use fig4::fig4;
 pub use fig5::fig5;
 pub use fig6::fig6;
 pub use fig7::fig7;
+pub use redraw::{Beside, redraw};
 pub use reference::{RELATIVE, check_reference};
 pub use two_cases::{TwoCases, two_cases};
 pub use verify::verify;

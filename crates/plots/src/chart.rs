@@ -1,13 +1,10 @@
 //! One picture of a few curves, for whoever has them.
 
-use crate::plot::{Axis, Key, Mark, Picture, extent, logarithmic};
-use kuva::plot::line::LineStyle;
-use kuva::plot::scatter::MarkerShape;
+use crate::axis::{Axis, linear, logarithmic};
+use crate::plot::Picture;
+use crate::style::{COLORS, Key, LineStyle, Mark, SHAPES};
 use runs::Result;
 use std::path::{Path, PathBuf};
-
-/// Colours of curves, dark to light, told apart in grey as well.
-const COLORS: [&str; 6] = ["#30126e", "#d6731a", "#1d918c", "#54ac3e", "#8c2d5a", "#777711"];
 
 /// A named curve.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,7 +22,9 @@ pub struct Curve {
 pub struct Chart {
     /// Above the axes.
     pub title: String,
-    /// Below, with its unit.
+    /// Below the title.
+    pub subtitle: String,
+    /// Below, with its unit; symbols stand between dollar signs.
     pub x_label: String,
     /// At the left, with its unit.
     pub y_label: String,
@@ -42,34 +41,42 @@ impl Chart {
     /// [`crate::Error::File`] when they cannot be written.
     pub fn save(&self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
         let points = || self.curves.iter().flat_map(|c| c.points.iter());
-        let axis = |values: &dyn Fn() -> Vec<f64>| {
-            let values: Vec<f64> = values().into_iter().filter(|v| v.is_finite()).collect();
-            if self.logarithmic && values.iter().all(|v| *v > 0.0) {
+        let axis = |values: Vec<f64>| -> Axis {
+            if self.logarithmic && values.iter().all(|v| *v > 0.0 || !v.is_finite()) {
                 return logarithmic(values);
             }
-            let (low, high) = extent(values).unwrap_or((0.0, 1.0));
-            let room = if high > low { 0.06 * (high - low) } else { 1.0_f64.max(high.abs()) };
-            Axis::Linear(low - room, high + room)
+            linear(values)
         };
-        let x = axis(&|| points().map(|p| p.0).collect());
-        let y = axis(&|| points().map(|p| p.1).collect());
-        let mut picture = Picture::new(x, y, &self.x_label, &self.y_label).with_title(&self.title);
-        for (i, (curve, color)) in self.curves.iter().zip(COLORS.iter().cycle()).enumerate() {
-            // Earlier curves are wider, so that they show where later ones lie on them.
+        let (x, y) = (axis(points().map(|p| p.0).collect()), axis(points().map(|p| p.1).collect()));
+        let mut picture = Picture::new(x, y, &self.x_label, &self.y_label)
+            .with_title(&self.title)
+            .with_subtitle(&self.subtitle);
+        let styles = COLORS.iter().zip(SHAPES).cycle();
+        for (i, (curve, (color, shape))) in self.curves.iter().zip(styles).enumerate() {
+            // Earlier curves are wider and their marks larger, so that they show where later ones lie on them.
             let above = (self.curves.len() - 1 - i).min(4) as f64;
+            let mark = if i % 2 == 0 { Mark::Solid(shape) } else { Mark::Hollow(shape) };
+            // Where points are dense they are the line.
+            let marked = curve.scattered || curve.points.len() <= MOST_MARKS;
             if !curve.scattered {
-                picture.line(&curve.points, color, 1.4 + 1.1 * above, &LineStyle::Solid);
+                picture.line(&curve.points, color, 1.7 + 0.9 * above, LineStyle::Solid);
             }
-            picture.points(&curve.points, color, 2.6 + 1.1 * above, Mark::Solid(MarkerShape::Circle));
-            picture.legend(
-                &curve.label,
-                color,
-                if curve.scattered { Key::Mark(MarkerShape::Circle) } else { Key::Line },
-            );
+            if marked {
+                picture.points(&curve.points, color, 3.4 + 1.1 * above, mark);
+            }
+            let key = match (curve.scattered, marked) {
+                (true, _) => Key::Mark(mark),
+                (false, true) => Key::Curve(mark),
+                (false, false) => Key::Line(LineStyle::Solid),
+            };
+            picture.legend(&curve.label, color, key);
         }
         picture.save(directory, name)
     }
 }
+
+/// More points than this on one line are drawn without marks.
+const MOST_MARKS: usize = 60;
 
 #[cfg(test)]
 mod tests {

@@ -1,20 +1,36 @@
 //! Charts and map pictures of one style, as SVG and PNG.
 //!
-//! [`Chart`] draws a few named curves; [`Picture`] is what the paper's figures and the benchmarks are drawn with; [`write_grey`] is a
-//! map of one value per cell.
+//! [`Chart`] draws a few named curves; [`Picture`] is what the paper's figures and the benchmarks are drawn with, [`Panels`] several
+//! of them; [`save_maps`] puts maps side by side; [`write_grey`] is a map of one value per cell.
 //!
 //! # Conventions
+//!
+//! Symbols are set as symbols: a label is `$\\bar{F} = F/(E^* h L)$` between dollar signs, upright words outside. Frames have ticks inwards
+//! on four sides; logarithmic axes have powers of ten and ticks at 2 to 9. Letters are outlines of the fonts in `fonts/`, so that an SVG
+//! needs nothing from the machine that shows it; its labels are in `aria-label` as well. Both files come from one scene of paths.
 //!
 //! Colours are told apart in grey as well; the same fractal dimension has the same colour in every picture ([`color`]). Maps have row 0
 //! at the bottom. Files are written whole or not at all.
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 
+mod axis;
 mod chart;
+mod legend;
 mod map;
+mod maps;
+mod mark;
 mod plot;
+mod scene;
+mod style;
+mod text;
 
+pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
-pub use map::{Image, base64, encode_grey, grey, write_grey};
-pub use plot::{Axis, Key, Mark, Picture, color, extent, logarithmic, pixels_per_unit, raster, save};
+pub use legend::Legend;
+pub use map::{encode_grey, grey, write_grey};
+pub use maps::{GreyMap, save_maps};
+pub use plot::{Panels, Picture};
 pub use runs::{Error, Result};
+pub use style::{COLORS, Key, LineStyle, Mark, NEUTRAL, REFERENCE, SHAPES, Shape, color, shape};
+pub use text::number;

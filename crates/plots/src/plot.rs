@@ -1,340 +1,446 @@
-//! Pictures: thin words over kuva, SVG and PNG of one scene.
+//! Axes and what is drawn on them.
 
-use kuva::backend::png::PngBackend;
-use kuva::backend::svg::SvgBackend;
-use kuva::plot::annotations::TextAnnotation;
-use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
-use kuva::plot::line::{LinePlot, LineStyle};
-use kuva::plot::scatter::{MarkerShape, ScatterPlot};
-use kuva::render::color::Color;
-use kuva::render::layout::{Layout, TickFormat};
-use kuva::render::plots::Plot;
-use kuva::render::render::{Primitive, Scene, render_multiple};
-use runs::files;
-use runs::{Error, Result};
+use crate::axis::Axis;
+use crate::legend::{Legend, free_place};
+use crate::mark;
+use crate::scene::{Anchor, Paint, Rectangle, Scene, polygon, polyline};
+use crate::style::{INK, Key, LineStyle, Mark, NEUTRAL};
+use crate::text::Fonts;
+use runs::Result;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-/// Pixels of a PNG per unit of the scene.
-const SCALE: f32 = 2.0;
+/// Width and height of a picture: as wide as a README shows it.
+const SIZE: (f64, f64) = (800.0, 600.0);
+/// Sizes of words in a picture of that width; narrower panels have smaller ones.
+const LABEL: f64 = 20.0;
+const TICK: f64 = 17.0;
+const WORDS: f64 = 16.0;
+const TITLE: f64 = 19.0;
+/// Lengths of ticks, which point inwards.
+const LONG: f64 = 8.0;
+const SHORT: f64 = 4.5;
+/// From the frame to the legend in it.
+const MARGIN: f64 = 14.0;
 
-/// Colour of a legend key that is drawn open; used for nothing else.
-const OPEN: &str = "#777779";
-
-/// A pair of axes and what is drawn on them.
-#[allow(missing_debug_implementations)] // Plots of kuva have no Debug.
+/// A pair of axes and what is drawn on them. Labels may hold symbols between dollar signs: `$\bar{k}$`.
+#[derive(Debug, Clone)]
 pub struct Picture {
-    plots: Vec<Plot>,
-    legend: Vec<LegendEntry>,
-    range: [(f64, f64); 2],
-    layout: Layout,
-    corner: LegendPosition,
+    axes: [Axis; 2],
+    labels: [String; 2],
+    ticks: [Option<Vec<f64>>; 2],
+    title: String,
+    subtitle: String,
+    size: (f64, f64),
+    drawn: Vec<Drawn>,
+    legend: Legend,
+    legend_below: bool,
 }
 
-/// How far an axis goes, and whether it is logarithmic.
-#[derive(Debug, Clone, Copy)]
-pub enum Axis {
-    /// From, to.
-    Linear(f64, f64),
-    /// From, to; both positive.
-    Log(f64, f64),
-}
-
-impl Axis {
-    fn range(self) -> (f64, f64) {
-        match self {
-            Self::Linear(a, b) | Self::Log(a, b) => (a, b),
-        }
-    }
-}
-
-/// A logarithmic axis around positive values with room for their marks; one decade around nothing.
-pub fn logarithmic(values: impl IntoIterator<Item = f64>) -> Axis {
-    const ROOM: f64 = 1.7;
-    let (low, high) = extent(values.into_iter().filter(|v| *v > 0.0)).unwrap_or((1.0, 10.0));
-    Axis::Log(low / ROOM, high * ROOM)
-}
-
-/// Smallest and largest value.
-pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values.into_iter().fold(None, |e, v| match e {
-        None => Some((v, v)),
-        Some((a, b)) => Some((a.min(v), b.max(v))),
-    })
+/// In coordinates of the axes.
+#[derive(Debug, Clone)]
+enum Drawn {
+    Line { points: Vec<(f64, f64)>, color: String, width: f64, style: LineStyle },
+    Points { points: Vec<(f64, f64)>, color: String, radius: f64, mark: Mark },
+    Band { points: Vec<(f64, f64, f64)>, color: String },
+    Note { text: String, at: (f64, f64) },
 }
 
 impl Picture {
     /// Empty axes.
     pub fn new(x: Axis, y: Axis, x_label: &str, y_label: &str) -> Self {
-        let mut layout = Layout::new(x.range(), y.range())
-            .with_width(760.0)
-            .with_height(600.0)
-            .with_x_label(x_label)
-            .with_y_label(y_label)
-            .with_x_axis_min(x.range().0)
-            .with_x_axis_max(x.range().1)
-            .with_y_axis_min(y.range().0)
-            .with_y_axis_max(y.range().1)
-            .with_box_axes()
-            .with_show_grid(false)
-            .with_label_size(17)
-            .with_tick_size(14)
-            .with_body_size(14);
-        if matches!(x, Axis::Log(..)) {
-            layout = layout.with_log_x().with_x_tick_format(power_of_ten());
-        }
-        if matches!(y, Axis::Log(..)) {
-            layout = layout.with_log_y().with_y_tick_format(power_of_ten());
-        }
         Self {
-            plots: Vec::new(),
-            legend: Vec::new(),
-            range: [x.range(), y.range()],
-            layout,
-            corner: LegendPosition::InsideTopLeft,
+            axes: [x, y],
+            labels: [x_label.to_owned(), y_label.to_owned()],
+            ticks: [None, None],
+            title: String::new(),
+            subtitle: String::new(),
+            size: SIZE,
+            drawn: Vec::new(),
+            legend: Legend::default(),
+            legend_below: false,
         }
     }
 
     /// A title above the axes.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
-        self.layout = self.layout.with_title(title).with_title_size(17);
+        title.clone_into(&mut self.title);
         self
     }
 
-    /// The legend in the lower right corner, which rising curves leave free.
+    /// Below the title: what the points rest on.
+    #[must_use]
+    pub fn with_subtitle(mut self, subtitle: &str) -> Self {
+        subtitle.clone_into(&mut self.subtitle);
+        self
+    }
+
+    /// The legend below the axes, for long lines; otherwise it goes where it covers nothing.
     #[must_use]
     pub fn with_legend_below(mut self) -> Self {
-        self.corner = LegendPosition::InsideBottomRight;
+        self.legend_below = true;
         self
     }
 
-    /// The legend in the lower left corner, which falling curves leave free.
-    #[must_use]
-    pub fn with_legend_at_lower_left(mut self) -> Self {
-        self.corner = LegendPosition::InsideBottomLeft;
-        self
-    }
-
-    /// Width and height of the axes.
+    /// Width and height without a legend below.
     #[must_use]
     pub fn with_size(mut self, width: f64, height: f64) -> Self {
-        self.layout = self.layout.with_width(width).with_height(height);
+        self.size = (width, height);
         self
     }
 
-    /// Only what lies on the axes is drawn: the raster backend does not clip.
-    fn visible(&self, p: (f64, f64)) -> bool {
-        within(self.range[0], self.range[1], p)
+    /// Labels at these values of the horizontal axis and nowhere else.
+    #[must_use]
+    pub fn with_x_ticks(mut self, values: &[f64]) -> Self {
+        self.ticks[0] = Some(values.to_vec());
+        self
     }
 
-    /// A line through the points; it breaks where a point is missing or off the axes.
-    pub fn line(&mut self, points: &[(f64, f64)], color: &str, width: f64, style: &LineStyle) {
-        let [x, y] = self.range;
-        let visible = |p: &(f64, f64)| within(x, y, *p);
-        for run in points.chunk_by(|a, b| visible(a) && visible(b)) {
-            if run.len() > 1 {
-                let line = LinePlot::new()
-                    .with_data(run.to_vec())
-                    .with_color(color)
-                    .with_stroke_width(width)
-                    .with_line_style(style.clone());
-                self.plots.push(line.into());
+    /// A line through the points; it breaks where the axes have no place for a point.
+    pub fn line(&mut self, points: &[(f64, f64)], color: &str, width: f64, style: LineStyle) {
+        let (points, color) = (points.to_vec(), color.to_owned());
+        self.drawn.push(Drawn::Line { points, color, width, style });
+    }
+
+    /// Marks at the points within the axes.
+    pub fn points(&mut self, points: &[(f64, f64)], color: &str, radius: f64, mark: Mark) {
+        let [x, y] = self.axes;
+        let points = points.iter().copied().filter(|p| x.holds(p.0) && y.holds(p.1)).collect();
+        self.drawn.push(Drawn::Points { points, color: color.to_owned(), radius, mark });
+    }
+
+    /// A shaded band through (x, lower end, upper end).
+    pub fn band(&mut self, points: &[(f64, f64, f64)], color: &str) {
+        self.drawn.push(Drawn::Band { points: points.to_vec(), color: color.to_owned() });
+    }
+
+    /// Vertical bars of (x, value, half width), with short ends.
+    pub fn errors(&mut self, points: &[(f64, f64, Option<f64>)], color: &str) {
+        for &(x, y, e) in points {
+            if let Some(e) = e {
+                // What lies below a logarithmic axis ends on it.
+                let low = (y - e).max(self.axes[1].ends().0);
+                self.line(&[(x, low), (x, y + e)], color, 1.5, LineStyle::Solid);
             }
         }
     }
 
-    /// Marks at points within the axes.
-    pub fn points(&mut self, points: &[(f64, f64)], color: &str, size: f64, mark: Mark) {
-        let data: Vec<_> = points.iter().copied().filter(|p| self.visible(*p)).collect();
-        if data.is_empty() {
-            return;
-        }
-        let (shape, opacity) = match mark {
-            Mark::Solid(shape) => (shape, 1.0),
-            Mark::Hollow(shape) => (shape, 0.0),
-        };
-        let mut plot =
-            ScatterPlot::new().with_data(data).with_color(color).with_size(size).with_marker(shape);
-        plot = plot.with_marker_opacity(opacity);
-        if matches!(mark, Mark::Hollow(_)) {
-            plot = plot.with_marker_stroke_width(1.4);
-        }
-        self.plots.push(plot.into());
-    }
-
-    /// Points with vertical error bars (value, half width).
-    pub fn errors(&mut self, points: &[(f64, f64, Option<f64>)], color: &str) {
-        for &(x, y, e) in points {
-            let Some(e) = e else { continue };
-            let [_, (low, high)] = self.range;
-            self.line(&[(x, (y - e).max(low)), (x, (y + e).min(high))], color, 1.2, &LineStyle::Solid);
-        }
-    }
-
-    /// Words at a place.
-    pub fn note(&mut self, text: &str, (x, y): (f64, f64)) {
-        let note = TextAnnotation::new(text, x, y).with_color("#777777").with_font_size(13);
-        self.layout.annotations.push(note);
+    /// Words that begin at a point.
+    pub fn note(&mut self, text: &str, at: (f64, f64)) {
+        self.drawn.push(Drawn::Note { text: text.to_owned(), at });
     }
 
     /// A legend line; points and lines do not make one by themselves.
     pub fn legend(&mut self, label: &str, color: &str, key: Key) {
-        let (shape, dash) = match key {
-            Key::Line => (LegendShape::Line, None),
-            // Short enough for two dashes on the key.
-            Key::Dashed => (LegendShape::Line, Some("3 6".to_owned())),
-            Key::Mark(shape) => (LegendShape::Marker(shape), None),
-            Key::Open => (LegendShape::Circle, None),
-        };
-        let color = if matches!(key, Key::Open) { OPEN } else { color };
-        self.legend.push(LegendEntry {
-            label: label.to_owned(),
-            color: color.to_owned(),
-            shape,
-            dasharray: dash,
-        });
+        self.legend.push(label, color, key);
     }
 
-    /// The axes with everything on them.
-    pub fn parts(self) -> (Vec<Plot>, Layout) {
-        let layout = if self.legend.is_empty() {
-            self.layout
-        } else {
-            self.layout.with_legend_entries(self.legend).with_legend_position(self.corner)
-        };
-        (self.plots, layout)
+    /// Whether nothing is drawn between the axes.
+    pub fn is_empty(&self) -> bool {
+        self.drawn.iter().all(
+            |d| matches!(d, Drawn::Points { points, .. } | Drawn::Line { points, .. } if points.is_empty()),
+        )
+    }
+
+    /// The horizontal and the vertical axis.
+    pub fn axes(&self) -> (Axis, Axis) {
+        (self.axes[0], self.axes[1])
     }
 
     /// Writes `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// [`Error::File`] when they cannot be written.
+    /// [`crate::Error::File`] when they cannot be written.
     pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        let (plots, layout) = self.parts();
-        save(render_multiple(plots, layout), directory, name)
+        Panels { columns: 1, pictures: vec![self], ..Panels::default() }.save(directory, name)
+    }
+
+    fn text_scale(&self) -> f64 {
+        if self.size.0 < 0.7 * SIZE.0 { 0.85 } else { 1.0 }
+    }
+
+    /// Draws everything but a legend below; gives that back.
+    fn draw(mut self, fonts: &Fonts, scene: &mut Scene, corner: (f64, f64)) {
+        let frame = self.frame(fonts, corner);
+        let scale = self.text_scale();
+        let drawn = std::mem::take(&mut self.drawn);
+        let mut taken = Vec::new();
+        for item in &drawn {
+            self.draw_item(item, fonts, scene, frame, &mut taken);
+        }
+        self.draw_axes(fonts, scene, frame, corner);
+        if !self.legend_below && !self.legend.is_empty() {
+            let set = self.legend.set(fonts, WORDS * scale, 0.0);
+            let size = (set.width(), set.height());
+            if let Some(place) = free_place(frame, size, &taken, MARGIN) {
+                set.draw(scene, place);
+            }
+        }
+    }
+
+    /// The legend if it stands below the axes: asked for, or no place is free among them.
+    fn legend_below(&self, fonts: &Fonts) -> Option<&Legend> {
+        if self.legend.is_empty() || self.legend_below {
+            return (!self.legend.is_empty()).then_some(&self.legend);
+        }
+        let frame = self.frame(fonts, (0.0, 0.0));
+        let mut taken = Vec::new();
+        let mut nowhere = Scene::new(1.0, 1.0);
+        for item in &self.drawn {
+            self.draw_item(item, fonts, &mut nowhere, frame, &mut taken);
+        }
+        let set = self.legend.set(fonts, WORDS * self.text_scale(), 0.0);
+        free_place(frame, (set.width(), set.height()), &taken, MARGIN).is_none().then_some(&self.legend)
+    }
+
+    /// The frame that labels and title leave.
+    fn frame(&self, fonts: &Fonts, corner: (f64, f64)) -> Rectangle {
+        let scale = self.text_scale();
+        let words = |i: usize| {
+            let (ticks, power) = self.axes[i].ticks(self.ticks[i].as_deref());
+            let widths = ticks.iter().filter_map(|t| t.label.as_deref());
+            (widths.map(|l| fonts.typeset(l, TICK * scale).width).fold(0.0, f64::max), power.is_some())
+        };
+        let (y_width, y_power) = words(1);
+        let left = y_width + if self.labels[1].is_empty() { 18.0 } else { 24.0 + 1.25 * LABEL * scale };
+        let mut top = 16.0 * scale;
+        if !self.title.is_empty() {
+            top += 1.4 * TITLE * scale;
+        }
+        if !self.subtitle.is_empty() {
+            top += 1.35 * WORDS * scale;
+        }
+        if y_power && self.title.is_empty() {
+            top += 1.2 * TICK * scale;
+        }
+        let below = if self.labels[0].is_empty() { 0.0 } else { 1.6 * LABEL * scale };
+        let bottom = 1.55 * TICK * scale + below + 6.0;
+        let right = 18.0;
+        [corner.0 + left, corner.1 + top, self.size.0 - left - right, self.size.1 - top - bottom]
+    }
+
+    fn place(&self, frame: Rectangle, p: (f64, f64)) -> Option<(f64, f64)> {
+        let (x, y) = (self.axes[0].place(p.0)?, self.axes[1].place(p.1)?);
+        Some((frame[0] + x * frame[2], frame[1] + (1.0 - y) * frame[3]))
+    }
+
+    fn draw_item(
+        &self,
+        item: &Drawn,
+        fonts: &Fonts,
+        scene: &mut Scene,
+        frame: Rectangle,
+        taken: &mut Vec<(f64, f64)>,
+    ) {
+        let place = |p: (f64, f64)| self.place(frame, p);
+        match item {
+            Drawn::Line { points, color, width, style } => {
+                let places: Vec<Option<(f64, f64)>> = points.iter().map(|p| place(*p)).collect();
+                for run in places.split(Option::is_none) {
+                    let run: Vec<(f64, f64)> = run.iter().copied().flatten().collect();
+                    if run.len() > 1 {
+                        taken.extend(run.windows(2).flat_map(|w| along(w[0], w[1])));
+                        let paint = Paint { dashes: style.dashes(), ..Paint::stroked(color, *width) };
+                        scene.path(polyline(&run), paint, Some(frame));
+                    }
+                }
+            }
+            Drawn::Points { points, color, radius, mark } => {
+                for at in points.iter().filter_map(|p| place(*p)) {
+                    taken.push(at);
+                    mark::draw(scene, at, color, *radius, *mark);
+                }
+            }
+            Drawn::Band { points, color } => {
+                let floor = self.axes[1].ends().0;
+                let lower = points.iter().filter_map(|p| place((p.0, p.1.max(floor))));
+                let upper = points.iter().rev().filter_map(|p| place((p.0, p.2.max(floor))));
+                let corners: Vec<(f64, f64)> = lower.chain(upper).collect();
+                if points.len() > 1 {
+                    taken.extend(&corners);
+                    scene.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
+                }
+            }
+            Drawn::Note { text, at } => {
+                if let Some(at) = place(*at) {
+                    let set = fonts.typeset(text, WORDS * self.text_scale());
+                    taken.extend(along(at, (at.0 + set.width, at.1)));
+                    scene.label(set, at, Anchor::Start, false, NEUTRAL);
+                }
+            }
+        }
+    }
+
+    fn draw_axes(&self, fonts: &Fonts, scene: &mut Scene, frame: Rectangle, corner: (f64, f64)) {
+        let scale = self.text_scale();
+        let [x, y, w, h] = frame;
+        let (right, bottom) = (x + w, y + h);
+        for (i, axis) in self.axes.iter().enumerate() {
+            let (ticks, power) = axis.ticks(self.ticks[i].as_deref());
+            for tick in ticks {
+                let length = scale * if tick.major { LONG } else { SHORT };
+                let ends = if i == 0 {
+                    let x = x + tick.at * w;
+                    [[(x, bottom), (x, bottom - length)], [(x, y), (x, y + length)]]
+                } else {
+                    let y = y + (1.0 - tick.at) * h;
+                    [[(x, y), (x + length, y)], [(right, y), (right - length, y)]]
+                };
+                for ends in ends {
+                    scene.path(polyline(&ends), Paint::stroked(INK, 1.1), None);
+                }
+                let Some(label) = tick.label else { continue };
+                let set = fonts.typeset(&label, TICK * scale);
+                if i == 0 {
+                    let at = (ends[0][0].0, bottom + 1.3 * TICK * scale);
+                    scene.label(set, at, Anchor::Middle, false, INK);
+                } else {
+                    let at = (x - 0.45 * TICK * scale, ends[0][0].1 + 0.33 * TICK * scale);
+                    scene.label(set, at, Anchor::End, false, INK);
+                }
+            }
+            if let Some(power) = power {
+                let set = fonts.typeset(&format!("$×10^{{{power}}}$"), TICK * scale);
+                let (at, anchor) = if i == 0 {
+                    ((right, bottom + 2.6 * TICK * scale), Anchor::End)
+                } else {
+                    ((x - 0.45 * TICK * scale, y - 0.45 * TICK * scale), Anchor::End)
+                };
+                scene.label(set, at, anchor, false, INK);
+            }
+        }
+        let corners = [(x, y), (right, y), (right, bottom), (x, bottom)];
+        scene.path(polygon(&corners), Paint::stroked(INK, 1.3), None);
+        let label = |i: usize| fonts.typeset(&self.labels[i], LABEL * scale);
+        let below = (x + 0.5 * w, bottom + 1.55 * TICK * scale + 1.2 * LABEL * scale);
+        scene.label(label(0), below, Anchor::Middle, false, INK);
+        let beside = (corner.0 + 1.15 * LABEL * scale, y + 0.5 * h);
+        scene.label(label(1), beside, Anchor::Middle, true, INK);
+        let mut above = y - 0.6 * WORDS * scale;
+        if !self.subtitle.is_empty() {
+            let set = fonts.typeset(&self.subtitle, WORDS * scale);
+            scene.label(set, (x, above), Anchor::Start, false, NEUTRAL);
+            above -= 1.4 * WORDS * scale;
+        }
+        scene.label(fonts.typeset(&self.title, TITLE * scale), (x, above), Anchor::Start, false, INK);
     }
 }
 
-fn within(x: (f64, f64), y: (f64, f64), p: (f64, f64)) -> bool {
-    (x.0..=x.1).contains(&p.0) && (y.0..=y.1).contains(&p.1)
+/// Points every few units of a straight line, for what must not be covered.
+fn along(a: (f64, f64), b: (f64, f64)) -> impl Iterator<Item = (f64, f64)> {
+    let length = (b.0 - a.0).hypot(b.1 - a.1);
+    let steps = (length / 6.0).ceil().clamp(1.0, 1000.0) as usize;
+    (0..=steps).map(move |i| {
+        let t = i as f64 / steps as f64;
+        (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1))
+    })
 }
 
-/// How a point looks.
-#[derive(Debug, Clone, Copy)]
-pub enum Mark {
-    /// Filled.
-    Solid(MarkerShape),
-    /// On the one-cell floor of the grid.
-    Hollow(MarkerShape),
+/// Pictures of one size beside and below each other, with a title above and a legend below all of them.
+#[derive(Debug, Clone, Default)]
+pub struct Panels {
+    /// Row by row.
+    pub pictures: Vec<Picture>,
+    /// Pictures in a row.
+    pub columns: usize,
+    /// Above all.
+    pub title: String,
+    /// Below all; a single picture brings its own.
+    pub legend: Legend,
 }
 
-/// How a legend line looks.
-#[derive(Debug, Clone, Copy)]
-pub enum Key {
-    /// A solid line.
-    Line,
-    /// A dashed line.
-    Dashed,
-    /// A mark.
-    Mark(MarkerShape),
-    /// An open circle.
-    Open,
-}
-
-/// Dark blue to yellow-green over D_f = 2 .. 3: order is visible, also in grey.
-pub fn color(fractal_dimension: f64) -> String {
-    const STOPS: [[f64; 3]; 5] = [
-        [48.0, 18.0, 110.0],
-        [52.0, 94.0, 168.0],
-        [29.0, 145.0, 140.0],
-        [84.0, 172.0, 62.0],
-        [214.0, 160.0, 20.0],
-    ];
-    let t = (fractal_dimension - 2.0).clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
-    let i = (t as usize).min(STOPS.len() - 2);
-    let f = t - i as f64;
-    let mix = |c: usize| (STOPS[i][c] * (1.0 - f) + STOPS[i + 1][c] * f).round() as u8;
-    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
-}
-
-fn power_of_ten() -> TickFormat {
-    TickFormat::Custom(Arc::new(|v: f64| {
-        let exponent = v.log10().round() as i32;
-        // Ticks between the decades stay without a label.
-        if (v.log10() - f64::from(exponent)).abs() > 1e-6 {
-            return String::new();
+impl Panels {
+    /// Writes `NAME.svg` and `NAME.png`.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when they cannot be written.
+    pub fn save(mut self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
+        let fonts = Fonts::load()?;
+        let (width, height) = self.pictures.first().map_or(SIZE, |p| p.size);
+        let columns = self.columns.max(1);
+        let rows = self.pictures.len().div_ceil(columns);
+        let top = if self.title.is_empty() { 0.0 } else { 1.8 * TITLE };
+        let (all_width, all_height) = (columns as f64 * width, top + rows as f64 * height);
+        let mut left = 40.0;
+        if let [only] = self.pictures.as_mut_slice() {
+            left = only.frame(&fonts, (0.0, 0.0))[0];
+            if let Some(below) = only.legend_below(&fonts) {
+                self.legend = below.clone();
+                only.legend_below = true;
+            }
         }
-        if exponent == 0 {
-            return "1".to_owned();
+        let set = self.legend.set(&fonts, WORDS, all_width - left - 18.0);
+        let legend_height = if self.legend.is_empty() { 0.0 } else { set.height() + 20.0 };
+        let mut scene = Scene::new(all_width, all_height + legend_height);
+        if !self.title.is_empty() {
+            let title = fonts.typeset(&self.title, TITLE);
+            scene.label(title, (left, 1.45 * TITLE), Anchor::Start, false, INK);
         }
-        let digits: String = exponent
-            .to_string()
-            .chars()
-            .map(|c| match c {
-                '-' => '\u{207b}',
-                '1' => '\u{b9}',
-                '2' => '\u{b2}',
-                '3' => '\u{b3}',
-                c => char::from_u32(0x2070 + c.to_digit(10).unwrap_or(0)).unwrap_or(c),
-            })
-            .collect();
-        format!("10{digits}")
-    }))
-}
-
-/// Writes a scene as SVG and PNG.
-///
-/// # Errors
-/// [`Error::File`] when they cannot be written, [`Error::Content`] where the picture cannot be drawn.
-pub fn save(mut scene: Scene, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-    number_clips(&mut scene);
-    open_keys(&mut scene);
-    let svg = directory.join(format!("{name}.svg"));
-    let png = directory.join(format!("{name}.png"));
-    files::write_whole(&svg, SvgBackend::new().render_scene(&scene).as_bytes())?;
-    files::write_whole(&png, &raster(&scene, &png)?)?;
-    Ok(vec![svg, png])
-}
-
-/// PNG bytes of a scene.
-///
-/// # Errors
-/// [`Error::Content`] where the picture cannot be drawn.
-pub fn raster(scene: &Scene, path: &Path) -> Result<Vec<u8>> {
-    PngBackend::new().with_scale(SCALE).render_scene(scene).map_err(|e| Error::content(path, e))
-}
-
-/// Pixels per unit of a scene in its PNG.
-pub fn pixels_per_unit() -> usize {
-    SCALE as usize
-}
-
-/// The library counts clip regions per process; counted per picture, the same picture has the same bytes.
-fn number_clips(scene: &mut Scene) {
-    let Scene { elements, defs, .. } = scene;
-    let starts = elements.iter_mut().filter_map(|e| match e {
-        Primitive::ClipStart { id, .. } => Some(id),
-        _ => None,
-    });
-    for (i, id) in starts.enumerate() {
-        let own = format!("clip-{}", i + 1);
-        for def in defs.iter_mut() {
-            *def = def.replace(&format!("\"{id}\""), &format!("\"{own}\""));
+        if !self.legend.is_empty() {
+            set.draw(&mut scene, (left, all_height + 6.0));
         }
-        *id = own;
+        for (i, picture) in self.pictures.into_iter().enumerate() {
+            let corner = ((i % columns) as f64 * width, top + (i / columns) as f64 * height);
+            picture.draw(&fonts, &mut scene, corner);
+        }
+        scene.save(&fonts, directory, name)
     }
 }
 
-/// The library's legend knows no open marks: empties those of the colour [`OPEN`].
-fn open_keys(scene: &mut Scene) {
-    for element in &mut scene.elements {
-        if let Primitive::Circle { fill, stroke, stroke_width, r, .. } = element
-            && *fill == Color::from(OPEN)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::style::Shape;
+
+    fn picture() -> Picture {
+        let mut picture = Picture::new(
+            Axis::Log(1e-3, 1e2),
+            Axis::Log(1e-2, 1.0),
+            "force $\\bar{F}$",
+            "stiffness $\\bar{k}$",
+        )
+        .with_title("A law")
+        .with_subtitle("2049 × 2049 cells");
+        picture.line(&[(1e-3, 1e-2), (1e2, 1.0)], "#000000", 1.0, LineStyle::Dashed);
+        picture.points(&[(1.0, 0.1), (1e5, 0.1)], "#aa0000", 4.0, Mark::Solid(Shape::Circle));
+        picture.band(&[(0.1, 0.0, 0.1), (1.0, 0.1, 0.2)], "#aa0000");
+        picture.legend("$D_f$ = 2", "#aa0000", Key::Curve(Mark::Solid(Shape::Circle)));
+        picture
+    }
+
+    #[test]
+    fn both_files_are_whole_and_hold_the_labels() {
+        let dir = tempfile::tempdir().unwrap();
+        let files = picture().save(dir.path(), "p").unwrap();
+        let svg = std::fs::read_to_string(&files[0]).unwrap();
+        for label in
+            ["force F\u{304}", "stiffness k\u{304}", "A law", "2049 × 2049 cells", "D_f = 2", "10^\u{2212}2"]
         {
-            (*stroke, *stroke_width) = (Some(fill.clone()), Some(1.4));
-            *fill = Color::None;
-            *r = 4.0;
+            assert!(svg.contains(&format!("aria-label=\"{label}\"")), "{label}");
         }
+        assert!(svg.trim_end().ends_with("</svg>") && !svg.contains("<text") && !svg.contains("NaN"));
+        // The point beyond the axes is not drawn: one in the picture, one in the legend.
+        assert_eq!(svg.matches("fill=\"#aa0000\" stroke").count(), 2);
+        let png = std::fs::read(&files[1]).unwrap();
+        assert!(
+            png.starts_with(b"\x89PNG") && png.ends_with(&[0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82])
+        );
+        // The same picture has the same bytes.
+        picture().save(dir.path(), "q").unwrap();
+        assert_eq!(std::fs::read(dir.path().join("q.png")).unwrap(), png);
+    }
+
+    #[test]
+    fn panels_stand_side_by_side() {
+        let dir = tempfile::tempdir().unwrap();
+        let small = || picture().with_size(400.0, 300.0);
+        let mut legend = Legend::default();
+        legend.push("both", "#000000", Key::Words);
+        let panels =
+            Panels { pictures: vec![small(), small(), small()], columns: 2, title: "Three".into(), legend };
+        let files = panels.save(dir.path(), "p").unwrap();
+        let svg = std::fs::read_to_string(&files[0]).unwrap();
+        assert!(svg.contains("width=\"800\"") && svg.contains("aria-label=\"both\""));
+        assert_eq!(svg.matches("aria-label=\"A law\"").count(), 3);
     }
 }

@@ -42,9 +42,6 @@ pub struct AccuracyCost {
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// Solve nothing: draw the picture and write the text again from the tables in --out.
-    #[arg(long)]
-    pub redraw: bool,
 }
 
 impl AccuracyCost {
@@ -125,6 +122,27 @@ impl TwoCasesArguments {
                 .threads
                 .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get)),
         })
+    }
+}
+
+/// Flags of pictures drawn again.
+#[derive(Debug, Args)]
+pub struct Redraw {
+    /// Directories with tables: of figures, two-cases, accuracy-cost or benches.
+    #[arg(required = true, value_name = "DIR")]
+    pub directories: Vec<PathBuf>,
+    /// A coarser table of the same figure, drawn beneath Figs. 2 and 6.
+    #[arg(long, value_name = "CSV")]
+    over: Option<PathBuf>,
+    /// A finer table of Fig. 2, whose exponents and factors stand beside those of Figs. 3 and 7.
+    #[arg(long, value_name = "CSV")]
+    finer: Option<PathBuf>,
+}
+
+impl Redraw {
+    /// What is drawn beside.
+    pub fn beside(&self) -> figures::Beside {
+        figures::Beside { over: self.over.clone(), finer: self.finer.clone() }
     }
 }
 

@@ -1,19 +1,14 @@
 //! The picture: error of k over seconds, one panel for each load.
 
-use kuva::plot::legend::{LegendEntry, LegendShape};
-use kuva::plot::line::LineStyle;
-use kuva::plot::scatter::MarkerShape;
-use kuva::render::figure::Figure;
-use plots::{Axis, Mark, Picture, color, save};
+use plots::{Axis, Key, Legend, LineStyle, Mark, NEUTRAL, Panels, Picture, Shape, color, extent};
 use runs::CsvFile;
 use runs::Result;
 use std::path::{Path, PathBuf};
 
-const NEUTRAL: &str = "#777777";
-/// Seconds shown: from a formula to the finest grids.
-const SECONDS: (f64, f64) = (1e-5, 1e2);
-/// Errors shown.
-const ERRORS: (f64, f64) = (1e-4, 1.0);
+/// Shortest time shown: a formula takes less.
+const SHORTEST: f64 = 1e-5;
+/// Smallest error shown: the references are not better.
+const SMALLEST: f64 = 1e-4;
 /// What one may want to know k to.
 pub(crate) const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 
@@ -91,86 +86,105 @@ pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
     let points = read(csv)?;
     let loads = values(&points, |p| p.force_bar);
     let dimensions = values(&points, |p| p.fractal_dimension);
-    let (mut plots, mut layouts) = (Vec::new(), Vec::new());
-    for (family, words) in [("band", "resolved waves"), ("spectrum", "fractal to the grid's end")] {
-        for &load in &loads {
-            let title = format!("{words}, F_bar = {load:?}");
-            let (p, l) = panel(&points, family, load, &dimensions, &title).parts();
-            plots.push(p);
-            layouts.push(l);
+    let mut pictures = Vec::new();
+    let (x, y) = axes(&points);
+    for (i, &load) in loads.iter().enumerate() {
+        for (family, words) in [("band", "shortest wave resolved"), ("spectrum", "fractal to the cell")] {
+            let below = if i + 1 == loads.len() { "processor time (s)" } else { "" };
+            let beside = if family == "band" { "relative error of $k$" } else { "" };
+            let mut picture = Picture::new(x, y, below, beside)
+                .with_size(400.0, 300.0)
+                .with_subtitle(&format!("{words}, $\\bar{{F}} = {load}$"));
+            panel(&mut picture, &points, family, load, &dimensions);
+            if !picture.is_empty() {
+                pictures.push(picture);
+            }
         }
     }
-    let columns = loads.len().max(1);
-    let scene = Figure::new(2, columns)
-        .with_cell_size(400.0, 370.0)
-        .with_plots(plots)
-        .with_layouts(layouts)
-        .with_shared_legend_entries(legend(&dimensions))
-        .with_shared_legend_bottom()
-        .render();
-    save(scene, out, name)
+    let title = "Error of the stiffness over the time of one solve".to_owned();
+    Panels { pictures, columns: 2, title, legend: legend(&points, &dimensions) }.save(out, name)
 }
 
-fn panel(points: &[Point], family: &str, load: f64, dimensions: &[f64], title: &str) -> Picture {
-    let (x, y) = (Axis::Log(SECONDS.0, SECONDS.1), Axis::Log(ERRORS.0, ERRORS.1));
-    let mut picture = Picture::new(x, y, "processor seconds", "relative error of k").with_title(title);
-    for target in TARGETS {
-        picture.line(&[(SECONDS.0, target), (SECONDS.1, target)], "#bbbbbb", 1.0, &LineStyle::Dashed);
-        picture.note(&format!("{} %", 100.0 * target), (SECONDS.1 / 5.0, target * 1.15));
-    }
+/// One pair of axes for all panels, no longer than the points.
+fn axes(points: &[Point]) -> (Axis, Axis) {
+    let shown = || points.iter().filter(|p| is_front(p) || p.family == "mean");
+    let (_, slow) = extent(shown().filter_map(|p| p.seconds)).unwrap_or((0.0, 1.0));
+    let (_, bad) = extent(shown().filter_map(|p| p.error)).unwrap_or((0.0, 1.0));
+    (Axis::Log(SHORTEST, 2.0 * slow.max(1e-2)), Axis::Log(SMALLEST, (2.0 * bad).clamp(0.2, 1.0)))
+}
+
+/// Solves of boundary elements that no other beats in both error and time.
+fn is_front(p: &Point) -> bool {
+    p.pareto && p.model == "bem3d" && (p.family == "band" || p.family == "spectrum")
+}
+
+fn panel(picture: &mut Picture, points: &[Point], family: &str, load: f64, dimensions: &[f64]) {
+    let (x, y) = picture.axes();
     let here = |p: &&Point, family: &str, d: f64| {
         p.family == family && same(p.force_bar, Some(load)) && same(p.fractal_dimension, Some(d))
     };
     // What is faster or nearer than the axes go stands on their edge.
     let place = |p: &Point| {
-        let seconds = p.seconds.unwrap_or(0.0).clamp(SECONDS.0 * 1.2, SECONDS.1 / 1.2);
-        Some((seconds, p.error?.clamp(ERRORS.0 * 1.1, ERRORS.1 / 1.1)))
+        let seconds = p.seconds.unwrap_or(0.0).clamp(x.ends().0 * 1.2, x.ends().1 / 1.2);
+        Some((seconds, p.error?.clamp(y.ends().0 * 1.1, y.ends().1 / 1.1)))
     };
     for &d in dimensions {
         let color = color(d);
-        let front: Vec<&Point> =
-            points.iter().filter(|p| here(p, family, d) && p.pareto && p.model == "bem3d").collect();
+        let front: Vec<&Point> = points.iter().filter(|p| here(p, family, d) && is_front(p)).collect();
         let mut at: Vec<(f64, f64)> = front.iter().filter_map(|p| place(p)).collect();
         at.sort_by(|a, b| a.0.total_cmp(&b.0));
-        picture.line(&at, &color, 1.6, &LineStyle::Solid);
+        picture.line(&at, &color, 1.4, LineStyle::Solid);
         for p in &front {
             let at: Vec<(f64, f64)> = place(p).into_iter().collect();
-            picture.points(&at, &color, mark_size(p.size), Mark::Solid(MarkerShape::Circle));
+            picture.points(&at, &color, mark_size(p.size), Mark::Solid(Shape::Circle));
         }
-        if family != "spectrum" {
-            continue;
+        if family == "spectrum" {
+            for (model, mark) in MEANS {
+                let of = |p: &&Point| here(p, "mean", d) && p.model == model;
+                let at: Vec<(f64, f64)> = points.iter().filter(of).filter_map(place).collect();
+                picture.points(&at, &color, 4.2, mark);
+            }
         }
-        let means = |model: &str, mark: Mark, picture: &mut Picture| {
-            let at: Vec<(f64, f64)> =
-                points.iter().filter(|p| here(p, "mean", d) && p.model == model).filter_map(place).collect();
-            picture.points(&at, &color, 4.2, mark);
-        };
-        means("mdr1d", Mark::Hollow(MarkerShape::Square), &mut picture);
-        means("power_law", Mark::Solid(MarkerShape::Cross), &mut picture);
-        means("plateau", Mark::Solid(MarkerShape::Triangle), &mut picture);
     }
-    picture
+    if !picture.is_empty() {
+        for target in TARGETS {
+            picture.line(&[(x.ends().0, target), (x.ends().1, target)], "#bbbbbb", 0.9, LineStyle::Dotted);
+        }
+    }
 }
+
+/// Models of the mean over surfaces and their marks.
+const MEANS: [(&str, Mark); 3] = [
+    ("mdr1d", Mark::Hollow(Shape::Square)),
+    ("power_law", Mark::Solid(Shape::Cross)),
+    ("plateau", Mark::Hollow(Shape::Triangle)),
+];
 
 /// Finer grids have larger marks.
 fn mark_size(cells: Option<f64>) -> f64 {
-    2.4 + 0.9 * (cells.unwrap_or(64.0) / 64.0).log2().max(0.0)
+    2.2 + 0.9 * (cells.unwrap_or(64.0) / 64.0).log2().max(0.0)
 }
 
-fn legend(dimensions: &[f64]) -> Vec<LegendEntry> {
-    // The library's box is too narrow for its own words: spaces that do not break widen it.
-    let entry = |label: String, color: &str, shape| LegendEntry {
-        label: label + &"\u{a0}".repeat(6),
-        color: color.to_owned(),
-        shape,
-        dasharray: None,
-    };
-    let mut all: Vec<LegendEntry> = dimensions
-        .iter()
-        .map(|d| entry(format!("3D, D_f = {d:?}"), &color(*d), LegendShape::Marker(MarkerShape::Circle)))
-        .collect();
-    all.push(entry("1D, mean".to_owned(), NEUTRAL, LegendShape::Marker(MarkerShape::Square)));
-    all.push(entry("Eq. 12, mean".to_owned(), NEUTRAL, LegendShape::Marker(MarkerShape::Cross)));
-    all.push(entry("rigid square".to_owned(), NEUTRAL, LegendShape::Marker(MarkerShape::Triangle)));
-    all
+fn legend(points: &[Point], dimensions: &[f64]) -> Legend {
+    let mut legend = Legend::default();
+    for d in dimensions {
+        let label = format!("$D_{{\\rm{{f}}}} = {d:?}$, 3D, one surface");
+        legend.push(&label, &color(*d), Key::Curve(Mark::Solid(Shape::Circle)));
+    }
+    let sizes = values(points, |p| p.size.filter(|_| is_front(p)));
+    if let Some((coarse, fine)) = extent(sizes) {
+        let sizes = if fine > coarse { vec![coarse, fine] } else { vec![fine] };
+        for n in sizes {
+            let key = Key::Sized(Mark::Solid(Shape::Circle), mark_size(Some(n)));
+            legend.push(&format!("{n} × {n} cells"), NEUTRAL, key);
+        }
+    }
+    let words = ["1D, mean of surfaces", "Eq. 12, mean of surfaces", "rigid square, mean of surfaces"];
+    for ((model, mark), words) in MEANS.into_iter().zip(words) {
+        if points.iter().any(|p| p.family == "mean" && p.model == model) {
+            legend.push(words, NEUTRAL, Key::Mark(mark));
+        }
+    }
+    legend.push("dotted: 10 %, 1 %, 0.1 %", NEUTRAL, Key::Line(LineStyle::Dotted));
+    legend
 }

@@ -12,7 +12,8 @@ use bem3d::Bem3d;
 use contact_model::{Boundary, ContactModel, ContactState, Stop, never};
 use evaluation::Outcome;
 use evaluation::header;
-use picture::{draw, table};
+pub(crate) use picture::draw;
+use picture::table;
 use reading::{claim, summary};
 use runs::Progress;
 use runs::collect;
@@ -22,7 +23,8 @@ use runs::write_csv;
 use runs::{Error, Result};
 use std::path::Path;
 use std::time::Instant;
-use study::{CASES, Case, Curve, NAME, Point, SHORTEST};
+pub(crate) use study::NAME;
+use study::{CASES, Case, Curve, Point, SHORTEST};
 
 /// Solves the two cases (and the two mixed ones) with boundary elements, Persson's and Greenwood and Williamson's theories, and
 /// writes `two-cases.csv`, `.svg`, `.png` and `.md` into a directory.

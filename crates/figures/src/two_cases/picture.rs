@@ -2,13 +2,12 @@
 
 use super::reading::slopes;
 use super::study::{CASES, Curve, NAME};
+use crate::words;
 use analysis::{Table, Value};
-use contact_model::PAPER_STIFFNESS_FACTOR;
+use contact_model::{Boundary, PAPER_STIFFNESS_FACTOR};
 use evaluation::FLOOR_CELLS;
 use evaluation::column;
-use kuva::plot::line::LineStyle;
-use kuva::plot::scatter::MarkerShape;
-use plots::{Key, Mark, Picture, logarithmic};
+use plots::{Key, LineStyle, Mark, NEUTRAL, Picture, Shape, logarithmic};
 use runs::CsvFile;
 use runs::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -60,10 +59,11 @@ pub(super) fn table(curves: &[Curve]) -> Result<Table> {
     Ok(table)
 }
 
-pub(super) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
+/// Draws the two pictures from the table.
+pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let mut files = panel(&file, "stiffness_bar", "stiffness  k / (1.1419 E* L)", out, NAME)?;
-    files.extend(panel(&file, "k_h_over_force", "k h / F", out, &format!("{NAME}-ratio"))?);
+    let mut files = panel(&file, "stiffness_bar", words::STIFFNESS, out, NAME)?;
+    files.extend(panel(&file, "k_h_over_force", "ratio $k h/F$", out, &format!("{NAME}-ratio"))?);
     Ok(files)
 }
 
@@ -71,34 +71,81 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
     let (case, model) = (file.texts("case")?, file.texts("model")?);
     let (force, value, k) =
         (file.numbers("force_bar")?, file.numbers(quantity)?, file.numbers("stiffness_bar")?);
-    let floor = file.texts("below_floor")?;
-    let rows: Vec<(&str, &str, (f64, f64), bool)> = (0..case.len())
+    let (error, floor) = (file.numbers("stiffness_bar_se")?, file.texts("below_floor")?);
+    let rows: Vec<Row<'_>> = (0..case.len())
         .filter(|&i| k[i].is_some_and(|k| k <= HIGHEST))
-        .filter_map(|i| Some((case[i], model[i], (force[i]?, value[i]?), floor[i] == "true")))
+        .filter_map(|i| {
+            let (force, value) = (force[i]?, value[i]?);
+            let error = error[i].map(|e| value * e / k[i].unwrap_or(1.0));
+            Some(Row { case: case[i], model: model[i], force, value, error, below_floor: floor[i] == "true" })
+        })
         .collect();
-    let solved = || rows.iter().filter(|r| r.1 == "bem3d").map(|r| r.2);
-    let (x, y) = (logarithmic(solved().map(|p| p.0)), logarithmic(solved().map(|p| p.1)));
-    let mut picture = Picture::new(x, y, "force  F / (E* h L)", label)
-        .with_title("Free and periodic, fractal and with a roll-off");
-    if name != NAME {
-        picture = picture.with_legend_at_lower_left();
-    }
-    let circle = MarkerShape::Circle;
-    for of in CASES {
-        let points = |name: &str, floor: bool| -> Vec<(f64, f64)> {
-            rows.iter().filter(|r| r.0 == of.name() && r.1 == name && r.3 == floor).map(|r| r.2).collect()
+    let solved = || rows.iter().filter(|r| r.model == "bem3d");
+    let (x, y) = (logarithmic(solved().map(|r| r.force)), logarithmic(solved().map(|r| r.value)));
+    let flag = |name| words::flag(file, name).unwrap_or("?");
+    let (n, d) = (flag("--cells"), flag("--df"));
+    let mut picture = Picture::new(x, y, words::FORCE, label)
+        .with_size(800.0, 560.0)
+        .with_title("Two cases: boundary and roll-off of the spectrum")
+        .with_subtitle(&format!(
+            "$D_{{\\rm{{f}}}} = {d}$, {n} × {n} cells, {} surfaces for each case; roll-off at {} waves a side",
+            flag("--surfaces"),
+            flag("--roll-off").trim_end_matches(".0"),
+        ))
+        .with_legend_below();
+    // One above the other where two agree: the first is wide and pale, the second thin on top of it.
+    let looks = [
+        (5.0, Mark::Solid(Shape::Circle), 5.6),
+        (1.6, Mark::Hollow(Shape::Circle), 3.2),
+        (5.0, Mark::Solid(Shape::Square), 5.2),
+        (1.6, Mark::Hollow(Shape::Square), 3.2),
+    ];
+    for (of, (width, mark, radius)) in CASES.into_iter().zip(looks) {
+        let color = of.color();
+        let select = |name: &str, floor: bool| -> Vec<&Row<'_>> {
+            let wanted = |r: &&Row<'_>| r.case == of.name() && r.model == name && r.below_floor == floor;
+            rows.iter().filter(wanted).collect()
         };
-        let inside = points("bem3d", false);
-        picture.line(&inside, of.color(), 1.8, &LineStyle::Solid);
-        picture.points(&inside, of.color(), 3.2, Mark::Solid(circle));
-        picture.points(&points("bem3d", true), of.color(), 3.0, Mark::Hollow(circle));
-        picture.legend(of.name(), of.color(), Key::Mark(circle));
-        picture.line(&points("persson", false), of.color(), 1.2, &LineStyle::Dashed);
-        picture.line(&points("greenwood_williamson", false), of.color(), 1.2, &LineStyle::Dotted);
+        let at = |rows: &[&Row<'_>]| rows.iter().map(|r| (r.force, r.value)).collect::<Vec<_>>();
+        let inside = select("bem3d", false);
+        let bars: Vec<_> = inside.iter().map(|r| (r.force, r.value, r.error.map(|e| 2.0 * e))).collect();
+        picture.line(&at(&inside), color, width, LineStyle::Solid);
+        picture.errors(&bars, color);
+        picture.points(&at(&inside), color, radius, mark);
+        picture.points(&at(&select("bem3d", true)), color, radius, Mark::Ring(mark_shape(mark)));
+        picture.line(&at(&select("persson", false)), color, 1.5, LineStyle::Dashed);
+        picture.line(&at(&select("greenwood_williamson", false)), color, 1.5, LineStyle::Dotted);
+        let stiffness = match of.boundary {
+            Boundary::Periodic => "$k = -\\rm{d}F/\\rm{d}\\bar{g}$, $\\bar{g}$ the mean gap",
+            _ => "$k = \\rm{d}F/\\rm{d}d$, $d$ the approach",
+        };
+        picture.legend(&format!("{}: {stiffness}", of.name()), color, Key::Curve(mark));
     }
-    picture.legend("Persson; dotted: Greenwood, Williamson", "#444444", Key::Dashed);
-    if rows.iter().any(|r| r.3) {
-        picture.legend("fewer than 10 contact cells", "", Key::Open);
+    picture.legend("Persson", NEUTRAL, Key::Line(LineStyle::Dashed));
+    picture.legend("Greenwood and Williamson", NEUTRAL, Key::Line(LineStyle::Dotted));
+    picture.legend("bars: ± 2 standard errors", NEUTRAL, Key::Bar(Mark::Solid(Shape::Circle)));
+    if rows.iter().any(|r| r.below_floor) {
+        let label = format!("fewer than {FLOOR_CELLS} contact cells");
+        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Ring(Shape::Circle)));
+    }
+    if k.iter().flatten().any(|k| *k > HIGHEST) {
+        picture.legend(&format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"), NEUTRAL, Key::Words);
     }
     picture.save(out, name)
+}
+
+/// A mean as the pictures see it.
+struct Row<'a> {
+    case: &'a str,
+    model: &'a str,
+    force: f64,
+    value: f64,
+    error: Option<f64>,
+    below_floor: bool,
+}
+
+fn mark_shape(mark: Mark) -> Shape {
+    match mark {
+        Mark::Solid(shape) | Mark::Hollow(shape) | Mark::Ring(shape) => shape,
+    }
 }

@@ -5,7 +5,7 @@ use evaluation::Forces;
 use runs::{Error, Result};
 use std::f64::consts::TAU;
 
-pub(super) const NAME: &str = "two-cases";
+pub(crate) const NAME: &str = "two-cases";
 
 /// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it.
 pub(super) const SHORTEST: usize = 8;
@@ -62,7 +62,7 @@ impl Case {
     pub(super) fn color(self) -> &'static str {
         match (self.boundary, self.rolls_off) {
             (Boundary::Periodic, true) => "#d6731a",
-            (Boundary::Periodic, false) => "#1d918c",
+            (Boundary::Periodic, false) => "#1a8f89",
             (_, true) => "#8c2d5a",
             (_, false) => "#30126e",
         }

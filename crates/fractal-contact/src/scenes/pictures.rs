@@ -45,18 +45,23 @@ fn chart(scene: &SceneFile, table: &Table, x: &str, y: &str) -> Chart {
     let place = |name: &str| table.columns().iter().position(|c| c.name == name);
     let label = |name: &str| {
         let unit = place(name).map_or("1", |i| table.columns()[i].unit);
-        let name = name.replace('_', " ");
-        if matches!(unit, "1" | "-" | "scene") { name } else { format!("{name} ({unit})") }
+        let (words, symbol) = quantity(name);
+        let label = if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") };
+        match unit {
+            "1" | "-" => label,
+            "scene" => format!("{label} (units of the scene)"),
+            unit => format!("{label} ({})", unit_label(unit)),
+        }
     };
     let number = |row: &[Value], name: &str| match place(name).and_then(|i| row.get(i)) {
         Some(Value::Number(v)) => Some(*v),
         _ => None,
     };
-    let curves = scene
+    let curves: Vec<Curve> = scene
         .models
         .iter()
         .map(|m| Curve {
-            label: m.name().into(),
+            label: model_name(m.name()).to_owned(),
             points: table
                 .rows()
                 .iter()
@@ -66,7 +71,62 @@ fn chart(scene: &SceneFile, table: &Table, x: &str, y: &str) -> Chart {
                 .collect(),
             scattered: scene.sampling.surfaces > 1,
         })
+        .filter(|curve: &Curve| !curve.points.is_empty())
         .collect();
-    let title = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    Chart { title, x_label: label(x), y_label: label(y), curves, logarithmic: !scene.is_history() }
+    let name = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let mut title = format!("{} over {}", quantity(y).0, quantity(x).0);
+    title[..1].make_ascii_uppercase();
+    let surfaces = match scene.sampling.surfaces {
+        1 => String::new(),
+        n => format!(", {n} surfaces"),
+    };
+    Chart {
+        title,
+        subtitle: format!("scene: {}{surfaces}", name.replace(['-', '_'], " ")),
+        x_label: label(x),
+        y_label: label(y),
+        curves,
+        logarithmic: !scene.is_history(),
+    }
+}
+
+/// A column in words, and its symbol of the glossary.
+fn quantity(column: &str) -> (&str, &str) {
+    match column {
+        "force" => ("force", "F"),
+        "approach" => ("approach", "d"),
+        "mean_gap" => ("mean gap", "\\bar{g}"),
+        "stiffness" => ("stiffness", "k"),
+        "area" => ("contact area", "A"),
+        "conductance" => ("conductance", "Λ"),
+        "time" => ("time", "t"),
+        "tangential_force" => ("tangential force", "T"),
+        "tangential_displacement" => ("tangential displacement", "u_x"),
+        "dissipated" => ("dissipated energy", ""),
+        other => (other, ""),
+    }
+}
+
+/// A unit with its powers raised: `m^2` and `W/K`.
+fn unit_label(unit: &str) -> String {
+    format!("$\\rm{{{unit}}}$")
+}
+
+/// What a model is called outside code.
+fn model_name(name: &str) -> &str {
+    match name {
+        "bem3d" => "3D boundary elements",
+        "mdr1d" => "1D reduction",
+        "equivalent" => "equivalent profile",
+        "hertz" => "Hertz",
+        "jkr" => "Johnson, Kendall and Roberts",
+        "persson" => "Persson",
+        "greenwood_williamson" => "Greenwood and Williamson",
+        "westergaard" => "Westergaard",
+        "cattaneo_mindlin" => "Cattaneo and Mindlin",
+        "power_law" => "power law of the paper",
+        "power_law_body" => "Galin",
+        "flat_punch" => "flat punch",
+        other => other,
+    }
 }

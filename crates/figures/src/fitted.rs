@@ -1,0 +1,148 @@
+//! What the pictures of Figs. 3 and 7 have in common: fitted values over the fractal dimension.
+
+use crate::words;
+use analysis::{Bootstrap, Curves, PowerLaw, Sample, Window, fit_power_law};
+use plots::{Key, Mark, Picture, Shape, number};
+use runs::{CsvFile, Error, Result};
+use std::path::Path;
+
+/// Points of one fractal dimension stand this far from each other, so that none hides another.
+const BESIDE: f64 = 0.014;
+
+/// A fitted value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fitted {
+    pub fractal_dimension: f64,
+    pub value: f64,
+    pub error: Option<f64>,
+    pub force_min: Option<f64>,
+    pub force_max: Option<f64>,
+}
+
+/// The values of one model in a table.
+pub(crate) fn series(file: &CsvFile, model: &str, value: &str) -> Result<Vec<Fitted>> {
+    let (models, d) = (file.texts("model")?, file.numbers("fractal_dimension")?);
+    let (v, e) = (file.numbers(value)?, file.numbers(&format!("{value}_se"))?);
+    let (low, high) = (file.numbers("force_bar_min")?, file.numbers("force_bar_max")?);
+    let row = |i: usize| {
+        let (fractal_dimension, value) = (d[i]?, v[i]?);
+        Some(Fitted { fractal_dimension, value, error: e[i], force_min: low[i], force_max: high[i] })
+    };
+    Ok((0..d.len()).filter(|&i| models[i] == model).filter_map(row).collect())
+}
+
+/// A formula of a table as points of its line.
+pub(crate) fn formula(file: &CsvFile, model: &str, value: &str) -> Result<Vec<(f64, f64)>> {
+    Ok(series(file, model, value)?.iter().map(|p| (p.fractal_dimension, p.value)).collect())
+}
+
+/// The laws of a table of Fig. 2: fitted to its means in the same window by the same code, without errors, because it does not hold
+/// the single surfaces.
+pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, PowerLaw)>> {
+    let (d, force) = (file.numbers("fractal_dimension")?, file.numbers("force_bar")?);
+    let (mean, cells) = (file.numbers("stiffness_bar")?, file.numbers("min_contact_cells")?);
+    let missing = file.numbers("not_converged")?;
+    let rows: Vec<(f64, f64, Option<Sample>)> = (0..d.len())
+        .filter_map(|i| {
+            let whole = missing[i].is_none_or(|n| n < 0.5);
+            let sample = mean[i]
+                .filter(|_| whole)
+                .map(|stiffness_bar| Sample { stiffness_bar, contact_cells: cells[i].map(|c| c as usize) });
+            Some((d[i]?, force[i]?, sample))
+        })
+        .collect();
+    let mut laws = Vec::new();
+    for group in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
+        let forces = group.iter().map(|r| r.1).collect();
+        let means = group.iter().map(|r| r.2).collect();
+        let curves = Curves::new(forces, vec![means]).map_err(Error::model("the means of a finer run"))?;
+        if let Ok(law) = fit_power_law(&curves, &Window::PAPER, &Bootstrap::default()) {
+            laws.push((group[0].0, law));
+        }
+    }
+    Ok(laws)
+}
+
+/// Both models, and a finer run where there is one, with their error bars and the windows of their fits.
+pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>, value: &str) -> Result<()> {
+    let mut all = Vec::new();
+    for (model, name) in [("bem3d", "3D"), ("mdr1d", "1D")] {
+        let label = words::ensemble(file, model).unwrap_or_default();
+        all.push((format!("{name}, {label}"), series(file, model, value)?));
+    }
+    if let Some(path) = finer {
+        let file = CsvFile::read(path)?;
+        let fitted = |(fractal_dimension, law): (f64, PowerLaw)| Fitted {
+            fractal_dimension,
+            value: if value == "zeta" { law.zeta } else { law.alpha },
+            error: None,
+            force_min: Some(law.force_bar_min),
+            force_max: Some(law.force_bar_max),
+        };
+        let label = words::ensemble(&file, "bem3d").unwrap_or_default();
+        all.push((format!("3D, {label}"), laws_of_means(&file)?.into_iter().map(fitted).collect()));
+    }
+    let styles = [
+        ("#0b559f", Mark::Solid(Shape::Circle), -1.0),
+        ("#d55e00", Mark::Solid(Shape::Square), 1.0),
+        ("#0b559f", Mark::Hollow(Shape::Diamond), 0.0),
+    ];
+    for ((label, values), (color, mark, side)) in all.iter().zip(styles) {
+        if values.is_empty() {
+            continue;
+        }
+        let at = |p: &Fitted| (p.fractal_dimension + side * BESIDE, p.value);
+        let bars: Vec<_> = values.iter().map(|p| (at(p).0, p.value, p.error)).collect();
+        picture.errors(&bars, color);
+        picture.points(&values.iter().map(at).collect::<Vec<_>>(), color, 5.0, mark);
+        let key = if values.iter().any(|p| p.error.is_some()) { Key::Bar(mark) } else { Key::Mark(mark) };
+        picture.legend(&format!("{label}{}", window(values)), color, key);
+    }
+    let words = "bars: ± 1 standard error over surfaces; points of one $D_{\\rm{f}}$ stand side by side";
+    picture.legend(words, "#000000", Key::Words);
+    Ok(())
+}
+
+/// Where the fits of a series begin and end.
+fn window(values: &[Fitted]) -> String {
+    let (Some(first), Some(last)) = (values.first(), values.last()) else { return String::new() };
+    let (Some(a), Some(b), Some(end)) = (first.force_min, last.force_min, first.force_max) else {
+        return String::new();
+    };
+    let [a, b, end] = [a, b, end].map(|v| number(rounded(v)).replace('$', ""));
+    format!("; fit: $\\bar{{F}} = {a}$ … ${b}$ to ${end}$")
+}
+
+/// Two digits.
+fn rounded(v: f64) -> f64 {
+    let unit = 10_f64.powf(v.abs().log10().floor() - 1.0);
+    let digits = (v / unit).round();
+    // A division gives the shortest decimal where a product with 1e-5 does not.
+    if unit < 1.0 { digits / (1.0 / unit).round() } else { digits * unit }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_are_fitted_where_every_surface_touches_enough() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("fig2.csv");
+        let mut text =
+            "fractal_dimension,force_bar,stiffness_bar,not_converged,min_contact_cells\n".to_owned();
+        for (force, cells) in [(1e-6_f64, 3), (1e-5, 10), (1e-4, 50), (1e-3, 200), (1e-2, 900), (1.0, 9999)] {
+            text += &format!("2.2,{force:?},{:?},0,{cells}\n", 0.5 * force.powf(0.6));
+        }
+        std::fs::write(&path, text).unwrap();
+        let laws = laws_of_means(&CsvFile::read(&path).unwrap()).unwrap();
+        assert_eq!((laws.len(), laws[0].1.points), (1, 4));
+        approx::assert_relative_eq!(laws[0].1.alpha, 0.6, max_relative = 1e-12);
+        assert_eq!((laws[0].1.force_bar_min, laws[0].1.force_bar_max), (1e-5, 1e-2));
+    }
+
+    #[test]
+    fn windows_are_short() {
+        assert_eq!([2.0979e-5, 0.086, 0.0020647].map(rounded), [2.1e-5, 0.086, 0.0021]);
+    }
+}

@@ -1,0 +1,171 @@
+//! Legends: their lines, and the place where they cover no data.
+
+use crate::mark;
+use crate::scene::{Anchor, Paint, Rectangle, Scene, polygon, polyline};
+use crate::style::{INK, Key, LineStyle};
+use crate::text::{Fonts, Typeset};
+
+/// One line of a legend.
+#[derive(Debug, Clone, PartialEq)]
+struct Entry {
+    label: String,
+    color: String,
+    key: Key,
+}
+
+/// The lines of a legend.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Legend {
+    entries: Vec<Entry>,
+}
+
+/// Length of the key before the words, and the space after it, in sizes of the words.
+const KEY: f64 = 1.7;
+const GAP: f64 = 0.55;
+/// From one line to the next and from one column to the next, in sizes of the words.
+const LINE: f64 = 1.38;
+const COLUMN: f64 = 1.6;
+
+impl Legend {
+    /// Adds a line; the label may hold symbols between dollar signs.
+    pub fn push(&mut self, label: &str, color: &str, key: Key) {
+        self.entries.push(Entry { label: label.to_owned(), color: color.to_owned(), key });
+    }
+
+    /// Whether there is nothing to say.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    pub(crate) fn set(&self, fonts: &Fonts, size: f64, width: f64) -> SetLegend<'_> {
+        let lines: Vec<(&Entry, Typeset)> =
+            self.entries.iter().map(|e| (e, fonts.typeset(&e.label, size))).collect();
+        let indent = |e: &Entry| if e.key == Key::Words { 0.0 } else { (KEY + GAP) * size };
+        let column = lines.iter().map(|(e, set)| indent(e) + set.width).fold(0.0, f64::max);
+        let fit = ((width + COLUMN * size) / (column + COLUMN * size)).floor().max(1.0) as usize;
+        let columns = fit.min(lines.len().max(1));
+        let rows = lines.len().div_ceil(columns);
+        SetLegend { lines, size, column, rows, columns: lines_columns(self.entries.len(), rows) }
+    }
+}
+
+fn lines_columns(lines: usize, rows: usize) -> usize {
+    lines.div_ceil(rows.max(1))
+}
+
+/// A legend with the sizes of its words.
+pub(crate) struct SetLegend<'a> {
+    lines: Vec<(&'a Entry, Typeset)>,
+    size: f64,
+    column: f64,
+    rows: usize,
+    columns: usize,
+}
+
+impl SetLegend<'_> {
+    pub fn width(&self) -> f64 {
+        let gaps = self.columns.saturating_sub(1) as f64;
+        self.columns as f64 * self.column + gaps * COLUMN * self.size
+    }
+
+    pub fn height(&self) -> f64 {
+        self.rows as f64 * LINE * self.size
+    }
+
+    /// Draws it with its upper left corner at `at`.
+    pub fn draw(self, scene: &mut Scene, at: (f64, f64)) {
+        let (size, rows) = (self.size, self.rows);
+        for (i, (entry, set)) in self.lines.into_iter().enumerate() {
+            let x = at.0 + (i / rows) as f64 * (self.column + COLUMN * size);
+            let baseline = at.1 + ((i % rows) as f64 + 0.95) * LINE * size;
+            let middle = (x + 0.5 * KEY * size, baseline - 0.3 * size);
+            let half = 0.5 * KEY * size;
+            let line = |scene: &mut Scene, style: LineStyle| {
+                let ends = [(middle.0 - half, middle.1), (middle.0 + half, middle.1)];
+                let paint = Paint { dashes: style.dashes(), ..Paint::stroked(&entry.color, 1.8) };
+                scene.path(polyline(&ends), paint, None);
+            };
+            match entry.key {
+                Key::Line(style) => line(scene, style),
+                Key::Curve(mark) => {
+                    line(scene, LineStyle::Solid);
+                    mark::draw(scene, middle, &entry.color, 4.6, mark);
+                }
+                Key::Mark(mark) => mark::draw(scene, middle, &entry.color, 4.6, mark),
+                Key::Sized(mark, radius) => mark::draw(scene, middle, &entry.color, radius, mark),
+                Key::Bar(mark) => {
+                    let ends = [(middle.0, middle.1 - 0.5 * size), (middle.0, middle.1 + 0.5 * size)];
+                    scene.path(polyline(&ends), Paint::stroked(&entry.color, 1.5), None);
+                    mark::draw(scene, middle, &entry.color, 4.6, mark);
+                }
+                Key::Band => {
+                    let (a, b) = (middle.0 - half, middle.0 + half);
+                    let (c, d) = (middle.1 - 0.3 * size, middle.1 + 0.3 * size);
+                    let corners = [(a, c), (b, c), (b, d), (a, d)];
+                    scene.path(polygon(&corners), Paint::filled(&entry.color, 0.3), None);
+                }
+                Key::Words => {}
+            }
+            let indent = if entry.key == Key::Words { 0.0 } else { (KEY + GAP) * size };
+            scene.label(set, (x + indent, baseline), Anchor::Start, false, INK);
+        }
+    }
+}
+
+/// The upper left corner of a free place of this size in the frame; `None` where every place would cover something.
+pub(crate) fn free_place(
+    frame: Rectangle,
+    size: (f64, f64),
+    taken: &[(f64, f64)],
+    margin: f64,
+) -> Option<(f64, f64)> {
+    /// Places tried in each direction.
+    const STEPS: usize = 12;
+    let room = (frame[2] - size.0 - 2.0 * margin, frame[3] - size.1 - 2.0 * margin);
+    if room.0 < 0.0 || room.1 < 0.0 {
+        return None;
+    }
+    let place = |i: usize, j: usize| {
+        (
+            frame[0] + margin + room.0 * i as f64 / STEPS as f64,
+            frame[1] + margin + room.1 * j as f64 / STEPS as f64,
+        )
+    };
+    let free = |(x, y): (f64, f64)| {
+        let within = |p: &&(f64, f64)| {
+            (x - 9.0..=x + size.0 + 9.0).contains(&p.0) && (y - 9.0..=y + size.1 + 9.0).contains(&p.1)
+        };
+        taken.iter().find(within).is_none()
+    };
+    let corners = [(0, 0), (STEPS, STEPS), (STEPS, 0), (0, STEPS)];
+    let edges = (1..STEPS).flat_map(|i| [(0, i), (STEPS, i), (i, 0), (i, STEPS)]);
+    corners.into_iter().chain(edges).map(|(i, j)| place(i, j)).find(|p| free(*p))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_goes_where_nothing_is() {
+        let frame = [0.0, 0.0, 400.0, 300.0];
+        let size = (100.0, 80.0);
+        assert_eq!(free_place(frame, size, &[], 10.0), Some((10.0, 10.0)));
+        assert_eq!(free_place(frame, size, &[(50.0, 50.0)], 10.0), Some((290.0, 210.0)));
+        let everywhere: Vec<(f64, f64)> =
+            (0..40).flat_map(|i| (0..30).map(move |j| (10.0 * f64::from(i), 10.0 * f64::from(j)))).collect();
+        assert_eq!(free_place(frame, size, &everywhere, 10.0), None);
+        assert_eq!(free_place(frame, (500.0, 10.0), &[], 10.0), None);
+    }
+
+    #[test]
+    fn many_lines_make_columns_where_they_fit() {
+        let fonts = Fonts::load().unwrap();
+        let mut legend = Legend::default();
+        (0..5).for_each(|_| legend.push("word", "#000000", Key::Band));
+        let narrow = legend.set(&fonts, 10.0, 50.0);
+        assert_eq!((narrow.columns, narrow.rows), (1, 5));
+        let wide = legend.set(&fonts, 10.0, 200.0);
+        assert!(wide.columns > 1 && wide.columns * wide.rows >= 5 && wide.width() <= 200.0);
+    }
+}

@@ -1,0 +1,70 @@
+//! Several grey maps side by side.
+
+use crate::scene::{Anchor, Paint, Scene, polygon};
+use crate::style::{INK, NEUTRAL};
+use crate::text::Fonts;
+use runs::Result;
+use std::path::{Path, PathBuf};
+
+/// A square map of grey values.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GreyMap {
+    /// Above the map; symbols stand between dollar signs.
+    pub label: String,
+    /// Row by row from the top.
+    pub shades: Vec<u8>,
+    /// Rows and columns.
+    pub side: usize,
+}
+
+/// Side of one map, the space around it and for its label.
+const MAP: f64 = 248.0;
+const GAP: f64 = 14.0;
+const LABEL: f64 = 28.0;
+const TITLE: f64 = 54.0;
+
+/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title and a line below it.
+///
+/// # Errors
+/// [`crate::Error::File`] when they cannot be written.
+pub fn save_maps(
+    maps: Vec<GreyMap>,
+    title: &str,
+    subtitle: &str,
+    directory: &Path,
+    name: &str,
+) -> Result<Vec<PathBuf>> {
+    let fonts = Fonts::load()?;
+    let columns = maps.len().clamp(1, 3);
+    let rows = maps.len().div_ceil(columns);
+    let width = GAP + columns as f64 * (MAP + GAP);
+    let mut scene = Scene::new(width, TITLE + rows as f64 * (MAP + LABEL) + GAP);
+    scene.label(fonts.typeset(title, 19.0), (GAP, 27.0), Anchor::Start, false, INK);
+    scene.label(fonts.typeset(subtitle, 16.0), (GAP, 49.0), Anchor::Start, false, NEUTRAL);
+    for (i, map) in maps.into_iter().enumerate() {
+        let x = GAP + (i % columns) as f64 * (MAP + GAP);
+        let y = TITLE + LABEL + (i / columns) as f64 * (MAP + LABEL);
+        let label = fonts.typeset(&map.label, 18.0);
+        scene.label(label, (x + 0.5 * MAP, y - 8.0), Anchor::Middle, false, INK);
+        scene.grey([x, y, MAP, MAP], map.shades, map.side);
+        let corners = [(x, y), (x + MAP, y), (x + MAP, y + MAP), (x, y + MAP)];
+        scene.path(polygon(&corners), Paint::stroked(INK, 1.0), None);
+    }
+    scene.save(&fonts, directory, name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_are_inside_both_files() {
+        let dir = tempfile::tempdir().unwrap();
+        let map = |label: &str| GreyMap { label: label.into(), shades: vec![0, 80, 160, 255], side: 2 };
+        let files = save_maps(vec![map("$D_f$ = 2"), map("$D_f$ = 3")], "t", "s", dir.path(), "m").unwrap();
+        let svg = std::fs::read_to_string(&files[0]).unwrap();
+        assert_eq!(svg.matches("<image").count(), 2);
+        assert!(svg.contains("aria-label=\"D_f = 3\"") && svg.contains("data:image/png;base64,"));
+        assert!(std::fs::metadata(&files[1]).unwrap().len() > 1000);
+    }
+}

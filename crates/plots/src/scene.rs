@@ -1,0 +1,348 @@
+//! A picture as paths and labels, which both files are written from.
+
+use crate::map::{encode_grey, encode_rgb};
+use crate::text::{Fonts, Piece, Typeset};
+use runs::{Error, Result, files};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use tiny_skia as skia;
+
+/// Pixels of a PNG per unit of the scene.
+const SCALE: f64 = 2.0;
+
+/// A rectangle: left, top, width, height.
+pub(crate) type Rectangle = [f64; 4];
+
+/// What is drawn, in order, on white.
+pub(crate) struct Scene {
+    width: f64,
+    height: f64,
+    items: Vec<Item>,
+}
+
+enum Item {
+    Path { pieces: Vec<Piece>, paint: Paint, clip: Option<Rectangle> },
+    Label { set: Typeset, at: (f64, f64), upwards: bool, color: String },
+    Grey { place: Rectangle, shades: Vec<u8>, side: usize },
+}
+
+/// How a path looks.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Paint {
+    /// Colour of the inside and its opacity.
+    pub fill: Option<(String, f64)>,
+    /// Colour and width of the outline.
+    pub stroke: Option<(String, f64)>,
+    /// Lengths drawn and left out in turn; none is a solid line.
+    pub dashes: Vec<f64>,
+}
+
+impl Paint {
+    pub fn filled(color: &str, opacity: f64) -> Self {
+        Self { fill: Some((color.to_owned(), opacity)), ..Self::default() }
+    }
+
+    pub fn stroked(color: &str, width: f64) -> Self {
+        Self { stroke: Some((color.to_owned(), width)), ..Self::default() }
+    }
+}
+
+/// Which point of a label its place is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+impl Scene {
+    pub fn new(width: f64, height: f64) -> Self {
+        Self { width, height, items: Vec::new() }
+    }
+
+    pub fn path(&mut self, pieces: Vec<Piece>, paint: Paint, clip: Option<Rectangle>) {
+        self.items.push(Item::Path { pieces, paint, clip });
+    }
+
+    /// A label with its baseline through `at`; upwards for the vertical axis.
+    pub fn label(&mut self, set: Typeset, at: (f64, f64), anchor: Anchor, upwards: bool, color: &str) {
+        let back = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5 * set.width,
+            Anchor::End => set.width,
+        };
+        let at = if upwards { (at.0, at.1 + back) } else { (at.0 - back, at.1) };
+        self.items.push(Item::Label { set, at, upwards, color: color.to_owned() });
+    }
+
+    /// A square map of grey values, first row on top.
+    pub fn grey(&mut self, place: Rectangle, shades: Vec<u8>, side: usize) {
+        self.items.push(Item::Grey { place, shades, side });
+    }
+
+    /// Writes `NAME.svg` and `NAME.png`.
+    pub fn save(&self, fonts: &Fonts, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
+        let svg = directory.join(format!("{name}.svg"));
+        let png = directory.join(format!("{name}.png"));
+        files::write_whole(&svg, self.svg(fonts, &svg)?.as_bytes())?;
+        files::write_whole(&png, &self.png(fonts, &png)?)?;
+        Ok(vec![svg, png])
+    }
+
+    fn svg(&self, fonts: &Fonts, path: &Path) -> Result<String> {
+        let mut clips: Vec<Rectangle> = Vec::new();
+        let mut glyphs: BTreeMap<(bool, u16), ()> = BTreeMap::new();
+        let mut body = String::new();
+        for item in &self.items {
+            match item {
+                Item::Path { pieces, paint, clip } => {
+                    let clipped = clip.map(|c| {
+                        let known = clips.iter().position(|k| same(k, &c));
+                        known.unwrap_or_else(|| {
+                            clips.push(c);
+                            clips.len() - 1
+                        })
+                    });
+                    let clip = clipped.map_or_else(String::new, |i| format!(" clip-path=\"url(#c{i})\""));
+                    let style = svg_paint(paint);
+                    body += &format!("<path d=\"{}\"{style}{clip}/>\n", svg_path(pieces, 1.0, 1.0));
+                }
+                Item::Label { set, at, upwards, color } => {
+                    let turn = if *upwards { " rotate(-90)" } else { "" };
+                    body += &format!(
+                        "<g role=\"img\" aria-label=\"{}\" fill=\"{color}\" transform=\"translate({} {}){turn}\">",
+                        escaped(&set.plain),
+                        short(at.0),
+                        short(at.1)
+                    );
+                    for g in &set.glyphs {
+                        let outline = !fonts.outline(g.id, g.italic).is_empty();
+                        if outline {
+                            glyphs.insert((g.italic, g.id), ());
+                            body += &format!(
+                                "<use href=\"#{}\" transform=\"translate({} {})scale({})\"/>",
+                                glyph_name(g.italic, g.id),
+                                short(g.x),
+                                short(g.y),
+                                format_args!("{:.4}", g.size / 100.0)
+                            );
+                        }
+                    }
+                    for [x, y, w, h] in &set.bars {
+                        let (x, y, w, h) = (short(*x), short(*y), short(*w), short(*h));
+                        body += &format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>");
+                    }
+                    body += "</g>\n";
+                }
+                Item::Grey { place: [x, y, w, h], shades, side } => {
+                    let data = crate::map::base64(&encode_grey(path, *side, shades)?);
+                    body += &format!(
+                        "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" style=\"image-rendering:pixelated\" \
+                         href=\"data:image/png;base64,{data}\"/>\n"
+                    );
+                }
+            }
+        }
+        let (w, h) = (short(self.width), short(self.height));
+        let mut text = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\">\n<defs>\n"
+        );
+        for (i, [x, y, w, h]) in clips.iter().enumerate() {
+            let (x, y, w, h) = (short(*x), short(*y), short(*w), short(*h));
+            text += &format!(
+                "<clipPath id=\"c{i}\"><rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/></clipPath>\n"
+            );
+        }
+        // Each glyph once, 100 units to the em.
+        for (italic, id) in glyphs.into_keys() {
+            let outline = svg_path(&fonts.outline(id, italic), 100.0, -100.0);
+            text += &format!("<path id=\"{}\" d=\"{outline}\"/>\n", glyph_name(italic, id));
+        }
+        text += &format!("</defs>\n<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{body}</svg>\n");
+        Ok(text)
+    }
+
+    fn png(&self, fonts: &Fonts, path: &Path) -> Result<Vec<u8>> {
+        let [width, height] = [self.width, self.height].map(|v| (v * SCALE).round() as u32);
+        let mut pixels = skia::Pixmap::new(width, height)
+            .ok_or_else(|| Error::content(path, format!("no picture of {width} x {height} pixels")))?;
+        pixels.fill(skia::Color::WHITE);
+        let scale = skia::Transform::from_scale(SCALE as f32, SCALE as f32);
+        // Neighbours in the order of drawing share their clip.
+        let mut masked: Option<(Rectangle, skia::Mask)> = None;
+        for item in &self.items {
+            match item {
+                Item::Path { pieces, paint, clip } => {
+                    if let Some(clip) = clip
+                        && masked.as_ref().is_none_or(|(known, _)| !same(known, clip))
+                    {
+                        masked = mask(*clip, [width, height], scale).map(|mask| (*clip, mask));
+                    }
+                    let mask = masked.as_ref().filter(|_| clip.is_some()).map(|(_, mask)| mask);
+                    let Some(shape) = skia_path(pieces, |p| p) else { continue };
+                    if let Some((color, opacity)) = &paint.fill {
+                        let paint = skia_paint(color, *opacity);
+                        pixels.fill_path(&shape, &paint, skia::FillRule::Winding, scale, mask);
+                    }
+                    if let Some((color, width)) = &paint.stroke {
+                        let dash = paint.dashes.iter().map(|v| *v as f32).collect();
+                        let stroke = skia::Stroke {
+                            width: *width as f32,
+                            line_join: skia::LineJoin::Round,
+                            dash: skia::StrokeDash::new(dash, 0.0),
+                            ..skia::Stroke::default()
+                        };
+                        pixels.stroke_path(&shape, &skia_paint(color, 1.0), &stroke, scale, mask);
+                    }
+                }
+                Item::Label { set, at, upwards, color } => {
+                    let place = |x: f64, y: f64| {
+                        if *upwards { [at.0 + y, at.1 - x] } else { [at.0 + x, at.1 + y] }
+                    };
+                    let paint = skia_paint(color, 1.0);
+                    for g in &set.glyphs {
+                        let outline = fonts.outline(g.id, g.italic);
+                        let placed = skia_path(&outline, |[x, y]| place(g.x + x * g.size, g.y - y * g.size));
+                        let Some(placed) = placed else { continue };
+                        pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
+                    }
+                    for [x, y, w, h] in &set.bars {
+                        let corners = [(*x, *y), (x + w, *y), (x + w, y + h), (*x, y + h)];
+                        let placed = skia_path(&polygon(&corners), |[x, y]| place(x, y));
+                        let Some(placed) = placed else { continue };
+                        pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
+                    }
+                }
+                Item::Grey { place: [x, y, w, _], shades, side } => {
+                    let size = (w * SCALE).round() as usize;
+                    let (left, top) = ((x * SCALE).round() as usize, (y * SCALE).round() as usize);
+                    let data = pixels.data_mut();
+                    for row in 0..size {
+                        for column in 0..size {
+                            let value = shades[(row * side / size) * side + column * side / size];
+                            let at = ((top + row) * width as usize + left + column) * 4;
+                            if let Some(pixel) = data.get_mut(at..at + 3) {
+                                pixel.fill(value);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let opaque: Vec<u8> = pixels.data().chunks(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        encode_rgb(path, width as usize, &opaque)
+    }
+}
+
+/// A closed path through the corners.
+pub(crate) fn polygon(corners: &[(f64, f64)]) -> Vec<Piece> {
+    let mut pieces = polyline(corners);
+    pieces.push(Piece::Close);
+    pieces
+}
+
+/// A path through the points.
+pub(crate) fn polyline(points: &[(f64, f64)]) -> Vec<Piece> {
+    let piece = |(i, p): (usize, &(f64, f64))| match i {
+        0 => Piece::Move([p.0, p.1]),
+        _ => Piece::Line([p.0, p.1]),
+    };
+    points.iter().enumerate().map(piece).collect()
+}
+
+fn same(a: &Rectangle, b: &Rectangle) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.total_cmp(b).is_eq())
+}
+
+/// Two decimals at most: a hundredth of a unit is less than anyone sees.
+fn short(v: f64) -> String {
+    let text = format!("{v:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+fn glyph_name(italic: bool, id: u16) -> String {
+    format!("{}{id}", if italic { "i" } else { "r" })
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
+fn svg_path(pieces: &[Piece], sx: f64, sy: f64) -> String {
+    let write = |letter: char, values: &[f64]| {
+        let place = |(i, v): (usize, &f64)| short(v * if i % 2 == 0 { sx } else { sy });
+        let numbers: Vec<String> = values.iter().enumerate().map(place).collect();
+        format!("{letter}{}", numbers.join(" "))
+    };
+    let piece = |p: &Piece| match p {
+        Piece::Move(v) => write('M', v),
+        Piece::Line(v) => write('L', v),
+        Piece::Quad(v) => write('Q', v),
+        Piece::Cubic(v) => write('C', v),
+        Piece::Close => "Z".to_owned(),
+    };
+    pieces.iter().map(piece).collect()
+}
+
+fn svg_paint(paint: &Paint) -> String {
+    let mut text = match &paint.fill {
+        Some((color, opacity)) if *opacity < 1.0 => {
+            format!(" fill=\"{color}\" fill-opacity=\"{}\"", short(*opacity))
+        }
+        Some((color, _)) => format!(" fill=\"{color}\""),
+        None => " fill=\"none\"".to_owned(),
+    };
+    if let Some((color, width)) = &paint.stroke {
+        text += &format!(" stroke=\"{color}\" stroke-width=\"{}\" stroke-linejoin=\"round\"", short(*width));
+    }
+    if !paint.dashes.is_empty() {
+        let lengths: Vec<String> = paint.dashes.iter().map(|v| short(*v)).collect();
+        text += &format!(" stroke-dasharray=\"{}\"", lengths.join(" "));
+    }
+    text
+}
+
+fn skia_path(pieces: &[Piece], place: impl Fn([f64; 2]) -> [f64; 2]) -> Option<skia::Path> {
+    let mut path = skia::PathBuilder::new();
+    let at = |x: f64, y: f64| place([x, y]).map(|v| v as f32);
+    for piece in pieces {
+        match *piece {
+            Piece::Move([x, y]) => {
+                let [x, y] = at(x, y);
+                path.move_to(x, y);
+            }
+            Piece::Line([x, y]) => {
+                let [x, y] = at(x, y);
+                path.line_to(x, y);
+            }
+            Piece::Quad([a, b, x, y]) => {
+                let ([a, b], [x, y]) = (at(a, b), at(x, y));
+                path.quad_to(a, b, x, y);
+            }
+            Piece::Cubic([a, b, c, d, x, y]) => {
+                let ([a, b], [c, d], [x, y]) = (at(a, b), at(c, d), at(x, y));
+                path.cubic_to(a, b, c, d, x, y);
+            }
+            Piece::Close => path.close(),
+        }
+    }
+    path.finish()
+}
+
+fn mask([x, y, w, h]: Rectangle, pixels: [u32; 2], scale: skia::Transform) -> Option<skia::Mask> {
+    let mut mask = skia::Mask::new(pixels[0], pixels[1])?;
+    let inside = skia::Rect::from_xywh(x as f32, y as f32, w as f32, h as f32)?;
+    mask.fill_path(&skia::PathBuilder::from_rect(inside), skia::FillRule::Winding, true, scale);
+    Some(mask)
+}
+
+fn skia_paint(color: &str, opacity: f64) -> skia::Paint<'static> {
+    let channel = |i: usize| {
+        color.get(i..i + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or_default()
+    };
+    let mut paint = skia::Paint::default();
+    paint.set_color_rgba8(channel(1), channel(3), channel(5), (255.0 * opacity).round() as u8);
+    paint.anti_alias = true;
+    paint
+}
