@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
-use analysis::{Curves, Sample};
+use analysis::{Curves, StiffnessSample};
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Scene, Surface};
 use mdr1d::Mdr1d;
@@ -28,7 +28,7 @@ fn curves(model: &dyn ContactModel, fractal_dimension: f64) -> Curves {
         let sample = |force_bar: f64| {
             let state = contact.solve(Load::Force(normalisation.force(force_bar).unwrap())).unwrap();
             let stiffness_bar = normalisation.stiffness_bar(state.stiffness.unwrap());
-            Some(Sample { stiffness_bar, contact_cells: state.report.contact_cells })
+            Some(StiffnessSample { stiffness_bar, contact_cells: state.report.contact_cells })
         };
         FORCES.map(sample).to_vec()
     };

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
-use analysis::{Bootstrap, Curves, Sample, Window, fit_power_law};
+use analysis::{Bootstrap, Curves, FitWindow, StiffnessSample, fit_power_law};
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Scene, Surface};
 use mdr1d::Mdr1d;
@@ -19,14 +19,14 @@ fn exponent(model: &dyn ContactModel, n: f64, least: f64) -> f64 {
         .iter()
         .map(|&f| {
             let state = contact.solve(Load::Force(f)).unwrap();
-            Some(Sample {
+            Some(StiffnessSample {
                 stiffness_bar: normalisation.stiffness_bar(state.stiffness.unwrap()),
                 contact_cells: state.report.contact_cells,
             })
         })
         .collect();
     let curves = Curves::new(force, vec![row]).unwrap();
-    fit_power_law(&curves, &Window::PAPER, &Bootstrap::default()).unwrap().alpha
+    fit_power_law(&curves, &FitWindow::PAPER, &Bootstrap::default()).unwrap().alpha
 }
 
 /// `F = 2 E* d a n/(n + 1)`, `d = kappa_n c a^n`.

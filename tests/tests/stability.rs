@@ -1,6 +1,6 @@
 //! Every hard case of the registry: solved, witnessed and within its bound.
 
-use stability::{Effort, Verdict};
+use stability::{CaseResult, Effort};
 
 #[test]
 fn every_hard_case_holds() {
@@ -14,6 +14,6 @@ fn every_hard_case_holds() {
             v.status.as_str()
         );
     }
-    let failed: Vec<&Verdict> = verdicts.iter().filter(|v| !v.passed()).collect();
+    let failed: Vec<&CaseResult> = verdicts.iter().filter(|v| !v.passed()).collect();
     assert!(failed.is_empty(), "{failed:#?}");
 }

@@ -8,7 +8,7 @@ pub use bench::BenchArguments;
 
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
-use sizes::{Both, Lines, Maps, Reduced, Solid};
+use sizes::{Both, LineSizes, Maps, Reduced, Solid};
 use studies::{AccuracyCost, Audit, BudgetCheck, Redraw, Reference, StabilityArguments, TwoCasesArguments};
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
@@ -56,7 +56,7 @@ pub enum Command {
     ReproduceFig4(Solid),
     /// Three equivalent rough lines (CSV, NPY).
     #[command(after_help = EXPAND)]
-    ReproduceFig5(Lines),
+    ReproduceFig5(LineSizes),
     /// Stiffness over force, 1D reduction.
     #[command(after_help = EXPAND)]
     ReproduceFig6(Reduced),

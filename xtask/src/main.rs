@@ -146,7 +146,7 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
     if let Some(directory) = csv.as_deref().and_then(Path::parent) {
         runs::files::create_directory(directory)?;
     }
-    let table = Mutex::new(Table::default());
+    let table = Mutex::new(BenchTable::default());
     let rows = evaluation::bench(&options.bench()?, &|row| {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
         let Ok(mut table) = table.lock() else { return Ok(()) };
@@ -176,13 +176,13 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
 
 /// The rows so far and when they were written last.
 #[derive(Default)]
-struct Table {
+struct BenchTable {
     rows: Vec<BenchRow>,
     /// End and length of the last writing.
     written: Option<(Instant, Duration)>,
 }
 
-impl Table {
+impl BenchTable {
     /// Writes the rows unless that would take more than a twentieth of the time: a long table of cheap rows is written now and then.
     fn write(&mut self, path: &Path) -> Result<()> {
         let start = Instant::now();

@@ -4,7 +4,7 @@ use contact_model::{Error, Result};
 
 /// What one surface gives at one force.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub struct StiffnessSample {
     /// `k_bar` (Eq. 8), dimensionless.
     pub stiffness_bar: f64,
     /// Cells (elements) in contact; `None` where the model has none.
@@ -15,7 +15,7 @@ pub struct Sample {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curves {
     force_bar: Vec<f64>,
-    surfaces: Vec<Vec<Option<Sample>>>,
+    surfaces: Vec<Vec<Option<StiffnessSample>>>,
 }
 
 impl Curves {
@@ -24,7 +24,7 @@ impl Curves {
     /// # Errors
     /// [`Error::Domain`] for a force that is not finite, positive and larger than the one before, or a stiffness that is not
     /// finite and positive; [`Error::Shape`] for no surface or a surface with another number of entries.
-    pub fn new(force_bar: Vec<f64>, surfaces: Vec<Vec<Option<Sample>>>) -> Result<Self> {
+    pub fn new(force_bar: Vec<f64>, surfaces: Vec<Vec<Option<StiffnessSample>>>) -> Result<Self> {
         let mut before = 0.0;
         for &f in &force_bar {
             if !(f.is_finite() && f > before) {
@@ -59,7 +59,7 @@ impl Curves {
     }
 
     /// The surfaces, each with one entry per force.
-    pub fn surfaces(&self) -> &[Vec<Option<Sample>>] {
+    pub fn surfaces(&self) -> &[Vec<Option<StiffnessSample>>] {
         &self.surfaces
     }
 
@@ -68,7 +68,7 @@ impl Curves {
         &'a self,
         draw: &'a [usize],
         j: usize,
-    ) -> impl Iterator<Item = Option<Sample>> + 'a {
+    ) -> impl Iterator<Item = Option<StiffnessSample>> + 'a {
         draw.iter().map(move |&i| self.surfaces[i][j])
     }
 
@@ -130,19 +130,19 @@ mod tests {
 
     #[test]
     fn bad_curves_are_named() {
-        let s = Some(Sample { stiffness_bar: 1.0, contact_cells: None });
+        let s = Some(StiffnessSample { stiffness_bar: 1.0, contact_cells: None });
         assert!(Curves::new(vec![1.0], vec![]).is_err());
         assert!(Curves::new(vec![1.0, 1.0], vec![vec![s, s]]).is_err());
         assert!(Curves::new(vec![f64::NAN], vec![vec![s]]).is_err());
         assert!(Curves::new(vec![1.0], vec![vec![s, s]]).is_err());
-        let bad = Some(Sample { stiffness_bar: f64::NAN, contact_cells: None });
+        let bad = Some(StiffnessSample { stiffness_bar: f64::NAN, contact_cells: None });
         assert!(Curves::new(vec![1.0], vec![vec![bad]]).is_err());
         assert!(Curves::new(vec![], vec![vec![]]).is_ok());
     }
 
     #[test]
     fn a_missing_sample_makes_the_mean_missing() {
-        let s = |k| Some(Sample { stiffness_bar: k, contact_cells: None });
+        let s = |k| Some(StiffnessSample { stiffness_bar: k, contact_cells: None });
         let c = Curves::new(vec![1.0, 2.0], vec![vec![s(1.0), s(2.0)], vec![s(3.0), None]]).unwrap();
         assert_eq!(c.mean_of(&c.all()), vec![Some(2.0), None]);
         assert_eq!(c.mean_of(&[]), vec![None, None]);

@@ -69,7 +69,7 @@ pub fn ensemble(curves: &Curves) -> Vec<EnsemblePoint> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sample;
+    use crate::StiffnessSample;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn missing_samples_are_counted() {
-        let s = |k, c| Some(Sample { stiffness_bar: k, contact_cells: Some(c) });
+        let s = |k, c| Some(StiffnessSample { stiffness_bar: k, contact_cells: Some(c) });
         let curves = Curves::new(vec![1.0, 2.0], vec![vec![s(1.0, 7), None], vec![s(2.0, 5), None]]).unwrap();
         let e = ensemble(&curves);
         assert_eq!((e[0].missing, e[0].min_contact_cells), (0, Some(5)));

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// Which forces a power law is fitted to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
+pub struct FitWindow {
     /// Smallest F_bar.
     pub min_force_bar: f64,
     /// Largest F_bar.
@@ -16,12 +16,12 @@ pub struct Window {
     pub min_contact_cells: usize,
 }
 
-impl Window {
+impl FitWindow {
     /// The paper's power-law range, `F_bar <= 0.086`, with at least 10 contact cells on every surface.
     pub const PAPER: Self = Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 };
 }
 
-impl fmt::Display for Window {
+impl fmt::Display for FitWindow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.min_force_bar > 0.0 {
             write!(f, "{:?} <= ", self.min_force_bar)?;
@@ -33,7 +33,7 @@ impl fmt::Display for Window {
 
 /// A fitted power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PowerLaw {
+pub struct FittedPowerLaw {
     /// Exponent.
     pub alpha: f64,
     /// Standard error of alpha from the bootstrap over surfaces; `None` for one surface.
@@ -61,7 +61,7 @@ pub enum NoFit {
         /// Forces in the window.
         points: usize,
         /// The window.
-        window: Window,
+        window: FitWindow,
     },
 }
 
@@ -102,7 +102,11 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 ///
 /// # Errors
 /// [`NoFit`] when the window holds fewer than three forces.
-pub fn fit_power_law(curves: &Curves, window: &Window, bootstrap: &Bootstrap) -> Result<PowerLaw, NoFit> {
+pub fn fit_power_law(
+    curves: &Curves,
+    window: &FitWindow,
+    bootstrap: &Bootstrap,
+) -> Result<FittedPowerLaw, NoFit> {
     let inside = points_inside(curves, window);
     let too_few = NoFit::TooFewPoints { points: inside.len(), window: *window };
     if inside.len() < 3 {
@@ -113,7 +117,7 @@ pub fn fit_power_law(curves: &Curves, window: &Window, bootstrap: &Bootstrap) ->
     let error = |pick: fn((f64, f64)) -> f64| {
         bootstrap.standard_error(all.len(), |draw| law(curves, &inside, draw).map(pick))
     };
-    Ok(PowerLaw {
+    Ok(FittedPowerLaw {
         alpha,
         alpha_se: error(|l| l.0),
         zeta: ln_zeta.exp(),
@@ -126,7 +130,7 @@ pub fn fit_power_law(curves: &Curves, window: &Window, bootstrap: &Bootstrap) ->
 }
 
 /// Forces of the window at which every surface counts.
-fn points_inside(curves: &Curves, window: &Window) -> Vec<usize> {
+fn points_inside(curves: &Curves, window: &FitWindow) -> Vec<usize> {
     let all = curves.all();
     (0..curves.force_bar().len())
         .filter(|&j| {
@@ -154,7 +158,7 @@ fn law(curves: &Curves, inside: &[usize], draw: &[usize]) -> Option<(f64, f64)> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sample;
+    use crate::StiffnessSample;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -168,7 +172,7 @@ mod tests {
             .map(|zeta| {
                 (force.iter().enumerate())
                     .map(|(j, f)| {
-                        Some(Sample { stiffness_bar: zeta * f.powf(alpha), contact_cells: cells(j) })
+                        Some(StiffnessSample { stiffness_bar: zeta * f.powf(alpha), contact_cells: cells(j) })
                     })
                     .collect()
             })
@@ -181,7 +185,7 @@ mod tests {
         #[test]
         fn a_power_law_body_gives_its_exponent(n in 0.2..4.0_f64, zeta in 0.1..10.0_f64) {
             // Exactly (data/paper/VALUES.md): dlnk/dlnF = 1/(n + 1) for f = c r^n.
-            let law = fit_power_law(&power(&[zeta], 1.0 / (n + 1.0), |_| None), &Window::PAPER, &Bootstrap::default());
+            let law = fit_power_law(&power(&[zeta], 1.0 / (n + 1.0), |_| None), &FitWindow::PAPER, &Bootstrap::default());
             let law = law.unwrap();
             assert_relative_eq!(law.alpha, 1.0 / (n + 1.0), max_relative = ROUNDING);
             assert_relative_eq!(law.zeta, zeta, max_relative = ROUNDING);
@@ -191,8 +195,11 @@ mod tests {
 
     #[test]
     fn the_window_leaves_the_floor_out() {
-        let law =
-            fit_power_law(&power(&[1.0, 2.0], 0.6, |j| Some(4 * j)), &Window::PAPER, &Bootstrap::default());
+        let law = fit_power_law(
+            &power(&[1.0, 2.0], 0.6, |j| Some(4 * j)),
+            &FitWindow::PAPER,
+            &Bootstrap::default(),
+        );
         let law = law.unwrap();
         assert_relative_eq!(law.force_bar_min, 10f64.powf(-4.5), max_relative = ROUNDING);
         // From j = 3 (12 cells, 10^-4.5) to j = 9 (10^-1.5 <= 0.086).
@@ -203,11 +210,11 @@ mod tests {
 
     #[test]
     fn too_few_points_are_a_reason_and_not_a_nan() {
-        let none = fit_power_law(&power(&[1.0], 0.5, |_| Some(9)), &Window::PAPER, &Bootstrap::default());
+        let none = fit_power_law(&power(&[1.0], 0.5, |_| Some(9)), &FitWindow::PAPER, &Bootstrap::default());
         let reason = none.unwrap_err().to_string();
         assert!(reason.starts_with("0 forces in the window (F_bar <= 0.086, all"), "{reason}");
         let empty = Curves::new(vec![], vec![vec![]]).unwrap();
-        assert!(fit_power_law(&empty, &Window::PAPER, &Bootstrap::default()).is_err());
+        assert!(fit_power_law(&empty, &FitWindow::PAPER, &Bootstrap::default()).is_err());
         assert_eq!(least_squares(&[]), None);
         assert_eq!(least_squares(&[(1.0, 1.0), (1.0, 2.0)]), None);
         assert_eq!(least_squares(&[(1.0, f64::NAN), (2.0, 2.0)]), None);
@@ -219,14 +226,14 @@ mod tests {
         let mut rows = full.surfaces().to_vec();
         rows[1][2] = None;
         let holed = Curves::new(full.force_bar().to_vec(), rows).unwrap();
-        let points = |c| fit_power_law(c, &Window::PAPER, &Bootstrap::default()).unwrap().points;
+        let points = |c| fit_power_law(c, &FitWindow::PAPER, &Bootstrap::default()).unwrap().points;
         assert_eq!(points(&holed) + 1, points(&full));
     }
 
     #[test]
     fn errors_are_reproducible() {
         let curves = power(&[1.0, 1.2, 0.9, 1.4], 0.55, |_| Some(50));
-        let w = Window::PAPER;
+        let w = FitWindow::PAPER;
         let b = Bootstrap::default();
         assert_eq!(fit_power_law(&curves, &w, &b), fit_power_law(&curves, &w, &b));
         assert_ne!(

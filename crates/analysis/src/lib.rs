@@ -5,7 +5,7 @@
 //! `F_bar = F/(E* h L)` (Eq. 10) and `k_bar = k/(1.1419 E* L)` (Eq. 8).
 //!
 //! * [`Curves`]: k_bar of many surfaces at common forces; [`ensemble`]: their means and errors.
-//! * [`fit`]: `k_bar = zeta F_bar^alpha` over a stated [`Window`], errors by [`Bootstrap`] over surfaces.
+//! * [`fit_power_law`]: `k_bar = zeta F_bar^alpha` over a stated [`FitWindow`], errors by [`Bootstrap`] over surfaces.
 //! * [`crossing`], [`least_spread`]: where the laws, or the curves, of several fractal dimensions come together.
 //! * [`collapse`]: the master curve of Fig. 4 and what is left around it.
 //! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
@@ -49,9 +49,9 @@ pub use bootstrap::Bootstrap;
 pub use collapse::{CollapsePoint, Residual, collapse, decades_within};
 pub use conductance::conductance;
 pub use crossing::{Crossing, crossing, least_spread};
-pub use curves::{Curves, Sample, interpolate};
+pub use curves::{Curves, StiffnessSample, interpolate};
 pub use ensemble::{EnsemblePoint, Statistics, ensemble, statistics};
-pub use fit::{NoFit, PowerLaw, Window, fit_power_law, least_squares};
+pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law, least_squares};
 pub use kappa::kappa;
 pub use sum::sum;
 pub use table::{Column, Table, Value};

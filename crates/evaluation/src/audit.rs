@@ -3,10 +3,10 @@
 use crate::header::{FLAGS_3D as FLAGS, header};
 use crate::measured::measure_3d;
 use crate::outcome::Outcome;
+use crate::realisation::{Discretisation, Realisation, RealisationResult};
 use crate::run::Run;
 use crate::session::Session;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
-use crate::unit::{Discretisation, Unit, UnitResult};
 use analysis::{Table, Value};
 use contact_model::{Stop, never};
 use runs::Progress;
@@ -14,7 +14,7 @@ use runs::{Error, Result};
 use runs::{collect, run_jobs, write_csv};
 
 /// One solve and its repetition to a tight tolerance.
-struct Pair {
+struct SolvePair {
     fractal_dimension: f64,
     index: usize,
     force_bar: f64,
@@ -24,7 +24,7 @@ struct Pair {
     claimed: f64,
 }
 
-impl Pair {
+impl SolvePair {
     fn difference(&self) -> f64 {
         (self.stiffness_bar[0] / self.stiffness_bar[1] - 1.0).abs()
     }
@@ -47,7 +47,8 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     }
     let session = Session::open(run)?;
     let measured = measure_3d(run, &session.store, progress)?;
-    let units: Vec<&(Unit, UnitResult)> = measured.series.iter().flat_map(|s| &s.units).collect();
+    let units: Vec<&(Realisation, RealisationResult)> =
+        measured.series.iter().flat_map(|s| &s.units).collect();
     let loads = measured.force_bar().len();
     let wanted = ((share * (units.len() * loads) as f64).ceil() as usize).max(1);
     // The smallest hashes: a sample without replacement that does not depend on any order.
@@ -66,8 +67,8 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
         Ok(pair)
     })?;
     progress.end();
-    let pairs: Vec<Pair> = collect(done)?.into_iter().flatten().collect();
-    let largest = pairs.iter().map(Pair::difference).fold(0.0, f64::max);
+    let pairs: Vec<SolvePair> = collect(done)?.into_iter().flatten().collect();
+    let largest = pairs.iter().map(SolvePair::difference).fold(0.0, f64::max);
     let inside = pairs.iter().filter(|p| p.difference() <= p.claimed + tolerance).count();
     let summary = format!(
         "{} solves again to {tolerance:?}: largest relative difference of k {largest:.1e}, {inside} within their own claim",
@@ -85,21 +86,21 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
 
 /// One load of one unit from nothing. `None` where the stored or the tight solve has no stiffness to compare.
 fn again(
-    (unit, result): &(Unit, UnitResult),
+    (unit, result): &(Realisation, RealisationResult),
     load: usize,
     tolerance: f64,
     stop: Stop<'_>,
-) -> Result<Option<Pair>> {
+) -> Result<Option<SolvePair>> {
     let Discretisation::Bem3d { cells, .. } = unit.discretisation else { return Ok(None) };
     let stored = &result.samples[load];
-    let alone = Unit {
+    let alone = Realisation {
         discretisation: Discretisation::Bem3d { cells, tolerance },
         forces: [stored.force_bar].into(),
         ..unit.clone()
     };
     let tight = alone.solve(stop)?;
     let tight = tight.samples.first().filter(|s| s.converged()).and_then(|s| s.stiffness_bar);
-    Ok(stored.stiffness_bar.zip(tight).filter(|_| stored.converged()).map(|(a, b)| Pair {
+    Ok(stored.stiffness_bar.zip(tight).filter(|_| stored.converged()).map(|(a, b)| SolvePair {
         fractal_dimension: unit.fractal_dimension,
         index: unit.index,
         force_bar: stored.force_bar,
@@ -108,7 +109,7 @@ fn again(
     }))
 }
 
-fn table(pairs: &[Pair]) -> Result<Table> {
+fn table(pairs: &[SolvePair]) -> Result<Table> {
     let columns = vec![
         column("fractal_dimension", "1", FRACTAL_DIMENSION),
         column("surface", "1", "number of the surface in its ensemble"),

@@ -172,7 +172,7 @@ impl BenchRow {
 }
 
 /// One relief at one tolerance.
-struct Series {
+struct BenchSeries {
     surface: String,
     drawn: Option<(f64, u64)>,
     cells: Cells,
@@ -200,7 +200,7 @@ pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) ->
     Ok(collect(done)?.into_iter().flatten().collect())
 }
 
-fn series(bench: &Bench) -> Result<Vec<Series>> {
+fn series(bench: &Bench) -> Result<Vec<BenchSeries>> {
     let mut reliefs = Vec::new();
     match &bench.surfaces {
         Surfaces::File(path) => {
@@ -229,13 +229,13 @@ fn series(bench: &Bench) -> Result<Vec<Series>> {
             scene.outputs.mean_gap = bench.boundary == Boundary::Periodic;
             let (columns, rows) = (cells.columns, Some(cells.rows));
             let model = Bem3d { cells: columns, rows, tolerance, method: bench.method, ..Bem3d::default() };
-            all.push(Series { surface: surface.clone(), drawn, cells, scene, seed, model });
+            all.push(BenchSeries { surface: surface.clone(), drawn, cells, scene, seed, model });
         }
     }
     Ok(all)
 }
 
-impl Series {
+impl BenchSeries {
     fn prepare(&self) -> Result<Box<dyn PreparedContact>> {
         self.model.prepare(&self.scene, self.seed).map_err(Error::model(format!("bem3d on {}", self.surface)))
     }

@@ -1,16 +1,16 @@
 //! Error budgets: k = value +- algebraic +- discretisation +- ensemble, for each mean and for alpha and zeta.
 
+use crate::fitted_laws::laws;
 use crate::header::{FLAGS_1D, FLAGS_3D, describe, header};
-use crate::laws::laws;
 use crate::measured::{Measured, Series, measure, measure_1d, measure_3d};
 use crate::outcome::Outcome;
+use crate::realisation::Discretisation;
 use crate::run::Flag;
 use crate::run::Run;
 use crate::sample::{FLOOR_CELLS, Sample};
 use crate::session::Session;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
-use crate::unit::Discretisation;
-use analysis::{Bootstrap, Table, Value, Window, least_squares};
+use analysis::{Bootstrap, FitWindow, Table, Value, least_squares};
 use runs::Progress;
 use runs::Store;
 use runs::{Error, Result};
@@ -265,7 +265,7 @@ fn weights(series: &Series, inside: &[usize]) -> Vec<(f64, f64)> {
 
 /// 95 % half-widths of alpha and of ln zeta from the half-size grids, over the forces that both grids resolve.
 fn law_difference(series: &Series, half_grids: &Series) -> Option<(f64, f64)> {
-    let window = Window::PAPER;
+    let window = FitWindow::PAPER;
     let (fine, coarse) = (&series.curves, &half_grids.curves);
     let resolved =
         |s: &Series, j: usize| s.points[j].min_contact_cells.is_none_or(|c| c >= window.min_contact_cells);

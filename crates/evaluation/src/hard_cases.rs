@@ -7,7 +7,7 @@ use runs::Progress;
 use runs::files::{create_directory, write_whole};
 use runs::{Error, Result};
 use runs::{Header, write_csv};
-use stability::{Case, Effort, Verdict};
+use stability::{Case, CaseResult, Effort};
 use std::path::{Path, PathBuf};
 
 /// Solves hard cases ([`stability::cases`]) and writes `stability.csv` and `stability.md` into `out`. Gives the verdicts in the order of
@@ -20,7 +20,7 @@ pub fn hard_cases(
     effort: Effort,
     out: &Path,
     progress: &dyn Progress,
-) -> Result<(Vec<Verdict>, Vec<PathBuf>)> {
+) -> Result<(Vec<CaseResult>, Vec<PathBuf>)> {
     create_directory(out)?;
     progress.begin(&format!("{} hard cases", cases.len()), cases.len() as u64);
     let verdicts = stability::run(cases, effort, &|_| progress.advance(1, false));
@@ -33,7 +33,7 @@ pub fn hard_cases(
     Ok((verdicts, vec![csv, text]))
 }
 
-fn table(verdicts: &[Verdict]) -> Result<Table> {
+fn table(verdicts: &[CaseResult]) -> Result<Table> {
     let columns = vec![
         column("case", "-", "name of the case"),
         column("why", "-", "why a solver may fail here"),
@@ -57,7 +57,7 @@ fn table(verdicts: &[Verdict]) -> Result<Table> {
     Ok(table)
 }
 
-fn markdown(verdicts: &[Verdict], effort: Effort) -> String {
+fn markdown(verdicts: &[CaseResult], effort: Effort) -> String {
     let passed = verdicts.iter().filter(|v| v.passed()).count();
     let mut text = format!(
         "# Hard cases\n\n{passed} of {} pass{}. A figure is the largest relative deviation from what is asserted, or the number of things that \
@@ -116,6 +116,6 @@ mod tests {
         let text = markdown(&[verdict.clone()], Effort::Thorough);
         assert!(text.contains("0 of 1 pass, thorough.") && text.contains("| failed |"), "{text}");
         assert!(text.ends_with("- k is | off\n"), "{text}");
-        assert_eq!(table(&[Verdict { figure: None, ..verdict }]).unwrap().rows()[0][3], Value::Empty);
+        assert_eq!(table(&[CaseResult { figure: None, ..verdict }]).unwrap().rows()[0][3], Value::Empty);
     }
 }

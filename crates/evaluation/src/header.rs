@@ -1,8 +1,8 @@
 //! The header of every CSV about ensembles: the paper, the command, the ensembles.
 
 use crate::measured::Measured;
+use crate::realisation::Discretisation;
 use crate::run::{Flag, Run, list};
-use crate::unit::Discretisation;
 use runs::Header;
 
 /// The work that everything here reproduces.

@@ -14,7 +14,7 @@
 //!
 //! # Units of work
 //!
-//! The unit of work is one surface under all its loads ([`Unit`]), solved from the smallest load upwards with one prepared contact and
+//! The unit of work is one surface under all its loads ([`Realisation`]), solved from the smallest load upwards with one prepared contact and
 //! kept in the result store of the run (`runs::Store`) under everything that decides its numbers. Other commands reuse it.
 //!
 //! # What it does not do
@@ -29,40 +29,40 @@ mod bench;
 mod bench_plot;
 mod budget;
 mod claim;
+mod fitted_laws;
 mod forces;
 mod hard_cases;
 mod header;
-mod laws;
 mod manifest;
 mod measured;
 mod outcome;
+mod realisation;
 mod run;
 mod sample;
 mod session;
 mod sweep;
 mod tables;
-mod unit;
 
 pub use accuracy::{
-    AccuracyTarget, Coverage, Depth, Plan, Requirements, accuracy_cost, budget_check, plan, redraw_accuracy,
-    settle,
+    AccuracyPlan, AccuracyTarget, Coverage, Depth, Requirements, accuracy_cost, budget_check, plan,
+    redraw_accuracy, settle,
 };
 pub use audit::audit;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, write_bench};
 pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
 pub use budget::{Budget, Budgeted, state_budgets, write_budget};
 pub use claim::{Claim, Verdict, claims_table, markdown, plain, readme_table, short, sort};
+pub use fitted_laws::{FittedLaw, dense_dimensions, laws, laws_within};
 pub use forces::Forces;
 pub use hard_cases::hard_cases;
 pub use header::{FLAGS_1D, FLAGS_3D, PAPER, describe, header};
-pub use laws::{Law, dense_dimensions, laws, laws_within};
 pub use manifest::write_manifest;
 pub use measured::{Measured, Series, measure_1d, measure_3d, transformed};
 pub use outcome::Outcome;
+pub use realisation::{Discretisation, FORMAT, Models, Realisation, RealisationResult};
 pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, list};
 pub use runs::{Error, Result};
 pub use sample::{FIELDS, FLOOR_CELLS, Sample};
 pub use session::Session;
 pub use sweep::sweep;
 pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column, curves_table, samples_table};
-pub use unit::{Discretisation, FORMAT, Models, Unit, UnitResult};

@@ -1,9 +1,9 @@
 //! An ensemble of one model over all fractal dimensions.
 
+use crate::realisation::{Discretisation, Realisation, RealisationResult};
 use crate::run::Run;
 use crate::sample::FLOOR_CELLS;
 use crate::sweep::sweep;
-use crate::unit::{Discretisation, Unit, UnitResult};
 use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble};
 use runs::Progress;
 use runs::Store;
@@ -16,7 +16,7 @@ pub struct Series {
     /// D_f.
     pub fractal_dimension: f64,
     /// The units, in the order of their index.
-    pub units: Vec<(Unit, UnitResult)>,
+    pub units: Vec<(Realisation, RealisationResult)>,
     /// Converged stiffnesses on common forces.
     pub curves: Curves,
     /// Their means.
@@ -61,11 +61,11 @@ pub fn measure(
     let forces: Arc<[f64]> = forces.into();
     let dimensions = run.dimensions();
     // Surface by surface, so that an interrupted run holds whole ensembles of fewer surfaces.
-    let units: Vec<Unit> = (0..surfaces)
+    let units: Vec<Realisation> = (0..surfaces)
         .flat_map(|index| {
             let seed = surface_gen::surface_seed(run.seed, index as u64);
             let forces = &forces;
-            dimensions.iter().map(move |&fractal_dimension| Unit {
+            dimensions.iter().map(move |&fractal_dimension| Realisation {
                 discretisation,
                 fractal_dimension,
                 index,
@@ -80,7 +80,8 @@ pub fn measure(
     };
     let what = format!("{}: {} {kind} of {size}, {} loads", discretisation.name(), units.len(), forces.len());
     let results = sweep(&what, &units, store, run.threads, progress)?;
-    let mut pairs: Vec<Vec<(Unit, UnitResult)>> = dimensions.iter().map(|_| Vec::new()).collect();
+    let mut pairs: Vec<Vec<(Realisation, RealisationResult)>> =
+        dimensions.iter().map(|_| Vec::new()).collect();
     for (i, pair) in units.into_iter().zip(results).enumerate() {
         pairs[i % dimensions.len()].push(pair);
     }
@@ -93,13 +94,17 @@ pub fn measure(
 }
 
 impl Series {
-    fn new(fractal_dimension: f64, units: Vec<(Unit, UnitResult)>, forces: &[f64]) -> Result<Self> {
+    fn new(
+        fractal_dimension: f64,
+        units: Vec<(Realisation, RealisationResult)>,
+        forces: &[f64],
+    ) -> Result<Self> {
         let rows = units
             .iter()
             .map(|(_, result)| {
                 let sample = |s: &crate::sample::Sample| {
                     let stiffness_bar = s.stiffness_bar.filter(|_| s.converged())?;
-                    Some(analysis::Sample { stiffness_bar, contact_cells: s.contact_cells })
+                    Some(analysis::StiffnessSample { stiffness_bar, contact_cells: s.contact_cells })
                 };
                 result.samples.iter().map(sample).collect()
             })

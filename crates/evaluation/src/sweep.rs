@@ -1,7 +1,7 @@
 //! Units in parallel, results in order.
 
+use crate::realisation::{Models, Realisation, RealisationResult};
 use crate::sample::{FIELDS, Sample};
-use crate::unit::{Models, Unit, UnitResult};
 use contact_model::{Stop, never};
 use runs::{Error, Job, Progress, Result, Store, collect, number, run_stored};
 
@@ -14,24 +14,25 @@ use runs::{Error, Job, Progress, Result, Store, collect, number, run_stored};
 /// The first error in the order of `units`; units that finished before stay stored.
 pub fn sweep(
     what: &str,
-    units: &[Unit],
+    units: &[Realisation],
     store: &Store,
     threads: usize,
     progress: &dyn Progress,
-) -> Result<Vec<UnitResult>> {
+) -> Result<Vec<RealisationResult>> {
     let models = Models::default();
-    let jobs: Vec<UnitJob<'_>> = units.iter().map(|unit| UnitJob { unit, models: &models }).collect();
+    let jobs: Vec<RealisationJob<'_>> =
+        units.iter().map(|unit| RealisationJob { unit, models: &models }).collect();
     collect(run_stored(what, &jobs, store, threads, progress, &never)?)
 }
 
 /// A unit with what all of them share.
-struct UnitJob<'a> {
-    unit: &'a Unit,
+struct RealisationJob<'a> {
+    unit: &'a Realisation,
     models: &'a Models,
 }
 
-impl Job for UnitJob<'_> {
-    type Output = UnitResult;
+impl Job for RealisationJob<'_> {
+    type Output = RealisationResult;
     type Error = Error;
 
     fn key(&self) -> String {
@@ -42,11 +43,11 @@ impl Job for UnitJob<'_> {
         self.unit.cost()
     }
 
-    fn solve(&self, stop: Stop<'_>) -> Result<UnitResult> {
+    fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
         self.unit.solve_among(self.models, stop)
     }
 
-    fn encode(&self, result: &UnitResult) -> Option<String> {
+    fn encode(&self, result: &RealisationResult) -> Option<String> {
         let mut table = csv::Writer::from_writer(Vec::new());
         table.write_record(FIELDS).ok()?;
         for sample in &result.samples {
@@ -57,7 +58,7 @@ impl Job for UnitJob<'_> {
         Some(format!("# measured_rms_height {height}\n# seconds {seconds}\n{table}"))
     }
 
-    fn decode(&self, text: &str) -> Option<UnitResult> {
+    fn decode(&self, text: &str) -> Option<RealisationResult> {
         let (height, rest) = text.strip_prefix("# measured_rms_height ")?.split_once('\n')?;
         let (seconds, table) = rest.strip_prefix("# seconds ")?.split_once('\n')?;
         let finite = |t: &str| t.parse::<f64>().ok().filter(|v| v.is_finite());
@@ -74,24 +75,32 @@ impl Job for UnitJob<'_> {
         if solved.ne(self.unit.forces.iter().map(|f| f.to_bits())) {
             return None;
         }
-        Some(UnitResult { rms_height: finite(height)?, seconds: finite(seconds)?, samples })
+        Some(RealisationResult { rms_height: finite(height)?, seconds: finite(seconds)?, samples })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::realisation::Discretisation;
     use crate::sample::tests::sample;
-    use crate::unit::Discretisation;
 
     #[test]
     fn units_come_back_bit_for_bit() {
         let discretisation = Discretisation::Mdr1d { elements: 64 };
-        let unit =
-            Unit { discretisation, fractal_dimension: 2.4, index: 0, seed: 1, forces: [0.1, 1.0].into() };
-        let job = UnitJob { unit: &unit, models: &Models::default() };
-        let result =
-            UnitResult { rms_height: 1.0 / 3.0, seconds: 0.25, samples: vec![sample(0.1), sample(1.0)] };
+        let unit = Realisation {
+            discretisation,
+            fractal_dimension: 2.4,
+            index: 0,
+            seed: 1,
+            forces: [0.1, 1.0].into(),
+        };
+        let job = RealisationJob { unit: &unit, models: &Models::default() };
+        let result = RealisationResult {
+            rms_height: 1.0 / 3.0,
+            seconds: 0.25,
+            samples: vec![sample(0.1), sample(1.0)],
+        };
         let text = job.encode(&result).unwrap();
         assert_eq!(job.decode(&text), Some(result));
         let without_a_row: String =

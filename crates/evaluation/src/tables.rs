@@ -1,8 +1,8 @@
 //! Tables that several figures share: the curves and their samples.
 
 use crate::measured::Measured;
+use crate::realisation::Discretisation;
 use crate::sample::{FLOOR_CELLS, Sample};
-use crate::unit::Discretisation;
 use analysis::{Column, Table, Value};
 use runs::{Error, Result};
 

@@ -3,13 +3,13 @@
 use crate::claims;
 use crate::fitted;
 use crate::words;
-use analysis::{Table, Value, Window};
+use analysis::{FitWindow, Table, Value};
 use evaluation::Outcome;
 use evaluation::Session;
 use evaluation::describe;
 use evaluation::{FRACTAL_DIMENSION, column};
+use evaluation::{FittedLaw, dense_dimensions, laws};
 use evaluation::{Flag, Run};
-use evaluation::{Law, dense_dimensions, laws};
 use evaluation::{Measured, measure_1d, measure_3d};
 use plots::{Axis, Key, LineStyle, Picture, REFERENCE};
 use runs::Header;
@@ -63,7 +63,7 @@ pub(crate) fn header(name: &str, run: &Run, solid: &Measured, line: &Measured) -
     describe(evaluation::header(run.command(&format!("reproduce-{name}"), &Flag::ALL)), run, &[solid, line])
         .with_note(format!(
             "fit: ln of the arithmetic mean of k_bar over ln F_bar, equal weights, {}",
-            Window::PAPER
+            FitWindow::PAPER
         ))
         .with_note(format!(
             "errors: bootstrap over surfaces, {} resamples; curves of different D_f share phases, their errors are correlated",
@@ -87,8 +87,8 @@ pub(crate) fn columns(value: &'static str, error: &'static str) -> Vec<analysis:
 
 pub(crate) fn push(
     table: &mut Table,
-    law: &Law,
-    pick: impl Fn(&analysis::PowerLaw) -> (f64, Option<f64>),
+    law: &FittedLaw,
+    pick: impl Fn(&analysis::FittedPowerLaw) -> (f64, Option<f64>),
 ) -> Result<()> {
     let (model, d) = (law.model, law.fractal_dimension);
     let row: Vec<Value> = match &law.fit {

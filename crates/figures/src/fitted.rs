@@ -1,7 +1,7 @@
 //! What the pictures of Figs. 3 and 7 have in common: fitted values over the fractal dimension.
 
 use crate::words;
-use analysis::{Bootstrap, Curves, PowerLaw, Sample, Window, fit_power_law};
+use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use plots::{Key, Mark, Picture, Shape, number};
 use runs::{CsvFile, Error, Result};
 use std::path::Path;
@@ -38,16 +38,17 @@ pub(crate) fn formula(file: &CsvFile, model: &str, value: &str) -> Result<Vec<(f
 
 /// The laws of a table of Fig. 2: fitted to its means in the same window by the same code, without errors, because it does not hold
 /// the single surfaces.
-pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, PowerLaw)>> {
+pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw)>> {
     let (d, force) = (file.numbers("fractal_dimension")?, file.numbers("force_bar")?);
     let (mean, cells) = (file.numbers("stiffness_bar")?, file.numbers("min_contact_cells")?);
     let missing = file.numbers("not_converged")?;
-    let rows: Vec<(f64, f64, Option<Sample>)> = (0..d.len())
+    let rows: Vec<(f64, f64, Option<StiffnessSample>)> = (0..d.len())
         .filter_map(|i| {
             let whole = missing[i].is_none_or(|n| n < 0.5);
-            let sample = mean[i]
-                .filter(|_| whole)
-                .map(|stiffness_bar| Sample { stiffness_bar, contact_cells: cells[i].map(|c| c as usize) });
+            let sample = mean[i].filter(|_| whole).map(|stiffness_bar| StiffnessSample {
+                stiffness_bar,
+                contact_cells: cells[i].map(|c| c as usize),
+            });
             Some((d[i]?, force[i]?, sample))
         })
         .collect();
@@ -56,7 +57,7 @@ pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, PowerLaw)>> {
         let forces = group.iter().map(|r| r.1).collect();
         let means = group.iter().map(|r| r.2).collect();
         let curves = Curves::new(forces, vec![means]).map_err(Error::model("the means of a finer run"))?;
-        if let Ok(law) = fit_power_law(&curves, &Window::PAPER, &Bootstrap::default()) {
+        if let Ok(law) = fit_power_law(&curves, &FitWindow::PAPER, &Bootstrap::default()) {
             laws.push((group[0].0, law));
         }
     }
@@ -72,7 +73,7 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
     }
     if let Some(path) = finer {
         let file = CsvFile::read(path)?;
-        let fitted = |(fractal_dimension, law): (f64, PowerLaw)| Fitted {
+        let fitted = |(fractal_dimension, law): (f64, FittedPowerLaw)| Fitted {
             fractal_dimension,
             value: if value == "zeta" { law.zeta } else { law.alpha },
             error: None,

@@ -120,7 +120,7 @@ fn results_of_a_rectangle() {
     assert!(plan.contains("a sphere on a rectangle of sides 9 x 1"), "{plan}");
 
     let rough = "models = [\"mdr1d\"]\nmodulus = 1\nforce_bar = 0.1\n[scene.surface]\nkind = \"self_affine\"\nhurst = 0.7\n\
-                 rms_height = 0.01\nSIZE\n[models.mdr1d]\nelements = 256\n[chance]\nseed = 1\n";
+                 rms_height = 0.01\nSIZE\n[models.mdr1d]\nelements = 256\n[sampling]\nseed = 1\n";
     let force = |size: &str| number(&results(&generated(&rough.replace("SIZE", size))), "force");
     approx::assert_relative_eq!(force("size = [4, 1]"), force("side = 2"), max_relative = ROUNDING);
     assert_eq!(force("size = 2").to_bits(), force("side = 2").to_bits());
@@ -133,7 +133,7 @@ fn columns_and_rows_of_boundary_elements() {
         generated(&format!(
             "models = [\"bem3d\"]\nmodulus = 1\nforce = 1\n[scene.surface]\nkind = \"self_affine\"\nhurst = 0.7\n\
              rms_height = 0.01\nsize = [4, 1]\n[scene.body]\nkind = \"sphere\"\nradius = 3\n[models.bem3d]\n{options}\n\
-             [chance]\nseed = 1\n"
+             [sampling]\nseed = 1\n"
         ))
     };
     for (options, cells) in [("cells = 64", [64, 16]), ("cells = 64\nrows = 64", [64, 64])] {

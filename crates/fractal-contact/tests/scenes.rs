@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
-use fractal_contact::scenes::{Options, Outcome, Plan, SceneFile, run};
+use fractal_contact::scenes::{Options, Plan, SceneFile, SceneOutcome, run};
 use runs::{CsvFile, Silent};
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes")
 }
 
-fn solved(name: &str) -> (Outcome, CsvFile, tempfile::TempDir) {
+fn solved(name: &str) -> (SceneOutcome, CsvFile, tempfile::TempDir) {
     let scene = SceneFile::read(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}"));
     assert!(!plan.shows.is_empty(), "{name} says nothing");

@@ -4,7 +4,7 @@
 #![allow(unsafe_code)] // A counting allocator has to be one; it only counts and passes on.
 
 use contact_model::{ContactModel as _, Load};
-use fractal_contact::scenes::{Options, Outcome, Plan, SceneFile, run};
+use fractal_contact::scenes::{Options, Plan, SceneFile, SceneOutcome, run};
 use runs::Silent;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;
@@ -42,13 +42,13 @@ const LOADS: [f64; 2] = [0.01, 0.1];
 fn text(model: &str, effects: &str, outputs: &str) -> String {
     format!(
         "[scene]\nunits = \"none\"\nmodels = [\"{model}\"]\nmodulus = 1\nforce_bar = [{}, {}]\n[scene.surface]\nkind = \"self_affine\"\n\
-         side = 1\nhurst = 0.8\nrms_height = 0.01\n[models.{model}]\ncells = {CELLS}\nmethod = \"iterative\"\n[chance]\nseed = 3\n[effects]\n{effects}\n[outputs]\n{outputs}\n",
+         side = 1\nhurst = 0.8\nrms_height = 0.01\n[models.{model}]\ncells = {CELLS}\nmethod = \"iterative\"\n[sampling]\nseed = 3\n[effects]\n{effects}\n[outputs]\n{outputs}\n",
         LOADS[0], LOADS[1]
     )
 }
 
 /// What was done: counts of the run, and blocks as large as the grid.
-fn done(text: &str) -> (Outcome, usize) {
+fn done(text: &str) -> (SceneOutcome, usize) {
     let scene = SceneFile::parse(Path::new("work.toml"), text.into()).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::new(&scene).unwrap_or_else(|e| panic!("{e}"));
     let dir = tempfile::tempdir().unwrap();

@@ -49,7 +49,7 @@ impl Case {
     /// Solves the case and judges it.
     ///
     /// An error of a model, and even a panic, is a failed case: the others still run.
-    pub fn run(&self, effort: Effort) -> Verdict {
+    pub fn run(&self, effort: Effort) -> CaseResult {
         let mut ledger = Ledger::default();
         let solved = catch_unwind(AssertUnwindSafe(|| (self.solve)(&mut ledger, effort)));
         match solved {
@@ -60,8 +60,8 @@ impl Case {
         ledger.must(ledger.entries() > 0, || "nothing was compared".to_owned());
         let (figure, broken) = ledger.close();
         let within = figure.is_some_and(|f| f <= self.bound);
-        let status = if within && broken.is_empty() { Status::Passed } else { Status::Failed };
-        Verdict { case: *self, figure, status, broken }
+        let status = if within && broken.is_empty() { CaseStatus::Passed } else { CaseStatus::Failed };
+        CaseResult { case: *self, figure, status, broken }
     }
 }
 
@@ -73,14 +73,14 @@ impl fmt::Debug for Case {
 
 /// How a case ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
+pub enum CaseStatus {
     /// Every assertion holds and the figure is within its bound.
     Passed,
     /// It does not.
     Failed,
 }
 
-impl Status {
+impl CaseStatus {
     /// The word used in tables.
     pub fn as_str(self) -> &'static str {
         match self {
@@ -92,26 +92,26 @@ impl Status {
 
 /// What came of a case.
 #[derive(Debug, Clone)]
-pub struct Verdict {
+pub struct CaseResult {
     /// The case.
     pub case: Case,
     /// The largest deviation found, dimensionless; `None` where it is no finite number.
     pub figure: Option<f64>,
     /// Whether it passed.
-    pub status: Status,
+    pub status: CaseStatus,
     /// Assertions that do not hold, in words, the first few.
     pub broken: Vec<String>,
 }
 
-impl Verdict {
+impl CaseResult {
     /// Whether it passed.
     pub fn passed(&self) -> bool {
-        self.status == Status::Passed
+        self.status == CaseStatus::Passed
     }
 }
 
 /// Solves cases in parallel, each on one thread; `found` hears of each as it ends. The verdicts come in the order of the cases.
-pub fn run(cases: &[Case], effort: Effort, found: &(dyn Fn(&Verdict) + Sync)) -> Vec<Verdict> {
+pub fn run(cases: &[Case], effort: Effort, found: &(dyn Fn(&CaseResult) + Sync)) -> Vec<CaseResult> {
     let one = |case: &Case| {
         let verdict = case.run(effort);
         found(&verdict);
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
     use contact_model::Error;
 
-    fn case(bound: f64, solve: fn(&mut Ledger, Effort) -> Result<()>) -> Verdict {
+    fn case(bound: f64, solve: fn(&mut Ledger, Effort) -> Result<()>) -> CaseResult {
         Case { name: "test", why: "", asserted: "", bound, solve }.run(Effort::Quick)
     }
 
@@ -182,6 +182,6 @@ mod tests {
         };
         let bad = Case { name: "b", solve: |_, _| panic!("of a solver"), ..fine };
         let verdicts = run(&[bad, fine, bad, fine], Effort::Quick, &|_| ());
-        assert_eq!(verdicts.iter().map(Verdict::passed).collect::<Vec<_>>(), [false, true, false, true]);
+        assert_eq!(verdicts.iter().map(CaseResult::passed).collect::<Vec<_>>(), [false, true, false, true]);
     }
 }

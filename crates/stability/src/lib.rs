@@ -4,7 +4,7 @@
 //!
 //! [`cases`] is the registry: what solvers of this field trip over (one cell, ties, full contact, loads over sixteen decades, units at
 //! the ends of f64, misleading warm starts, limits). A [`Case`] says why it is hard and what is asserted; [`Case::run`]
-//! solves it and gives a [`Verdict`]: the largest deviation found ([`Verdict::figure`]), the bound that it must keep, and assertions
+//! solves it and gives a [`CaseResult`]: the largest deviation found ([`CaseResult::figure`]), the bound that it must keep, and assertions
 //! that do not hold. That a solver comes back is never an assertion: each case compares with a closed form, a symmetry, a bound of
 //! mechanics or a reference implementation.
 //!
@@ -43,7 +43,7 @@ mod maps;
 mod plain;
 mod press;
 
-pub use case::{Case, Effort, Status, Verdict, run};
+pub use case::{Case, CaseResult, CaseStatus, Effort, run};
 pub use cases::cases;
 pub use enumerate::{SmallContact, every_contact_set};
 pub use maps::{embedded, map, relief, rough, rough_map, scene};

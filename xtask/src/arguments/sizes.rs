@@ -49,7 +49,7 @@ impl Common {
 
 /// Flags of everything that is solved.
 #[derive(Debug, Args)]
-pub struct Solve {
+pub struct SolveSizes {
     /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     forces: Option<String>,
@@ -71,7 +71,7 @@ pub struct Solve {
     over: Option<PathBuf>,
 }
 
-impl Solve {
+impl SolveSizes {
     pub(super) fn target(&self) -> Option<AccuracyTarget> {
         self.accuracy.map(|accuracy| AccuracyTarget { accuracy, seconds: self.budget })
     }
@@ -165,7 +165,7 @@ impl Maps {
 
 /// Flags of Fig. 5.
 #[derive(Debug, Args)]
-pub struct Lines {
+pub struct LineSizes {
     #[command(flatten)]
     common: Common,
     /// Elements of each line (the paper has 2^20 = 1048576).
@@ -173,7 +173,7 @@ pub struct Lines {
     elements: Option<usize>,
 }
 
-impl Lines {
+impl LineSizes {
     pub(super) fn fill(&self, request: &mut Request) {
         self.common.fill(request);
         request.elements = self.elements;
@@ -188,7 +188,7 @@ pub struct Solid {
     #[command(flatten)]
     size: SolidSize,
     #[command(flatten)]
-    pub(super) solve: Solve,
+    pub(super) solve: SolveSizes,
 }
 
 impl Solid {
@@ -207,7 +207,7 @@ pub struct Reduced {
     #[command(flatten)]
     size: LineSize,
     #[command(flatten)]
-    pub(super) solve: Solve,
+    pub(super) solve: SolveSizes,
 }
 
 impl Reduced {
@@ -228,7 +228,7 @@ pub struct Both {
     #[command(flatten)]
     line: LineSize,
     #[command(flatten)]
-    pub(super) solve: Solve,
+    pub(super) solve: SolveSizes,
 }
 
 impl Both {

@@ -3,10 +3,10 @@
 use crate::budget::{HALF_GRIDS, algebraic, discretisation_error, half_grid};
 use crate::header::header;
 use crate::outcome::Outcome;
+use crate::realisation::{Discretisation, Realisation};
 use crate::run::FRACTAL_DIMENSIONS;
 use crate::sample::Sample;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
-use crate::unit::{Discretisation, Unit};
 use analysis::{Table, Value};
 use contact_model::never;
 use runs::Progress;
@@ -34,7 +34,7 @@ const LIKE: usize = 20;
 
 /// One case with its truth.
 #[derive(Debug, Clone)]
-struct Case {
+struct RandomCase {
     fractal_dimension: f64,
     seed: u64,
     force_bar: f64,
@@ -50,7 +50,7 @@ struct Case {
     reference: f64,
 }
 
-impl Case {
+impl RandomCase {
     fn budget(&self) -> f64 {
         self.algebraic + self.discretisation
     }
@@ -140,13 +140,13 @@ pub fn budget_check(
 }
 
 /// Shares and ratios.
-fn judge(cases: &[Case]) -> Coverage {
-    let share = |inside: &dyn Fn(&Case) -> bool| {
+fn judge(cases: &[RandomCase]) -> Coverage {
+    let share = |inside: &dyn Fn(&RandomCase) -> bool| {
         cases.iter().filter(|c| inside(c)).count() as f64 / cases.len().max(1) as f64
     };
-    let ratio = |c: &Case| {
-        let far = |other: &Case| (other.budget() / c.budget()).ln().abs();
-        let mut like: Vec<&Case> = cases.iter().collect();
+    let ratio = |c: &RandomCase| {
+        let far = |other: &RandomCase| (other.budget() / c.budget()).ln().abs();
+        let mut like: Vec<&RandomCase> = cases.iter().collect();
         like.sort_by(|a, b| far(a).total_cmp(&far(b)));
         let mut errors: Vec<f64> = like.iter().take(LIKE).map(|c| c.error()).collect();
         errors.sort_by(f64::total_cmp);
@@ -174,7 +174,7 @@ fn pick<T: Copy>(u: f64, of: &[T]) -> T {
 }
 
 /// Draws until a case lies above the floor.
-fn case(seed: u64, number: u64) -> Result<Case> {
+fn case(seed: u64, number: u64) -> Result<RandomCase> {
     // The heaviest load never lies on the floor; light ones do in a few draws out of ten.
     for attempt in 0_u64.. {
         let u = |stream| uniform(seed, number, 16 * attempt + stream);
@@ -208,7 +208,7 @@ fn case(seed: u64, number: u64) -> Result<Case> {
                 Error::parameter("cases", number, "a reference that meets its tolerance (another seed)")
             })
         };
-        return Ok(Case {
+        return Ok(RandomCase {
             fractal_dimension: d,
             seed: surface,
             force_bar,
@@ -226,12 +226,13 @@ fn case(seed: u64, number: u64) -> Result<Case> {
 }
 
 fn solve(discretisation: Discretisation, d: f64, seed: u64, force_bar: f64) -> Result<Sample> {
-    let unit = Unit { discretisation, fractal_dimension: d, index: 0, seed, forces: [force_bar].into() };
+    let unit =
+        Realisation { discretisation, fractal_dimension: d, index: 0, seed, forces: [force_bar].into() };
     let result = unit.solve(&never)?;
     result.samples.into_iter().next().ok_or_else(|| Error::parameter("cases", force_bar, "a load"))
 }
 
-fn table(cases: &[Case]) -> Result<Table> {
+fn table(cases: &[RandomCase]) -> Result<Table> {
     const TITLE: &str = "Error budgets of single surfaces against references";
     let mut table = Table::new(
         TITLE,
@@ -276,8 +277,8 @@ fn table(cases: &[Case]) -> Result<Table> {
 mod tests {
     use super::*;
 
-    fn made(error: f64, budget: f64) -> Case {
-        Case {
+    fn made(error: f64, budget: f64) -> RandomCase {
+        RandomCase {
             fractal_dimension: 2.0,
             seed: 1,
             force_bar: 1.0,
@@ -295,7 +296,7 @@ mod tests {
     #[test]
     fn shares_and_ratios_by_hand() {
         // Nineteen of twenty inside; each budget twice the median error.
-        let mut cases: Vec<Case> = (0..20).map(|_| made(0.01, 0.02)).collect();
+        let mut cases: Vec<RandomCase> = (0..20).map(|_| made(0.01, 0.02)).collect();
         cases[7] = made(0.03, 0.02);
         let coverage = judge(&cases);
         approx::assert_relative_eq!(coverage.inside, 0.95);

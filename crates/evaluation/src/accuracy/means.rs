@@ -2,9 +2,9 @@
 
 use super::limit::{Limit, limit, slope};
 use super::problem::{DIMENSIONS, Family, LOADS, SQUARE};
-use super::row::{Answer, Parts, Row, Way, measure};
+use super::row::{Answer, Parts, StudyRow, Way, measure};
 use super::sizes::{Order, Sizes};
-use crate::unit::{Discretisation, Models, Unit};
+use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Surface, never};
@@ -19,7 +19,7 @@ const TOLERANCE: f64 = crate::run::TOLERANCE;
 const PAPER_SURFACES: f64 = 60.0;
 
 /// One ensemble: statistics of k/(E* L) and mean approach at each load, with the cost of all its surfaces.
-struct Ensemble {
+struct EnsembleMeans {
     way: Way,
     stiffness: Vec<Option<Statistics>>,
     approach: Vec<Option<f64>>,
@@ -33,7 +33,7 @@ pub(crate) fn means(
     seed: u64,
     orders: &mut Vec<Order>,
     progress: &dyn Progress,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<StudyRow>> {
     let solids = sizes.ensembles.iter().map(|&cells| Discretisation::Bem3d { cells, tolerance: TOLERANCE });
     let lines = sizes.elements.iter().map(|&elements| Discretisation::Mdr1d { elements });
     let all: Vec<Discretisation> = solids.chain(lines).collect();
@@ -54,12 +54,12 @@ pub(crate) fn means(
     Ok(rows)
 }
 
-fn unit(discretisation: Discretisation, d: f64, index: usize, seed: u64) -> Unit {
+fn unit(discretisation: Discretisation, d: f64, index: usize, seed: u64) -> Realisation {
     let seed = surface_gen::surface_seed(seed, index as u64);
-    Unit { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS) }
+    Realisation { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS) }
 }
 
-fn ensemble(discretisation: Discretisation, d: f64, surfaces: usize, seed: u64) -> Result<Ensemble> {
+fn ensemble(discretisation: Discretisation, d: f64, surfaces: usize, seed: u64) -> Result<EnsembleMeans> {
     let models = Models::default();
     let way = match discretisation {
         Discretisation::Bem3d { cells, tolerance } => {
@@ -86,16 +86,16 @@ fn ensemble(discretisation: Discretisation, d: f64, surfaces: usize, seed: u64) 
     answer.applications /= LOADS.len();
     let stiffness = k.iter().map(|k| statistics(k)).collect();
     let approach = approach.iter().map(|d| statistics(d).map(|s| s.mean)).collect();
-    Ok(Ensemble { way, stiffness, approach, answer, surfaces })
+    Ok(EnsembleMeans { way, stiffness, approach, answer, surfaces })
 }
 
 fn at_load(
     d: f64,
     force_bar: f64,
     j: usize,
-    found: &[Ensemble],
+    found: &[EnsembleMeans],
     orders: &mut Vec<Order>,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<StudyRow>> {
     let solids: Vec<(f64, Statistics)> = found
         .iter()
         .filter(|e| matches!(e.way, Way::Solid { .. }))
@@ -113,7 +113,7 @@ fn at_load(
     let mut rows = Vec::new();
     let mut add = |way: Way, surfaces: usize, answer: Answer, own: Option<f64>| {
         let Some(k) = answer.stiffness else { return };
-        let mut row = Row::new(Family::Mean, (Some(d), Some(force_bar)), way, answer);
+        let mut row = StudyRow::new(Family::Mean, (Some(d), Some(force_bar)), way, answer);
         let distance = reference.distance(k);
         row.surfaces = surfaces;
         row.reference_error = Some(reference.relative());

@@ -18,7 +18,7 @@ mod table;
 mod text;
 
 pub use check::{Coverage, budget_check};
-pub use plan::{AccuracyTarget, Plan, Requirements, plan, settle};
+pub use plan::{AccuracyPlan, AccuracyTarget, Requirements, plan, settle};
 pub use study::Depth;
 
 use crate::header::header;

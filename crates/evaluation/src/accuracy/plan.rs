@@ -4,9 +4,9 @@
 
 use crate::budget::{self, Budgeted};
 use crate::measured::{Measured, Series, measure, measure_1d, measure_3d};
+use crate::realisation::Discretisation;
 use crate::run::{Request, Run};
 use crate::sample::FLOOR_CELLS;
-use crate::unit::Discretisation;
 use analysis::least_squares;
 use runs::Progress;
 use runs::Store;
@@ -54,7 +54,7 @@ pub struct Requirements {
 
 /// Settings that should meet a target.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct AccuracyPlan {
     /// The run with its settings.
     pub run: Run,
     /// Predicted seconds.
@@ -77,7 +77,7 @@ struct Choice {
 
 /// What the pilot says about one row.
 #[derive(Debug, Clone, Copy)]
-struct Row {
+struct PilotRow {
     fractal_dimension: f64,
     force_bar: f64,
     /// Fewest contact cells of a surface on the pilot's grid, from the fitted law where that lies on the floor.
@@ -94,7 +94,7 @@ struct Row {
 /// Pilot of one model: rows, and how contact cells and differences follow the grid.
 struct Pilot {
     discretisation: Discretisation,
-    rows: Vec<Row>,
+    rows: Vec<PilotRow>,
     /// Contact cells grow like size^growth.
     growth: f64,
     /// Differences fall like (contact cells)^-fall.
@@ -111,7 +111,7 @@ pub fn plan(
     requirements: Requirements,
     target: AccuracyTarget,
     progress: &dyn Progress,
-) -> Result<Plan> {
+) -> Result<AccuracyPlan> {
     let given = [
         ("cells", request.cells.map(|n| n.to_string())),
         ("surfaces", request.surfaces.map(|n| n.to_string())),
@@ -158,11 +158,11 @@ pub fn plan(
 /// # Errors
 /// What the solver refuses.
 pub fn settle(
-    mut plan: Plan,
+    mut plan: AccuracyPlan,
     requirements: Requirements,
     target: AccuracyTarget,
     progress: &dyn Progress,
-) -> Result<Plan> {
+) -> Result<AccuracyPlan> {
     let store = Store::open(&plan.run.out, false)?;
     let mut spent = plan.seconds;
     loop {
@@ -211,7 +211,7 @@ fn surfaces_wanted(all: &[Budgeted], target: f64, count: usize) -> f64 {
     if factor > 1.0 { (factor * count as f64).ceil().max(count as f64 + 1.0) } else { count as f64 }
 }
 
-fn choose(run: &Run, pilots: &[Pilot], target: AccuracyTarget) -> Result<Plan> {
+fn choose(run: &Run, pilots: &[Pilot], target: AccuracyTarget) -> Result<AccuracyPlan> {
     let at = |accuracy: f64| {
         let choices: Option<Vec<Choice>> = pilots.iter().map(|p| p.cheapest(accuracy, run.threads)).collect();
         choices.filter(|c| c.iter().map(|c| c.seconds).sum::<f64>() <= target.seconds)
@@ -247,7 +247,7 @@ fn choose(run: &Run, pilots: &[Pilot], target: AccuracyTarget) -> Result<Plan> {
     ))
 }
 
-fn made(run: &Run, pilots: &[Pilot], choices: &[Choice]) -> Plan {
+fn made(run: &Run, pilots: &[Pilot], choices: &[Choice]) -> AccuracyPlan {
     let mut run = run.clone();
     let mut lines = Vec::new();
     for (pilot, choice) in pilots.iter().zip(choices) {
@@ -271,7 +271,7 @@ fn made(run: &Run, pilots: &[Pilot], choices: &[Choice]) -> Plan {
     }
     let seconds = choices.iter().map(|c| c.seconds).sum();
     let accuracy = choices.iter().map(|c| c.accuracy).fold(0.0, f64::max);
-    Plan { run, seconds, accuracy, lines }
+    AccuracyPlan { run, seconds, accuracy, lines }
 }
 
 /// `45 s`, `12 min`, `3.5 h`.
@@ -323,7 +323,7 @@ impl Pilot {
     }
 
     /// Half-width of a row at a size and a number of surfaces; `None` on the floor.
-    fn half_width(&self, row: &Row, size: usize, count: f64, tolerance: f64) -> Option<f64> {
+    fn half_width(&self, row: &PilotRow, size: usize, count: f64, tolerance: f64) -> Option<f64> {
         let cells = row.cells * (size as f64 / self.discretisation.size() as f64).powf(self.growth);
         if cells < FLOOR_CELLS as f64 {
             return None;
@@ -406,13 +406,13 @@ fn student95(count: f64) -> f64 {
 }
 
 /// Root mean square of the differences of a row.
-fn size(r: &Row) -> f64 {
+fn size(r: &PilotRow) -> f64 {
     r.mean.hypot(r.spread)
 }
 
 /// Rows of one fractal dimension: those above the floor as measured, those below from the power laws of the ones above. And how contact
 /// cells grew from the half-size grid to the pilot.
-fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<Row>, Option<f64>) {
+fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<PilotRow>, Option<f64>) {
     let mut above = Vec::new();
     let mut growth = Vec::new();
     for (j, point) in series.points.iter().enumerate() {
@@ -433,7 +433,7 @@ fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<Row>, Option
         }
         let (force_bar, fractal_dimension) = (point.force_bar, series.fractal_dimension);
         let cells = cells as f64;
-        above.push(Row { fractal_dimension, force_bar, cells, scatter, mean, spread, seen_at: cells });
+        above.push(PilotRow { fractal_dimension, force_bar, cells, scatter, mean, spread, seen_at: cells });
     }
     let growth = (!growth.is_empty()).then(|| growth.iter().sum::<f64>() / growth.len() as f64);
     // The power law of the lightest rows reaches below the floor.
@@ -442,13 +442,13 @@ fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<Row>, Option
     let Some((first, (slope, intercept))) = above.first().copied().zip(least_squares(&light)) else {
         return (above, growth);
     };
-    let mut rows: Vec<Row> = series
+    let mut rows: Vec<PilotRow> = series
         .points
         .iter()
         .filter(|p| p.force_bar < first.force_bar)
         .map(|p| {
             let cells = (intercept + slope * p.force_bar.ln()).exp();
-            Row { force_bar: p.force_bar, cells, ..first }
+            PilotRow { force_bar: p.force_bar, cells, ..first }
         })
         .collect();
     rows.extend(above);
@@ -475,7 +475,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn pilot(scatter: f64, spread: f64) -> Pilot {
-        let row = Row {
+        let row = PilotRow {
             fractal_dimension: 2.4,
             force_bar: 1.0,
             cells: 400.0,

@@ -54,7 +54,7 @@ impl Family {
 
 /// One body under one load; E* = L = 1, rough surfaces of rms height 1, so that F = F_bar.
 #[derive(Debug, Clone)]
-pub(crate) struct Problem {
+pub(crate) struct StudyProblem {
     pub family: Family,
     pub fractal_dimension: Option<f64>,
     /// F_bar of a rough surface.
@@ -71,7 +71,7 @@ pub(crate) struct Exact {
     pub area: Option<f64>,
 }
 
-impl Problem {
+impl StudyProblem {
     /// Everything that a preset with this coarsest grid solves surface by surface.
     pub fn all(coarsest: usize) -> Result<Vec<Self>> {
         let mut all = vec![Self::sphere(), Self::square()];
@@ -195,12 +195,12 @@ mod tests {
 
     #[test]
     fn hertz_by_hand() {
-        let problem = Problem::sphere();
+        let problem = StudyProblem::sphere();
         let exact = problem.exact();
         // F = (4/3) a^3 = 0.036; the mean pressure times the area is the force.
         assert_eq!((exact.stiffness, exact.approach), (Some(0.6), Some(0.09)));
         let p = problem.exact_pressure(301).unwrap();
         assert_relative_eq!(p.iter().sum::<f64>() / (301.0 * 301.0), 0.036, max_relative = 1e-4);
-        assert_eq!(Problem::all(65).unwrap().len(), 26);
+        assert_eq!(StudyProblem::all(65).unwrap().len(), 26);
     }
 }

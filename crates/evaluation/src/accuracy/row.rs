@@ -83,7 +83,7 @@ pub(crate) struct Parts {
 
 /// A row of the table.
 #[derive(Debug, Clone)]
-pub(crate) struct Row {
+pub(crate) struct StudyRow {
     pub family: Family,
     pub fractal_dimension: Option<f64>,
     pub force_bar: Option<f64>,
@@ -100,7 +100,7 @@ pub(crate) struct Row {
     pub pareto: bool,
 }
 
-impl Row {
+impl StudyRow {
     pub fn new(family: Family, problem: (Option<f64>, Option<f64>), way: Way, answer: Answer) -> Self {
         Self {
             family,
@@ -161,9 +161,10 @@ pub(crate) fn measure(
 
 /// Marks in each problem the rows that no other beats in both seconds and error of k. Rows without a clock and rows
 /// that missed their tolerance do not compete.
-pub(crate) fn mark_pareto(rows: &mut [Row]) {
-    let key =
-        |r: &Row| (r.family.as_str(), r.fractal_dimension.map(f64::to_bits), r.force_bar.map(f64::to_bits));
+pub(crate) fn mark_pareto(rows: &mut [StudyRow]) {
+    let key = |r: &StudyRow| {
+        (r.family.as_str(), r.fractal_dimension.map(f64::to_bits), r.force_bar.map(f64::to_bits))
+    };
     let candidates: Vec<(usize, f64, f64)> = rows
         .iter()
         .enumerate()
@@ -194,7 +195,7 @@ mod tests {
         let row = |seconds, error, family| {
             let answer =
                 Answer { cpu_seconds: Some(seconds), status: "converged".into(), ..Answer::default() };
-            let mut row = Row::new(family, (None, None), Way::Formula("f"), answer);
+            let mut row = StudyRow::new(family, (None, None), Way::Formula("f"), answer);
             row.errors[0] = Some(error);
             row
         };

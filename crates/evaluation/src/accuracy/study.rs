@@ -3,8 +3,8 @@
 use super::limit::{Limit, limit, slope};
 use super::means;
 use super::pressure;
-use super::problem::{Family, Problem, SQUARE_UNCERTAINTY};
-use super::row::{Answer, Parts, Row, Way, mark_pareto, measure};
+use super::problem::{Family, SQUARE_UNCERTAINTY, StudyProblem};
+use super::row::{Answer, Parts, StudyRow, Way, mark_pareto, measure};
 use super::sizes::{Order, Sizes};
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
@@ -114,7 +114,7 @@ impl Sizes {
 /// Everything that was found.
 #[derive(Debug, Default)]
 pub(crate) struct Study {
-    pub rows: Vec<Row>,
+    pub rows: Vec<StudyRow>,
     pub orders: Vec<Order>,
 }
 
@@ -123,7 +123,7 @@ pub(crate) const QUANTITIES: [&str; 4] = ["stiffness", "approach", "area", "pres
 
 /// Solves everything.
 pub(crate) fn study(sizes: &Sizes, seed: u64, progress: &dyn Progress) -> Result<Study> {
-    let problems = Problem::all(sizes.grids[0])?;
+    let problems = StudyProblem::all(sizes.grids[0])?;
     let solids = sizes.solids();
     let cost = |w: &Way| w.size().map_or(1, |n| (n * n / 1000).max(1) as u64);
     let each: u64 = solids.iter().map(cost).sum();
@@ -136,7 +136,7 @@ pub(crate) fn study(sizes: &Sizes, seed: u64, progress: &dyn Progress) -> Result
             let Way::Solid { cells, tolerance, method } = way else { continue };
             let model = Bem3d { cells, tolerance, method, ..Bem3d::default() };
             if let Some(answer) = measure(&model, &problem.scene, problem.load, surface_seed)? {
-                rows.push(Row::new(problem.family, key(problem), way, answer));
+                rows.push(StudyRow::new(problem.family, key(problem), way, answer));
             }
             progress.advance(cost(&way), false);
         }
@@ -153,12 +153,12 @@ pub(crate) fn study(sizes: &Sizes, seed: u64, progress: &dyn Progress) -> Result
     Ok(study)
 }
 
-fn key(problem: &Problem) -> (Option<f64>, Option<f64>) {
+fn key(problem: &StudyProblem) -> (Option<f64>, Option<f64>) {
     (problem.fractal_dimension, problem.force_bar)
 }
 
 /// Lines and closed forms for the bodies whose answer is known; rough surfaces have theirs as means.
-fn others(problem: &Problem, sizes: &Sizes) -> Result<Vec<Row>> {
+fn others(problem: &StudyProblem, sizes: &Sizes) -> Result<Vec<StudyRow>> {
     let exact = problem.exact();
     if exact.stiffness.is_none() {
         return Ok(Vec::new());
@@ -173,7 +173,7 @@ fn others(problem: &Problem, sizes: &Sizes) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for (way, model) in ways {
         let Some(answer) = measure(&*model, &scene, problem.load, 0)? else { continue };
-        let mut row = Row::new(problem.family, key(problem), way, answer);
+        let mut row = StudyRow::new(problem.family, key(problem), way, answer);
         let relative = |v: Option<f64>, exact: Option<f64>| v.zip(exact).map(|(v, e)| (v / e - 1.0).abs());
         row.errors = [
             relative(row.answer.stiffness, exact.stiffness),
@@ -188,12 +188,12 @@ fn others(problem: &Problem, sizes: &Sizes) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn uncertainty(problem: &Problem) -> f64 {
+fn uncertainty(problem: &StudyProblem) -> f64 {
     if problem.family == Family::Square { SQUARE_UNCERTAINTY } else { 0.0 }
 }
 
 /// References, errors and parts of the rows of one problem.
-fn compare(problem: &Problem, sizes: &Sizes, rows: &mut [Row], orders: &mut Vec<Order>) {
+fn compare(problem: &StudyProblem, sizes: &Sizes, rows: &mut [StudyRow], orders: &mut Vec<Order>) {
     let exact = problem.exact();
     let exact = [exact.stiffness, exact.approach, exact.area];
     let of = |a: &Answer, q: usize| [a.stiffness, a.approach, a.area][q];
@@ -248,8 +248,8 @@ fn compare(problem: &Problem, sizes: &Sizes, rows: &mut [Row], orders: &mut Vec<
 }
 
 /// The answer on a grid at a tolerance.
-fn on(rows: &[Row], n: usize, t: f64) -> Option<&Answer> {
-    let same = |r: &&Row| {
+fn on(rows: &[StudyRow], n: usize, t: f64) -> Option<&Answer> {
+    let same = |r: &&StudyRow| {
         matches!(r.way, Way::Solid { cells, tolerance, method: Method::Auto }
             if cells == n && tolerance.total_cmp(&t).is_eq())
     };
@@ -257,7 +257,7 @@ fn on(rows: &[Row], n: usize, t: f64) -> Option<&Answer> {
 }
 
 /// L2 distance from Hertz or from the finest grid; a grid is not compared with itself.
-fn pressure_error(problem: &Problem, answer: &Answer, finest: &Answer) -> Option<f64> {
+fn pressure_error(problem: &StudyProblem, answer: &Answer, finest: &Answer) -> Option<f64> {
     let p = answer.pressure.as_ref()?;
     if let Some(exact) = problem.exact_pressure(p.len().isqrt()) {
         return pressure::distance(p, &exact);
@@ -266,7 +266,13 @@ fn pressure_error(problem: &Problem, answer: &Answer, finest: &Answer) -> Option
     pressure::distance(p, finest)
 }
 
-fn order(problem: &Problem, q: usize, limit: Option<Limit>, exact: bool, errors: &[(f64, f64)]) -> Order {
+fn order(
+    problem: &StudyProblem,
+    q: usize,
+    limit: Option<Limit>,
+    exact: bool,
+    errors: &[(f64, f64)],
+) -> Order {
     // Against the finest grid the last errors are too small: the grids at least twice as coarse show the slope.
     let last = errors.last().map_or(0.0, |e| e.0);
     let far: Vec<(f64, f64)> = errors.iter().copied().filter(|e| exact || e.0 > 1.9 * last).collect();

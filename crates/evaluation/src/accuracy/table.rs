@@ -1,6 +1,6 @@
 //! The study as tables.
 
-use super::row::Row;
+use super::row::StudyRow;
 use super::sizes::Order;
 use super::study::Study;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
@@ -90,7 +90,7 @@ pub(crate) fn rows(study: &Study) -> Result<Table> {
     Ok(table)
 }
 
-fn values(row: &Row) -> Vec<Value> {
+fn values(row: &StudyRow) -> Vec<Value> {
     let a = &row.answer;
     let [k, d, area, p] = row.errors;
     vec![

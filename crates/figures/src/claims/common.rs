@@ -1,7 +1,7 @@
 //! What several groups of claims need.
 
-use analysis::{Bootstrap, PowerLaw, interpolate};
-use evaluation::Law;
+use analysis::{Bootstrap, FittedPowerLaw, interpolate};
+use evaluation::FittedLaw;
 use evaluation::{Measured, Series};
 
 /// Uncertainty of alpha that independent values have (data/paper/VALUES.md).
@@ -28,7 +28,7 @@ pub(super) fn stiffness_at(series: &Series, force_bar: f64) -> Option<(f64, Opti
 const LEAST_DECADES: f64 = 1.0;
 
 /// A fit that can be judged, or why it cannot.
-pub(super) fn usable(law: &Law) -> Result<&PowerLaw, String> {
+pub(super) fn usable(law: &FittedLaw) -> Result<&FittedPowerLaw, String> {
     let fit = law.fit.as_ref().map_err(ToString::to_string)?;
     let decades = (fit.force_bar_max / fit.force_bar_min).log10();
     if decades < LEAST_DECADES {

@@ -1,7 +1,7 @@
 //! What the curves themselves say: the crossing, saturation, the crossover, the collapse.
 
 use super::common::{label, stiffness_at, usable};
-use analysis::{CollapsePoint, Window, collapse as residual, decades_within, sum};
+use analysis::{CollapsePoint, FitWindow, collapse as residual, decades_within, sum};
 use analytic::{F_BAR_UL, K_BAR_UL};
 use contact_model::PAPER_STIFFNESS_FACTOR;
 use evaluation::Claim;
@@ -127,7 +127,7 @@ pub(super) fn collapse(solid: &Measured) -> Vec<Claim> {
         })
         .collect();
     let all: Vec<Vec<CollapsePoint>> = curves.iter().map(|c| c.1.clone()).collect();
-    let window = Window::PAPER;
+    let window = FitWindow::PAPER;
     let names = [
         "collapse of Fig. 4: scatter of ln F_tilde between D_f",
         "collapse of Fig. 4: rms distance from Eq. 12",

@@ -1,12 +1,12 @@
 //! alpha: Eqs. 6 and 24, 1D against 3D, 1D at small forces.
 
 use super::common::{alpha_allowed, label, usable};
-use analysis::{PowerLaw, Window};
+use analysis::{FitWindow, FittedPowerLaw};
 use evaluation::Claim;
 use evaluation::Measured;
 use evaluation::{laws, laws_within};
 
-fn window(fit: &PowerLaw) -> String {
+fn window(fit: &FittedPowerLaw) -> String {
     format!("fit over {:.1e} .. {:.1e}, {} loads", fit.force_bar_min, fit.force_bar_max, fit.points)
 }
 
@@ -68,8 +68,8 @@ pub(super) fn line_against_solid(solid: &Measured, line: &Measured) -> Vec<Claim
 
 /// The 1D power law "down to 1e-7": the exponent of the lowest decades is that of the others.
 pub(super) fn down_to_small_forces(line: &Measured) -> Vec<Claim> {
-    let low = Window { min_force_bar: 1e-7 * (1.0 - 1e-9), max_force_bar: 1e-4, ..Window::PAPER };
-    let high = Window { min_force_bar: 1e-4, ..Window::PAPER };
+    let low = FitWindow { min_force_bar: 1e-7 * (1.0 - 1e-9), max_force_bar: 1e-4, ..FitWindow::PAPER };
+    let high = FitWindow { min_force_bar: 1e-4, ..FitWindow::PAPER };
     laws_within(line, &low)
         .iter()
         .zip(&laws_within(line, &high))

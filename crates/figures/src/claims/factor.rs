@@ -1,7 +1,7 @@
 //! zeta and the crossing point: Eq. 11, Fig. 7.
 
 use super::common::{alpha_allowed, label, usable};
-use analysis::{Bootstrap, PowerLaw, Window, crossing as cross, fit_power_law};
+use analysis::{Bootstrap, FitWindow, FittedPowerLaw, crossing as cross, fit_power_law};
 use analytic::{F_BAR_UL, K_BAR_UL};
 use evaluation::Claim;
 use evaluation::laws;
@@ -85,7 +85,7 @@ pub(super) fn line_against_solid(solid: &Measured, line: &Measured) -> Vec<Claim
 pub(super) fn crossing(solid: &Measured) -> Vec<Claim> {
     let names = ["crossing of the 3D laws: F_bar", "crossing of the 3D laws: k_bar"];
     let fitted = laws(solid);
-    let used: Vec<(&Series, &PowerLaw)> =
+    let used: Vec<(&Series, &FittedPowerLaw)> =
         solid.series.iter().zip(&fitted).filter_map(|(s, l)| Some((s, usable(l).ok()?))).collect();
     let found: Vec<(f64, f64)> = used.iter().map(|(_, l)| (l.alpha, l.zeta)).collect();
     let Some(here) = cross(&found).filter(|_| found.len() >= 3) else {
@@ -100,9 +100,12 @@ pub(super) fn crossing(solid: &Measured) -> Vec<Claim> {
     };
     // All fractal dimensions are resampled with the same surfaces: they share phases. The forces of each fit stay.
     let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
-    let redrawn = |s: &Series, l: &PowerLaw, draw: &[usize]| {
-        let window =
-            Window { min_force_bar: l.force_bar_min, max_force_bar: l.force_bar_max, min_contact_cells: 0 };
+    let redrawn = |s: &Series, l: &FittedPowerLaw, draw: &[usize]| {
+        let window = FitWindow {
+            min_force_bar: l.force_bar_min,
+            max_force_bar: l.force_bar_max,
+            min_contact_cells: 0,
+        };
         fit_power_law(&s.curves.resampled(draw), &window, &once).ok().map(|l| (l.alpha, l.zeta))
     };
     let surfaces = solid.series.first().map_or(0, |s| s.units.len());

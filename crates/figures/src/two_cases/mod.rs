@@ -6,7 +6,7 @@ mod study;
 
 pub use study::TwoCases;
 
-use analysis::{Curves, Sample, ensemble};
+use analysis::{Curves, StiffnessSample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
 use contact_model::{Boundary, ContactModel, ContactState, Stop, never};
@@ -24,7 +24,7 @@ use runs::{Error, Result};
 use std::path::Path;
 use std::time::Instant;
 pub(crate) use study::NAME;
-use study::{CASES, Case, Curve, Point, SHORTEST};
+use study::{CASES, CaseCurve, CasePoint, SHORTEST, SurfaceCase};
 
 /// Solves the two cases (and the two mixed ones) with boundary elements, Persson's and Greenwood and Williamson's theories, and
 /// writes `two-cases.csv`, `.svg`, `.png` and `.md` into a directory.
@@ -40,7 +40,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     let mut curves = Vec::new();
     for (case, surfaces) in CASES.into_iter().zip(solved) {
         outcome.not_converged +=
-            surfaces.iter().flatten().filter(|s| matches!(s, Solve::NotConverged)).count();
+            surfaces.iter().flatten().filter(|s| matches!(s, CaseSolve::NotConverged)).count();
         let samples = surfaces.iter().map(|s| s.iter().map(|s| s.sample().map(|s| s.0)).collect()).collect();
         let means =
             Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.name()))?;
@@ -76,29 +76,29 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
 
 /// What one solve gave.
 #[derive(Debug, Clone, Copy)]
-enum Solve {
+enum CaseSolve {
     /// A stiffness and the share of the square in contact.
-    Sample(Sample, f64),
+    StiffnessSample(StiffnessSample, f64),
     /// Full contact of a periodic square, which has no stiffness.
     FullContact,
     /// It missed its tolerance.
     NotConverged,
 }
 
-impl Solve {
-    fn sample(self) -> Option<(Sample, f64)> {
+impl CaseSolve {
+    fn sample(self) -> Option<(StiffnessSample, f64)> {
         match self {
-            Self::Sample(sample, area) => Some((sample, area)),
+            Self::StiffnessSample(sample, area) => Some((sample, area)),
             Self::FullContact | Self::NotConverged => None,
         }
     }
 }
 
-type Solves = Vec<Solve>;
+type Solves = Vec<CaseSolve>;
 
 /// All surfaces of all cases, each under increasing loads; in order, whatever the number of threads.
 fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
-    let units: Vec<(Case, u64)> = CASES
+    let units: Vec<(SurfaceCase, u64)> = CASES
         .into_iter()
         .flat_map(|c| (0..study.surfaces).map(move |i| (c, i)))
         .map(|(c, i)| (c, surface_gen::surface_seed(study.seed, i as u64)))
@@ -114,7 +114,7 @@ fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> 
     Ok(collect(done)?.chunks(study.surfaces).map(<[_]>::to_vec).collect())
 }
 
-fn one(study: &TwoCases, case: Case, seed: u64, stop: Stop<'_>) -> Result<Solves> {
+fn one(study: &TwoCases, case: SurfaceCase, seed: u64, stop: Stop<'_>) -> Result<Solves> {
     let mut scene = case.scene(study)?;
     scene.outputs.area = true;
     let model = Bem3d { cells: study.cells, tolerance: study.tolerance, ..Bem3d::default() };
@@ -124,16 +124,18 @@ fn one(study: &TwoCases, case: Case, seed: u64, stop: Stop<'_>) -> Result<Solves
         let normalisation = contact.normalisation();
         contact.sweep(&normalisation.loads(study.forces.values())?, stop, &mut |_, state| {
             solves.push(match state {
-                Err(contact_model::Error::NotConverged { .. }) => Solve::NotConverged,
+                Err(contact_model::Error::NotConverged { .. }) => CaseSolve::NotConverged,
                 Err(error) => return Err(error),
-                Ok(ContactState { stiffness: Some(k), area: Some(area), report, .. }) => Solve::Sample(
-                    Sample {
-                        stiffness_bar: normalisation.stiffness_bar(k),
-                        contact_cells: report.contact_cells,
-                    },
-                    area,
-                ),
-                Ok(_) => Solve::FullContact,
+                Ok(ContactState { stiffness: Some(k), area: Some(area), report, .. }) => {
+                    CaseSolve::StiffnessSample(
+                        StiffnessSample {
+                            stiffness_bar: normalisation.stiffness_bar(k),
+                            contact_cells: report.contact_cells,
+                        },
+                        area,
+                    )
+                }
+                Ok(_) => CaseSolve::FullContact,
             });
             Ok(())
         })
@@ -142,14 +144,14 @@ fn one(study: &TwoCases, case: Case, seed: u64, stop: Stop<'_>) -> Result<Solves
     Ok(solves)
 }
 
-fn mean_curve(case: Case, means: &Curves, surfaces: &[Solves]) -> Curve {
+fn mean_curve(case: SurfaceCase, means: &Curves, surfaces: &[Solves]) -> CaseCurve {
     let points = ensemble(means)
         .into_iter()
         .enumerate()
         .filter_map(|(j, p)| {
             let k = p.stiffness_bar?;
             let area: Vec<f64> = surfaces.iter().filter_map(|s| s[j].sample().map(|s| s.1)).collect();
-            Some(Point {
+            Some(CasePoint {
                 force_bar: p.force_bar,
                 stiffness_bar: k.mean,
                 standard_error: k.standard_error,
@@ -160,11 +162,11 @@ fn mean_curve(case: Case, means: &Curves, surfaces: &[Solves]) -> Curve {
             })
         })
         .collect();
-    Curve { case, model: "bem3d", points }
+    CaseCurve { case, model: "bem3d", points }
 }
 
 /// A theory where it holds.
-fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curve> {
+fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Result<CaseCurve> {
     let mut scene = case.scene(study)?;
     scene.outputs.area = true;
     let mut points = Vec::new();
@@ -174,7 +176,7 @@ fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curv
         let forces = study.forces.values();
         contact.sweep(&normalisation.loads(forces)?, &never, &mut |i, state| {
             match state {
-                Ok(ContactState { stiffness: Some(k), area, .. }) => points.push(Point {
+                Ok(ContactState { stiffness: Some(k), area, .. }) => points.push(CasePoint {
                     force_bar: forces[i],
                     stiffness_bar: normalisation.stiffness_bar(k),
                     standard_error: None,
@@ -190,7 +192,7 @@ fn theory(study: &TwoCases, case: Case, model: &dyn ContactModel) -> Result<Curv
         })
     };
     solve().map_err(Error::model(format!("{} ({})", model.name(), case.name())))?;
-    Ok(Curve { case, model: model.name(), points })
+    Ok(CaseCurve { case, model: model.name(), points })
 }
 
 #[cfg(test)]
@@ -237,7 +239,7 @@ mod tests {
         // k = F from the second load on.
         let points =
             [(1.0, 3.0), (10.0, 10.0), (100.0, 100.0), (1000.0, 1000.0), (10000.0, 1e4)].map(|(f, k)| {
-                Point {
+                CasePoint {
                     force_bar: f,
                     stiffness_bar: k,
                     standard_error: None,
@@ -247,7 +249,7 @@ mod tests {
                     min_contact_cells: None,
                 }
             });
-        let curve = Curve { case: CASES[3], model: "bem3d", points: points.into() };
+        let curve = CaseCurve { case: CASES[3], model: "bem3d", points: points.into() };
         let slopes = slopes(&curve.points);
         assert!(slopes[0].is_none() && slopes[4].is_none() && (slopes[2].unwrap() - 1.0).abs() < 1e-12);
         approx::assert_relative_eq!(proportional(&curve), 1.0, max_relative = 1e-12);

@@ -1,7 +1,7 @@
 //! The table of the two cases, and the pictures drawn from it.
 
 use super::reading::slopes;
-use super::study::{CASES, Curve, NAME};
+use super::study::{CASES, CaseCurve, NAME};
 use crate::words;
 use analysis::{Table, Value};
 use contact_model::{Boundary, PAPER_STIFFNESS_FACTOR};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Stiffness above which the pictures end: towards full contact of a periodic square it has no limit.
 const HIGHEST: f64 = 300.0;
 
-pub(super) fn table(curves: &[Curve]) -> Result<Table> {
+pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
     let mut table = Table::new(
         "Two cases: k over F with free and periodic boundaries, with and without a roll-off of the spectrum",
         vec![

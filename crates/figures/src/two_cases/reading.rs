@@ -1,7 +1,7 @@
 //! What the curves say about the paper's belief.
 
-use super::study::{Curve, Point, TwoCases};
-use analysis::{Bootstrap, Curves, Window, fit_power_law};
+use super::study::{CaseCurve, CasePoint, TwoCases};
+use analysis::{Bootstrap, Curves, FitWindow, fit_power_law};
 use contact_model::Boundary;
 use evaluation::FLOOR_CELLS;
 use evaluation::{Claim, plain};
@@ -13,7 +13,7 @@ const AREAS: [f64; 2] = [0.01, 0.2];
 const PROPORTIONAL: f64 = 0.1;
 
 /// `d ln k / d ln F` at each point from its neighbours.
-pub(super) fn slopes(points: &[Point]) -> Vec<Option<f64>> {
+pub(super) fn slopes(points: &[CasePoint]) -> Vec<Option<f64>> {
     (0..points.len())
         .map(|i| {
             let (a, b) = (points.get(i.checked_sub(1)?)?, points.get(i + 1)?);
@@ -24,11 +24,16 @@ pub(super) fn slopes(points: &[Point]) -> Vec<Option<f64>> {
 
 /// The exponent that Sec. II expects: that of Eq. 6 without a roll-off, 1 for the periodic surface with one. It names none for a free
 /// square with a roll-off.
-pub(super) fn claim(study: &TwoCases, curve: &Curve, means: &Curves) -> Option<Claim> {
+pub(super) fn claim(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Option<Claim> {
     let case = curve.case;
     let (window, expected, tolerance, why) = if !case.rolls_off {
         let expected = analytic::exponent_fit(study.fractal_dimension);
-        (Window::PAPER, expected, 0.05, "Sec. II: a power law wherever there is no cut-off; Eq. 6".to_owned())
+        (
+            FitWindow::PAPER,
+            expected,
+            0.05,
+            "Sec. II: a power law wherever there is no cut-off; Eq. 6".to_owned(),
+        )
     } else if case.boundary == Boundary::Periodic {
         let window = loads_between(curve);
         let [low, high] = AREAS;
@@ -48,7 +53,7 @@ pub(super) fn claim(study: &TwoCases, curve: &Curve, means: &Curves) -> Option<C
 }
 
 /// The loads at which the mean area lies within [`AREAS`].
-pub(super) fn loads_between(curve: &Curve) -> Window {
+pub(super) fn loads_between(curve: &CaseCurve) -> FitWindow {
     let inside = || {
         let [low, high] = AREAS;
         curve
@@ -57,15 +62,15 @@ pub(super) fn loads_between(curve: &Curve) -> Window {
             .filter(move |p| p.area.is_some_and(|a| (low..=high).contains(&a)))
             .map(|p| p.force_bar)
     };
-    Window {
+    FitWindow {
         min_force_bar: inside().fold(f64::INFINITY, f64::min),
         max_force_bar: inside().fold(0.0, f64::max),
-        ..Window::PAPER
+        ..FitWindow::PAPER
     }
 }
 
 /// Decades of F over which the local slope stays within [`PROPORTIONAL`] of 1, the longest run of loads above the floor.
-pub(super) fn proportional(curve: &Curve) -> f64 {
+pub(super) fn proportional(curve: &CaseCurve) -> f64 {
     let near = |i: usize, slope: Option<f64>| {
         let above = curve.points[i].min_contact_cells.is_none_or(|n| n >= FLOOR_CELLS);
         above && slope.is_some_and(|s| (s - 1.0).abs() <= PROPORTIONAL)
@@ -83,7 +88,7 @@ pub(super) fn proportional(curve: &Curve) -> f64 {
 }
 
 /// Largest relative difference of k from that of the boundary elements within [`AREAS`].
-pub(super) fn difference(theory: &Curve, solved: &Curve) -> Option<f64> {
+pub(super) fn difference(theory: &CaseCurve, solved: &CaseCurve) -> Option<f64> {
     let window = loads_between(solved);
     let range = window.min_force_bar..=window.max_force_bar;
     let at = |f: f64| theory.points.iter().find(|p| p.force_bar.total_cmp(&f).is_eq());
@@ -95,7 +100,7 @@ pub(super) fn difference(theory: &Curve, solved: &Curve) -> Option<f64> {
     relative.max_by(f64::total_cmp)
 }
 
-pub(super) fn summary(study: &TwoCases, curves: &[Curve], claims: &[Claim]) -> String {
+pub(super) fn summary(study: &TwoCases, curves: &[CaseCurve], claims: &[Claim]) -> String {
     let mut text = format!(
         "# Two cases\n\nSec. II of the paper tells two problems apart. A surface that is fractal up to the size of the system has physical \
          edges, an approach, and k ~ F^alpha; a surface whose spectrum ends at a longest wave is stood for by a periodic patch, has a mean gap, \

@@ -36,20 +36,20 @@ pub struct TwoCases {
 
 /// A boundary and a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Case {
+pub(super) struct SurfaceCase {
     pub(super) boundary: Boundary,
     pub(super) rolls_off: bool,
 }
 
 /// The paper's two cases, and the other two that tell boundary and spectrum apart.
-pub(super) const CASES: [Case; 4] = [
-    Case { boundary: Boundary::Free, rolls_off: false },
-    Case { boundary: Boundary::Free, rolls_off: true },
-    Case { boundary: Boundary::Periodic, rolls_off: false },
-    Case { boundary: Boundary::Periodic, rolls_off: true },
+pub(super) const CASES: [SurfaceCase; 4] = [
+    SurfaceCase { boundary: Boundary::Free, rolls_off: false },
+    SurfaceCase { boundary: Boundary::Free, rolls_off: true },
+    SurfaceCase { boundary: Boundary::Periodic, rolls_off: false },
+    SurfaceCase { boundary: Boundary::Periodic, rolls_off: true },
 ];
 
-impl Case {
+impl SurfaceCase {
     pub(super) fn name(self) -> &'static str {
         match (self.boundary, self.rolls_off) {
             (Boundary::Periodic, true) => "periodic, roll-off",
@@ -121,13 +121,13 @@ impl TwoCases {
 }
 
 /// One curve: k_bar over F_bar.
-pub(super) struct Curve {
-    pub(super) case: Case,
+pub(super) struct CaseCurve {
+    pub(super) case: SurfaceCase,
     pub(super) model: &'static str,
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<CasePoint>,
 }
 
-pub(super) struct Point {
+pub(super) struct CasePoint {
     pub(super) force_bar: f64,
     pub(super) stiffness_bar: f64,
     pub(super) standard_error: Option<f64>,

@@ -1,7 +1,7 @@
 //! The cost of a run, predicted from small solves of the same kind.
 
 use crate::scenes::cost::Cost;
-use crate::scenes::loads::Request;
+use crate::scenes::loads::Loading;
 use crate::scenes::numerics::{AnyModel, Numerics};
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
@@ -73,7 +73,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
 }
 
 #[derive(Default)]
-struct Solved {
+struct PilotSolve {
     states: usize,
     /// Largest share of the cells in contact.
     filled: f64,
@@ -87,7 +87,7 @@ fn small_solves(
     numerics: &Numerics,
     coarse: usize,
     stop: &dyn Fn() -> bool,
-) -> contact_model::Result<(Solved, usize)> {
+) -> contact_model::Result<(PilotSolve, usize)> {
     let seed = scene.seed(0);
     let mut physics = scene.scene(numerics, seed)?;
     let mut grid = numerics.boundary_elements().map(|elements| elements.grid(scene.surface.size()));
@@ -97,9 +97,9 @@ fn small_solves(
         physics.surface = Surface::Heights(std::sync::Arc::new(thin));
     }
     let size = grid.and_then(Cells::checked_count).unwrap_or(0);
-    let mut solved = Solved::default();
+    let mut solved = PilotSolve::default();
     match (numerics.model(), &scene.request) {
-        (AnyModel::Contact(model), Request::Loads(loads)) => {
+        (AnyModel::Contact(model), Loading::Loads(loads)) => {
             let mut contact = model.prepare(&physics, seed)?;
             let normalisation = contact.normalisation();
             let count = loads.values.len();
@@ -118,7 +118,7 @@ fn small_solves(
                 solved.cost.linear_solves += state.report.work.linear_solves as f64;
             }
         }
-        (AnyModel::History(model), Request::Path(steps)) => {
+        (AnyModel::History(model), Loading::Path(steps)) => {
             let mut contact = model.prepare(&physics, seed)?;
             for step in steps {
                 let Ok(state) = contact.advance_until(*step, stop) else { break };

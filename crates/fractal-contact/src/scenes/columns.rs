@@ -1,7 +1,7 @@
 //! The columns of `results.csv`: those that a scene asks for.
 
 use crate::scenes::entries::System;
-use crate::scenes::loads::{Prescribed, Request};
+use crate::scenes::loads::{Loading, Prescribed};
 use crate::scenes::scene_file::SceneFile;
 use analysis::{Column, Value};
 use contact_model::{Boundary, Conductance, ContactState, Friction, HistoryState, Normalisation, Status};
@@ -25,7 +25,7 @@ pub(crate) struct State {
 type Value1 = fn(&State) -> Value;
 
 /// One column: unit in SI, what it holds, where it comes from.
-struct Kind {
+struct ResultColumn {
     name: &'static str,
     unit: &'static str,
     meaning: &'static str,
@@ -46,8 +46,8 @@ fn tangential(state: &State, pick: impl Fn(&contact_model::TangentialState) -> O
 
 /// The columns of a scene.
 #[allow(clippy::too_many_lines)] // One entry per column, nothing else.
-fn kinds(scene: &SceneFile) -> Vec<Kind> {
-    let kind = |name, unit, meaning, value: Value1| Kind { name, unit, meaning, value };
+fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
+    let kind = |name, unit, meaning, value: Value1| ResultColumn { name, unit, meaning, value };
     let outputs = &scene.requested.outputs;
     let rough = scene.surface.is_rough();
     let mut list = vec![
@@ -56,21 +56,18 @@ fn kinds(scene: &SceneFile) -> Vec<Kind> {
         kind("state", "1", "number of the load or step, from 0", |s| s.index.into()),
     ];
     match &scene.request {
-        Request::Path(_) => list.push(kind("time", "s", "time at the end of the step", |s| s.time.into())),
-        Request::Loads(loads) => {
+        Loading::Path(_) => list.push(kind("time", "s", "time at the end of the step", |s| s.time.into())),
+        Loading::Loads(loads) => {
             let (unit, meaning) = match loads.prescribed {
-                Prescribed::Force => ("N", "force asked for"),
-                Prescribed::ForceBar => (
-                    "1",
-                    "F_bar asked for, F/(E* h L) with this surface's measured rms height h, L = sqrt(Lx Ly)",
-                ),
-                Prescribed::MeanPressure => {
-                    ("Pa", "mean pressure asked for, F/(Lx Ly), undefined points included")
+                Prescribed::Force => ("N", "force"),
+                Prescribed::ForceBar => {
+                    ("1", "F_bar = F/(E* h L) with this surface's measured rms height h, L = sqrt(Lx Ly)")
                 }
-                Prescribed::Approach => ("m", "approach asked for"),
-                Prescribed::MeanGap => ("m", "mean gap asked for"),
+                Prescribed::MeanPressure => ("Pa", "mean pressure, F/(Lx Ly), undefined points included"),
+                Prescribed::Approach => ("m", "approach"),
+                Prescribed::MeanGap => ("m", "mean gap"),
             };
-            list.push(kind("asked", unit, meaning, |s| s.requested.into()));
+            list.push(kind("prescribed", unit, meaning, |s| s.requested.into()));
         }
     }
     list.push(kind("force", "N", "normal force", |s| normal(s, |n| n.force)));

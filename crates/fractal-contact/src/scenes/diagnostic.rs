@@ -24,12 +24,12 @@ pub struct Diagnostic {
     is_note: bool,
     span: Option<Range<usize>>,
     help: Option<String>,
-    place: Option<Box<Place>>,
+    place: Option<Box<SourceSpan>>,
 }
 
 /// Where the text stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Place {
+struct SourceSpan {
     path: PathBuf,
     /// Line and column from 1, the line and how much of it is meant.
     line: Option<(usize, usize, String, usize)>,
@@ -64,7 +64,7 @@ impl Diagnostic {
     #[must_use]
     pub fn placed(mut self, path: &Path, text: &str) -> Self {
         let line = self.span.clone().map(|span| excerpt(text, &span));
-        self.place.get_or_insert(Box::new(Place { path: path.to_owned(), line }));
+        self.place.get_or_insert(Box::new(SourceSpan { path: path.to_owned(), line }));
         self
     }
 

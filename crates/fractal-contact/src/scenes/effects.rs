@@ -88,7 +88,7 @@ pub(crate) fn read_effects(table: Option<Entries<'_>>, system: System) -> Read<E
 }
 
 #[derive(Clone, Copy)]
-enum Kind {
+enum RheologyKind {
     KelvinVoigt,
     Maxwell,
     StandardSolid,
@@ -98,10 +98,10 @@ enum Kind {
 fn read_rheology(entry: &Entry<'_>, system: System) -> Read<Rheology> {
     let table = entry.table()?;
     let words = [
-        ("kelvin_voigt", Kind::KelvinVoigt),
-        ("maxwell", Kind::Maxwell),
-        ("standard_solid", Kind::StandardSolid),
-        ("prony", Kind::Prony),
+        ("kelvin_voigt", RheologyKind::KelvinVoigt),
+        ("maxwell", RheologyKind::Maxwell),
+        ("standard_solid", RheologyKind::StandardSolid),
+        ("prony", RheologyKind::Prony),
     ];
     let kind = table.require("kind", "\"standard_solid\"")?.choice(&words)?;
     let viscosity = || table.require("viscosity", "\"1 MPa s\"")?.positive(Dimension::VISCOSITY, system);
@@ -109,12 +109,12 @@ fn read_rheology(entry: &Entry<'_>, system: System) -> Read<Rheology> {
         Ok(Relaxing { weight: weight.positive_number()?, time: time.positive(Dimension::TIME, system)? })
     };
     let rheology = match kind {
-        Kind::KelvinVoigt => Rheology::KelvinVoigt { viscosity: viscosity()? },
-        Kind::Maxwell => Rheology::Maxwell { viscosity: viscosity()? },
-        Kind::StandardSolid => Rheology::StandardSolid {
+        RheologyKind::KelvinVoigt => Rheology::KelvinVoigt { viscosity: viscosity()? },
+        RheologyKind::Maxwell => Rheology::Maxwell { viscosity: viscosity()? },
+        RheologyKind::StandardSolid => Rheology::StandardSolid {
             arm: arm(&table.require("weight", "1.0")?, &table.require("time", "\"1 s\"")?)?,
         },
-        Kind::Prony => {
+        RheologyKind::Prony => {
             let (weights, times) =
                 (table.require("weights", "[1.0, 0.5]")?, table.require("times", "[\"1 s\", \"10 s\"]")?);
             let (w, t) = (weights.list(), times.list());

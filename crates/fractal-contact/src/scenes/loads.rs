@@ -62,14 +62,14 @@ impl Loads {
 
 /// What is asked of the models.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Request {
+pub enum Loading {
     /// States under loads.
     Loads(Loads),
     /// States along a path.
     Path(Vec<Step>),
 }
 
-impl Request {
+impl Loading {
     /// Number of states.
     pub fn count(&self) -> usize {
         match self {
@@ -86,7 +86,7 @@ pub(crate) fn read_request<'a>(
     scene: &Entries<'a>,
     system: System,
     pulls: bool,
-) -> Read<(Request, Entry<'a>)> {
+) -> Read<(Loading, Entry<'a>)> {
     let loads = scene.one_of(&KEYS)?;
     let path = scene.find("path");
     match (loads, path) {
@@ -96,8 +96,8 @@ pub(crate) fn read_request<'a>(
         (None, None) => Err(scene
             .diagnostic("nothing is pressed: [scene] has no load")
             .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history")),
-        (Some((key, entry)), None) => Ok((Request::Loads(read_loads(key, &entry, system, pulls)?), entry)),
-        (None, Some(entry)) => Ok((Request::Path(read_path(&entry, system)?), entry)),
+        (Some((key, entry)), None) => Ok((Loading::Loads(read_loads(key, &entry, system, pulls)?), entry)),
+        (None, Some(entry)) => Ok((Loading::Path(read_path(&entry, system)?), entry)),
     }
 }
 

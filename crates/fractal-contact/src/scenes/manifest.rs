@@ -2,14 +2,19 @@
 
 use crate::scenes::cost::Cost;
 use crate::scenes::error::Result;
-use crate::scenes::outcome::{Options, Outcome};
+use crate::scenes::outcome::{Options, SceneOutcome};
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Writes it.
-pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: &Outcome) -> Result<PathBuf> {
+pub(crate) fn write(
+    scene: &SceneFile,
+    plan: &Plan,
+    options: &Options,
+    outcome: &SceneOutcome,
+) -> Result<PathBuf> {
     let cite: Vec<Value> = scene
         .models
         .iter()
@@ -41,7 +46,7 @@ pub(crate) fn write(scene: &SceneFile, plan: &Plan, options: &Options, outcome: 
     let whole = json!({
         "project": "fractal-contact",
         "version": env!("CARGO_PKG_VERSION"),
-        "formats": { "scene": crate::scenes::unit::FORMAT, "bem3d": bem3d::FORMAT },
+        "formats": { "scene": crate::scenes::model_on_surface::FORMAT, "bem3d": bem3d::FORMAT },
         "scene": scene.text,
         "seed": scene.sampling.seed,
         "surfaces": scene.sampling.surfaces,

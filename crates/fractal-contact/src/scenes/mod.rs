@@ -4,7 +4,7 @@
 //! # What it computes
 //!
 //! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`,
-//! `[outputs]`, `[models.NAME]` (numerics) and `[chance]`. [`Plan`] says what will be done, what will not and
+//! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be done, what will not and
 //! why, and what it will cost; [`run`] answers the scene with every model that it names and writes
 //! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`GeneratedSurface`]
 //! draws a surface into one. The mechanics are those of the model crates; the program `fractal-contact` is a
@@ -80,6 +80,7 @@ mod human_readable;
 mod info;
 mod loads;
 mod manifest;
+mod model_on_surface;
 mod numerics;
 mod outcome;
 mod outputs;
@@ -88,9 +89,8 @@ mod plan;
 mod run;
 mod scan;
 mod scene_file;
+mod scene_job;
 mod scene_surface;
-mod unit;
-mod unit_job;
 
 pub use cost::Cost;
 pub use diagnostic::Diagnostic;
@@ -99,10 +99,10 @@ pub use entries::System;
 pub use error::{Error, Result};
 pub use generated_surface::GeneratedSurface;
 pub use info::info;
-pub use loads::{Loads, Prescribed, Request};
+pub use loads::{Loading, Loads, Prescribed};
 pub use numerics::{AnyModel, Numerics};
-pub use outcome::{Options, Outcome};
-pub use outputs::{Format, RequestedOutputs};
+pub use outcome::{Options, SceneOutcome};
+pub use outputs::{FieldFormat, RequestedOutputs};
 pub use plan::{ModelPlan, Plan, check};
 pub use run::{SharedStop, run};
 pub use scene_file::{Sampling, SceneFile};

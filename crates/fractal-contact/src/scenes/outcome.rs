@@ -16,7 +16,7 @@ pub struct Options {
 
 /// What a run gave.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outcome {
+pub struct SceneOutcome {
     /// Files, in the order written.
     pub files: Vec<PathBuf>,
     /// States in `results.csv`.

@@ -6,7 +6,7 @@ use surface_io::Dimension;
 
 /// A file format of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum FieldFormat {
     /// Numbers as float64.
     Npy,
     /// A grey-scale picture.
@@ -15,7 +15,7 @@ pub enum Format {
     Vti,
 }
 
-impl Format {
+impl FieldFormat {
     /// The end of the file's name.
     pub fn extension(self) -> &'static str {
         match self {
@@ -32,11 +32,11 @@ pub struct RequestedOutputs {
     /// Of the models.
     pub outputs: Outputs,
     /// Formats of the pressure field.
-    pub pressure: Vec<Format>,
+    pub pressure: Vec<FieldFormat>,
     /// Formats of the displacement field.
-    pub displacement: Vec<Format>,
+    pub displacement: Vec<FieldFormat>,
     /// Formats of the gap field.
-    pub gap: Vec<Format>,
+    pub gap: Vec<FieldFormat>,
     /// Whether curves are drawn.
     pub curves: bool,
 }
@@ -86,7 +86,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
 }
 
 /// `["npy", "png"]`, one of them, or `false`.
-fn read_formats(entry: &Entry<'_>) -> Read<Vec<Format>> {
+fn read_formats(entry: &Entry<'_>) -> Read<Vec<FieldFormat>> {
     if !entry.is_list() && !entry.is_text() {
         return if entry.flag()? {
             Err(entry
@@ -98,7 +98,8 @@ fn read_formats(entry: &Entry<'_>) -> Read<Vec<Format>> {
     }
     let mut formats = Vec::new();
     for item in entry.list() {
-        let format = item.choice(&[("npy", Format::Npy), ("png", Format::Png), ("vti", Format::Vti)])?;
+        let format =
+            item.choice(&[("npy", FieldFormat::Npy), ("png", FieldFormat::Png), ("vti", FieldFormat::Vti)])?;
         if !formats.contains(&format) {
             formats.push(format);
         }

@@ -6,9 +6,9 @@ use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::effects::{EffectLine, effect_lines};
 use crate::scenes::error::Result;
 use crate::scenes::human_readable::{memory, number, time};
+use crate::scenes::model_on_surface::{ModelOnSurface, probe};
 use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::{SceneFile, cells};
-use crate::scenes::unit::{Unit, probe};
 use contact_model::Cells;
 use std::fmt;
 
@@ -63,7 +63,7 @@ pub fn check(scene: &SceneFile) -> Result<()> {
         return Err(scene.at_output("mean_gap", diagnostic).into());
     }
     for model in 0..scene.models.len() {
-        let unit = Unit { model, surface: 0 };
+        let unit = ModelOnSurface { model, surface: 0 };
         if let Err(error) = unit.probe(scene) {
             return Err(scene.at_model(model, refused(scene, &error)).into());
         }

@@ -4,12 +4,12 @@ use crate::scenes::columns;
 use crate::scenes::cost::Cost;
 use crate::scenes::error::Result;
 use crate::scenes::manifest;
-use crate::scenes::outcome::{Options, Outcome};
+use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult};
+use crate::scenes::outcome::{Options, SceneOutcome};
 use crate::scenes::pictures;
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
-use crate::scenes::unit::{Unit, UnitResult};
-use crate::scenes::unit_job::UnitJob;
+use crate::scenes::scene_job::SceneJob;
 use analysis::{Column, Table, Value};
 use runs::{Header, Progress, Store, run_stored, write_csv};
 use std::time::Instant;
@@ -21,7 +21,7 @@ pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 ///
 /// `results.csv` and `manifest.json` always; `patches.csv`, fields and curves where the scene asks for them.
 /// Finished models and surfaces are kept in `OUT/.units` and reused by the next run of the same scene. Where
-/// `stop` says so, the states so far are written and [`Outcome::stopped`] is true.
+/// `stop` says so, the states so far are written and [`SceneOutcome::stopped`] is true.
 ///
 /// # Errors
 /// As [`crate::scenes::check`]; [`Error::Run`] for what only shows at full size; files that cannot be written.
@@ -31,22 +31,22 @@ pub fn run(
     options: &Options,
     progress: &dyn Progress,
     stop: SharedStop<'_>,
-) -> Result<Outcome> {
+) -> Result<SceneOutcome> {
     let start = Instant::now();
     runs::reset_peak_memory();
     runs::files::create_directory(&options.out)?;
     runs::files::clean(&options.out)?;
     let store = Store::open(&options.out, options.fresh)?;
     let columns = columns::columns(scene);
-    let units: Vec<Unit> = (0..scene.models.len())
-        .flat_map(|model| (0..scene.sampling.surfaces).map(move |surface| Unit { model, surface }))
+    let units: Vec<ModelOnSurface> = (0..scene.models.len())
+        .flat_map(|model| (0..scene.sampling.surfaces).map(move |surface| ModelOnSurface { model, surface }))
         .collect();
-    let jobs: Vec<UnitJob<'_>> = (units.iter())
-        .map(|&unit| UnitJob { unit, scene, out: &options.out, columns: columns.len() })
+    let jobs: Vec<SceneJob<'_>> = (units.iter())
+        .map(|&unit| SceneJob { unit, scene, out: &options.out, columns: columns.len() })
         .collect();
     let done = run_stored(&title(scene), &jobs, &store, options.threads, progress, stop)?;
     let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
-    let mut outcome = Outcome { stopped: false, ..Outcome::default() };
+    let mut outcome = SceneOutcome { stopped: false, ..SceneOutcome::default() };
     let mut table = Table::new(title(scene), columns);
     let mut patches = patches_table(scene);
     let note = table.columns().iter().position(|c| c.name == "note");
@@ -153,8 +153,8 @@ fn patches_table(scene: &SceneFile) -> Table {
 /// What each model did, summed over its rows.
 fn actual(
     scene: &SceneFile,
-    units: &[Unit],
-    results: &[Option<UnitResult>],
+    units: &[ModelOnSurface],
+    results: &[Option<ModelResult>],
     table: &Table,
 ) -> Vec<(&'static str, Cost, u64)> {
     let column = |name: &str| table.columns().iter().position(|c| c.name == name);

@@ -4,7 +4,7 @@ use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::effects::read_effects;
 use crate::scenes::entries::{Entries, Entry, Read, System};
 use crate::scenes::error::Result;
-use crate::scenes::loads::{Prescribed, Request, read_request};
+use crate::scenes::loads::{Loading, Prescribed, read_request};
 use crate::scenes::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::scenes::outputs::{RequestedOutputs, read_outputs};
 use crate::scenes::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
@@ -39,7 +39,7 @@ pub struct SceneFile {
     /// Effects, off unless named.
     pub effects: Effects,
     /// What is asked of the models.
-    pub request: Request,
+    pub request: Loading,
     /// What is computed and stored.
     pub requested: RequestedOutputs,
     /// Seed and number of surfaces.
@@ -51,7 +51,7 @@ pub struct SceneFile {
     places: Places,
 }
 
-/// `[chance]`.
+/// `[sampling]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sampling {
     /// The master seed.
@@ -83,7 +83,7 @@ impl SceneFile {
     /// scene.requested.outputs.pressure = true;
     /// assert!(Plan::new(&scene).is_err());
     /// ```
-    pub fn new(models: Vec<Numerics>, surface: SceneSurface, modulus: f64, request: Request) -> Self {
+    pub fn new(models: Vec<Numerics>, surface: SceneSurface, modulus: f64, request: Loading) -> Self {
         Self {
             path: PathBuf::new(),
             text: String::new(),
@@ -193,7 +193,7 @@ impl SceneFile {
 
     /// Whether it needs models that remember.
     pub fn is_history(&self) -> bool {
-        matches!(self.request, Request::Path(_))
+        matches!(self.request, Loading::Path(_))
     }
 
     /// The comment at the head of the file: what it shows.
@@ -229,10 +229,10 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let output_places = places(outputs_table.as_ref());
     let requested = read_outputs(outputs_table, system)?;
     let (modulus, pair) = read_material(&scene, system)?;
-    let SurfaceEntry { surface, metadata, notes } = read_surface(&scene, system, directory)?;
+    let SurfaceEntry { surface, metadata, mut notes } = read_surface(&scene, system, directory)?;
     check_cells(options.as_ref(), &models, &surface)?;
     let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
-    let sampling = read_sampling(root, &scene, &surface)?;
+    let sampling = read_sampling(root, &scene, &surface, &mut notes)?;
     scene.finish()?;
     let places =
         Places { models: models.iter().map(|(_, entry)| entry.span()).collect(), outputs: output_places };
@@ -311,15 +311,25 @@ fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
     Ok(Body::Elastic { young, poisson })
 }
 
-fn read_sampling(root: &Entries<'_>, scene: &Entries<'_>, surface: &SceneSurface) -> Read<Sampling> {
-    let Some(table) = root.table("chance")? else {
+fn read_sampling(
+    root: &Entries<'_>,
+    scene: &Entries<'_>,
+    surface: &SceneSurface,
+    notes: &mut Vec<Diagnostic>,
+) -> Read<Sampling> {
+    let Some((name, entry)) = root.one_of(&["sampling", "chance"])? else {
         if surface.is_random() {
             return Err(scene
                 .diagnostic("the surface is random and no seed is given")
-                .with_help("add [chance] with `seed = 1`: the same seed is the same surface"));
+                .with_help("add [sampling] with `seed = 1`: the same seed is the same surface"));
         }
         return Ok(Sampling { seed: 0, surfaces: 1 });
     };
+    let table = entry.table()?;
+    if name == "chance" {
+        let note = Diagnostic::note("`[chance]` is now `[sampling]`").at(entry.key_span());
+        notes.push(note.with_help("rename the table; its keys are the same"));
+    }
     let seed = table.require("seed", "1")?.count(0)?;
     let surfaces = table.find("surfaces");
     if let (Some(entry), false) = (&surfaces, surface.is_random()) {
@@ -377,12 +387,12 @@ fn check_cells(
 
 /// Loads that contradict the boundary or the surface.
 fn check_request(
-    request: &Request,
+    request: &Loading,
     entry: &Entry<'_>,
     surface: &SceneSurface,
     effects: &Effects,
 ) -> Read<()> {
-    let Request::Loads(loads) = request else { return Ok(()) };
+    let Loading::Loads(loads) = request else { return Ok(()) };
     let periodic = effects.boundary == Boundary::Periodic;
     match loads.prescribed {
         Prescribed::Approach if periodic => Err(entry
@@ -407,12 +417,12 @@ fn check_request(
 /// Effects that remember need a path and models that follow one.
 fn check_histories(
     models: &[(Numerics, Entry<'_>)],
-    request: &Request,
+    request: &Loading,
     entry: &Entry<'_>,
     effects: &Effects,
 ) -> Read<()> {
     let remembers = effects.friction != Friction::Off || effects.rheology != Rheology::Elastic;
-    let path = matches!(request, Request::Path(_));
+    let path = matches!(request, Loading::Path(_));
     for (numerics, model) in models {
         if numerics.is_history() && !path {
             return Err(entry

@@ -154,7 +154,7 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
         };
         return Ok(SceneSurface::Plain(read_body(&body, None, system)?).into());
     };
-    if surface.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == Rough::File {
+    if surface.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == RoughKind::File {
         let scan::FileMap { map, metadata, notes } = scan::read_map(&surface, system, directory)?;
         let map = match body {
             None => map,
@@ -176,12 +176,12 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Rough {
+enum RoughKind {
     SelfAffine,
     File,
 }
 
-const ROUGH: [(&str, Rough); 2] = [("self_affine", Rough::SelfAffine), ("file", Rough::File)];
+const ROUGH: [(&str, RoughKind); 2] = [("self_affine", RoughKind::SelfAffine), ("file", RoughKind::File)];
 
 fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
     let length =
@@ -243,7 +243,7 @@ fn within(entry: &crate::scenes::entries::Entry<'_>, value: f64, low: f64, high:
 }
 
 #[derive(Clone, Copy)]
-enum Kind {
+enum BodyKind {
     Sphere,
     Cone,
     PowerLaw,
@@ -252,14 +252,14 @@ enum Kind {
     Sine,
 }
 
-const BODIES: [(&str, Kind); 7] = [
-    ("sphere", Kind::Sphere),
-    ("cone", Kind::Cone),
-    ("power_law", Kind::PowerLaw),
-    ("flat_circle", Kind::FlatCircle),
-    ("flat", Kind::Flat),
-    ("flat_square", Kind::Flat),
-    ("sine", Kind::Sine),
+const BODIES: [(&str, BodyKind); 7] = [
+    ("sphere", BodyKind::Sphere),
+    ("cone", BodyKind::Cone),
+    ("power_law", BodyKind::PowerLaw),
+    ("flat_circle", BodyKind::FlatCircle),
+    ("flat", BodyKind::Flat),
+    ("flat_square", BodyKind::Flat),
+    ("sine", BodyKind::Sine),
 ];
 
 /// A body; on a rough surface it has that surface's size.
@@ -276,17 +276,17 @@ fn read_body(table: &Entries<'_>, given: Option<Size>, system: System) -> Read<S
         (None, _) => read_size(table, system)?,
     };
     let surface = match kind {
-        Kind::Sphere => Surface::Sphere { radius: length("radius")?, size },
-        Kind::Cone => Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size },
-        Kind::PowerLaw => {
+        BodyKind::Sphere => Surface::Sphere { radius: length("radius")?, size },
+        BodyKind::Cone => Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size },
+        BodyKind::PowerLaw => {
             // Two lengths instead of a coefficient whose unit depends on the exponent.
             let exponent = table.require("exponent", "4")?.positive_number()?;
             let (depth, radius) = (length("depth")?, length("radius")?);
             Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size }
         }
-        Kind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, size },
-        Kind::Flat => Surface::Flat { size },
-        Kind::Sine => {
+        BodyKind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, size },
+        BodyKind::Flat => Surface::Flat { size },
+        BodyKind::Sine => {
             Surface::Sine { amplitude: length("amplitude")?, wavelength: length("wavelength")?, size }
         }
     };

@@ -64,7 +64,7 @@ pub struct Models {
 
 impl Models {
     /// The model of a unit.
-    fn of(&self, unit: &Unit, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
+    fn of(&self, unit: &Realisation, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
         let Discretisation::Mdr1d { elements } = unit.discretisation else {
             return Ok(Arc::from(unit.discretisation.model()));
         };
@@ -85,7 +85,7 @@ impl Models {
 
 /// One surface and its loads.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Unit {
+pub struct Realisation {
     /// How it is solved.
     pub discretisation: Discretisation,
     /// D_f.
@@ -100,7 +100,7 @@ pub struct Unit {
 
 /// What a unit gave.
 #[derive(Debug, Clone, PartialEq)]
-pub struct UnitResult {
+pub struct RealisationResult {
     /// Measured rms height of this surface, in which F_bar is counted.
     pub rms_height: f64,
     /// Wall-clock seconds of preparing and solving (goes into the manifest and the run-time claim, never into a figure).
@@ -109,7 +109,7 @@ pub struct UnitResult {
     pub samples: Vec<Sample>,
 }
 
-impl Unit {
+impl Realisation {
     /// Everything that decides the numbers, as text: physics, discretisation, seed, loads, formats. Two units with the same text have
     /// the same result.
     ///
@@ -157,15 +157,15 @@ impl Unit {
     ///
     /// # Errors
     /// [`Error::Model`] for anything that a model refuses.
-    pub fn solve(&self, stop: Stop<'_>) -> Result<UnitResult> {
+    pub fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
         self.solve_among(&Models::default(), stop)
     }
 
     /// The same with what other units have planned.
     ///
     /// # Errors
-    /// As [`Unit::solve`].
-    pub fn solve_among(&self, models: &Models, stop: Stop<'_>) -> Result<UnitResult> {
+    /// As [`Realisation::solve`].
+    pub fn solve_among(&self, models: &Models, stop: Stop<'_>) -> Result<RealisationResult> {
         let what = || format!("{} at D_f = {:?}", self.discretisation.name(), self.fractal_dimension);
         let surface = self.surface().map_err(|e| Error::model(what())(e))?;
         let model = models.of(self, &surface).map_err(|e| Error::model(what())(e))?;
@@ -176,7 +176,7 @@ impl Unit {
         SelfAffine::new(self.fractal_dimension, 1.0, 1.0)
     }
 
-    fn solve_with(&self, model: &dyn ContactModel, stop: Stop<'_>) -> Result<UnitResult> {
+    fn solve_with(&self, model: &dyn ContactModel, stop: Stop<'_>) -> Result<RealisationResult> {
         let start = Instant::now();
         let what =
             || format!("{} at D_f = {:?}, surface {}", model.name(), self.fractal_dimension, self.index);
@@ -198,7 +198,7 @@ impl Unit {
             Ok((normalisation.rms_height()?, samples))
         };
         let (rms_height, samples) = solve().map_err(|e| Error::model(what())(e))?;
-        Ok(UnitResult { rms_height, seconds: start.elapsed().as_secs_f64(), samples })
+        Ok(RealisationResult { rms_height, seconds: start.elapsed().as_secs_f64(), samples })
     }
 }
 
@@ -246,7 +246,7 @@ mod tests {
 
     #[test]
     fn a_solve_that_gives_up_is_recorded_with_its_status() {
-        let unit = Unit {
+        let unit = Realisation {
             discretisation: Discretisation::Mdr1d { elements: 8 },
             fractal_dimension: 2.0,
             index: 0,
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn every_parameter_is_in_the_key() {
-        let unit = Unit {
+        let unit = Realisation {
             discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-4 },
             fractal_dimension: 2.0,
             index: 0,
@@ -270,12 +270,18 @@ mod tests {
             forces: [0.1, 1.0].into(),
         };
         let others = [
-            Unit { discretisation: Discretisation::Bem3d { cells: 9, tolerance: 1e-4 }, ..unit.clone() },
-            Unit { discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-5 }, ..unit.clone() },
-            Unit { discretisation: Discretisation::Mdr1d { elements: 8 }, ..unit.clone() },
-            Unit { fractal_dimension: 2.2, ..unit.clone() },
-            Unit { seed: 2, ..unit.clone() },
-            Unit { forces: [0.1].into(), ..unit.clone() },
+            Realisation {
+                discretisation: Discretisation::Bem3d { cells: 9, tolerance: 1e-4 },
+                ..unit.clone()
+            },
+            Realisation {
+                discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-5 },
+                ..unit.clone()
+            },
+            Realisation { discretisation: Discretisation::Mdr1d { elements: 8 }, ..unit.clone() },
+            Realisation { fractal_dimension: 2.2, ..unit.clone() },
+            Realisation { seed: 2, ..unit.clone() },
+            Realisation { forces: [0.1].into(), ..unit.clone() },
         ];
         for other in &others {
             assert_ne!(unit.key(), other.key());

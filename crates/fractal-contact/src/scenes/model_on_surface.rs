@@ -2,9 +2,9 @@
 
 use crate::scenes::columns::{self, State};
 use crate::scenes::error::{Error, Result};
-use crate::scenes::loads::Request;
+use crate::scenes::loads::Loading;
 use crate::scenes::numerics::{AnyModel, Numerics};
-use crate::scenes::outputs::Format;
+use crate::scenes::outputs::FieldFormat;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
 use crate::scenes::scene_surface::SceneSurface;
@@ -16,11 +16,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Number of the format of stored units; it changes with anything that changes a row.
-pub(crate) const FORMAT: u32 = 2;
+pub(crate) const FORMAT: u32 = 3;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Unit {
+pub(crate) struct ModelOnSurface {
     /// Which of the scene's models.
     pub model: usize,
     /// Number of the surface.
@@ -29,7 +29,7 @@ pub(crate) struct Unit {
 
 /// What it gave.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct UnitResult {
+pub(crate) struct ModelResult {
     pub seconds: f64,
     /// One row per state.
     pub rows: Vec<Vec<Value>>,
@@ -45,7 +45,7 @@ pub(crate) struct UnitResult {
     pub whole: bool,
 }
 
-impl Unit {
+impl ModelOnSurface {
     pub fn numerics<'a>(&self, scene: &'a SceneFile) -> &'a Numerics {
         &scene.models[self.model]
     }
@@ -92,29 +92,29 @@ impl Unit {
     /// # Errors
     /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is no
     /// error: the result is then not whole.
-    pub fn solve(&self, scene: &SceneFile, out: &Path, stop: Stop<'_>) -> Result<UnitResult> {
+    pub fn solve(&self, scene: &SceneFile, out: &Path, stop: Stop<'_>) -> Result<ModelResult> {
         let start = Instant::now();
         let numerics = self.numerics(scene);
         let what = || format!("{}, surface {}", numerics.name(), self.surface);
         let seed = scene.seed(self.surface);
         let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
-        let mut result = UnitResult { whole: true, ..UnitResult::default() };
+        let mut result = ModelResult { whole: true, ..ModelResult::default() };
         match (numerics.model(), &scene.request) {
-            (AnyModel::Contact(model), Request::Loads(_)) => {
+            (AnyModel::Contact(model), Loading::Loads(_)) => {
                 let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
                 self.loads(scene, contact.as_mut(), out, stop, &mut result)?;
             }
-            (AnyModel::History(model), Request::Path(steps)) => {
+            (AnyModel::History(model), Loading::Path(steps)) => {
                 let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
                 self.path(scene, contact.as_mut(), steps, stop, &mut result);
             }
             // Reading a scene refuses these; one built in code may have them.
-            (AnyModel::Contact(model), Request::Path(_)) => {
+            (AnyModel::Contact(model), Loading::Path(_)) => {
                 let refused =
                     contact_model::Error::unsupported(model.name(), "a path: it answers loads one by one");
                 return Err(runs::Error::model(what())(refused).into());
             }
-            (AnyModel::History(model), Request::Loads(_)) => {
+            (AnyModel::History(model), Loading::Loads(_)) => {
                 let refused =
                     contact_model::Error::unsupported(model.name(), "loads one by one: it follows a path");
                 return Err(runs::Error::model(what())(refused).into());
@@ -130,9 +130,9 @@ impl Unit {
         contact: &mut dyn contact_model::PreparedContact,
         out: &Path,
         stop: Stop<'_>,
-        result: &mut UnitResult,
+        result: &mut ModelResult,
     ) -> Result<()> {
-        let Request::Loads(requests) = &scene.request else { return Ok(()) };
+        let Loading::Loads(requests) = &scene.request else { return Ok(()) };
         let normalisation = contact.normalisation();
         let mut written = Ok(());
         let mut row = |index: usize, found: contact_model::Result<ContactState>| {
@@ -181,7 +181,7 @@ impl Unit {
         contact: &mut dyn contact_model::History,
         steps: &[Step],
         stop: Stop<'_>,
-        result: &mut UnitResult,
+        result: &mut ModelResult,
     ) {
         for (index, step) in steps.iter().enumerate() {
             let mut state = State {
@@ -224,7 +224,7 @@ impl Unit {
         found: &mut ContactState,
         index: usize,
         out: &Path,
-        result: &mut UnitResult,
+        result: &mut ModelResult,
     ) -> Result<()> {
         if let Some(patches) = found.patches.as_ref() {
             result.patches.push((index, patches.areas().to_vec()));
@@ -244,9 +244,9 @@ impl Unit {
                 let file = format!("{name}-{model}-{}-{index:03}.{}", self.surface, format.extension());
                 let path = out.join(&file);
                 match format {
-                    Format::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
-                    Format::Png => plots::write_grey(&path, field.cells(), field.size(), values)?,
-                    Format::Vti => write_vti(&path, name, scene, field.cells(), values)?,
+                    FieldFormat::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
+                    FieldFormat::Png => plots::write_grey(&path, field.cells(), field.size(), values)?,
+                    FieldFormat::Vti => write_vti(&path, name, scene, field.cells(), values)?,
                 }
                 result.bytes += std::fs::metadata(&path).map_err(runs::Error::file("read", &path))?.len();
                 result.files.push(file.into());
@@ -313,9 +313,9 @@ mod tests {
         let heights = vec![1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0];
         let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
         let surface = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
-        let loads = Request::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
+        let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
         let mut scene = SceneFile::new(vec![Numerics::ALL[0]], surface, 1.0, loads);
-        let all = vec![Format::Npy, Format::Png, Format::Vti];
+        let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Vti];
         (scene.requested.pressure, scene.requested.gap) = (all.clone(), all);
         let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];
         let gap = vec![0.5, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
@@ -324,8 +324,8 @@ mod tests {
         (fields.pressure, fields.gap) = (field(&pressure), field(&gap));
         let mut state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
-        let mut result = UnitResult::default();
-        let unit = Unit { model: 0, surface: 0 };
+        let mut result = ModelResult::default();
+        let unit = ModelOnSurface { model: 0, surface: 0 };
         unit.keep(&scene, &mut state, 0, dir.path(), &mut result).unwrap();
         assert_eq!((result.files.len(), state.fields), (6, None));
         let scan = |name: &str| {

@@ -1,16 +1,16 @@
 //! A model and a surface as a job, and its result as text.
 
 use crate::scenes::error::{Error, Result};
+use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult};
 use crate::scenes::scene_file::SceneFile;
-use crate::scenes::unit::{Unit, UnitResult};
 use analysis::Value;
 use contact_model::Stop;
 use runs::Job;
 use std::path::Path;
 
 /// A unit with what all units of a run share.
-pub(crate) struct UnitJob<'a> {
-    pub unit: Unit,
+pub(crate) struct SceneJob<'a> {
+    pub unit: ModelOnSurface,
     pub scene: &'a SceneFile,
     /// Directory of the results.
     pub out: &'a Path,
@@ -18,8 +18,8 @@ pub(crate) struct UnitJob<'a> {
     pub columns: usize,
 }
 
-impl Job for UnitJob<'_> {
-    type Output = UnitResult;
+impl Job for SceneJob<'_> {
+    type Output = ModelResult;
     type Error = Error;
 
     fn key(&self) -> String {
@@ -30,22 +30,22 @@ impl Job for UnitJob<'_> {
         self.unit.cost(self.scene)
     }
 
-    fn solve(&self, stop: Stop<'_>) -> Result<UnitResult> {
+    fn solve(&self, stop: Stop<'_>) -> Result<ModelResult> {
         self.unit.solve(self.scene, self.out, stop)
     }
 
-    fn encode(&self, result: &UnitResult) -> Option<String> {
+    fn encode(&self, result: &ModelResult) -> Option<String> {
         (result.whole && self.unit.numerics(self.scene).is_stored()).then(|| format(result))
     }
 
     /// A result without its files is as good as absent.
-    fn decode(&self, text: &str) -> Option<UnitResult> {
+    fn decode(&self, text: &str) -> Option<ModelResult> {
         let result = parse(text, self.columns)?;
         result.files.iter().all(|f| self.out.join(f).is_file()).then_some(result)
     }
 }
 
-fn format(result: &UnitResult) -> String {
+fn format(result: &ModelResult) -> String {
     let mut text =
         format!("seconds {:?}\nbytes {}\nfailed {}\n", result.seconds, result.bytes, result.failed);
     for row in &result.rows {
@@ -84,8 +84,8 @@ fn parse_cell(text: &str) -> Option<Value> {
     })
 }
 
-fn parse(text: &str, columns: usize) -> Option<UnitResult> {
-    let mut result = UnitResult { whole: true, ..UnitResult::default() };
+fn parse(text: &str, columns: usize) -> Option<ModelResult> {
+    let mut result = ModelResult { whole: true, ..ModelResult::default() };
     for line in text.lines() {
         let (word, rest) = line.split_once(' ')?;
         match word {
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn results_come_back_bit_for_bit() {
         let row = vec![Value::Text("a b".into()), Value::Number(1.0 / 3.0), Value::Count(7), Value::Empty];
-        let result = UnitResult {
+        let result = ModelResult {
             seconds: 0.25,
             rows: vec![row.clone(), row],
             patches: vec![(1, vec![1e-300, 0.1]), (2, vec![])],

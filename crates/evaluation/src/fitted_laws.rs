@@ -1,27 +1,27 @@
 //! What Figs. 3 and 7 have in common: the fitted power laws.
 
 use crate::measured::Measured;
-use analysis::{Bootstrap, NoFit, PowerLaw, Window, fit_power_law};
+use analysis::{Bootstrap, FitWindow, FittedPowerLaw, NoFit, fit_power_law};
 
 /// A fitted law, or why there is none.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Law {
+pub struct FittedLaw {
     /// `bem3d` or `mdr1d`.
     pub model: &'static str,
     /// D_f.
     pub fractal_dimension: f64,
     /// The fit.
-    pub fit: Result<PowerLaw, NoFit>,
+    pub fit: Result<FittedPowerLaw, NoFit>,
 }
 
 /// Power laws of an ensemble, one per fractal dimension, over the standard window; errors by bootstrap over surfaces.
-pub fn laws(measured: &Measured) -> Vec<Law> {
-    laws_within(measured, &Window::PAPER)
+pub fn laws(measured: &Measured) -> Vec<FittedLaw> {
+    laws_within(measured, &FitWindow::PAPER)
 }
 
 /// The same over another window.
-pub fn laws_within(measured: &Measured, window: &Window) -> Vec<Law> {
-    let law = |s: &crate::measured::Series| Law {
+pub fn laws_within(measured: &Measured, window: &FitWindow) -> Vec<FittedLaw> {
+    let law = |s: &crate::measured::Series| FittedLaw {
         model: measured.discretisation.name(),
         fractal_dimension: s.fractal_dimension,
         fit: fit_power_law(&s.curves, window, &Bootstrap::default()),
