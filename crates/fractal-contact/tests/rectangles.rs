@@ -125,6 +125,11 @@ fn results_of_a_rectangle() {
     approx::assert_relative_eq!(force("size = [4, 1]"), force("side = 2"), max_relative = ROUNDING);
     assert_eq!(force("size = 2").to_bits(), force("side = 2").to_bits());
     assert_eq!(force("size = [2, 2]").to_bits(), force("side = 2").to_bits());
+
+    // The table had another name.
+    let old = generated(&rough.replace("SIZE", "side = 2").replace("[sampling]", "[chance]"));
+    assert_eq!((old.sampling.seed, old.notes.len()), (1, 1));
+    assert!(old.notes[0].to_string().starts_with("note: `[chance]` is now `[sampling]`"), "{}", old.notes[0]);
 }
 
 #[test]
