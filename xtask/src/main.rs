@@ -90,7 +90,7 @@ fn execute(command: Command) -> Result<ExitCode> {
         }
         Command::Bench(_) | Command::Redraw(_) | Command::CheckReference(_) | Command::Stability(_) => {
             Vec::new()
-        },
+        }
     };
     if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())

@@ -134,7 +134,9 @@ fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut B
         drawing.points(&at(&done), &color, 4.6, Mark::Solid(mark));
         drawing.points(&at(&open), &color, 4.6, Mark::Hollow(mark));
         if !known.contains(&what) {
-            let label = first.fractal_dimension.map_or_else(|| what.clone(), |d| format!("$D_{{\\rm{{f}}}} = {d:?}$"));
+            let label = first
+                .fractal_dimension
+                .map_or_else(|| what.clone(), |d| format!("$D_{{\\rm{{f}}}} = {d:?}$"));
             drawing.legend(&label, &color, Key::Line(LineStyle::Solid));
             known.push(what.clone());
         }

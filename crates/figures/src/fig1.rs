@@ -116,7 +116,8 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         start += group.len();
     }
     let cells = words::flag(&file, "--cells").map(|n| format!("{n} × {n} cells, "));
-    let below = format!("{}the same phases for every $D_{{\\rm{{f}}}}$; darker is higher", cells.unwrap_or_default());
+    let below =
+        format!("{}the same phases for every $D_{{\\rm{{f}}}}$; darker is higher", cells.unwrap_or_default());
     save_maps(maps, &words::title(&file), &below, out, "fig1")
 }
 

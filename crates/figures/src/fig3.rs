@@ -134,6 +134,10 @@ pub(crate) fn draw(csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<P
     picture.line(&fitted::formula(&file, "scaling", "alpha")?, REFERENCE, 1.6, LineStyle::Dashed);
     fitted::points(&mut picture, &file, finer, "alpha")?;
     picture.legend("paper, Eq. 6: $α = 0.266 D_{\\rm{f}}$", REFERENCE, Key::Line(LineStyle::Solid));
-    picture.legend("paper, Eq. 24: $α = 1/(1 + H)$, $H = 3 - D_{\\rm{f}}$", REFERENCE, Key::Line(LineStyle::Dashed));
+    picture.legend(
+        "paper, Eq. 24: $α = 1/(1 + H)$, $H = 3 - D_{\\rm{f}}$",
+        REFERENCE,
+        Key::Line(LineStyle::Dashed),
+    );
     picture.save(out, "fig3")
 }

@@ -114,10 +114,9 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let x = Axis::Linear(0.0, contact_model::line_length(1.0));
         let letter = char::from(b'a' + panel as u8);
         let below = if panel + 1 == curves.len() { "position $x/L$" } else { "" };
-        let mut picture =
-            Picture::new(x, Axis::Linear(low - margin, high + margin), below, "height $z/h$")
-                .with_size(800.0, 225.0)
-                .with_subtitle(&format!("({letter})  {}", words::dimension(curve[0].0)));
+        let mut picture = Picture::new(x, Axis::Linear(low - margin, high + margin), below, "height $z/h$")
+            .with_size(800.0, 225.0)
+            .with_subtitle(&format!("({letter})  {}", words::dimension(curve[0].0)));
         let points: Vec<(f64, f64)> = curve.iter().map(|r| (r.1, r.2)).collect();
         picture.line(&points, "#1f2937", 0.7, LineStyle::Solid);
         pictures.push(picture);

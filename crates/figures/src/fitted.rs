@@ -38,17 +38,16 @@ pub(crate) fn formula(file: &CsvFile, model: &str, value: &str) -> Result<Vec<(f
 
 /// The laws of a table of Fig. 2: fitted to its means in the same window by the same code, without errors, because it does not hold
 /// the single surfaces.
-pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, PowerLaw)>> {
+fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, PowerLaw)>> {
     let (d, force) = (file.numbers("fractal_dimension")?, file.numbers("force_bar")?);
     let (mean, cells) = (file.numbers("stiffness_bar")?, file.numbers("min_contact_cells")?);
     let missing = file.numbers("not_converged")?;
     let rows: Vec<(f64, f64, Option<Sample>)> = (0..d.len())
         .filter_map(|i| {
             let whole = missing[i].is_none_or(|n| n < 0.5);
-            let sample = mean[i].filter(|_| whole).map(|stiffness_bar| Sample {
-                stiffness_bar,
-                contact_cells: cells[i].map(|c| c as usize),
-            });
+            let sample = mean[i]
+                .filter(|_| whole)
+                .map(|stiffness_bar| Sample { stiffness_bar, contact_cells: cells[i].map(|c| c as usize) });
             Some((d[i]?, force[i]?, sample))
         })
         .collect();
@@ -64,6 +63,18 @@ pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, PowerLaw)>> {
     Ok(laws)
 }
 
+/// The values of a finer run.
+pub(crate) fn finer_series(path: &Path, value: &str) -> Result<Vec<Fitted>> {
+    let fitted = |(fractal_dimension, law): (f64, PowerLaw)| Fitted {
+        fractal_dimension,
+        value: if value == "zeta" { law.zeta } else { law.alpha },
+        error: None,
+        force_min: Some(law.force_bar_min),
+        force_max: Some(law.force_bar_max),
+    };
+    Ok(laws_of_means(&CsvFile::read(path)?)?.into_iter().map(fitted).collect())
+}
+
 /// Both models, and a finer run where there is one, with their error bars and the windows of their fits.
 pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>, value: &str) -> Result<()> {
     let mut all = Vec::new();
@@ -72,16 +83,8 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
         all.push((format!("{name}, {label}"), series(file, model, value)?));
     }
     if let Some(path) = finer {
-        let file = CsvFile::read(path)?;
-        let fitted = |(fractal_dimension, law): (f64, PowerLaw)| Fitted {
-            fractal_dimension,
-            value: if value == "zeta" { law.zeta } else { law.alpha },
-            error: None,
-            force_min: Some(law.force_bar_min),
-            force_max: Some(law.force_bar_max),
-        };
-        let label = words::ensemble(&file, "bem3d").unwrap_or_default();
-        all.push((format!("3D, {label}"), laws_of_means(&file)?.into_iter().map(fitted).collect()));
+        let label = words::ensemble(&CsvFile::read(path)?, "bem3d").unwrap_or_default();
+        all.push((format!("3D, {label}"), finer_series(path, value)?));
     }
     let styles = [
         ("#0b559f", Mark::Solid(Shape::Circle), -1.0),
@@ -94,8 +97,8 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
         }
         let at = |p: &Fitted| (p.fractal_dimension + side * BESIDE, p.value);
         let bars: Vec<_> = values.iter().map(|p| (at(p).0, p.value, p.error)).collect();
+        picture.points(&values.iter().map(at).collect::<Vec<_>>(), color, 4.4, mark);
         picture.errors(&bars, color);
-        picture.points(&values.iter().map(at).collect::<Vec<_>>(), color, 5.0, mark);
         let key = if values.iter().any(|p| p.error.is_some()) { Key::Bar(mark) } else { Key::Mark(mark) };
         picture.legend(&format!("{label}{}", window(values)), color, key);
     }
@@ -111,7 +114,8 @@ fn window(values: &[Fitted]) -> String {
         return String::new();
     };
     let [a, b, end] = [a, b, end].map(|v| number(rounded(v)).replace('$', ""));
-    format!("; fit: $\\bar{{F}} = {a}$ … ${b}$ to ${end}$")
+    let [from, to] = [first, last].map(|p| words::dimension(p.fractal_dimension));
+    format!("; fit: $\\bar{{F}} = {a}$ to ${end}$ ({from}), ${b}$ to ${end}$ ({to})")
 }
 
 /// Two digits.
@@ -130,7 +134,8 @@ mod tests {
     fn means_are_fitted_where_every_surface_touches_enough() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("fig2.csv");
-        let mut text = "fractal_dimension,force_bar,stiffness_bar,not_converged,min_contact_cells\n".to_owned();
+        let mut text =
+            "fractal_dimension,force_bar,stiffness_bar,not_converged,min_contact_cells\n".to_owned();
         for (force, cells) in [(1e-6_f64, 3), (1e-5, 10), (1e-4, 50), (1e-3, 200), (1e-2, 900), (1.0, 9999)] {
             text += &format!("2.2,{force:?},{:?},0,{cells}\n", 0.5 * force.powf(0.6));
         }

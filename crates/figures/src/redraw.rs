@@ -94,7 +94,10 @@ mod tests {
         let files = redraw(dir.path(), &Beside::default()).unwrap();
         assert_eq!(files.len(), 4);
         let text = labels(&files, "two-cases-ratio");
-        assert!(text.contains("aria-label=\"Persson\"") && text.contains("aria-label=\"Greenwood and Williamson\""));
+        assert!(
+            text.contains("aria-label=\"Persson\"")
+                && text.contains("aria-label=\"Greenwood and Williamson\"")
+        );
 
         let dir = copied("bench", &["scaling.csv", "single.csv"]);
         assert!(redraw(dir.path(), &Beside::default()).unwrap_err().to_string().contains("no table"));

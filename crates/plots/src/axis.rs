@@ -62,7 +62,7 @@ impl Axis {
         match self {
             Self::Log(a, b) => {
                 let (first, last) = (a.log10().floor() as i32, b.log10().ceil() as i32);
-                let step = (last - first + LABELLED) / LABELLED;
+                let step = (last - first + LABELLED - 1) / LABELLED;
                 let decades = (first..=last).filter(|e| self.holds(10_f64.powi(*e))).count();
                 let mut ticks = Vec::new();
                 for e in first..=last {

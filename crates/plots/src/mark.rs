@@ -12,9 +12,7 @@ pub(crate) fn draw(scene: &mut Scene, at: (f64, f64), color: &str, radius: f64, 
         // A thin white edge keeps neighbours apart.
         Mark::Solid(_) => Paint { stroke: Some(("#ffffff".to_owned(), 0.7)), ..Paint::filled(color, 1.0) },
         Mark::Ring(_) => Paint::stroked(color, 1.4),
-        Mark::Hollow(_) => {
-            Paint { stroke: Some((color.to_owned(), 1.4)), ..Paint::filled("#ffffff", 1.0) }
-        }
+        Mark::Hollow(_) => Paint { stroke: Some((color.to_owned(), 1.4)), ..Paint::filled("#ffffff", 1.0) },
     };
     scene.path(outline, paint, None);
 }

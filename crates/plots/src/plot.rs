@@ -42,6 +42,7 @@ enum Drawn {
     Line { points: Vec<(f64, f64)>, color: String, width: f64, style: LineStyle },
     Points { points: Vec<(f64, f64)>, color: String, radius: f64, mark: Mark },
     Band { points: Vec<(f64, f64, f64)>, color: String },
+    Bars { points: Vec<(f64, f64, f64)>, color: String },
     Note { text: String, at: (f64, f64) },
 }
 
@@ -116,13 +117,9 @@ impl Picture {
 
     /// Vertical bars of (x, value, half width), with short ends.
     pub fn errors(&mut self, points: &[(f64, f64, Option<f64>)], color: &str) {
-        for &(x, y, e) in points {
-            if let Some(e) = e {
-                // What lies below a logarithmic axis ends on it.
-                let low = (y - e).max(self.axes[1].ends().0);
-                self.line(&[(x, low), (x, y + e)], color, 1.5, LineStyle::Solid);
-            }
-        }
+        let bar = |&(x, y, e): &(f64, f64, Option<f64>)| e.map(|e| (x, y - e, y + e));
+        let points = points.iter().filter_map(bar).collect();
+        self.drawn.push(Drawn::Bars { points, color: color.to_owned() });
     }
 
     /// Words that begin at a point.
@@ -137,7 +134,9 @@ impl Picture {
 
     /// Whether nothing is drawn between the axes.
     pub fn is_empty(&self) -> bool {
-        self.drawn.iter().all(|d| matches!(d, Drawn::Points { points, .. } | Drawn::Line { points, .. } if points.is_empty()))
+        self.drawn.iter().all(
+            |d| matches!(d, Drawn::Points { points, .. } | Drawn::Line { points, .. } if points.is_empty()),
+        )
     }
 
     /// The horizontal and the vertical axis.
@@ -257,6 +256,21 @@ impl Picture {
                 if points.len() > 1 {
                     taken.extend(&corners);
                     scene.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
+                }
+            }
+            Drawn::Bars { points, color } => {
+                /// Half the width of the ends.
+                const END: f64 = 3.5;
+                // What lies below a logarithmic axis ends on it.
+                let floor = self.axes[1].ends().0;
+                for &(x, low, high) in points {
+                    let (Some(a), Some(b)) = (place((x, low.max(floor))), place((x, high))) else { continue };
+                    taken.extend(along(a, b));
+                    for ends in
+                        [[a, b], [(a.0 - END, a.1), (a.0 + END, a.1)], [(b.0 - END, b.1), (b.0 + END, b.1)]]
+                    {
+                        scene.path(polyline(&ends), Paint::stroked(color, 1.2), Some(frame));
+                    }
                 }
             }
             Drawn::Note { text, at } => {
@@ -391,10 +405,14 @@ mod tests {
     use crate::style::Shape;
 
     fn picture() -> Picture {
-        let mut picture =
-            Picture::new(Axis::Log(1e-3, 1e2), Axis::Log(1e-2, 1.0), "force $\\bar{F}$", "stiffness $\\bar{k}$")
-                .with_title("A law")
-                .with_subtitle("2049 × 2049 cells");
+        let mut picture = Picture::new(
+            Axis::Log(1e-3, 1e2),
+            Axis::Log(1e-2, 1.0),
+            "force $\\bar{F}$",
+            "stiffness $\\bar{k}$",
+        )
+        .with_title("A law")
+        .with_subtitle("2049 × 2049 cells");
         picture.line(&[(1e-3, 1e-2), (1e2, 1.0)], "#000000", 1.0, LineStyle::Dashed);
         picture.points(&[(1.0, 0.1), (1e5, 0.1)], "#aa0000", 4.0, Mark::Solid(Shape::Circle));
         picture.band(&[(0.1, 0.0, 0.1), (1.0, 0.1, 0.2)], "#aa0000");
@@ -407,14 +425,18 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let files = picture().save(dir.path(), "p").unwrap();
         let svg = std::fs::read_to_string(&files[0]).unwrap();
-        for label in ["force F\u{304}", "stiffness k\u{304}", "A law", "2049 × 2049 cells", "D_f = 2", "10^\u{2212}2"] {
+        for label in
+            ["force F\u{304}", "stiffness k\u{304}", "A law", "2049 × 2049 cells", "D_f = 2", "10^\u{2212}2"]
+        {
             assert!(svg.contains(&format!("aria-label=\"{label}\"")), "{label}");
         }
         assert!(svg.trim_end().ends_with("</svg>") && !svg.contains("<text") && !svg.contains("NaN"));
         // The point beyond the axes is not drawn: one in the picture, one in the legend.
         assert_eq!(svg.matches("fill=\"#aa0000\" stroke").count(), 2);
         let png = std::fs::read(&files[1]).unwrap();
-        assert!(png.starts_with(b"\x89PNG") && png.ends_with(&[0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82]));
+        assert!(
+            png.starts_with(b"\x89PNG") && png.ends_with(&[0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82])
+        );
         // The same picture has the same bytes.
         picture().save(dir.path(), "q").unwrap();
         assert_eq!(std::fs::read(dir.path().join("q.png")).unwrap(), png);

@@ -202,8 +202,7 @@ impl Scene {
                     let paint = skia_paint(color, 1.0);
                     for g in &set.glyphs {
                         let outline = fonts.outline(g.id, g.italic);
-                        let placed =
-                            skia_path(&outline, |[x, y]| place(g.x + x * g.size, g.y - y * g.size));
+                        let placed = skia_path(&outline, |[x, y]| place(g.x + x * g.size, g.y - y * g.size));
                         let Some(placed) = placed else { continue };
                         pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
                     }
