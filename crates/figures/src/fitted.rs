@@ -104,6 +104,9 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
     }
     let words = "bars: ± 1 standard error over surfaces; points of one $D_{\\rm{f}}$ stand side by side";
     picture.legend(words, "#000000", Key::Words);
+    if finer.is_some() {
+        picture.legend("open marks: fitted to the means alone, no error is known", "#000000", Key::Words);
+    }
     Ok(())
 }
 

@@ -18,8 +18,8 @@ pub struct GreyMap {
 }
 
 /// Side of one map, the space around it and for its label.
-const MAP: f64 = 248.0;
-const GAP: f64 = 14.0;
+const MAP: f64 = 240.0;
+const GAP: f64 = 20.0;
 const LABEL: f64 = 28.0;
 const TITLE: f64 = 54.0;
 
