@@ -128,7 +128,7 @@ pub(crate) fn apart(forces: &[f64]) -> Vec<bool> {
     let mut steps: Vec<f64> = forces.windows(2).map(|w| step(w[0], w[1])).collect();
     steps.sort_by(f64::total_cmp);
     let regular = steps.get(steps.len() / 2).copied().unwrap_or_default();
-    let close = |i: usize| i + 1 < forces.len() && step(forces[i], forces[i + 1]) < 0.4 * regular;
+    let close = |i: usize| i + 1 < forces.len() && step(forces[i], forces[i + 1]) < 0.7 * regular;
     // How far a load is from where the load before the pair would have its neighbour.
     let off =
         |from: Option<usize>, i: usize| from.map_or(0.0, |f| (step(forces[f], forces[i]) - regular).abs());
