@@ -73,9 +73,12 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
     if below.is_some() {
         title = title.replacen(':', " continued to smaller forces:", 1);
     }
-    let mut picture = Picture::new(x, y, words::FORCE, words::STIFFNESS)
-        .with_title(&title)
-        .with_subtitle(&words::ensemble(&file, model).unwrap_or_default());
+    let mut subtitle = words::subtitle(&file, model);
+    if let Some(coarse) = below.as_ref().and_then(|b| words::ensemble(b, model)) {
+        subtitle += &format!("; thin lines without marks: {coarse}");
+    }
+    let mut picture =
+        Picture::new(x, y, words::FORCE, words::STIFFNESS).with_title(&title).with_subtitle(&subtitle);
     for (d, points) in &curves {
         let inside: Vec<(f64, f64, f64)> = (points.iter().filter(|p| !p.below_floor))
             .filter_map(|p| p.error.map(|e| (p.force, p.stiffness - 2.0 * e, p.stiffness + 2.0 * e)))
@@ -90,7 +93,9 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
     }
     for (d, points) in &curves {
         let (color, shape) = (color(*d), shape(*d));
-        let marked = apart(points);
+        let alone = apart(&points.iter().map(|p| p.force).collect::<Vec<_>>());
+        let marked: Vec<Point> =
+            points.iter().zip(alone).filter_map(|(p, alone)| alone.then_some(*p)).collect();
         let floor = marked.iter().filter(|p| p.below_floor).map(|p| (p.force, p.stiffness));
         picture.line(&above_floor(points), &color, 1.8, LineStyle::Solid);
         picture.points(&floor.collect::<Vec<_>>(), &color, 3.0, Mark::Hollow(shape));
@@ -105,10 +110,6 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
     if curves.iter().flat_map(|c| &c.1).any(|p| p.error.is_some()) {
         picture.legend("shaded: ± 2 standard errors", NEUTRAL, Key::Band);
     }
-    if let Some(coarse) = &below {
-        let label = format!("thin, no marks: {}", words::ensemble(coarse, model).unwrap_or_default());
-        picture.legend(&label, NEUTRAL, Key::Line(LineStyle::Solid));
-    }
     if curves.iter().flat_map(|c| &c.1).any(|p| p.below_floor) {
         let label = format!("fewer than {} contact {cells}", evaluation::FLOOR_CELLS);
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(Shape::Circle)));
@@ -120,23 +121,21 @@ fn above_floor(points: &[Point]) -> Vec<(f64, f64)> {
     points.iter().filter(|p| !p.below_floor).map(|p| (p.force, p.stiffness)).collect()
 }
 
-/// The points without those of single loads that stand beside one of the regular loads: their marks would lie on each other.
-fn apart(points: &[Point]) -> Vec<Point> {
-    let step = |a: &Point, b: &Point| (b.force / a.force).ln();
-    let mut steps: Vec<f64> = points.windows(2).map(|w| step(&w[0], &w[1])).collect();
+/// Whether each of these increasing loads has a mark: not a single load beside one of the regular loads, where two marks would lie
+/// on each other.
+pub(crate) fn apart(forces: &[f64]) -> Vec<bool> {
+    let step = |a: f64, b: f64| (b / a).ln();
+    let mut steps: Vec<f64> = forces.windows(2).map(|w| step(w[0], w[1])).collect();
     steps.sort_by(f64::total_cmp);
-    let Some(&regular) = steps.get(steps.len() / 2) else { return points.to_vec() };
-    let mut kept: Vec<Point> = Vec::new();
-    for (i, p) in points.iter().enumerate() {
-        let close = |a: &Point, b: &Point| step(a, b) < 0.4 * regular;
-        let off = |from: Option<&Point>, p: &Point| from.map_or(0.0, |f| (step(f, p) - regular).abs());
-        let before = i.checked_sub(1).and_then(|i| points.get(i));
-        match (before, points.get(i + 1)) {
-            // Of two that are close, the one a regular step behind the point before both stays.
-            (_, Some(next)) if close(p, next) && off(before, p) > off(before, next) => {}
-            (Some(last), _) if close(last, p) && kept.last().is_some_and(|k| close(k, p)) => {}
-            _ => kept.push(*p),
-        }
+    let regular = steps.get(steps.len() / 2).copied().unwrap_or_default();
+    let close = |i: usize| i + 1 < forces.len() && step(forces[i], forces[i + 1]) < 0.7 * regular;
+    // How far a load is from where the load before the pair would have its neighbour.
+    let off =
+        |from: Option<usize>, i: usize| from.map_or(0.0, |f| (step(forces[f], forces[i]) - regular).abs());
+    let mut kept = vec![true; forces.len()];
+    for i in (0..forces.len()).filter(|i| close(*i)) {
+        let before = i.checked_sub(1);
+        kept[if off(before, i) > off(before, i + 1) { i } else { i + 1 }] = false;
     }
     kept
 }
@@ -157,10 +156,10 @@ mod tests {
 
     #[test]
     fn single_loads_beside_regular_ones_have_no_mark() {
-        let point = |force: f64| Point { force, stiffness: 1.0, error: None, below_floor: false };
         let forces = [0.0440, 0.086, 0.0946, 0.2032, 0.4366, 0.9382, 1.0, 2.016, 4.332];
-        let kept: Vec<f64> = apart(&forces.map(point)).iter().map(|p| p.force).collect();
+        let kept: Vec<f64> =
+            forces.iter().zip(apart(&forces)).filter_map(|(f, kept)| kept.then_some(*f)).collect();
         assert_eq!(kept, [0.0440, 0.0946, 0.2032, 0.4366, 0.9382, 2.016, 4.332]);
-        assert_eq!(apart(&[point(1.0)]).len(), 1);
+        assert_eq!((apart(&[1.0]), apart(&[]).len()), (vec![true], 0));
     }
 }

@@ -1,6 +1,7 @@
 //! Fig. 4: the collapse of all curves.
 
 use crate::claims;
+use crate::curves;
 use crate::words;
 use analysis::Table;
 use evaluation::Outcome;
@@ -86,7 +87,7 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let label = "$\\tilde{F}/\\bar{F}$,   $\\tilde{F} = 0.086 (\\bar{k}/0.18)^{1/(0.266 D_{\\rm{f}})}$";
     let mut picture = Picture::new(x, y, words::FORCE, label)
         .with_title(&words::title(&file))
-        .with_subtitle(&words::ensemble(&file, "bem3d").unwrap_or_default());
+        .with_subtitle(&words::subtitle(&file, "bem3d"));
     let law = [(x.ends().0, 1.0), (analytic::F_BAR_UL, 1.0)];
     picture.line(&law, REFERENCE, 1.5, LineStyle::Dashed);
     picture.line(
@@ -97,12 +98,17 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     );
     for series in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
         let (color, shape) = (color(series[0].0), shape(series[0].0));
-        let select = |on_floor: bool| -> Vec<(f64, f64)> {
-            series.iter().filter(|r| r.3 == on_floor).map(|r| (r.1, r.2)).collect()
+        let above: Vec<(f64, f64)> = series.iter().filter(|r| !r.3).map(|r| (r.1, r.2)).collect();
+        let alone = curves::apart(&series.iter().map(|r| r.1).collect::<Vec<_>>());
+        let marked = |on_floor: bool| -> Vec<(f64, f64)> {
+            let wanted = |(r, alone): (&(f64, f64, f64, bool), &bool)| {
+                (*alone && r.3 == on_floor).then_some((r.1, r.2))
+            };
+            series.iter().zip(&alone).filter_map(wanted).collect()
         };
-        picture.line(&select(false), &color, 1.5, LineStyle::Solid);
-        picture.points(&select(true), &color, 3.2, Mark::Hollow(shape));
-        picture.points(&select(false), &color, 4.0, Mark::Solid(shape));
+        picture.line(&above, &color, 1.5, LineStyle::Solid);
+        picture.points(&marked(true), &color, 3.2, Mark::Hollow(shape));
+        picture.points(&marked(false), &color, 4.0, Mark::Solid(shape));
         picture.legend(&words::dimension(series[0].0), &color, Key::Curve(Mark::Solid(shape)));
     }
     picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));

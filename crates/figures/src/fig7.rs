@@ -55,12 +55,12 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
 pub(crate) fn draw(csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let law = fitted::formula(&file, "paper_fit", "zeta")?;
-    let mut highest: f64 = 1.8;
-    for model in ["bem3d", "mdr1d"] {
-        for p in fitted::series(&file, model, "zeta")? {
-            highest = highest.max(p.value + p.error.unwrap_or(0.0));
-        }
+    let mut all = fitted::series(&file, "bem3d", "zeta")?;
+    all.extend(fitted::series(&file, "mdr1d", "zeta")?);
+    if let Some(path) = finer {
+        all.extend(fitted::finer_series(path, "zeta")?);
     }
+    let highest = all.iter().map(|p| p.value + p.error.unwrap_or(0.0)).fold(1.7, f64::max) + 0.05;
     let axes = (Axis::Linear(1.9, 3.1), Axis::Linear(0.4, (highest * 5.0).ceil() / 5.0));
     let mut picture = Picture::new(axes.0, axes.1, words::DIMENSION, "factor $ζ$")
         .with_size(800.0, 560.0)

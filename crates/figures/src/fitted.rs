@@ -38,7 +38,7 @@ pub(crate) fn formula(file: &CsvFile, model: &str, value: &str) -> Result<Vec<(f
 
 /// The laws of a table of Fig. 2: fitted to its means in the same window by the same code, without errors, because it does not hold
 /// the single surfaces.
-pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw)>> {
+fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw)>> {
     let (d, force) = (file.numbers("fractal_dimension")?, file.numbers("force_bar")?);
     let (mean, cells) = (file.numbers("stiffness_bar")?, file.numbers("min_contact_cells")?);
     let missing = file.numbers("not_converged")?;
@@ -64,6 +64,18 @@ pub(crate) fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw)>
     Ok(laws)
 }
 
+/// The values of a finer run.
+pub(crate) fn finer_series(path: &Path, value: &str) -> Result<Vec<Fitted>> {
+    let fitted = |(fractal_dimension, law): (f64, FittedPowerLaw)| Fitted {
+        fractal_dimension,
+        value: if value == "zeta" { law.zeta } else { law.alpha },
+        error: None,
+        force_min: Some(law.force_bar_min),
+        force_max: Some(law.force_bar_max),
+    };
+    Ok(laws_of_means(&CsvFile::read(path)?)?.into_iter().map(fitted).collect())
+}
+
 /// Both models, and a finer run where there is one, with their error bars and the windows of their fits.
 pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>, value: &str) -> Result<()> {
     let mut all = Vec::new();
@@ -72,16 +84,8 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
         all.push((format!("{name}, {label}"), series(file, model, value)?));
     }
     if let Some(path) = finer {
-        let file = CsvFile::read(path)?;
-        let fitted = |(fractal_dimension, law): (f64, FittedPowerLaw)| Fitted {
-            fractal_dimension,
-            value: if value == "zeta" { law.zeta } else { law.alpha },
-            error: None,
-            force_min: Some(law.force_bar_min),
-            force_max: Some(law.force_bar_max),
-        };
-        let label = words::ensemble(&file, "bem3d").unwrap_or_default();
-        all.push((format!("3D, {label}"), laws_of_means(&file)?.into_iter().map(fitted).collect()));
+        let label = words::ensemble(&CsvFile::read(path)?, "bem3d").unwrap_or_default();
+        all.push((format!("3D, {label}"), finer_series(path, value)?));
     }
     let styles = [
         ("#0b559f", Mark::Solid(Shape::Circle), -1.0),
@@ -94,13 +98,16 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
         }
         let at = |p: &Fitted| (p.fractal_dimension + side * BESIDE, p.value);
         let bars: Vec<_> = values.iter().map(|p| (at(p).0, p.value, p.error)).collect();
+        picture.points(&values.iter().map(at).collect::<Vec<_>>(), color, 4.4, mark);
         picture.errors(&bars, color);
-        picture.points(&values.iter().map(at).collect::<Vec<_>>(), color, 5.0, mark);
         let key = if values.iter().any(|p| p.error.is_some()) { Key::Bar(mark) } else { Key::Mark(mark) };
         picture.legend(&format!("{label}{}", window(values)), color, key);
     }
     let words = "bars: ± 1 standard error over surfaces; points of one $D_{\\rm{f}}$ stand side by side";
     picture.legend(words, "#000000", Key::Words);
+    if finer.is_some() {
+        picture.legend("open marks: fitted to the means alone, no error is known", "#000000", Key::Words);
+    }
     Ok(())
 }
 
@@ -111,7 +118,8 @@ fn window(values: &[Fitted]) -> String {
         return String::new();
     };
     let [a, b, end] = [a, b, end].map(|v| number(rounded(v)).replace('$', ""));
-    format!("; fit: $\\bar{{F}} = {a}$ … ${b}$ to ${end}$")
+    let [from, to] = [first, last].map(|p| words::dimension(p.fractal_dimension));
+    format!("; fit: $\\bar{{F}} = {a}$ to ${end}$ ({from}), ${b}$ to ${end}$ ({to})")
 }
 
 /// Two digits.

@@ -24,7 +24,7 @@ pub(crate) fn ensemble(file: &CsvFile, model: &str) -> Option<String> {
     let start = format!("{model}: ");
     let line = file.comments.iter().find_map(|c| c.strip_prefix(&start).filter(|c| c.contains("per D_f")))?;
     let before = |words: &str| {
-        let text = line.split(words).next()?;
+        let (text, _) = line.split_once(words)?;
         text.rsplit([' ', ',']).next()?.parse::<u64>().ok()
     };
     let count = before(" surfaces per D_f")?;
@@ -32,7 +32,12 @@ pub(crate) fn ensemble(file: &CsvFile, model: &str) -> Option<String> {
         Some(n) => (format!("{n} × {n} cells"), "surfaces"),
         None => (elements(before(" elements")?), "lines"),
     };
-    Some(format!("{size}, {count} {what} for each $D_{{\\rm{{f}}}}$"))
+    Some(format!("{size}, {count} {what}"))
+}
+
+/// [`ensemble`] below a title.
+pub(crate) fn subtitle(file: &CsvFile, model: &str) -> String {
+    ensemble(file, model).map_or_else(String::new, |e| format!("{e} for each $D_{{\\rm{{f}}}}$"))
 }
 
 /// A number of elements; a large power of two as such.

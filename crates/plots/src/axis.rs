@@ -62,18 +62,21 @@ impl Axis {
         match self {
             Self::Log(a, b) => {
                 let (first, last) = (a.log10().floor() as i32, b.log10().ceil() as i32);
-                let step = (last - first + LABELLED) / LABELLED;
+                let step = (last - first + LABELLED - 1) / LABELLED;
                 let decades = (first..=last).filter(|e| self.holds(10_f64.powi(*e))).count();
+                // One style along the axis.
+                let scientific = a < 1e-3 || b >= 1e5;
                 let mut ticks = Vec::new();
                 for e in first..=last {
                     let decade = 10_f64.powi(e);
                     let labelled = e % step == 0;
-                    ticks.extend(tick(decade, labelled, labelled.then(|| power(e, decades < FEW))));
+                    let label = |digit: i32| named(digit, e, decades < FEW, scientific);
+                    ticks.extend(tick(decade, labelled, labelled.then(|| label(1))));
                     for digit in 2..10 {
-                        let named = decades < FEW && (digit == 2 || digit == 5);
-                        let value = f64::from(digit) * decade;
+                        let major = decades < FEW && (digit == 2 || digit == 5);
                         if step == 1 {
-                            ticks.extend(tick(value, named, named.then(|| number(value))));
+                            let value = f64::from(digit) * decade;
+                            ticks.extend(tick(value, major, major.then(|| label(digit))));
                         }
                     }
                 }
@@ -98,12 +101,13 @@ impl Axis {
     }
 }
 
-/// A power of ten; where there are few, in the digits that stand beside it.
-fn power(exponent: i32, plain: bool) -> String {
-    match exponent {
-        0 => "1".to_owned(),
-        _ if plain => number(10_f64.powi(exponent)),
-        _ => format!("$10^{{{exponent}}}$"),
+/// A digit times a power of ten; where labels are few and no number is long, as a plain number.
+fn named(digit: i32, exponent: i32, few: bool, scientific: bool) -> String {
+    match (digit, exponent) {
+        (_, 0) => digit.to_string(),
+        _ if few && !scientific => number(f64::from(digit) * 10_f64.powi(exponent)),
+        (1, _) => format!("$10^{{{exponent}}}$"),
+        _ => format!("${digit}×10^{{{exponent}}}$"),
     }
 }
 
@@ -165,6 +169,10 @@ mod tests {
     #[test]
     fn less_than_three_decades_have_more_labels() {
         assert_eq!(labels(Axis::Log(150.0, 7000.0)), ["200", "500", "1000", "2000", "5000"]);
+        assert_eq!(
+            labels(Axis::Log(9e-6, 3e-4)),
+            ["$10^{-5}$", "$2×10^{-5}$", "$5×10^{-5}$", "$10^{-4}$", "$2×10^{-4}$"]
+        );
         assert!(labels(Axis::Log(1e-30, 1e30)).len() < 14);
     }
 

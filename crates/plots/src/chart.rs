@@ -59,7 +59,8 @@ impl Chart {
             // Where points are dense they are the line.
             let marked = curve.scattered || curve.points.len() <= MOST_MARKS;
             if !curve.scattered {
-                picture.line(&curve.points, color, 1.7 + 0.9 * above, LineStyle::Solid);
+                let wider = if marked { 0.9 } else { 1.8 };
+                picture.line(&curve.points, color, 1.7 + wider * above, LineStyle::Solid);
             }
             if marked {
                 picture.points(&curve.points, color, 3.4 + 1.1 * above, mark);

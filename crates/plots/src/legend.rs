@@ -37,35 +37,43 @@ impl Legend {
         self.entries.is_empty()
     }
 
+    /// With the sizes of its words, in as many columns as fit into the width.
     pub(crate) fn set(&self, fonts: &Fonts, size: f64, width: f64) -> SetLegend<'_> {
         let lines: Vec<(&Entry, Typeset)> =
             self.entries.iter().map(|e| (e, fonts.typeset(&e.label, size))).collect();
-        let indent = |e: &Entry| if e.key == Key::Words { 0.0 } else { (KEY + GAP) * size };
-        let column = lines.iter().map(|(e, set)| indent(e) + set.width).fold(0.0, f64::max);
-        let fit = ((width + COLUMN * size) / (column + COLUMN * size)).floor().max(1.0) as usize;
-        let columns = fit.min(lines.len().max(1));
-        let rows = lines.len().div_ceil(columns);
-        SetLegend { lines, size, column, rows, columns: lines_columns(self.entries.len(), rows) }
+        let widths: Vec<f64> = lines.iter().map(|(e, set)| indent(e, size) + set.width).collect();
+        let in_rows = |rows: usize| {
+            let column = |c: &[f64]| c.iter().copied().fold(0.0, f64::max);
+            widths.chunks(rows).map(column).collect::<Vec<f64>>()
+        };
+        let fits = |rows: &usize| total(&in_rows(*rows), size) <= width;
+        let rows = (1..=lines.len()).find(fits).unwrap_or(lines.len()).max(1);
+        SetLegend { lines, size, columns: in_rows(rows), rows }
     }
 }
 
-fn lines_columns(lines: usize, rows: usize) -> usize {
-    lines.div_ceil(rows.max(1))
+/// Where the words of a line begin.
+fn indent(entry: &Entry, size: f64) -> f64 {
+    if entry.key == Key::Words { 0.0 } else { (KEY + GAP) * size }
+}
+
+/// The width of columns with their gaps.
+fn total(columns: &[f64], size: f64) -> f64 {
+    columns.iter().sum::<f64>() + columns.len().saturating_sub(1) as f64 * COLUMN * size
 }
 
 /// A legend with the sizes of its words.
 pub(crate) struct SetLegend<'a> {
     lines: Vec<(&'a Entry, Typeset)>,
     size: f64,
-    column: f64,
+    /// Their widths.
+    columns: Vec<f64>,
     rows: usize,
-    columns: usize,
 }
 
 impl SetLegend<'_> {
     pub fn width(&self) -> f64 {
-        let gaps = self.columns.saturating_sub(1) as f64;
-        self.columns as f64 * self.column + gaps * COLUMN * self.size
+        total(&self.columns, self.size)
     }
 
     pub fn height(&self) -> f64 {
@@ -76,7 +84,8 @@ impl SetLegend<'_> {
     pub fn draw(self, scene: &mut Scene, at: (f64, f64)) {
         let (size, rows) = (self.size, self.rows);
         for (i, (entry, set)) in self.lines.into_iter().enumerate() {
-            let x = at.0 + (i / rows) as f64 * (self.column + COLUMN * size);
+            let before = &self.columns[..i / rows];
+            let x = at.0 + before.iter().sum::<f64>() + before.len() as f64 * COLUMN * size;
             let baseline = at.1 + ((i % rows) as f64 + 0.95) * LINE * size;
             let middle = (x + 0.5 * KEY * size, baseline - 0.3 * size);
             let half = 0.5 * KEY * size;
@@ -106,8 +115,7 @@ impl SetLegend<'_> {
                 }
                 Key::Words => {}
             }
-            let indent = if entry.key == Key::Words { 0.0 } else { (KEY + GAP) * size };
-            scene.label(set, (x + indent, baseline), Anchor::Start, false, INK);
+            scene.label(set, (x + indent(entry, size), baseline), Anchor::Start, false, INK);
         }
     }
 }
@@ -164,8 +172,8 @@ mod tests {
         let mut legend = Legend::default();
         (0..5).for_each(|_| legend.push("word", "#000000", Key::Band));
         let narrow = legend.set(&fonts, 10.0, 50.0);
-        assert_eq!((narrow.columns, narrow.rows), (1, 5));
+        assert_eq!((narrow.columns.len(), narrow.rows), (1, 5));
         let wide = legend.set(&fonts, 10.0, 200.0);
-        assert!(wide.columns > 1 && wide.columns * wide.rows >= 5 && wide.width() <= 200.0);
+        assert!(wide.columns.len() > 1 && wide.columns.len() * wide.rows >= 5 && wide.width() <= 200.0);
     }
 }

@@ -91,8 +91,12 @@ pub fn encode_grey(path: &Path, width: usize, pixels: &[u8]) -> Result<Vec<u8>> 
     encode(path, width, pixels, png::ColorType::Grayscale, 1)
 }
 
-/// Encodes a picture of three bytes a pixel, first row on top.
+/// Encodes a picture of three bytes a pixel, first row on top; one without colours with one byte a pixel.
 pub(crate) fn encode_rgb(path: &Path, width: usize, pixels: &[u8]) -> Result<Vec<u8>> {
+    if pixels.chunks(3).all(|p| p[0] == p[1] && p[0] == p[2]) {
+        let grey: Vec<u8> = pixels.iter().copied().step_by(3).collect();
+        return encode_grey(path, width, &grey);
+    }
     encode(path, width, pixels, png::ColorType::Rgb, 3)
 }
 
@@ -109,6 +113,7 @@ fn encode(
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(color);
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(pixels).map_err(failed)?;
     writer.finish().map_err(failed)?;

@@ -3,6 +3,7 @@
 use crate::axis::Axis;
 use crate::legend::{Legend, free_place};
 use crate::mark;
+use crate::panels::Panels;
 use crate::scene::{Anchor, Paint, Rectangle, Scene, polygon, polyline};
 use crate::style::{INK, Key, LineStyle, Mark, NEUTRAL};
 use crate::text::Fonts;
@@ -10,12 +11,12 @@ use runs::Result;
 use std::path::{Path, PathBuf};
 
 /// Width and height of a picture: as wide as a README shows it.
-const SIZE: (f64, f64) = (800.0, 600.0);
+pub(crate) const SIZE: (f64, f64) = (800.0, 600.0);
 /// Sizes of words in a picture of that width; narrower panels have smaller ones.
 const LABEL: f64 = 20.0;
 const TICK: f64 = 17.0;
-const WORDS: f64 = 16.0;
-const TITLE: f64 = 19.0;
+pub(crate) const WORDS: f64 = 16.0;
+pub(crate) const TITLE: f64 = 19.0;
 /// Lengths of ticks, which point inwards.
 const LONG: f64 = 8.0;
 const SHORT: f64 = 4.5;
@@ -30,10 +31,10 @@ pub struct Picture {
     ticks: [Option<Vec<f64>>; 2],
     title: String,
     subtitle: String,
-    size: (f64, f64),
+    pub(crate) size: (f64, f64),
     drawn: Vec<Drawn>,
     legend: Legend,
-    legend_below: bool,
+    pub(crate) legend_below: bool,
 }
 
 /// In coordinates of the axes.
@@ -42,7 +43,7 @@ enum Drawn {
     Line { points: Vec<(f64, f64)>, color: String, width: f64, style: LineStyle },
     Points { points: Vec<(f64, f64)>, color: String, radius: f64, mark: Mark },
     Band { points: Vec<(f64, f64, f64)>, color: String },
-    Note { text: String, at: (f64, f64) },
+    Bars { points: Vec<(f64, f64, f64)>, color: String },
 }
 
 impl Picture {
@@ -116,18 +117,9 @@ impl Picture {
 
     /// Vertical bars of (x, value, half width), with short ends.
     pub fn errors(&mut self, points: &[(f64, f64, Option<f64>)], color: &str) {
-        for &(x, y, e) in points {
-            if let Some(e) = e {
-                // What lies below a logarithmic axis ends on it.
-                let low = (y - e).max(self.axes[1].ends().0);
-                self.line(&[(x, low), (x, y + e)], color, 1.5, LineStyle::Solid);
-            }
-        }
-    }
-
-    /// Words that begin at a point.
-    pub fn note(&mut self, text: &str, at: (f64, f64)) {
-        self.drawn.push(Drawn::Note { text: text.to_owned(), at });
+        let bar = |&(x, y, e): &(f64, f64, Option<f64>)| e.map(|e| (x, y - e, y + e));
+        let points = points.iter().filter_map(bar).collect();
+        self.drawn.push(Drawn::Bars { points, color: color.to_owned() });
     }
 
     /// A legend line; points and lines do not make one by themselves.
@@ -160,13 +152,13 @@ impl Picture {
     }
 
     /// Draws everything but a legend below; gives that back.
-    fn draw(mut self, fonts: &Fonts, scene: &mut Scene, corner: (f64, f64)) {
+    pub(crate) fn draw(mut self, fonts: &Fonts, scene: &mut Scene, corner: (f64, f64)) {
         let frame = self.frame(fonts, corner);
         let scale = self.text_scale();
         let drawn = std::mem::take(&mut self.drawn);
         let mut taken = Vec::new();
         for item in &drawn {
-            self.draw_item(item, fonts, scene, frame, &mut taken);
+            self.draw_item(item, scene, frame, &mut taken);
         }
         self.draw_axes(fonts, scene, frame, corner);
         if !self.legend_below && !self.legend.is_empty() {
@@ -179,7 +171,7 @@ impl Picture {
     }
 
     /// The legend if it stands below the axes: asked for, or no place is free among them.
-    fn legend_below(&self, fonts: &Fonts) -> Option<&Legend> {
+    pub(crate) fn legend_below(&self, fonts: &Fonts) -> Option<&Legend> {
         if self.legend.is_empty() || self.legend_below {
             return (!self.legend.is_empty()).then_some(&self.legend);
         }
@@ -187,14 +179,14 @@ impl Picture {
         let mut taken = Vec::new();
         let mut nowhere = Scene::new(1.0, 1.0);
         for item in &self.drawn {
-            self.draw_item(item, fonts, &mut nowhere, frame, &mut taken);
+            self.draw_item(item, &mut nowhere, frame, &mut taken);
         }
         let set = self.legend.set(fonts, WORDS * self.text_scale(), 0.0);
         free_place(frame, (set.width(), set.height()), &taken, MARGIN).is_none().then_some(&self.legend)
     }
 
     /// The frame that labels and title leave.
-    fn frame(&self, fonts: &Fonts, corner: (f64, f64)) -> Rectangle {
+    pub(crate) fn frame(&self, fonts: &Fonts, corner: (f64, f64)) -> Rectangle {
         let scale = self.text_scale();
         let words = |i: usize| {
             let (ticks, power) = self.axes[i].ticks(self.ticks[i].as_deref());
@@ -224,14 +216,7 @@ impl Picture {
         Some((frame[0] + x * frame[2], frame[1] + (1.0 - y) * frame[3]))
     }
 
-    fn draw_item(
-        &self,
-        item: &Drawn,
-        fonts: &Fonts,
-        scene: &mut Scene,
-        frame: Rectangle,
-        taken: &mut Vec<(f64, f64)>,
-    ) {
+    fn draw_item(&self, item: &Drawn, scene: &mut Scene, frame: Rectangle, taken: &mut Vec<(f64, f64)>) {
         let place = |p: (f64, f64)| self.place(frame, p);
         match item {
             Drawn::Line { points, color, width, style } => {
@@ -261,11 +246,19 @@ impl Picture {
                     scene.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
                 }
             }
-            Drawn::Note { text, at } => {
-                if let Some(at) = place(*at) {
-                    let set = fonts.typeset(text, WORDS * self.text_scale());
-                    taken.extend(along(at, (at.0 + set.width, at.1)));
-                    scene.label(set, at, Anchor::Start, false, NEUTRAL);
+            Drawn::Bars { points, color } => {
+                /// Half the width of the ends.
+                const END: f64 = 3.5;
+                // What lies below a logarithmic axis ends on it.
+                let floor = self.axes[1].ends().0;
+                for &(x, low, high) in points {
+                    let (Some(a), Some(b)) = (place((x, low.max(floor))), place((x, high))) else { continue };
+                    taken.extend(along(a, b));
+                    for ends in
+                        [[a, b], [(a.0 - END, a.1), (a.0 + END, a.1)], [(b.0 - END, b.1), (b.0 + END, b.1)]]
+                    {
+                        scene.path(polyline(&ends), Paint::stroked(color, 1.2), Some(frame));
+                    }
                 }
             }
         }
@@ -336,57 +329,6 @@ fn along(a: (f64, f64), b: (f64, f64)) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// Pictures of one size beside and below each other, with a title above and a legend below all of them.
-#[derive(Debug, Clone, Default)]
-pub struct Panels {
-    /// Row by row.
-    pub pictures: Vec<Picture>,
-    /// Pictures in a row.
-    pub columns: usize,
-    /// Above all.
-    pub title: String,
-    /// Below all; a single picture brings its own.
-    pub legend: Legend,
-}
-
-impl Panels {
-    /// Writes `NAME.svg` and `NAME.png`.
-    ///
-    /// # Errors
-    /// [`crate::Error::File`] when they cannot be written.
-    pub fn save(mut self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        let fonts = Fonts::load()?;
-        let (width, height) = self.pictures.first().map_or(SIZE, |p| p.size);
-        let columns = self.columns.max(1);
-        let rows = self.pictures.len().div_ceil(columns);
-        let top = if self.title.is_empty() { 0.0 } else { 1.8 * TITLE };
-        let (all_width, all_height) = (columns as f64 * width, top + rows as f64 * height);
-        let mut left = 40.0;
-        if let [only] = self.pictures.as_mut_slice() {
-            left = only.frame(&fonts, (0.0, 0.0))[0];
-            if let Some(below) = only.legend_below(&fonts) {
-                self.legend = below.clone();
-                only.legend_below = true;
-            }
-        }
-        let set = self.legend.set(&fonts, WORDS, all_width - left - 18.0);
-        let legend_height = if self.legend.is_empty() { 0.0 } else { set.height() + 20.0 };
-        let mut scene = Scene::new(all_width, all_height + legend_height);
-        if !self.title.is_empty() {
-            let title = fonts.typeset(&self.title, TITLE);
-            scene.label(title, (left, 1.45 * TITLE), Anchor::Start, false, INK);
-        }
-        if !self.legend.is_empty() {
-            set.draw(&mut scene, (left, all_height + 6.0));
-        }
-        for (i, picture) in self.pictures.into_iter().enumerate() {
-            let corner = ((i % columns) as f64 * width, top + (i / columns) as f64 * height);
-            picture.draw(&fonts, &mut scene, corner);
-        }
-        scene.save(&fonts, directory, name)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -428,19 +370,5 @@ mod tests {
         // The same picture has the same bytes.
         picture().save(dir.path(), "q").unwrap();
         assert_eq!(std::fs::read(dir.path().join("q.png")).unwrap(), png);
-    }
-
-    #[test]
-    fn panels_stand_side_by_side() {
-        let dir = tempfile::tempdir().unwrap();
-        let small = || picture().with_size(400.0, 300.0);
-        let mut legend = Legend::default();
-        legend.push("both", "#000000", Key::Words);
-        let panels =
-            Panels { pictures: vec![small(), small(), small()], columns: 2, title: "Three".into(), legend };
-        let files = panels.save(dir.path(), "p").unwrap();
-        let svg = std::fs::read_to_string(&files[0]).unwrap();
-        assert!(svg.contains("width=\"800\"") && svg.contains("aria-label=\"both\""));
-        assert_eq!(svg.matches("aria-label=\"A law\"").count(), 3);
     }
 }

@@ -93,7 +93,7 @@ pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
             let below = if i + 1 == loads.len() { "processor time (s)" } else { "" };
             let beside = if family == "band" { "relative error of $k$" } else { "" };
             let mut picture = Picture::new(x, y, below, beside)
-                .with_size(400.0, 300.0)
+                .with_size(400.0, 270.0)
                 .with_subtitle(&format!("{words}, $\\bar{{F}} = {load}$"));
             panel(&mut picture, &points, family, load, &dimensions);
             if !picture.is_empty() {

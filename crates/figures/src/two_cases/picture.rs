@@ -95,9 +95,9 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
         .with_legend_below();
     // One above the other where two agree: the first is wide and pale, the second thin on top of it.
     let looks = [
-        (5.0, Mark::Solid(Shape::Circle), 5.6),
+        (3.4, Mark::Solid(Shape::Circle), 5.4),
         (1.6, Mark::Hollow(Shape::Circle), 3.2),
-        (5.0, Mark::Solid(Shape::Square), 5.2),
+        (3.4, Mark::Solid(Shape::Square), 5.0),
         (1.6, Mark::Hollow(Shape::Square), 3.2),
     ];
     for (of, (width, mark, radius)) in CASES.into_iter().zip(looks) {
@@ -110,8 +110,8 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
         let inside = select("bem3d", false);
         let bars: Vec<_> = inside.iter().map(|r| (r.force, r.value, r.error.map(|e| 2.0 * e))).collect();
         picture.line(&at(&inside), color, width, LineStyle::Solid);
-        picture.errors(&bars, color);
         picture.points(&at(&inside), color, radius, mark);
+        picture.errors(&bars, color);
         picture.points(&at(&select("bem3d", true)), color, radius, Mark::Ring(mark_shape(mark)));
         picture.line(&at(&select("persson", false)), color, 1.5, LineStyle::Dashed);
         picture.line(&at(&select("greenwood_williamson", false)), color, 1.5, LineStyle::Dotted);

@@ -117,6 +117,8 @@ fn model_name(name: &str) -> &str {
     match name {
         "bem3d" => "3D boundary elements",
         "mdr1d" => "1D reduction",
+        "mdr1d_partial_slip" => "1D reduction with partial slip",
+        "mdr1d_viscoelastic" => "viscoelastic 1D reduction",
         "equivalent" => "equivalent profile",
         "hertz" => "Hertz",
         "jkr" => "Johnson, Kendall and Roberts",

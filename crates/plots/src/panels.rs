@@ -1,0 +1,84 @@
+//! Several pictures in one file.
+
+use crate::legend::Legend;
+use crate::plot::{Picture, SIZE, TITLE, WORDS};
+use crate::scene::{Anchor, Scene};
+use crate::style::INK;
+use crate::text::Fonts;
+use runs::Result;
+use std::path::{Path, PathBuf};
+
+/// Pictures of one size beside and below each other, with a title above and a legend below all of them.
+#[derive(Debug, Clone, Default)]
+pub struct Panels {
+    /// Row by row.
+    pub pictures: Vec<Picture>,
+    /// Pictures in a row.
+    pub columns: usize,
+    /// Above all.
+    pub title: String,
+    /// Below all; a single picture brings its own.
+    pub legend: Legend,
+}
+
+impl Panels {
+    /// Writes `NAME.svg` and `NAME.png`.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when they cannot be written.
+    pub fn save(mut self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
+        let fonts = Fonts::load()?;
+        let (width, height) = self.pictures.first().map_or(SIZE, |p| p.size);
+        let columns = self.columns.max(1);
+        let rows = self.pictures.len().div_ceil(columns);
+        let top = if self.title.is_empty() { 0.0 } else { 1.8 * TITLE };
+        let (all_width, all_height) = (columns as f64 * width, top + rows as f64 * height);
+        let mut left = 40.0;
+        if let [only] = self.pictures.as_mut_slice() {
+            left = only.frame(&fonts, (0.0, 0.0))[0];
+            if let Some(below) = only.legend_below(&fonts) {
+                self.legend = below.clone();
+                only.legend_below = true;
+            }
+        }
+        let set = self.legend.set(&fonts, WORDS, all_width - left - 18.0);
+        let legend_height = if self.legend.is_empty() { 0.0 } else { set.height() + 20.0 };
+        let mut scene = Scene::new(all_width, all_height + legend_height);
+        if !self.title.is_empty() {
+            let title = fonts.typeset(&self.title, TITLE);
+            scene.label(title, (left, 1.45 * TITLE), Anchor::Start, false, INK);
+        }
+        if !self.legend.is_empty() {
+            set.draw(&mut scene, (left, all_height + 6.0));
+        }
+        for (i, picture) in self.pictures.into_iter().enumerate() {
+            let corner = ((i % columns) as f64 * width, top + (i / columns) as f64 * height);
+            picture.draw(&fonts, &mut scene, corner);
+        }
+        scene.save(&fonts, directory, name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::Axis;
+    use crate::style::Key;
+
+    #[test]
+    fn panels_stand_side_by_side() {
+        let dir = tempfile::tempdir().unwrap();
+        let small = || {
+            let (x, y) = (Axis::Linear(0.0, 1.0), Axis::Linear(0.0, 1.0));
+            Picture::new(x, y, "x", "y").with_title("A law").with_size(400.0, 300.0)
+        };
+        let mut legend = Legend::default();
+        legend.push("both", "#000000", Key::Words);
+        let panels =
+            Panels { pictures: vec![small(), small(), small()], columns: 2, title: "Three".into(), legend };
+        let files = panels.save(dir.path(), "p").unwrap();
+        let svg = std::fs::read_to_string(&files[0]).unwrap();
+        assert!(svg.contains("width=\"800\"") && svg.contains("aria-label=\"both\""));
+        assert_eq!(svg.matches("aria-label=\"A law\"").count(), 3);
+    }
+}
