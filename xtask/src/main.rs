@@ -1,12 +1,13 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `check-reference`, `stability`.
+//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `check-reference`, `stability`, `book`.
 //!
 //! Argument parsing and exit codes; the figures are in the crate `figures`.
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
-//! numbers differ, a hard case fails or error budgets do not hold.
+//! numbers differ, a hard case fails, error budgets do not hold or a link or command of the book is broken.
 
 mod arguments;
+mod book;
 
 use arguments::{Arguments, BenchArguments, Command};
 use clap::Parser as _;
@@ -36,6 +37,9 @@ fn execute(command: Command) -> Result<ExitCode> {
     }
     if let Command::Bench(options) = &command {
         return bench(options);
+    }
+    if let Command::Book(options) = &command {
+        return book::book(options.pictures);
     }
     let name = command.name();
     let reporter = Reporter::new();
@@ -82,7 +86,9 @@ fn execute(command: Command) -> Result<ExitCode> {
             println!("{summary}");
             vec![outcome]
         }
-        Command::Bench(_) | Command::CheckReference(_) | Command::Stability(_) => Vec::new(),
+        Command::Bench(_) | Command::Book(_) | Command::CheckReference(_) | Command::Stability(_) => {
+            Vec::new()
+        }
     };
     if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())
