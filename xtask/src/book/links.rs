@@ -91,6 +91,9 @@ fn links(text: &str) -> Vec<(usize, String)> {
         for after in line.split("](").skip(1) {
             links.push((number, after.split([')', ' ']).next().unwrap_or_default().to_owned()));
         }
+        for after in line.split(" src=\"").skip(1) {
+            links.push((number, after.split('"').next().unwrap_or_default().to_owned()));
+        }
     }
     for (number, line) in text.lines().enumerate() {
         if let Some(after) = line.split("{{#include ").nth(1) {
