@@ -57,10 +57,12 @@ pub fn programs(root: &Path) -> Result<[PathBuf; 2]> {
     let own = std::env::current_exe().map_err(Error::file("find", Path::new("xtask")))?;
     let profile = if cfg!(debug_assertions) { "test" } else { "release" };
     let mut cargo = Command::new("cargo");
-    cargo.args(["build", "--quiet", "--locked", "--package", "fractal-contact", "--profile", profile]);
+    // Both at once: alone, each resolves features of its own and would compile the solvers again.
+    cargo.args(["build", "--quiet", "--locked", "--profile", profile]);
+    cargo.args(["--package", "fractal-contact", "--package", "xtask"]);
     let status = cargo.current_dir(root).status().map_err(Error::file("run", Path::new("cargo")))?;
     if !status.success() {
-        return Err(Error::content(root, "cargo build --package fractal-contact failed"));
+        return Err(Error::content(root, "cargo build --package fractal-contact --package xtask failed"));
     }
     let scenes = own.with_file_name(format!("fractal-contact{}", std::env::consts::EXE_SUFFIX));
     Ok([own, scenes])
