@@ -30,7 +30,17 @@ pub use order::order;
 pub use problem::{Case, Problem, problems};
 pub use stability::{SmallContact, embedded, every_contact_set, map, relief, rough, rough_map, scene};
 
-/// The examples of README.md are tests too.
+/// The examples of README.md and of the book are tests too.
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-mod readme {}
+mod pages {
+    #[doc = include_str!("../../README.md")]
+    mod readme {}
+    #[doc = include_str!("../../book/src/solve.md")]
+    mod solve {}
+    #[doc = include_str!("../../book/src/theories.md")]
+    mod theories {}
+    #[doc = include_str!("../../book/src/rust.md")]
+    mod rust {}
+    #[doc = include_str!("../../book/src/add-a-model.md")]
+    mod add_a_model {}
+}

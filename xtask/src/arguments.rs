@@ -9,7 +9,9 @@ pub use bench::BenchArguments;
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
 use sizes::{Both, LineSizes, Maps, Reduced, Solid};
-use studies::{AccuracyCost, Audit, BudgetCheck, Redraw, Reference, StabilityArguments, TwoCasesArguments};
+use studies::{
+    AccuracyCost, Audit, BookArguments, BudgetCheck, Redraw, Reference, StabilityArguments, TwoCasesArguments,
+};
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
 ///
@@ -90,6 +92,8 @@ pub enum Command {
     CheckReference(Reference),
     /// Hard cases: why each is hard, what is asserted, the figure reached (stability.csv, stability.md).
     Stability(StabilityArguments),
+    /// Links of every Markdown file, commands of the book, and its pages where mdbook is installed.
+    Book(BookArguments),
 }
 
 impl Command {
@@ -113,6 +117,7 @@ impl Command {
             Self::Redraw(_) => "redraw",
             Self::CheckReference(_) => "check-reference",
             Self::Stability(_) => "stability",
+            Self::Book(_) => "book",
         }
     }
 
@@ -141,7 +146,7 @@ impl Command {
                 a.fill(&mut request);
             }
             Self::Audit(a) => a.solid.fill(&mut request),
-            Self::Bench(_) | Self::Redraw(_) => {}
+            Self::Bench(_) | Self::Redraw(_) | Self::Book(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),
             Self::AccuracyCost(a) => request.out = Some(a.out.clone()),

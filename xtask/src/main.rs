@@ -1,12 +1,13 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `redraw`, `check-reference`, `stability`.
+//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `redraw`, `check-reference`, `stability`, `book`.
 //!
 //! Argument parsing and exit codes; the figures are in the crate `figures`.
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
-//! numbers differ, a hard case fails or error budgets do not hold.
+//! numbers differ, a hard case fails, error budgets do not hold or a link or command of the book is broken.
 
 mod arguments;
+mod book;
 
 use arguments::{Arguments, BenchArguments, Command};
 use clap::Parser as _;
@@ -43,6 +44,9 @@ fn execute(command: Command) -> Result<ExitCode> {
             files.iter().for_each(|file| println!("{}", file.display()));
         }
         return Ok(ExitCode::SUCCESS);
+    }
+    if let Command::Book(options) = &command {
+        return book::book(options.pictures);
     }
     let name = command.name();
     let reporter = Reporter::new();
@@ -88,7 +92,7 @@ fn execute(command: Command) -> Result<ExitCode> {
             println!("{summary}");
             vec![outcome]
         }
-        Command::Bench(_) | Command::Redraw(_) | Command::CheckReference(_) | Command::Stability(_) => {
+        Command::Bench(_) | Command::Redraw(_) | Command::Book(_) | Command::CheckReference(_) | Command::Stability(_) => {
             Vec::new()
         }
     };

@@ -167,3 +167,11 @@ pub struct StabilityArguments {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
 }
+
+/// Flags of the book.
+#[derive(Debug, Args)]
+pub struct BookArguments {
+    /// Make the pictures of the book again (book/pictures.sh), and nothing else.
+    #[arg(long)]
+    pub pictures: bool,
+}

@@ -1,0 +1,25 @@
+#!/bin/sh
+# Every picture in book/src/pictures. `cargo xtask book --pictures` runs it in a folder with data/ in it, with both programs on the path
+# and `pictures` set to the folder of the pictures.
+set -eu
+
+# scene SCENE PICTURE...: runs a scene and keeps these of its pictures, as SCENE-PICTURE.
+scene() {
+    name=$1
+    shift
+    fractal-contact run "data/scenes/$name.toml" --out "out/$name" --fresh
+    for picture in "$@"; do
+        cp "out/$name/$picture" "$pictures/$name-$picture"
+    done
+}
+
+scene ball-on-plate curve-approach.svg
+scene rough-sphere curve-stiffness.svg pressure-bem3d-0-004.png pressure-bem3d-0-005.png
+scene measured-map pressure-bem3d-0-002.png
+scene cattaneo-mindlin-loop curve-tangential_force.svg
+scene viscoelastic-indentation curve-approach.svg
+scene fractal-3d-and-1d curve-stiffness.svg
+scene contact-conductance curve-conductance.svg
+scene periodic-theories curve-stiffness.svg curve-area.svg
+scene rough-friction curve-tangential_force.svg
+scene rough-creep curve-approach.svg
