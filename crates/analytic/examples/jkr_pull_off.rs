@@ -7,7 +7,7 @@
 //! ```
 
 use analytic::jkr::Sphere;
-use analytic::*;
+use analytic::{Adhesion, ContactModel, Error, Jkr, Load, Result, Scene, Surface};
 use std::f64::consts::PI;
 
 fn main() -> Result<()> {
@@ -29,8 +29,10 @@ fn main() -> Result<()> {
             4.0 * modulus * a.powi(3) / (3.0 * radius) - (8.0 * PI * work * modulus * a.powi(3)).sqrt();
         assert!((force - exact).abs() < 1e-9 * pull_off.abs());
     }
-    let refused = contact.solve(Load::Force(1.0001 * pull_off));
-    println!("{}", refused.err().map_or_else(String::new, |e| e.to_string()));
+    if let Err(Error::OutOfRange { min, .. }) = contact.solve(Load::Force(1.0001 * pull_off)) {
+        println!("refused: the smallest force is {:.4} mN", min * 1e3);
+        assert!((min / pull_off - 1.0).abs() < 1e-12);
+    }
 
     // Under a prescribed approach the contact lives longer: down to -5/6 pi w R.
     let sphere = Sphere::new(radius, modulus, work)?;

@@ -7,7 +7,9 @@
 //! ```
 
 use analytic::spectrum::Spectrum;
-use analytic::*;
+use analytic::{
+    Boundary, ContactModel, GreenwoodWilliamson, Load, Persson, Result, Scene, SelfAffine, Surface,
+};
 use std::f64::consts::{PI, TAU};
 
 fn main() -> Result<()> {
@@ -31,7 +33,7 @@ fn main() -> Result<()> {
             let kappa = fraction * 1e9 * slope / pressure;
             let gap = state.mean_gap.unwrap_or(0.0) * 1e6;
             let (name, megapascal) = (model.name(), pressure * 1e-6);
-            println!("{name:>22} {megapascal:>8} {fraction:>9.6} {kappa:>9.4} {gap:>11.4}");
+            println!("{name:>22} {megapascal:>8.2} {fraction:>9.6} {kappa:>9.4} {gap:>11.4}");
             // Persson's area is linear in a small pressure: kappa = sqrt(8/pi).
             assert!(model.name() != "persson" || (kappa / (8.0 / PI).sqrt() - 1.0).abs() < 1e-3);
         }

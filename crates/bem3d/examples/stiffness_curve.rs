@@ -6,6 +6,8 @@
 //! OUT
 //! ```
 
+#![allow(clippy::wildcard_imports)] // the solver, its scenes and the traits, from one crate
+
 use bem3d::*;
 
 fn main() -> Result<()> {

@@ -6,7 +6,9 @@
 //! OUT
 //! ```
 
-use mdr1d::*;
+use mdr1d::{
+    Body, Friction, HistoryModel, Load, Pair, PartialSlip, Result, Scene, Step, Surface, Tangential,
+};
 
 fn main() -> Result<()> {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };

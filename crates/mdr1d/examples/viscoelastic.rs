@@ -6,7 +6,7 @@
 //! OUT
 //! ```
 
-use mdr1d::*;
+use mdr1d::{Error, HistoryModel, Load, Relaxing, Result, Rheology, Scene, Step, Surface, Viscoelastic};
 
 fn main() -> Result<()> {
     // E*(t) = E* (1 + w exp(-t/tau)): ten times as stiff at first as in the end.
@@ -28,7 +28,8 @@ fn main() -> Result<()> {
         assert!((a / exact - 1.0).abs() < 1e-10);
     }
     // The theory holds while the contact grows: unloading is refused, and the history stays where it was.
-    let refused = contact.advance(Step::normal(101.0, Load::Force(0.0)));
-    println!("{}", refused.err().map_or_else(String::new, |e| e.to_string()));
+    if let Err(Error::OutOfRange { max, .. }) = contact.advance(Step::normal(101.0, Load::Force(0.0))) {
+        println!("refused: the contact would shrink from t = {max} tau on");
+    }
     Ok(())
 }

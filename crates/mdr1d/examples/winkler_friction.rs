@@ -10,7 +10,10 @@
 //! OUT
 //! ```
 
-use mdr1d::*;
+use mdr1d::{
+    Body, ContactModel, ContactState, Equivalent, Error, Friction, HistoryModel, Load, Normalisation, Pair,
+    PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Surface, Tangential,
+};
 use std::f64::consts::PI;
 
 /// A layer of this thickness under a sphere: `F = pi E* R d^2/thickness`, `k = dF/dd`.

@@ -9,15 +9,18 @@
 use std::error::Error;
 use std::path::PathBuf;
 use surface_io::{
-    Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, describe, files, write_map,
+    Decimal, Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, describe, files, write_map,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
     let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
     // Ripples of 0.2 um on a plane that rises by 0.1 um a column; decimal commas, 64 x 48 points 5 um apart.
     let height = |ix: i32, iy: i32| 0.1 * f64::from(ix) + 0.2 * f64::from(ix).sin() * f64::from(iy).cos();
-    let line = |iy| (0..64).map(|ix| format!("{:.4}", height(ix, iy))).collect::<Vec<_>>().join(";") + "\n";
-    let text = (0..48).map(line).collect::<String>().replacen("0.1683", "BAD", 1).replace('.', ",");
+    let entry = |ix, iy| {
+        if (ix, iy) == (30, 20) { "BAD".to_owned() } else { format!("{:.4}", height(ix, iy)) }
+    };
+    let line = |iy| (0..64).map(|ix| entry(ix, iy)).collect::<Vec<_>>().join(";") + "\n";
+    let text = (0..48).map(line).collect::<String>().replace('.', ",");
     let path = out.join("profilometer.txt");
     files::write_whole(&path, text.as_bytes())?;
 
@@ -25,14 +28,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = ReadOptions {
         unit: Some("um".parse()?),
         cell: Some("5 um".parse()?),
-        decimal: "comma".parse()?,
+        decimal: Decimal::Comma,
         ..ReadOptions::default()
     };
     let scan = Scan::read(&path, &options)?;
     println!("{}", scan.metadata());
     // A missing point is an error until it is said what becomes of it.
-    let silent = scan.map(&Preprocessing::default());
-    println!("refused: {}", silent.is_err());
+    let refused = scan.map(&Preprocessing::default());
+    println!("refused: {}", refused.is_err());
     let hole = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
     assert_eq!(scan.map(&hole)?.undefined(), 1);
 
