@@ -92,9 +92,11 @@ fn execute(command: Command) -> Result<ExitCode> {
             println!("{summary}");
             vec![outcome]
         }
-        Command::Bench(_) | Command::Redraw(_) | Command::Book(_) | Command::CheckReference(_) | Command::Stability(_) => {
-            Vec::new()
-        }
+        Command::Bench(_)
+        | Command::Redraw(_)
+        | Command::Book(_)
+        | Command::CheckReference(_)
+        | Command::Stability(_) => Vec::new(),
     };
     if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())

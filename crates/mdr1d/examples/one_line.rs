@@ -1,25 +1,31 @@
-//! One rough line: force, approach and stiffness over six decades, in a few milliseconds.
+//! One rough line: force, approach and stiffness over six decades of the force, in a few milliseconds.
 //!
-//! `cargo run --release -p mdr1d --example one_line`
+//! `cargo run -p mdr1d --example one_line`
+//!
+//! ```text
+//! OUT
+//! ```
 
-use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};
-use mdr1d::Mdr1d;
+use mdr1d::{ContactModel, Load, Mdr1d, Result, Scene, SelfAffine, Surface, rule};
 
-fn main() -> contact_model::Result<()> {
+fn main() -> Result<()> {
     let surface = SelfAffine::new(2.4, 1.0, 1.0)?;
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
     let mut contact = Mdr1d::default().prepare(&scene, 7)?;
     let normalisation = contact.normalisation();
-    println!("{:>10} {:>12} {:>12} {:>10}", "F/(E*hL)", "d/h", "k/(1.1419E*L)", "elements");
-    for exponent in -10..=3 {
-        let force_bar = 10_f64.powf(0.5 * f64::from(exponent));
+    println!("{:>10} {:>12} {:>12} {:>10}", "F/(E*hL)", "d/h", "k/(1.14E*L)", "elements");
+    for exponent in -5..=1 {
+        let force_bar = 10_f64.powi(exponent);
         let state = contact.solve(Load::Force(normalisation.force(force_bar)?))?;
         println!(
-            "{force_bar:>10.2e} {:>12.6} {:>12.6} {:>10}",
+            "{force_bar:>10.0e} {:>12.6} {:>12.6} {:>10}",
             normalisation.approach_over_h(state.approach.unwrap_or_default())?,
             normalisation.stiffness_bar(state.stiffness.unwrap_or_default()),
             state.report.contact_cells.unwrap_or_default(),
         );
     }
+    // In full contact the line is as stiff as a rigid circle of the square's area.
+    let full = contact.solve(Load::Force(normalisation.force(100.0)?))?.stiffness.unwrap_or_default();
+    assert!((full / rule::full_contact_stiffness(1.0, 1.0) - 1.0).abs() < 1e-12);
     Ok(())
 }

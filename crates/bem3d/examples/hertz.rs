@@ -1,0 +1,30 @@
+//! A sphere on finer and finer cells: how the force and the stiffness approach those of Hertz.
+//!
+//! `cargo run -p bem3d --example hertz`
+//!
+//! ```text
+//! OUT
+//! ```
+
+use bem3d::{Bem3d, ContactModel, Load, Result, Scene, Surface};
+
+fn main() -> Result<()> {
+    let (radius, approach) = (1.0_f64, 0.04_f64);
+    let scene = Scene::new(Surface::Sphere { radius, size: 0.6.into() }, 1.0);
+    // a = sqrt(R d), F = (4/3) E* sqrt(R) d^(3/2), k = 2 E* a.
+    let (a, force) = ((radius * approach).sqrt(), 4.0 / 3.0 * radius.sqrt() * approach.powf(1.5));
+    println!("{:>6} {:>10} {:>12} {:>12}", "cells", "in contact", "error of F", "error of k");
+    let mut error = 0.0;
+    for cells in [33, 65, 129, 257] {
+        let model = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() };
+        let state = model.prepare(&scene, 0)?.solve(Load::Approach(approach))?;
+        error = state.force / force - 1.0;
+        println!(
+            "{cells:>6} {:>10} {error:>12.1e} {:>12.1e}",
+            state.report.contact_cells.unwrap_or(0),
+            state.stiffness.unwrap_or(0.0) / (2.0 * a) - 1.0
+        );
+    }
+    assert!(error.abs() < 1e-3); // about 170 cells across the contact
+    Ok(())
+}

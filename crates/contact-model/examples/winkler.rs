@@ -1,0 +1,98 @@
+//! A model of one's own: an elastic layer that answers as a Winkler foundation, checked against its closed form.
+//!
+//! `cargo run -p contact-model --example winkler`
+//!
+//! ```text
+//! OUT
+//! ```
+
+use contact_model::{
+    ContactModel, ContactState, Error, HeightMap, Load, Normalisation, Outputs, PreparedContact, Result,
+    Scene, Size, SolveReport, Source, Stop, Surface,
+};
+use std::f64::consts::PI;
+
+/// A thin layer on a rigid base: independent springs of E*/thickness per area.
+struct Winkler {
+    thickness: f64,
+}
+
+impl ContactModel for Winkler {
+    fn name(&self) -> &'static str {
+        "winkler"
+    }
+
+    fn sources(&self) -> &'static [Source] {
+        &[Source { citation: "K. L. Johnson, Contact Mechanics, Cambridge (1985)", what: "Sec. 4.3" }]
+    }
+
+    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        scene.validate()?;
+        scene.refuse_effects(self.name())?;
+        if scene.outputs.any_field() || scene.outputs.contact_patches {
+            return Err(Error::unsupported(self.name(), "fields and patches"));
+        }
+        let Surface::Heights(map) = &scene.surface else {
+            return Err(Error::unsupported(self.name(), scene.surface.kind()));
+        };
+        let mut depths: Vec<f64> = map.defined().map(|h| map.highest() - h).collect();
+        depths.sort_by(f64::total_cmp);
+        let (cell, modulus) = (map.dx() * map.dy(), scene.modulus);
+        let normalisation = Normalisation { modulus, length: map.length(), height: None };
+        let spring = cell * modulus / self.thickness;
+        Ok(Box::new(Layer { depths, cell, spring, normalisation, outputs: scene.outputs }))
+    }
+}
+
+/// The undeformed gaps in ascending order, and the spring under one cell.
+struct Layer {
+    depths: Vec<f64>,
+    cell: f64,
+    spring: f64,
+    normalisation: Normalisation,
+    outputs: Outputs,
+}
+
+impl PreparedContact for Layer {
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
+    }
+
+    fn solve_until(&mut self, load: Load, _stop: Stop<'_>) -> Result<ContactState> {
+        let Load::Approach(approach) = load.validated()? else {
+            return Err(Error::unsupported("winkler", format!("the load {load:?}")));
+        };
+        let touching = &self.depths[..self.depths.partition_point(|z| *z < approach)];
+        let mut report = SolveReport::exact("independent springs");
+        report.contact_cells = Some(touching.len());
+        let count = touching.len() as f64;
+        ContactState::new(self.spring * touching.iter().map(|z| approach - z).sum::<f64>(), report)
+            .with_approach(approach)
+            .with_stiffness(self.outputs.needs_stiffness().then_some(self.spring * count))
+            .with_area(self.outputs.area.then_some(self.cell * count))
+            .completed(&self.outputs, self.normalisation.modulus)
+    }
+}
+
+fn main() -> Result<()> {
+    let (side, radius, thickness, modulus) = (1.0, 1.0, 0.05, 2.0);
+    let middle = |i: usize| ((i as f64 + 0.5) / 400.0 - 0.5) * side;
+    let sphere = |ix, iy| -(middle(ix).powi(2) + middle(iy).powi(2)) / (2.0 * radius);
+    let map = HeightMap::from_fn(400, Size::from(side), sphere)?;
+    let mut scene = Scene::new(Surface::Heights(map.into()), modulus);
+    scene.outputs.area = true;
+    let model: &dyn ContactModel = &Winkler { thickness };
+    let mut contact = model.prepare(&scene, 0)?;
+    println!("{:>9} {:>12} {:>12} {:>10} {:>10}", "approach", "force", "closed form", "k", "area");
+    for approach in [0.005, 0.01, 0.02, 0.04] {
+        let state = contact.solve(Load::Approach(approach))?;
+        let exact = PI * modulus / thickness * radius * approach * approach;
+        let (stiffness, area) = (state.stiffness.unwrap_or(0.0), state.area.unwrap_or(0.0));
+        println!("{approach:>9} {:>12.6} {exact:>12.6} {stiffness:>10.4} {area:>10.6}", state.force);
+        // The sum over cells differs from the integral by their share of the contact.
+        assert!((state.force / exact - 1.0).abs() < 1e-3);
+    }
+    let refused = contact.solve(Load::Force(1.0));
+    println!("{}", refused.err().map_or_else(String::new, |e| e.to_string()));
+    Ok(())
+}

@@ -1,0 +1,27 @@
+//! Fig. 5 of the paper: what equivalent lines of three fractal dimensions look like, as CSV, SVG, PNG and NPY.
+//!
+//! `cargo run -p figures --example fig5_lines -- DIRECTORY`
+//!
+//! ```text
+//! OUT
+//! ```
+
+use evaluation::{Request, Result, Run};
+use runs::{CsvFile, Silent};
+use std::path::PathBuf;
+
+fn main() -> Result<()> {
+    let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
+    let request =
+        Request { elements: Some(1 << 14), out: Some(out.join("fig5-lines")), ..Request::default() };
+    let outcome = figures::fig5(&Run::new(&request)?, &Silent)?;
+    println!("{}", runs::file_names(&outcome.files).join(", "));
+    // The header of a CSV says what made it.
+    let table = CsvFile::read(&outcome.files[0])?;
+    for line in table.comments.iter().filter(|c| c.starts_with("column") || c.starts_with("command")) {
+        println!("{line}");
+    }
+    println!("{} rows", table.rows.len());
+    assert!(outcome.files.iter().all(|f| f.exists()));
+    Ok(())
+}

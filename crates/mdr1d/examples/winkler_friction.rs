@@ -1,0 +1,80 @@
+//! A model of one's own under [`mdr1d::Equivalent`]: friction on a Winkler foundation, checked against its closed form.
+//!
+//! `cargo run -p mdr1d --example winkler_friction`
+//!
+//! `Equivalent` asks of a model an approach, a force and a stiffness that never falls, nothing about a half-space. On independent springs
+//! its superposition is exact: `T = mu (F(d) - F(d - u_x G*/(mu E*)))`. `stick_radius` is that of the round half-space contact of
+//! the same stiffness, which a foundation does not have.
+//!
+//! ```text
+//! OUT
+//! ```
+
+use mdr1d::{
+    Body, ContactModel, ContactState, Equivalent, Error, Friction, HistoryModel, Load, Normalisation, Pair,
+    PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Surface, Tangential,
+};
+use std::f64::consts::PI;
+
+/// A layer of this thickness under a sphere: `F = pi E* R d^2/thickness`, `k = dF/dd`.
+struct Winkler {
+    thickness: f64,
+}
+
+struct Layer(f64, Normalisation);
+
+impl ContactModel for Winkler {
+    fn name(&self) -> &'static str {
+        "winkler"
+    }
+
+    fn sources(&self) -> &'static [Source] {
+        &[Source { citation: "K. L. Johnson, Contact Mechanics, Cambridge (1985)", what: "Sec. 4.3" }]
+    }
+
+    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        scene.refuse_effects(self.name())?; // `Equivalent` keeps friction to itself
+        let Surface::Sphere { radius, size } = scene.surface else {
+            return Err(Error::unsupported(self.name(), scene.surface.kind()));
+        };
+        let normalisation = Normalisation { modulus: scene.modulus, length: size.length(), height: None };
+        Ok(Box::new(Layer(PI * scene.modulus * radius / self.thickness, normalisation)))
+    }
+}
+
+impl PreparedContact for Layer {
+    fn normalisation(&self) -> Normalisation {
+        self.1
+    }
+
+    fn solve_until(&mut self, load: Load, _stop: Stop<'_>) -> Result<ContactState> {
+        let d = match load.validated()? {
+            Load::Approach(approach) => approach,
+            Load::Force(force) => (force / self.0).sqrt(),
+            other => return Err(Error::unsupported("winkler", format!("the load {other:?}"))),
+        };
+        let state = ContactState::new(self.0 * d * d, SolveReport::exact("closed form"));
+        Ok(state.with_approach(d).with_stiffness(2.0 * self.0 * d))
+    }
+}
+
+fn main() -> Result<()> {
+    let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.4 } };
+    let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?;
+    scene.effects.friction = Friction::Coulomb { coefficient: 0.3 };
+    let mut contact = Equivalent::new(Winkler { thickness: 0.05 }).prepare(&scene, 0)?;
+    let normal = Load::Approach(0.02);
+    let force = contact.advance(Step::normal(0.0, normal))?.normal.force;
+    // Full slip from this displacement on.
+    let largest = 0.3 * 0.02 * scene.modulus / pair.shear_modulus()?;
+    println!("{:>7} {:>10} {:>12} {:>12}", "u/u_max", "T/mu F", "closed form", "dissipated");
+    for share in [0.1, 0.3, 0.6, 0.9] {
+        let tangential = Tangential::Displacement(share * largest);
+        let state = contact.advance(Step { time: 0.0, normal, tangential })?;
+        let Some(found) = state.tangential else { continue };
+        let (ratio, exact) = (found.force / (0.3 * force), 1.0 - (1.0_f64 - share).powi(2));
+        println!("{share:>7} {ratio:>10.6} {exact:>12.6} {:>12.4e}", found.dissipated);
+        assert!((ratio - exact).abs() < 1e-6); // a profile through 49 states
+    }
+    Ok(())
+}

@@ -1,0 +1,28 @@
+//! One hard case of the registry, solved and reported: why it is hard, what is asserted, what was found.
+//!
+//! `cargo run -p stability --example one_case -- NAME` (without a name: a checkerboard)
+//!
+//! ```text
+//! OUT
+//! ```
+
+use stability::{Effort, cases};
+use std::error::Error;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let name = std::env::args().nth(1).unwrap_or_else(|| "a checkerboard".to_owned());
+    let all = cases();
+    let Some(case) = all.iter().find(|case| case.name == name) else {
+        let names: Vec<&str> = all.iter().map(|case| case.name).collect();
+        return Err(format!("{name} is none of: {}", names.join("; ")).into());
+    };
+    println!("{} (one of {})", case.name, all.len());
+    println!("hard because: {}", case.why);
+    println!("asserted: {}", case.asserted);
+    let verdict = case.run(Effort::Quick);
+    let figure = verdict.figure.map_or_else(|| "none".to_owned(), |f| format!("{f:.1e}"));
+    println!("{}: largest deviation {figure}, bound {:.0e}", verdict.status.as_str(), case.bound);
+    verdict.broken.iter().for_each(|broken| println!("broken: {broken}"));
+    assert!(verdict.passed());
+    Ok(())
+}

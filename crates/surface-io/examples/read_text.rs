@@ -1,0 +1,50 @@
+//! A measured map as text with a tilt and a missing point: what the file states, what is done about it, and what becomes of it.
+//!
+//! `cargo run -p surface-io --example read_text -- DIRECTORY`
+//!
+//! ```text
+//! OUT
+//! ```
+
+use std::error::Error;
+use std::path::PathBuf;
+use surface_io::{
+    Decimal, Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, describe, files, write_map,
+};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
+    // Ripples of 0.2 um on a plane that rises by 0.1 um a column; decimal commas, 64 x 48 points 5 um apart.
+    let height = |ix: i32, iy: i32| 0.1 * f64::from(ix) + 0.2 * f64::from(ix).sin() * f64::from(iy).cos();
+    let entry = |ix, iy| {
+        if (ix, iy) == (30, 20) { "BAD".to_owned() } else { format!("{:.4}", height(ix, iy)) }
+    };
+    let line = |iy| (0..64).map(|ix| entry(ix, iy)).collect::<Vec<_>>().join(";") + "\n";
+    let text = (0..48).map(line).collect::<String>().replace('.', ",");
+    let path = out.join("profilometer.txt");
+    files::write_whole(&path, text.as_bytes())?;
+
+    // What the file does not say is given; the rest is found and can be looked at.
+    let options = ReadOptions {
+        unit: Some("um".parse()?),
+        cell: Some("5 um".parse()?),
+        decimal: Decimal::Comma,
+        ..ReadOptions::default()
+    };
+    let scan = Scan::read(&path, &options)?;
+    println!("{}", scan.metadata());
+    // A missing point is an error until it is said what becomes of it.
+    let refused = scan.map(&Preprocessing::default());
+    println!("refused: {}", refused.is_err());
+    let hole = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
+    assert_eq!(scan.map(&hole)?.undefined(), 1);
+
+    let filled =
+        Preprocessing { fill: Some(Fill::Neighbours), detrend: Detrend::Plane, ..Preprocessing::default() };
+    let map = scan.map(&filled)?;
+    println!("{}", describe(&map));
+    // A ripple sin x cos y has half the amplitude as rms.
+    assert!((describe(&map).rms_height / 0.1e-6 - 1.0).abs() < 0.02);
+    write_map(&out.join("profilometer.npy"), &map, Metric::Metres)?;
+    Ok(())
+}
