@@ -70,9 +70,10 @@ fn outside_the_book(root: &Path) -> Result<Vec<String>> {
         let text = read(page)?;
         for (line, link) in links(&text) {
             // Pages turn `x.md` into `x.html`, which is not there; a folder shows its README.
-            let file = link.split('#').next().unwrap_or_default();
-            if file.starts_with("../") && file.ends_with(".md") && !text.contains(&format!("include {file}"))
-            {
+            let file = Path::new(link.split('#').next().unwrap_or_default());
+            let markdown = file.extension().is_some_and(|extension| extension == "md");
+            let included = text.contains(&format!("include {}", file.display()));
+            if file.starts_with("..") && markdown && !included {
                 wrong.push(format!("book/src/{name}:{line}: {link}: link to its folder instead"));
             }
         }
