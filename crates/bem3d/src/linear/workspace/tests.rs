@@ -161,6 +161,23 @@ fn every_recipe_reaches_the_factored_solution() {
 }
 
 #[test]
+fn where_a_set_lies_in_its_grid_does_not_matter() {
+    let grid = Grid::square(40, 40);
+    let at = |x0: usize, y0: usize| {
+        let cells = scattered(SQUARE);
+        let index: Vec<u32> = cells.places().map(|(x, y)| ((y + y0) * 40 + x + x0) as u32).collect();
+        CellSet::from_index(grid, &index)
+    };
+    let (corner, inside) = (at(0, 0), at(13, 9));
+    let r = right(corner.len(), 1.0);
+    for (here, there) in both(&corner).into_iter().zip(both(&inside)) {
+        let [one, other] = [(&corner, here), (&inside, there)]
+            .map(|(set, recipe)| solve_on(&mut operators(grid), set, recipe, &r, false, endless(4)).x);
+        assert_eq!(one, other, "{here}");
+    }
+}
+
+#[test]
 fn what_a_workspace_held_before_does_not_matter() {
     let (set, mut operators) = (scattered(SQUARE), operators(SQUARE));
     let r = right(set.len(), 1.0);
