@@ -40,8 +40,9 @@ fn execute(command: Command) -> Result<ExitCode> {
     }
     if let Command::Redraw(options) = &command {
         for directory in &options.directories {
-            let files = figures::redraw(directory, &options.beside())?;
-            files.iter().for_each(|file| println!("{}", file.display()));
+            for file in figures::redraw(directory, &options.beside())? {
+                println!("{}", file.display());
+            }
         }
         return Ok(ExitCode::SUCCESS);
     }

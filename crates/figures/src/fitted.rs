@@ -152,6 +152,7 @@ mod tests {
 
     #[test]
     fn windows_are_short() {
-        assert_eq!([2.0979e-5, 0.086, 0.0020647].map(rounded), [2.1e-5, 0.086, 0.0021]);
+        let shown = [2.0979e-5, 0.086, 2.0647e-3].map(|v| number(rounded(v)));
+        assert_eq!(shown, ["$2.1×10^{-5}$", "0.086", "0.0021"]);
     }
 }

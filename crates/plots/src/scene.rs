@@ -3,7 +3,7 @@
 use crate::map::{encode_grey, encode_rgb};
 use crate::text::{Fonts, Piece, Typeset};
 use runs::{Error, Result, files};
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use tiny_skia as skia;
 
@@ -91,7 +91,7 @@ impl Scene {
 
     fn svg(&self, fonts: &Fonts, path: &Path) -> Result<String> {
         let mut clips: Vec<Rectangle> = Vec::new();
-        let mut glyphs: BTreeMap<(bool, u16), ()> = BTreeMap::new();
+        let mut glyphs: BTreeSet<(bool, u16)> = BTreeSet::new();
         let mut body = String::new();
         for item in &self.items {
             match item {
@@ -118,7 +118,7 @@ impl Scene {
                     for g in &set.glyphs {
                         let outline = !fonts.outline(g.id, g.italic).is_empty();
                         if outline {
-                            glyphs.insert((g.italic, g.id), ());
+                            glyphs.insert((g.italic, g.id));
                             body += &format!(
                                 "<use href=\"#{}\" transform=\"translate({} {})scale({})\"/>",
                                 glyph_name(g.italic, g.id),
@@ -154,7 +154,7 @@ impl Scene {
             );
         }
         // Each glyph once, 100 units to the em.
-        for (italic, id) in glyphs.into_keys() {
+        for (italic, id) in glyphs {
             let outline = svg_path(&fonts.outline(id, italic), 100.0, -100.0);
             text += &format!("<path id=\"{}\" d=\"{outline}\"/>\n", glyph_name(italic, id));
         }
