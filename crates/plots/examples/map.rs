@@ -1,4 +1,5 @@
-//! A rough surface on an oblong grid with a hole as a grey picture: high is dark, undefined points are transparent.
+//! A rough surface on an oblong grid with a hole as a grey picture: high is dark, undefined points are
+//! transparent.
 //!
 //! `cargo run -p plots --example map -- DIRECTORY`
 //!

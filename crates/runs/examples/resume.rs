@@ -1,4 +1,5 @@
-//! A list of jobs with a result store: an interrupted run resumes where it stopped, and a finished one computes nothing.
+//! A list of jobs with a result store: an interrupted run resumes where it stopped, and a finished one
+//! computes nothing.
 //!
 //! `cargo run -p runs --example resume -- DIRECTORY`
 //!

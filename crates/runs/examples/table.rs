@@ -1,4 +1,5 @@
-//! A table as CSV that explains itself: columns with units, sources, the command; absent entries are empty, numbers keep their bits.
+//! A table as CSV that explains itself: columns with units, sources, the command; absent entries are empty,
+//! numbers keep their bits.
 //!
 //! `cargo run -p runs --example table -- DIRECTORY`
 //!

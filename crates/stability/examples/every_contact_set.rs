@@ -1,4 +1,5 @@
-//! A map small enough to try every contact set: the one that satisfies the contact conditions against the solver's.
+//! A map small enough to try every contact set: the one that satisfies the contact conditions against the
+//! solver's.
 //!
 //! `cargo run -p stability --example every_contact_set`
 //!
