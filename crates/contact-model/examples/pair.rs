@@ -31,8 +31,7 @@ fn main() -> Result<()> {
         assert!((normalisation.force_bar(force)? / force_bar - 1.0).abs() < 1e-14);
     }
 
-    // A single round contact of radius a = 10 um: k = 2 E* a, and Holm's constriction Lambda = 4 a/(rho_1 +
-    // rho_2).
+    // A single round contact, a = 10 um: k = 2 E* a, and Holm's constriction Lambda = 4 a/(rho_1 + rho_2).
     let (a, steel, copper) = (10e-6, 1.4e-7, 1.7e-8);
     let stiffness = 2.0 * modulus * a;
     let electrical = Conductance::Electrical { first: steel, second: copper };

@@ -4,10 +4,9 @@
 //! `cargo run -p mdr1d --example winkler_friction`
 //!
 //! `Equivalent` asks of a model an approach, a force and a stiffness that never falls, nothing about a
-//! half-space. On independent springs
-//! its superposition is exact: `T = mu (F(d) - F(d - u_x G*/(mu E*)))`. `stick_radius` is that of the round
-//! half-space contact of
-//! the same stiffness, which a foundation does not have.
+//! half-space, so it takes a Winkler foundation. On independent springs its superposition is exact:
+//! `T = mu (F(d) - F(d - u_x G*/(mu E*)))`. Two things it takes from the half-space: the tangential stiffness
+//! is G*/E* times the normal one, and `stick_radius` is that of the round contact of the same stiffness.
 //!
 //! ```text
 //! u/u_max     T/mu F  closed form   dissipated

@@ -4,7 +4,7 @@
 //! `cargo run -p plots --example map -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! 384 x 128 pixels, 2056 of them transparent
 //! ```
 
 use contact_model::SelfAffine;
