@@ -1,16 +1,19 @@
-//! Laws of several fractal dimensions that meet in one point: where they cross, and how well all of them collapse on one line.
+//! Laws of several fractal dimensions that meet in one point: where they cross, and how well all of them
+//! collapse on one line.
 //!
 //! `cargo run -p analysis --example crossing`
 //!
 //! ```text
-//! OUT
+//! crossing: F_bar = 0.0917, k_bar = 0.1878, spread 0.0191
+//! collapse: 18 points, rms 0.0309, largest 0.0372, scatter 0.0309
 //! ```
 
 use analysis::{CollapsePoint, collapse, crossing};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Eqs. 6, 8 and 11 of Pohrt, Popov and Filippov (2012): alpha = 0.266 D_f, zeta = 0.18/0.086^alpha, the latter 2 % off in turn.
+    // Eqs. 6, 8 and 11 of Pohrt, Popov and Filippov (2012): alpha = 0.266 D_f, zeta = 0.18/0.086^alpha, the
+    // latter 2 % off in turn.
     let laws: Vec<(f64, f64)> = (0..6)
         .map(|i| {
             let alpha = 0.266 * (2.0 + 0.2 * f64::from(i));

@@ -1,4 +1,5 @@
-//! A sphere with JKR adhesion that is pulled off: the states of negative force and the load at which the contact breaks.
+//! A sphere with JKR adhesion that is pulled off: the states of negative force and the load at which the
+//! contact breaks.
 //!
 //! `cargo run -p analytic --example jkr_pull_off`
 //!

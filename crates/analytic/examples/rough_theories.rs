@@ -1,4 +1,5 @@
-//! Persson against Greenwood and Williamson: area and mean gap of the same random surface under the same pressures.
+//! Persson against Greenwood and Williamson: area and mean gap of the same random surface under the same
+//! pressures.
 //!
 //! `cargo run -p analytic --example rough_theories`
 //!

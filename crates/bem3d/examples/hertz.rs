@@ -14,17 +14,15 @@ fn main() -> Result<()> {
     // a = sqrt(R d), F = (4/3) E* sqrt(R) d^(3/2), k = 2 E* a.
     let (a, force) = ((radius * approach).sqrt(), 4.0 / 3.0 * radius.sqrt() * approach.powf(1.5));
     println!("{:>6} {:>10} {:>12} {:>12}", "cells", "in contact", "error of F", "error of k");
-    let mut error = 0.0;
+    let mut errors = [0.0; 2];
     for cells in [33, 65, 129, 257] {
         let model = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() };
         let state = model.prepare(&scene, 0)?.solve(Load::Approach(approach))?;
-        error = state.force / force - 1.0;
-        println!(
-            "{cells:>6} {:>10} {error:>12.1e} {:>12.1e}",
-            state.report.contact_cells.unwrap_or(0),
-            state.stiffness.unwrap_or(0.0) / (2.0 * a) - 1.0
-        );
+        errors = [state.force / force - 1.0, state.stiffness.unwrap_or(0.0) / (2.0 * a) - 1.0];
+        let count = state.report.contact_cells.unwrap_or(0);
+        println!("{cells:>6} {count:>10} {:>12.1e} {:>12.1e}", errors[0], errors[1]);
     }
-    assert!(error.abs() < 1e-3); // about 170 cells across the contact
+    // About 170 cells across the contact; k knows its edge to a fraction of a cell only.
+    assert!(errors[0].abs() < 1e-4 && errors[1].abs() < 1e-3);
     Ok(())
 }

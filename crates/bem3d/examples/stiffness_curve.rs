@@ -3,7 +3,12 @@
 //! `cargo run -p bem3d --example stiffness_curve`
 //!
 //! ```text
-//! OUT
+//!   F_bar      d/h    k_bar     A/A0 patches  certificate
+//!   0.001   0.1448   0.0060  0.00006       1  0e0
+//!    0.01   0.5172   0.0396  0.00096       5  1e-16
+//!     0.1   1.5417   0.1182  0.00721       7  8e-16
+//!       1   3.8969   0.6529  0.07494     152  7e-6
+//!      10  12.4299   0.9915  0.51704     150  8e-6
 //! ```
 
 #![allow(clippy::wildcard_imports)] // the solver, its scenes and the traits, from one crate

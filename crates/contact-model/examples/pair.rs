@@ -1,9 +1,14 @@
-//! From two materials to what a contact of theirs needs: E*, G*, normalised loads and the conductance of a stiffness.
+//! From two materials to what a contact of theirs needs: E*, G*, normalised loads and the conductance of a
+//! stiffness.
 //!
 //! `cargo run -p contact-model --example pair`
 //!
 //! ```text
-//! OUT
+//! E* = 85.45 GPa, G* = 68.82 GPa
+//! F_bar = 0.01: F = 0.427 N, mean pressure 0.43 MPa
+//! F_bar = 0.1: F = 4.272 N, mean pressure 4.27 MPa
+//! F_bar = 1: F = 42.723 N, mean pressure 42.72 MPa
+//! a = 10 um: k = 1.709 N/um, resistance 3.925 mOhm
 //! ```
 
 use contact_model::{Body, Conductance, Normalisation, Pair, Result};
@@ -26,7 +31,7 @@ fn main() -> Result<()> {
         assert!((normalisation.force_bar(force)? / force_bar - 1.0).abs() < 1e-14);
     }
 
-    // A single round contact of radius a = 10 um: k = 2 E* a, and Holm's constriction Lambda = 4 a/(rho_1 + rho_2).
+    // A single round contact, a = 10 um: k = 2 E* a, and Holm's constriction Lambda = 4 a/(rho_1 + rho_2).
     let (a, steel, copper) = (10e-6, 1.4e-7, 1.7e-8);
     let stiffness = 2.0 * modulus * a;
     let electrical = Conductance::Electrical { first: steel, second: copper };

@@ -1,9 +1,15 @@
-//! A model of one's own: an elastic layer that answers as a Winkler foundation, checked against its closed form.
+//! A model of one's own: an elastic layer that answers as a Winkler foundation, checked against its closed
+//! form.
 //!
 //! `cargo run -p contact-model --example winkler`
 //!
 //! ```text
-//! OUT
+//!  approach        force  closed form          k       area
+//!     0.005     0.003144     0.003142     1.2560   0.031400
+//!      0.01     0.012570     0.012566     2.5110   0.062775
+//!      0.02     0.050273     0.050265     5.0270   0.125675
+//!      0.04     0.201078     0.201062    10.0490   0.251225
+//! the model winkler does not support the load Force(1.0)
 //! ```
 
 use contact_model::{

@@ -1,4 +1,5 @@
-//! The error budget of a small ensemble: what solver, grid and number of surfaces each leave open in the mean stiffness.
+//! The error budget of a small ensemble: what solver, grid and number of surfaces each leave open in the mean
+//! stiffness.
 //!
 //! `cargo run -p evaluation --example error_budget -- DIRECTORY`
 //!

@@ -1,4 +1,5 @@
-//! Exponents of ensembles of equivalent lines for three fractal dimensions beside the scaling 1/(1 + H) of Eq. 24.
+//! Exponents of ensembles of equivalent lines for three fractal dimensions beside the scaling 1/(1 + H) of
+//! Eq. 24.
 //!
 //! `cargo run -p evaluation --example lines -- DIRECTORY`
 //!

@@ -1,4 +1,5 @@
-//! Fig. 2 of the paper in small: stiffness over force of an ensemble in three dimensions, with the paper's claims beside it.
+//! Fig. 2 of the paper in small: stiffness over force of an ensemble in three dimensions, with the paper's
+//! claims beside it.
 //!
 //! `cargo run -p figures --example fig2_small -- DIRECTORY`
 //!

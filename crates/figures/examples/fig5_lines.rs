@@ -1,4 +1,5 @@
-//! Fig. 5 of the paper: what equivalent lines of three fractal dimensions look like, as CSV, SVG, PNG and NPY.
+//! Fig. 5 of the paper: what equivalent lines of three fractal dimensions look like, as CSV, SVG, PNG and
+//! NPY.
 //!
 //! `cargo run -p figures --example fig5_lines -- DIRECTORY`
 //!

@@ -1,4 +1,5 @@
-//! Contact area of a periodic rough surface over the pressure, solved and after Persson's theory, from the same scene.
+//! Contact area of a periodic rough surface over the pressure, solved and after Persson's theory, from the
+//! same scene.
 //!
 //! `cargo run -p fractal-contact --example persson_area`
 //!
@@ -30,7 +31,8 @@ fn main() -> Result<()> {
         let fraction = |area: Option<f64>| area.unwrap_or(0.0);
         let (here, persson) = (fraction(solved.solve(load)?.area), fraction(theory.solve(load)?.area));
         println!("{pressure:>9} {here:>8.4} {persson:>8.4} {:>6.3}", here / persson);
-        // The theory is exact towards full contact and low by some 20 % where the contact is light; cells that touch count whole.
+        // The theory is exact towards full contact and low by some 20 % where the contact is light; cells
+        // that touch count whole.
         assert!(here / persson > 0.98 && here / persson < 1.45);
     }
     Ok(())

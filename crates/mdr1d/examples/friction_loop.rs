@@ -1,9 +1,18 @@
-//! A sphere under a constant normal force whose tangential force goes to and fro: the friction loop and its dissipated energy.
+//! A sphere under a constant normal force whose tangential force goes to and fro: the friction loop and its
+//! dissipated energy.
 //!
 //! `cargo run -p mdr1d --example friction_loop`
 //!
 //! ```text
-//! OUT
+//! T/mu F          u_x      c/a   dissipated
+//!    0.8    1.4374e-2   0.5848    4.8415e-6
+//!      0    1.7643e-3   0.8434    5.5527e-6
+//!   -0.8   -1.4374e-2   0.5848    1.4524e-5
+//!      0   -1.7643e-3   0.8434    1.5236e-5
+//!    0.8    1.4374e-2   0.5848    2.4207e-5
+//!   -0.8   -1.4374e-2   0.5848    3.3890e-5
+//!    0.8    1.4374e-2   0.5848    4.3573e-5
+//! energy of a loop: 1.936592e-5, of the next 1.936592e-5, closed form 1.936592e-5
 //! ```
 
 use mdr1d::{

@@ -1,4 +1,5 @@
-//! A sphere under a suddenly applied constant force creeps into a standard solid; the contact radius follows the creep function.
+//! A sphere under a suddenly applied constant force creeps into a standard solid; the contact radius follows
+//! the creep function.
 //!
 //! `cargo run -p mdr1d --example viscoelastic`
 //!

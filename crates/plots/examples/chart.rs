@@ -3,7 +3,10 @@
 //! `cargo run -p plots --example chart -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! flat cylinder, 2 E* a d: F ~ d^1.000
+//! sphere, (4/3) E* R^(1/2) d^(3/2): F ~ d^1.500
+//! cone, (2/pi) E* d^2/slope: F ~ d^2.000
+//! 2 files
 //! ```
 
 use plots::{Chart, Curve, Result};
@@ -24,9 +27,11 @@ fn main() -> Result<()> {
         scattered: false,
     };
     let curves: Vec<Curve> = force.iter().map(curve).collect();
-    for curve in &curves {
+    for (curve, expected) in curves.iter().zip([1.0, 1.5, 2.0]) {
         let [(d0, f0), (d1, f1)] = [curve.points[0], curve.points[40]];
-        println!("{}: F ~ d^{:.3}", curve.label, (f1 / f0).ln() / (d1 / d0).ln());
+        let exponent = (f1 / f0).ln() / (d1 / d0).ln();
+        println!("{}: F ~ d^{exponent:.3}", curve.label);
+        assert!((exponent - expected).abs() < 1e-12);
     }
     let chart = Chart {
         title: "Force of three bodies, E* = 1".to_owned(),

@@ -1,4 +1,5 @@
-//! A list of jobs with a result store: an interrupted run resumes where it stopped, and a finished one computes nothing.
+//! A list of jobs with a result store: an interrupted run resumes where it stopped, and a finished one
+//! computes nothing.
 //!
 //! `cargo run -p runs --example resume -- DIRECTORY`
 //!
@@ -10,20 +11,20 @@ use contact_model::{SelfAffine, Stop};
 use runs::{Error, Job, Result, Silent, Store, collect, number, run_stored};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use surface_gen::{rms_slope, self_affine_map};
+use surface_gen::self_affine_map;
 
-/// The rms slope of one surface.
-struct Slope<'a> {
+/// The highest point of one surface, in rms heights.
+struct Summit<'a> {
     seed: u64,
     solved: &'a AtomicUsize,
 }
 
-impl Job for Slope<'_> {
+impl Job for Summit<'_> {
     type Output = f64;
     type Error = Error;
 
     fn key(&self) -> String {
-        format!("example slope 1\nD_f 2.4, rms height 0.01, 129 cells, seed {}", self.seed)
+        format!("example summit 1\nD_f 2.4, 129 cells, seed {}", self.seed)
     }
 
     fn cost(&self) -> u64 {
@@ -32,12 +33,12 @@ impl Job for Slope<'_> {
 
     fn solve(&self, _stop: Stop<'_>) -> Result<f64> {
         self.solved.fetch_add(1, Ordering::Relaxed);
-        let slope = || rms_slope(&self_affine_map(&SelfAffine::new(2.4, 1.0, 0.01)?, 129, self.seed)?);
-        slope().map_err(Error::model(format!("surface {}", self.seed)))
+        let draw = || self_affine_map(&SelfAffine::new(2.4, 1.0, 1.0)?, 129, self.seed);
+        Ok(draw().map_err(Error::model(format!("surface {}", self.seed)))?.highest())
     }
 
-    fn encode(&self, slope: &f64) -> Option<String> {
-        Some(number(*slope) + "\n")
+    fn encode(&self, highest: &f64) -> Option<String> {
+        Some(number(*highest) + "\n")
     }
 
     fn decode(&self, text: &str) -> Option<f64> {
@@ -49,20 +50,20 @@ fn main() -> Result<()> {
     let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
     let out = out.join(format!("resume-{}", std::process::id()));
     let (store, solved) = (Store::open(&out, false)?, AtomicUsize::new(0));
-    let jobs: Vec<Slope<'_>> = (0..8).map(|seed| Slope { seed, solved: &solved }).collect();
+    let jobs: Vec<Summit<'_>> = (0..8).map(|seed| Summit { seed, solved: &solved }).collect();
     let mut before = 0;
     let mut count =
         || solved.load(Ordering::Relaxed) - std::mem::replace(&mut before, solved.load(Ordering::Relaxed));
 
     // Stopped after three jobs, as by Ctrl-C.
     let enough = || solved.load(Ordering::Relaxed) >= 3;
-    let interrupted = run_stored("slopes", &jobs, &store, 1, &Silent, &enough)?;
+    let interrupted = run_stored("summits", &jobs, &store, 1, &Silent, &enough)?;
     println!("first run: {} results, {} solved", interrupted.iter().flatten().count(), count());
-    let resumed = collect(run_stored("slopes", &jobs, &store, 1, &Silent, &|| false)?)?;
+    let resumed = collect(run_stored("summits", &jobs, &store, 1, &Silent, &|| false)?)?;
     println!("second run: {} results, {} solved", resumed.len(), count());
-    let again = collect(run_stored("slopes", &jobs, &store, 2, &Silent, &|| false)?)?;
+    let again = collect(run_stored("summits", &jobs, &store, 2, &Silent, &|| false)?)?;
     println!("third run: {} results, {} solved", again.len(), count());
-    println!("rms slopes {:.6} to {:.6}", again[0], again[7]);
+    println!("summits at {:.3}, {:.3}, {:.3}, ... rms heights", again[0], again[1], again[2]);
     assert_eq!(resumed, again); // to the bit
     assert_eq!(solved.load(Ordering::Relaxed), jobs.len());
     std::fs::remove_dir_all(&out).map_err(Error::file("remove", &out))

@@ -1,9 +1,22 @@
-//! A table as CSV that explains itself: columns with units, sources, the command; absent entries are empty, numbers keep their bits.
+//! A table as CSV that explains itself: columns with units, sources, the command; absent entries are empty,
+//! numbers keep their bits.
 //!
 //! `cargo run -p runs --example table -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! approach = NaN: expected a finite number (or an empty entry)
+//! # Stiffness of a sphere on a half-space of E* = 1 GPa
+//! # column approach [m]: approach of a sphere of radius 1 mm
+//! # column stiffness [N/m]: 2 E* sqrt(R d); empty without contact
+//! # source: H. Hertz, J. reine angew. Math. 92, 156 (1882): k of d
+//! # R = 1 mm
+//! # version: fractal-contact 0.1.0
+//! # command: cargo run -p runs --example table
+//! approach,stiffness
+//! 0.0,
+//! 1e-7,20000.0
+//! 1e-6,63245.55320336759
+//! 1e-5,200000.0
 //! ```
 
 use analysis::{Column, Table};

@@ -1,4 +1,5 @@
-//! A map small enough to try every contact set: the one that satisfies the contact conditions against the solver's.
+//! A map small enough to try every contact set: the one that satisfies the contact conditions against the
+//! solver's.
 //!
 //! `cargo run -p stability --example every_contact_set`
 //!
@@ -20,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{:>5} {:>6} {:>10} {:>10} {:>12} {:>11}",
         "force", "cells", "approach", "k", "error of d", "error of k"
     );
-    for force in [0.01, 0.1, 0.5, 2.0] {
+    for force in [0.1, 1.0] {
         // All 65536 sets, by elimination: exactly one has p > 0 inside and g > 0 outside.
         let [reference] = &every_contact_set(&map, &cells, Load::Force(force))[..] else {
             return Err("not one contact set".into());

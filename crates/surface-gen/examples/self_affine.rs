@@ -1,9 +1,13 @@
-//! Self-affine surfaces of one seed and three fractal dimensions: prescribed rms height, slope, and the exponent measured back.
+//! Self-affine surfaces of one seed and three fractal dimensions: prescribed rms height, slope, and the
+//! exponent measured back.
 //!
 //! `cargo run -p surface-gen --example self_affine`
 //!
 //! ```text
-//! OUT
+//!   D_f rms height     slope   highest D_f back
+//!   2.2   0.010000    0.1470   0.02495    2.197
+//!   2.5   0.010000    0.4427   0.03174    2.497
+//!   2.8   0.010000    1.3300   0.04040    2.797
 //! ```
 
 use contact_model::{Result, SelfAffine};

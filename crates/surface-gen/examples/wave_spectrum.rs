@@ -3,7 +3,9 @@
 //! `cargo run -p surface-gen --example wave_spectrum -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! rms height 0.728869, rms slope 28.448331
+//! ring 4: q = 25.639, C_2D = 3.958e-4
+//! ring 20: q = 125.712, C_2D = 7.068e-6
 //! ```
 
 use contact_model::HeightMap;

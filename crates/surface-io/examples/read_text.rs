@@ -1,4 +1,5 @@
-//! A measured map as text with a tilt and a missing point: what the file states, what is done about it, and what becomes of it.
+//! A measured map as text with a tilt and a missing point: what the file states, what is done about it, and
+//! what becomes of it.
 //!
 //! `cargo run -p surface-io --example read_text -- DIRECTORY`
 //!
