@@ -25,7 +25,7 @@
 //! are out of range, because the half-space outside carries no pressure. `L = sqrt(Lx Ly)`, the side of a
 //! square; theories of rough surfaces know the nominal area `L^2` alone.
 //!
-//! Periodic contacts have a mean gap and no approach: [`contact_model::PreparedContact::mean_gap`],
+//! Periodic contacts have a mean gap and no approach: [`contact_model::ContactState::mean_gap`],
 //! [`contact_model::Load::MeanGap`].
 //!
 //! # Accuracy and speed

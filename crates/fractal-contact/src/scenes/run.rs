@@ -24,7 +24,7 @@ pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 /// `stop` says so, the states so far are written and [`SceneOutcome::stopped`] is true.
 ///
 /// # Errors
-/// As [`crate::scenes::check`]; [`Error::Run`] for what only shows at full size; files that cannot be written.
+/// As [`crate::scenes::check`]; [`crate::scenes::Error::Run`] for what only shows at full size; files that cannot be written.
 pub fn run(
     scene: &SceneFile,
     plan: &Plan,

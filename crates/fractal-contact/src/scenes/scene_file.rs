@@ -105,7 +105,7 @@ impl SceneFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`Error::Run`] where it cannot be read, [`Error::Scene`] with the place of the first mistake.
+    /// [`crate::scenes::Error::Run`] where it cannot be read, [`crate::scenes::Error::Scene`] with the place of the first mistake.
     pub fn read(path: &Path) -> Result<Self> {
         let length = std::fs::metadata(path).map_err(runs::Error::file("read", path))?.len();
         if length > LONGEST {
@@ -126,7 +126,7 @@ impl SceneFile {
     /// Reads a text; `path` is where messages say that it stands, and where its files are looked for.
     ///
     /// # Errors
-    /// [`Error::Scene`] with the place of the first mistake.
+    /// [`crate::scenes::Error::Scene`] with the place of the first mistake.
     ///
     /// ```
     /// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\"]\nmodulus = 1\nforce = [0.001, 1]\n\
