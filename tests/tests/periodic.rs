@@ -176,7 +176,9 @@ fn a_mean_gap_is_a_load() {
             let mut again = model(48, 1e-9).prepare(scene, 2).unwrap();
             let state = again.solve(Load::MeanGap(gap)).unwrap();
             assert_relative_eq!(state.force, force, max_relative = 1e-6);
-            assert_relative_eq!(again.solve(Load::MeanGap(gap)).unwrap().mean_gap.unwrap(), gap);
+            assert_eq!(state.mean_gap.is_some(), scene.outputs.mean_gap);
+            // Within the tolerance, in rms heights.
+            assert!(state.mean_gap.is_none_or(|found| (found - gap).abs() <= 1e-9));
         }
     }
 }

@@ -24,11 +24,11 @@
 //! (a `None` in [`Curves`]), and forces at which one is missing are left out of fits.
 //!
 //! ```
-//! use analysis::{Bootstrap, Curves, Sample, Window, fit_power_law};
+//! use analysis::{Bootstrap, Curves, FitWindow, StiffnessSample, fit_power_law};
 //! // A body z ~ r has k ~ F^(1/2): F_bar = 1e-6, 1e-4, 1e-2 give k_bar = 1e-3, 1e-2, 1e-1.
-//! let row = [1e-3, 1e-2, 1e-1].map(|k| Some(Sample { stiffness_bar: k, contact_cells: None }));
+//! let row = [1e-3, 1e-2, 1e-1].map(|k| Some(StiffnessSample { stiffness_bar: k, contact_cells: None }));
 //! let curves = Curves::new(vec![1e-6, 1e-4, 1e-2], vec![row.to_vec()])?;
-//! let law = fit_power_law(&curves, &Window::PAPER, &Bootstrap::default()).expect("three points");
+//! let law = fit_power_law(&curves, &FitWindow::PAPER, &Bootstrap::default()).expect("three points");
 //! assert!((law.alpha - 0.5).abs() < 1e-12 && (law.zeta - 1.0).abs() < 1e-12);
 //! assert_eq!(law.alpha_se, None); // one surface has no scatter to resample
 //! # Ok::<(), contact_model::Error>(())

@@ -4,7 +4,15 @@
 //! `cargo run -p analytic --example jkr_pull_off`
 //!
 //! ```text
-//! OUT
+//!  F in mN   d in um  a in mm k in N/mm
+//!   5.0000   13.6545   0.5134    1.0267
+//!   2.0000    9.2707   0.4617    0.9233
+//!   0.0000    5.6986   0.4135    0.8269
+//!  -1.0000    3.4832   0.3795    0.7590
+//!  -2.0000    0.4199   0.3242    0.6485
+//!  -2.3560   -2.2009   0.2622    0.5244
+//! refused: the smallest force is -2.3562 mN
+//! breaks at -2.3562 mN by force, at -4.7041 um by approach
 //! ```
 
 use analytic::jkr::AdhesiveSphere;

@@ -4,7 +4,14 @@
 //! `cargo run -p analytic --example rough_theories`
 //!
 //! ```text
-//! OUT
+//! rms slope 0.0290
+//!                  model p in MPa      A/A0     kappa   gap in um
+//!                persson     0.01  0.000551    1.5958      3.2122
+//!                persson     0.10  0.005509    1.5958      2.1100
+//!                persson     1.00  0.055049    1.5945      0.9455
+//!   greenwood_williamson     0.01  0.000392    1.1340      3.0937
+//!   greenwood_williamson     0.10  0.003588    1.0394      2.3930
+//!   greenwood_williamson     1.00  0.031708    0.9184      1.5235
 //! ```
 
 use analytic::spectrum::Spectrum;

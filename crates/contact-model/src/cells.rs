@@ -1,11 +1,5 @@
 //! Rectangles and their cells.
 
-use crate::error::{Error, Result, positive};
-
-/// Largest ratio of the sides of a cell. Beyond it the influence coefficients lose too many digits, and no
-/// instrument samples like that.
-const LARGEST_CELL_ASPECT: f64 = 1e4;
-
 /// Sides of a rectangle: Lx along x and Ly along y, in one length unit.
 ///
 /// ```
@@ -41,19 +35,6 @@ impl Size {
     /// Shorter side.
     pub fn shorter(self) -> f64 {
         self.x.min(self.y)
-    }
-
-    /// Checks both sides.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] for a side that is not positive and finite: `side` where both are the same, else
-    /// `side along x` or `side along y`.
-    pub fn validate(self) -> Result<()> {
-        if self.is_square() {
-            return positive("side", self.x).map(|_| ());
-        }
-        positive("side along x", self.x)?;
-        positive("side along y", self.y).map(|_| ())
     }
 }
 
@@ -97,32 +78,6 @@ impl Cells {
     /// Columns times rows, unless no `usize` holds it.
     pub fn checked_count(self) -> Option<usize> {
         self.columns.checked_mul(self.rows)
-    }
-
-    /// Checks that these cells can divide a rectangle of this size.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] for no columns or rows, a side that is not positive, or cells whose sides differ by
-    /// a factor of more than 1e4.
-    ///
-    /// ```
-    /// use contact_model::{Cells, Size};
-    /// assert!(Cells { columns: 100, rows: 1 }.validate(Size { x: 2.0, y: 1.0 }).is_ok());
-    /// assert!(Cells { columns: 1, rows: 1 }.validate(Size { x: 1e5, y: 1.0 }).is_err());
-    /// ```
-    pub fn validate(self, size: Size) -> Result<()> {
-        for (name, count) in [("columns", self.columns), ("rows", self.rows)] {
-            if count == 0 {
-                return Err(Error::domain(name, 0.0, "at least 1"));
-            }
-        }
-        size.validate()?;
-        let aspect = (size.x / self.columns as f64) / (size.y / self.rows as f64);
-        if !(1.0 / LARGEST_CELL_ASPECT..=LARGEST_CELL_ASPECT).contains(&aspect) {
-            let expected = format!("between 1/{LARGEST_CELL_ASPECT} and {LARGEST_CELL_ASPECT}");
-            return Err(Error::domain("dx / dy (ratio of the sides of a cell)", aspect, expected));
-        }
-        Ok(())
     }
 }
 

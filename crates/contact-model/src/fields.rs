@@ -1,7 +1,6 @@
 //! Fields on the cells of a map.
 
 use crate::cells::{Cells, Size};
-use crate::error::{Error, Result};
 
 /// One number per cell of a rectangle, row-major (`values[iy * columns + ix]`: rows along y, as NPY arrays `[row, column]`).
 ///
@@ -14,26 +13,12 @@ use crate::error::{Error, Result};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
-    cells: Cells,
-    size: Size,
-    values: Vec<f64>,
+    pub(crate) cells: Cells,
+    pub(crate) size: Size,
+    pub(crate) values: Vec<f64>,
 }
 
 impl Field {
-    /// Takes `columns * rows` values on a rectangle of the given size.
-    ///
-    /// # Errors
-    /// Those of [`Cells::validate`]; [`Error::Shape`] for another number of values.
-    pub fn new(cells: impl Into<Cells>, size: impl Into<Size>, values: Vec<f64>) -> Result<Self> {
-        let (cells, size) = (cells.into(), size.into());
-        cells.validate(size)?;
-        if cells.checked_count() != Some(values.len()) {
-            let expected = format!("{} rows x {} columns", cells.rows, cells.columns).into();
-            return Err(Error::Shape { name: "values".into(), found: values.len(), expected });
-        }
-        Ok(Self { cells, size, values })
-    }
-
     /// Numbers of columns and rows.
     pub fn cells(&self) -> Cells {
         self.cells
@@ -105,17 +90,4 @@ pub struct Fields {
     pub displacement: Option<Field>,
     /// Gap g = u + z - d; infinite at undefined points.
     pub gap: Option<Field>,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn another_number_of_values_is_named() {
-        let e = Field::new([3, 2], 1.0, vec![0.0; 5]).unwrap_err();
-        assert_eq!(e.to_string(), "values has 5 values: expected 2 rows x 3 columns");
-        assert!(Field::new(0, 1.0, vec![]).is_err());
-        approx::assert_relative_eq!(Field::new(2, [3.0, 1.0], vec![2.0; 4]).unwrap().integral(), 6.0);
-    }
 }

@@ -46,6 +46,7 @@ mod patches;
 mod rheology;
 mod scene;
 mod state;
+mod validation;
 mod work;
 
 pub use cells::{Cells, Size};

@@ -4,7 +4,10 @@
 //! `cargo run -p evaluation --example lines -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! claim                             paper        here       s.e.    allowed  verdict
+//! alpha of lines, D_f = 2             0.5      0.4994    0.00879       0.03  agrees
+//! alpha of lines, D_f = 2.2        0.5556      0.5561   0.006904       0.03  agrees
+//! alpha of lines, D_f = 2.4         0.625       0.629   0.006552       0.03  agrees
 //! ```
 
 use evaluation::{Claim, Request, Result, Run, Session, laws, measure_1d, plain};

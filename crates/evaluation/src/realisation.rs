@@ -114,9 +114,9 @@ impl Realisation {
     /// the same result.
     ///
     /// ```
-    /// use evaluation::{Discretisation, Unit};
+    /// use evaluation::{Discretisation, Realisation};
     /// let discretisation = Discretisation::Mdr1d { elements: 64 };
-    /// let unit = Unit { discretisation, fractal_dimension: 2.5, index: 0, seed: 7, forces: [0.1, 1.0].into() };
+    /// let unit = Realisation { discretisation, fractal_dimension: 2.5, index: 0, seed: 7, forces: [0.1, 1.0].into() };
     /// assert!(unit.key().contains("fractal_dimension 2.5\n") && unit.key().contains("seed 7\n"));
     /// assert!(!unit.key().contains("index")); // the seed says which surface it is
     /// ```

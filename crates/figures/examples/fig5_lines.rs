@@ -18,7 +18,8 @@ fn main() -> Result<()> {
     let outcome = figures::fig5(&Run::new(&request)?, &Silent)?;
     println!("{}", runs::file_names(&outcome.files).join(", "));
     // The header of a CSV says what made it.
-    let table = CsvFile::read(&outcome.files[0])?;
+    let csv = outcome.files.iter().find(|f| f.extension().is_some_and(|e| e == "csv"));
+    let table = CsvFile::read(csv.unwrap_or(&outcome.files[0]))?;
     for line in table.comments.iter().filter(|c| c.starts_with("column") || c.starts_with("command")) {
         println!("{line}");
     }

@@ -5,7 +5,10 @@
 //! The file is written first: a lens of radius 50 mm, so that Hertz says what must come out.
 //!
 //! ```text
-//! OUT
+//! F in N   A in mm^2   of Hertz  k in N/um   of Hertz
+//!     20     0.14957     1.0125     31.968     1.0021
+//!     50     0.27347     1.0051     43.268     0.9993
+//!    100     0.43373     1.0042     54.527     0.9996
 //! ```
 
 use fractal_contact::surface_io::{Preprocessing, ReadOptions, Scan};

@@ -13,10 +13,10 @@ use fractal_contact::{Bem3d, Boundary, ContactModel, Load, Result, Scene, SelfAf
 use std::f64::consts::TAU;
 
 fn main() -> Result<()> {
-    // H = 0.8, a roll-off at a quarter of the side, waves down to eight cells of 192.
+    // H = 0.8, a roll-off at a quarter of the side, waves down to 16 cells of 192.
     let mut surface = SelfAffine::new(2.2, 1.0, 0.01)?;
     surface.roll_off = Some(4.0 * TAU);
-    surface.short_cutoff = Some(24.0 * TAU);
+    surface.short_cutoff = Some(12.0 * TAU);
     let slope = Spectrum::new(&surface)?.rms_slope()?;
     let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
     scene.effects.boundary = Boundary::Periodic;
@@ -31,9 +31,9 @@ fn main() -> Result<()> {
         let fraction = |area: Option<f64>| area.unwrap_or(0.0);
         let (here, persson) = (fraction(solved.solve(load)?.area), fraction(theory.solve(load)?.area));
         println!("{pressure:>9} {here:>8.4} {persson:>8.4} {:>6.3}", here / persson);
-        // The theory is exact towards full contact and low by some 20 % where the contact is light; cells
-        // that touch count whole.
-        assert!(here / persson > 0.98 && here / persson < 1.45);
+        // The theory is exact towards full contact. Where contact is light it is low, and cells that touch in part
+        // count whole.
+        assert!(here / persson > 0.95 && (pressure < 0.5 || here / persson < 1.1));
     }
     Ok(())
 }

@@ -3,7 +3,9 @@
 //! `cargo run -p fractal-contact --example pressure_map -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! 720 contact cells, highest pressure 4.77 GPa
+//! force 50.000000 N, integral of the pressure 50.000000 N
+//! pressure.png, pressure.vti
 //! ```
 
 use fractal_contact::surface_io::{DataArray, Encoding, files, vti};

@@ -25,6 +25,12 @@ side = "1 mm"
 
 [models.bem3d]
 cells = 129
+
+[sampling]
+seed = 1
+
+[outputs]
+stiffness = true
 "#;
 
 fn main() -> Result<()> {

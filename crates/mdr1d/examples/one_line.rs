@@ -3,7 +3,14 @@
 //! `cargo run -p mdr1d --example one_line`
 //!
 //! ```text
-//! OUT
+//!   F/(E*hL)          d/h  k/(1.14E*L)   elements
+//!       1e-5     0.029695     0.000603         40
+//!       1e-4     0.080289     0.002473        164
+//!       1e-3     0.177384     0.015470       1026
+//!       1e-2     0.391992     0.056694       3760
+//!       1e-1     0.893690     0.286454      18998
+//!        1e0     2.542184     0.708008      46956
+//!        1e1    10.651677     0.988159      65536
 //! ```
 
 use mdr1d::{ContactModel, Load, Mdr1d, Result, Scene, SelfAffine, Surface, rule};

@@ -4,7 +4,14 @@
 //! `cargo run -p mdr1d --example viscoelastic`
 //!
 //! ```text
-//! OUT
+//!  t/tau          d          a       area  closed form
+//!      0   0.001778   0.042172   0.005587     0.042172
+//!      1   0.002686   0.051830   0.008439     0.051830
+//!      3   0.003968   0.062992   0.012466     0.062992
+//!     10   0.006314   0.079459   0.019835     0.079459
+//!     30   0.008006   0.089478   0.025153     0.089478
+//!    100   0.008255   0.090855   0.025933     0.090855
+//! refused: the contact would shrink from t = 100 tau on
 //! ```
 
 use mdr1d::{Error, HistoryModel, Load, Relaxing, Result, Rheology, Scene, Step, Surface, Viscoelastic};

@@ -59,6 +59,16 @@ impl Panels {
     }
 }
 
+impl Picture {
+    /// Writes `NAME.svg` and `NAME.png`.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when they cannot be written.
+    pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
+        Panels { columns: 1, pictures: vec![self], ..Panels::default() }.save(directory, name)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

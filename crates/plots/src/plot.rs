@@ -3,12 +3,9 @@
 use crate::axis::Axis;
 use crate::legend::{Legend, free_place};
 use crate::mark;
-use crate::panels::Panels;
 use crate::scene::{Anchor, Paint, Rectangle, Scene, polygon, polyline};
 use crate::style::{INK, Key, LineStyle, Mark, NEUTRAL};
 use crate::text::Fonts;
-use runs::Result;
-use std::path::{Path, PathBuf};
 
 /// Width and height of a picture: as wide as a README shows it.
 pub(crate) const SIZE: (f64, f64) = (800.0, 600.0);
@@ -137,14 +134,6 @@ impl Picture {
     /// The horizontal and the vertical axis.
     pub fn axes(&self) -> (Axis, Axis) {
         (self.axes[0], self.axes[1])
-    }
-
-    /// Writes `NAME.svg` and `NAME.png`.
-    ///
-    /// # Errors
-    /// [`crate::Error::File`] when they cannot be written.
-    pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        Panels { columns: 1, pictures: vec![self], ..Panels::default() }.save(directory, name)
     }
 
     fn text_scale(&self) -> f64 {

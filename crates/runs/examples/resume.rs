@@ -4,7 +4,10 @@
 //! `cargo run -p runs --example resume -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! first run: 3 results, 3 solved
+//! second run: 8 results, 5 solved
+//! third run: 8 results, 0 solved
+//! summits at 2.425, 3.743, 2.946, ... rms heights
 //! ```
 
 use contact_model::{SelfAffine, Stop};

@@ -4,7 +4,19 @@
 //! `cargo run -p surface-io --example read_text -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! format     a text matrix (semicolons between numbers)
+//! shape      48 rows of 64
+//! size       0.00032 m x 0.00024000000000000003 m (as given)
+//! cell       5e-6 m x 5e-6 m
+//! heights    in um (as given)
+//! range      -6.83e-2 to 6.3478e0, rms about the mean 1.8503e0
+//! undefined  1 of 3072 points (0.033 %)
+//! refused: true
+//! cells              64 x 48 (columns x rows)
+//! size               3.2e-4 x 2.4000000000000003e-4
+//! cell               5e-6 x 5e-6
+//! undefined points   0 of 3072
+//! ...
 //! ```
 
 use std::error::Error;

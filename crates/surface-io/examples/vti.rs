@@ -3,7 +3,9 @@
 //! `cargo run -p surface-io --example vti -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//! rough.vti: 355 kB
+//! rough-ascii.vti: 721 kB
+//! 129 x 129 cells of 7.752 um, highest 3.585 um
 //! ```
 
 use contact_model::SelfAffine;

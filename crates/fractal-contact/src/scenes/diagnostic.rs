@@ -11,7 +11,7 @@ const SHOWN: usize = 100;
 /// the place underlined.
 ///
 /// ```
-/// use fractal_contact::Diagnostic;
+/// use fractal_contact::scenes::Diagnostic;
 /// let diagnostic = Diagnostic::new("`force = -1`: expected a number > 0").at(0..10).with_help("press, do not pull");
 /// assert_eq!(
 ///     diagnostic.placed("a.toml".as_ref(), "force = -1\n").to_string(),

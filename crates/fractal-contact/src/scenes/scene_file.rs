@@ -73,9 +73,9 @@ impl SceneFile {
     ///
     /// ```
     /// use contact_model::Surface;
-    /// use fractal_contact::{Loads, Numerics, Plan, Prescribed, SceneSurface, Request, SceneFile};
+    /// use fractal_contact::scenes::{Loading, Loads, Numerics, Plan, Prescribed, SceneFile, SceneSurface};
     /// let body = SceneSurface::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
-    /// let loads = Request::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
+    /// let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
     /// let mut scene = SceneFile::new(vec![Numerics::Hertz], body, 1.0, loads);
     /// scene.requested.outputs.stiffness = true;
     /// assert!(Plan::new(&scene).is_ok());
@@ -131,10 +131,10 @@ impl SceneFile {
     /// ```
     /// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\"]\nmodulus = 1\nforce = [0.001, 1]\n\
     ///             [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n";
-    /// let scene = fractal_contact::SceneFile::parse("hertz.toml".as_ref(), text.into())?;
+    /// let scene = fractal_contact::scenes::SceneFile::parse("hertz.toml".as_ref(), text.into())?;
     /// assert_eq!(scene.models[0].name(), "hertz");
     /// assert_eq!(scene.request.count(), 2);
-    /// # Ok::<(), fractal_contact::Error>(())
+    /// # Ok::<(), fractal_contact::scenes::Error>(())
     /// ```
     pub fn parse(path: &Path, text: String) -> Result<Self> {
         let read = || -> Read<Self> {
