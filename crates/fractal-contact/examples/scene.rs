@@ -3,7 +3,13 @@
 //! `cargo run -p fractal-contact --example scene -- DIRECTORY`
 //!
 //! ```text
-//! OUT
+//!  model    F in N  k in N/um  status
+//!  bem3d     1.000      4.372  converged
+//!  bem3d    10.000     20.372  converged
+//!  bem3d   100.000     68.277  converged
+//!  mdr1d     1.000      4.122  converged
+//!  mdr1d    10.000     22.173  converged
+//!  mdr1d   100.000     81.400  converged
 //! ```
 
 use fractal_contact::never;

@@ -3,7 +3,10 @@
 //! `cargo run -p stability --example one_case -- NAME` (without a name: a checkerboard)
 //!
 //! ```text
-//! OUT
+//! a checkerboard (one of 50)
+//! hard because: all black cells touch together; the kernel is nearest to singular at this wave
+//! asserted: light loads: black cells only, F and k by relaxation and elimination; heavy: k of full contact
+//! passed: largest deviation 2.2e-12, bound 1e-8
 //! ```
 
 use stability::{Effort, cases};
