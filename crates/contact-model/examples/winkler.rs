@@ -41,7 +41,8 @@ impl ContactModel for Winkler {
         let Surface::Heights(map) = &scene.surface else {
             return Err(Error::unsupported(self.name(), scene.surface.kind()));
         };
-        let mut depths: Vec<f64> = map.defined().map(|h| map.highest() - h).collect();
+        let highest = map.highest(); // a pass over the map: once, not for each cell
+        let mut depths: Vec<f64> = map.defined().map(|h| highest - h).collect();
         depths.sort_by(f64::total_cmp);
         let (cell, modulus) = (map.dx() * map.dy(), scene.modulus);
         let normalisation = Normalisation { modulus, length: map.length(), height: None };
