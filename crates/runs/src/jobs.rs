@@ -50,21 +50,25 @@ pub fn largest_first<C: Ord>(count: usize, cost: impl Fn(usize) -> C) -> Vec<usi
     order
 }
 
-/// All results, or the error that started it.
+/// All results in their places, or why some are missing.
 ///
 /// # Errors
-/// The first error that is not the stop of the others.
+/// The first error that is not the stop of the others; [`contact_model::Error::Stopped`] where jobs were stopped or never begun.
 pub fn collect<T>(done: Vec<Option<Result<T, Error>>>) -> Result<Vec<T>, Error> {
     let mut results = Vec::with_capacity(done.len());
     let mut stopped = None;
-    for result in done.into_iter().flatten() {
+    for result in done {
         match result {
-            Ok(result) => results.push(result),
+            Some(Ok(result)) => results.push(result),
             // Others that were in flight were told to stop: their reason is not the reason.
-            Err(e @ Error::Model { source: contact_model::Error::Stopped { .. }, .. }) => {
+            Some(Err(e @ Error::Model { source: contact_model::Error::Stopped { .. }, .. })) => {
                 stopped.get_or_insert(e);
             }
-            Err(e) => return Err(e),
+            Some(Err(e)) => return Err(e),
+            None => {
+                let never_begun = contact_model::Error::Stopped { best: None };
+                stopped.get_or_insert_with(|| Error::model("jobs that were not begun")(never_begun));
+            }
         }
     }
     stopped.map_or(Ok(results), Err)
@@ -144,6 +148,74 @@ mod tests {
             let squares = run_jobs::<_, ()>(threads, &order, &never, |i, _| Ok(i * i)).unwrap();
             assert_eq!(squares.into_iter().flatten().flatten().collect::<Vec<_>>(), [0, 1, 4, 9, 16, 25, 36]);
         }
+    }
+
+    #[test]
+    fn all_results_or_the_reason_why_not() {
+        let stopped = || Error::model("a job")(contact_model::Error::Stopped { best: None });
+        let wrong = || Error::parameter("cells", 0, "at least 1");
+        assert_eq!(collect(vec![Some(Ok(1)), Some(Ok(2))]).unwrap(), [1, 2]);
+        let reason = |done| collect::<i32>(done).unwrap_err().to_string();
+        assert!(reason(vec![Some(Err(stopped())), Some(Err(wrong())), None]).starts_with("cells = 0"));
+        // A shorter list would no longer be in step with the jobs.
+        assert!(reason(vec![Some(Ok(1)), None]).starts_with("jobs that were not begun"));
+    }
+
+    /// Twice its number; stops being worth storing at 2.
+    struct Doubled(usize);
+
+    impl Job for Doubled {
+        type Output = usize;
+        type Error = Error;
+
+        fn key(&self) -> String {
+            format!("double {}\n", self.0)
+        }
+
+        fn cost(&self) -> u64 {
+            1
+        }
+
+        fn solve(&self, _: Stop<'_>) -> Result<usize, Error> {
+            Ok(2 * self.0)
+        }
+
+        fn encode(&self, output: &usize) -> Option<String> {
+            (self.0 < 2).then(|| format!("{output}\n"))
+        }
+
+        fn decode(&self, text: &str) -> Option<usize> {
+            text.trim().parse().ok()
+        }
+    }
+
+    /// Counts jobs and those taken from the store.
+    #[derive(Default)]
+    struct Counter(AtomicUsize, AtomicUsize);
+
+    impl Progress for Counter {
+        fn begin(&self, _: &str, _: u64) {}
+        fn advance(&self, _: u64, stored: bool) {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            self.1.fetch_add(usize::from(stored), Ordering::Relaxed);
+        }
+        fn end(&self) {}
+    }
+
+    #[test]
+    fn stored_results_are_taken_and_damaged_ones_computed_again() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = Store::open(dir.path(), false).unwrap();
+        let jobs: Vec<Doubled> = (0..3).map(Doubled).collect();
+        let run = || {
+            let counter = Counter::default();
+            let done = collect(run_stored("doubles", &jobs, &store, 2, &counter, &never).unwrap()).unwrap();
+            assert_eq!(done, [0, 2, 4]);
+            (counter.0.into_inner(), counter.1.into_inner())
+        };
+        assert_eq!([run(), run()], [(3, 0), (3, 2)]);
+        store.save(&jobs[1].key(), "no number\n").unwrap();
+        assert_eq!([run(), run()], [(3, 1), (3, 2)]);
     }
 
     #[test]

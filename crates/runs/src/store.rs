@@ -5,7 +5,7 @@ use crate::files;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// First line of every stored result.
+/// First line of every stored result, of ensembles and of scenes alike; older results of ensembles have it and are still read.
 const TITLE: &str = "# fractal-contact unit: one surface under all its loads";
 
 /// Where the results of finished jobs are kept, each under a key that names everything that decides its numbers.
