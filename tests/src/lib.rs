@@ -28,7 +28,7 @@ mod problem;
 pub use deviation::{Deviation, Prescribed, deviation};
 pub use order::order;
 pub use problem::{Case, Problem, problems};
-pub use stability::{SmallContact, embedded, every_contact_set, map, relief, rough, rough_map, scene};
+pub use stability::{SmallContact, embedded, every_contact_set, hard_map, map, rough, rough_map, scene};
 
 /// The examples of README.md and of the book are tests too.
 #[cfg(doctest)]

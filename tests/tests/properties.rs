@@ -8,7 +8,7 @@ use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed};
 use stability::PlainSum;
-use tests::{map, relief, rough_map, scene};
+use tests::{hard_map, map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;
 /// The certificate bounds gaps weighted by pressure in rms heights; an approach is one weighted by the tangent's pressure, up to ten times
@@ -35,7 +35,7 @@ prop_compose! {
     ) -> HeightMap {
         match kind {
             7 | 8 if cells > 2 => rough_map(if kind == 7 { 2.2 } else { 2.9 }, cells, seed).unwrap(),
-            _ => relief(kind, cells, &noise).unwrap(),
+            _ => hard_map(kind, cells, &noise).unwrap(),
         }
     }
 }
@@ -175,7 +175,7 @@ proptest! {
     /// Maxwell and Betti: what one state's pressure does on the other's displacement is mutual.
     #[test]
     fn reciprocity(one in any_map(), noise in prop::collection::vec(0.0_f64..1.0, 400), exponents in (-3.0_f64..1.5, -3.0_f64..1.5)) {
-        let other = relief(0, one.columns(), &noise).unwrap();
+        let other = hard_map(0, one.columns(), &noise).unwrap();
         let [a, b] = [(&one, exponents.0), (&other, exponents.1)]
             .map(|(map, exponent)| fields(map, &solve(map, any_load(map, exponent, true))));
         let (there, back) = (dot(&a.0, &b.1), dot(&b.0, &a.1));

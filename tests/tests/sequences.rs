@@ -5,7 +5,7 @@ use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, Load};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use tests::{relief, rough_map, scene};
+use tests::{hard_map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-9;
 /// The certificate bounds gaps weighted by pressure; the approach is one weighted by the tangent's pressure, up to ten times that.
@@ -21,7 +21,7 @@ proptest! {
         // Logarithm of the load over the rms height, and whether it is a force.
         loads in prop::collection::vec((-8.0_f64..3.0, any::<bool>()), 1..6),
     ) {
-        let map = if kind == 7 && cells > 2 { rough_map(2.6, cells, seed).unwrap() } else { relief(kind, cells, &noise).unwrap() };
+        let map = if kind == 7 && cells > 2 { rough_map(2.6, cells, seed).unwrap() } else { hard_map(kind, cells, &noise).unwrap() };
         let rms = surface_gen::rms_height(map.heights());
         let unit = if rms > 0.0 { rms } else { 1.0 };
         let scene = scene(map);

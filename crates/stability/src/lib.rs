@@ -46,5 +46,5 @@ mod press;
 pub use case::{Case, CaseResult, CaseStatus, Effort, run};
 pub use cases::cases;
 pub use enumerate::{SmallContact, every_contact_set};
-pub use maps::{embedded, map, relief, rough, rough_map, scene};
+pub use maps::{embedded, hard_map, map, rough, rough_map, scene};
 pub use plain::{PlainSum, Relaxed, relaxed, relaxed_by};

@@ -33,7 +33,7 @@ pub fn rough_map(fractal_dimension: f64, cells: usize, seed: u64) -> Result<Heig
     surface_gen::self_affine_map(&rough(fractal_dimension)?, cells, seed)
 }
 
-/// Reliefs that solvers have tripped over, of `cells` x `cells` and drawn from numbers in [0, 1): white noise (0), the same in steps (1),
+/// Maps on which solvers have failed, of `cells` x `cells` and drawn from numbers in [0, 1): white noise (0), the same in steps (1),
 /// stripes (2), a tilted plane (3), a few spikes (4), one sharp summit (5), heights over twenty decades (any other kind).
 ///
 /// # Errors
@@ -41,7 +41,7 @@ pub fn rough_map(fractal_dimension: f64, cells: usize, seed: u64) -> Result<Heig
 ///
 /// # Panics
 /// For no numbers at all.
-pub fn relief(kind: u8, cells: usize, noise: &[f64]) -> Result<HeightMap> {
+pub fn hard_map(kind: u8, cells: usize, noise: &[f64]) -> Result<HeightMap> {
     let at = |x: usize, y: usize| noise[(y * cells + x) % noise.len()];
     map(cells, 1.0, |x, y| match kind {
         0 => at(x, y),
