@@ -17,7 +17,7 @@ pub struct FitWindow {
 }
 
 impl FitWindow {
-    /// The paper's power-law range, `F_bar <= 0.086`, with at least 10 contact cells on every surface.
+    /// The paper's upper limit of its power law, `F_bar <= 0.086`; that every surface has at least 10 contact cells is a choice made here.
     pub const PAPER: Self = Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 };
 }
 

@@ -161,7 +161,7 @@ impl HeightMap {
         self.undefined
     }
 
-    /// Highest value.
+    /// Highest value. Cost: one pass over the heights.
     pub fn highest(&self) -> f64 {
         highest(&self.heights)
     }

@@ -45,7 +45,7 @@ impl Line {
         &self.heights
     }
 
-    /// Highest value.
+    /// Highest value. Cost: one pass over the heights.
     pub fn highest(&self) -> f64 {
         highest(&self.heights)
     }

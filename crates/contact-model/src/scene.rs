@@ -23,7 +23,7 @@ pub struct Scene {
     pub pair: Option<Pair>,
     /// Effects beyond linear elastic normal contact with free boundaries; all off by default.
     pub effects: Effects,
-    /// What is computed besides force and approach; nothing by default.
+    /// What is computed besides force and approach; [`Scene::new`] asks for the stiffness alone.
     pub outputs: Outputs,
 }
 

@@ -14,7 +14,7 @@ pub struct FittedLaw {
     pub fit: Result<FittedPowerLaw, NoFit>,
 }
 
-/// Power laws of an ensemble, one per fractal dimension, over the standard window; errors by bootstrap over surfaces.
+/// Power laws of an ensemble, one per fractal dimension, over [`FitWindow::PAPER`]; errors by bootstrap over surfaces.
 pub fn laws(measured: &Measured) -> Vec<FittedLaw> {
     laws_within(measured, &FitWindow::PAPER)
 }

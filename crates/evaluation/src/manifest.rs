@@ -1,7 +1,6 @@
 //! `manifest.json`: how and where the files of a directory were made.
 
-use crate::Outcome;
-use crate::Run;
+use crate::{Outcome, Run};
 use runs::Result;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
