@@ -161,7 +161,8 @@ mod tests {
     #[test]
     fn a_ratio_of_sides_that_misses_one_by_rounding_is_a_square_cell() {
         let map = |width: f64| HeightMap::new([3, 10], [width, 1.0], vec![0.0; 30]).unwrap();
-        let rounded = map(0.1 + 0.2);
+        // A few units in the last place: the root of a single one is 1.
+        let rounded = map(0.3 * (1.0 + 4.0 * f64::EPSILON));
         assert!(rounded.dx().total_cmp(&rounded.dy()).is_ne() && Grid::of(&rounded).has_square_cells());
         let (oblong, tall) = (Grid::of(&map(0.33)), Grid::of(&map(0.27)));
         assert!(!oblong.has_square_cells() && !tall.has_square_cells());

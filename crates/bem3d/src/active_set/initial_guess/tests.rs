@@ -270,12 +270,15 @@ fn a_coarse_grid_is_the_mean_of_its_defined_cells() {
 fn a_coarse_pressure_goes_to_the_fine_cells_below_the_plane() {
     let grid = Grid::square(64, 64);
     let mut z = vec![1.0; grid.count()];
-    // Two of the four fine cells of coarse cell (0, 0) lie below the plane, one in it and one above it; none of those of (1, 0).
-    (z[0], z[1], z[64]) = (0.0, 0.2, 0.5);
+    // The plane is at 0.5. Of coarse cell 0 two fine cells lie below it and two above; of cell 1 one lies below and one in it; of
+    // cell 2 one lies in it and none below.
+    (z[0], z[1]) = (0.0, 0.2);
+    (z[2], z[3]) = (0.1, 0.5);
+    z[4] = 0.5;
     let problem = problem(grid, z);
     let solved = Solved {
-        contact: CellSet::from_index(Grid::square(32, 32), &[0, 1]),
-        p: vec![1.0, 3.0],
+        contact: CellSet::from_index(Grid::square(32, 32), &[0, 1, 2]),
+        p: vec![1.0, 3.0, 4.0],
         d: 0.5,
         q: None,
         residuals: Residuals::default(),
@@ -284,9 +287,9 @@ fn a_coarse_pressure_goes_to_the_fine_cells_below_the_plane() {
         continuation: Continuation::default(),
     };
     let guess = prolonged(&problem, &solved);
-    assert_eq!(guess.set, CellSet::from_index(grid, &[0, 1, 2, 3, 66, 67]));
+    assert_eq!(guess.set, CellSet::from_index(grid, &[0, 1, 2, 4, 5, 68, 69]));
     // Forces are counted in the side of a cell: twice the pressure on a quarter of the area.
-    for (p, expected) in guess.p.iter().zip([1.0, 1.0, 1.5, 1.5, 1.5, 1.5]) {
+    for (p, expected) in guess.p.iter().zip([1.0, 1.0, 6.0, 2.0, 2.0, 2.0, 2.0]) {
         assert_relative_eq!(*p, expected);
     }
 }
