@@ -2,10 +2,10 @@
 """Every mutant of cargo-mutants in one build: `python3 .ci/mutants_at_once.py CRATE FILE...`, minutes instead of hours.
 
 `cargo mutants` builds the crate anew for each mutant. This takes its list (`cargo mutants --list --json`), writes every mutant of the named files
-into one copy of the workspace as a branch on the environment variable MUTANT, builds that once, asks each unit test which
-mutants it reaches, and runs each mutant against the tests that reach it until one fails. A mutant that does not compile is taken out and called
-unviable, so that the first build is repeated a few times. Differences from
-`cargo mutants`: doctests and integration tests are not run; `a * b * c` with a plus in the first place is `(a + b) * c`, not `a + b * c`; and a few
+into one copy of the workspace as a branch on the environment variable MUTANT, builds that once, asks each unit test (`--with PACKAGE`: and each
+test of that package) which mutants it reaches, and runs each mutant against the tests that reach it until one fails. A mutant that does not compile
+is taken out and called unviable, so that the first build is repeated a few times. Differences from
+`cargo mutants`: doctests are not run, nor tests that take longer than `--longest` seconds; `a * b * c` with a plus in the first place is `(a + b) * c`, not `a + b * c`; and a few
 mutants compile by themselves but not as a branch (in constants, in let chains, in a product that begins a range): they are called left out
 or unviable here and want `cargo mutants --re`.
 
@@ -136,7 +136,7 @@ def branches(text, mutants):
 
 
 def build(args, mutants, out):
-    """Builds all mutants at once; returns the test program, those that do not compile and those left out."""
+    """Builds all mutants at once; returns the test programs with their packages' folders, the mutants that do not compile and those left out."""
     copy, unviable = out / 'workspace', set()
     shutil.rmtree(copy, ignore_errors=True)
     copy.mkdir(parents=True)
@@ -155,11 +155,14 @@ def build(args, mutants, out):
             text, used = branches(open(file).read(), mine)
             left_out |= {n for n, _ in mine} - used
             (copy / file).write_text(text)
-        command = ['cargo', 'test', '--profile', 'mutants', '-p', args.crate, '--lib', '--no-run', '--message-format=json']
+        packages = [word for package in args.packages for word in ('-p', package)]
+        command = ['cargo', 'test', '--profile', 'mutants', '-p', args.crate, *packages, *([] if packages else ['--lib']), '--no-run',
+                   '--message-format=json']
         done = subprocess.run(command, cwd=copy, stdout=subprocess.PIPE, text=True)
         messages = [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{')]
         if done.returncode == 0:
-            return next(m['executable'] for m in messages if m.get('executable')), unviable, left_out
+            programs = [(m['executable'], Path(m['manifest_path']).parent) for m in messages if m.get('executable') and m['profile']['test']]
+            return programs, unviable, left_out
         before = len(unviable)
         for m in (m['message'] for m in messages if m.get('reason') == 'compiler-message' and m['message']['level'] == 'error'):
             for span in (s for s in m['spans'] if s['is_primary']):
@@ -173,10 +176,11 @@ def build(args, mutants, out):
             sys.exit(f'{done.stdout[-2000:]}\nno mutant explains these errors')
 
 
-def run(program, test, crate, out, limit, **variables):
+def run(test, limit, **variables):
+    (program, folder), name = test
     started = time.time()
     try:
-        done = subprocess.run([program, '--exact', test], cwd=out / 'workspace' / 'crates' / crate, timeout=limit,
+        done = subprocess.run([program, '--exact', name], cwd=folder, timeout=limit,
                               env={**os.environ, **variables, 'PROPTEST_FAILURE_PERSISTENCE': 'off'},
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         return ('passed' if done.returncode == 0 else 'caught'), time.time() - started
@@ -189,26 +193,31 @@ def main():
     parser.add_argument('crate')
     parser.add_argument('files', nargs='+')
     parser.add_argument('--out', default='out/mutants-at-once')
+    parser.add_argument('--with', dest='packages', action='append', default=[], help='packages whose tests are asked as well')
+    parser.add_argument('--longest', type=float, default=5, help='seconds; tests that take longer are not asked')
     parser.add_argument('--again', action='store_true', help='run again what was missed')
     args = parser.parse_args()
     out = Path(args.out).resolve()
     listed = subprocess.run(['cargo', 'mutants', '--list', '--json', '-p', args.crate], capture_output=True, text=True, check=True)
     mutants = json.loads(listed.stdout)
-    program, unviable, left_out = build(args, mutants, out)
+    programs, unviable, left_out = build(args, mutants, out)
 
     store = out / f'results-{args.crate}.json'
     results = json.loads(store.read_text()) if store.exists() else {}
     if args.again:
         results = {name: r for name, r in results.items() if not r.startswith('missed')}
-    tests = [line.removesuffix(': test') for line in subprocess.run([program, '--list'], capture_output=True, text=True).stdout.splitlines()
-             if line.endswith(': test')]
+    tests = [(program, line.removesuffix(': test')) for program in programs
+             for line in subprocess.run([program[0], '--list'], capture_output=True, text=True).stdout.splitlines() if line.endswith(': test')]
     reach, seconds = {}, {}
     for test in tests:
         seen = out / 'reach'
         seen.unlink(missing_ok=True)
-        result, seconds[test] = run(program, test, args.crate, out, 600, MUTANT_REACH=str(seen))
-        if result != 'passed':
-            sys.exit(f'{test} fails without any mutant')
+        result, seconds[test] = run(test, 4 * args.longest, MUTANT_REACH=str(seen))
+        if result == 'caught' or seconds[test] > args.longest:
+            # A test of the sources themselves finds the branches.
+            why = 'fails without any mutant' if result == 'caught' else f'longer than {args.longest} s'
+            print(f'not asked: {test[1]}, {why}', flush=True)
+            continue
         for n in seen.read_text().split() if seen.exists() else []:
             reach.setdefault(int(n), []).append(test)
     for file in args.files:
@@ -223,9 +232,9 @@ def main():
                 else:
                     results[name] = 'missed' if n in reach else 'missed (no test reaches it)'
                     for test in sorted(reach.get(n, []), key=seconds.get):
-                        result, _ = run(program, test, args.crate, out, max(20, 12 * seconds[test]), MUTANT=str(n))
+                        result, _ = run(test, max(20, 12 * seconds[test]), MUTANT=str(n))
                         if result != 'passed':
-                            results[name] = f'{result} by {test}'
+                            results[name] = f'{result} by {test[1]}'
                             break
             kind = results[name].split(' by ')[0].split(' (')[0]
             counts[kind] = counts.get(kind, 0) + 1
