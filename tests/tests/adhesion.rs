@@ -1,7 +1,5 @@
 //! Adhesion: two independent codes for the sphere.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::Jkr;
 use approx::assert_relative_eq;
 use contact_model::{Adhesion, ContactModel, ContactState, Load, Scene, Surface};

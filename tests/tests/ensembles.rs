@@ -1,7 +1,5 @@
 //! One and three dimensions on rough surfaces: the same trend, not the same numbers.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analysis::{Curves, StiffnessSample};
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Scene, Surface};

@@ -1,7 +1,5 @@
 //! Friction and rheology of contacts of any shape, through the profile of a model's own states.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::{CattaneoMindlin, Hertz, PowerLaw};
 use approx::assert_relative_eq;
 use bem3d::Bem3d;

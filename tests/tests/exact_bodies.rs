@@ -1,7 +1,5 @@
 //! Bodies with exact solutions: every model against every problem that it accepts.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::{FlatPunch, Hertz, PowerLaw, PowerLawBody};
 use bem3d::Bem3d;
 use contact_model::ContactModel;

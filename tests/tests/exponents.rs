@@ -1,7 +1,5 @@
 //! dlnk/dlnF = 1/(1 + n) for `z = c r^n`, n standing for H: solver, normalisation, curves and fit together.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analysis::{Bootstrap, Curves, FitWindow, StiffnessSample, fit_power_law};
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Scene, Surface};

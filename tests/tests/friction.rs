@@ -1,7 +1,5 @@
 //! Friction: springs against the closed form of the sphere.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::CattaneoMindlin;
 use approx::assert_relative_eq;
 use contact_model::{

@@ -1,7 +1,5 @@
 //! Hard cases: tiny, flat, tied, far apart, huge and hopeless.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, ContactState, Error, HeightMap, Load, Scene, SelfAffine, Status, Surface};

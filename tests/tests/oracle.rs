@@ -1,7 +1,5 @@
 //! Every contact set tried: the solver finds the one that satisfies the contact conditions.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, HeightMap, Load};

@@ -1,7 +1,5 @@
 //! The square that repeats itself: bem3d against Westergaard, Johnson-Greenwood-Higginson, the free square and itself.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::{Westergaard, westergaard};
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};

@@ -1,7 +1,5 @@
 //! What mechanics demands of any map under any load.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
 use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact};

@@ -1,7 +1,5 @@
 //! Rectangular maps, oblong cells and undefined points against plain sums, exact solutions and their own symmetries.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::{Hertz, Westergaard};
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};

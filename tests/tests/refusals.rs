@@ -1,7 +1,5 @@
 //! What a model lacks it refuses; what was not asked for is not there.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
 };

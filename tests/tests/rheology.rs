@@ -1,7 +1,5 @@
 //! Rheology by its properties: limits in time, bounds by energy, superposition; exact springs and those of a table alike.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::{FlatPunch, Hertz};
 use approx::assert_relative_eq;
 use contact_model::{

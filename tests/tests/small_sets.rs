@@ -1,7 +1,5 @@
 //! Sets of cells with known stiffness: full squares, two cells, two circles.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, HeightMap, Load, Scene, Surface};

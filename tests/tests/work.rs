@@ -1,7 +1,5 @@
 //! What is not asked for adds no work: counts of every model, output by output.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
-
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
 use contact_model::{

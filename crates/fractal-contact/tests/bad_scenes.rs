@@ -1,8 +1,6 @@
 //! Every mistake has its message: `data/scenes/bad/*.toml` beside the text that is stored for it. With
 //! `BLESS=1` the texts are stored anew.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
-
 use fractal_contact::scenes::{Plan, SceneFile};
 use std::path::{Path, PathBuf};
 

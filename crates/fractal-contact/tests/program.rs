@@ -1,7 +1,5 @@
 //! The program itself: exit codes, resume, the same bytes.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
-
 use fractal_contact::scenes::{Options, Plan, SceneFile, run};
 use runs::{Progress, Silent};
 use std::path::Path;

@@ -1,7 +1,5 @@
 //! Rectangles, oblong cells and undefined points: scenes, results, the program.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
-
 use contact_model::{Cells, HeightMap, Size, Surface};
 use fractal_contact::scenes::{Options, Plan, SceneFile, SceneSurface, run};
 use runs::{CsvFile, Silent};

@@ -1,7 +1,5 @@
 //! Every scene of `data/scenes` is run as it stands, and says what its comment promises.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
-
 use fractal_contact::scenes::{Options, Plan, SceneFile, SceneOutcome, run};
 use runs::{CsvFile, Silent};
 use std::path::{Path, PathBuf};

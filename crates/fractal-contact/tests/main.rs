@@ -1,0 +1,8 @@
+//! Scenes and the program: one test program, which links once.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
+
+mod bad_scenes;
+mod program;
+mod rectangles;
+mod scenes;

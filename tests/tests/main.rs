@@ -1,0 +1,25 @@
+//! One program: it links once, and its tests share the processors.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
+
+mod adhesion;
+mod ensembles;
+mod equivalent;
+mod exact_bodies;
+mod exponents;
+mod friction;
+mod hard;
+mod modules;
+mod oracle;
+mod peers;
+mod periodic;
+mod properties;
+mod rectangles;
+mod refusals;
+mod rheology;
+mod rough;
+mod sequences;
+mod small_sets;
+mod stability;
+mod symmetry;
+mod work;
