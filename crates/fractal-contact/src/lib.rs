@@ -12,6 +12,7 @@
 //! | [`analysis`] | means, fits with errors, tables |
 //! | [`surface_io`] | measured surfaces from files, fields into files |
 //! | `scenes` | text files that name what is pressed and what is asked, and the program `fractal-contact` |
+//! | `runs`, `plots` | jobs with a result store, CSV and manifest; charts and pictures of maps (feature `scenes`) |
 //!
 //! ```
 //! use fractal_contact::{Bem3d, ContactModel, HeightMap, Load, Scene, Surface};
@@ -42,3 +43,5 @@ pub use {analysis, analytic, bem3d, mdr1d, surface_gen, surface_io};
 
 #[cfg(feature = "scenes")]
 pub mod scenes;
+#[cfg(feature = "scenes")]
+pub use {plots, runs};
