@@ -88,7 +88,7 @@ impl HistoryModel for CattaneoMindlin {
             outputs: Outputs { stiffness: true, ..scene.outputs },
             ..scene.clone()
         };
-        Ok(Box::new(Prepared {
+        Ok(Box::new(PreparedCattaneoMindlin {
             normal: contact_model::ContactModel::prepare(&Hertz, &elastic, seed)?,
             shear_modulus: pair.shear_modulus()?,
             coefficient,
@@ -212,7 +212,7 @@ struct SlipPathEnd {
     curve: SlipCurve,
 }
 
-struct Prepared {
+struct PreparedCattaneoMindlin {
     normal: Box<dyn PreparedContact>,
     shear_modulus: f64,
     coefficient: f64,
@@ -220,7 +220,7 @@ struct Prepared {
     at: SlipPathEnd,
 }
 
-impl Prepared {
+impl PreparedCattaneoMindlin {
     /// The state under the normal load, with its contact radius.
     fn press(&mut self, step: &Step) -> Result<(ContactState, Option<SlidingSphere>)> {
         let mut state = self.normal.solve(step.normal)?;
@@ -238,7 +238,7 @@ impl Prepared {
     }
 }
 
-impl History for Prepared {
+impl History for PreparedCattaneoMindlin {
     fn normalisation(&self) -> Normalisation {
         self.normal.normalisation()
     }

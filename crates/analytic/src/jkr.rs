@@ -64,7 +64,7 @@ impl ContactModel for Jkr {
         };
         let (_, normalisation) = closed::of_body(scene)?;
         let sphere = AdhesiveSphere::new(radius, scene.modulus, work)?;
-        Ok(Box::new(Prepared {
+        Ok(Box::new(PreparedJkr {
             sphere,
             largest: 0.5 * size.shorter() / radius,
             size,
@@ -292,7 +292,7 @@ fn signed(value: f64, convert: impl Fn(f64) -> Result<f64>) -> Result<f64> {
     Ok(convert(value.abs())?.copysign(value))
 }
 
-struct Prepared {
+struct PreparedJkr {
     sphere: AdhesiveSphere,
     /// Half the shorter side over R.
     largest: f64,
@@ -301,7 +301,7 @@ struct Prepared {
     outputs: Outputs,
 }
 
-impl PreparedContact for Prepared {
+impl PreparedContact for PreparedJkr {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }

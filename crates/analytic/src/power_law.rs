@@ -156,7 +156,7 @@ impl ContactModel for PowerLaw {
         let (modulus, length) = (scene.modulus, surface.size.length());
         Ok(Box::new(Closed {
             model: NAME,
-            law: Fit::new(surface.fractal_dimension()),
+            law: Eq12::new(surface.fractal_dimension()),
             nondimensional: Nondimensionalisation::new(modulus, length, height)?,
             normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
@@ -167,13 +167,13 @@ impl ContactModel for PowerLaw {
 }
 
 /// Eq. 12 in its own nondimensional: force in `E* h L` (F_bar), approach in h, stiffness in `E* L`.
-struct Fit {
+struct Eq12 {
     alpha: f64,
     /// `1.1419 zeta`.
     factor: f64,
 }
 
-impl Fit {
+impl Eq12 {
     fn new(fractal_dimension: f64) -> Self {
         Self {
             alpha: exponent_fit(fractal_dimension),
@@ -182,7 +182,7 @@ impl Fit {
     }
 }
 
-impl ClosedLaw for Fit {
+impl ClosedLaw for Eq12 {
     fn at_force(&self, force: f64) -> Result<ClosedState> {
         within_power_law(force)?;
         let stiffness = self.factor * force.powf(self.alpha);

@@ -1,12 +1,13 @@
 //! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
 
-use plots::{Key, LineStyle, Mark, NEUTRAL, Picture, Shape, color, logarithmic, number};
+use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
 use runs::CsvFile;
 use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Marks of the loads or of the sizes, smallest first.
-const MARKS: [Shape; 5] = [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Cross];
+const MARKS: [MarkShape; 5] =
+    [MarkShape::Circle, MarkShape::Square, MarkShape::Triangle, MarkShape::Diamond, MarkShape::Cross];
 
 /// What the pictures of a bench hold.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,7 +20,7 @@ pub struct BenchPlot {
 
 /// One solve as the picture sees it.
 #[derive(Debug, Clone, PartialEq)]
-struct Point {
+struct BenchPoint {
     surface: String,
     fractal_dimension: Option<f64>,
     tolerance: f64,
@@ -38,7 +39,7 @@ enum Over {
 }
 
 impl Over {
-    fn of(self, p: &Point) -> f64 {
+    fn of(self, p: &BenchPoint) -> f64 {
         match self {
             Self::Cells => p.cells,
             Self::Force => p.force_bar,
@@ -75,7 +76,7 @@ impl Over {
     }
 
     /// Different values, increasing.
-    fn values(self, points: &[Point]) -> Vec<f64> {
+    fn values(self, points: &[BenchPoint]) -> Vec<f64> {
         let mut values: Vec<f64> = points.iter().map(|p| self.of(p)).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
@@ -106,7 +107,7 @@ pub fn plot_bench(csv: &Path, picture: &Path) -> Result<BenchPlot> {
     Ok(plot)
 }
 
-fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut BenchPlot) -> Result<()> {
+fn draw(points: &[BenchPoint], over: Over, directory: &Path, name: &str, plot: &mut BenchPlot) -> Result<()> {
     let other = over.other();
     let others = other.values(points);
     let y = logarithmic(points.iter().map(|p| p.seconds));
@@ -128,8 +129,8 @@ fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut B
         let what = first.fractal_dimension.map_or_else(|| first.surface.clone(), |d| format!("D_f = {d:?}"));
         let rank = others.iter().position(|v| v.total_cmp(&other.of(&first)).is_eq()).unwrap_or(0);
         let mark = MARKS[rank % MARKS.len()];
-        let (done, open): (Vec<Point>, Vec<Point>) = curve.into_iter().partition(|p| p.converged);
-        let at = |points: &[Point]| points.iter().map(|p| (over.of(p), p.seconds)).collect::<Vec<_>>();
+        let (done, open): (Vec<BenchPoint>, Vec<BenchPoint>) = curve.into_iter().partition(|p| p.converged);
+        let at = |points: &[BenchPoint]| points.iter().map(|p| (over.of(p), p.seconds)).collect::<Vec<_>>();
         drawing.line(&at(&done), &color, 1.4, LineStyle::Solid);
         drawing.points(&at(&done), &color, 4.6, Mark::Solid(mark));
         drawing.points(&at(&open), &color, 4.6, Mark::Hollow(mark));
@@ -140,7 +141,7 @@ fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut B
             drawing.legend(&label, &color, Key::Line(LineStyle::Solid));
             known.push(what.clone());
         }
-        let power = |of: fn(&Point) -> f64| slope(done.iter().map(|p| (over.of(p), of(p))));
+        let power = |of: fn(&BenchPoint) -> f64| slope(done.iter().map(|p| (over.of(p), of(p))));
         if let (Some(a), Some(b)) = (power(|p| p.seconds), power(|p| p.iterations)) {
             let mut curve = format!("{what}, {} = {}", other.name(), shown(other.of(&first)));
             if tolerances {
@@ -161,10 +162,10 @@ fn draw(points: &[Point], over: Over, directory: &Path, name: &str, plot: &mut B
 }
 
 /// Points of one relief, one tolerance and one value of `other`, in the order in which they come.
-fn curves(points: &[Point], other: Over) -> Vec<Vec<Point>> {
-    let mut curves: Vec<Vec<Point>> = Vec::new();
+fn curves(points: &[BenchPoint], other: Over) -> Vec<Vec<BenchPoint>> {
+    let mut curves: Vec<Vec<BenchPoint>> = Vec::new();
     for p in points {
-        let same = |c: &&mut Vec<Point>| {
+        let same = |c: &&mut Vec<BenchPoint>| {
             let q = &c[0];
             q.surface == p.surface
                 && q.fractal_dimension == p.fractal_dimension
@@ -180,7 +181,7 @@ fn curves(points: &[Point], other: Over) -> Vec<Vec<Point>> {
 }
 
 /// The tolerance of all solves, or how many there are.
-fn tolerance_words(points: &[Point]) -> String {
+fn tolerance_words(points: &[BenchPoint]) -> String {
     let mut all: Vec<f64> = points.iter().map(|p| p.tolerance).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
@@ -216,7 +217,7 @@ fn shown(value: f64) -> String {
     if value.fract().abs() > 0.0 { format!("{value:?}") } else { format!("{value}") }
 }
 
-fn read(csv: &Path) -> Result<Vec<Point>> {
+fn read(csv: &Path) -> Result<Vec<BenchPoint>> {
     let file = CsvFile::read(csv)?;
     let columns = ["fractal_dimension", "tolerance", "force_bar", "cells", "seconds", "iterations"];
     let [d, tolerance, force, cells, seconds, iterations] = columns.map(|name| file.numbers(name));
@@ -224,7 +225,7 @@ fn read(csv: &Path) -> Result<Vec<Point>> {
     let (cells, seconds, iterations) = (cells?, seconds?, iterations?);
     let (surface, status) = (file.texts("surface")?, file.texts("status")?);
     let rows = (0..force.len()).filter_map(|i| {
-        Some(Point {
+        Some(BenchPoint {
             surface: surface[i].to_owned(),
             fractal_dimension: d[i],
             tolerance: tolerance[i]?,
@@ -235,7 +236,7 @@ fn read(csv: &Path) -> Result<Vec<Point>> {
             converged: status[i] == contact_model::Status::Converged.as_str(),
         })
     });
-    let points: Vec<Point> = rows.collect();
+    let points: Vec<BenchPoint> = rows.collect();
     if points.is_empty() {
         return Err(Error::content(csv, "no rows to draw"));
     }

@@ -4,7 +4,7 @@ use crate::forces::Forces;
 use runs::{Error, Result};
 use std::path::PathBuf;
 
-/// Sizes of a run before single parameters are overridden.
+/// PresetSizes of a run before single parameters are overridden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Preset {
     /// Well under a minute; for a first look and for continuous integration.
@@ -31,9 +31,9 @@ impl Preset {
     }
 
     // At least three loads a decade, both models to F_bar = 20, and the two loads at which values are quoted.
-    fn sizes(self) -> Sizes {
+    fn sizes(self) -> PresetSizes {
         match self {
-            Self::Quick => Sizes {
+            Self::Quick => PresetSizes {
                 cells: 129,
                 surfaces: 8,
                 elements: 1 << 16,
@@ -42,7 +42,7 @@ impl Preset {
                 forces_1d: "1e-6:20:23,0.086,1",
                 tolerance: TOLERANCE,
             },
-            Self::Default => Sizes {
+            Self::Default => PresetSizes {
                 cells: 513,
                 surfaces: 40,
                 elements: 1 << 18,
@@ -51,7 +51,7 @@ impl Preset {
                 forces_1d: "1e-8:20:29,0.086,1",
                 tolerance: TOLERANCE,
             },
-            Self::Paper => Sizes {
+            Self::Paper => PresetSizes {
                 cells: 2049,
                 surfaces: 60,
                 elements: 1 << 20,
@@ -61,7 +61,7 @@ impl Preset {
                 // The scatter from surface to surface is a hundred times larger.
                 tolerance: 1e-3,
             },
-            Self::Extended => Sizes {
+            Self::Extended => PresetSizes {
                 cells: 16385,
                 surfaces: 4,
                 elements: 1 << 20,
@@ -74,7 +74,7 @@ impl Preset {
     }
 }
 
-struct Sizes {
+struct PresetSizes {
     cells: usize,
     surfaces: usize,
     elements: usize,
@@ -87,7 +87,7 @@ struct Sizes {
 /// What the caller asks for; `None` is the preset's own value.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Request {
-    /// Sizes to start from.
+    /// PresetSizes to start from.
     pub preset: Preset,
     /// Cells a side of each map.
     pub cells: Option<usize>,

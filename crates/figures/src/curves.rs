@@ -4,7 +4,7 @@ use crate::words;
 use evaluation::Measured;
 use evaluation::{Flag, Run, describe, header};
 use evaluation::{curves_table, samples_table};
-use plots::{Axis, Key, LineStyle, Mark, NEUTRAL, Picture, REFERENCE, Shape, color, logarithmic, shape};
+use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
 use runs::Result;
 use runs::{CsvFile, write_csv};
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub(crate) fn write(
 
 /// A mean of a CSV file.
 #[derive(Debug, Clone, Copy)]
-struct Point {
+struct CurvePoint {
     force: f64,
     stiffness: f64,
     error: Option<f64>,
@@ -38,7 +38,7 @@ struct Point {
 }
 
 /// The means of one fractal dimension.
-type CurvePoints = (f64, Vec<Point>);
+type CurvePoints = (f64, Vec<CurvePoint>);
 
 fn read(file: &CsvFile) -> Result<Vec<CurvePoints>> {
     let d = file.numbers("fractal_dimension")?;
@@ -53,7 +53,7 @@ fn read(file: &CsvFile) -> Result<Vec<CurvePoints>> {
             curves.push((d, Vec::new()));
         }
         if let Some(curve) = curves.last_mut() {
-            curve.1.push(Point { force, stiffness, error: error[i], below_floor: floor[i] == "true" });
+            curve.1.push(CurvePoint { force, stiffness, error: error[i], below_floor: floor[i] == "true" });
         }
     }
     Ok(curves)
@@ -94,7 +94,7 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
     for (d, points) in &curves {
         let (color, shape) = (color(*d), shape(*d));
         let alone = apart(&points.iter().map(|p| p.force).collect::<Vec<_>>());
-        let marked: Vec<Point> =
+        let marked: Vec<CurvePoint> =
             points.iter().zip(alone).filter_map(|(p, alone)| alone.then_some(*p)).collect();
         let floor = marked.iter().filter(|p| p.below_floor).map(|p| (p.force, p.stiffness));
         picture.line(&above_floor(points), &color, 1.8, LineStyle::Solid);
@@ -103,7 +103,7 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
         picture.legend(&words::dimension(*d), &color, Key::Curve(Mark::Solid(shape)));
     }
     picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
-    let ring = Mark::Ring(Shape::Circle);
+    let ring = Mark::Ring(MarkShape::Circle);
     picture.points(&[(analytic::F_BAR_UL, analytic::K_BAR_UL)], REFERENCE, 10.0, ring);
     let crossing = format!("paper: curves cross at $({}, {})$", analytic::F_BAR_UL, analytic::K_BAR_UL);
     picture.legend(&crossing, REFERENCE, Key::Sized(ring, 7.0));
@@ -112,12 +112,12 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
     }
     if curves.iter().flat_map(|c| &c.1).any(|p| p.below_floor) {
         let label = format!("fewer than {} contact {cells}", evaluation::FLOOR_CELLS);
-        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(Shape::Circle)));
+        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
     picture.save(out, name)
 }
 
-fn above_floor(points: &[Point]) -> Vec<(f64, f64)> {
+fn above_floor(points: &[CurvePoint]) -> Vec<(f64, f64)> {
     points.iter().filter(|p| !p.below_floor).map(|p| (p.force, p.stiffness)).collect()
 }
 

@@ -11,7 +11,7 @@ use evaluation::describe;
 use evaluation::header;
 use evaluation::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
 use evaluation::{Measured, measure_3d, transformed};
-use plots::{Axis, Key, LineStyle, Mark, NEUTRAL, Picture, REFERENCE, Shape, color, logarithmic, shape};
+use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
 use runs::Progress;
 use runs::{CsvFile, write_csv};
 use runs::{Error, Result};
@@ -115,7 +115,7 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     picture.legend("its upper limit $\\bar{F} = 0.086$", NEUTRAL, Key::Line(LineStyle::Dotted));
     if rows.iter().any(|r| r.3 && x.holds(r.1) && y.holds(r.2)) {
         let label = format!("fewer than {} contact cells", evaluation::FLOOR_CELLS);
-        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(Shape::Circle)));
+        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
     picture.save(out, "fig4")
 }

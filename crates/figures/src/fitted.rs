@@ -2,7 +2,7 @@
 
 use crate::words;
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
-use plots::{Key, Mark, Picture, Shape, number};
+use plots::{Key, Mark, MarkShape, Picture, number};
 use runs::{CsvFile, Error, Result};
 use std::path::Path;
 
@@ -88,9 +88,9 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
         all.push((format!("3D, {label}"), finer_series(path, value)?));
     }
     let styles = [
-        ("#0b559f", Mark::Solid(Shape::Circle), -1.0),
-        ("#d55e00", Mark::Solid(Shape::Square), 1.0),
-        ("#0b559f", Mark::Hollow(Shape::Diamond), 0.0),
+        ("#0b559f", Mark::Solid(MarkShape::Circle), -1.0),
+        ("#d55e00", Mark::Solid(MarkShape::Square), 1.0),
+        ("#0b559f", Mark::Hollow(MarkShape::Diamond), 0.0),
     ];
     for ((label, values), (color, mark, side)) in all.iter().zip(styles) {
         if values.is_empty() {

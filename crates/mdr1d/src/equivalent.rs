@@ -175,7 +175,7 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
                 return Err(Error::unsupported(NAME, what));
             }
         };
-        Ok(Box::new(Prepared { normal: self.normal(scene, seed)?, effect }))
+        Ok(Box::new(PreparedEquivalent { normal: self.normal(scene, seed)?, effect }))
     }
 }
 
@@ -184,12 +184,12 @@ enum Effect {
     Relax(Relaxation),
 }
 
-struct Prepared {
+struct PreparedEquivalent {
     normal: Normal,
     effect: Effect,
 }
 
-impl History for Prepared {
+impl History for PreparedEquivalent {
     fn normalisation(&self) -> Normalisation {
         self.normal.normalisation
     }

@@ -81,7 +81,7 @@ impl HistoryModel for PartialSlip {
             ));
         };
         let (length, modulus) = (scene.surface.size().length(), scene.modulus);
-        Ok(Box::new(Prepared {
+        Ok(Box::new(PreparedPartialSlip {
             profile,
             size: scene.surface.size(),
             nondimensional: Nondimensionalisation::new(modulus, length, length)?,
@@ -94,7 +94,7 @@ impl HistoryModel for PartialSlip {
     }
 }
 
-struct Prepared {
+struct PreparedPartialSlip {
     profile: Profile,
     size: Size,
     nondimensional: Nondimensionalisation,
@@ -105,7 +105,7 @@ struct Prepared {
     springs: Springs<Profile>,
 }
 
-impl Prepared {
+impl PreparedPartialSlip {
     /// The springs under an approach where the tangential force is reached.
     fn reach(&self, approach: f64, normal: f64, force: f64) -> Result<Springs<Profile>> {
         let limit = self.coefficient * normal;
@@ -120,7 +120,7 @@ impl Prepared {
     }
 }
 
-impl History for Prepared {
+impl History for PreparedPartialSlip {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }

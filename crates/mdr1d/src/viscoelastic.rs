@@ -86,7 +86,7 @@ impl HistoryModel for Viscoelastic {
             return Err(Error::unsupported(NAME, what));
         };
         let (length, modulus) = (scene.surface.size().length(), scene.modulus);
-        Ok(Box::new(Prepared {
+        Ok(Box::new(PreparedViscoelastic {
             profile,
             size: scene.surface.size(),
             nondimensional: Nondimensionalisation::new(modulus, length, length)?,
@@ -97,7 +97,7 @@ impl HistoryModel for Viscoelastic {
     }
 }
 
-struct Prepared {
+struct PreparedViscoelastic {
     profile: Profile,
     size: Size,
     nondimensional: Nondimensionalisation,
@@ -106,7 +106,7 @@ struct Prepared {
     relaxation: Relaxation,
 }
 
-impl History for Prepared {
+impl History for PreparedViscoelastic {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }

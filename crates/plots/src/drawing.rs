@@ -7,14 +7,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use tiny_skia as skia;
 
-/// Pixels of a PNG per unit of the scene.
+/// Pixels of a PNG per unit of the drawing.
 const SCALE: f64 = 2.0;
 
 /// A rectangle: left, top, width, height.
 pub(crate) type Rectangle = [f64; 4];
 
 /// What is drawn, in order, on white.
-pub(crate) struct Scene {
+pub(crate) struct Drawing {
     width: f64,
     height: f64,
     items: Vec<Item>,
@@ -55,7 +55,7 @@ pub(crate) enum Anchor {
     End,
 }
 
-impl Scene {
+impl Drawing {
     pub fn new(width: f64, height: f64) -> Self {
         Self { width, height, items: Vec::new() }
     }

@@ -1,13 +1,13 @@
 //! Legends: their lines, and the place where they cover no data.
 
+use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
 use crate::mark;
-use crate::scene::{Anchor, Paint, Rectangle, Scene, polygon, polyline};
 use crate::style::{INK, Key, LineStyle};
 use crate::text::{Fonts, Typeset};
 
 /// One line of a legend.
 #[derive(Debug, Clone, PartialEq)]
-struct Entry {
+struct LegendEntry {
     label: String,
     color: String,
     key: Key,
@@ -16,7 +16,7 @@ struct Entry {
 /// The lines of a legend.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Legend {
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
 }
 
 /// Length of the key before the words, and the space after it, in sizes of the words.
@@ -29,7 +29,7 @@ const COLUMN: f64 = 1.6;
 impl Legend {
     /// Adds a line; the label may hold symbols between dollar signs.
     pub fn push(&mut self, label: &str, color: &str, key: Key) {
-        self.entries.push(Entry { label: label.to_owned(), color: color.to_owned(), key });
+        self.entries.push(LegendEntry { label: label.to_owned(), color: color.to_owned(), key });
     }
 
     /// Whether there is nothing to say.
@@ -39,7 +39,7 @@ impl Legend {
 
     /// With the sizes of its words, in as many columns as fit into the width.
     pub(crate) fn set(&self, fonts: &Fonts, size: f64, width: f64) -> SetLegend<'_> {
-        let lines: Vec<(&Entry, Typeset)> =
+        let lines: Vec<(&LegendEntry, Typeset)> =
             self.entries.iter().map(|e| (e, fonts.typeset(&e.label, size))).collect();
         let widths: Vec<f64> = lines.iter().map(|(e, set)| indent(e, size) + set.width).collect();
         let in_rows = |rows: usize| {
@@ -53,7 +53,7 @@ impl Legend {
 }
 
 /// Where the words of a line begin.
-fn indent(entry: &Entry, size: f64) -> f64 {
+fn indent(entry: &LegendEntry, size: f64) -> f64 {
     if entry.key == Key::Words { 0.0 } else { (KEY + GAP) * size }
 }
 
@@ -64,7 +64,7 @@ fn total(columns: &[f64], size: f64) -> f64 {
 
 /// A legend with the sizes of its words.
 pub(crate) struct SetLegend<'a> {
-    lines: Vec<(&'a Entry, Typeset)>,
+    lines: Vec<(&'a LegendEntry, Typeset)>,
     size: f64,
     /// Their widths.
     columns: Vec<f64>,
@@ -81,7 +81,7 @@ impl SetLegend<'_> {
     }
 
     /// Draws it with its upper left corner at `at`.
-    pub fn draw(self, scene: &mut Scene, at: (f64, f64)) {
+    pub fn draw(self, drawing: &mut Drawing, at: (f64, f64)) {
         let (size, rows) = (self.size, self.rows);
         for (i, (entry, set)) in self.lines.into_iter().enumerate() {
             let before = &self.columns[..i / rows];
@@ -89,33 +89,33 @@ impl SetLegend<'_> {
             let baseline = at.1 + ((i % rows) as f64 + 0.95) * LINE * size;
             let middle = (x + 0.5 * KEY * size, baseline - 0.3 * size);
             let half = 0.5 * KEY * size;
-            let line = |scene: &mut Scene, style: LineStyle| {
+            let line = |drawing: &mut Drawing, style: LineStyle| {
                 let ends = [(middle.0 - half, middle.1), (middle.0 + half, middle.1)];
                 let paint = Paint { dashes: style.dashes(), ..Paint::stroked(&entry.color, 1.8) };
-                scene.path(polyline(&ends), paint, None);
+                drawing.path(polyline(&ends), paint, None);
             };
             match entry.key {
-                Key::Line(style) => line(scene, style),
+                Key::Line(style) => line(drawing, style),
                 Key::Curve(mark) => {
-                    line(scene, LineStyle::Solid);
-                    mark::draw(scene, middle, &entry.color, 4.6, mark);
+                    line(drawing, LineStyle::Solid);
+                    mark::draw(drawing, middle, &entry.color, 4.6, mark);
                 }
-                Key::Mark(mark) => mark::draw(scene, middle, &entry.color, 4.6, mark),
-                Key::Sized(mark, radius) => mark::draw(scene, middle, &entry.color, radius, mark),
+                Key::Mark(mark) => mark::draw(drawing, middle, &entry.color, 4.6, mark),
+                Key::Sized(mark, radius) => mark::draw(drawing, middle, &entry.color, radius, mark),
                 Key::Bar(mark) => {
                     let ends = [(middle.0, middle.1 - 0.5 * size), (middle.0, middle.1 + 0.5 * size)];
-                    scene.path(polyline(&ends), Paint::stroked(&entry.color, 1.5), None);
-                    mark::draw(scene, middle, &entry.color, 4.6, mark);
+                    drawing.path(polyline(&ends), Paint::stroked(&entry.color, 1.5), None);
+                    mark::draw(drawing, middle, &entry.color, 4.6, mark);
                 }
                 Key::Band => {
                     let (a, b) = (middle.0 - half, middle.0 + half);
                     let (c, d) = (middle.1 - 0.3 * size, middle.1 + 0.3 * size);
                     let corners = [(a, c), (b, c), (b, d), (a, d)];
-                    scene.path(polygon(&corners), Paint::filled(&entry.color, 0.3), None);
+                    drawing.path(polygon(&corners), Paint::filled(&entry.color, 0.3), None);
                 }
                 Key::Words => {}
             }
-            scene.label(set, (x + indent(entry, size), baseline), Anchor::Start, false, INK);
+            drawing.label(set, (x + indent(entry, size), baseline), Anchor::Start, false, INK);
         }
     }
 }

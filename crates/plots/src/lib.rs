@@ -7,7 +7,7 @@
 //!
 //! Symbols are set as symbols: a label is `$\\bar{F} = F/(E^* h L)$` between dollar signs, upright words outside. Frames have ticks inwards
 //! on four sides; logarithmic axes have powers of ten and ticks at 2 to 9. Letters are outlines of the fonts in `fonts/`, so that an SVG
-//! needs nothing from the machine that shows it; its labels are in `aria-label` as well. Both files come from one scene of paths.
+//! needs nothing from the machine that shows it; its labels are in `aria-label` as well. Both files come from one drawing of paths.
 //!
 //! Colours are told apart in grey as well; the same fractal dimension has the same colour in every picture ([`color`]). Maps have row 0
 //! at the bottom. Files are written whole or not at all.
@@ -16,13 +16,13 @@
 
 mod axis;
 mod chart;
+mod drawing;
 mod legend;
 mod map;
 mod maps;
 mod mark;
 mod panels;
 mod plot;
-mod scene;
 mod style;
 mod text;
 
@@ -34,5 +34,5 @@ pub use maps::{GreyMap, save_maps};
 pub use panels::Panels;
 pub use plot::Picture;
 pub use runs::{Error, Result};
-pub use style::{COLORS, Key, LineStyle, Mark, NEUTRAL, REFERENCE, SHAPES, Shape, color, shape};
+pub use style::{COLORS, Key, LineStyle, Mark, MarkShape, NEUTRAL, REFERENCE, SHAPES, color, shape};
 pub use text::number;

@@ -1,6 +1,6 @@
 //! Several grey maps side by side.
 
-use crate::scene::{Anchor, Paint, Scene, polygon};
+use crate::drawing::{Anchor, Drawing, Paint, polygon};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
 use runs::Result;
@@ -38,19 +38,19 @@ pub fn save_maps(
     let columns = maps.len().clamp(1, 3);
     let rows = maps.len().div_ceil(columns);
     let width = GAP + columns as f64 * (MAP + GAP);
-    let mut scene = Scene::new(width, TITLE + rows as f64 * (MAP + LABEL) + GAP);
-    scene.label(fonts.typeset(title, 19.0), (GAP, 27.0), Anchor::Start, false, INK);
-    scene.label(fonts.typeset(subtitle, 16.0), (GAP, 49.0), Anchor::Start, false, NEUTRAL);
+    let mut drawing = Drawing::new(width, TITLE + rows as f64 * (MAP + LABEL) + GAP);
+    drawing.label(fonts.typeset(title, 19.0), (GAP, 27.0), Anchor::Start, false, INK);
+    drawing.label(fonts.typeset(subtitle, 16.0), (GAP, 49.0), Anchor::Start, false, NEUTRAL);
     for (i, map) in maps.into_iter().enumerate() {
         let x = GAP + (i % columns) as f64 * (MAP + GAP);
         let y = TITLE + LABEL + (i / columns) as f64 * (MAP + LABEL);
         let label = fonts.typeset(&map.label, 18.0);
-        scene.label(label, (x + 0.5 * MAP, y - 8.0), Anchor::Middle, false, INK);
-        scene.grey([x, y, MAP, MAP], map.shades, map.side);
+        drawing.label(label, (x + 0.5 * MAP, y - 8.0), Anchor::Middle, false, INK);
+        drawing.grey([x, y, MAP, MAP], map.shades, map.side);
         let corners = [(x, y), (x + MAP, y), (x + MAP, y + MAP), (x, y + MAP)];
-        scene.path(polygon(&corners), Paint::stroked(INK, 1.0), None);
+        drawing.path(polygon(&corners), Paint::stroked(INK, 1.0), None);
     }
-    scene.save(&fonts, directory, name)
+    drawing.save(&fonts, directory, name)
 }
 
 #[cfg(test)]

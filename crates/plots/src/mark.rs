@@ -1,24 +1,24 @@
 //! Marks as paths.
 
-use crate::scene::{Paint, Scene, polygon, polyline};
-use crate::style::{Mark, Shape};
+use crate::drawing::{Drawing, Paint, polygon, polyline};
+use crate::style::{Mark, MarkShape};
 use crate::text::Piece;
 
 /// Draws a mark of this radius.
-pub(crate) fn draw(scene: &mut Scene, at: (f64, f64), color: &str, radius: f64, mark: Mark) {
+pub(crate) fn draw(drawing: &mut Drawing, at: (f64, f64), color: &str, radius: f64, mark: Mark) {
     let outline = outline(mark.shape(), at, radius);
     let paint = match mark {
-        _ if mark.shape() == Shape::Cross => Paint::stroked(color, 1.8),
+        _ if mark.shape() == MarkShape::Cross => Paint::stroked(color, 1.8),
         // A thin white edge keeps neighbours apart.
         Mark::Solid(_) => Paint { stroke: Some(("#ffffff".to_owned(), 0.7)), ..Paint::filled(color, 1.0) },
         Mark::Ring(_) => Paint::stroked(color, 1.4),
         Mark::Hollow(_) => Paint { stroke: Some((color.to_owned(), 1.4)), ..Paint::filled("#ffffff", 1.0) },
     };
-    scene.path(outline, paint, None);
+    drawing.path(outline, paint, None);
 }
 
 /// Shapes of the same radius look equally large.
-fn outline(shape: Shape, (x, y): (f64, f64), r: f64) -> Vec<Piece> {
+fn outline(shape: MarkShape, (x, y): (f64, f64), r: f64) -> Vec<Piece> {
     let corners = |n: u32, turn: f64, r: f64| {
         let corner = |i: u32| {
             let angle = turn + std::f64::consts::TAU * f64::from(i) / f64::from(n);
@@ -27,13 +27,13 @@ fn outline(shape: Shape, (x, y): (f64, f64), r: f64) -> Vec<Piece> {
         polygon(&(0..n).map(corner).collect::<Vec<_>>())
     };
     match shape {
-        Shape::Circle => circle(x, y, r),
-        Shape::Square => corners(4, std::f64::consts::FRAC_PI_4, 1.25 * r),
-        Shape::Diamond => corners(4, 0.0, 1.3 * r),
-        Shape::Triangle => corners(3, 0.0, 1.35 * r),
-        Shape::Down => corners(3, std::f64::consts::PI, 1.35 * r),
-        Shape::Pentagon => corners(5, 0.0, 1.15 * r),
-        Shape::Cross => {
+        MarkShape::Circle => circle(x, y, r),
+        MarkShape::Square => corners(4, std::f64::consts::FRAC_PI_4, 1.25 * r),
+        MarkShape::Diamond => corners(4, 0.0, 1.3 * r),
+        MarkShape::Triangle => corners(3, 0.0, 1.35 * r),
+        MarkShape::Down => corners(3, std::f64::consts::PI, 1.35 * r),
+        MarkShape::Pentagon => corners(5, 0.0, 1.15 * r),
+        MarkShape::Cross => {
             let mut both = polyline(&[(x - r, y - r), (x + r, y + r)]);
             both.extend(polyline(&[(x - r, y + r), (x + r, y - r)]));
             both

@@ -1,8 +1,8 @@
 //! Several pictures in one file.
 
+use crate::drawing::{Anchor, Drawing};
 use crate::legend::Legend;
 use crate::plot::{Picture, SIZE, TITLE, WORDS};
-use crate::scene::{Anchor, Scene};
 use crate::style::INK;
 use crate::text::Fonts;
 use runs::Result;
@@ -43,19 +43,19 @@ impl Panels {
         }
         let set = self.legend.set(&fonts, WORDS, all_width - left - 18.0);
         let legend_height = if self.legend.is_empty() { 0.0 } else { set.height() + 20.0 };
-        let mut scene = Scene::new(all_width, all_height + legend_height);
+        let mut drawing = Drawing::new(all_width, all_height + legend_height);
         if !self.title.is_empty() {
             let title = fonts.typeset(&self.title, TITLE);
-            scene.label(title, (left, 1.45 * TITLE), Anchor::Start, false, INK);
+            drawing.label(title, (left, 1.45 * TITLE), Anchor::Start, false, INK);
         }
         if !self.legend.is_empty() {
-            set.draw(&mut scene, (left, all_height + 6.0));
+            set.draw(&mut drawing, (left, all_height + 6.0));
         }
         for (i, picture) in self.pictures.into_iter().enumerate() {
             let corner = ((i % columns) as f64 * width, top + (i / columns) as f64 * height);
-            picture.draw(&fonts, &mut scene, corner);
+            picture.draw(&fonts, &mut drawing, corner);
         }
-        scene.save(&fonts, directory, name)
+        drawing.save(&fonts, directory, name)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Axes and what is drawn on them.
 
 use crate::axis::Axis;
+use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
 use crate::legend::{Legend, free_place};
 use crate::mark;
-use crate::scene::{Anchor, Paint, Rectangle, Scene, polygon, polyline};
 use crate::style::{INK, Key, LineStyle, Mark, NEUTRAL};
 use crate::text::Fonts;
 
@@ -141,20 +141,20 @@ impl Picture {
     }
 
     /// Draws everything but a legend below; gives that back.
-    pub(crate) fn draw(mut self, fonts: &Fonts, scene: &mut Scene, corner: (f64, f64)) {
+    pub(crate) fn draw(mut self, fonts: &Fonts, drawing: &mut Drawing, corner: (f64, f64)) {
         let frame = self.frame(fonts, corner);
         let scale = self.text_scale();
         let drawn = std::mem::take(&mut self.drawn);
         let mut taken = Vec::new();
         for item in &drawn {
-            self.draw_item(item, scene, frame, &mut taken);
+            self.draw_item(item, drawing, frame, &mut taken);
         }
-        self.draw_axes(fonts, scene, frame, corner);
+        self.draw_axes(fonts, drawing, frame, corner);
         if !self.legend_below && !self.legend.is_empty() {
             let set = self.legend.set(fonts, WORDS * scale, 0.0);
             let size = (set.width(), set.height());
             if let Some(place) = free_place(frame, size, &taken, MARGIN) {
-                set.draw(scene, place);
+                set.draw(drawing, place);
             }
         }
     }
@@ -166,7 +166,7 @@ impl Picture {
         }
         let frame = self.frame(fonts, (0.0, 0.0));
         let mut taken = Vec::new();
-        let mut nowhere = Scene::new(1.0, 1.0);
+        let mut nowhere = Drawing::new(1.0, 1.0);
         for item in &self.drawn {
             self.draw_item(item, &mut nowhere, frame, &mut taken);
         }
@@ -205,7 +205,7 @@ impl Picture {
         Some((frame[0] + x * frame[2], frame[1] + (1.0 - y) * frame[3]))
     }
 
-    fn draw_item(&self, item: &Drawn, scene: &mut Scene, frame: Rectangle, taken: &mut Vec<(f64, f64)>) {
+    fn draw_item(&self, item: &Drawn, drawing: &mut Drawing, frame: Rectangle, taken: &mut Vec<(f64, f64)>) {
         let place = |p: (f64, f64)| self.place(frame, p);
         match item {
             Drawn::Line { points, color, width, style } => {
@@ -215,14 +215,14 @@ impl Picture {
                     if run.len() > 1 {
                         taken.extend(run.windows(2).flat_map(|w| along(w[0], w[1])));
                         let paint = Paint { dashes: style.dashes(), ..Paint::stroked(color, *width) };
-                        scene.path(polyline(&run), paint, Some(frame));
+                        drawing.path(polyline(&run), paint, Some(frame));
                     }
                 }
             }
             Drawn::Points { points, color, radius, mark } => {
                 for at in points.iter().filter_map(|p| place(*p)) {
                     taken.push(at);
-                    mark::draw(scene, at, color, *radius, *mark);
+                    mark::draw(drawing, at, color, *radius, *mark);
                 }
             }
             Drawn::Band { points, color } => {
@@ -232,7 +232,7 @@ impl Picture {
                 let corners: Vec<(f64, f64)> = lower.chain(upper).collect();
                 if points.len() > 1 {
                     taken.extend(&corners);
-                    scene.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
+                    drawing.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
                 }
             }
             Drawn::Bars { points, color } => {
@@ -246,14 +246,14 @@ impl Picture {
                     for ends in
                         [[a, b], [(a.0 - END, a.1), (a.0 + END, a.1)], [(b.0 - END, b.1), (b.0 + END, b.1)]]
                     {
-                        scene.path(polyline(&ends), Paint::stroked(color, 1.2), Some(frame));
+                        drawing.path(polyline(&ends), Paint::stroked(color, 1.2), Some(frame));
                     }
                 }
             }
         }
     }
 
-    fn draw_axes(&self, fonts: &Fonts, scene: &mut Scene, frame: Rectangle, corner: (f64, f64)) {
+    fn draw_axes(&self, fonts: &Fonts, drawing: &mut Drawing, frame: Rectangle, corner: (f64, f64)) {
         let scale = self.text_scale();
         let [x, y, w, h] = frame;
         let (right, bottom) = (x + w, y + h);
@@ -269,16 +269,16 @@ impl Picture {
                     [[(x, y), (x + length, y)], [(right, y), (right - length, y)]]
                 };
                 for ends in ends {
-                    scene.path(polyline(&ends), Paint::stroked(INK, 1.1), None);
+                    drawing.path(polyline(&ends), Paint::stroked(INK, 1.1), None);
                 }
                 let Some(label) = tick.label else { continue };
                 let set = fonts.typeset(&label, TICK * scale);
                 if i == 0 {
                     let at = (ends[0][0].0, bottom + 1.3 * TICK * scale);
-                    scene.label(set, at, Anchor::Middle, false, INK);
+                    drawing.label(set, at, Anchor::Middle, false, INK);
                 } else {
                     let at = (x - 0.45 * TICK * scale, ends[0][0].1 + 0.33 * TICK * scale);
-                    scene.label(set, at, Anchor::End, false, INK);
+                    drawing.label(set, at, Anchor::End, false, INK);
                 }
             }
             if let Some(power) = power {
@@ -288,23 +288,23 @@ impl Picture {
                 } else {
                     ((x - 0.45 * TICK * scale, y - 0.45 * TICK * scale), Anchor::End)
                 };
-                scene.label(set, at, anchor, false, INK);
+                drawing.label(set, at, anchor, false, INK);
             }
         }
         let corners = [(x, y), (right, y), (right, bottom), (x, bottom)];
-        scene.path(polygon(&corners), Paint::stroked(INK, 1.3), None);
+        drawing.path(polygon(&corners), Paint::stroked(INK, 1.3), None);
         let label = |i: usize| fonts.typeset(&self.labels[i], LABEL * scale);
         let below = (x + 0.5 * w, bottom + 1.55 * TICK * scale + 1.2 * LABEL * scale);
-        scene.label(label(0), below, Anchor::Middle, false, INK);
+        drawing.label(label(0), below, Anchor::Middle, false, INK);
         let beside = (corner.0 + 1.15 * LABEL * scale, y + 0.5 * h);
-        scene.label(label(1), beside, Anchor::Middle, true, INK);
+        drawing.label(label(1), beside, Anchor::Middle, true, INK);
         let mut above = y - 0.6 * WORDS * scale;
         if !self.subtitle.is_empty() {
             let set = fonts.typeset(&self.subtitle, WORDS * scale);
-            scene.label(set, (x, above), Anchor::Start, false, NEUTRAL);
+            drawing.label(set, (x, above), Anchor::Start, false, NEUTRAL);
             above -= 1.4 * WORDS * scale;
         }
-        scene.label(fonts.typeset(&self.title, TITLE * scale), (x, above), Anchor::Start, false, INK);
+        drawing.label(fonts.typeset(&self.title, TITLE * scale), (x, above), Anchor::Start, false, INK);
     }
 }
 
@@ -321,7 +321,7 @@ fn along(a: (f64, f64), b: (f64, f64)) -> impl Iterator<Item = (f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::style::Shape;
+    use crate::style::MarkShape;
 
     fn picture() -> Picture {
         let mut picture = Picture::new(
@@ -333,9 +333,9 @@ mod tests {
         .with_title("A law")
         .with_subtitle("2049 × 2049 cells");
         picture.line(&[(1e-3, 1e-2), (1e2, 1.0)], "#000000", 1.0, LineStyle::Dashed);
-        picture.points(&[(1.0, 0.1), (1e5, 0.1)], "#aa0000", 4.0, Mark::Solid(Shape::Circle));
+        picture.points(&[(1.0, 0.1), (1e5, 0.1)], "#aa0000", 4.0, Mark::Solid(MarkShape::Circle));
         picture.band(&[(0.1, 0.0, 0.1), (1.0, 0.1, 0.2)], "#aa0000");
-        picture.legend("$D_f$ = 2", "#aa0000", Key::Curve(Mark::Solid(Shape::Circle)));
+        picture.legend("$D_f$ = 2", "#aa0000", Key::Curve(Mark::Solid(MarkShape::Circle)));
         picture
     }
 

@@ -9,8 +9,14 @@ pub const NEUTRAL: &str = "#6b6b6b";
 /// Colours of curves without a fractal dimension: from Okabe and Ito, told apart by colour-blind readers and in grey.
 pub const COLORS: [&str; 6] = ["#0b559f", "#d55e00", "#009e73", "#8c2d7a", "#a6761d", "#3b3b3b"];
 /// Shapes in the same order.
-pub const SHAPES: [Shape; 6] =
-    [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Down, Shape::Cross];
+pub const SHAPES: [MarkShape; 6] = [
+    MarkShape::Circle,
+    MarkShape::Square,
+    MarkShape::Triangle,
+    MarkShape::Diamond,
+    MarkShape::Down,
+    MarkShape::Cross,
+];
 
 /// Dark blue to yellow over D_f = 2 .. 3: order is visible, also in grey.
 pub fn color(fractal_dimension: f64) -> String {
@@ -29,14 +35,21 @@ pub fn color(fractal_dimension: f64) -> String {
 }
 
 /// The mark of a fractal dimension, so that curves are told apart without colour as well.
-pub fn shape(fractal_dimension: f64) -> Shape {
+pub fn shape(fractal_dimension: f64) -> MarkShape {
     let i = ((fractal_dimension - 2.0) * 5.0).round().clamp(0.0, 5.0) as usize;
-    [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Down, Shape::Pentagon][i]
+    [
+        MarkShape::Circle,
+        MarkShape::Square,
+        MarkShape::Triangle,
+        MarkShape::Diamond,
+        MarkShape::Down,
+        MarkShape::Pentagon,
+    ][i]
 }
 
 /// The outline of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub enum MarkShape {
     /// A circle.
     Circle,
     /// A square on its side.
@@ -57,15 +70,15 @@ pub enum Shape {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
     /// Filled.
-    Solid(Shape),
+    Solid(MarkShape),
     /// An outline around white.
-    Hollow(Shape),
+    Hollow(MarkShape),
     /// An outline around whatever lies below.
-    Ring(Shape),
+    Ring(MarkShape),
 }
 
 impl Mark {
-    pub(crate) fn shape(self) -> Shape {
+    pub(crate) fn shape(self) -> MarkShape {
         match self {
             Self::Solid(shape) | Self::Hollow(shape) | Self::Ring(shape) => shape,
         }

@@ -89,7 +89,7 @@ impl Fonts {
 
     /// Sets a label in one line.
     pub fn typeset(&self, label: &str, size: f64) -> Typeset {
-        let mut line = Line { fonts: self, set: Typeset::default(), lean: 0.0 };
+        let mut line = LineOfText { fonts: self, set: Typeset::default(), lean: 0.0 };
         for (i, part) in label.split('$').enumerate() {
             if i % 2 == 0 {
                 part.chars().for_each(|c| line.push(c, false, size, 0.0));
@@ -131,14 +131,14 @@ impl OutlineBuilder for Outline {
 }
 
 /// A line while it is set.
-struct Line<'a> {
+struct LineOfText<'a> {
     fonts: &'a Fonts,
     set: Typeset,
     /// How far the last glyph, if italic, leans over its advance.
     lean: f64,
 }
 
-impl Line<'_> {
+impl LineOfText<'_> {
     /// Appends one character; returns its glyph's [left, right, top] in the picture's units.
     fn push(&mut self, c: char, italic: bool, size: f64, y: f64) {
         let id = self.fonts.face(italic).glyph_index(c).map_or(0, |g| g.0);

@@ -5,12 +5,10 @@ use crate::spectrum::line_amplitudes;
 use crate::turn::Circle;
 use contact_model::{Line, Result, SelfAffine, line_length};
 use realfft::{ComplexToReal, RealFftPlanner};
-use rustfft::num_complex::Complex;
+use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::{Arc, Mutex};
-
-type C = Complex<f64>;
 
 /// Plans self-affine lines of one size: amplitudes tabulated, transform planned.
 ///
@@ -28,8 +26,8 @@ pub struct LineGenerator {
 
 #[derive(Debug)]
 struct LineWorkspace {
-    spectrum: Vec<C>,
-    scratch: Vec<C>,
+    spectrum: Vec<Complex64>,
+    scratch: Vec<Complex64>,
 }
 
 impl fmt::Debug for LineGenerator {
@@ -99,11 +97,11 @@ impl LineGenerator {
 
     /// Writes `B exp(i phi)` of the waves and 0 elsewhere, moved by half an element so that samples sit at
     /// the elements' centres.
-    fn fill(&self, seed: u64, spectrum: &mut [C]) {
+    fn fill(&self, seed: u64, spectrum: &mut [Complex64]) {
         let (mean, waves) = spectrum.split_at_mut(1);
         let (waves, beyond) = waves.split_at_mut(self.amplitudes.len());
-        mean.fill(C::new(0.0, 0.0));
-        beyond.fill(C::new(0.0, 0.0));
+        mean.fill(Complex64::new(0.0, 0.0));
+        beyond.fill(Complex64::new(0.0, 0.0));
         let circle = Circle::shared();
         let mut turns = Turns::new(seed, Stream::Line, 0);
         let _mean = turns.next();
@@ -119,7 +117,7 @@ impl LineGenerator {
                 shift += 1;
             }
             let [cos, sin] = circle.cos_sin(turns.next().wrapping_add(shift));
-            *value = C::new(amplitude * cos, amplitude * sin);
+            *value = Complex64::new(amplitude * cos, amplitude * sin);
         }
     }
 }

@@ -7,11 +7,9 @@ use contact_model::{Cells, Error, HeightMap, Result, SelfAffine, Size};
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner};
-use rustfft::{Fft, FftPlanner, num_complex::Complex};
+use rustfft::{Fft, FftPlanner, num_complex::Complex64};
 use std::fmt;
 use std::sync::Arc;
-
-type C = Complex<f64>;
 
 /// Rows that are gathered from the columns at a time: 16 complex numbers are four cache lines.
 const ROWS: usize = 16;
@@ -94,16 +92,16 @@ impl MapGenerator {
 
     fn synthesise(&self, seed: u64, parallel: bool) -> Result<HeightMap> {
         let Cells { columns: nx, rows: ny } = self.cells;
-        let mut columns = zeroed(ny, self.spectrum.columns(), C::new(0.0, 0.0))?;
+        let mut columns = zeroed(ny, self.spectrum.columns(), Complex64::new(0.0, 0.0))?;
         let mut heights = zeroed(ny, nx, 0.0)?;
 
-        let column_scratch = || vec![C::new(0.0, 0.0); self.along_y.get_inplace_scratch_len()];
-        let fill = |scratch: &mut Vec<C>, (mx, column): (usize, &mut [C])| {
+        let column_scratch = || vec![Complex64::new(0.0, 0.0); self.along_y.get_inplace_scratch_len()];
+        let fill = |scratch: &mut Vec<Complex64>, (mx, column): (usize, &mut [Complex64])| {
             self.fill_column(seed, mx as u64, column);
             self.along_y.process_with_scratch(column, scratch);
         };
         let row_scratch = || RowScratch {
-            gathered: vec![C::new(0.0, 0.0); ROWS * (nx / 2 + 1)],
+            gathered: vec![Complex64::new(0.0, 0.0); ROWS * (nx / 2 + 1)],
             fft: self.along_x.make_scratch_vec(),
         };
         #[cfg(feature = "rayon")]
@@ -129,11 +127,11 @@ impl MapGenerator {
     }
 
     /// Writes `B exp(i phi)` of all waves (mx, my); index my, negative ones from the end.
-    fn fill_column(&self, seed: u64, mx: u64, column: &mut [C]) {
+    fn fill_column(&self, seed: u64, mx: u64, column: &mut [Complex64]) {
         let circle = Circle::shared();
         let wave = |amplitude: f64, turn: u64| {
             let [cos, sin] = circle.cos_sin(turn);
-            C::new(amplitude * cos, amplitude * sin)
+            Complex64::new(amplitude * cos, amplitude * sin)
         };
         let mut turns = Turns::new(seed, Stream::Map, mx);
         let [shifts_x, shifts_y] = &self.shifts;
@@ -158,10 +156,10 @@ impl MapGenerator {
     }
 
     /// Transforms block number `block` of rows along x.
-    fn rows(&self, columns: &[C], block: usize, rows: &mut [f64], scratch: &mut RowScratch) {
+    fn rows(&self, columns: &[Complex64], block: usize, rows: &mut [f64], scratch: &mut RowScratch) {
         let Cells { columns: nx, rows: ny } = self.cells;
         let (first, width) = (block * ROWS, nx / 2 + 1);
-        scratch.gathered.fill(C::new(0.0, 0.0));
+        scratch.gathered.fill(Complex64::new(0.0, 0.0));
         for (mx, column) in columns.chunks_exact(ny).enumerate() {
             let part = &column[first..first + rows.len() / nx];
             for (iy, &value) in part.iter().enumerate() {
@@ -179,8 +177,8 @@ impl MapGenerator {
 
 #[derive(Debug)]
 struct RowScratch {
-    gathered: Vec<C>,
-    fft: Vec<C>,
+    gathered: Vec<Complex64>,
+    fft: Vec<Complex64>,
 }
 
 /// `n * m` zeros, or an error where the memory cannot be had.
@@ -405,13 +403,13 @@ mod tests {
     }
 
     /// Amplitude of the wave (mx, my) about the corner of the square, `mean of h exp(-i q x)`.
-    fn project(map: &HeightMap, mx: f64, my: f64) -> C {
+    fn project(map: &HeightMap, mx: f64, my: f64) -> Complex64 {
         let n = map.columns();
-        let sum: C = (0..n * n)
+        let sum: Complex64 = (0..n * n)
             .map(|i| {
                 let x = ((i % n) as f64 + 0.5) / n as f64;
                 let y = ((i / n) as f64 + 0.5) / n as f64;
-                C::from_polar(map.heights()[i], -TAU * (mx * x + my * y))
+                Complex64::from_polar(map.heights()[i], -TAU * (mx * x + my * y))
             })
             .sum();
         sum / (n * n) as f64

@@ -1,12 +1,12 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
-use super::prepared::{NAME, Prepared};
+use super::prepared::{NAME, PreparedBem3d};
 use crate::active_set::{self, Limits, Solved, Target};
 use crate::stiffness::{self, Stiffness};
 use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
 use std::f64::consts::PI;
 
-impl PreparedContact for Prepared {
+impl PreparedContact for PreparedBem3d {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }
@@ -40,7 +40,7 @@ impl PreparedContact for Prepared {
     }
 }
 
-impl Prepared {
+impl PreparedBem3d {
     /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the certificate does: as long as
     /// undecided cells could change it by more than the tolerance, the contact set is solved further.
     pub(super) fn settle(

@@ -1,11 +1,11 @@
 //! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
 
-use super::prepared::Prepared;
+use super::prepared::PreparedBem3d;
 use crate::active_set::{Solved, Target};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
-impl Prepared {
+impl PreparedBem3d {
     /// Mean gap of a state, nondimensional: the distance of the mean planes, undefined points left out. The displacement under the kernel of zero mean has none.
     pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
         let force: f64 = solved.p.iter().sum();

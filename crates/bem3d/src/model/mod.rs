@@ -11,7 +11,7 @@ pub use options::{Bem3d, Method};
 use contact_model::{
     Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface,
 };
-use prepared::{NAME, Prepared};
+use prepared::{NAME, PreparedBem3d};
 use std::sync::Arc;
 
 impl ContactModel for Bem3d {
@@ -48,7 +48,7 @@ impl ContactModel for Bem3d {
             surface => surface_gen::height_map(surface, self.grid(surface.size()), seed)?,
         };
         let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));
-        Ok(Box::new(Prepared::new(*self, scene, &map, has_rms)?))
+        Ok(Box::new(PreparedBem3d::new(*self, scene, &map, has_rms)?))
     }
 }
 

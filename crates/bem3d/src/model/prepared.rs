@@ -15,7 +15,7 @@ pub const NAME: &str = "bem3d";
 
 /// One surface, ready to be loaded.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct PreparedBem3d {
     pub(super) options: Bem3d,
     pub(super) outputs: Outputs,
     pub(super) problem: Problem,
@@ -30,7 +30,7 @@ pub struct Prepared {
     pub(super) size: Size,
 }
 
-impl Prepared {
+impl PreparedBem3d {
     pub(super) fn new(options: Bem3d, scene: &Scene, map: &HeightMap, has_rms: bool) -> Result<Self> {
         let highest = map.highest();
         // Differences first: an offset of the heights changes nothing.

@@ -1,6 +1,6 @@
 //! From a solution to the state that is returned.
 
-use super::prepared::Prepared;
+use super::prepared::PreparedBem3d;
 use crate::active_set::Solved;
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
@@ -9,7 +9,7 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
-impl Prepared {
+impl PreparedBem3d {
     pub(super) fn state(
         &mut self,
         solved: Solved,

@@ -64,14 +64,14 @@ pub(crate) fn limit(values: &[(f64, f64)]) -> Option<Limit> {
     Some(unknown)
 }
 
-struct Fit {
+struct LimitFit {
     order: f64,
     limit: f64,
     residual: f64,
 }
 
 /// Least squares for `limit` and C at a given order.
-fn fit(values: &[(f64, f64)], order: f64) -> Option<Fit> {
+fn fit(values: &[(f64, f64)], order: f64) -> Option<LimitFit> {
     let finest = values.last()?;
     // Differences from the finest value and cells in its units: no digits lost.
     let rows: Vec<(f64, f64, f64)> = values
@@ -89,7 +89,7 @@ fn fit(values: &[(f64, f64)], order: f64) -> Option<Fit> {
     let slope = xy / xx;
     let at_zero = y - slope * x;
     let residual = (sum(&|r| r.0 * (r.2 - at_zero - slope * r.1).powi(2)) / w).sqrt();
-    Some(Fit { order, limit: finest.1 + at_zero, residual })
+    Some(LimitFit { order, limit: finest.1 + at_zero, residual })
 }
 
 /// Least-squares slope of ln(error) over ln(cell); `None` for fewer than two positive errors.

@@ -3,7 +3,7 @@
 use super::limit::{Limit, limit, slope};
 use super::problem::{DIMENSIONS, Family, LOADS, SQUARE};
 use super::row::{Answer, Parts, StudyRow, Way, measure};
-use super::sizes::{Order, Sizes};
+use super::sizes::{Order, StudySizes};
 use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
@@ -29,7 +29,7 @@ struct EnsembleMeans {
 
 /// Rows of all ensembles, references and closed forms.
 pub(crate) fn means(
-    sizes: &Sizes,
+    sizes: &StudySizes,
     seed: u64,
     orders: &mut Vec<Order>,
     progress: &dyn Progress,

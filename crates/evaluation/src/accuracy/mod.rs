@@ -28,7 +28,7 @@ use runs::Progress;
 use runs::Result;
 use runs::files;
 use runs::write_csv;
-use sizes::Sizes;
+use sizes::StudySizes;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -48,7 +48,7 @@ pub fn accuracy_cost(depth: Depth, seed: u64, out: &Path, progress: &dyn Progres
 }
 
 fn with_sizes(
-    sizes: &Sizes,
+    sizes: &StudySizes,
     command: String,
     seed: u64,
     out: &Path,
@@ -110,7 +110,7 @@ mod tests {
     use runs::Silent;
 
     /// A quarter of the finest quick grid: a second of work.
-    const TINY: Sizes = Sizes {
+    const TINY: StudySizes = StudySizes {
         grids: &[17, 33, 65],
         between: &[25, 49],
         tolerances: &[1e-1],

@@ -1,6 +1,6 @@
 //! The picture: error of k over seconds, one panel for each load.
 
-use plots::{Axis, Key, Legend, LineStyle, Mark, NEUTRAL, Panels, Picture, Shape, color, extent};
+use plots::{Axis, Key, Legend, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
 use runs::CsvFile;
 use runs::Result;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ pub(crate) const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// A row of the table as picture and text see it.
 #[derive(Debug, Clone)]
-pub(crate) struct Point {
+pub(crate) struct AccuracyPoint {
     pub family: String,
     pub fractal_dimension: Option<f64>,
     pub force_bar: Option<f64>,
@@ -31,7 +31,7 @@ pub(crate) struct Point {
     pub pareto: bool,
 }
 
-impl Point {
+impl AccuracyPoint {
     pub fn same_problem(&self, other: &Self) -> bool {
         self.family == other.family
             && same(self.fractal_dimension, other.fractal_dimension)
@@ -43,7 +43,7 @@ fn same(a: Option<f64>, b: Option<f64>) -> bool {
     a.map(f64::to_bits) == b.map(f64::to_bits)
 }
 
-pub(crate) fn read(csv: &Path) -> Result<Vec<Point>> {
+pub(crate) fn read(csv: &Path) -> Result<Vec<AccuracyPoint>> {
     let file = CsvFile::read(csv)?;
     let number = |name: &str| file.numbers(name);
     let (d, f, size, tolerance) =
@@ -55,7 +55,7 @@ pub(crate) fn read(csv: &Path) -> Result<Vec<Point>> {
     let (family, model, method) = (file.texts("family")?, file.texts("model")?, file.texts("method")?);
     let pareto = file.texts("pareto")?;
     Ok((0..d.len())
-        .map(|i| Point {
+        .map(|i| AccuracyPoint {
             family: family[i].to_owned(),
             fractal_dimension: d[i],
             force_bar: f[i],
@@ -75,7 +75,7 @@ pub(crate) fn read(csv: &Path) -> Result<Vec<Point>> {
 }
 
 /// Different values, increasing.
-pub(crate) fn values(points: &[Point], of: impl Fn(&Point) -> Option<f64>) -> Vec<f64> {
+pub(crate) fn values(points: &[AccuracyPoint], of: impl Fn(&AccuracyPoint) -> Option<f64>) -> Vec<f64> {
     let mut all: Vec<f64> = points.iter().filter_map(of).collect();
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| a.total_cmp(b).is_eq());
@@ -106,7 +106,7 @@ pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
 }
 
 /// One pair of axes for all panels, no longer than the points.
-fn axes(points: &[Point]) -> (Axis, Axis) {
+fn axes(points: &[AccuracyPoint]) -> (Axis, Axis) {
     let shown = || points.iter().filter(|p| is_front(p) || p.family == "mean");
     let (_, slow) = extent(shown().filter_map(|p| p.seconds)).unwrap_or((0.0, 1.0));
     let (_, bad) = extent(shown().filter_map(|p| p.error)).unwrap_or((0.0, 1.0));
@@ -114,33 +114,34 @@ fn axes(points: &[Point]) -> (Axis, Axis) {
 }
 
 /// Solves of boundary elements that no other beats in both error and time.
-fn is_front(p: &Point) -> bool {
+fn is_front(p: &AccuracyPoint) -> bool {
     p.pareto && p.model == "bem3d" && (p.family == "band" || p.family == "spectrum")
 }
 
-fn panel(picture: &mut Picture, points: &[Point], family: &str, load: f64, dimensions: &[f64]) {
+fn panel(picture: &mut Picture, points: &[AccuracyPoint], family: &str, load: f64, dimensions: &[f64]) {
     let (x, y) = picture.axes();
-    let here = |p: &&Point, family: &str, d: f64| {
+    let here = |p: &&AccuracyPoint, family: &str, d: f64| {
         p.family == family && same(p.force_bar, Some(load)) && same(p.fractal_dimension, Some(d))
     };
     // What is faster or nearer than the axes go stands on their edge.
-    let place = |p: &Point| {
+    let place = |p: &AccuracyPoint| {
         let seconds = p.seconds.unwrap_or(0.0).clamp(x.ends().0 * 1.2, x.ends().1 / 1.2);
         Some((seconds, p.error?.clamp(y.ends().0 * 1.1, y.ends().1 / 1.1)))
     };
     for &d in dimensions {
         let color = color(d);
-        let front: Vec<&Point> = points.iter().filter(|p| here(p, family, d) && is_front(p)).collect();
+        let front: Vec<&AccuracyPoint> =
+            points.iter().filter(|p| here(p, family, d) && is_front(p)).collect();
         let mut at: Vec<(f64, f64)> = front.iter().filter_map(|p| place(p)).collect();
         at.sort_by(|a, b| a.0.total_cmp(&b.0));
         picture.line(&at, &color, 1.4, LineStyle::Solid);
         for p in &front {
             let at: Vec<(f64, f64)> = place(p).into_iter().collect();
-            picture.points(&at, &color, mark_size(p.size), Mark::Solid(Shape::Circle));
+            picture.points(&at, &color, mark_size(p.size), Mark::Solid(MarkShape::Circle));
         }
         if family == "spectrum" {
             for (model, mark) in MEANS {
-                let of = |p: &&Point| here(p, "mean", d) && p.model == model;
+                let of = |p: &&AccuracyPoint| here(p, "mean", d) && p.model == model;
                 let at: Vec<(f64, f64)> = points.iter().filter(of).filter_map(place).collect();
                 picture.points(&at, &color, 4.2, mark);
             }
@@ -155,9 +156,9 @@ fn panel(picture: &mut Picture, points: &[Point], family: &str, load: f64, dimen
 
 /// Models of the mean over surfaces and their marks.
 const MEANS: [(&str, Mark); 3] = [
-    ("mdr1d", Mark::Hollow(Shape::Square)),
-    ("power_law", Mark::Solid(Shape::Cross)),
-    ("plateau", Mark::Hollow(Shape::Triangle)),
+    ("mdr1d", Mark::Hollow(MarkShape::Square)),
+    ("power_law", Mark::Solid(MarkShape::Cross)),
+    ("plateau", Mark::Hollow(MarkShape::Triangle)),
 ];
 
 /// Finer grids have larger marks.
@@ -165,17 +166,17 @@ fn mark_size(cells: Option<f64>) -> f64 {
     2.2 + 0.9 * (cells.unwrap_or(64.0) / 64.0).log2().max(0.0)
 }
 
-fn legend(points: &[Point], dimensions: &[f64]) -> Legend {
+fn legend(points: &[AccuracyPoint], dimensions: &[f64]) -> Legend {
     let mut legend = Legend::default();
     for d in dimensions {
         let label = format!("$D_{{\\rm{{f}}}} = {d:?}$, 3D, one surface");
-        legend.push(&label, &color(*d), Key::Curve(Mark::Solid(Shape::Circle)));
+        legend.push(&label, &color(*d), Key::Curve(Mark::Solid(MarkShape::Circle)));
     }
     let sizes = values(points, |p| p.size.filter(|_| is_front(p)));
     if let Some((coarse, fine)) = extent(sizes) {
         let sizes = if fine > coarse { vec![coarse, fine] } else { vec![fine] };
         for n in sizes {
-            let key = Key::Sized(Mark::Solid(Shape::Circle), mark_size(Some(n)));
+            let key = Key::Sized(Mark::Solid(MarkShape::Circle), mark_size(Some(n)));
             legend.push(&format!("{n} × {n} cells"), NEUTRAL, key);
         }
     }

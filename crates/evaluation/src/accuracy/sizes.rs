@@ -3,9 +3,9 @@
 use super::limit::Limit;
 use super::problem::Family;
 
-/// Sizes of a study.
+/// StudySizes of a study.
 #[derive(Debug, Clone)]
-pub(crate) struct Sizes {
+pub(crate) struct StudySizes {
     /// Grids for every tolerance of `tolerances`, coarsest first.
     pub grids: &'static [usize],
     /// Grids in between, at the tightest tolerance only: they show the order.

@@ -5,7 +5,7 @@ use super::means;
 use super::pressure;
 use super::problem::{Family, SQUARE_UNCERTAINTY, StudyProblem};
 use super::row::{Answer, Parts, StudyRow, Way, mark_pareto, measure};
-use super::sizes::{Order, Sizes};
+use super::sizes::{Order, StudySizes};
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
 use contact_model::ContactModel;
@@ -39,9 +39,9 @@ impl Depth {
         }
     }
 
-    pub(crate) fn sizes(self) -> Sizes {
+    pub(crate) fn sizes(self) -> StudySizes {
         match self {
-            Self::Quick => Sizes {
+            Self::Quick => StudySizes {
                 grids: &[65, 129, 257],
                 between: &[97, 193],
                 tolerances: &[1e-1, 1e-2, 1e-4],
@@ -52,7 +52,7 @@ impl Depth {
                 surfaces: 12,
                 ensembles: &[65, 129],
             },
-            Self::Default => Sizes {
+            Self::Default => StudySizes {
                 grids: &[129, 257, 513, 1025],
                 between: &[193, 385, 769],
                 tolerances: &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6],
@@ -63,7 +63,7 @@ impl Depth {
                 surfaces: 60,
                 ensembles: &[65, 129, 257],
             },
-            Self::Thorough => Sizes {
+            Self::Thorough => StudySizes {
                 grids: &[129, 257, 513, 1025, 2049],
                 between: &[193, 385, 769, 1537],
                 tolerances: &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8],
@@ -78,7 +78,7 @@ impl Depth {
     }
 }
 
-impl Sizes {
+impl StudySizes {
     /// Everything that is solved in three dimensions on one surface, coarse grids first.
     fn solids(&self) -> Vec<Way> {
         let last = self.grids.last().copied();
@@ -122,7 +122,7 @@ pub(crate) struct Study {
 pub(crate) const QUANTITIES: [&str; 4] = ["stiffness", "approach", "area", "pressure"];
 
 /// Solves everything.
-pub(crate) fn study(sizes: &Sizes, seed: u64, progress: &dyn Progress) -> Result<Study> {
+pub(crate) fn study(sizes: &StudySizes, seed: u64, progress: &dyn Progress) -> Result<Study> {
     let problems = StudyProblem::all(sizes.grids[0])?;
     let solids = sizes.solids();
     let cost = |w: &Way| w.size().map_or(1, |n| (n * n / 1000).max(1) as u64);
@@ -158,7 +158,7 @@ fn key(problem: &StudyProblem) -> (Option<f64>, Option<f64>) {
 }
 
 /// Lines and closed forms for the bodies whose answer is known; rough surfaces have theirs as means.
-fn others(problem: &StudyProblem, sizes: &Sizes) -> Result<Vec<StudyRow>> {
+fn others(problem: &StudyProblem, sizes: &StudySizes) -> Result<Vec<StudyRow>> {
     let exact = problem.exact();
     if exact.stiffness.is_none() {
         return Ok(Vec::new());
@@ -193,7 +193,7 @@ fn uncertainty(problem: &StudyProblem) -> f64 {
 }
 
 /// References, errors and parts of the rows of one problem.
-fn compare(problem: &StudyProblem, sizes: &Sizes, rows: &mut [StudyRow], orders: &mut Vec<Order>) {
+fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], orders: &mut Vec<Order>) {
     let exact = problem.exact();
     let exact = [exact.stiffness, exact.approach, exact.area];
     let of = |a: &Answer, q: usize| [a.stiffness, a.approach, a.area][q];

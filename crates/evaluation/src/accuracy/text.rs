@@ -1,6 +1,6 @@
 //! The text: what it takes, when less is enough, which part dominates. Written from the tables.
 
-use super::picture::{Point, TARGETS, read, values};
+use super::picture::{AccuracyPoint, TARGETS, read, values};
 use runs::CsvFile;
 use runs::Result;
 use std::path::Path;
@@ -54,8 +54,8 @@ fn seconds(v: Option<f64>) -> String {
 }
 
 /// The problems of a family, in order.
-fn problems<'a>(points: &'a [Point], family: &str) -> Vec<&'a Point> {
-    let mut all: Vec<&Point> = Vec::new();
+fn problems<'a>(points: &'a [AccuracyPoint], family: &str) -> Vec<&'a AccuracyPoint> {
+    let mut all: Vec<&AccuracyPoint> = Vec::new();
     for p in points.iter().filter(|p| p.family == family) {
         if !all.iter().any(|q| q.same_problem(p)) {
             all.push(p);
@@ -64,7 +64,7 @@ fn problems<'a>(points: &'a [Point], family: &str) -> Vec<&'a Point> {
     all
 }
 
-fn label(p: &Point) -> String {
+fn label(p: &AccuracyPoint) -> String {
     match (p.fractal_dimension, p.force_bar) {
         (Some(d), Some(f)) => format!("{d:?} | {f:?}"),
         _ => format!("{} | -", p.family),
@@ -72,11 +72,15 @@ fn label(p: &Point) -> String {
 }
 
 /// The cheapest row in three dimensions within an error that every finer grid keeps too: a lucky grid between worse ones is no way.
-fn cheapest<'a>(points: &'a [Point], problem: &Point, target: f64) -> Option<&'a Point> {
+fn cheapest<'a>(
+    points: &'a [AccuracyPoint],
+    problem: &AccuracyPoint,
+    target: f64,
+) -> Option<&'a AccuracyPoint> {
     let solid = || points.iter().filter(|p| p.same_problem(problem) && p.model == "bem3d");
-    let within = |p: &Point| p.error.is_some_and(|e| e <= target);
+    let within = |p: &AccuracyPoint| p.error.is_some_and(|e| e <= target);
     // On each grid the row at the tightest tolerance differs from itself by nothing.
-    let tight = |p: &Point| p.algebraic.is_some_and(|a| a <= 0.0);
+    let tight = |p: &AccuracyPoint| p.algebraic.is_some_and(|a| a <= 0.0);
     let kept = |size: Option<f64>| solid().all(|p| p.size <= size || !tight(p) || within(p));
     solid()
         .filter(|p| p.seconds.is_some() && within(p) && kept(p.size))
@@ -84,7 +88,7 @@ fn cheapest<'a>(points: &'a [Point], problem: &Point, target: f64) -> Option<&'a
 }
 
 /// The picture in a few sentences.
-fn short(points: &[Point]) -> String {
+fn short(points: &[AccuracyPoint]) -> String {
     let mut text = String::new();
     for (family, words) in [
         ("band", "One surface whose waves the grids resolve"),
@@ -92,7 +96,8 @@ fn short(points: &[Point]) -> String {
     ] {
         let all = problems(points, family);
         let told = TARGETS.map(|target| {
-            let mut found: Vec<&Point> = all.iter().filter_map(|p| cheapest(points, p, target)).collect();
+            let mut found: Vec<&AccuracyPoint> =
+                all.iter().filter_map(|p| cheapest(points, p, target)).collect();
             found.sort_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)));
             let count = format!(
                 "k within {} % for {} of {} surfaces and loads",
@@ -115,7 +120,7 @@ fn short(points: &[Point]) -> String {
     for (model, words) in
         [("mdr1d", "The 1D reduction"), ("power_law", "Eq. 12"), ("plateau", "The rigid square")]
     {
-        let of = |problem: &&&Point| {
+        let of = |problem: &&&AccuracyPoint| {
             let row = points.iter().rfind(|p| p.same_problem(problem) && p.model == model)?;
             Some((row.force_bar?, row.error?))
         };
@@ -136,7 +141,7 @@ fn short(points: &[Point]) -> String {
     text + "\n"
 }
 
-fn takes(points: &[Point]) -> String {
+fn takes(points: &[AccuracyPoint]) -> String {
     let mut text = "## What it takes\n\nThe cheapest way in three dimensions to k of one surface within 10 %, 1 % and 0.1 %: cells a \
         side, tolerance, seconds. *Resolved*: the shortest wave is at least 16 cells long on the coarsest grid. *Fractal*: waves to the \
         end of each grid, error against the limit of fine grids. Every finer grid of \
@@ -168,7 +173,7 @@ fn takes(points: &[Point]) -> String {
     text + "\n"
 }
 
-fn less(points: &[Point]) -> String {
+fn less(points: &[AccuracyPoint]) -> String {
     let mut text = "## When less is enough\n\nError of the mean of k over surfaces by one-dimensional lines (as many lines as surfaces, \
         the most elements of the study), by Eq. 12 (where it is claimed to hold) and by the plateau of the rigid square. The last column \
         is what 60 surfaces in three dimensions leave open.\n\n\
@@ -177,7 +182,7 @@ fn less(points: &[Point]) -> String {
     for problem in problems(points, "mean") {
         let of = |model: &str| points.iter().rfind(|p| p.same_problem(problem) && p.model == model);
         let line = of("mdr1d");
-        let error = |p: Option<&Point>| maybe(p.and_then(|p| p.model_error));
+        let error = |p: Option<&AccuracyPoint>| maybe(p.and_then(|p| p.model_error));
         text += &format!(
             "| {} | {} | {} | {} | {} | {} | {} |\n",
             label(problem),
@@ -192,7 +197,7 @@ fn less(points: &[Point]) -> String {
     text + "\n"
 }
 
-fn parts(points: &[Point], orders: &Orders) -> String {
+fn parts(points: &[AccuracyPoint], orders: &Orders) -> String {
     let mut text = format!(
         "## Which part dominates at the paper's settings\n\n{PAPER_CELLS:.0} cells a side, 60 surfaces; algebraic at the tolerance \
          {PAPER_TOLERANCE:e} of its preset here (the largest over the grids of the study), discretisation carried from the finest \
@@ -212,8 +217,8 @@ fn parts(points: &[Point], orders: &Orders) -> String {
             .filter_map(|p| p.algebraic)
             .reduce(f64::max);
         let discretisation = orders.at("spectrum", d, f).map(Sequence::carried);
-        let mean = |of: fn(&Point) -> Option<f64>, model: &str| {
-            let mean = |p: &&Point| {
+        let mean = |of: fn(&AccuracyPoint) -> Option<f64>, model: &str| {
+            let mean = |p: &&AccuracyPoint| {
                 p.family == "mean" && p.fractal_dimension == d && p.force_bar == f && p.model == model
             };
             points.iter().filter(mean).filter_map(of).next_back()

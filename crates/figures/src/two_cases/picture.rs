@@ -7,7 +7,7 @@ use analysis::{Table, Value};
 use contact_model::{Boundary, PAPER_STIFFNESS_FACTOR};
 use evaluation::FLOOR_CELLS;
 use evaluation::column;
-use plots::{Key, LineStyle, Mark, NEUTRAL, Picture, Shape, logarithmic};
+use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, logarithmic};
 use runs::CsvFile;
 use runs::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -95,10 +95,10 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
         .with_legend_below();
     // One above the other where two agree: the first is wide and pale, the second thin on top of it.
     let looks = [
-        (3.4, Mark::Solid(Shape::Circle), 5.4),
-        (1.6, Mark::Hollow(Shape::Circle), 3.2),
-        (3.4, Mark::Solid(Shape::Square), 5.0),
-        (1.6, Mark::Hollow(Shape::Square), 3.2),
+        (3.4, Mark::Solid(MarkShape::Circle), 5.4),
+        (1.6, Mark::Hollow(MarkShape::Circle), 3.2),
+        (3.4, Mark::Solid(MarkShape::Square), 5.0),
+        (1.6, Mark::Hollow(MarkShape::Square), 3.2),
     ];
     for (of, (width, mark, radius)) in CASES.into_iter().zip(looks) {
         let color = of.color();
@@ -123,10 +123,10 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
     }
     picture.legend("Persson", NEUTRAL, Key::Line(LineStyle::Dashed));
     picture.legend("Greenwood and Williamson", NEUTRAL, Key::Line(LineStyle::Dotted));
-    picture.legend("bars: ± 2 standard errors", NEUTRAL, Key::Bar(Mark::Solid(Shape::Circle)));
+    picture.legend("bars: ± 2 standard errors", NEUTRAL, Key::Bar(Mark::Solid(MarkShape::Circle)));
     if rows.iter().any(|r| r.below_floor) {
         let label = format!("fewer than {FLOOR_CELLS} contact cells");
-        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Ring(Shape::Circle)));
+        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Ring(MarkShape::Circle)));
     }
     if k.iter().flatten().any(|k| *k > HIGHEST) {
         picture.legend(&format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"), NEUTRAL, Key::Words);
@@ -144,7 +144,7 @@ struct Row<'a> {
     below_floor: bool,
 }
 
-fn mark_shape(mark: Mark) -> Shape {
+fn mark_shape(mark: Mark) -> MarkShape {
     match mark {
         Mark::Solid(shape) | Mark::Hollow(shape) | Mark::Ring(shape) => shape,
     }

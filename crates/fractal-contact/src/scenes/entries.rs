@@ -162,9 +162,9 @@ fn distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// Lengths along x and y.
+/// LengthOrPair along x and y.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Lengths {
+pub(crate) enum LengthOrPair {
     One(f64),
     Two([f64; 2]),
 }
@@ -335,9 +335,9 @@ impl<'a> Entry<'a> {
     }
 
     /// One length > 0, or two in a list.
-    pub fn lengths(&self, system: System) -> Read<Lengths> {
+    pub fn lengths(&self, system: System) -> Read<LengthOrPair> {
         if !self.is_list() {
-            return self.positive(Dimension::LENGTH, system).map(Lengths::One);
+            return self.positive(Dimension::LENGTH, system).map(LengthOrPair::One);
         }
         let values = self.list();
         let [x, y] = &values[..] else {
@@ -349,7 +349,7 @@ impl<'a> Entry<'a> {
                 )));
         };
         let length = |entry: &Self| entry.positive(Dimension::LENGTH, system);
-        Ok(Lengths::Two([length(x)?, length(y)?]))
+        Ok(LengthOrPair::Two([length(x)?, length(y)?]))
     }
 
     /// A plain number > 0.

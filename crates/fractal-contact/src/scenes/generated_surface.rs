@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use surface_io::{Dimension, Metric, Quantity, Sides, describe, write_map};
 
-/// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
+/// A self-affine surface to be drawn. LengthOrPair are texts such as `1 mm`, all of them or none with a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneratedSurface {
     /// Columns.

@@ -1,7 +1,7 @@
 //! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
 
 use crate::scenes::diagnostic::Diagnostic;
-use crate::scenes::entries::{Entries, Entry, Lengths, Read, System};
+use crate::scenes::entries::{Entries, Entry, LengthOrPair, Read, System};
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
@@ -81,8 +81,8 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
 /// One length or two: sides of the map or of a cell.
 fn sides(entry: &Entry<'_>, system: System) -> Read<Sides> {
     Ok(match entry.lengths(system)? {
-        Lengths::One(side) => Sides::One(length(entry, side, system)?),
-        Lengths::Two([x, y]) => Sides::Two([length(entry, x, system)?, length(entry, y, system)?]),
+        LengthOrPair::One(side) => Sides::One(length(entry, side, system)?),
+        LengthOrPair::Two([x, y]) => Sides::Two([length(entry, x, system)?, length(entry, y, system)?]),
     })
 }
 

@@ -1,7 +1,7 @@
 //! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
 
 use crate::scenes::diagnostic::Diagnostic;
-use crate::scenes::entries::{Entries, Lengths, Read, System};
+use crate::scenes::entries::{Entries, LengthOrPair, Read, System};
 use crate::scenes::human_readable::number;
 use crate::scenes::numerics::Numerics;
 use crate::scenes::scan;
@@ -221,8 +221,8 @@ fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
 fn read_size(table: &Entries<'_>, system: System) -> Read<Size> {
     match table.one_of(&["side", "size"])? {
         Some(("size", entry)) => Ok(match entry.lengths(system)? {
-            Lengths::One(side) => side.into(),
-            Lengths::Two(sides) => sides.into(),
+            LengthOrPair::One(side) => side.into(),
+            LengthOrPair::Two(sides) => sides.into(),
         }),
         Some((_, entry)) if entry.is_list() => Err(entry
             .diagnostic(format!("`side` has {} values: it is the one of a square", entry.list().len()))
