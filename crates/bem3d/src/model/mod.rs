@@ -76,6 +76,34 @@ mod tests {
     }
 
     #[test]
+    fn loads_that_no_number_holds_are_refused() {
+        // In the units of the surface one is infinite, the other zero.
+        for (modulus, force) in [(1e-200, 1e200), (1e200, 1e-200)] {
+            let surface = SelfAffine::new(2.4, 1.0, 1.0).map(Surface::SelfAffine).unwrap();
+            let model = Bem3d { cells: 8, ..Bem3d::default() };
+            let solved = model.prepare(&Scene::new(surface, modulus), 1).unwrap().solve(Load::Force(force));
+            assert!(matches!(solved, Err(Error::Domain { .. })), "{solved:?}");
+        }
+    }
+
+    #[test]
+    fn the_error_of_k_is_magnified_as_k_is() {
+        use crate::stiffness::Stiffness;
+        use contact_model::HeightMap;
+        let map = HeightMap::from_fn(8, 1.0, |ix, iy| (ix * iy) as f64).unwrap();
+        let tangent =
+            |value| Stiffness { value, solve_error: 0.01, set_error: 0.02, q: Vec::new(), steps: 0 };
+        let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);
+        let free = PreparedBem3d::new(Bem3d::default(), &scene, &map, true).unwrap();
+        approx::assert_relative_eq!(free.stiffness_error(&tangent(3.0)), 0.03);
+        scene.effects.boundary = Boundary::Periodic;
+        let periodic = PreparedBem3d::new(Bem3d::default(), &scene, &map, true).unwrap();
+        // k = k'/(1 - c k') is four times k' where c k' = 3/4, and so is its relative error.
+        let value = 0.75 / periodic.problem.operators.table().shift();
+        approx::assert_relative_eq!(periodic.stiffness_error(&tangent(value)), 0.12, max_relative = 1e-12);
+    }
+
+    #[test]
     fn a_field_counts_as_work() {
         let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
         let with = Scene { outputs: Outputs { gap: true, ..scene.outputs }, ..scene.clone() };
