@@ -38,7 +38,8 @@ Results go to out/ (--out). Finished surfaces are kept in out/.units and reused 
 interruption loses at most the surfaces in flight, and the same command resumes. The same command gives the same bytes of CSV
 for any number of threads; times and the machine are in manifest.json.
 
-Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge, stored numbers differ or a hard case fails.";
+Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge, stored numbers differ or a hard case fails; 130 stopped by Ctrl-C,
+SIGTERM or SIGHUP; 141 nobody reads the output any more.";
 
 const EXPAND: &str = "Run with --help for every flag.";
 

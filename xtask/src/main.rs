@@ -4,7 +4,8 @@
 //! Argument parsing and exit codes; the figures are in the crate `figures`.
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
-//! numbers differ, a hard case fails, error budgets do not hold or a link or command of the book is broken.
+//! numbers differ, a hard case fails, error budgets do not hold or a link or command of the book is broken, 130 stopped by a signal,
+//! 141 nobody reads standard output any more.
 
 mod arguments;
 mod book;
@@ -12,8 +13,8 @@ mod book;
 use arguments::{Arguments, BenchArguments, Command};
 use clap::Parser as _;
 use evaluation::{BenchRow, Outcome, Run};
-use runs::{Reporter, Result};
-use std::path::Path;
+use runs::{Error, Reporter, Result, Store};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -22,7 +23,7 @@ fn main() -> ExitCode {
     match execute(Arguments::parse().command) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}");
+            runs::err!("error: {error}");
             ExitCode::FAILURE
         }
     }
@@ -41,7 +42,7 @@ fn execute(command: Command) -> Result<ExitCode> {
     if let Command::Redraw(options) = &command {
         for directory in &options.directories {
             for file in figures::redraw(directory, &options.beside())? {
-                println!("{}", file.display());
+                runs::out!("{}", file.display());
             }
         }
         return Ok(ExitCode::SUCCESS);
@@ -51,14 +52,17 @@ fn execute(command: Command) -> Result<ExitCode> {
     }
     let name = command.name();
     let reporter = Reporter::new();
+    if let Some(out) = command.request().out {
+        tell_what_an_interruption_leaves(out)?;
+    }
     let target = command.target();
     let run = match target {
         Some((requirements, target)) => {
             let plan = evaluation::plan(&command.request(), requirements, target, &reporter)?;
-            plan.lines.iter().for_each(|line| println!("{line}"));
+            plan.lines.iter().for_each(|line| runs::out!("{line}"));
             let told = plan.lines.len();
             let settled = evaluation::settle(plan, requirements, target, &reporter)?;
-            settled.lines.iter().skip(told).for_each(|line| println!("{line}"));
+            settled.lines.iter().skip(told).for_each(|line| runs::out!("{line}"));
             // What was solved a moment ago is not solved again.
             Run { fresh: false, ..settled.run }
         }
@@ -84,13 +88,13 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::BudgetCheck(options) => {
             let (outcome, coverage) =
                 evaluation::budget_check(options.cases, options.seed, run.threads, &run.out, &reporter)?;
-            println!("{coverage}");
+            runs::out!("{coverage}");
             coverage_fails = !coverage.holds();
             vec![outcome]
         }
         Command::Audit(options) => {
             let (outcome, summary) = evaluation::audit(&run, options.share, options.tight, &reporter)?;
-            println!("{summary}");
+            runs::out!("{summary}");
             vec![outcome]
         }
         Command::Bench(_)
@@ -111,16 +115,29 @@ fn execute(command: Command) -> Result<ExitCode> {
     Ok(if coverage_fails { ExitCode::from(3) } else { code })
 }
 
+/// Ctrl-C, SIGTERM and SIGHUP end the process at once: what is finished is kept, and nothing else was begun that would be lost.
+fn tell_what_an_interruption_leaves(out: PathBuf) -> Result<()> {
+    let tell = move || {
+        let (count, units) = (Store::count(&out), out.join(".units"));
+        runs::err!(
+            "\nstopped: {count} finished results are kept in {}; the same command goes on with the others",
+            units.display()
+        );
+        std::process::exit(130);
+    };
+    ctrlc::set_handler(tell).map_err(|e| Error::parameter("Ctrl-C", e, "a signal that can be handled"))
+}
+
 /// Prints what was made and what the paper says to it.
 fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
     for outcome in outcomes {
         for file in &outcome.files {
-            println!("{}", file.display());
+            runs::out!("{}", file.display());
         }
     }
-    println!("{}", manifest.display());
+    runs::out!("{}", manifest.display());
     for line in outcomes.iter().flat_map(|o| &o.reached) {
-        println!("{line}");
+        runs::out!("{line}");
     }
     let verified = outcomes.iter().find(|o| o.name == "verify");
     let claims = verified.map_or_else(
@@ -132,15 +149,15 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
         |o| o.claims.clone(),
     );
     if !claims.is_empty() {
-        println!("\nThe paper beside these numbers:\n\n{}", evaluation::plain(&claims));
+        runs::out!("\nThe paper beside these numbers:\n\n{}", evaluation::plain(&claims));
     }
     let seconds: f64 = outcomes.iter().map(|o| o.seconds).sum();
     let missing = outcomes.iter().map(|o| o.not_converged).max().unwrap_or(0);
     if missing == 0 {
-        println!("done in {seconds:.1} s");
+        runs::out!("done in {seconds:.1} s");
         return ExitCode::SUCCESS;
     }
-    println!(
+    runs::out!(
         "done in {seconds:.1} s, but {missing} solves did not converge: they are in the samples with their status and in no mean"
     );
     ExitCode::from(3)
@@ -158,24 +175,24 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
         let Ok(mut table) = table.lock() else { return Ok(()) };
         if table.rows.is_empty() {
-            println!("{}", printed(row).map(|(name, width)| format!("{name:>width$}")).join(" "));
+            runs::out!("{}", printed(row).map(|(name, width)| format!("{name:>width$}")).join(" "));
         }
-        println!("{}", line(row)?);
+        runs::out!("{}", line(row)?);
         table.rows.push(row.clone());
         csv.as_deref().map_or(Ok(()), |path| table.write(path))
     })?;
     if let Some(path) = &csv {
         evaluation::write_bench(path, &rows)?;
-        println!("{}", path.display());
+        runs::out!("{}", path.display());
         if let Some(picture) = &plot {
             let drawn = evaluation::plot_bench(path, picture)?;
-            drawn.files.iter().for_each(|file| println!("{}", file.display()));
-            drawn.slopes.iter().for_each(|slope| println!("{slope}"));
+            drawn.files.iter().for_each(|file| runs::out!("{}", file.display()));
+            drawn.slopes.iter().for_each(|slope| runs::out!("{slope}"));
         }
     }
     let missing = rows.iter().filter(|row| !row.converged()).count();
     if missing > 0 {
-        println!("{missing} of {} solves did not converge", rows.len());
+        runs::out!("{missing} of {} solves did not converge", rows.len());
         return Ok(ExitCode::from(3));
     }
     Ok(ExitCode::SUCCESS)
@@ -250,16 +267,16 @@ fn stability(thorough: bool, out: &Path) -> Result<ExitCode> {
     let (verdicts, files) = evaluation::hard_cases(&stability::cases(), effort, out, &Reporter::new())?;
     for v in &verdicts {
         let figure = v.figure.map_or_else(|| "no figure".to_owned(), |f| format!("{f:.1e}"));
-        println!("{:<6}  {:<38} {figure:>9} of {:.0e}", v.status.as_str(), v.case.name, v.case.bound);
-        println!("        why: {}", v.case.why);
-        println!("        asserted: {}", v.case.asserted);
-        v.broken.iter().for_each(|line| println!("        broken: {line}"));
+        runs::out!("{:<6}  {:<38} {figure:>9} of {:.0e}", v.status.as_str(), v.case.name, v.case.bound);
+        runs::out!("        why: {}", v.case.why);
+        runs::out!("        asserted: {}", v.case.asserted);
+        v.broken.iter().for_each(|line| runs::out!("        broken: {line}"));
     }
     for file in &files {
-        println!("{}", file.display());
+        runs::out!("{}", file.display());
     }
     let failed = verdicts.iter().filter(|v| !v.passed()).count();
-    println!("{} of {} hard cases pass", verdicts.len() - failed, verdicts.len());
+    runs::out!("{} of {} hard cases pass", verdicts.len() - failed, verdicts.len());
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }
 
@@ -267,13 +284,13 @@ fn check_reference(bless: bool, out: &Path) -> Result<ExitCode> {
     let reference = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/reference");
     let differences = figures::check_reference(&reference, &out.join("reference"), bless, &Reporter::new())?;
     for line in &differences {
-        println!("{line}");
+        runs::out!("{line}");
     }
     if differences.is_empty() {
         let relative = figures::RELATIVE;
-        println!("{}", if bless { "stored".to_owned() } else { format!("equal to {relative:e}") });
+        runs::out!("{}", if bless { "stored".to_owned() } else { format!("equal to {relative:e}") });
         return Ok(ExitCode::SUCCESS);
     }
-    println!("{} differences (--bless stores the new numbers)", differences.len());
+    runs::out!("{} differences (--bless stores the new numbers)", differences.len());
     Ok(ExitCode::from(3))
 }

@@ -16,6 +16,24 @@ pub struct Statistics {
     pub count: usize,
 }
 
+/// Mean of finite numbers, and the standard deviation of one of them where there are at least two; `None` for no number, or one that is
+/// not finite. The standard error of the mean is the deviation over the square root of their count.
+///
+/// ```
+/// assert_eq!(analysis::mean_and_deviation(&[0.0, 2.0]), Some((1.0, Some(2.0_f64.sqrt()))));
+/// assert_eq!(analysis::mean_and_deviation(&[3.0]), Some((3.0, None)));
+/// ```
+pub fn mean_and_deviation(values: &[f64]) -> Option<(f64, Option<f64>)> {
+    if values.is_empty() || !values.iter().all(|v| v.is_finite()) {
+        return None;
+    }
+    let n = values.len() as f64;
+    let mean = sum(values.iter().copied()) / n;
+    // Two passes: no cancellation between mean square and squared mean.
+    let squares = || sum(values.iter().map(|v| (v - mean) * (v - mean)));
+    Some((mean, (values.len() > 1).then(|| (squares() / (n - 1.0)).sqrt())))
+}
+
 /// Statistics of finite positive numbers; `None` for none at all or one that is not.
 ///
 /// ```
@@ -24,15 +42,10 @@ pub struct Statistics {
 /// assert!((s.log_mean - 2.0).abs() < 1e-15);
 /// ```
 pub fn statistics(values: &[f64]) -> Option<Statistics> {
-    if values.is_empty() || !values.iter().all(|v| v.is_finite() && *v > 0.0) {
-        return None;
-    }
+    let (mean, deviation) = mean_and_deviation(values).filter(|_| values.iter().all(|v| *v > 0.0))?;
     let n = values.len() as f64;
-    let mean = sum(values.iter().copied()) / n;
     let log_mean = (sum(values.iter().map(|v| v.ln())) / n).exp();
-    // Two passes: no cancellation between mean square and squared mean.
-    let standard_error = (values.len() > 1)
-        .then(|| (sum(values.iter().map(|v| (v - mean) * (v - mean))) / (n * (n - 1.0))).sqrt());
+    let standard_error = deviation.map(|deviation| deviation / n.sqrt());
     Some(Statistics { mean, standard_error, log_mean, count: values.len() })
 }
 

@@ -9,6 +9,7 @@
 //! * [`crossing`], [`least_spread`]: where the laws, or the curves, of several fractal dimensions come together.
 //! * [`collapse`]: the master curve of Fig. 4 and what is left around it.
 //! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
+//! * [`binomial_test`]: whether as many intervals hold the truth as should.
 //! * [`Table`]: named columns with units that hold no NaN; `figures` writes them.
 //!
 //! # Conventions and accuracy
@@ -34,6 +35,7 @@
 //! # Ok::<(), contact_model::Error>(())
 //! ```
 
+mod binomial;
 mod bootstrap;
 mod collapse;
 mod conductance;
@@ -45,12 +47,13 @@ mod kappa;
 mod sum;
 mod table;
 
+pub use binomial::binomial_test;
 pub use bootstrap::Bootstrap;
 pub use collapse::{CollapsePoint, Residual, collapse, decades_within};
 pub use conductance::conductance;
 pub use crossing::{Crossing, crossing, least_spread};
 pub use curves::{Curves, StiffnessSample, interpolate};
-pub use ensemble::{EnsemblePoint, Statistics, ensemble, statistics};
+pub use ensemble::{EnsemblePoint, Statistics, ensemble, mean_and_deviation, statistics};
 pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law, least_squares};
 pub use kappa::kappa;
 pub use sum::sum;

@@ -97,12 +97,15 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Domain { name, value, expected } => write!(f, "{name} = {value}: expected {expected}"),
+            Self::Domain { name, value, expected } => {
+                write!(f, "{name} = {}: expected {expected}", Short(*value))
+            }
             Self::Shape { name, found, expected } => {
                 write!(f, "{name} has {found} values: expected {expected}")
             }
             Self::Unsupported { model, what } => write!(f, "the model {model} does not support {what}"),
             Self::OutOfRange { name, value, min, max } => {
+                let [value, min, max] = [value, min, max].map(|v| Short(*v));
                 write!(f, "{name} = {value} is outside [{min}, {max}], the range in which the model holds")
             }
             Self::NotConverged { best } => {
@@ -115,6 +118,18 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// A number without a row of zeros.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        // Zero, infinities and NaN are short as they are.
+        let long = value.is_finite() && value.abs() > 0.0 && !(1e-4..1e15).contains(&value.abs());
+        if long { write!(f, "{value:e}") } else { write!(f, "{value}") }
+    }
+}
 
 /// Checks that `value` is finite and positive.
 ///

@@ -64,5 +64,5 @@ pub use pair::{Body, Pair};
 pub use patches::Patches;
 pub use rheology::{PronySeries, Relaxing, Rheology};
 pub use scene::{Adhesion, Amplitude, Boundary, Effects, Friction, Scene, SelfAffine, Surface, line_length};
-pub use state::{Certificate, ContactState, SolveReport, Status};
+pub use state::{Certificate, ContactResolution, ContactState, SolveReport, Status};
 pub use work::Work;

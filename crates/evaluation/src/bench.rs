@@ -1,6 +1,7 @@
 //! What an answer costs: one row per surface, tolerance and load, with the work, the time, the memory and the certificate.
 
 use crate::forces::Forces;
+use crate::realisation::Discretisation;
 use bem3d::{Bem3d, Method};
 use contact_model::{
     Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
@@ -11,6 +12,7 @@ use runs::files;
 use runs::number;
 use runs::read_map;
 use runs::run_jobs;
+use runs::threads_for_memory;
 use runs::unit_area;
 use runs::write_npy;
 use runs::{Error, Result};
@@ -191,7 +193,20 @@ pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) ->
     if bench.threads == 0 {
         return Err(Error::parameter("threads", 0, "at least one thread"));
     }
+    if let Some(tolerance) = bench.tolerances.iter().find(|t| !(**t > 0.0 && **t < 1.0)) {
+        return Err(Error::parameter(
+            "tolerance",
+            format!("{tolerance:?}"),
+            "numbers between 0 and 1, both excluded",
+        ));
+    }
     let series = series(bench)?;
+    let largest = series.iter().map(|s| s.cells).max_by_key(|cells| cells.checked_count());
+    if let Some(cells) = largest {
+        let discretisation = Discretisation::Bem3d { cells: cells.columns, tolerance: 0.0 };
+        let memory = discretisation.memory() * cells.rows as f64 / cells.columns.max(1) as f64;
+        threads_for_memory(1, memory.max(1.0), "cells", format!("{} x {}", cells.columns, cells.rows))?;
+    }
     if let Some(directory) = &bench.pressure {
         files::create_directory(directory)?;
     }

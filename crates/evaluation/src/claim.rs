@@ -109,6 +109,16 @@ impl Claim {
         claim
     }
 
+    /// The same without numbers that depend on the machine.
+    #[must_use]
+    pub fn without_times(&self) -> Self {
+        if !self.timed {
+            return self.clone();
+        }
+        let reason = "depends on the machine: the seconds of both models are in manifest.json";
+        Self { timed: true, ..Self::not_tested(self.claim.clone(), self.paper.clone(), reason) }
+    }
+
     /// A claim in words (`at least 4`), judged by the caller.
     pub fn judge(
         claim: impl Into<String>,

@@ -46,6 +46,15 @@ impl Discretisation {
         }
     }
 
+    /// Memory that one surface needs at least, bytes: as many per cell as light loads take (`peak_memory_bytes` in
+    /// `data/bench/scaling.csv`), per element as drawing a line takes.
+    pub fn memory(&self) -> f64 {
+        match *self {
+            Self::Bem3d { cells, .. } => 50.0 * (cells as f64).powi(2),
+            Self::Mdr1d { elements } => 40.0 * elements as f64,
+        }
+    }
+
     /// The model itself.
     pub fn model(&self) -> Box<dyn ContactModel> {
         match *self {

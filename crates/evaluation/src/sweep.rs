@@ -1,17 +1,18 @@
 //! Units in parallel, results in order.
 
-use crate::realisation::{Models, Realisation, RealisationResult};
+use crate::realisation::{Discretisation, Models, Realisation, RealisationResult};
 use crate::sample::{FIELDS, Sample};
 use contact_model::{Stop, never};
-use runs::{Error, Job, Progress, Result, Store, collect, number, run_stored};
+use runs::{Error, Job, Progress, Result, Store, collect, number, run_stored, threads_for_memory};
 
 /// Solves all units that the store does not hold, one per thread, the largest first, and gives the results in the order of
 /// `units`. The results do not depend on `threads`.
 ///
-/// Each finished unit is stored at once: an interruption loses those in flight.
+/// Each finished unit is stored at once: an interruption loses those in flight. There are no more threads than units that fit in memory.
 ///
 /// # Errors
-/// The first error in the order of `units`; units that finished before stay stored.
+/// [`Error::Parameter`] for a size that does not fit in memory;
+/// the first error in the order of `units`; units that finished before stay stored.
 pub fn sweep(
     what: &str,
     units: &[Realisation],
@@ -20,6 +21,12 @@ pub fn sweep(
     progress: &dyn Progress,
 ) -> Result<Vec<RealisationResult>> {
     let models = Models::default();
+    let largest =
+        units.iter().map(|unit| unit.discretisation).max_by(|a, b| a.memory().total_cmp(&b.memory()));
+    let threads = largest.map_or(Ok(threads), |largest| {
+        let name = if matches!(largest, Discretisation::Bem3d { .. }) { "cells" } else { "elements" };
+        threads_for_memory(threads, largest.memory(), name, largest.size())
+    })?;
     let jobs: Vec<RealisationJob<'_>> =
         units.iter().map(|unit| RealisationJob { unit, models: &models }).collect();
     collect(run_stored(what, &jobs, store, threads, progress, &never)?)
@@ -82,7 +89,6 @@ impl Job for RealisationJob<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::realisation::Discretisation;
     use crate::sample::tests::sample;
 
     #[test]

@@ -5,8 +5,7 @@ use evaluation::Measured;
 use evaluation::{Flag, Run, describe, header};
 use evaluation::{curves_table, samples_table};
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
-use runs::Result;
-use runs::{CsvFile, write_csv};
+use runs::{CsvFile, Error, Result, write_csv};
 use std::path::{Path, PathBuf};
 
 /// Writes `name.csv`, `name-samples.csv`, `name.svg`, `name.png`.
@@ -40,12 +39,40 @@ struct CurvePoint {
 /// The means of one fractal dimension.
 type CurvePoints = (f64, Vec<CurvePoint>);
 
-fn read(file: &CsvFile) -> Result<Vec<CurvePoints>> {
-    let d = file.numbers("fractal_dimension")?;
-    let force = file.numbers("force_bar")?;
-    let k = file.numbers("stiffness_bar")?;
-    let error = file.numbers("stiffness_bar_se")?;
-    let floor = file.texts("below_floor")?;
+/// Reads the table of another run that is to be drawn under the curves, before anything is solved.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn check(over: Option<&Path>) -> Result<()> {
+    over.map_or(Ok(()), |over| read(over, &CsvFile::read(over)?).map(|_| ()))
+}
+
+/// The means of a table; a row without a mean has no point.
+///
+/// # Errors
+/// [`Error::Content`] for a missing column, and for a force, stiffness or fractal dimension that is not finite and positive, with its row.
+fn read(path: &Path, file: &CsvFile) -> Result<Vec<CurvePoints>> {
+    let here = |error: Error| Error::content(path, error.to_string());
+    let numbers = |name: &str, zero: bool| -> Result<Vec<Option<f64>>> {
+        let texts = file.texts(name).map_err(here)?;
+        let number = |(row, text): (usize, &&str)| match text.parse::<f64>() {
+            _ if text.is_empty() => Ok(None),
+            Ok(v) if v.is_finite() && (v > 0.0 || zero && v >= 0.0) => Ok(Some(v)),
+            _ => {
+                let reason = format!(
+                    "{name} = {text} in row {} of the data: expected a finite number above 0 (an error may be 0)",
+                    row + 1
+                );
+                Err(Error::content(path, reason))
+            }
+        };
+        texts.iter().enumerate().map(number).collect()
+    };
+    let d = numbers("fractal_dimension", false)?;
+    let force = numbers("force_bar", false)?;
+    let k = numbers("stiffness_bar", false)?;
+    let error = numbers("stiffness_bar_se", true)?;
+    let floor = file.texts("below_floor").map_err(here)?;
     let mut curves: Vec<CurvePoints> = Vec::new();
     for i in 0..d.len() {
         let (Some(d), Some(force), Some(stiffness)) = (d[i], force[i], k[i]) else { continue };
@@ -62,9 +89,10 @@ fn read(file: &CsvFile) -> Result<Vec<CurvePoints>> {
 /// Draws `name.svg` and `name.png` from a table of Fig. 2 or 6; `over` is a coarser run of the same figure, drawn beneath.
 pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let curves = read(&file)?;
+    let curves = read(csv, &file)?;
     let below = over.map(CsvFile::read).transpose()?;
-    let coarse = below.as_ref().map(read).transpose()?.unwrap_or_default();
+    let coarse =
+        over.zip(below.as_ref()).map(|(path, file)| read(path, file)).transpose()?.unwrap_or_default();
     let points = || curves.iter().chain(&coarse).flat_map(|c| &c.1);
     let (x, y) = (logarithmic(points().map(|p| p.force)), logarithmic(points().map(|p| p.stiffness)));
     let one = file.texts("model")?.first() == Some(&"mdr1d");
@@ -153,6 +181,30 @@ fn paper_law(d: f64, x: Axis, y: Axis) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_table_with_a_row_that_cannot_be_drawn_is_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("over.csv");
+        let head = "fractal_dimension,force_bar,stiffness_bar,stiffness_bar_se,below_floor\n";
+        for (row, wrong) in [
+            ("2,inf,0.1,,false", "force_bar = inf"),
+            ("2,1,1e400,,false", "stiffness_bar = 1e400"),
+            ("2,-1,0.1,,false", "force_bar = -1"),
+            ("2,1,0.1,-1,false", "stiffness_bar_se = -1"),
+            ("two,1,0.1,0,false", "fractal_dimension = two"),
+        ] {
+            std::fs::write(&path, format!("{head}2,1,0.1,0,false\n2,2,,,false\n{row}\n")).unwrap();
+            let error = check(Some(&path)).unwrap_err().to_string();
+            assert!(
+                error.contains("over.csv") && error.contains(wrong) && error.contains("row 3"),
+                "{error}"
+            );
+        }
+        std::fs::write(&path, "force_bar\n1\n").unwrap();
+        assert!(check(Some(&path)).unwrap_err().to_string().contains("over.csv"));
+        assert!(check(None).is_ok());
+    }
 
     #[test]
     fn single_loads_beside_regular_ones_have_no_mark() {

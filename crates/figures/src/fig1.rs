@@ -11,6 +11,7 @@ use evaluation::{Flag, Run, list};
 use plots::{GreyMap, encode_grey, grey, save_maps};
 use runs::Progress;
 use runs::files;
+use runs::threads_for_memory;
 use runs::write_npy;
 use runs::{CsvFile, write_csv};
 use runs::{Error, Result};
@@ -22,6 +23,9 @@ pub const FLAGS: [Flag; 3] = [Flag::Cells, Flag::FractalDimensions, Flag::Seed];
 /// Largest side of a map in the CSV.
 const CSV_SIDE: usize = 257;
 
+/// Memory of drawing a surface and its pictures, bytes per cell.
+const BYTES: f64 = 24.0;
+
 /// Draws surface number 0 of each fractal dimension: `fig1.csv` (at most 257 x 257 a map), `fig1.svg`, `fig1.png`, and at full
 /// size `fig1-df2.0.npy`, `fig1-df2.0.png`, ... (grey-scale, darker = higher).
 ///
@@ -30,6 +34,7 @@ const CSV_SIDE: usize = 257;
 /// # Errors
 /// Files that cannot be written, maps that do not fit in memory.
 pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    threads_for_memory(1, BYTES * (run.cells as f64).powi(2), "cells", run.cells)?;
     let session = Session::open(run)?;
     let dimensions = run.dimensions();
     let mut outcome = Outcome::new("fig1");

@@ -21,6 +21,7 @@ use evaluation::FLAGS_3D as FLAGS;
 /// # Errors
 /// What the solver refuses, and files that cannot be written.
 pub fn fig2(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    curves::check(run.over.as_deref())?;
     let session = Session::open(run)?;
     let measured = measure_3d(run, &session.store, progress)?;
     let mut outcome = write(run, &measured)?;

@@ -19,6 +19,7 @@ use evaluation::FLAGS_1D as FLAGS;
 /// # Errors
 /// What the model refuses, and files that cannot be written.
 pub fn fig6(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    curves::check(run.over.as_deref())?;
     let session = Session::open(run)?;
     let measured = measure_1d(run, &session.store, progress)?;
     let mut outcome = write(run, &measured)?;

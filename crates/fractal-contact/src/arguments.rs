@@ -3,6 +3,7 @@
 use clap::builder::TypedValueParser as _;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
+use surface_io::{Preprocessing, ReadOptions};
 
 /// Contact of rough and smooth elastic bodies from a short text file: it says what is pressed, what is asked
 /// and which effects count; only that is computed.
@@ -38,7 +39,9 @@ Examples:
   fractal-contact completions bash > /etc/bash_completion.d/fractal-contact
 
 Exit codes: 0 done; 1 error; 2 a mistake in the scene or the arguments; 3 done, but some loads were refused or did not converge; 130 stopped
-by Ctrl-C, with the states so far in the files. The same command goes on where it was stopped.";
+by Ctrl-C, SIGTERM or SIGHUP, with the states so far in the files (a second signal ends at once); 141 nobody reads the output any more.
+The same command goes on where it was stopped: finished states are kept in .units of the folder of results, also after a kill.
+A folder of results belongs to one run: files of an earlier scene are removed, files of somebody else are not overwritten.";
 
 const SURFACE: &str = "\
 Examples:
@@ -85,6 +88,8 @@ pub enum Command {
         /// Side of one cell, such as "0.5 um", or both, "0.5 um x 0.25 um".
         #[arg(long)]
         cell: Option<surface_io::Sides>,
+        #[command(flatten)]
+        more: MapArguments,
     },
     /// Draws a self-affine surface into a file: .npy, .txt (text matrix), .xyz or .vti by its ending.
     #[command(after_help = SURFACE)]
@@ -121,4 +126,40 @@ pub enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
+}
+
+/// The keys of [scene.surface] in a scene: how a file is meant, and what is done to the map before it is described.
+#[derive(Debug, Default, clap::Args)]
+pub struct MapArguments {
+    /// Unit of x and y of points, such as um.
+    #[arg(long)]
+    lateral_unit: Option<surface_io::Unit>,
+    /// How decimals are written: point or comma.
+    #[arg(long, default_value = "point")]
+    decimal: surface_io::Decimal,
+    /// A number that stands for an undefined point, such as -9999.
+    #[arg(long, allow_negative_numbers = true)]
+    missing: Option<f64>,
+    /// Lines of text to leave out at the beginning.
+    #[arg(long, default_value_t = 0)]
+    skip_lines: usize,
+    /// Part of the map: centre.
+    #[arg(long)]
+    crop: Option<surface_io::Crop>,
+    /// Heights for undefined points: neighbours, plane or one height [default: they stay undefined].
+    #[arg(long)]
+    fill: Option<surface_io::Fill>,
+    /// What is subtracted: none, mean, plane or quadric.
+    #[arg(long, default_value = "none")]
+    detrend: surface_io::Detrend,
+}
+
+impl MapArguments {
+    /// How the file is read, apart from what `rest` says, and what is done to its map.
+    pub fn options(self, rest: ReadOptions) -> (ReadOptions, Preprocessing) {
+        let Self { lateral_unit, decimal, missing, skip_lines, crop, fill, detrend } = self;
+        let undefined = fill.is_none().then_some(surface_io::Undefined::NoContact);
+        let preprocessing = Preprocessing { crop, undefined, fill, detrend, ..Preprocessing::default() };
+        (ReadOptions { lateral_unit, decimal, missing, skip_lines, ..rest }, preprocessing)
+    }
 }

@@ -4,7 +4,9 @@ mod arguments;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
-use fractal_contact::scenes::{Error, GeneratedSurface, Options, Plan, Result, SceneFile, info, run};
+use fractal_contact::scenes::{
+    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, run,
+};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -14,7 +16,7 @@ fn main() -> ExitCode {
     match execute(Arguments::parse()) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("{error}");
+            runs::err!("{error}");
             ExitCode::from(if error.is_scene() { 2 } else { 1 })
         }
     }
@@ -23,7 +25,7 @@ fn main() -> ExitCode {
 fn execute(arguments: Arguments) -> Result<ExitCode> {
     match arguments.command {
         Command::Plan { scene } => {
-            print!("{}", Plan::calibrated(&SceneFile::read(&scene)?)?);
+            runs::print(format_args!("{}", Plan::calibrated(&SceneFile::read(&scene)?)?));
             Ok(ExitCode::SUCCESS)
         }
         Command::Run { scene, out, threads, fresh } => {
@@ -32,10 +34,11 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
             run_scene(&scene, &Options { out, threads, fresh })
         }
-        Command::Info { file, format, unit, size, cell } => {
+        Command::Info { file, format, unit, size, cell, more } => {
             let declared =
                 surface_io::ReadOptions { format, unit, size, cell, ..surface_io::ReadOptions::default() };
-            print!("{}", info(&file, &declared)?);
+            let (declared, preprocessing) = more.options(declared);
+            runs::print(format_args!("{}", info(&file, &declared, &preprocessing)?));
             Ok(ExitCode::SUCCESS)
         }
         Command::Surface {
@@ -59,16 +62,13 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 shortest_wavelength,
                 seed,
             };
-            print!("{}", make.write(&file)?);
+            runs::print(format_args!("{}", make.write(&file)?));
             Ok(ExitCode::SUCCESS)
         }
         Command::Completions { shell } => {
-            clap_complete::generate(
-                shell,
-                &mut Arguments::command(),
-                "fractal-contact",
-                &mut std::io::stdout(),
-            );
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Arguments::command(), "fractal-contact", &mut script);
+            runs::print(format_args!("{}", String::from_utf8_lossy(&script)));
             Ok(ExitCode::SUCCESS)
         }
     }
@@ -82,42 +82,52 @@ fn default_directory(scene: &Path) -> std::path::PathBuf {
 fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
     let scene = SceneFile::read(path)?;
     let plan = Plan::calibrated(&scene)?;
-    eprint!("{plan}");
+    runs::print_error(format_args!("{plan}"));
     let stopped = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stopped);
-    // The first Ctrl-C asks the solvers to stop, the second ends the process.
+    // The first Ctrl-C, SIGTERM or SIGHUP asks the solvers to stop, the second ends the process.
     ctrlc::set_handler(move || {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("stopping: the states so far are written; once more ends at once");
+        runs::err!("stopping: the states so far are written; once more ends at once");
     })
     .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
     let outcome = run(&scene, &plan, options, &runs::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
     for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
         if let Some(predicted) = &planned.predicted {
-            eprintln!("{name}\n  predicted  {predicted}");
+            runs::err!("{name}\n  predicted  {predicted}");
         }
-        eprintln!("  actual     {actual}, {bytes} bytes of field files");
+        runs::err!("  actual     {actual}, {bytes} bytes of field files");
     }
     if let Some(peak) = outcome.peak_memory {
-        eprintln!("memory       {} MB at the peak, the program itself included", peak / 1_000_000);
+        runs::err!("memory       {} MB at the peak, the program itself included", peak / 1_000_000);
     }
     for note in &outcome.notes {
-        eprintln!("note: {note}");
+        runs::err!("note: {note}");
     }
+    runs::print_error(format_args!("\n{}\n", outcome.summary));
     for file in &outcome.files {
-        println!("{}", file.display());
+        runs::out!("{}", file.display());
+    }
+    let SceneOutcome { requested, states, failed, kept, .. } = outcome;
+    let not_attempted = outcome.not_attempted();
+    runs::err!(
+        "states       {requested} asked for, {states} in the table ({kept} of them kept from an earlier run)"
+    );
+    if failed > 0 {
+        runs::err!("             {failed} were refused or did not reach their tolerance");
     }
     if outcome.stopped {
-        eprintln!("stopped: the states so far are in the files; the same command goes on");
+        runs::err!(
+            "stopped: {states} of {requested} states are kept; the same command goes on with the others"
+        );
         return Ok(ExitCode::from(130));
     }
-    if outcome.failed > 0 {
-        eprintln!(
-            "{} of {} states were refused or did not reach their tolerance",
-            outcome.failed, outcome.states
-        );
+    if not_attempted > 0 {
+        runs::err!("             {not_attempted} were not attempted: they come after a step that failed");
+    }
+    if failed > 0 {
         return Ok(ExitCode::from(3));
     }
     Ok(ExitCode::SUCCESS)

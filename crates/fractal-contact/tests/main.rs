@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
+mod answers;
 mod bad_scenes;
 mod program;
 mod rectangles;
+mod resume;
 mod scenes;

@@ -127,12 +127,13 @@ fn step(range: f64) -> (f64, u8) {
 pub fn logarithmic(values: impl IntoIterator<Item = f64>) -> Axis {
     const ROOM: f64 = 1.7;
     let (low, high) = extent(values.into_iter().filter(|v| *v > 0.0 && v.is_finite())).unwrap_or((1.0, 10.0));
-    Axis::Log(low / ROOM, high * ROOM)
+    Axis::Log((low / ROOM).max(f64::MIN_POSITIVE), (high * ROOM).min(f64::MAX))
 }
 
 /// A linear axis around values with room for their marks.
 pub fn linear(values: impl IntoIterator<Item = f64>) -> Axis {
-    let (low, high) = extent(values.into_iter().filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
+    // Beyond, a difference overflows.
+    let (low, high) = extent(values.into_iter().filter(|v| v.abs() < 1e300)).unwrap_or((0.0, 1.0));
     let room = match high - low {
         range if range > 0.0 => 0.06 * range,
         _ if high.abs() > 0.0 => high.abs(),

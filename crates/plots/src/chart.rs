@@ -13,8 +13,8 @@ pub struct Curve {
     pub label: String,
     /// Its points in their order; those that the axes cannot show are left out.
     pub points: Vec<(f64, f64)>,
-    /// Points without a line, of something drawn from chance.
-    pub scattered: bool,
+    /// A shaded band through (x, lower end, upper end), such as an error; may be empty.
+    pub band: Vec<(f64, f64, f64)>,
 }
 
 /// Curves on one pair of axes. An axis is logarithmic where asked for and every value is positive.
@@ -40,7 +40,12 @@ impl Chart {
     /// # Errors
     /// [`crate::Error::File`] when they cannot be written.
     pub fn save(&self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        let points = || self.curves.iter().flat_map(|c| c.points.iter());
+        let ends =
+            |c: &Curve| c.band.iter().flat_map(|&(x, low, high)| [(x, low), (x, high)]).collect::<Vec<_>>();
+        // The lower end of a wide band may be negative, where a logarithmic axis has no place for it.
+        let shown = |point: &(f64, f64)| !self.logarithmic || (point.0 > 0.0 && point.1 > 0.0);
+        let bands: Vec<(f64, f64)> = self.curves.iter().flat_map(ends).filter(shown).collect();
+        let points = || self.curves.iter().flat_map(|c| c.points.iter()).chain(&bands);
         let axis = |values: Vec<f64>| -> Axis {
             if self.logarithmic && values.iter().all(|v| *v > 0.0 || !v.is_finite()) {
                 return logarithmic(values);
@@ -57,19 +62,14 @@ impl Chart {
             let above = (self.curves.len() - 1 - i).min(4) as f64;
             let mark = if i % 2 == 0 { Mark::Solid(shape) } else { Mark::Hollow(shape) };
             // Where points are dense they are the line.
-            let marked = curve.scattered || curve.points.len() <= MOST_MARKS;
-            if !curve.scattered {
-                let wider = if marked { 0.9 } else { 1.8 };
-                picture.line(&curve.points, color, 1.7 + wider * above, LineStyle::Solid);
-            }
+            let marked = curve.points.len() <= MOST_MARKS;
+            let wider = if marked { 0.9 } else { 1.8 };
+            picture.band(&curve.band, color);
+            picture.line(&curve.points, color, 1.7 + wider * above, LineStyle::Solid);
             if marked {
                 picture.points(&curve.points, color, 3.4 + 1.1 * above, mark);
             }
-            let key = match (curve.scattered, marked) {
-                (true, _) => Key::Mark(mark),
-                (false, true) => Key::Curve(mark),
-                (false, false) => Key::Line(LineStyle::Solid),
-            };
+            let key = if marked { Key::Curve(mark) } else { Key::Line(LineStyle::Solid) };
             picture.legend(&curve.label, color, key);
         }
         picture.save(directory, name)
@@ -86,8 +86,11 @@ mod tests {
     #[test]
     fn curves_become_a_picture_whatever_they_hold() {
         let dir = tempfile::tempdir().unwrap();
-        let curve =
-            |points: &[(f64, f64)]| Curve { label: "a".into(), points: points.to_vec(), scattered: false };
+        let curve = |points: &[(f64, f64)]| Curve {
+            label: "a".into(),
+            points: points.to_vec(),
+            band: vec![(1.0, -1.0, 2.0)],
+        };
         for (i, points) in [&[][..], &[(1.0, 2.0)], &[(1.0, 1.0), (10.0, 5.0)], &[(-1.0, 0.0), (2.0, 0.0)]]
             .iter()
             .enumerate()

@@ -92,6 +92,9 @@ fn value(v: &Value) -> String {
     }
 }
 
+/// The largest table that is read, bytes.
+const LARGEST: u64 = 1 << 32;
+
 /// A CSV file read back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CsvFile {
@@ -109,7 +112,8 @@ impl CsvFile {
     /// # Errors
     /// [`Error::File`] when it cannot be read, [`Error::Content`] when it is no table.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(Error::file("read", path))?;
+        let bytes = crate::files::read(path, LARGEST)?;
+        let text = String::from_utf8(bytes).map_err(|e| Error::content(path, format!("no text: {e}")))?;
         let comments =
             text.lines().filter_map(|l| l.strip_prefix('#')).map(|l| l.trim().to_owned()).collect();
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());

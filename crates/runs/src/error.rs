@@ -48,7 +48,12 @@ pub enum Error {
 impl Error {
     /// A parameter that makes no sense.
     pub fn parameter(name: &'static str, value: impl fmt::Display, expected: impl Into<String>) -> Self {
-        Self::Parameter { name, value: value.to_string(), expected: expected.into() }
+        let mut value = value.to_string();
+        // A number beyond 1e20 would be a row of zeros.
+        if let (true, Ok(number)) = (value.len() > 20, value.parse::<f64>()) {
+            value = format!("{number:e}");
+        }
+        Self::Parameter { name, value, expected: expected.into() }
     }
 
     /// A file that does not hold what it should.

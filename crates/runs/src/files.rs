@@ -11,6 +11,14 @@ pub fn create_directory(path: &Path) -> Result<()> {
     Ok(surface_io::files::create_directory(path)?)
 }
 
+/// Reads a file of at most `largest` bytes. A pipe or a device, which may never end, is refused unread, and so is a longer file.
+///
+/// # Errors
+/// [`crate::Error::File`] where the system refuses, [`crate::Error::Content`] for what is refused here.
+pub fn read(path: &Path, largest: u64) -> Result<Vec<u8>> {
+    Ok(surface_io::files::read(path, largest)?)
+}
+
 /// Writes a file whole: into a temporary name beside it, then renamed over it. A failure leaves no file, and an old one as it was.
 ///
 /// # Errors

@@ -25,8 +25,10 @@ pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
     let results: Vec<OnceLock<Result<T, E>>> = order.iter().map(|_| OnceLock::new()).collect();
     let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
     let halt = || failed.load(Ordering::Relaxed) || stop();
+    // More threads than jobs only help where there are processors for them.
+    let useful = order.len().max(std::thread::available_parallelism().map_or(1, usize::from));
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.max(1))
+        .num_threads(threads.clamp(1, useful))
         .build()
         .map_err(|e| Error::parameter("threads", threads, format!("threads that the system grants ({e})")))?;
     pool.broadcast(|_| {
@@ -93,10 +95,25 @@ pub trait Job: Sync {
     /// Whatever ends the whole command.
     fn solve(&self, stop: Stop<'_>) -> Result<Self::Output, Self::Error>;
 
-    /// The output as lines of text that [`Job::decode`] reads back bit for bit; `None` for what is not worth storing or not complete.
+    /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::decode`] refused, such as the part that was done
+    /// before an interruption; `store` replaces it at any moment. A job without parts begins anew.
+    ///
+    /// # Errors
+    /// Whatever ends the whole command.
+    fn resume(
+        &self,
+        stored: Option<&str>,
+        store: &dyn Fn(&str) -> Result<(), Error>,
+        stop: Stop<'_>,
+    ) -> Result<Self::Output, Self::Error> {
+        let _ = (stored, store);
+        self.solve(stop)
+    }
+
+    /// The output as lines of text that [`Job::decode`] reads back bit for bit; `None` for what is not worth storing.
     fn encode(&self, output: &Self::Output) -> Option<String>;
 
-    /// Reads an output back; `None` where the text is no output of this job.
+    /// Reads an output back; `None` where the text is no output of this job, or a part of one.
     fn decode(&self, text: &str) -> Option<Self::Output>;
 }
 
@@ -120,11 +137,12 @@ pub fn run_stored<J: Job>(
     let order = largest_first(jobs.len(), |i| jobs[i].cost());
     let done = run_jobs(threads, &order, stop, |i, stop| {
         let (job, key) = (&jobs[i], jobs[i].key());
-        if let Some(stored) = store.load(&key).and_then(|text| job.decode(&text)) {
+        let stored = store.load(&key);
+        if let Some(output) = stored.as_deref().and_then(|text| job.decode(text)) {
             progress.advance(job.cost(), true);
-            return Ok(stored);
+            return Ok(output);
         }
-        let output = job.solve(stop)?;
+        let output = job.resume(stored.as_deref(), &|text| store.save(&key, text), stop)?;
         if let Some(text) = job.encode(&output) {
             store.save(&key, &text)?;
         }

@@ -14,6 +14,10 @@
 //!   those are in `manifest.json` ([`machine`]).
 //! * NPY maps for `bench` ([`read_map`], [`write_npy`]).
 //!
+//! # Terminal
+//!
+//! [`Reporter`] tells how far a run is; [`out!`] and [`err!`] write lines, and neither a closed pipe nor a full device is a panic.
+//!
 //! # What it does not do
 //!
 //! No mechanics, no pictures, no argument parsing.
@@ -30,13 +34,17 @@ mod npy;
 mod progress;
 mod reporter;
 mod store;
+mod terminal;
 
 pub use csv_file::{CsvFile, Header, number, write_csv};
 pub use error::{Error, Result};
 pub use jobs::{Job, collect, largest_first, run_jobs, run_stored};
 pub use manifest::{file_names, machine, write_manifest};
-pub use meters::{cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
+pub use meters::{
+    available_memory, cpu_seconds, peak_memory, reset_peak_memory, resident_memory, threads_for_memory,
+};
 pub use npy::{read_map, unit_area, write_npy};
 pub use progress::{Progress, Silent};
 pub use reporter::Reporter;
 pub use store::{Store, fnv1a_128};
+pub use terminal::{print, print_error};

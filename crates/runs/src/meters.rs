@@ -1,5 +1,7 @@
 //! What the operating system tells about this process; absent where it does not.
 
+use crate::error::{Error, Result};
+use std::fmt;
 use std::fs;
 use std::time::Duration;
 
@@ -23,13 +25,44 @@ pub fn peak_memory() -> Option<u64> {
     memory("VmHWM:")
 }
 
+/// Memory that the system could give to this process now, in bytes (Linux).
+pub fn available_memory() -> Option<u64> {
+    memory_in("/proc/meminfo", "MemAvailable:")
+}
+
+/// Threads that jobs of a size have memory for: at most `threads`.
+///
+/// # Errors
+/// [`Error::Parameter`] where a single job needs more memory than there is; `name` and `value` are what its size comes from. Where the
+/// system tells nothing, every number of threads is taken.
+pub fn threads_for_memory(
+    threads: usize,
+    bytes: f64,
+    name: &'static str,
+    value: impl fmt::Display,
+) -> Result<usize> {
+    let Some(available) = available_memory().map(|bytes| bytes as f64) else { return Ok(threads) };
+    if bytes > available {
+        let (needed, there) = (bytes * 1e-9, available * 1e-9);
+        let expected = format!(
+            "a size that fits in memory (it needs about {needed:.1} GB, {there:.1} GB are available)"
+        );
+        return Err(Error::parameter(name, value, expected));
+    }
+    Ok(((available / bytes) as usize).clamp(1, threads.max(1)))
+}
+
 /// Resident memory of the process now, in bytes (Linux).
 pub fn resident_memory() -> Option<u64> {
     memory("VmRSS:")
 }
 
 fn memory(field: &str) -> Option<u64> {
-    let text = fs::read_to_string("/proc/self/status").ok()?;
+    memory_in("/proc/self/status", field)
+}
+
+fn memory_in(file: &str, field: &str) -> Option<u64> {
+    let text = fs::read_to_string(file).ok()?;
     let line = text.lines().find_map(|l| l.strip_prefix(field))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kb| 1024 * kb)
 }
@@ -47,5 +80,17 @@ mod tests {
         assert!(cpu_seconds().unwrap() > cpu);
         assert!(before > 0 && peak_memory().is_some() && resident_memory().is_some());
         reset_peak_memory();
+    }
+
+    #[test]
+    fn no_more_threads_than_memory() {
+        let available = available_memory().unwrap() as f64;
+        assert_eq!(threads_for_memory(4, 1.0, "cells", 9).unwrap(), 4);
+        assert_eq!(threads_for_memory(4, 0.4 * available, "cells", 9).unwrap(), 2);
+        let refused = threads_for_memory(4, 2.0 * available, "cells", 9).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("cells = 9: expected a size that fits in memory (it needs about"),
+            "{refused}"
+        );
     }
 }

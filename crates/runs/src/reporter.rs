@@ -52,7 +52,7 @@ impl Reporter {
 
 impl Progress for Reporter {
     fn begin(&self, what: &str, total: u64) {
-        eprintln!("{what}");
+        crate::err!("{what}");
         let now = Instant::now();
         let bar = if self.terminal { ProgressBar::new(total) } else { ProgressBar::hidden() };
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} gone, {eta} left")
@@ -78,7 +78,7 @@ impl Progress for Reporter {
                 let share = s.done as f64 / s.total.max(1) as f64;
                 let gone = s.begun.elapsed().as_secs_f64();
                 let left = gone * (1.0 / share - 1.0);
-                eprintln!("{:3.0} %  {gone:.0} s gone, about {left:.0} s left", 100.0 * share);
+                crate::err!("{:3.0} %  {gone:.0} s gone, about {left:.0} s left", 100.0 * share);
             }
         });
     }
@@ -87,7 +87,7 @@ impl Progress for Reporter {
         self.with(|s| {
             s.bar.finish_and_clear();
             let seconds = s.begun.elapsed().as_secs_f64();
-            eprintln!("{} done in {seconds:.1} s, {} of them from disk", s.units, s.reused);
+            crate::err!("{} done in {seconds:.1} s, {} of them from disk", s.units, s.reused);
         });
     }
 }

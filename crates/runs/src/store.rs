@@ -1,30 +1,43 @@
 //! The result store: `DIR/.units/<hash>.csv`, one file per job, written whole and checked on reading.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::files;
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// First line of every stored result, of ensembles and of scenes alike; older results of ensembles have it and are still read.
 const TITLE: &str = "# fractal-contact unit: one surface under all its loads";
 
 /// Where the results of finished jobs are kept, each under a key that names everything that decides its numbers.
+///
+/// As long as it is open, no other process can open one in the same directory.
 #[derive(Debug, Clone)]
 pub struct Store {
     directory: PathBuf,
     fresh: bool,
+    /// Locked; `None` where the file system has no locks.
+    _lock: Option<Arc<File>>,
 }
 
 impl Store {
     /// Opens (and creates) `out/.units` and removes what interrupted runs left half-written. With `fresh` nothing stored is read.
     ///
     /// # Errors
-    /// [`crate::Error::File`] when the directory cannot be made or read.
+    /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Parameter`] when another process uses it.
     pub fn open(out: &Path, fresh: bool) -> Result<Self> {
         let directory = out.join(".units");
         files::create_directory(&directory)?;
+        let lock = lock(&directory.join("lock"), out)?;
         files::clean(&directory)?;
-        Ok(Self { directory, fresh })
+        Ok(Self { directory, fresh, _lock: lock })
+    }
+
+    /// Number of results that the store of a directory holds; 0 where there is none.
+    pub fn count(out: &Path) -> usize {
+        let names =
+            fs::read_dir(out.join(".units")).into_iter().flatten().flatten().map(|entry| entry.file_name());
+        names.filter(|name| Path::new(name).extension().is_some_and(|end| end == "csv")).count()
     }
 
     fn path(&self, key: &str) -> PathBuf {
@@ -51,6 +64,32 @@ impl Store {
         let body = head(key) + text;
         let digest = fnv1a_128(body.as_bytes());
         files::write_whole(&self.path(key), format!("{body}# whole {digest:032x}\n").as_bytes())
+    }
+}
+
+/// The lock of a directory. The system lets go of it when the process ends, however it ends; within the process all stores of a
+/// directory share it.
+fn lock(path: &Path, out: &Path) -> Result<Option<Arc<File>>> {
+    static HELD: Mutex<Vec<(PathBuf, Weak<File>)>> = Mutex::new(Vec::new());
+    let mut held = HELD.lock().unwrap_or_else(PoisonError::into_inner);
+    let file = File::options().create(true).append(true).open(path).map_err(Error::file("write", path))?;
+    let path = fs::canonicalize(path).map_err(Error::file("read", path))?;
+    held.retain(|(_, lock)| lock.strong_count() > 0);
+    if let Some(lock) = held.iter().find(|(of, _)| *of == path).and_then(|(_, lock)| lock.upgrade()) {
+        return Ok(Some(lock));
+    }
+    match file.try_lock() {
+        Ok(()) => {
+            let lock = Arc::new(file);
+            held.push((path, Arc::downgrade(&lock)));
+            Ok(Some(lock))
+        }
+        Err(TryLockError::WouldBlock) => {
+            let expected = "a directory that no other process is writing results into";
+            Err(Error::parameter("out", out.display(), expected))
+        }
+        // Not every network file system has locks.
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 
@@ -86,8 +125,25 @@ mod tests {
         assert_eq!(store.load(KEY), None);
         store.save(KEY, TEXT).unwrap();
         assert_eq!(store.load(KEY).as_deref(), Some(TEXT));
+        assert_eq!((Store::count(dir.path()), Store::count(&dir.path().join("nowhere"))), (1, 0));
         assert_eq!(store.load("seed 2\nload 2\n"), None);
         assert_eq!(Store::open(dir.path(), true).unwrap().load(KEY), None);
+    }
+
+    #[test]
+    fn one_process_at_a_time() {
+        let dir = tempfile::tempdir().unwrap();
+        // A lock of a file that was opened on its own, as by another process.
+        fs::create_dir(dir.path().join(".units")).unwrap();
+        let other = File::options().create(true).append(true).open(dir.path().join(".units/lock")).unwrap();
+        other.lock().unwrap();
+        let refused = Store::open(dir.path(), false).unwrap_err().to_string();
+        assert!(refused.contains("no other process"), "{refused}");
+        drop(other);
+        let store = Store::open(dir.path(), false).unwrap();
+        let again = Store::open(dir.path(), false).unwrap();
+        drop((store, again));
+        assert!(File::open(dir.path().join(".units/lock")).unwrap().try_lock().is_ok());
     }
 
     #[test]

@@ -71,8 +71,8 @@ pub use hash::surface_seed;
 pub use line::{LineGenerator, self_affine_line};
 pub use map::{MapGenerator, self_affine_map};
 pub use measure::{
-    hurst_from_line_spectrum, hurst_from_spectrum, line_spectrum, patches, radial_spectrum, rms_height,
-    rms_slope, rms_slope_differences,
+    boundary_edges, hurst_from_line_spectrum, hurst_from_spectrum, line_spectrum, patches, radial_spectrum,
+    rms_height, rms_slope, rms_slope_differences,
 };
 pub use phases::{line_phase, map_phase};
 pub use surface::{height_map, line};

@@ -63,10 +63,10 @@ impl fmt::Display for Absent {
 }
 
 impl Description {
-    /// Effective fractal dimension D_f = 3 - H, whether or not it lies between 2 and 3 as that of a
-    /// self-affine surface does.
+    /// Fractal dimension D_f = 3 - H, where it lies between 2 and 3 as that of a self-affine surface does (within
+    /// 0.1, the error of a fit).
     pub fn fractal_dimension(&self) -> Option<f64> {
-        self.hurst.ok().map(|h| 3.0 - h)
+        self.hurst.ok().map(|h| 3.0 - h).filter(|d| (1.9..=3.1).contains(d))
     }
 }
 
@@ -141,23 +141,25 @@ impl fmt::Display for Description {
         let Size { x, y } = self.size;
         writeln!(f, "cells              {columns} x {rows} (columns x rows)")?;
         writeln!(f, "size               {x:e} x {y:e}")?;
-        writeln!(f, "cell               {:e} x {:e}", x / columns as f64, y / rows as f64)?;
+        // Seven digits, without the zeros at their end.
+        let short = |v: f64| format!("{v:.6e}").parse().unwrap_or(v);
+        writeln!(f, "cell               {:e} x {:e}", short(x / columns as f64), short(y / rows as f64))?;
         writeln!(f, "undefined points   {} of {}", self.undefined, columns * rows)?;
-        writeln!(f, "range of heights   {low:e} to {high:e}")?;
+        writeln!(f, "range of heights   {low:.6e} to {high:.6e}")?;
         writeln!(f, "rms height         {:.6e}", self.rms_height)?;
         writeln!(f, "rms slope          {:.6e}", self.rms_slope)?;
-        match self.hurst.map(|h| 3.0 - h) {
-            Ok(d) => {
-                let [longest, shortest] = self.fitted.map(|q| TAU / q);
-                write!(
-                    f,
-                    "fractal dimension  {d:.3} (fitted to waves of length {longest:.3e} to {shortest:.3e})"
-                )?;
-                let outside =
-                    if (2.0..=3.0).contains(&d) { "" } else { "; outside 2 to 3: not self-affine there" };
-                f.write_str(outside)?;
+        let [longest, shortest] = self.fitted.map(|q| TAU / q);
+        match (self.fractal_dimension(), self.hurst) {
+            (Some(d), _) => {
+                write!(f, "fractal dimension  {d:.3} (waves of length {longest:.3e} to {shortest:.3e})")?;
             }
-            Err(absent) => write!(f, "fractal dimension  not determined: {absent}")?,
+            (None, Ok(h)) => write!(
+                f,
+                "fractal dimension  none: C_2D of waves of length {longest:.3e} to {shortest:.3e} goes as q^{:.1}, that of a \
+                 self-affine surface as q^-4 to q^-2",
+                -2.0 * (h + 1.0)
+            )?,
+            (None, Err(absent)) => write!(f, "fractal dimension  not determined: {absent}")?,
         }
         if !self.spectrum.is_empty() {
             write!(f, "\nspectrum           wavelength, C_2D")?;

@@ -122,6 +122,11 @@ pub enum ContentError {
         /// The format that it looks like.
         found: Format,
     },
+    /// Two columns, the first of equally spaced numbers: x and z along a line.
+    Profile {
+        /// Lines.
+        lines: usize,
+    },
     /// Three columns: a matrix of three columns, or points.
     Ambiguous {
         /// Number of lines of three.

@@ -1,8 +1,8 @@
 //! Files written whole or not at all.
 
-use crate::error::{Error, Result};
+use crate::error::{ContentError, Error, Result};
 use std::fs;
-use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -21,24 +21,63 @@ pub fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(Error::system("create the directory", path))
 }
 
+/// Reads a file of at most `largest` bytes. A pipe or a device, which may never end, is refused unread, and so is
+/// a longer file.
+///
+/// # Errors
+/// [`Error::System`] where the system refuses, [`Error::Content`] for what is refused here.
+pub fn read(path: &Path, largest: u64) -> Result<Vec<u8>> {
+    // Looked at before it is opened: opening a pipe waits for a writer.
+    let about = fs::metadata(path).map_err(Error::system("read", path))?;
+    if !about.is_file() {
+        return Err(Error::content(path)(ContentError::NotAFile));
+    }
+    if about.len() > largest {
+        return Err(Error::content(path)(ContentError::TooLarge { bytes: about.len(), largest }));
+    }
+    let mut bytes = Vec::new();
+    let mut file = fs::File::open(path).map_err(Error::system("read", path))?.take(largest);
+    file.read_to_end(&mut bytes).map_err(Error::system("read", path))?;
+    Ok(bytes)
+}
+
 /// Writes a file whole: into a temporary name beside it, then renamed over it. A failure leaves no file, and
 /// an old one as it was.
+///
+/// A symbolic link stays one: the file that it leads to is written. What is no file but can be written into
+/// (a device, a pipe) is not replaced either.
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses (permission, full disk).
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let written = match fs::metadata(path) {
+        Ok(found) if !found.is_file() && !found.is_dir() => {
+            fs::File::options().write(true).open(path).and_then(|mut sink| sink.write_all(bytes))
+        }
+        Ok(_) => fs::canonicalize(path).and_then(|path| replace(&path, bytes)),
+        Err(_) => replace(path, bytes),
+    };
+    written.map_err(Error::system("write", path))
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     static COUNTER: AtomicU64 = AtomicU64::new(0);
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-    let partial = path.with_file_name(format!("{PREFIX}{}-{number}-{name}", std::process::id()));
-    let written = fs::File::create(&partial)
-        .and_then(|mut file| file.write_all(bytes))
-        .and_then(|()| fs::rename(&partial, path));
+    let (mut file, partial) = loop {
+        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+        let partial = path.with_file_name(format!("{PREFIX}{}-{number}-{name}", std::process::id()));
+        // A name that is taken, by a link to another place for instance, is not opened.
+        match fs::File::options().write(true).create_new(true).open(&partial) {
+            Err(taken) if taken.kind() == std::io::ErrorKind::AlreadyExists => {}
+            opened => break (opened?, partial),
+        }
+    };
+    let written = file.write_all(bytes).and_then(|()| fs::rename(&partial, path));
     if written.is_err() {
         // Nothing more can be done when this fails too; the next start cleans up.
         let _ = fs::remove_file(&partial);
     }
-    written.map_err(Error::system("write", path))
+    written
 }
 
 /// Removes what interrupted runs left half-written in a directory; files of a running process stay.
@@ -84,6 +123,33 @@ mod tests {
         write_whole(&dir.path().join("a/c.txt"), b"y").unwrap();
         assert_eq!(fs::read(dir.path().join("a/c.txt")).unwrap(), b"y");
         assert_eq!(fs::read_dir(dir.path().join("a")).unwrap().count(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_devices_stay_what_they_are() {
+        use std::os::unix::fs::{FileTypeExt as _, symlink};
+        let dir = tempfile::tempdir().unwrap();
+        let at = |name: &str| dir.path().join(name);
+        fs::write(at("target"), "old").unwrap();
+        symlink(at("target"), at("link")).unwrap();
+        write_whole(&at("link"), b"new").unwrap();
+        assert!(at("link").is_symlink() && fs::read(at("target")).unwrap() == b"new");
+        // A link that somebody planted under the temporary names is not followed.
+        for number in 0..10_000 {
+            symlink(at("target"), at(&format!("{PREFIX}{}-{number}-a", std::process::id()))).unwrap();
+        }
+        write_whole(&at("a"), b"a").unwrap();
+        assert_eq!(
+            (fs::read(at("a")).unwrap(), fs::read(at("target")).unwrap()),
+            (b"a".into(), b"new".into())
+        );
+        write_whole(Path::new("/dev/null"), b"x").unwrap();
+        assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+        if Path::new("/dev/full").exists() {
+            let error = write_whole(Path::new("/dev/full"), b"x").unwrap_err();
+            assert!(error.to_string().starts_with("cannot write /dev/full"), "{error}");
+        }
     }
 
     #[test]

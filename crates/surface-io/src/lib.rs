@@ -24,7 +24,8 @@
 //! # Nothing is guessed silently
 //!
 //! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
-//!   a text matrix; three columns without either are points or a matrix by their comments, or an error. Other
+//!   a text matrix; three columns without either are points or a matrix by their comments, or an error; two
+//!   columns, the first of equally spaced numbers, are a profile, which is refused by its name. Other
 //!   files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
 //!   Comments begin with `#` or `%`; of them `Width`, `Height`, `Value units` and `Lateral units` count, as

@@ -154,6 +154,9 @@ impl Scan {
                     let ambiguous = ContentError::Ambiguous { lines: table.rows() };
                     table.heading.format().ok_or(ambiguous).map_err(content(path))?
                 }
+                None if table.is_profile() => {
+                    return Err(content(path)(ContentError::Profile { lines: table.rows() }));
+                }
                 None => Format::Text,
             };
             drop(bytes);

@@ -66,7 +66,12 @@ pub(crate) struct TextTable {
     pub(crate) heading: Heading,
     /// Numbers of the lines of data, from 1.
     pub(crate) lines: Vec<u32>,
+    /// Whether every line so far ended with a delimiter: the habit of some programs, or an empty last place.
+    open: bool,
 }
+
+/// Two columns of at most so many rows are a map.
+const PROFILE: usize = 8;
 
 /// A mark that some editors put before UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
@@ -74,6 +79,17 @@ const MARK: &[u8] = b"\xef\xbb\xbf";
 impl TextTable {
     pub(crate) fn rows(&self) -> usize {
         self.values.len() / self.columns
+    }
+
+    /// Whether these are two columns, the first of which goes up in equal steps, as x does along a profile.
+    pub(crate) fn is_profile(&self) -> bool {
+        let (rows, x) = (self.rows(), |row: usize| self.values[2 * row]);
+        if self.columns != 2 || rows <= PROFILE {
+            return false;
+        }
+        let step = (x(rows - 1) - x(0)) / (rows - 1) as f64;
+        // Within what rounding to a few digits leaves.
+        step > 0.0 && (1..rows).all(|row| (x(row) - x(row - 1) - step).abs() <= 0.1 * step)
     }
 
     /// Number of the first line of data, from 1.
@@ -91,10 +107,7 @@ impl TextTable {
         let mut heading = Heading::default();
         let numbers = Numbers { decimal: declared.decimal };
         for (i, line) in bytes.split(|&b| b == b'\n').enumerate().skip(declared.skip_lines) {
-            let (data, comment) = match line.iter().position(|b| matches!(b, b'#' | b'%')) {
-                Some(at) => (line[..at].trim_ascii(), Some(&line[at + 1..])),
-                None => (line, None),
-            };
+            let (data, comment) = without_comment(line);
             if data.trim_ascii().is_empty() {
                 if let Some(comment) = comment {
                     heading.read(comment, i + 1)?;
@@ -109,10 +122,11 @@ impl TextTable {
                     delimiter,
                     heading: Heading::default(),
                     lines: Vec::new(),
+                    open: true,
                 });
             }
             if let Some(table) = &mut table {
-                table.line(numbers, data, i + 1, bytes)?;
+                table.line(numbers, data, i + 1, bytes).map_err(|error| table.odd_one_out(error, bytes))?;
             }
         }
         let mut table = table.ok_or(ContentError::Empty)?;
@@ -136,12 +150,62 @@ impl TextTable {
             // Tabs at the ends are delimiters there, so only the line break and spaces go.
             let data = data.strip_suffix(b"\r").unwrap_or(data);
             let data = if byte == b'\t' { data } else { data.trim_ascii() };
-            // One delimiter behind the last number is the habit of some programs.
-            let data = data.strip_suffix(&[byte]).unwrap_or(data);
+            // One delimiter behind the last number is the habit of some programs; with a number less than in other lines, the last
+            // place is empty.
+            let (data, open) = data.strip_suffix(&[byte]).map_or((data, false), |data| (data, true));
             for (i, token) in data.split(|&b| b == byte).enumerate() {
                 push(token.trim_ascii(), i + 1, &mut self.values)?;
             }
+            let found = self.values.len() - before;
+            if open && found + 1 == self.columns {
+                self.values.push(f64::NAN);
+            } else if self.open && !open && self.columns > 0 && found == self.columns + 1 {
+                self.close(found);
+                return self.finish_line(line, self.values.len() - found, all);
+            }
+            self.open &= open;
         }
+        self.finish_line(line, before, all)
+    }
+
+    /// All lines before the last one get an undefined last place.
+    fn close(&mut self, columns: usize) {
+        let rows = self.lines.len();
+        let last = self.values.split_off(rows * self.columns);
+        let mut values = Vec::with_capacity(self.values.capacity().max((rows + 1) * columns));
+        for row in self.values.chunks(self.columns) {
+            values.extend_from_slice(row);
+            values.push(f64::NAN);
+        }
+        values.extend(last);
+        (self.values, self.columns, self.open) = (values, columns, false);
+    }
+
+    /// Where the second and the third line agree with each other, the first one is the one to look at.
+    fn odd_one_out(&self, error: ContentError, all: &[u8]) -> ContentError {
+        let (ContentError::Ragged { line, found, expected, first }, 2) = (&error, self.lines.len()) else {
+            return error;
+        };
+        let count = |line: &[u8]| {
+            let data = without_comment(line).0.trim_ascii();
+            let byte = self.delimiter.byte();
+            match self.delimiter {
+                _ if data.is_empty() => 0,
+                Delimiter::Whitespace => {
+                    data.split(u8::is_ascii_whitespace).filter(|t| !t.is_empty()).count()
+                }
+                _ => data.strip_suffix(&[byte]).unwrap_or(data).split(|&b| b == byte).count(),
+            }
+        };
+        let third = all.split(|&b| b == b'\n').skip(*line).map(count).find(|&count| count > 0);
+        if third == Some(*found) {
+            return ContentError::Ragged { line: *first, found: *expected, expected: *found, first: *line };
+        }
+        error
+    }
+
+    /// Counts a line whose values stand behind the first `before`.
+    fn finish_line(&mut self, line: usize, before: usize, all: &[u8]) -> Result<(), ContentError> {
         let found = self.values.len() - before;
         // Files of more than 2^32 lines are beyond what is read by default.
         self.lines.push(line as u32);
@@ -158,6 +222,14 @@ impl TextTable {
             return Err(ContentError::Ragged { line, found, expected, first });
         }
         Ok(())
+    }
+}
+
+/// The data of a line and its comment.
+fn without_comment(line: &[u8]) -> (&[u8], Option<&[u8]>) {
+    match line.iter().position(|b| matches!(b, b'#' | b'%')) {
+        Some(at) => (line[..at].trim_ascii(), Some(&line[at + 1..])),
+        None => (line, None),
     }
 }
 

@@ -293,6 +293,18 @@ fn impossible_rectangles_are_named() {
     for (found, expected) in [
         (error("a.txt", b"1 2 3\n4 5\n", &|_| ()), "a.txt: line 2 has 2 values: expected 3 as in line 1"),
         (
+            error("a.txt", b"1 2\n4 5 6\n7 8 9\n", &|_| ()),
+            "a.txt: line 1 has 2 values: expected 3 as in line 2",
+        ),
+        (
+            error("a.csv", b"1,2\n\n4,5,6\n#\n7,8,9", &|_| ()),
+            "a.csv: line 1 has 2 values: expected 3 as in line 3",
+        ),
+        (
+            error("a.csv", b"1,2\n4,5,6\n7,8\n", &|_| ()),
+            "a.csv: line 2 has 3 values: expected 2 as in line 1",
+        ),
+        (
             error("a.npy", &empty, &|_| ()),
             "a.npy: an array of 3 rows x 0 columns: expected at least 1 of each",
         ),

@@ -19,8 +19,8 @@ pub fn book(pictures: bool) -> Result<ExitCode> {
         return make_pictures(&root);
     }
     let found = links::check(&root)?;
-    found.broken.iter().for_each(|line| println!("{line}"));
-    println!("{} links in {} files, {} broken", found.links, found.files, found.broken.len());
+    found.broken.iter().for_each(|line| runs::out!("{line}"));
+    runs::out!("{} links in {} files, {} broken", found.links, found.files, found.broken.len());
 
     let blocks = commands::blocks(&root.join("book/src"))?;
     let long = blocks.iter().filter(|block| block.long).count();
@@ -30,14 +30,14 @@ pub fn book(pictures: bool) -> Result<ExitCode> {
     for block in blocks.iter().filter(|block| !block.long) {
         let begun = Instant::now();
         let done = scratch.run(&block.text)?;
-        println!("{:>6.1} s  {}", begun.elapsed().as_secs_f64(), block.place);
+        runs::out!("{:>6.1} s  {}", begun.elapsed().as_secs_f64(), block.place);
         if let Some(output) = done {
             failed += 1;
-            println!("{}\n{output}", block.text);
+            runs::out!("{}\n{output}", block.text);
         }
     }
     let run = blocks.len() - long;
-    println!(
+    runs::out!(
         "{run} blocks of commands run in {:.0} s, {failed} failed; {long} long ones not run",
         start.elapsed().as_secs_f64()
     );
@@ -60,7 +60,7 @@ fn make_pictures(root: &Path) -> Result<ExitCode> {
     let folder = root.join("book/src/pictures");
     let failed = scratch.run(&format!("pictures='{}'\n{text}", folder.display()))?;
     if let Some(output) = &failed {
-        println!("{output}");
+        runs::out!("{output}");
     }
     Ok(if failed.is_none() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -71,13 +71,13 @@ fn build(root: &Path) -> Result<bool> {
     let output = match Command::new(program).arg("build").arg(root.join("book")).output() {
         Ok(output) => output,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            println!("mdbook is not installed: pages not built (cargo install mdbook --locked)");
+            runs::out!("mdbook is not installed: pages not built (cargo install mdbook --locked)");
             return Ok(true);
         }
         Err(source) => return Err(Error::file("run", program)(source)),
     };
     let said = commands::text(&output);
     let clean = output.status.success() && !said.contains("WARN") && !said.contains("ERROR");
-    println!("{}", if clean { "mdbook built the pages into book/book".to_owned() } else { said });
+    runs::out!("{}", if clean { "mdbook built the pages into book/book".to_owned() } else { said });
     Ok(clean)
 }

@@ -21,13 +21,8 @@ impl PreparedBem3d {
             return self.no_contact();
         }
         if asked <= 0.0 {
-            let name = "mean gap (at 0 every force from that of full contact on would do)".into();
-            return Err(Error::OutOfRange {
-                name,
-                value: 0.0,
-                min: 0.0,
-                max: self.nondimensional.approach(self.mean)?,
-            });
+            let expected = "a number above 0, where every force from that of full contact on would do";
+            return Err(Error::domain("mean gap", 0.0, expected));
         }
         self.begin_count();
         let (limits, side) = (self.limits(), (self.problem.grid().count() as f64).sqrt());

@@ -103,6 +103,30 @@ mod tests {
         approx::assert_relative_eq!(periodic.stiffness_error(&tangent(value)), 0.12, max_relative = 1e-12);
     }
 
+    /// `g = u + z - d` in the units of the surface, whose rms height is not 1; without load the gap is z.
+    #[test]
+    fn fields_are_in_the_units_of_the_surface() {
+        use contact_model::HeightMap;
+        let map =
+            HeightMap::from_fn(9, 1.0, |ix, iy| 0.03 * ((ix * ix) as f64).sin() + 0.02 * (iy as f64).cos());
+        let map = Arc::new(map.unwrap());
+        let mut scene = Scene::new(Surface::Heights(Arc::clone(&map)), 1.0);
+        (scene.outputs.gap, scene.outputs.displacement) = (true, true);
+        let mut contact = Bem3d { tolerance: 1e-9, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+        let mut gaps = |force| {
+            let state = contact.solve(Load::Force(force)).unwrap();
+            let (u, g) = (state.displacement().unwrap().values(), state.gap().unwrap().values());
+            let gap = |(h, u): (&f64, &f64)| u + map.highest() - h - state.approach.unwrap();
+            for (found, expected) in g.iter().zip(map.heights().iter().zip(u).map(gap)) {
+                approx::assert_abs_diff_eq!(*found, expected, epsilon = 1e-12);
+            }
+            u.iter().copied().fold(0.0, f64::max)
+        };
+        let largest = gaps(0.02);
+        assert!(largest > 0.01 && largest < 0.1, "{largest}");
+        approx::assert_abs_diff_eq!(gaps(0.0), 0.0);
+    }
+
     #[test]
     fn a_field_counts_as_work() {
         let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);

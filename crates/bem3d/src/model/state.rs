@@ -5,7 +5,8 @@ use crate::active_set::Solved;
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
 use contact_model::{
-    Certificate, ContactState, Error, Field, Fields, Patches, Result, SolveReport, Status, Stop, Work,
+    Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches, Result,
+    SolveReport, Status, Stop, Work,
 };
 use std::f64::consts::PI;
 
@@ -53,6 +54,7 @@ impl PreparedBem3d {
             .with_stiffness(stiffness)
             .with_area(area)
             .with_patches(self.patches(&solved.contact)?)
+            .with_resolution(self.resolution(&solved)?)
             .with_fields(fields)
             .completed(&self.outputs, self.normalisation.modulus)?;
         if status == Status::Converged {
@@ -102,15 +104,38 @@ impl PreparedBem3d {
         Field::new([grid.columns, grid.rows], self.size, values)
     }
 
+    /// What the cells say about how well they resolve the contact.
+    fn resolution(&self, solved: &Solved) -> Result<ContactResolution> {
+        let (grid, contact) = (self.problem.grid(), &solved.contact);
+        let largest = solved.p.iter().copied().fold(0.0, f64::max);
+        let at_edge =
+            |&(x, y): &(usize, usize)| x == 0 || y == 0 || x + 1 == grid.columns || y + 1 == grid.rows;
+        let edge_cells = if self.is_periodic() { 0 } else { contact.places().filter(at_edge).count() };
+        let largest_share = largest / solved.p.iter().sum::<f64>();
+        let pressure = self.nondimensional.pressure(PI * largest)?;
+        let resolution = ContactResolution::new(pressure, largest_share, edge_cells);
+        if !self.outputs.area {
+            return Ok(resolution);
+        }
+        let (cells, index, boundary) = self.indexed(contact);
+        let edges = surface_gen::boundary_edges(cells, &index, boundary);
+        Ok(resolution.with_boundary(contact.len(), edges, self.nondimensional.area(1.0)?))
+    }
+
+    /// A contact set as indices on its grid.
+    fn indexed(&self, contact: &CellSet) -> ([usize; 2], Vec<u32>, Boundary) {
+        let grid = self.problem.grid();
+        let index = contact.index(grid).map(|i| i as u32).collect();
+        ([grid.columns, grid.rows], index, self.problem.operators.table().boundary())
+    }
+
     /// Connected patches of the contact set, where asked for.
     fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
         if !self.outputs.contact_patches {
             return Ok(None);
         }
-        let boundary = self.problem.operators.table().boundary();
-        let grid = self.problem.grid();
-        let index: Vec<u32> = contact.index(grid).map(|i| i as u32).collect();
-        let sizes = surface_gen::patches([grid.columns, grid.rows], &index, boundary);
+        let (cells, index, boundary) = self.indexed(contact);
+        let sizes = surface_gen::patches(cells, &index, boundary);
         let areas =
             sizes.into_iter().map(|size| self.nondimensional.area(size as f64)).collect::<Result<_>>()?;
         Ok(Some(Patches::new(areas)))

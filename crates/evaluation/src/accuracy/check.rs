@@ -7,7 +7,7 @@ use crate::realisation::{Discretisation, Realisation};
 use crate::run::FRACTAL_DIMENSIONS;
 use crate::sample::Sample;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
-use analysis::{Table, Value};
+use analysis::{Table, Value, binomial_test};
 use contact_model::never;
 use runs::Progress;
 use runs::files;
@@ -25,8 +25,9 @@ const FINER: usize = 4;
 const CELLS: [usize; 5] = [65, 97, 129, 193, 257];
 const FORCES: (f64, f64) = (1e-3, 20.0);
 const TOLERANCES: (f64, f64) = (1e-6, 1e-1);
-/// Shares of true errors that a correct 95 % budget may hold.
-const HONEST: (f64, f64) = (0.90, 0.99);
+/// Share of the true errors that a budget is to hold, and the level of the exact binomial test of it.
+const COVERED: f64 = 0.95;
+const LEVEL: f64 = 0.01;
 /// Most that a budget may be of the median error of cases like it.
 const GENEROUS: f64 = 10.0;
 /// Cases with the nearest budgets whose median error a budget is measured by.
@@ -78,9 +79,13 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Whether the share is that of a correct 95 % budget, 90 to 99 %, and no budget more than ten times the median error.
+    /// Whether the share can be that of a correct 95 % budget (exact binomial test at 1 %), and no budget is more than ten times the median error.
     pub fn holds(&self) -> bool {
-        (HONEST.0..=HONEST.1).contains(&self.inside) && self.widest <= GENEROUS
+        self.p_value() >= LEVEL && self.widest <= GENEROUS
+    }
+
+    fn p_value(&self) -> f64 {
+        binomial_test((self.inside * self.cases as f64).round() as usize, self.cases, COVERED)
     }
 }
 
@@ -88,10 +93,12 @@ impl std::fmt::Display for Coverage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "{} cases: {:.0} % of the true errors inside their budget (90 to 99 wanted), {:.0} % of the algebraic errors inside their \
-             part; the widest budget is {:.1} times the median error of its like (at most {GENEROUS} wanted)",
+            "{} cases: {:.0} % of the true errors inside their budget (95 % wanted; exact binomial test: p = {:.2}, at least {LEVEL} \
+             wanted), {:.0} % of the algebraic errors inside their part; the widest budget is {:.1} times the median error of its like \
+             (at most {GENEROUS} wanted)",
             self.cases,
             100.0 * self.inside,
+            self.p_value(),
             100.0 * self.algebraic_inside,
             self.widest
         )
@@ -302,8 +309,10 @@ mod tests {
         approx::assert_relative_eq!(coverage.inside, 0.95);
         approx::assert_relative_eq!(coverage.widest, 2.0, max_relative = 1e-9);
         assert!(coverage.holds() && coverage.algebraic_inside > 0.99);
-        // Everything inside is no 95 % budget, and twelve times the error is too wide.
-        assert!(!judge(&[made(0.01, 0.12), made(0.01, 0.12)]).holds());
+        // All of few cases inside can be by chance; ten of twenty cannot, and twelve times the error is too wide.
+        assert!(judge(&vec![made(0.01, 0.02); 20]).holds() && !judge(&vec![made(0.01, 0.12); 20]).holds());
+        let half = |i: usize| if i < 10 { made(0.03, 0.02) } else { made(0.01, 0.02) };
+        assert!(!judge(&(0..20).map(half).collect::<Vec<_>>()).holds());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::scenes::loads::Loading;
 use crate::scenes::numerics::{AnyModel, Numerics};
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
-use contact_model::{Cells, HeightMap, Surface};
+use contact_model::{Cells, ContactState, HeightMap, Surface};
 use std::time::{Duration, Instant};
 
 /// Cells a side, and elements, of the solves that the cost is predicted from.
@@ -27,6 +27,8 @@ const APPLICATIONS_EXPONENT: f64 = 0.3;
 /// Read off `peak_memory_bytes` in `data/bench/scaling.csv`.
 const LIGHT_BYTES: f64 = 50.0;
 const FILLED_BYTES: f64 = 150.0;
+/// Memory of drawing a line, bytes per element.
+const ELEMENT_BYTES: f64 = 40.0;
 const BOX_OVER_CONTACT: f64 = 6.0;
 
 /// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
@@ -38,11 +40,12 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let warm = numerics.reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
     let _ = small_solves(scene, &warm, WARM_CELLS, &contact_model::never);
     let requested = scene.request.count();
-    let total = (requested * scene.sampling.surfaces) as f64;
+    let surfaces = if numerics.depends_on_realisation() { scene.sampling.surfaces as f64 } else { 1.0 };
+    let total = requested as f64 * surfaces;
     let begin = Instant::now();
     let stop = || begin.elapsed() > CALIBRATION_TIME;
     let (solved, used) = small_solves(scene, &small, coarse, &stop).unwrap_or_default();
-    let mut cost = Cost { seconds: begin.elapsed().as_secs_f64(), ..solved.cost };
+    let mut cost = solved.cost;
     let count = grid.columns as f64 * grid.rows as f64;
     let per_state = total / (solved.states.max(1)) as f64;
     let (time, applications) = match numerics {
@@ -51,12 +54,17 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
             let ratio = (count / used as f64).sqrt();
             (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
         }
-        Numerics::Mdr1d(m) => (m.elements as f64 / small.size().max(1) as f64, 1.0),
+        // Sorted once, in the preparation.
+        Numerics::Mdr1d(m) => {
+            ((m.elements as f64 / small.size().max(1) as f64).powf(0.5 * TIME_EXPONENT), 1.0)
+        }
         _ => (1.0, 1.0),
     };
-    let surfaces = scene.sampling.surfaces as f64;
-    // A line is sorted once, whatever the loads.
-    cost.seconds *= time * if matches!(numerics, Numerics::Mdr1d(_)) { surfaces } else { per_state };
+    // Each surface is prepared once and begins cold; the loads after the first one begin from the one before.
+    let later =
+        solved.later / solved.states.saturating_sub(1).max(1) as f64 * requested.saturating_sub(1) as f64;
+    cost.seconds =
+        surfaces * (solved.prepare * time.powf(2.0 / TIME_EXPONENT) + (solved.first + later) * time);
     cost.applications *= applications * per_state;
     cost.linear_solves *= per_state;
     cost.fields *= per_state;
@@ -72,12 +80,39 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     cost
 }
 
+/// Memory that a model needs for one surface at least, bytes; at least 1.
+pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let Cells { columns, rows } = cells(scene, numerics);
+    let bytes = match numerics {
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) => LIGHT_BYTES * columns as f64 * rows as f64,
+        _ => ELEMENT_BYTES * numerics.size() as f64,
+    };
+    bytes.max(1.0)
+}
+
 #[derive(Default)]
 struct PilotSolve {
     states: usize,
     /// Largest share of the cells in contact.
     filled: f64,
+    /// Seconds of preparing a surface, of its first load, and of all others.
+    prepare: f64,
+    first: f64,
+    later: f64,
     cost: Cost,
+}
+
+impl PilotSolve {
+    /// Counts a state that took so long.
+    fn count(&mut self, begun: Instant, state: &ContactState, cells: usize) {
+        let seconds = begun.elapsed().as_secs_f64();
+        *(if self.states == 0 { &mut self.first } else { &mut self.later }) += seconds;
+        self.states += 1;
+        let contact = state.report.contact_cells.unwrap_or(0) as f64;
+        self.filled = self.filled.max(contact / cells.max(1) as f64);
+        self.cost.applications += state.report.applications as f64;
+        self.cost.linear_solves += state.report.work.linear_solves as f64;
+    }
 }
 
 /// A few of the loads on a grid of at most `coarse` cells along its longer side; the second number is that of
@@ -97,36 +132,32 @@ fn small_solves(
         physics.surface = Surface::Heights(std::sync::Arc::new(thin));
     }
     let size = grid.and_then(Cells::checked_count).unwrap_or(0);
-    let mut solved = PilotSolve::default();
+    let (mut solved, begun) = (PilotSolve::default(), Instant::now());
     match (numerics.model(), &scene.request) {
         (AnyModel::Contact(model), Loading::Loads(loads)) => {
             let mut contact = model.prepare(&physics, seed)?;
+            solved.prepare = begun.elapsed().as_secs_f64();
             let normalisation = contact.normalisation();
             let count = loads.values.len();
             let used = count.min(CALIBRATION_LOADS);
             for i in 0..used {
                 let requested = loads.values[i * (count - 1) / (used - 1).max(1)];
+                let begun = Instant::now();
                 let Ok(state) =
                     loads.load(requested, &normalisation).and_then(|load| contact.solve_until(load, stop))
                 else {
                     continue;
                 };
-                solved.states += 1;
-                let contact = state.report.contact_cells.unwrap_or(0) as f64;
-                solved.filled = solved.filled.max(contact / size.max(1) as f64);
-                solved.cost.applications += state.report.applications as f64;
-                solved.cost.linear_solves += state.report.work.linear_solves as f64;
+                solved.count(begun, &state, size);
             }
         }
         (AnyModel::History(model), Loading::Path(steps)) => {
             let mut contact = model.prepare(&physics, seed)?;
+            solved.prepare = begun.elapsed().as_secs_f64();
             for step in steps {
+                let begun = Instant::now();
                 let Ok(state) = contact.advance_until(*step, stop) else { break };
-                solved.states += 1;
-                let cells = state.normal.report.contact_cells.unwrap_or(0) as f64;
-                solved.filled = solved.filled.max(cells / size.max(1) as f64);
-                solved.cost.applications += state.normal.report.applications as f64;
-                solved.cost.linear_solves += state.normal.report.work.linear_solves as f64;
+                solved.count(begun, &state.normal, size);
             }
         }
         _ => {}

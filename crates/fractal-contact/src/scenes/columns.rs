@@ -109,6 +109,12 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
     }
     if outputs.area {
         list.push(kind("area", "m^2", "real contact area", |s| normal(s, |n| n.area)));
+        list.push(kind(
+            "area_corrected",
+            "m^2",
+            "area less what cells add at its boundary (Yastrebov et al. 2017)",
+            |s| normal(s, |n| n.resolution.and_then(|r| r.corrected_area)),
+        ));
         list.push(kind("contact_fraction", "1", "A/(Lx Ly), undefined points included", |s| {
             scaled(s, |n, c| n.area.map(|a| c.contact_fraction(a)))
         }));
@@ -132,6 +138,12 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         }));
     }
     list.extend([
+        kind(
+            "largest_pressure",
+            "Pa",
+            "of a cell; grows with smaller cells until they resolve the shortest wave",
+            |s| normal(s, |n| n.resolution.map(|r| r.largest_pressure)),
+        ),
         kind("status", "-", "how the solve ended", |s| s.status.map_or("refused", Status::as_str).into()),
         kind("strategy", "-", "which way the solver took", |s| normal(s, |n| n.report.strategy.clone())),
         kind("contact_cells", "1", "cells or elements in contact; fewer than 10 are the grid's own", |s| {
@@ -158,7 +170,9 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
             normal(s, |n| n.report.certificate.stiffness_error)
         }));
     }
-    list.push(kind("note", "-", "why a model refused a load", |s| s.note.clone().into()));
+    list.push(kind("note", "-", "why a model refused a load, or what to beware of", |s| {
+        s.note.clone().into()
+    }));
     list
 }
 

@@ -82,6 +82,18 @@ impl<'a> Entries<'a> {
         })
     }
 
+    /// The key that one of these was probably meant by, as a mistake; what lacks them is `otherwise`.
+    pub fn misspelt_or(&self, keys: &[&str], otherwise: Diagnostic) -> Diagnostic {
+        let known = self.known.borrow();
+        let near = |name: &str| keys.iter().find(|key| distance(name, key) <= 1 + key.len() / 4);
+        let mut unknown = self.keys().filter(|name| !known.contains(name));
+        let Some((name, key)) = unknown.find_map(|name| Some((name, near(name)?))) else { return otherwise };
+        let unknown = self
+            .entry(name)
+            .map(|entry| entry.diagnostic_at_key(format!("unknown key `{name}` in {}", self.title())));
+        unknown.map_or(otherwise, |unknown| unknown.with_help(format!("did you mean `{key}`?")))
+    }
+
     /// A table, if it is there.
     pub fn table(&self, key: &'static str) -> Read<Option<Entries<'a>>> {
         self.find(key).map(|entry| entry.table()).transpose()

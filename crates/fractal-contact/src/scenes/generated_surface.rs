@@ -6,7 +6,10 @@ use std::f64::consts::PI;
 use std::path::Path;
 use surface_io::{Dimension, Metric, Quantity, Sides, describe, write_map};
 
-/// A self-affine surface to be drawn. LengthOrPair are texts such as `1 mm`, all of them or none with a unit.
+/// Memory of drawing a surface and writing it, bytes per cell.
+const BYTES: f64 = 24.0;
+
+/// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneratedSurface {
     /// Columns.
@@ -69,6 +72,8 @@ impl GeneratedSurface {
         let seed = surface_gen::surface_seed(self.seed, 0);
         let nearly_square = Cells::nearly_square(self.cells, size);
         let cells = self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square });
+        let memory = BYTES * cells.columns as f64 * cells.rows as f64;
+        runs::threads_for_memory(1, memory, "cells", format!("{} x {}", cells.columns, cells.rows))?;
         let map =
             surface_gen::self_affine_map(&surface, cells, seed).map_err(runs::Error::model("the surface"))?;
         write_map(path, &map, metric).map_err(Error::Surface)?;

@@ -3,29 +3,28 @@
 use crate::scenes::error::{Error, Result};
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
-use std::f64::consts::TAU;
 use std::path::Path;
-use surface_io::{Preprocessing, ReadOptions, Scan, Undefined, describe};
+use surface_io::{Preprocessing, ReadOptions, Scan, describe};
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
 /// (anything else).
 ///
-/// `declared` is what the caller says about a surface's file; undefined points are told, not filled.
+/// `declared` is what the caller says about a surface's file, `preprocessing` what is done to its map before it is described.
 ///
 /// # Errors
 /// As [`SceneFile::read`] and [`crate::scenes::check`] for scenes; [`Error::Run`] and [`Error::Surface`] with
 /// what is wrong with the file.
-pub fn info(path: &Path, declared: &ReadOptions) -> Result<String> {
+pub fn info(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     match ending {
         "toml" => Ok(Plan::new(&SceneFile::read(path)?)?.to_string()),
         "csv" if explains_itself(path) => table(path),
-        _ => surface(path, declared),
+        _ => surface(path, declared, preprocessing),
     }
 }
 
 fn explains_itself(path: &Path) -> bool {
-    std::fs::read(path)
+    runs::files::read(path, u64::MAX)
         .is_ok_and(|bytes| bytes.starts_with(b"# ") && bytes.windows(10).any(|w| w == b"\n# column "))
 }
 
@@ -58,35 +57,13 @@ fn table(path: &Path) -> Result<String> {
     Ok(text)
 }
 
-fn surface(path: &Path, declared: &ReadOptions) -> Result<String> {
+fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
     let scan = Scan::read(path, declared).map_err(Error::Surface)?;
     let mut text = format!("{}\n", scan.metadata());
-    let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
-    match scan.map(&keep) {
-        Ok(map) => {
-            let description = describe(&map);
-            text += &format!("\n{description}\n{}", spectrum(&description.spectrum));
-        }
+    match scan.map(preprocessing) {
+        Ok(map) => text += &format!("\n{}\n", describe(&map)),
         // What stands in the way of a map is part of the answer.
         Err(error) => text += &format!("\nno map as it is: {error}\n"),
     }
     Ok(text)
-}
-
-/// A few rings of a spectrum, evenly spaced in the logarithm.
-fn spectrum(rings: &[(f64, f64)]) -> String {
-    const SHOWN: usize = 9;
-    let Some(last) = rings.len().checked_sub(1) else { return String::new() };
-    let mut text = "spectrum           wavelength, C_2D (length^4)\n".to_owned();
-    let mut shown = usize::MAX;
-    for i in 0..SHOWN {
-        let at = ((rings.len() as f64).powf(i as f64 / (SHOWN - 1) as f64) - 1.0).round() as usize;
-        let at = at.min(last);
-        if at != shown {
-            let (q, c) = rings[at];
-            text += &format!("                   {:.4e}, {c:.4e}\n", TAU / q);
-            shown = at;
-        }
-    }
-    text
 }

@@ -93,9 +93,9 @@ pub(crate) fn read_request<'a>(
         (Some((key, _)), Some(path)) => Err(path
             .diagnostic_at_key(format!("`{key}` and `path` are both given in [scene]"))
             .with_help(format!("loads one by one are `{key}`; a history (friction, rheology) is `path`: keep one of them"))),
-        (None, None) => Err(scene
+        (None, None) => Err(scene.misspelt_or(&KEYS, scene
             .diagnostic("nothing is pressed: [scene] has no load")
-            .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history")),
+            .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history"))),
         (Some((key, entry)), None) => Ok((Loading::Loads(read_loads(key, &entry, system, pulls)?), entry)),
         (None, Some(entry)) => Ok((Loading::Path(read_path(&entry, system)?), entry)),
     }

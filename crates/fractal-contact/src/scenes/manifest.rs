@@ -6,7 +6,20 @@ use crate::scenes::outcome::{Options, SceneOutcome};
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
+
+/// Writes what is known before anything is solved, so that an interrupted run owns its files.
+pub(crate) fn write_begun(scene: &SceneFile, options: &Options, files: &BTreeSet<String>) -> Result<PathBuf> {
+    let begun = json!({
+        "project": "fractal-contact",
+        "version": env!("CARGO_PKG_VERSION"),
+        "scene": scene.text,
+        "complete": false,
+        "files": files,
+    });
+    Ok(runs::write_manifest(&options.out, &begun)?)
+}
 
 /// Writes it.
 pub(crate) fn write(
@@ -52,11 +65,14 @@ pub(crate) fn write(
         "surfaces": scene.sampling.surfaces,
         "effects": effects,
         "outputs": outputs,
+        "map": plan.prepared.as_ref().map(map),
         "models": models,
         "cite": cite,
-        "complete": !outcome.stopped,
+        "complete": outcome.not_attempted() == 0,
+        "states_requested": outcome.requested,
         "states": outcome.states,
         "failed": outcome.failed,
+        "kept_from_earlier_runs": outcome.kept,
         "notes": outcome.notes,
         "files": runs::file_names(&outcome.files),
         "threads": options.threads,
@@ -65,6 +81,23 @@ pub(crate) fn write(
         "machine": runs::machine(),
     });
     Ok(runs::write_manifest(&options.out, &whole)?)
+}
+
+/// The map as it was solved, in the units of the results.
+fn map(map: &surface_io::Description) -> Value {
+    json!({
+        "columns": map.cells.columns,
+        "rows": map.cells.rows,
+        "size": [map.size.x, map.size.y],
+        "undefined": map.undefined,
+        "minimum": map.range[0],
+        "maximum": map.range[1],
+        "rms_height": map.rms_height,
+        "rms_slope": map.rms_slope,
+        "hurst": map.hurst.ok(),
+        "fitted_wavenumbers": map.fitted,
+        "spectrum": map.spectrum,
+    })
 }
 
 fn cost(cost: &Cost) -> Value {

@@ -8,15 +8,17 @@ use crate::scenes::outputs::FieldFormat;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
 use crate::scenes::scene_surface::SceneSurface;
+use crate::scenes::warnings::Warning;
 use analysis::Value;
 use contact_model::{Cells, ContactState, Field, Fields, Load, Scene, Step, Stop, Surface};
 use runs::fnv1a_128;
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::fmt;
+use std::path::Path;
 use std::time::Instant;
 
 /// Number of the format of stored units; it changes with anything that changes a row.
-pub(crate) const FORMAT: u32 = 3;
+pub(crate) const FORMAT: u32 = 4;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,19 +32,88 @@ pub(crate) struct ModelOnSurface {
 /// What it gave.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ModelResult {
+    /// Of all runs that had a part in it.
     pub seconds: f64,
-    /// One row per state.
-    pub rows: Vec<Vec<Value>>,
-    /// Areas of the connected contacts, by number of the state.
-    pub patches: Vec<(usize, Vec<f64>)>,
-    /// Files of fields, relative to the directory of the results.
-    pub files: Vec<PathBuf>,
-    /// Bytes of these files.
+    /// States in the order of the loads.
+    pub states: Vec<StateResult>,
+    /// Whether nothing is left to be solved.
+    pub complete: bool,
+    /// How many states an earlier run had kept.
+    pub kept: usize,
+}
+
+/// One state as it is kept.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct StateResult {
+    /// Number of the load or step.
+    pub index: usize,
+    /// Whether it was refused or missed its tolerance.
+    pub failed: bool,
+    /// The row of the table.
+    pub row: Vec<Value>,
+    /// Areas of the connected contacts.
+    pub patches: Vec<f64>,
+    /// Files of fields.
+    pub files: Vec<StoredFile>,
+}
+
+/// A file that belongs to a state.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct StoredFile {
+    /// Relative to the directory of the results.
+    pub name: String,
     pub bytes: u64,
-    /// Loads that were stopped short of their tolerance or refused.
-    pub failed: usize,
-    /// Whether all loads were answered.
-    pub whole: bool,
+    /// [`fnv1a_128`] of its bytes.
+    pub digest: u128,
+}
+
+impl StoredFile {
+    /// Of a file as it is.
+    fn of(out: &Path, name: String) -> Result<Self> {
+        let path = out.join(&name);
+        let content = std::fs::read(&path).map_err(runs::Error::file("read", &path))?;
+        Ok(Self { name, bytes: content.len() as u64, digest: fnv1a_128(&content) })
+    }
+
+    /// Whether the file is still what it was.
+    fn is_whole(&self, out: &Path) -> bool {
+        Self::of(out, self.name.clone()).is_ok_and(|found| found == *self)
+    }
+}
+
+impl StateResult {
+    /// Whether all its files are still what they were.
+    pub fn is_whole(&self, out: &Path) -> bool {
+        self.files.iter().all(|file| file.is_whole(out))
+    }
+}
+
+/// What the name of a field's file says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FieldFile<'a> {
+    pub field: &'a str,
+    pub model: &'a str,
+    pub surface: usize,
+    pub state: usize,
+    pub extension: &'a str,
+}
+
+impl fmt::Display for FieldFile<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}-{}-{}-{:03}.{}", self.field, self.model, self.surface, self.state, self.extension)
+    }
+}
+
+/// Reads the name of a field's file; `None` for other names.
+pub(crate) fn field_of_file(name: &str) -> Option<FieldFile<'_>> {
+    let (field, rest) = name.split_once('-')?;
+    let (rest, extension) = rest.rsplit_once('.')?;
+    let (rest, state) = rest.rsplit_once('-')?;
+    let (model, surface) = rest.rsplit_once('-')?;
+    let file =
+        FieldFile { field, model, surface: surface.parse().ok()?, state: state.parse().ok()?, extension };
+    (["pressure", "displacement", "gap", "heights"].contains(&field) && file.to_string() == name)
+        .then_some(file)
 }
 
 impl ModelOnSurface {
@@ -59,10 +130,10 @@ impl ModelOnSurface {
             }
             other => format!("{other:?}"),
         };
-        let SceneFile { modulus, pair, effects, request, requested, system, .. } = scene;
+        let SceneFile { modulus, hardness, pair, effects, request, requested, system, .. } = scene;
         format!(
-            "format {FORMAT} {}\nversion {}\nmodel {:?}\nrelief {surface}\nmodulus {modulus:?}\npair {pair:?}\neffects {effects:?}\n\
-             request {request:?}\noutputs {requested:?} {system:?}\nsurface {}\nseed {}\n",
+            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {modulus:?}\nhardness {hardness:?}\npair {pair:?}\neffects {effects:?}\n\
+             request {request:?}\noutputs {requested:?} {system:?}\nnumber {}\nseed {}\n",
             bem3d::FORMAT,
             env!("CARGO_PKG_VERSION"),
             self.numerics(scene),
@@ -86,26 +157,38 @@ impl ModelOnSurface {
         }
     }
 
-    /// Answers all loads in their order. A load that a model refuses has its row with the reason, and the
-    /// others go on.
+    /// Answers the loads that `result` lacks, in their order, and gives the result to `keep` after each. A load that a model refuses has its
+    /// row with the reason, and the others go on. A path begins anew.
     ///
     /// # Errors
     /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is no
-    /// error: the result is then not whole.
-    pub fn solve(&self, scene: &SceneFile, out: &Path, stop: Stop<'_>) -> Result<ModelResult> {
+    /// error: the result is then not complete.
+    pub fn solve(
+        &self,
+        scene: &SceneFile,
+        out: &Path,
+        mut result: ModelResult,
+        keep: &mut dyn FnMut(&ModelResult) -> Result<()>,
+        stop: Stop<'_>,
+    ) -> Result<ModelResult> {
         let start = Instant::now();
         let numerics = self.numerics(scene);
         let what = || format!("{}, surface {}", numerics.name(), self.surface);
         let seed = scene.seed(self.surface);
         let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
-        let mut result = ModelResult { whole: true, ..ModelResult::default() };
+        let before = result.seconds;
         match (numerics.model(), &scene.request) {
             (AnyModel::Contact(model), Loading::Loads(_)) => {
                 let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
-                self.loads(scene, contact.as_mut(), out, stop, &mut result)?;
+                let mut keep = |result: &mut ModelResult| {
+                    result.seconds = before + start.elapsed().as_secs_f64();
+                    keep(result)
+                };
+                self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
             }
             (AnyModel::History(model), Loading::Path(steps)) => {
                 let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
+                result = ModelResult::default();
                 self.path(scene, contact.as_mut(), steps, stop, &mut result);
             }
             // Reading a scene refuses these; one built in code may have them.
@@ -120,7 +203,7 @@ impl ModelOnSurface {
                 return Err(runs::Error::model(what())(refused).into());
             }
         }
-        result.seconds = start.elapsed().as_secs_f64();
+        result.seconds = before + start.elapsed().as_secs_f64();
         Ok(result)
     }
 
@@ -131,11 +214,15 @@ impl ModelOnSurface {
         out: &Path,
         stop: Stop<'_>,
         result: &mut ModelResult,
+        keep: &mut dyn FnMut(&mut ModelResult) -> Result<()>,
     ) -> Result<()> {
         let Loading::Loads(requests) = &scene.request else { return Ok(()) };
         let normalisation = contact.normalisation();
+        let missing: Vec<usize> =
+            (0..requests.values.len()).filter(|&i| result.states.iter().all(|s| s.index != i)).collect();
         let mut written = Ok(());
-        let mut row = |index: usize, found: contact_model::Result<ContactState>| {
+        let mut answer = |place: usize, found: contact_model::Result<ContactState>| {
+            let index = missing[place];
             let mut state = State {
                 model: self.numerics(scene).name(),
                 surface: self.surface,
@@ -144,34 +231,41 @@ impl ModelOnSurface {
                 normalisation: Some(normalisation),
                 ..State::default()
             };
+            let mut kept = StateResult { index, ..StateResult::default() };
             match found {
                 Ok(mut found) => {
                     state.status = Some(found.report.status);
-                    written = self.keep(scene, &mut found, index, out, result);
+                    state.note = Warning::note(&Warning::of(scene, &found));
+                    written = self.write_fields(scene, &mut found, out, &mut kept);
                     state.normal = Some(found);
                 }
                 Err(contact_model::Error::NotConverged { best }) => {
-                    result.failed += 1;
+                    kept.failed = true;
                     state.status = Some(best.report.status);
                     state.normal = Some(best.with_fields(None).with_patches(None));
                 }
                 Err(other) => {
-                    result.failed += 1;
+                    kept.failed = true;
                     state.note = Some(other.to_string());
                 }
             }
-            result.rows.push(columns::row(scene, &state));
+            if written.is_ok() {
+                kept.row = columns::row(scene, &state);
+                let place = result.states.partition_point(|s| s.index < index);
+                result.states.insert(place, kept);
+                written = keep(result);
+            }
             // A file that cannot be written ends the sweep; its error is the one that is returned.
             if written.is_ok() { Ok(()) } else { Err(contact_model::Error::Stopped { best: None }) }
         };
-        let load = |&value: &f64| requests.load(value, &normalisation);
-        let swept = match requests.values.iter().map(load).collect::<contact_model::Result<Vec<Load>>>() {
-            Ok(loads) => contact.sweep(&loads, stop, &mut row),
+        let load = |&index: &usize| requests.load(requests.values[index], &normalisation);
+        let swept = match missing.iter().map(load).collect::<contact_model::Result<Vec<Load>>>() {
+            Ok(loads) => contact.sweep(&loads, stop, &mut answer),
             // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
-            Err(error) => (0..requests.values.len()).try_for_each(|i| row(i, Err(error.clone()))),
+            Err(error) => (0..missing.len()).try_for_each(|i| answer(i, Err(error.clone()))),
         };
         written?;
-        result.whole = swept.is_ok();
+        result.complete = swept.is_ok();
         Ok(())
     }
 
@@ -195,64 +289,76 @@ impl ModelOnSurface {
             let refused = match contact.advance_until(*step, stop) {
                 Ok(found) => {
                     state.status = Some(found.normal.report.status);
+                    state.note = Warning::note(&Warning::of(scene, &found.normal));
                     state.normal = Some(found.normal.clone());
                     state.history = Some(found);
                     false
                 }
-                Err(contact_model::Error::Stopped { .. }) => {
-                    result.whole = false;
-                    return;
-                }
+                Err(contact_model::Error::Stopped { .. }) => return,
                 Err(error) => {
                     state.note = Some(error.to_string());
                     true
                 }
             };
-            result.rows.push(columns::row(scene, &state));
+            let row = columns::row(scene, &state);
+            result.states.push(StateResult { index, failed: refused, row, ..StateResult::default() });
             if refused {
                 // What comes after a step that failed would be another path.
-                result.failed += steps.len() - index;
-                return;
+                break;
             }
         }
+        result.complete = true;
     }
 
     /// Writes the fields that are asked for and lets go of them.
-    fn keep(
+    fn write_fields(
         &self,
         scene: &SceneFile,
         found: &mut ContactState,
-        index: usize,
         out: &Path,
-        result: &mut ModelResult,
+        kept: &mut StateResult,
     ) -> Result<()> {
         if let Some(patches) = found.patches.as_ref() {
-            result.patches.push((index, patches.areas().to_vec()));
+            kept.patches = patches.areas().to_vec();
         }
-        let Some(fields) = found.fields.take() else { return Ok(()) };
-        let Fields { pressure, displacement, gap, .. } = &fields;
-        let requested = &scene.requested;
-        for (name, field, formats) in [
-            ("pressure", pressure, &requested.pressure),
-            ("displacement", displacement, &requested.displacement),
-            ("gap", gap, &requested.gap),
-        ] {
+        let Fields { pressure, displacement, gap, .. } = found.fields.take().unwrap_or_default();
+        let first = kept.index == 0 && !scene.requested.heights.is_empty();
+        let heights = if first { self.heights(scene)? } else { None };
+        let fields = [pressure, displacement, gap, heights];
+        for ((name, formats), field) in scene.requested.fields().into_iter().zip(&fields) {
             let Some(field) = field else { continue };
             let values = &on_defined_points(name, field, scene);
-            for format in formats {
-                let model = self.numerics(scene).name();
-                let file = format!("{name}-{model}-{}-{index:03}.{}", self.surface, format.extension());
+            for &format in formats {
+                let (model, extension) = (self.numerics(scene).name(), format.extension());
+                let (surface, state) = (self.surface, kept.index);
+                let file = FieldFile { field: name, model, surface, state, extension }.to_string();
                 let path = out.join(&file);
                 match format {
                     FieldFormat::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
                     FieldFormat::Png => plots::write_grey(&path, field.cells(), field.size(), values)?,
                     FieldFormat::Vti => write_vti(&path, name, scene, field.cells(), values)?,
                 }
-                result.bytes += std::fs::metadata(&path).map_err(runs::Error::file("read", &path))?.len();
-                result.files.push(file.into());
+                kept.files.push(StoredFile::of(out, file)?);
             }
         }
         Ok(())
+    }
+
+    /// The heights that boundary elements solve, NaN where they are undefined; `None` for a model without cells.
+    fn heights(&self, scene: &SceneFile) -> Result<Option<Field>> {
+        let numerics = self.numerics(scene);
+        let Some(elements) = numerics.boundary_elements() else { return Ok(None) };
+        let seed = scene.seed(self.surface);
+        let draw = || {
+            let map = match scene.surface.for_model(numerics, seed)? {
+                Surface::Heights(map) => map,
+                surface => surface_gen::height_map(&surface, elements.grid(surface.size()), seed)?,
+            };
+            let known = |h: &f64| if h.is_finite() { *h } else { f64::NAN };
+            Field::new(map.cells(), map.size(), map.heights().iter().map(known).collect())
+        };
+        let what = || format!("heights of surface {}", self.surface);
+        Ok(Some(draw().map_err(|error| runs::Error::model(what())(error))?))
     }
 
     /// Errors where this model cannot answer the scene, found out on a small grid; what that grid refuses for
@@ -307,6 +413,23 @@ mod tests {
     use contact_model::{HeightMap, SolveReport};
     use std::sync::Arc;
 
+    #[test]
+    fn names_of_files_say_what_they_hold() {
+        let file = FieldFile { field: "gap", model: "bem3d", surface: 3, state: 1234, extension: "npy" };
+        assert_eq!(file.to_string(), "gap-bem3d-3-1234.npy");
+        assert_eq!(field_of_file("gap-bem3d-3-1234.npy"), Some(file));
+        for other in [
+            "gap-bem3d-3-12.npy",
+            "height-bem3d-3-012.npy",
+            "gap-bem3d-012.npy",
+            "gap.npy",
+            "results.csv",
+            "",
+        ] {
+            assert_eq!(field_of_file(other), None, "{other}");
+        }
+    }
+
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
     #[test]
     fn fields_are_arrays_of_rows_and_columns() {
@@ -324,10 +447,10 @@ mod tests {
         (fields.pressure, fields.gap) = (field(&pressure), field(&gap));
         let mut state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
-        let mut result = ModelResult::default();
+        let mut kept = StateResult::default();
         let unit = ModelOnSurface { model: 0, surface: 0 };
-        unit.keep(&scene, &mut state, 0, dir.path(), &mut result).unwrap();
-        assert_eq!((result.files.len(), state.fields), (6, None));
+        unit.write_fields(&scene, &mut state, dir.path(), &mut kept).unwrap();
+        assert_eq!((kept.files.len(), state.fields), (6, None));
         let scan = |name: &str| {
             surface_io::Scan::read(&dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };

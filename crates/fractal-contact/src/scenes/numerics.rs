@@ -137,6 +137,11 @@ impl Numerics {
         matches!(self, Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_))
     }
 
+    /// Whether it answers for one surface rather than for the spectrum that it was drawn from: a theory gives the same for every seed.
+    pub fn depends_on_realisation(&self) -> bool {
+        self.size() > 0
+    }
+
     /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version
     /// has to be compared.
     pub fn is_stored(&self) -> bool {

@@ -37,11 +37,19 @@ pub struct RequestedOutputs {
     pub displacement: Vec<FieldFormat>,
     /// Formats of the gap field.
     pub gap: Vec<FieldFormat>,
+    /// Formats of the heights as they are solved: after crop, fill and detrend, or as drawn.
+    pub heights: Vec<FieldFormat>,
     /// Whether curves are drawn.
     pub curves: bool,
 }
 
 impl RequestedOutputs {
+    /// The fields with their formats; the heights belong to the first state.
+    pub fn fields(&self) -> [(&'static str, &[FieldFormat]); 4] {
+        let Self { pressure, displacement, gap, heights, .. } = self;
+        [("pressure", pressure), ("displacement", displacement), ("gap", gap), ("heights", heights)]
+    }
+
     /// Every output with whether it is asked for.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
         let Outputs { stiffness, area, mean_gap, pressure, displacement, gap, contact_patches, conductance } =
@@ -55,6 +63,7 @@ impl RequestedOutputs {
             ("pressure", pressure),
             ("displacement", displacement),
             ("gap", gap),
+            ("heights", !self.heights.is_empty()),
             ("curves", self.curves),
         ]
     }
@@ -75,6 +84,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     requested.pressure = formats("pressure")?;
     requested.displacement = formats("displacement")?;
     requested.gap = formats("gap")?;
+    requested.heights = formats("heights")?;
     if let Some(entry) = table.find("conductance") {
         requested.outputs.conductance = read_conductance(&entry, system)?;
     }

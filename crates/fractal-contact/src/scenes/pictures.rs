@@ -1,5 +1,6 @@
 //! Curves drawn from the rows of the table.
 
+use crate::scenes::ensemble::Mean;
 use crate::scenes::error::Result;
 use crate::scenes::scene_file::SceneFile;
 use analysis::{Table, Value};
@@ -8,25 +9,15 @@ use std::path::{Path, PathBuf};
 
 /// What is drawn over what: of loads, and of paths.
 const OVER_FORCE: [&str; 5] = ["stiffness", "area", "conductance", "approach", "mean_gap"];
-const OVER_TIME: [&str; 4] = ["force", "approach", "tangential_force", "dissipated"];
+const OVER_TIME: [&str; 2] = ["force", "approach"];
 
 /// `curve-Y.svg` and `.png` for every column that the scene asked for.
-pub(crate) fn curves(scene: &SceneFile, table: &Table, out: &Path) -> Result<Vec<PathBuf>> {
+pub(crate) fn curves(scene: &SceneFile, table: &Table, means: &[Mean], out: &Path) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     let has = |name: &str| table.columns().iter().any(|c| c.name == name);
-    let mut pairs: Vec<(&str, &str)> = Vec::new();
-    if scene.is_history() {
-        if has("tangential_force") {
-            pairs.push(("tangential_displacement", "tangential_force"));
-        } else {
-            pairs.extend(OVER_TIME.iter().map(|y| ("time", *y)));
-        }
-    } else {
-        pairs.extend(OVER_FORCE.iter().map(|y| ("force", *y)));
-    }
-    for (x, y) in pairs {
+    for (x, y) in pairs(scene) {
         if has(x) && has(y) {
-            let chart = chart(scene, table, x, y);
+            let chart = chart(scene, table, means, x, y);
             if chart.curves.iter().any(|c| varies(&c.points)) {
                 files.extend(chart.save(out, &format!("curve-{y}"))?);
             }
@@ -35,13 +26,29 @@ pub(crate) fn curves(scene: &SceneFile, table: &Table, out: &Path) -> Result<Vec
     Ok(files)
 }
 
+/// The names of all files that [`curves`] may write.
+pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
+    pairs(scene).iter().flat_map(|(_, y)| ["svg", "png"].map(|end| format!("curve-{y}.{end}"))).collect()
+}
+
+/// What is drawn over what, where the table has it.
+fn pairs(scene: &SceneFile) -> Vec<(&'static str, &'static str)> {
+    if !scene.is_history() {
+        return OVER_FORCE.map(|y| ("force", y)).to_vec();
+    }
+    if scene.effects.friction == contact_model::Friction::Off {
+        return OVER_TIME.map(|y| ("time", y)).to_vec();
+    }
+    vec![("tangential_displacement", "tangential_force")]
+}
+
 /// A constant, such as a force that is held, is no picture.
 fn varies(points: &[(f64, f64)]) -> bool {
     let Some(first) = points.first() else { return false };
     points.len() == 1 || points.iter().any(|p| p.1.total_cmp(&first.1).is_ne())
 }
 
-fn chart(scene: &SceneFile, table: &Table, x: &str, y: &str) -> Chart {
+fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> Chart {
     let place = |name: &str| table.columns().iter().position(|c| c.name == name);
     let label = |name: &str| {
         let unit = place(name).map_or("1", |i| table.columns()[i].unit);
@@ -57,28 +64,30 @@ fn chart(scene: &SceneFile, table: &Table, x: &str, y: &str) -> Chart {
         Some(Value::Number(v)) => Some(*v),
         _ => None,
     };
-    let curves: Vec<Curve> = scene
-        .models
-        .iter()
-        .map(|m| Curve {
-            label: model_name(m.name()).to_owned(),
-            points: table
-                .rows()
-                .iter()
-                .filter(|row| matches!(row.first(), Some(Value::Text(name)) if name == m.name()))
-                .filter_map(|row| Some((number(row, x)?, number(row, y)?)))
-                .filter(|(x, y)| scene.is_history() || (*x != 0.0 && *y != 0.0))
-                .collect(),
-            scattered: scene.sampling.surfaces > 1,
-        })
-        .filter(|curve: &Curve| !curve.points.is_empty())
-        .collect();
+    let shown = |(x, y): &(f64, f64)| scene.is_history() || (*x != 0.0 && *y != 0.0);
+    let curve = |model: &'static str| {
+        let label = model_name(model).to_owned();
+        let of = || means.iter().filter(move |mean| mean.model == model && mean.surfaces > 0);
+        if means.is_empty() {
+            let rows = table.rows().iter().filter(|row| row.first() == Some(&Value::from(model)));
+            let points = rows.filter_map(|row| Some((number(row, x)?, number(row, y)?)));
+            return Curve { label, points: points.filter(shown).collect(), band: Vec::new() };
+        }
+        let points = of().filter_map(|mean| Some((mean.of(x)?.0, mean.of(y)?.0)));
+        let band = of().filter_map(|mean| {
+            let ((x, _), (y, error)) = (mean.of(x)?, mean.of(y)?);
+            Some((x, y - 2.0 * error?, y + 2.0 * error?))
+        });
+        Curve { label, points: points.filter(shown).collect(), band: band.collect() }
+    };
+    let curves: Vec<Curve> =
+        scene.models.iter().map(|m| curve(m.name())).filter(|curve| !curve.points.is_empty()).collect();
     let name = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let mut title = format!("{} over {}", quantity(y).0, quantity(x).0);
     title[..1].make_ascii_uppercase();
     let surfaces = match scene.sampling.surfaces {
         1 => String::new(),
-        n => format!(", {n} surfaces"),
+        n => format!(", means of {n} surfaces, shaded: ± 2 standard errors"),
     };
     Chart {
         title,

@@ -9,7 +9,8 @@ use crate::scenes::human_readable::{memory, number, time};
 use crate::scenes::model_on_surface::{ModelOnSurface, probe};
 use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::{SceneFile, cells};
-use contact_model::Cells;
+use crate::scenes::scene_surface::SceneSurface;
+use contact_model::{Cells, Surface};
 use std::fmt;
 
 /// What one model will do.
@@ -34,6 +35,9 @@ pub struct Plan {
     pub surface: String,
     /// Metadata of its file.
     pub metadata: Option<String>,
+    /// The map of a file as it is solved: after crop, fill and detrend; `None` for other surfaces and for maps of more than 4096 x 4096
+    /// cells.
+    pub prepared: Option<surface_io::Description>,
     /// Remarks on the scene.
     pub notes: Vec<Diagnostic>,
     /// E*.
@@ -111,6 +115,7 @@ impl Plan {
             shows: scene.comment(),
             surface: scene.surface.describe(),
             metadata: scene.metadata.clone(),
+            prepared: prepared(scene),
             notes: scene.notes.clone(),
             modulus: scene.modulus,
             units: match scene.system {
@@ -151,6 +156,18 @@ impl Plan {
                 field_bytes: sum.field_bytes + cost.field_bytes,
             })
         })
+    }
+}
+
+/// Its spectrum takes seconds and three times its memory on the largest map.
+const LARGEST_DESCRIBED: usize = 1 << 24;
+
+fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
+    match &scene.surface {
+        SceneSurface::Plain(Surface::Heights(map)) if map.heights().len() <= LARGEST_DESCRIBED => {
+            Some(surface_io::describe(map))
+        }
+        _ => None,
     }
 }
 
@@ -200,6 +217,12 @@ impl fmt::Display for Plan {
         writeln!(f, "surface   {}", self.surface)?;
         for line in self.metadata.iter().flat_map(|u| u.lines()) {
             writeln!(f, "          {line}")?;
+        }
+        if let Some(description) = &self.prepared {
+            writeln!(f, "as solved")?;
+            for line in description.to_string().lines() {
+                writeln!(f, "          {line}")?;
+            }
         }
         writeln!(f, "modulus   {} (E*)", number(self.modulus))?;
         writeln!(f, "units     {}", self.units)?;

@@ -1,15 +1,20 @@
 //! From a scene to its files.
 
+use crate::scenes::calibration;
 use crate::scenes::columns;
 use crate::scenes::cost::Cost;
+use crate::scenes::ensemble;
 use crate::scenes::error::Result;
 use crate::scenes::manifest;
-use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult};
+use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult, StateResult};
 use crate::scenes::outcome::{Options, SceneOutcome};
 use crate::scenes::pictures;
-use crate::scenes::plan::Plan;
+use crate::scenes::plan::{ModelPlan, Plan};
+use crate::scenes::result_folder::ResultFolder;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_job::SceneJob;
+use crate::scenes::summary;
+use crate::scenes::warnings::Warning;
 use analysis::{Column, Table, Value};
 use runs::{Header, Progress, Store, run_stored, write_csv};
 use std::time::Instant;
@@ -19,12 +24,17 @@ pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
 ///
-/// `results.csv` and `manifest.json` always; `patches.csv`, fields and curves where the scene asks for them.
-/// Finished models and surfaces are kept in `OUT/.units` and reused by the next run of the same scene. Where
+/// `results.csv` and `manifest.json` always, `ensemble.csv` (means over the surfaces) where there are several; `patches.csv`, fields and
+/// curves where the scene asks for them. A theory, which is the same for every seed, has one surface.
+/// Finished states are kept in `OUT/.units` and reused by the next run of the same scene: with a state that is
+/// solved again, the ones after it differ from those of an uninterrupted run within the tolerance, no more. Where
 /// `stop` says so, the states so far are written and [`SceneOutcome::stopped`] is true.
 ///
+/// The directory belongs to one run: what an earlier run wrote there and this one does not is removed.
+///
 /// # Errors
-/// As [`crate::scenes::check`]; [`crate::scenes::Error::Run`] for what only shows at full size; files that cannot be written.
+/// As [`crate::scenes::check`]; [`crate::scenes::Error::Run`] for what only shows at full size, for a directory that another process
+/// is using or that holds files of somebody else under the names of results; files that cannot be written.
 pub fn run(
     scene: &SceneFile,
     plan: &Plan,
@@ -34,52 +44,71 @@ pub fn run(
 ) -> Result<SceneOutcome> {
     let start = Instant::now();
     runs::reset_peak_memory();
+    let threads = threads(scene, options.threads)?;
     runs::files::create_directory(&options.out)?;
-    runs::files::clean(&options.out)?;
     let store = Store::open(&options.out, options.fresh)?;
+    runs::files::clean(&options.out)?;
+    let folder = ResultFolder::claim(&options.out, scene)?;
+    manifest::write_begun(scene, options, &folder.files(scene))?;
     let columns = columns::columns(scene);
+    let surfaces = |model: usize| {
+        if scene.models[model].depends_on_realisation() { scene.sampling.surfaces } else { 1 }
+    };
     let units: Vec<ModelOnSurface> = (0..scene.models.len())
-        .flat_map(|model| (0..scene.sampling.surfaces).map(move |surface| ModelOnSurface { model, surface }))
+        .flat_map(|model| (0..surfaces(model)).map(move |surface| ModelOnSurface { model, surface }))
         .collect();
     let jobs: Vec<SceneJob<'_>> = (units.iter())
         .map(|&unit| SceneJob { unit, scene, out: &options.out, columns: columns.len() })
         .collect();
-    let done = run_stored(&title(scene), &jobs, &store, options.threads, progress, stop)?;
+    let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop)?;
     let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
-    let mut outcome = SceneOutcome { stopped: false, ..SceneOutcome::default() };
+    let mut outcome =
+        SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
     let mut table = Table::new(title(scene), columns);
     let mut patches = patches_table(scene);
     let note = table.columns().iter().position(|c| c.name == "note");
+    let mut warned = [0; Warning::ALL.len()];
     for (unit, result) in units.iter().zip(&results) {
         let Some(result) = result else {
             outcome.stopped = true;
             continue;
         };
-        outcome.stopped |= !result.whole;
-        outcome.failed += result.failed;
-        for row in &result.rows {
-            if let Some(Value::Text(text)) = note.and_then(|i| row.get(i))
-                && !outcome.notes.contains(text)
-            {
-                outcome.notes.push(text.clone());
+        outcome.stopped |= !result.complete;
+        outcome.kept += result.kept;
+        for state in &result.states {
+            outcome.failed += usize::from(state.failed);
+            if let Some(Value::Text(text)) = note.and_then(|i| state.row.get(i)) {
+                let warnings: Vec<Warning> = Warning::in_note(text).collect();
+                if warnings.is_empty() && !outcome.notes.contains(text) {
+                    outcome.notes.push(text.clone());
+                }
+                for warning in warnings {
+                    warned[warning as usize] += 1;
+                }
             }
-            table.push(row.clone()).map_err(runs::Error::model("a row"))?;
-        }
-        for (state, areas) in &result.patches {
-            for area in areas {
+            table.push(state.row.clone()).map_err(runs::Error::model("a row"))?;
+            for area in &state.patches {
                 let row = vec![
                     unit.numerics(scene).name().into(),
                     unit.surface.into(),
-                    (*state).into(),
+                    state.index.into(),
                     (*area).into(),
                 ];
                 patches.push(row).map_err(runs::Error::model("a patch"))?;
             }
+            outcome.files.extend(state.files.iter().map(|file| options.out.join(&file.name)));
         }
-        outcome.files.extend(result.files.iter().map(|f| options.out.join(f)));
     }
     outcome.states = table.rows().len();
-    let header = header(scene);
+    for (warning, count) in Warning::ALL.into_iter().zip(warned).filter(|(_, count)| *count > 0) {
+        let states = outcome.states;
+        outcome.notes.push(format!(
+            "{} ({count} of {states} states): {}",
+            warning.as_str(),
+            warning.remedy()
+        ));
+    }
+    let header = header(scene, plan);
     let path = options.out.join("results.csv");
     write_csv(&path, &table, &header)?;
     outcome.files.insert(0, path);
@@ -88,14 +117,37 @@ pub fn run(
         write_csv(&path, &patches, &header)?;
         outcome.files.push(path);
     }
-    if scene.requested.curves {
-        outcome.files.extend(pictures::curves(scene, &table, &options.out)?);
+    let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &table) } else { Vec::new() };
+    if !means.is_empty() {
+        let path = options.out.join("ensemble.csv");
+        let title = format!("{}: means over surfaces", title(scene));
+        let table = ensemble::table(title, table.columns(), &means)
+            .map_err(runs::Error::model("means over surfaces"))?;
+        write_csv(&path, &table, &header)?;
+        outcome.files.push(path);
     }
+    if scene.requested.curves {
+        outcome.files.extend(pictures::curves(scene, &table, &means, &options.out)?);
+    }
+    outcome.summary = summary::summary(scene, &table, &means);
     outcome.actual = actual(scene, &units, &results, &table);
     outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
-    outcome.files.push(manifest::write(scene, plan, options, &outcome)?);
+    outcome.files.push(options.out.join("manifest.json"));
+    folder.remove_others(&outcome.files)?;
+    manifest::write(scene, plan, options, &outcome)?;
     Ok(outcome)
+}
+
+/// As many threads as there is memory for.
+fn threads(scene: &SceneFile, most: usize) -> Result<usize> {
+    let mut threads = most;
+    for numerics in &scene.models {
+        let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
+        let memory = calibration::least_memory(scene, numerics);
+        threads = runs::threads_for_memory(threads, memory, name, numerics.size())?;
+    }
+    Ok(threads)
 }
 
 /// What the tables are called.
@@ -104,7 +156,7 @@ pub(crate) fn title(scene: &SceneFile) -> String {
     format!("{name}: {}", scene.surface.describe())
 }
 
-fn header(scene: &SceneFile) -> Header {
+fn header(scene: &SceneFile, plan: &Plan) -> Header {
     let file =
         scene.path.file_name().map_or_else(|| "scene.toml".into(), |n| n.to_string_lossy().into_owned());
     let mut header = Header { command: format!("fractal-contact run {file}"), ..Header::default() };
@@ -121,8 +173,8 @@ fn header(scene: &SceneFile) -> Header {
     let size = scene.surface.size();
     header =
         header.with_note(format!("modulus: {:?} (E*); size: {:?} x {:?}", scene.modulus, size.x, size.y));
-    for numerics in &scene.models {
-        header = header.with_note(format!("model: {numerics:?}"));
+    for ModelPlan { name, grid, accuracy, .. } in &plan.models {
+        header = header.with_note(format!("model {name}: grid: {grid}; {accuracy}"));
     }
     for line in crate::scenes::effects::effect_lines(&scene.effects) {
         header = header.with_note(format!(
@@ -164,8 +216,8 @@ fn actual(
     for (unit, result) in units.iter().zip(results) {
         let (Some(result), Some((_, cost, bytes))) = (result, list.get_mut(unit.model)) else { continue };
         cost.seconds += result.seconds;
-        *bytes += result.bytes;
-        for row in &result.rows {
+        for StateResult { row, files, .. } in &result.states {
+            *bytes += files.iter().map(|file| file.bytes).sum::<u64>();
             let count = |place: Option<usize>| match place.and_then(|i| row.get(i)) {
                 Some(Value::Count(n)) => *n as f64,
                 _ => 0.0,

@@ -75,7 +75,29 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
             .diagnostic(format!("the heights have {found}, but the scene has {scene}"))
             .with_help("say `unit = \"nm\"` for heights of a scene with units, `unit = \"none\"` with `units = \"none\"`"));
     }
+    if let (None, Some(share)) = (table.find("detrend"), tilt(&scan, &preprocessing, &map)) {
+        let message = format!(
+            "the map is tilted: from edge to edge by {share:.1} times its rms height without the tilt"
+        );
+        let help =
+            "its highest corner carries the load: `detrend = \"plane\"`, or \"none\" where the tilt is real";
+        notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
+    }
     Ok(FileMap { map, metadata: metadata.to_string(), notes })
+}
+
+/// The tilt of a map over its whole size in rms heights of what is left without it, where that changes its contact.
+fn tilt(scan: &Scan, preprocessing: &Preprocessing, map: &HeightMap) -> Option<f64> {
+    /// A tilt below this is hidden by the roughness.
+    const HIDDEN: f64 = 1.0;
+    let level = scan.map(&Preprocessing { detrend: Detrend::Plane, ..preprocessing.clone() }).ok()?;
+    let differences = map.heights().iter().zip(level.heights()).map(|(h, level)| h - level);
+    let known = differences.filter(|d| d.is_finite());
+    let (low, high) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)));
+    let rest: Vec<f64> = level.defined().collect();
+    let share = (high - low) / surface_gen::rms_height(&rest);
+    (share.is_finite() && share > HIDDEN).then_some(share)
 }
 
 /// One length or two: sides of the map or of a cell.

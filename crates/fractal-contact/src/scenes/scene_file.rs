@@ -34,6 +34,8 @@ pub struct SceneFile {
     pub surface: SceneSurface,
     /// Effective modulus E*.
     pub modulus: f64,
+    /// Pressure above which a state is marked; E*/10 where none is given.
+    pub hardness: Option<f64>,
     /// Both bodies, where they are named.
     pub pair: Option<Pair>,
     /// Effects, off unless named.
@@ -91,6 +93,7 @@ impl SceneFile {
             models,
             surface,
             modulus,
+            hardness: None,
             pair: None,
             effects: Effects::default(),
             request,
@@ -107,15 +110,16 @@ impl SceneFile {
     /// # Errors
     /// [`crate::scenes::Error::Run`] where it cannot be read, [`crate::scenes::Error::Scene`] with the place of the first mistake.
     pub fn read(path: &Path) -> Result<Self> {
-        let length = std::fs::metadata(path).map_err(runs::Error::file("read", path))?.len();
-        if length > LONGEST {
+        let about = std::fs::metadata(path).map_err(runs::Error::file("read", path))?;
+        let length = about.len();
+        if about.is_file() && length > LONGEST {
             let message = format!("{length} bytes: a scene is a short text of at most {LONGEST}");
             return Err(Diagnostic::new(message)
                 .with_help("is this the right file?")
                 .placed(path, "")
                 .into());
         }
-        let bytes = std::fs::read(path).map_err(runs::Error::file("read", path))?;
+        let bytes = runs::files::read(path, LONGEST)?;
         let Ok(text) = String::from_utf8(bytes) else {
             let help = "`fractal-contact info FILE` says what a surface or a result holds";
             return Err(Diagnostic::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());
@@ -229,6 +233,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let output_places = places(outputs_table.as_ref());
     let requested = read_outputs(outputs_table, system)?;
     let (modulus, pair) = read_material(&scene, system)?;
+    let hardness = scene.find("hardness").map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
     let SurfaceEntry { surface, metadata, mut notes } = read_surface(&scene, system, directory)?;
     check_cells(options.as_ref(), &models, &surface)?;
     let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
@@ -246,6 +251,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
         models,
         surface,
         modulus,
+        hardness,
         pair,
         effects,
         request,
@@ -258,7 +264,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
 }
 
 fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
-    const NAMES: [&str; 9] = [
+    const NAMES: [&str; 10] = [
         "stiffness",
         "area",
         "conductance",
@@ -267,6 +273,7 @@ fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
         "pressure",
         "displacement",
         "gap",
+        "heights",
         "curves",
     ];
     let Some(table) = table else { return Vec::new() };
@@ -288,9 +295,9 @@ fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>
             let modulus = pair.modulus().map_err(|e| entry.diagnostic(e.to_string()))?;
             Ok((modulus, Some(pair)))
         }
-        None => Err(scene.diagnostic("[scene] has no material").with_help(
+        None => Err(scene.misspelt_or(&["modulus", "bodies"], scene.diagnostic("[scene] has no material").with_help(
             "add `modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
-        )),
+        ))),
     }
 }
 

@@ -1,12 +1,16 @@
 //! A model and a surface as a job, and its result as text.
 
 use crate::scenes::error::{Error, Result};
-use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult};
+use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult, StateResult, StoredFile};
 use crate::scenes::scene_file::SceneFile;
 use analysis::Value;
 use contact_model::Stop;
 use runs::Job;
 use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// What is solved is kept at most so often: an interruption loses what is younger, and the state in hand.
+const KEEP_EVERY: Duration = Duration::from_secs(1);
 
 /// A unit with what all units of a run share.
 pub(crate) struct SceneJob<'a> {
@@ -31,33 +35,55 @@ impl Job for SceneJob<'_> {
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<ModelResult> {
-        self.unit.solve(self.scene, self.out, stop)
+        self.resume(None, &|_| Ok(()), stop)
+    }
+
+    fn resume(
+        &self,
+        stored: Option<&str>,
+        store: &dyn Fn(&str) -> runs::Result<()>,
+        stop: Stop<'_>,
+    ) -> Result<ModelResult> {
+        let mut begun = stored.and_then(|text| parse(text, self.columns)).unwrap_or_default();
+        begun.states.retain(|state| state.is_whole(self.out));
+        begun.kept = begun.states.len();
+        let mut last = Instant::now();
+        let mut keep = |result: &ModelResult| {
+            if last.elapsed() >= KEEP_EVERY
+                && let Some(text) = self.encode(result)
+            {
+                store(&text)?;
+                last = Instant::now();
+            }
+            Ok(())
+        };
+        self.unit.solve(self.scene, self.out, begun, &mut keep, stop)
     }
 
     fn encode(&self, result: &ModelResult) -> Option<String> {
-        (result.whole && self.unit.numerics(self.scene).is_stored()).then(|| format(result))
+        self.unit.numerics(self.scene).is_stored().then(|| format(result))
     }
 
-    /// A result without its files is as good as absent.
+    /// A result with a state or a file missing or changed is as good as absent.
     fn decode(&self, text: &str) -> Option<ModelResult> {
-        let result = parse(text, self.columns)?;
-        result.files.iter().all(|f| self.out.join(f).is_file()).then_some(result)
+        let result = parse(text, self.columns).filter(|result| result.complete)?;
+        let whole = result.states.iter().all(|state| state.is_whole(self.out));
+        whole.then_some(ModelResult { kept: result.states.len(), ..result })
     }
 }
 
 fn format(result: &ModelResult) -> String {
-    let mut text =
-        format!("seconds {:?}\nbytes {}\nfailed {}\n", result.seconds, result.bytes, result.failed);
-    for row in &result.rows {
-        let cells: Vec<String> = row.iter().map(cell).collect();
-        text += &format!("row {}\n", cells.join("\t"));
-    }
-    for (state, areas) in &result.patches {
-        let areas: Vec<String> = areas.iter().map(|a| format!("{a:?}")).collect();
-        text += &format!("patches {state} {}\n", areas.join(" "));
-    }
-    for file in &result.files {
-        text += &format!("file {}\n", file.display());
+    let mut text = format!("complete {}\nseconds {:?}\n", result.complete, result.seconds);
+    for state in &result.states {
+        let cells: Vec<String> = state.row.iter().map(cell).collect();
+        text += &format!("state {} {}\nrow {}\n", state.index, state.failed, cells.join("\t"));
+        if !state.patches.is_empty() {
+            let areas: Vec<String> = state.patches.iter().map(|a| format!("{a:?}")).collect();
+            text += &format!("patches {}\n", areas.join(" "));
+        }
+        for StoredFile { name, bytes, digest } in &state.files {
+            text += &format!("file {digest:032x} {bytes} {name}\n");
+        }
     }
     text
 }
@@ -85,27 +111,33 @@ fn parse_cell(text: &str) -> Option<Value> {
 }
 
 fn parse(text: &str, columns: usize) -> Option<ModelResult> {
-    let mut result = ModelResult { whole: true, ..ModelResult::default() };
+    let mut result = ModelResult::default();
     for line in text.lines() {
         let (word, rest) = line.split_once(' ')?;
-        match word {
-            "seconds" => result.seconds = rest.parse().ok()?,
-            "bytes" => result.bytes = rest.parse().ok()?,
-            "failed" => result.failed = rest.parse().ok()?,
-            "row" => {
-                let row = rest.split('\t').map(parse_cell).collect::<Option<Vec<_>>>()?;
-                (row.len() == columns).then(|| result.rows.push(row))?;
+        match (word, result.states.last_mut()) {
+            ("complete", None) => result.complete = rest.parse().ok()?,
+            ("seconds", None) => result.seconds = rest.parse().ok()?,
+            ("state", _) => {
+                let (index, failed) = rest.split_once(' ')?;
+                let (index, failed) = (index.parse().ok()?, failed.parse().ok()?);
+                result.states.push(StateResult { index, failed, ..StateResult::default() });
             }
-            "patches" => {
-                let (state, areas) = rest.split_once(' ')?;
-                let areas = areas.split_whitespace().map(|a| a.parse().ok()).collect::<Option<Vec<f64>>>()?;
-                result.patches.push((state.parse().ok()?, areas));
+            ("row", Some(state)) => {
+                state.row = rest.split('\t').map(parse_cell).collect::<Option<Vec<_>>>()?;
             }
-            "file" => result.files.push(rest.into()),
+            ("patches", Some(state)) => {
+                state.patches = rest.split(' ').map(|a| a.parse().ok()).collect::<Option<Vec<f64>>>()?;
+            }
+            ("file", Some(state)) => {
+                let mut words = rest.splitn(3, ' ');
+                let digest = u128::from_str_radix(words.next()?, 16).ok()?;
+                let (bytes, name) = (words.next()?.parse().ok()?, words.next()?.to_owned());
+                state.files.push(StoredFile { name, bytes, digest });
+            }
             _ => return None,
         }
     }
-    Some(result)
+    result.states.iter().all(|state| state.row.len() == columns).then_some(result)
 }
 
 #[cfg(test)]
@@ -115,18 +147,19 @@ mod tests {
     #[test]
     fn results_come_back_bit_for_bit() {
         let row = vec![Value::Text("a b".into()), Value::Number(1.0 / 3.0), Value::Count(7), Value::Empty];
+        let file = StoredFile { name: "a b.npy".into(), bytes: 3, digest: 7 };
+        let first = StateResult { row: row.clone(), patches: vec![1e-300, 0.1], ..StateResult::default() };
+        let second = StateResult { index: 2, failed: true, row, files: vec![file], ..StateResult::default() };
         let result = ModelResult {
             seconds: 0.25,
-            rows: vec![row.clone(), row],
-            patches: vec![(1, vec![1e-300, 0.1]), (2, vec![])],
-            files: vec!["a.npy".into()],
-            bytes: 3,
-            failed: 0,
-            whole: true,
+            states: vec![first, second],
+            complete: false,
+            ..ModelResult::default()
         };
         let text = format(&result);
         assert_eq!(parse(&text, 4), Some(result));
         assert_eq!(parse(&text, 5), None);
         assert_eq!(parse(&text.replace("n0.3", "x0.3"), 4), None);
+        assert_eq!(parse("row \n", 1), None);
     }
 }

@@ -7,5 +7,5 @@ mod spectra;
 
 pub use hurst::{hurst_from_line_spectrum, hurst_from_spectrum};
 pub use moments::{rms_height, rms_slope_differences};
-pub use patches::patches;
+pub use patches::{boundary_edges, patches};
 pub use spectra::{line_spectrum, radial_spectrum, rms_slope};

@@ -20,16 +20,42 @@ use contact_model::{Boundary, Cells};
 /// assert_eq!(surface_gen::patches([6, 2], &index, Boundary::Free), [1, 2]);
 /// ```
 pub fn patches(cells: impl Into<Cells>, index: &[u32], boundary: Boundary) -> Vec<usize> {
-    let Cells { columns, rows } = cells.into();
+    let mut forest = Forest { parent: (0..index.len()).collect() };
+    neighbours(cells.into(), index, boundary, |a, b| forest.join(a, b));
+    let mut sizes = vec![0; index.len()];
+    for k in 0..index.len() {
+        sizes[forest.root(k)] += 1;
+    }
+    sizes.retain(|&size| size > 0);
+    sizes
+}
+
+/// Number of edges between a cell of a set and one that is not of the set; with free boundaries the edges of the
+/// grid count as well. Arguments, conventions and cost as those of [`patches`].
+///
+/// ```
+/// use contact_model::Boundary;
+/// // A row of three cells, and the same around the grid.
+/// assert_eq!(surface_gen::boundary_edges(3, &[3, 4, 5], Boundary::Free), 8);
+/// assert_eq!(surface_gen::boundary_edges(3, &[3, 4, 5], Boundary::Periodic), 6);
+/// ```
+pub fn boundary_edges(cells: impl Into<Cells>, index: &[u32], boundary: Boundary) -> usize {
+    let mut shared = 0;
+    neighbours(cells.into(), index, boundary, |_, _| shared += 1);
+    4 * index.len() - 2 * shared
+}
+
+/// Calls `pair` with the positions in the list of every two cells that share an edge, once for each edge.
+fn neighbours(cells: Cells, index: &[u32], boundary: Boundary, mut pair: impl FnMut(usize, usize)) {
+    let Cells { columns, rows } = cells;
     debug_assert!(index.windows(2).all(|w| w[0] < w[1]));
     let place = |k: usize| (index[k] as usize % columns, index[k] as usize / columns);
-    let mut forest = Forest { parent: (0..index.len()).collect() };
     // Position in the list of the cell above the one looked at: both go through the list in order.
     let mut above = 0;
     for k in 0..index.len() {
         let (x, y) = place(k);
         if x > 0 && k > 0 && index[k - 1] + 1 == index[k] {
-            forest.join(k - 1, k);
+            pair(k - 1, k);
         }
         if y > 0 {
             let wanted = index[k] - columns as u32;
@@ -37,7 +63,7 @@ pub fn patches(cells: impl Into<Cells>, index: &[u32], boundary: Boundary) -> Ve
                 above += 1;
             }
             if index[above] == wanted {
-                forest.join(above, k);
+                pair(above, k);
             }
         }
     }
@@ -47,17 +73,11 @@ pub fn patches(cells: impl Into<Cells>, index: &[u32], boundary: Boundary) -> Ve
             let (x, y) = place(k);
             for other in [(x == 0).then(|| find(columns - 1, y)), (y == 0).then(|| find(x, rows - 1))] {
                 if let Some(other) = other.flatten() {
-                    forest.join(k, other);
+                    pair(k, other);
                 }
             }
         }
     }
-    let mut sizes = vec![0; index.len()];
-    for k in 0..index.len() {
-        sizes[forest.root(k)] += 1;
-    }
-    sizes.retain(|&size| size > 0);
-    sizes
 }
 
 /// Disjoint sets; the root of a set is its first member.

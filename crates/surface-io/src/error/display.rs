@@ -22,6 +22,11 @@ impl fmt::Display for ContentError {
             Self::NotOfFormat { expected, found } => {
                 write!(f, "expected {expected}, but the content is {found}: correct the name or the format")
             }
+            Self::Profile { lines } => write!(
+                f,
+                "{lines} lines of two numbers, the first of them equally spaced: a profile x, z along a line, which is no map \
+                 (a map of two columns: say format = \"text\")"
+            ),
             Self::Ambiguous { lines } => write!(
                 f,
                 "{lines} lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\""

@@ -30,7 +30,7 @@ pub(crate) struct Side {
 const LONGEST: usize = 200;
 
 impl Heading {
-    /// Takes what a comment says; the first statement of a kind counts.
+    /// Takes what a comment says; the first statement of a kind counts, and another side of the same name is an error.
     ///
     /// Width and height are words of everyday and count where they are lengths; units count or are an error.
     pub(super) fn read(&mut self, comment: &[u8], line: usize) -> Result<(), ContentError> {
@@ -52,7 +52,20 @@ impl Heading {
                     return Err(ContentError::Side { line, key, value: quantity });
                 }
                 let field = if key == "width" { &mut self.width } else { &mut self.height };
-                *field = field.or(side.filter(|s| !negative(s)));
+                let side = side.filter(|s| !negative(s));
+                if let (Some(first), Some(second)) = (&field, &side)
+                    && first.quantity.dimension() == second.quantity.dimension()
+                    && first.quantity.value().to_bits() != second.quantity.value().to_bits()
+                {
+                    let said = |quantity: &Quantity| format!("{key}: {quantity}");
+                    let (first, second) = (said(&first.quantity), said(&second.quantity));
+                    return Err(ContentError::Contradiction {
+                        what: "two lines of the header",
+                        first,
+                        second,
+                    });
+                }
+                *field = field.or(side);
             }
             "value units" | "lateral units" if !value.trim().is_empty() => {
                 let unit =

@@ -53,6 +53,18 @@ fn undefined_points_are_counted() {
         assert_eq!((scan.metadata().undefined, scan.metadata().rows), (2, 2), "{text:?}");
         assert_eq!(scan.metadata().range, Some([1.0, 6.0]));
     }
+    // The last place of a line is empty: in a later line, in the first ones, in the only other one.
+    for (text, expected) in [
+        ("1,2,3\n4,5,\n7,8,9\n", [Some(3.0), None, Some(9.0)].as_slice()),
+        ("1,2,\n4,5,\n7,8,9\n", &[None, None, Some(9.0)]),
+        ("1;2;\n4;5;6", &[None, Some(6.0)]),
+        ("1\t2\t3\n4\t5\t\r\n", &[Some(3.0), None]),
+    ] {
+        let scan = read(text.as_bytes()).unwrap();
+        assert_eq!((scan.metadata().rows, scan.metadata().columns), (expected.len(), 3), "{text:?}");
+        let last: Vec<Option<f64>> = (0..expected.len()).map(|row| scan.height(row, 2)).collect();
+        assert_eq!(last, expected, "{text:?}");
+    }
     let declared = ReadOptions { missing: Some(-9999.0), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.txt", b"1 -9999\n3 4\n", &declared).unwrap();
     assert_eq!((scan.metadata().undefined, scan.height(0, 1), scan.height(0, 0)), (1, None, Some(1.0)));
@@ -196,6 +208,20 @@ fn every_bad_text_says_where_and_what_to_do() {
     let long = problem("x".repeat(1000).as_bytes());
     let ContentError::Number { place, text, kind } = long else { panic!("{long}") };
     assert_eq!((place, text.len(), kind), (Place::Line { line: 1, value: 1 }, 32, NumberKind::None));
+}
+
+#[test]
+fn a_profile_is_no_map() {
+    let line = |i: i32| format!("{:.3} {}\n", 0.1 * f64::from(i), (i * i) % 7);
+    let text: String = (0..20).map(line).collect();
+    assert_eq!(problem(text.as_bytes()), ContentError::Profile { lines: 20 });
+    let declared = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
+    let map = Scan::from_bytes("a.txt", text.as_bytes(), &declared).unwrap();
+    assert_eq!((map.metadata().rows, map.metadata().columns), (20, 2));
+    // Few lines, and a first column that is none of equal steps.
+    for map in [(0..8).map(line).collect(), (0..20).map(|i| line((i * i) % 19)).collect::<String>()] {
+        assert_eq!(read(map.as_bytes()).unwrap().metadata().columns, 2);
+    }
 }
 
 #[test]

@@ -1,0 +1,109 @@
+//! The states of a run as a table for a terminal.
+
+use crate::scenes::ensemble::Mean;
+use crate::scenes::scene_file::SceneFile;
+use analysis::{Table, Value};
+
+/// Columns that are shown where the table has them.
+const SHOWN: [&str; 11] = [
+    "prescribed",
+    "time",
+    "force",
+    "approach",
+    "mean_gap",
+    "stiffness",
+    "area",
+    "area_corrected",
+    "contact_fraction",
+    "largest_pressure",
+    "contact_cells",
+];
+/// More states of a model than these are left to the files.
+const MOST: usize = 24;
+
+/// A few columns of the states of each model; of several surfaces their means with the standard errors in brackets.
+pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> String {
+    let place = |name: &str| table.columns().iter().position(|c| c.name == name);
+    let mut text = String::new();
+    for model in scene.models.iter().map(crate::scenes::Numerics::name) {
+        let rows: Vec<&Vec<Value>> =
+            table.rows().iter().filter(|row| row.first() == Some(&Value::from(model))).collect();
+        let of: Vec<&Mean> = means.iter().filter(|mean| mean.model == model).collect();
+        let mut lines: Vec<Vec<String>> = Vec::new();
+        let shown: Vec<(&str, usize)> =
+            SHOWN.into_iter().filter_map(|name| Some((name, place(name)?))).collect();
+        if means.is_empty() {
+            let cell = |row: &Vec<Value>, at: usize| match &row[at] {
+                Value::Number(v) => short(*v),
+                Value::Count(n) => n.to_string(),
+                _ => "-".to_owned(),
+            };
+            lines.extend(rows.iter().map(|row| shown.iter().map(|&(_, at)| cell(row, at)).collect()));
+        } else {
+            let cell = |mean: &Mean, name: &str| match mean.of(name) {
+                Some((mean, Some(error))) => format!("{} ({})", short(mean), error_of(error, mean)),
+                Some((mean, None)) => short(mean),
+                None => "-".to_owned(),
+            };
+            lines.extend(of.iter().map(|mean| shown.iter().map(|&(name, _)| cell(mean, name)).collect()));
+        }
+        // A column without a number says nothing.
+        let kept: Vec<usize> =
+            (0..shown.len()).filter(|&i| lines.iter().any(|line| line[i] != "-")).collect();
+        let unit = |at: usize| match table.columns()[at].unit {
+            "1" | "-" => String::new(),
+            unit => format!(" [{unit}]"),
+        };
+        let mut all: Vec<Vec<String>> =
+            vec![shown.iter().map(|&(name, at)| format!("{name}{}", unit(at))).collect()];
+        let states = lines.len();
+        all.extend(lines.into_iter().take(MOST));
+        text += &format!("{model}\n");
+        for line in &all {
+            for &i in &kept {
+                let width = all.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
+                text += &format!("  {:>width$}", line[i]);
+            }
+            text.push('\n');
+        }
+        if states > MOST {
+            text += &format!("  ... {} more states\n", states - MOST);
+        }
+    }
+    text
+}
+
+/// Four digits.
+fn short(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
+        let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+/// A standard error as a share of its mean.
+fn error_of(error: f64, mean: f64) -> String {
+    format!("{:.1} %", 100.0 * error / mean.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (1.0, "1.000"),
+            (0.012_345, "0.01235"),
+            (98_765.4, "98765"),
+            (1e5, "1.000e5"),
+            (-1.5e-9, "-1.500e-9"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+        assert_eq!(error_of(0.5, -10.0), "5.0 %");
+    }
+}

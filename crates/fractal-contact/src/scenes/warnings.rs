@@ -1,0 +1,93 @@
+//! What may be wrong with a state though it is solved as well as it was asked for, and what to do about it.
+
+use crate::scenes::scene_file::SceneFile;
+use crate::scenes::scene_surface::SceneSurface;
+use contact_model::{ContactState, Surface};
+
+/// Fewer cells in contact than this are those of the grid.
+const FEW_CELLS: usize = 10;
+/// A cell that carries more than this share of the load stands alone.
+const ALONE: f64 = 0.5;
+/// The boundary of a contact that is resolved changes its area by less than this share.
+const UNRESOLVED: f64 = 0.1;
+/// Pressure over E* from which metals, of hardness unknown, are beyond elasticity.
+const YIELD: f64 = 0.1;
+
+/// Something to beware of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Warning {
+    FewCells,
+    OneCell,
+    Edge,
+    Yield,
+    Area,
+}
+
+impl Warning {
+    pub const ALL: [Self; 5] = [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area];
+
+    /// What stands in the row of the state.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::FewCells => "fewer than 10 contact cells",
+            Self::OneCell => "one cell carries most of the load",
+            Self::Edge => "contact at the edge of the rectangle",
+            Self::Yield => "pressure above the hardness (E*/10 where none is given)",
+            Self::Area => "area not resolved",
+        }
+    }
+
+    /// What to do about it.
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::FewCells => "the numbers are those of the grid: a larger load or smaller cells",
+            Self::OneCell => {
+                "is it a spike of the measurement? fill it or filter the map; else smaller cells"
+            }
+            Self::Edge => {
+                "the edge decides too: a larger map, a smaller load, `detrend`, or `boundary = \"periodic\"`"
+            }
+            Self::Yield => {
+                "bodies yield there, and these are elastic: take area and largest pressure as bounds"
+            }
+            Self::Area => {
+                "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells"
+            }
+        }
+    }
+
+    /// All that concern a state.
+    pub fn of(scene: &SceneFile, state: &ContactState) -> Vec<Self> {
+        let mut found = Vec::new();
+        let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
+        let flat = matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. }));
+        let hardness = scene.hardness.unwrap_or(YIELD * scene.modulus);
+        let resolution = state.resolution;
+        let holds = |warning: Self| match (warning, resolution) {
+            (Self::FewCells, _) => few,
+            (_, None) => false,
+            (Self::OneCell, Some(r)) => r.largest_share > ALONE,
+            (Self::Edge, Some(r)) => r.edge_cells > 0 && !flat,
+            (Self::Yield, Some(r)) => r.largest_pressure > hardness,
+            (Self::Area, Some(r)) => {
+                state.area.zip(r.corrected_area).is_some_and(|(a, corrected)| a - corrected > UNRESOLVED * a)
+            }
+        };
+        found.extend(Self::ALL.into_iter().filter(|&warning| holds(warning)));
+        found
+    }
+
+    /// All of them as one note; `None` for none.
+    pub fn note(all: &[Self]) -> Option<String> {
+        let texts: Vec<&str> = all.iter().map(|warning| warning.as_str()).collect();
+        (!texts.is_empty()).then(|| texts.join(SEPARATOR))
+    }
+
+    /// Those that stand in a note.
+    pub fn in_note(note: &str) -> impl Iterator<Item = Self> + '_ {
+        note.split(SEPARATOR)
+            .filter_map(|text| Self::ALL.into_iter().find(|warning| warning.as_str() == text))
+    }
+}
+
+const SEPARATOR: &str = "; ";

@@ -1,0 +1,120 @@
+//! What a user reads beside the numbers: warnings with remedies, means over surfaces, the map as it was solved.
+
+use fractal_contact::scenes::{Options, Plan, SceneFile, SceneOutcome, run};
+use runs::{CsvFile, Silent};
+use std::path::Path;
+
+/// Runs a scene in a folder; its results are in `out`.
+fn run_scene(directory: &Path, text: &str) -> SceneOutcome {
+    let path = directory.join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    let scene = SceneFile::read(&path).unwrap();
+    let options = Options { out: directory.join("out"), threads: 2, fresh: false };
+    run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &|| false).unwrap()
+}
+
+fn results(directory: &Path, file: &str) -> CsvFile {
+    CsvFile::read(&directory.join("out").join(file)).unwrap()
+}
+
+const MAP: &str = "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"100 GPa\"\nforce = \"FORCE\"\n\
+    [scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nunit = \"nm\"\ncell = \"1 um\"\n[outputs]\narea = true\n";
+
+/// A wavy map of 40 x 30 cells, in nm, with something added.
+fn write_map(directory: &Path, more: impl Fn(usize, usize) -> f64) {
+    let height = |x: usize, y: usize| {
+        100.0
+            * ((x as f64 * 0.5).sin() * (y as f64 * 0.4).cos()
+                + 0.3 * (x as f64 * 1.3 + y as f64 * 1.7).sin())
+    };
+    let row = |y: usize| {
+        (0..40).map(|x| format!("{:.3}", height(x, y) + more(x, y))).collect::<Vec<_>>().join(",") + "\n"
+    };
+    std::fs::write(directory.join("map.csv"), (0..30).map(row).collect::<String>()).unwrap();
+}
+
+/// What is added to a map.
+type More<'a> = &'a dyn Fn(usize, usize) -> f64;
+
+#[test]
+fn traps_are_named_with_a_remedy() {
+    let spike = |x: usize, y: usize| if (x, y) == (20, 15) { 3000.0 } else { 0.0 };
+    let tilt = |x: usize, _: usize| 30.0 * x as f64;
+    let none = |_: usize, _: usize| 0.0;
+    let cases: [(More<'_>, &str, &[&str], &[&str]); 4] = [
+        (&none, "30 mN", &[], &["one cell", "few"]),
+        (&spike, "1 mN", &["one cell carries most of the load", "fewer than 10", "above the hardness"], &[]),
+        (&tilt, "1 mN", &["contact at the edge of the rectangle"], &["hardness"]),
+        (&none, "20 N", &["above the hardness"], &["fewer than 10"]),
+    ];
+    for (i, (more, force, said, silent)) in cases.into_iter().enumerate() {
+        let dir = tempfile::tempdir().unwrap();
+        write_map(dir.path(), more);
+        // 1 mN on a cell of 1 um^2 are 1 GPa: above a given hardness, below E*/10.
+        let hard = if i == 1 { "hardness = \"0.5 GPa\"\nforce" } else { "force" };
+        let outcome = run_scene(dir.path(), &MAP.replace("force", hard).replace("FORCE", force));
+        let file = results(dir.path(), "results.csv");
+        let note = file.texts("note").unwrap()[0];
+        for words in said {
+            assert!(note.contains(words), "{i}: {note}");
+            let line = outcome.notes.iter().find(|line| line.contains(words)).unwrap();
+            assert!(line.contains("(1 of 1 states): "), "{line}");
+        }
+        for words in silent {
+            assert!(!note.contains(words), "{i}: {note}");
+        }
+    }
+}
+
+#[test]
+fn a_tilt_that_decides_is_told_unless_the_scene_says_what_to_do() {
+    let dir = tempfile::tempdir().unwrap();
+    write_map(dir.path(), |x, _| 30.0 * x as f64);
+    let notes = |text: &str| {
+        std::fs::write(dir.path().join("scene.toml"), text).unwrap();
+        let scene = SceneFile::read(&dir.path().join("scene.toml")).unwrap();
+        scene.notes.iter().map(ToString::to_string).collect::<String>()
+    };
+    let text = MAP.replace("FORCE", "1 mN");
+    assert!(notes(&text).contains("the map is tilted") && notes(&text).contains("detrend = \"plane\""));
+    for detrend in ["plane", "none"] {
+        assert_eq!(notes(&text.replace("unit =", &format!("detrend = \"{detrend}\"\nunit ="))), "");
+    }
+    write_map(dir.path(), |_, _| 0.0);
+    assert_eq!(notes(&text), "");
+}
+
+#[test]
+fn several_surfaces_have_a_mean_and_theories_one_surface() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"persson\"]\nmodulus = 1\nmean_pressure = [1e-4, 1e-3]\n\
+        [scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.7\nrms_height = 0.01\n\
+        roll_off_wavelength = 0.5\nshortest_wavelength = 0.1\n[effects]\nboundary = \"periodic\"\n\
+        [outputs]\nstiffness = true\narea = true\ncurves = true\nheights = [\"npy\"]\n[models.bem3d]\ncells = 32\n\
+        [sampling]\nseed = 5\nsurfaces = 3\n";
+    let outcome = run_scene(dir.path(), text);
+    assert_eq!((outcome.requested, outcome.states, outcome.not_attempted()), (8, 8, 0));
+    let (file, means) = (results(dir.path(), "results.csv"), results(dir.path(), "ensemble.csv"));
+    assert_eq!(file.texts("model").unwrap().iter().filter(|m| **m == "persson").count(), 2);
+    let k = file.numbers("stiffness").unwrap();
+    let of_first: Vec<f64> = (0..3).map(|surface| k[2 * surface].unwrap()).collect();
+    let mean = of_first.iter().sum::<f64>() / 3.0;
+    let deviation = (of_first.iter().map(|k| (k - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
+    let at = |name: &str, row: usize| means.numbers(name).unwrap()[row];
+    assert_eq!(means.rows.len(), 4);
+    approx::assert_relative_eq!(at("stiffness", 0).unwrap(), mean, max_relative = 1e-12);
+    approx::assert_relative_eq!(at("stiffness_sd", 0).unwrap(), deviation, max_relative = 1e-12);
+    approx::assert_relative_eq!(
+        at("stiffness_se", 0).unwrap(),
+        deviation / 3f64.sqrt(),
+        max_relative = 1e-12
+    );
+    assert_eq!((at("surfaces", 0), at("surfaces", 2), at("stiffness_se", 2)), (Some(3.0), Some(1.0), None));
+    assert!(outcome.summary.contains("stiffness") && outcome.summary.contains(" %)"), "{}", outcome.summary);
+    let drawn = std::fs::read_to_string(dir.path().join("out/curve-stiffness.svg")).unwrap();
+    assert!(drawn.contains("standard errors"));
+    // The map of each surface, once.
+    let maps = std::fs::read_dir(dir.path().join("out")).unwrap().flatten();
+    let maps: Vec<_> = maps.filter(|e| e.file_name().to_string_lossy().starts_with("heights-")).collect();
+    assert_eq!(maps.len(), 3);
+}
