@@ -98,7 +98,7 @@ fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
         if let Some(predicted) = &planned.predicted {
             runs::err!("{name}\n  predicted  {predicted}");
         }
-        runs::err!("  actual     {actual}, {bytes} bytes of field files");
+        runs::err!("  actual     {actual} (earlier runs included), {bytes} bytes of field files");
     }
     if let Some(peak) = outcome.peak_memory {
         runs::err!("memory       {} MB at the peak, the program itself included", peak / 1_000_000);
@@ -106,7 +106,7 @@ fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
     for note in &outcome.notes {
         runs::err!("note: {note}");
     }
-    runs::print_error(format_args!("\n{}\n", outcome.summary));
+    runs::print(format_args!("{}\n", outcome.summary));
     for file in &outcome.files {
         runs::out!("{}", file.display());
     }

@@ -34,6 +34,7 @@ fn files_take_two_sides_or_the_sides_of_a_cell() {
     for (keys, size) in [
         ("size = [\"8 mm\", \"3 mm\"]", [8e-3, 3e-3]),
         ("cell = [\"2 mm\", \"1 mm\"]", [8e-3, 3e-3]),
+        ("cell = \"2 mm x 1 mm\"", [8e-3, 3e-3]),
         ("cell = \"1 mm\"", [4e-3, 3e-3]),
         ("width = \"4 mm\"", [4e-3, 3e-3]),
     ] {

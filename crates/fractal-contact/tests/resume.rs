@@ -70,7 +70,11 @@ fn a_folder_belongs_to_one_run() {
     run_whole(&scene(dir.path(), "0.1, 0.2, 0.3"), &out);
     std::fs::write(out.join("mine.txt"), "mine").unwrap();
     let three = names(&out);
-    run_whole(&scene(dir.path(), "0.1"), &out);
+    let outcome = run_whole(&scene(dir.path(), "0.1"), &out);
+    assert!(
+        outcome.notes.iter().any(|note| note.starts_with("2 files that an earlier run left")),
+        "{outcome:?}"
+    );
     let gone: Vec<String> = three.difference(&names(&out)).cloned().collect();
     assert_eq!(gone, ["pressure-bem3d-0-001.npy", "pressure-bem3d-0-002.npy"]);
     assert!(out.join("mine.txt").exists());

@@ -87,7 +87,11 @@ impl Progress for Reporter {
         self.with(|s| {
             s.bar.finish_and_clear();
             let seconds = s.begun.elapsed().as_secs_f64();
-            crate::err!("{} done in {seconds:.1} s, {} of them from disk", s.units, s.reused);
+            crate::err!(
+                "{} units of work done in {seconds:.1} s, {} of them found on disk",
+                s.units,
+                s.reused
+            );
         });
     }
 }

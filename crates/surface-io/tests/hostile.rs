@@ -314,7 +314,7 @@ fn impossible_rectangles_are_named() {
         ),
         (
             error("a.npy", &two, &|d| d.size = "1 m x 2e9 m".parse().ok()),
-            "a.npy: dx / dy (ratio of the sides of a cell) = 0.00000000025: expected between",
+            "a.npy: dx / dy (ratio of the sides of a cell) = 2.5e-10: expected between",
         ),
         (
             error("a.npy", &two, &|d| d.cell = "-1 m x 1 m".parse().ok()),

@@ -1,5 +1,6 @@
 //! Means over the surfaces of a scene.
 
+use crate::scenes::loads::Loading;
 use crate::scenes::scene_file::SceneFile;
 use analysis::{Column, Table, Value, mean_and_deviation};
 use contact_model::Status;
@@ -33,6 +34,8 @@ const QUANTITIES: [Quantity; 11] = quantities!(
 pub(crate) struct Mean {
     pub model: &'static str,
     pub state: usize,
+    /// The number that the load prescribes; none along a path.
+    pub prescribed: Value,
     pub surfaces: usize,
     /// Mean and standard deviation of each quantity of the table; `None` where a surface does not have it.
     values: Vec<(Quantity, Option<MeanAndDeviation>)>,
@@ -56,6 +59,10 @@ pub(crate) fn means(scene: &SceneFile, table: &Table) -> Vec<Mean> {
     let quantities: Vec<(Quantity, usize)> =
         QUANTITIES.into_iter().filter_map(|quantity| Some((quantity, place(quantity[0])?))).collect();
     let count = scene.request.count();
+    let prescribed = match &scene.request {
+        Loading::Loads(loads) => loads.values.as_slice(),
+        Loading::Path(_) => &[],
+    };
     let mut found = vec![Vec::new(); scene.models.len() * count];
     for row in table.rows() {
         let of = scene.models.iter().position(|m| row[model] == Value::from(m.name()));
@@ -75,16 +82,29 @@ pub(crate) fn means(scene: &SceneFile, table: &Table) -> Vec<Mean> {
             (quantity, numbers.and_then(|numbers| mean_and_deviation(&numbers)))
         };
         let (model, state) = (scene.models[at / count].name(), at % count);
-        Mean { model, state, surfaces: rows.len(), values: quantities.iter().map(value).collect() }
+        let prescribed = prescribed.get(state).copied().into();
+        Mean {
+            model,
+            state,
+            prescribed,
+            surfaces: rows.len(),
+            values: quantities.iter().map(value).collect(),
+        }
     };
     found.iter().enumerate().map(mean).collect()
 }
 
 /// The means as a table: `surfaces`, and for each quantity its mean, standard error and standard deviation.
 pub(crate) fn table(title: String, columns: &[Column], means: &[Mean]) -> contact_model::Result<Table> {
+    let prescribed = columns.iter().find(|c| c.name == "prescribed").map_or("1", |c| c.unit);
     let mut all = vec![
         Column { name: "model", unit: "-", meaning: "who answers" },
         Column { name: "state", unit: "1", meaning: "number of the load or step, from 0" },
+        Column {
+            name: "prescribed",
+            unit: prescribed,
+            meaning: "what the load prescribes; empty along a path",
+        },
         Column { name: "surfaces", unit: "1", meaning: "surfaces on which the state reached its tolerance" },
     ];
     for [mean, error, deviation] in QUANTITIES {
@@ -95,7 +115,8 @@ pub(crate) fn table(title: String, columns: &[Column], means: &[Mean]) -> contac
     }
     let mut table = Table::new(title, all);
     for of in means {
-        let mut row: Vec<Value> = vec![of.model.into(), of.state.into(), of.surfaces.into()];
+        let mut row: Vec<Value> =
+            vec![of.model.into(), of.state.into(), of.prescribed.clone(), of.surfaces.into()];
         for (_, value) in &of.values {
             let deviation = value.and_then(|(_, deviation)| deviation);
             let error = deviation.map(|deviation| deviation / (of.surfaces as f64).sqrt());

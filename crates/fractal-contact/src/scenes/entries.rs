@@ -133,9 +133,12 @@ impl<'a> Entries<'a> {
                 } else {
                     format!("{what} in {}", self.title())
                 };
+                // Names of older versions are read, not recommended.
+                let current: Vec<&str> =
+                    known.iter().copied().filter(|k| !["chance", "width"].contains(k)).collect();
                 return Err(Diagnostic::new(format!("`{name}` is no {what}"))
                     .at(key.span())
-                    .with_help(suggestion(name, &known)));
+                    .with_help(suggestion(name, &current)));
             }
         }
         Ok(())
@@ -348,6 +351,17 @@ impl<'a> Entry<'a> {
 
     /// One length > 0, or two in a list.
     pub fn lengths(&self, system: System) -> Read<LengthOrPair> {
+        // As on the command line: "2 mm x 1 mm".
+        if let (Some((x, y)), System::Si) = (self.as_word().and_then(|text| text.split_once(" x ")), system) {
+            let side = |text: &str| {
+                let value = Quantity::parse_as(text.trim(), Dimension::LENGTH).map_err(|reason| {
+                    self.diagnostic(format!("`{}`: {reason}", self.path))
+                        .with_help("two lengths with their units: [\"2 mm\", \"1 mm\"] or \"2 mm x 1 mm\"")
+                })?;
+                self.above_zero(value)
+            };
+            return Ok(LengthOrPair::Two([side(x)?, side(y)?]));
+        }
         if !self.is_list() {
             return self.positive(Dimension::LENGTH, system).map(LengthOrPair::One);
         }

@@ -51,6 +51,7 @@ fn table(path: &Path) -> Result<String> {
                 if some.is_empty() { "empty".into() } else { some.join(", ") }
             );
         } else {
+            let [low, high] = [low, high].map(crate::scenes::human_readable::number);
             text += &format!("{name:24} {low} to {high}, {} of {} rows\n", values.len(), file.rows.len());
         }
     }

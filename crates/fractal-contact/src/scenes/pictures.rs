@@ -87,7 +87,18 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
     title[..1].make_ascii_uppercase();
     let surfaces = match scene.sampling.surfaces {
         1 => String::new(),
-        n => format!(", means of {n} surfaces, shaded: ± 2 standard errors"),
+        asked => {
+            // A run that was interrupted has fewer.
+            let solved = |mean: &&Mean| mean.surfaces > 1 || asked == 1;
+            let counts: Vec<usize> = means.iter().filter(solved).map(|mean| mean.surfaces).collect();
+            let surfaces = match (counts.iter().min(), counts.iter().max()) {
+                (Some(few), Some(many)) if few < many || *many < asked => {
+                    format!("{few} to {many} of {asked}")
+                }
+                _ => asked.to_string(),
+            };
+            format!(", means of {surfaces} surfaces, shaded: ± 2 standard errors")
+        }
     };
     Chart {
         title,

@@ -52,18 +52,20 @@ impl ResultFolder {
         files
     }
 
-    /// Removes what earlier runs wrote here and is not among `files`.
+    /// Removes what earlier runs wrote here and is not among `files`; gives their number.
     ///
     /// # Errors
     /// A file that cannot be removed.
-    pub fn remove_others(&self, files: &[PathBuf]) -> Result<()> {
+    pub fn remove_others(&self, files: &[PathBuf]) -> Result<usize> {
+        let mut removed = 0;
         let written: BTreeSet<&Path> = files.iter().map(PathBuf::as_path).collect();
         for path in self.owned.iter().map(|name| self.directory.join(name)) {
             if !written.contains(&*path) && path.symlink_metadata().is_ok_and(|m| !m.is_dir()) {
                 std::fs::remove_file(&path).map_err(runs::Error::file("remove", &path))?;
+                removed += 1;
             }
         }
-        Ok(())
+        Ok(removed)
     }
 }
 

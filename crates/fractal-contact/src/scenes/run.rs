@@ -134,7 +134,11 @@ pub fn run(
     outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
     outcome.files.push(options.out.join("manifest.json"));
-    folder.remove_others(&outcome.files)?;
+    let removed = folder.remove_others(&outcome.files)?;
+    if removed > 0 {
+        let out = options.out.display();
+        outcome.notes.push(format!("{removed} files that an earlier run left in {out} were removed"));
+    }
     manifest::write(scene, plan, options, &outcome)?;
     Ok(outcome)
 }

@@ -40,10 +40,15 @@ pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> Strin
             };
             lines.extend(rows.iter().map(|row| shown.iter().map(|&(_, at)| cell(row, at)).collect()));
         } else {
-            let cell = |mean: &Mean, name: &str| match mean.of(name) {
-                Some((mean, Some(error))) => format!("{} ({})", short(mean), error_of(error, mean)),
-                Some((mean, None)) => short(mean),
-                None => "-".to_owned(),
+            let cell = |mean: &Mean, name: &str| match (name, &mean.prescribed, mean.of(name)) {
+                ("prescribed", Value::Number(v), _) => short(*v),
+                // The force is what is prescribed, or its error is rounding.
+                (_, _, Some((mean, Some(error)))) if error < 1e-9 * mean.abs() => short(mean),
+                (.., of) => match of {
+                    Some((mean, Some(error))) => format!("{} ({})", short(mean), error_of(error, mean)),
+                    Some((mean, None)) => short(mean),
+                    None => "-".to_owned(),
+                },
             };
             lines.extend(of.iter().map(|mean| shown.iter().map(|&(name, _)| cell(mean, name)).collect()));
         }
@@ -58,7 +63,8 @@ pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> Strin
             vec![shown.iter().map(|&(name, at)| format!("{name}{}", unit(at))).collect()];
         let states = lines.len();
         all.extend(lines.into_iter().take(MOST));
-        text += &format!("{model}\n");
+        let brackets = if means.is_empty() { "" } else { ": means over surfaces (standard error)" };
+        text += &format!("{model}{brackets}\n");
         for line in &all {
             for &i in &kept {
                 let width = all.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);

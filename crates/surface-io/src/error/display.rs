@@ -99,7 +99,7 @@ impl fmt::Display for ContentError {
             ),
             Self::Undefined { undefined, points, first } => write!(
                 f,
-                "{undefined} of {points} points are undefined, the first in {first}: keep them as \"no_contact\", or fill them: \"neighbours\", \"plane\" or a value"
+                "{undefined} of {points} points are undefined, the first in {first}: say undefined = \"no_contact\" (they cannot touch), or fill = \"neighbours\", \"plane\" or a height"
             ),
             Self::AllUndefined { points } => {
                 write!(f, "{points} of {points} points are undefined: expected one height at least")
