@@ -1,6 +1,6 @@
 //! A picture as paths and labels, which both files are written from.
 
-use crate::map::{encode_grey, encode_rgb};
+use crate::map::encode_rgb;
 use crate::text::{Fonts, Piece, Typeset};
 use runs::{Error, Result, files};
 use std::collections::BTreeSet;
@@ -23,7 +23,7 @@ pub(crate) struct Drawing {
 enum Item {
     Path { pieces: Vec<Piece>, paint: Paint, clip: Option<Rectangle> },
     Label { set: Typeset, at: (f64, f64), upwards: bool, color: String },
-    Grey { place: Rectangle, shades: Vec<u8>, side: usize },
+    Image { place: Rectangle, rgb: Vec<u8>, columns: usize },
 }
 
 /// How a path looks.
@@ -75,9 +75,9 @@ impl Drawing {
         self.items.push(Item::Label { set, at, upwards, color: color.to_owned() });
     }
 
-    /// A square map of grey values, first row on top.
-    pub fn grey(&mut self, place: Rectangle, shades: Vec<u8>, side: usize) {
-        self.items.push(Item::Grey { place, shades, side });
+    /// Colours of three bytes in rows of so many, first row on top, stretched over a rectangle.
+    pub fn image(&mut self, place: Rectangle, rgb: Vec<u8>, columns: usize) {
+        self.items.push(Item::Image { place, rgb, columns });
     }
 
     /// Writes `NAME.svg` and `NAME.png`.
@@ -134,8 +134,8 @@ impl Drawing {
                     }
                     body += "</g>\n";
                 }
-                Item::Grey { place: [x, y, w, h], shades, side } => {
-                    let data = crate::map::base64(&encode_grey(path, *side, shades)?);
+                Item::Image { place: [x, y, w, h], rgb, columns } => {
+                    let data = crate::map::base64(&encode_rgb(path, *columns, rgb)?);
                     body += &format!(
                         "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" style=\"image-rendering:pixelated\" \
                          href=\"data:image/png;base64,{data}\"/>\n"
@@ -162,7 +162,8 @@ impl Drawing {
         Ok(text)
     }
 
-    fn png(&self, fonts: &Fonts, path: &Path) -> Result<Vec<u8>> {
+    /// The picture as a PNG; `path` is where messages say that it stands.
+    pub fn png(&self, fonts: &Fonts, path: &Path) -> Result<Vec<u8>> {
         let [width, height] = [self.width, self.height].map(|v| (v * SCALE).round() as u32);
         let mut pixels = skia::Pixmap::new(width, height)
             .ok_or_else(|| Error::content(path, format!("no picture of {width} x {height} pixels")))?;
@@ -213,16 +214,16 @@ impl Drawing {
                         pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
                     }
                 }
-                Item::Grey { place: [x, y, w, _], shades, side } => {
-                    let size = (w * SCALE).round() as usize;
-                    let (left, top) = ((x * SCALE).round() as usize, (y * SCALE).round() as usize);
+                Item::Image { place, rgb, columns } => {
+                    let [left, top, w, h] = place.map(|v| (v * SCALE).round() as usize);
+                    let rows = rgb.len() / 3 / columns;
                     let data = pixels.data_mut();
-                    for row in 0..size {
-                        for column in 0..size {
-                            let value = shades[(row * side / size) * side + column * side / size];
+                    for row in 0..h {
+                        for column in 0..w {
+                            let from = 3 * ((row * rows / h) * columns + column * columns / w);
                             let at = ((top + row) * width as usize + left + column) * 4;
                             if let Some(pixel) = data.get_mut(at..at + 3) {
-                                pixel.fill(value);
+                                pixel.copy_from_slice(&rgb[from..from + 3]);
                             }
                         }
                     }

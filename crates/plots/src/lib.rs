@@ -17,6 +17,7 @@
 mod axis;
 mod chart;
 mod drawing;
+mod field;
 mod legend;
 mod map;
 mod maps;
@@ -28,6 +29,7 @@ mod text;
 
 pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
+pub use field::{FieldPicture, Shown};
 pub use legend::Legend;
 pub use map::{encode_grey, grey, write_grey};
 pub use maps::{GreyMap, save_maps};

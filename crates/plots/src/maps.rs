@@ -46,7 +46,8 @@ pub fn save_maps(
         let y = TITLE + LABEL + (i / columns) as f64 * (MAP + LABEL);
         let label = fonts.typeset(&map.label, 18.0);
         drawing.label(label, (x + 0.5 * MAP, y - 8.0), Anchor::Middle, false, INK);
-        drawing.grey([x, y, MAP, MAP], map.shades, map.side);
+        let rgb = map.shades.iter().flat_map(|&shade| [shade; 3]).collect();
+        drawing.image([x, y, MAP, MAP], rgb, map.side);
         let corners = [(x, y), (x + MAP, y), (x + MAP, y + MAP), (x, y + MAP)];
         drawing.path(polygon(&corners), Paint::stroked(INK, 1.0), None);
     }

@@ -16,8 +16,19 @@ const TITLE: &str = "# fractal-contact unit: one surface under all its loads";
 pub struct Store {
     directory: PathBuf,
     fresh: bool,
-    /// Locked; `None` where the file system has no locks.
-    _lock: Option<Arc<File>>,
+    /// `None` where the file system has no locks.
+    _lock: Option<Arc<Lock>>,
+}
+
+/// A locked file.
+#[derive(Debug)]
+struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Closing is not enough while a child process is being started, which has a copy of the file for a moment.
+        let _ = self.0.unlock();
+    }
 }
 
 impl Store {
@@ -69,8 +80,8 @@ impl Store {
 
 /// The lock of a directory. The system lets go of it when the process ends, however it ends; within the process all stores of a
 /// directory share it.
-fn lock(path: &Path, out: &Path) -> Result<Option<Arc<File>>> {
-    static HELD: Mutex<Vec<(PathBuf, Weak<File>)>> = Mutex::new(Vec::new());
+fn lock(path: &Path, out: &Path) -> Result<Option<Arc<Lock>>> {
+    static HELD: Mutex<Vec<(PathBuf, Weak<Lock>)>> = Mutex::new(Vec::new());
     let mut held = HELD.lock().unwrap_or_else(PoisonError::into_inner);
     let file = File::options().create(true).append(true).open(path).map_err(Error::file("write", path))?;
     let path = fs::canonicalize(path).map_err(Error::file("read", path))?;
@@ -80,7 +91,7 @@ fn lock(path: &Path, out: &Path) -> Result<Option<Arc<File>>> {
     }
     match file.try_lock() {
         Ok(()) => {
-            let lock = Arc::new(file);
+            let lock = Arc::new(Lock(file));
             held.push((path, Arc::downgrade(&lock)));
             Ok(Some(lock))
         }

@@ -5,6 +5,7 @@ use crate::scenes::error::{Error, Result};
 use crate::scenes::loads::Loading;
 use crate::scenes::numerics::{AnyModel, Numerics};
 use crate::scenes::outputs::FieldFormat;
+use crate::scenes::pictures;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
 use crate::scenes::scene_surface::SceneSurface;
@@ -107,8 +108,8 @@ impl fmt::Display for FieldFile<'_> {
 /// Reads the name of a field's file; `None` for other names.
 pub(crate) fn field_of_file(name: &str) -> Option<FieldFile<'_>> {
     let (field, rest) = name.split_once('-')?;
-    let (rest, extension) = rest.rsplit_once('.')?;
-    let (rest, state) = rest.rsplit_once('-')?;
+    let (rest, last) = rest.rsplit_once('-')?;
+    let (state, extension) = last.split_once('.')?;
     let (model, surface) = rest.rsplit_once('-')?;
     let file =
         FieldFile { field, model, surface: surface.parse().ok()?, state: state.parse().ok()?, extension };
@@ -335,7 +336,11 @@ impl ModelOnSurface {
                 let path = out.join(&file);
                 match format {
                     FieldFormat::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
-                    FieldFormat::Png => plots::write_grey(&path, field.cells(), field.size(), values)?,
+                    FieldFormat::Png => {
+                        let load = (self.surface, kept.index);
+                        pictures::field(scene, name, model, load, field.cells(), values).save(&path)?;
+                    }
+                    FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), values)?,
                     FieldFormat::Vti => write_vti(&path, name, scene, field.cells(), values)?,
                 }
                 kept.files.push(StoredFile::of(out, file)?);
@@ -418,6 +423,7 @@ mod tests {
         let file = FieldFile { field: "gap", model: "bem3d", surface: 3, state: 1234, extension: "npy" };
         assert_eq!(file.to_string(), "gap-bem3d-3-1234.npy");
         assert_eq!(field_of_file("gap-bem3d-3-1234.npy"), Some(file));
+        assert_eq!(field_of_file("gap-bem3d-3-1234.pixels.png").map(|f| f.extension), Some("pixels.png"));
         for other in [
             "gap-bem3d-3-12.npy",
             "height-bem3d-3-012.npy",
@@ -438,7 +444,7 @@ mod tests {
         let surface = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
         let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
         let mut scene = SceneFile::new(vec![Numerics::ALL[0]], surface, 1.0, loads);
-        let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Vti];
+        let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];
         (scene.requested.pressure, scene.requested.gap) = (all.clone(), all);
         let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];
         let gap = vec![0.5, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
@@ -450,7 +456,7 @@ mod tests {
         let mut kept = StateResult::default();
         let unit = ModelOnSurface { model: 0, surface: 0 };
         unit.write_fields(&scene, &mut state, dir.path(), &mut kept).unwrap();
-        assert_eq!((kept.files.len(), state.fields), (6, None));
+        assert_eq!((kept.files.len(), state.fields), (8, None));
         let scan = |name: &str| {
             surface_io::Scan::read(&dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };
@@ -464,7 +470,7 @@ mod tests {
         assert!(vti.contains("WholeExtent=\"0 3 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"2 0.5 2\""), "{vti}");
         assert!(vti.contains("vtkGhostType"));
         // Width and height of a PNG stand after its first chunk's name; pixels are squares of 0.5.
-        let png = std::fs::read(dir.path().join("gap-bem3d-0-000.png")).unwrap();
+        let png = std::fs::read(dir.path().join("gap-bem3d-0-000.pixels.png")).unwrap();
         let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
         assert_eq!((side(16), side(20)), (12, 2));
     }

@@ -9,8 +9,10 @@ use surface_io::Dimension;
 pub enum FieldFormat {
     /// Numbers as float64.
     Npy,
-    /// A grey-scale picture.
+    /// A picture with axes and colour bar.
     Png,
+    /// A grey-scale picture with a pixel for each cell and nothing else.
+    Pixels,
     /// Image data of VTK, for ParaView.
     Vti,
 }
@@ -21,6 +23,7 @@ impl FieldFormat {
         match self {
             Self::Npy => "npy",
             Self::Png => "png",
+            Self::Pixels => "pixels.png",
             Self::Vti => "vti",
         }
     }
@@ -108,8 +111,12 @@ fn read_formats(entry: &Entry<'_>) -> Read<Vec<FieldFormat>> {
     }
     let mut formats = Vec::new();
     for item in entry.list() {
-        let format =
-            item.choice(&[("npy", FieldFormat::Npy), ("png", FieldFormat::Png), ("vti", FieldFormat::Vti)])?;
+        let format = item.choice(&[
+            ("npy", FieldFormat::Npy),
+            ("png", FieldFormat::Png),
+            ("pixels", FieldFormat::Pixels),
+            ("vti", FieldFormat::Vti),
+        ])?;
         if !formats.contains(&format) {
             formats.push(format);
         }

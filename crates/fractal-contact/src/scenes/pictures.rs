@@ -1,10 +1,14 @@
 //! Curves drawn from the rows of the table.
 
 use crate::scenes::ensemble::Mean;
+use crate::scenes::entries::System;
 use crate::scenes::error::Result;
+use crate::scenes::loads::{Loading, Prescribed};
 use crate::scenes::scene_file::SceneFile;
+use crate::scenes::summary::short;
 use analysis::{Table, Value};
-use plots::{Chart, Curve};
+use contact_model::Cells;
+use plots::{Chart, Curve, FieldPicture, Shown};
 use std::path::{Path, PathBuf};
 
 /// What is drawn over what: of loads, and of paths.
@@ -40,6 +44,47 @@ fn pairs(scene: &SceneFile) -> Vec<(&'static str, &'static str)> {
         return OVER_TIME.map(|y| ("time", y)).to_vec();
     }
     vec![("tangential_displacement", "tangential_force")]
+}
+
+/// A field of a state, by number of the surface and of the load.
+pub(crate) fn field<'a>(
+    scene: &SceneFile,
+    name: &str,
+    model: &str,
+    (surface, state): (usize, usize),
+    cells: Cells,
+    values: &'a [f64],
+) -> FieldPicture<'a> {
+    let si = scene.system == System::Si;
+    let with = |unit: &str| if si { format!(" ({unit})") } else { String::new() };
+    let (quantity, shown) = match name {
+        "pressure" => (format!("pressure $p${}", with("Pa")), Shown::Largest),
+        "displacement" => (format!("displacement $u${}", with("m")), Shown::Middle),
+        "gap" => (format!("gap $g${}", with("m")), Shown::Smallest),
+        _ => (format!("height{}", with("m")), Shown::Middle),
+    };
+    let load = match &scene.request {
+        _ if name == "heights" => "as solved".to_owned(),
+        Loading::Loads(loads) => {
+            let unit = match loads.prescribed {
+                Prescribed::ForceBar => "",
+                _ if !si => "",
+                Prescribed::Force => " N",
+                Prescribed::MeanPressure => " Pa",
+                Prescribed::Approach | Prescribed::MeanGap => " m",
+            };
+            let words = loads.prescribed.key().replace('_', " ");
+            format!("{words} {}{unit}", short(loads.values[state]))
+        }
+        Loading::Path(_) => format!("step {state}"),
+    };
+    let mut title = format!("{name}, {}", model_name(model));
+    title[..1].make_ascii_uppercase();
+    let file = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
+    let subtitle = format!("{}{number}: {load}", file.replace(['-', '_'], " "));
+    let length_unit = if si { "m" } else { "" };
+    FieldPicture { title, subtitle, quantity, length_unit, cells, size: scene.surface.size(), values, shown }
 }
 
 /// A constant, such as a force that is held, is no picture.

@@ -80,7 +80,7 @@ pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> Strin
 }
 
 /// Four digits.
-fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
         let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
         format!("{value:.digits$}")

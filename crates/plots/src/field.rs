@@ -1,0 +1,241 @@
+//! A field over a rectangle: axes, colour bar and title.
+
+use crate::axis::Axis;
+use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::style::{INK, NEUTRAL};
+use crate::text::Fonts;
+use contact_model::{Cells, Size};
+use runs::Result;
+use runs::files;
+use std::path::Path;
+
+/// Which of the values that fall on one pixel it shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// The largest, so that a single cell under pressure is seen; zero has no colour.
+    Largest,
+    /// The smallest, so that a single cell without a gap is seen.
+    Smallest,
+    /// The value in the middle.
+    Middle,
+}
+
+/// A field and what is said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldPicture<'a> {
+    /// Above the map.
+    pub title: String,
+    /// Below the title.
+    pub subtitle: String,
+    /// Beside the colour bar, with the unit.
+    pub quantity: String,
+    /// Unit of x and y; empty for none.
+    pub length_unit: &'a str,
+    /// Columns and rows.
+    pub cells: Cells,
+    /// Sides of the rectangle.
+    pub size: Size,
+    /// Values on the cells, row-major; NaN where a point is undefined.
+    pub values: &'a [f64],
+    /// Which value a pixel shows.
+    pub shown: Shown,
+}
+
+/// Longer side of the map, in units of the drawing; the shorter one has at least a twentieth of it.
+const SIDE: f64 = 520.0;
+/// Pixels of the image per unit.
+const PIXELS: f64 = 2.0;
+const LEFT: f64 = 84.0;
+const TOP: f64 = 62.0;
+const RIGHT: f64 = 124.0;
+const BELOW: f64 = 60.0;
+const BAR: f64 = 18.0;
+const TICK: f64 = 14.0;
+/// Undefined points.
+const UNDEFINED: [u8; 3] = [205, 205, 205];
+
+impl FieldPicture<'_> {
+    /// Writes a PNG, y upwards. The colours are viridis, from the smallest to the largest value (from 0 under [`Shown::Largest`], where
+    /// zero is white); undefined points are grey.
+    ///
+    /// Cost: linear in the number of cells.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when it cannot be written.
+    pub fn save(&self, path: &Path) -> Result<()> {
+        let fonts = Fonts::load()?;
+        let size = self.size;
+        let longer = size.x.max(size.y);
+        let [w, h] = [size.x, size.y].map(|side| SIDE * (side / longer).max(0.05));
+        let mut drawing = Drawing::new(LEFT + w + RIGHT, TOP + h.max(160.0) + BELOW);
+        let frame = [LEFT, TOP, w, h];
+        let finite = || self.values.iter().copied().filter(|v| v.is_finite());
+        let low = finite().fold(f64::INFINITY, f64::min);
+        let high = finite().fold(f64::NEG_INFINITY, f64::max);
+        let low = if self.shown == Shown::Largest { low.min(0.0) } else { low };
+        // A constant has a scale around it.
+        let room = if high > low { 0.0 } else { high.abs().max(f64::MIN_POSITIVE) };
+        let (low, high) = (low - room, high + room);
+        let color = |v: f64| match v {
+            v if !v.is_finite() => UNDEFINED,
+            v if self.shown == Shown::Largest && v <= 0.0 => [255; 3],
+            // Halves, because the range of finite numbers may overflow.
+            v => colorous::VIRIDIS
+                .eval_continuous((0.5 * v - 0.5 * low) / (0.5 * high - 0.5 * low))
+                .into_array(),
+        };
+        let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
+        let pixels = (0..rows).rev().flat_map(|y| (0..columns).map(move |x| (x, y)));
+        let image = pixels.flat_map(|(x, y)| color(self.pixel(x, columns, y, rows))).collect();
+        drawing.image(frame, image, columns);
+        axes(&fonts, &mut drawing, frame, [(0.0, size.x), (0.0, size.y)]);
+        let unit =
+            if self.length_unit.is_empty() { String::new() } else { format!(" ({})", self.length_unit) };
+        let below = (LEFT + 0.5 * w, TOP + h + 3.2 * TICK);
+        drawing.label(fonts.typeset(&format!("$x${unit}"), 1.2 * TICK), below, Anchor::Middle, false, INK);
+        let beside = (1.4 * TICK, TOP + 0.5 * h);
+        drawing.label(fonts.typeset(&format!("$y${unit}"), 1.2 * TICK), beside, Anchor::Middle, true, INK);
+        // The bar is at least as high as its labels need.
+        let bar = [LEFT + w + 24.0, TOP, BAR, h.max(160.0)];
+        let steps = (bar[3] * PIXELS) as usize;
+        let ramp = |i: usize| color(low + (high - low) * (1.0 - (i as f64 + 0.5) / steps as f64));
+        drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
+        scale(&fonts, &mut drawing, bar, (low, high));
+        let words = (LEFT + w + RIGHT - 0.6 * TICK, TOP + 0.5 * bar[3]);
+        drawing.label(fonts.typeset(&self.quantity, 1.2 * TICK), words, Anchor::Middle, true, INK);
+        drawing.label(fonts.typeset(&self.title, 19.0), (LEFT, 27.0), Anchor::Start, false, INK);
+        drawing.label(fonts.typeset(&self.subtitle, 15.0), (LEFT, 49.0), Anchor::Start, false, NEUTRAL);
+        files::write_whole(path, &drawing.png(&fonts, path)?)
+    }
+
+    /// The value of a pixel of the image, counted from the lower left corner.
+    fn pixel(&self, x: usize, columns: usize, y: usize, rows: usize) -> f64 {
+        let cells = self.cells;
+        let row = |iy: usize| &self.values[iy * cells.columns..][..cells.columns];
+        let range = |i: usize, pixels: usize, cells: usize| {
+            let first = i * cells / pixels;
+            first..((i + 1) * cells).div_ceil(pixels).clamp(first + 1, cells)
+        };
+        let (across, down) = (range(x, columns, cells.columns), range(y, rows, cells.rows));
+        let middle =
+            || row(usize::midpoint(down.start, down.end - 1))[usize::midpoint(across.start, across.end - 1)];
+        let values = || down.clone().flat_map(|iy| row(iy)[across.clone()].iter().copied());
+        // Of numbers and NaN the number.
+        match self.shown {
+            Shown::Largest => values().fold(f64::NAN, f64::max),
+            Shown::Smallest => values().fold(f64::NAN, f64::min),
+            Shown::Middle => middle(),
+        }
+    }
+}
+
+/// Frame, ticks and labels of a map.
+fn axes(fonts: &Fonts, drawing: &mut Drawing, [x, y, w, h]: Rectangle, ends: [(f64, f64); 2]) {
+    for (i, (low, high)) in ends.into_iter().enumerate() {
+        let (ticks, power) = Axis::Linear(low, high).ticks(None);
+        for tick in ticks.iter().filter(|tick| tick.major) {
+            let label = fonts.typeset(tick.label.as_deref().unwrap_or_default(), TICK);
+            if i == 0 {
+                let at = x + tick.at * w;
+                drawing.path(polyline(&[(at, y + h), (at, y + h + 5.0)]), Paint::stroked(INK, 1.1), None);
+                drawing.label(label, (at, y + h + 5.0 + 1.1 * TICK), Anchor::Middle, false, INK);
+            } else {
+                let at = y + (1.0 - tick.at) * h;
+                drawing.path(polyline(&[(x - 5.0, at), (x, at)]), Paint::stroked(INK, 1.1), None);
+                drawing.label(label, (x - 8.0, at + 0.33 * TICK), Anchor::End, false, INK);
+            }
+        }
+        if let Some(power) = power {
+            let set = fonts.typeset(&format!("$×10^{{{power}}}$"), TICK);
+            let (at, anchor) = if i == 0 {
+                ((x + w, y + h + 3.2 * TICK), Anchor::End)
+            } else {
+                ((x - 8.0, y - 0.5 * TICK), Anchor::End)
+            };
+            drawing.label(set, at, anchor, false, INK);
+        }
+    }
+    outline(drawing, [x, y, w, h]);
+}
+
+/// Frame, ticks and labels of a colour bar.
+fn scale(fonts: &Fonts, drawing: &mut Drawing, [x, y, w, h]: Rectangle, (low, high): (f64, f64)) {
+    let (ticks, power) = Axis::Linear(low, high).ticks(None);
+    for tick in ticks.iter().filter(|tick| tick.major) {
+        let at = y + (1.0 - tick.at) * h;
+        let label = fonts.typeset(tick.label.as_deref().unwrap_or_default(), TICK);
+        drawing.path(polyline(&[(x + w, at), (x + w + 5.0, at)]), Paint::stroked(INK, 1.1), None);
+        drawing.label(label, (x + w + 9.0, at + 0.33 * TICK), Anchor::Start, false, INK);
+    }
+    if let Some(power) = power {
+        let set = fonts.typeset(&format!("$×10^{{{power}}}$"), TICK);
+        drawing.label(set, (x, y - 0.5 * TICK), Anchor::Start, false, INK);
+    }
+    outline(drawing, [x, y, w, h]);
+}
+
+fn outline(drawing: &mut Drawing, [x, y, w, h]: Rectangle) {
+    let corners = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)];
+    drawing.path(polygon(&corners), Paint::stroked(INK, 1.2), None);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::Field;
+
+    fn picture(field: &Field, shown: Shown) -> FieldPicture<'_> {
+        let (title, subtitle, quantity) = ("t".into(), "s".into(), "p (Pa)".into());
+        let (cells, size, values) = (field.cells(), field.size(), field.values());
+        FieldPicture { title, subtitle, quantity, length_unit: "m", cells, size, values, shown }
+    }
+
+    /// Colours of a PNG at points of the map, counted from its lower left corner in shares of its sides.
+    fn colors(field: &Field, shown: Shown, at: &[(f64, f64)]) -> Vec<[u8; 3]> {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("f.png");
+        picture(field, shown).save(&path).unwrap();
+        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        let longer = field.size().x.max(field.size().y);
+        let (w, h) = (SIDE * field.size().x / longer, SIDE * field.size().y / longer);
+        let pixel = |&(x, y): &(f64, f64)| {
+            let (x, y) = (((LEFT + x * w) * PIXELS) as usize, ((TOP + (1.0 - y) * h) * PIXELS) as usize);
+            let at = 3 * (y * info.width as usize + x);
+            [bytes[at], bytes[at + 1], bytes[at + 2]]
+        };
+        at.iter().map(pixel).collect()
+    }
+
+    #[test]
+    fn y_points_upwards_and_single_cells_are_seen() {
+        // A row of 2 x 1 at the bottom carries pressure at the right, the row above at the left; one point is undefined.
+        let field = Field::new([3, 2], [3.0, 2.0], vec![0.0, f64::NAN, 1.0, 2.0, 0.0, 0.0]).unwrap();
+        let found = colors(
+            &field,
+            Shown::Largest,
+            &[(0.15, 0.25), (0.5, 0.25), (0.85, 0.25), (0.15, 0.75), (0.5, 0.75)],
+        );
+        let viridis = |t| colorous::VIRIDIS.eval_continuous(t).into_array();
+        assert_eq!(found, [[255; 3], UNDEFINED, viridis(0.5), viridis(1.0), [255; 3]]);
+        // One of a million cells.
+        let mut values = vec![0.0; 2000 * 2000];
+        values[1000 * 2000 + 500] = 1.0;
+        let large = Field::new(2000, 1.0, values).unwrap();
+        let (x, y) = ((500.0 + 0.5) / 2000.0, (1000.0 + 0.5) / 2000.0);
+        assert_eq!(colors(&large, Shown::Largest, &[(x, y), (0.3, 0.3)]), [viridis(1.0), [255; 3]]);
+    }
+
+    #[test]
+    fn constant_and_oblong_fields_are_drawn() {
+        let flat = Field::new([2, 2], [1.0, 1.0], vec![3.0; 4]).unwrap();
+        assert_ne!(colors(&flat, Shown::Middle, &[(0.5, 0.5)])[0], [255; 3]);
+        let zero = Field::new([2, 2], [1.0, 1.0], vec![0.0; 4]).unwrap();
+        assert_eq!(colors(&zero, Shown::Largest, &[(0.5, 0.5)])[0], [255; 3]);
+        let dir = tempfile::tempdir().unwrap();
+        let long = Field::new([100, 1], [100.0, 1.0], (0..100).map(f64::from).collect()).unwrap();
+        picture(&long, Shown::Smallest).save(&dir.path().join("g.png")).unwrap();
+    }
+}
