@@ -337,3 +337,32 @@ proptest! {
         prop_assert!(!undefined_pressed);
     }
 }
+
+/// What the cells say of a flat rectangle in full contact: every number by hand.
+#[test]
+fn resolution_of_a_full_rectangle() {
+    let mut scene = Scene::new(Surface::Flat { size: [2.0, 1.5].into() }, 1.0);
+    (scene.outputs.area, scene.outputs.pressure) = (true, true);
+    let solve = |scene: &Scene| {
+        let model = Bem3d { cells: 5, rows: Some(3), ..Bem3d::default() };
+        model.prepare(scene, 0).unwrap().solve(Load::Force(1.0)).unwrap()
+    };
+    let state = solve(&scene);
+    let (found, pressure) = (state.resolution.unwrap(), state.pressure().unwrap());
+    let largest = pressure.values().iter().copied().fold(0.0, f64::max);
+    assert_relative_eq!(found.largest_pressure, largest, max_relative = 1e-12);
+    // Cells of 0.4 x 0.5.
+    assert_relative_eq!(found.largest_share, 0.2 * largest, max_relative = 1e-9);
+    // All but the three in the middle; 2 (5 + 3) edges of cells around.
+    assert_eq!(found.edge_cells, 12);
+    let per_edge = contact_model::ContactResolution::AREA_PER_EDGE;
+    assert_relative_eq!(found.corrected_area.unwrap(), 0.2 * (15.0 - 16.0 * per_edge), max_relative = 1e-12);
+    assert_relative_eq!(per_edge, 0.118_114, max_relative = 1e-5);
+    // Around a period there is no edge, and an area that nobody asked for is not corrected.
+    scene.effects.boundary = Boundary::Periodic;
+    let periodic = solve(&scene).resolution.unwrap();
+    assert_eq!(periodic.edge_cells, 0);
+    assert_relative_eq!(periodic.corrected_area.unwrap(), 3.0, max_relative = 1e-12);
+    scene.outputs.area = false;
+    assert_eq!(solve(&scene).resolution.unwrap().corrected_area, None);
+}

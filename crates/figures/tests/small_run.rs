@@ -49,6 +49,8 @@ impl Progress for Counter {
 fn units(out: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> =
         fs::read_dir(out.join(".units")).unwrap().map(|e| e.unwrap().path()).collect();
+    // The lock of the store is no result.
+    files.retain(|file| file.extension().is_some_and(|end| end == "csv"));
     files.sort();
     files
 }
