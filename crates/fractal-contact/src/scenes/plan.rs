@@ -260,7 +260,7 @@ impl fmt::Display for Plan {
             }
             writeln!(
                 f,
-                " (from small solves on this machine, scaled as N^{}: within a factor of three)",
+                " (from small solves on this machine, scaled as N^{}: within a factor of six; files and pictures come on top)",
                 calibration::TIME_EXPONENT
             )?;
         }
