@@ -42,10 +42,12 @@ pub fn mean_and_deviation(values: &[f64]) -> Option<(f64, Option<f64>)> {
 /// assert!((s.log_mean - 2.0).abs() < 1e-15);
 /// ```
 pub fn statistics(values: &[f64]) -> Option<Statistics> {
-    let (mean, deviation) = mean_and_deviation(values).filter(|_| values.iter().all(|v| *v > 0.0))?;
+    let (mean, _) = mean_and_deviation(values).filter(|_| values.iter().all(|v| *v > 0.0))?;
     let n = values.len() as f64;
     let log_mean = (sum(values.iter().map(|v| v.ln())) / n).exp();
-    let standard_error = deviation.map(|deviation| deviation / n.sqrt());
+    // One root: the last digit of stored results.
+    let standard_error = (values.len() > 1)
+        .then(|| (sum(values.iter().map(|v| (v - mean) * (v - mean))) / (n * (n - 1.0))).sqrt());
     Some(Statistics { mean, standard_error, log_mean, count: values.len() })
 }
 
