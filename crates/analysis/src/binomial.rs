@@ -3,7 +3,7 @@
 /// Probability of a number of successes as far from `share * trials` as this one or farther on its side, twice (at most 1): the two-sided
 /// p-value of "each trial succeeds with the probability `share`".
 ///
-/// Exact to about 1e-12 for up to 1e6 trials; cost: linear in the trials.
+/// All terms are summed; their rounding grows with the number of trials. Cost: linear in the trials.
 ///
 /// ```
 /// use analysis::binomial_test;
