@@ -8,6 +8,7 @@ mod equivalent;
 mod exact_bodies;
 mod exponents;
 mod friction;
+mod grid_error;
 mod hard;
 mod modules;
 mod oracle;

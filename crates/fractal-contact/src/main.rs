@@ -25,7 +25,7 @@ fn main() -> ExitCode {
 fn execute(arguments: Arguments) -> Result<ExitCode> {
     match arguments.command {
         Command::Plan { scene } => {
-            runs::print(format_args!("{}", Plan::calibrated(&SceneFile::read(&scene)?)?));
+            runs::print(format_args!("{}", Plan::calibrated(&read_scene(&scene)?)?));
             Ok(ExitCode::SUCCESS)
         }
         Command::Run { scene, out, threads, fresh } => {
@@ -79,8 +79,13 @@ fn default_directory(scene: &Path) -> std::path::PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or_default())
 }
 
+/// A scene with the grid that it asks for.
+fn read_scene(path: &Path) -> Result<SceneFile> {
+    SceneFile::read(path)?.with_grid_for_accuracy(&|| false)
+}
+
 fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
-    let scene = SceneFile::read(path)?;
+    let scene = read_scene(path)?;
     let plan = Plan::calibrated(&scene)?;
     runs::print_error(format_args!("{plan}"));
     let stopped = Arc::new(AtomicBool::new(false));

@@ -118,3 +118,127 @@ fn several_surfaces_have_a_mean_and_theories_one_surface() {
     let maps: Vec<_> = maps.filter(|e| e.file_name().to_string_lossy().starts_with("heights-")).collect();
     assert_eq!(maps.len(), 3);
 }
+
+const WAVES: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\nmean_pressure = [1e-3, 1e-2]\n\
+    [scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.8\nrms_height = 0.01\nroll_off_wavelength = 0.5\n\
+    shortest_wavelength = 0.2\n[effects]\nboundary = \"periodic\"\n[outputs]\nstiffness = true\narea = true\n\
+    [models.bem3d]\ncells = 64\n[sampling]\nseed = 5\n";
+
+#[test]
+fn the_error_of_the_grid_is_that_of_three_grids() {
+    let dir = tempfile::tempdir().unwrap();
+    let on = |cells: usize, name: &str| {
+        run_scene(dir.path(), &WAVES.replace("cells = 64", &format!("cells = {cells}")));
+        results(dir.path(), "results.csv").numbers(name).unwrap()
+    };
+    for name in ["stiffness", "area", "area_corrected", "largest_pressure"] {
+        let [fine, half, quarter] = [64, 32, 16].map(|cells| on(cells, name));
+        run_scene(dir.path(), &WAVES.replace("area = true", "area = true\ngrid_error = true"));
+        let file = results(dir.path(), "results.csv");
+        for i in 0..2 {
+            let column = |end: &str| file.numbers(&format!("{name}_grid_{end}")).unwrap()[i];
+            let expected =
+                analysis::grid_error(fine[i].unwrap(), half[i].unwrap(), quarter[i].unwrap()).unwrap();
+            // Starts of the solver differ between the runs: numbers agree within its tolerance of 1e-6.
+            approx::assert_relative_eq!(column("error").unwrap(), expected.error, epsilon = 1e-5);
+            assert_eq!(column("order").is_some(), expected.order.is_some());
+        }
+        assert!(file.numbers("rms_slope_grid_error").unwrap().iter().all(|e| e.unwrap() < 0.05));
+    }
+}
+
+#[test]
+fn an_accuracy_chooses_the_grid() {
+    let dir = tempfile::tempdir().unwrap();
+    let read = |text: &str| {
+        let path = dir.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        SceneFile::read(&path).and_then(|scene| scene.with_grid_for_accuracy(&|| false))
+    };
+    let asked =
+        |accuracy: &str| WAVES.replace("\n[models.bem3d]\ncells = 64", "").replace("modulus", accuracy);
+    let scene = read(&asked("accuracy = \"4 %\"\nmodulus")).unwrap();
+    let cells = |scene: &SceneFile| scene.models[0].size();
+    assert!((64..=256).contains(&cells(&scene)), "{}", cells(&scene));
+    assert!(cells(&scene) < cells(&read(&asked("accuracy = 0.002\nmodulus")).unwrap()));
+    let notes: String = scene.notes.iter().map(ToString::to_string).collect();
+    assert!(notes.contains("accuracy of 4.00 %: bem3d on "), "{notes}");
+    // The run says what it came to; one that misses it says so.
+    let options = Options { out: dir.path().join("out"), threads: 1, fresh: false };
+    let answer = |scene: &SceneFile| {
+        let outcome = run(scene, &Plan::new(scene).unwrap(), &options, &Silent, &|| false).unwrap();
+        let error = results(dir.path(), "results.csv").numbers("stiffness_grid_error").unwrap();
+        (outcome.notes.join("\n"), error[0].unwrap().max(error[1].unwrap()))
+    };
+    let (notes, error) = answer(&scene);
+    assert!(error < 0.04 && !notes.contains("accuracy not reached"), "{error} {notes}");
+    let mut missed = scene.clone();
+    missed.accuracy.as_mut().unwrap().share = 1e-6;
+    assert!(answer(&missed).0.contains("accuracy not reached (2 of 2 states)"));
+    // Of a given map every so many-th cell; never more than there are.
+    write_map(dir.path(), |_, _| 0.0);
+    let map = |accuracy: &str| {
+        MAP.replace("FORCE", "5 N").replace("models", &format!("accuracy = \"{accuracy}\"\nmodels"))
+    };
+    let coarse = read(&map("60 %")).unwrap();
+    assert!(
+        coarse.surface.describe().contains("a map of 20 x 15 cells")
+            || coarse.surface.describe().contains("40 x 30")
+    );
+    for (text, words) in [
+        (map("0.001 %"), "accuracy of 0.00 %: the map's own cells should give "),
+        (asked("accuracy = 0.002\nbudget = \"1 us\"\nmodulus"), "the budget of under 1 ms buys"),
+        (asked("budget = \"1 s\"\nmodulus"), "`budget` is given, but no `accuracy`"),
+        (asked("accuracy = \"100 %\"\nmodulus"), "expected a share above 0 and below 100 %"),
+        (asked("accuracy = \"few\"\nmodulus"), "expected a share above 0 and below 100 %"),
+        (WAVES.replace("modulus", "accuracy = 0.01\nmodulus"), "`cells` is given beside `accuracy`"),
+        (
+            asked("accuracy = 0.1\nmodulus").replace("stiffness = true\narea = true", ""),
+            "`accuracy` of what?",
+        ),
+        (asked("accuracy = 0.1\nmodulus").replace("bem3d", "persson"), "there is none here"),
+    ] {
+        let error = read(&text).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn distributions_and_pictures_of_one_scale() {
+    let dir = tempfile::tempdir().unwrap();
+    let asked = "area = true\ndistributions = [\"pressure\", \"gap\", \"patches\"]\ngap = [\"png\"]\npressure = [\"png\"]";
+    let outcome = run_scene(dir.path(), &WAVES.replace("area = true", asked));
+    let fraction = results(dir.path(), "results.csv").numbers("contact_fraction").unwrap();
+    let patches = results(dir.path(), "results.csv").numbers("patches").unwrap();
+    let integral = |name: &str, state: f64| -> f64 {
+        let file = results(dir.path(), &format!("distribution-{name}.csv"));
+        let column = |name: &str| file.numbers(name).unwrap();
+        let (lower, upper, density, of) =
+            (column("lower"), column("upper"), column("density"), column("state"));
+        let bins = (0..of.len()).filter(|&i| of[i] == Some(state));
+        bins.map(|i| (upper[i].unwrap() - lower[i].unwrap()) * density[i].unwrap()).sum()
+    };
+    for i in 0..2 {
+        approx::assert_relative_eq!(
+            integral("pressure", i as f64),
+            fraction[i].unwrap(),
+            max_relative = 1e-12
+        );
+        // A cell may be open with a gap of zero.
+        approx::assert_relative_eq!(
+            integral("gap", i as f64),
+            1.0 - fraction[i].unwrap(),
+            max_relative = 1e-3
+        );
+        approx::assert_relative_eq!(integral("patches", i as f64), patches[i].unwrap(), max_relative = 1e-12);
+    }
+    let name = |path: &std::path::PathBuf| path.file_name().unwrap().to_string_lossy().into_owned();
+    let files: Vec<String> = outcome.files.iter().map(name).collect();
+    for file in ["distribution-gap.svg", "gap-bem3d-0-001.png", "pressure-bem3d-0-000.png"] {
+        assert!(files.contains(&file.to_owned()) && dir.path().join("out").join(file).exists(), "{files:?}");
+    }
+    // What they were drawn from is gone, and the second run draws nothing.
+    let kept = std::fs::read_dir(dir.path().join("out/.units")).unwrap().flatten();
+    assert!(kept.into_iter().all(|entry| !entry.file_name().to_string_lossy().ends_with("f64")));
+    assert_eq!(run_scene(dir.path(), &WAVES.replace("area = true", asked)).kept, 2);
+}

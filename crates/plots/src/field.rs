@@ -7,6 +7,7 @@ use crate::text::Fonts;
 use contact_model::{Cells, Size};
 use runs::Result;
 use runs::files;
+use std::ops::Range;
 use std::path::Path;
 
 /// Which of the values that fall on one pixel it shows.
@@ -39,6 +40,10 @@ pub struct FieldPicture<'a> {
     pub values: &'a [f64],
     /// Which value a pixel shows.
     pub shown: Shown,
+    /// Ends of the colour scale, so that several pictures share one; `None`: those of the values.
+    pub range: Option<(f64, f64)>,
+    /// Cells in contact, which are outlined; empty for none.
+    pub contact: &'a [bool],
 }
 
 /// Longer side of the map, in units of the drawing; the shorter one has at least a twentieth of it.
@@ -53,10 +58,21 @@ const BAR: f64 = 18.0;
 const TICK: f64 = 14.0;
 /// Undefined points.
 const UNDEFINED: [u8; 3] = [205, 205, 205];
+/// Outline of the contact: far from all of viridis.
+const OUTLINE: [u8; 3] = [228, 26, 28];
+/// Where less than this share of the pixels is under pressure, each of these is drawn three pixels wide.
+const SPARSE: f64 = 0.02;
 
 impl FieldPicture<'_> {
+    /// The smallest and the largest finite value.
+    pub fn ends(values: &[f64]) -> (f64, f64) {
+        let finite = values.iter().copied().filter(|v| v.is_finite());
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    }
+
     /// Writes a PNG, y upwards. The colours are viridis, from the smallest to the largest value (from 0 under [`Shown::Largest`], where
-    /// zero is white); undefined points are grey.
+    /// zero is white) or over the range given; undefined points are grey, the contact has a red outline. Under [`Shown::Largest`] a
+    /// field of which less than 2 % of the pixels are above zero has each of these drawn three pixels wide.
     ///
     /// Cost: linear in the number of cells.
     ///
@@ -69,9 +85,7 @@ impl FieldPicture<'_> {
         let [w, h] = [size.x, size.y].map(|side| SIDE * (side / longer).max(0.05));
         let mut drawing = Drawing::new(LEFT + w + RIGHT, TOP + h.max(160.0) + BELOW);
         let frame = [LEFT, TOP, w, h];
-        let finite = || self.values.iter().copied().filter(|v| v.is_finite());
-        let low = finite().fold(f64::INFINITY, f64::min);
-        let high = finite().fold(f64::NEG_INFINITY, f64::max);
+        let (low, high) = self.range.unwrap_or_else(|| Self::ends(self.values));
         let low = if self.shown == Shown::Largest { low.min(0.0) } else { low };
         // A constant has a scale around it.
         let room = if high > low { 0.0 } else { high.abs().max(f64::MIN_POSITIVE) };
@@ -85,8 +99,7 @@ impl FieldPicture<'_> {
                 .into_array(),
         };
         let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
-        let pixels = (0..rows).rev().flat_map(|y| (0..columns).map(move |x| (x, y)));
-        let image = pixels.flat_map(|(x, y)| color(self.pixel(x, columns, y, rows))).collect();
+        let image = self.image(columns, rows, color).into_flattened();
         drawing.image(frame, image, columns);
         axes(&fonts, &mut drawing, frame, [(0.0, size.x), (0.0, size.y)]);
         let unit =
@@ -108,15 +121,47 @@ impl FieldPicture<'_> {
         files::write_whole(path, &drawing.png(&fonts, path)?)
     }
 
-    /// The value of a pixel of the image, counted from the lower left corner.
-    fn pixel(&self, x: usize, columns: usize, y: usize, rows: usize) -> f64 {
-        let cells = self.cells;
-        let row = |iy: usize| &self.values[iy * cells.columns..][..cells.columns];
+    /// Colours of all pixels, the upper left one first.
+    fn image(&self, columns: usize, rows: usize, color: impl Fn(f64) -> [u8; 3]) -> Vec<[u8; 3]> {
+        // From the lower left corner.
+        let at = |i: usize| (i % columns, i / columns);
+        let around = |i: usize| {
+            let (x, y) = at(i);
+            let (across, down) =
+                (x.saturating_sub(1)..=(x + 1).min(columns - 1), y.saturating_sub(1)..=(y + 1).min(rows - 1));
+            down.flat_map(move |y| across.clone().map(move |x| y * columns + x))
+        };
+        let all = 0..columns * rows;
+        let mut values: Vec<f64> = all.clone().map(|i| self.pixel(at(i).0, columns, at(i).1, rows)).collect();
+        let loaded = values.iter().filter(|v| **v > 0.0).count() as f64;
+        if self.shown == Shown::Largest && loaded < SPARSE * values.len() as f64 {
+            values = all.clone().map(|i| around(i).map(|j| values[j]).fold(values[i], f64::max)).collect();
+        }
+        let touches = |i: usize| {
+            let (across, down) = self.cells_of(at(i).0, columns, at(i).1, rows);
+            down.into_iter()
+                .any(|row| self.contact[row * self.cells.columns..][across.clone()].contains(&true))
+        };
+        let contact: Vec<bool> =
+            if self.contact.is_empty() { Vec::new() } else { all.map(touches).collect() };
+        let outlined = |i: usize| !contact.is_empty() && !contact[i] && around(i).any(|j| contact[j]);
+        let pixels = (0..rows).rev().flat_map(|y| (0..columns).map(move |x| y * columns + x));
+        pixels.map(|i| if outlined(i) { OUTLINE } else { color(values[i]) }).collect()
+    }
+
+    /// Columns and rows of the cells that fall on a pixel, counted from the lower left corner.
+    fn cells_of(&self, x: usize, columns: usize, y: usize, rows: usize) -> (Range<usize>, Range<usize>) {
         let range = |i: usize, pixels: usize, cells: usize| {
             let first = i * cells / pixels;
             first..((i + 1) * cells).div_ceil(pixels).clamp(first + 1, cells)
         };
-        let (across, down) = (range(x, columns, cells.columns), range(y, rows, cells.rows));
+        (range(x, columns, self.cells.columns), range(y, rows, self.cells.rows))
+    }
+
+    /// The value of a pixel.
+    fn pixel(&self, x: usize, columns: usize, y: usize, rows: usize) -> f64 {
+        let row = |iy: usize| &self.values[iy * self.cells.columns..][..self.cells.columns];
+        let (across, down) = self.cells_of(x, columns, y, rows);
         let middle =
             || row(usize::midpoint(down.start, down.end - 1))[usize::midpoint(across.start, across.end - 1)];
         let values = || down.clone().flat_map(|iy| row(iy)[across.clone()].iter().copied());
@@ -187,7 +232,19 @@ mod tests {
     fn picture(field: &Field, shown: Shown) -> FieldPicture<'_> {
         let (title, subtitle, quantity) = ("t".into(), "s".into(), "p (Pa)".into());
         let (cells, size, values) = (field.cells(), field.size(), field.values());
-        FieldPicture { title, subtitle, quantity, length_unit: "m", cells, size, values, shown }
+        let contact = &[];
+        FieldPicture {
+            title,
+            subtitle,
+            quantity,
+            length_unit: "m",
+            cells,
+            size,
+            values,
+            shown,
+            range: None,
+            contact,
+        }
     }
 
     /// Colours of a PNG at points of the map, counted from its lower left corner in shares of its sides.
@@ -226,6 +283,29 @@ mod tests {
         let large = Field::new(2000, 1.0, values).unwrap();
         let (x, y) = ((500.0 + 0.5) / 2000.0, (1000.0 + 0.5) / 2000.0);
         assert_eq!(colors(&large, Shown::Largest, &[(x, y), (0.3, 0.3)]), [viridis(1.0), [255; 3]]);
+    }
+
+    #[test]
+    fn contacts_are_outlined_and_a_scale_may_be_shared() {
+        // Cells of 52 x 52 pixels; the one in the middle of 5 x 5 touches.
+        let values: Vec<f64> = (0..25).map(|i| if i == 12 { 0.0 } else { 1.0 }).collect();
+        let field = Field::new([5, 5], [5.0, 5.0], values.clone()).unwrap();
+        let touching: Vec<bool> = values.iter().map(|v| *v == 0.0).collect();
+        let picture =
+            FieldPicture { contact: &touching, range: Some((0.0, 2.0)), ..picture(&field, Shown::Smallest) };
+        let viridis = |t| colorous::VIRIDIS.eval_continuous(t / 2.0).into_array();
+        let image = picture.image(50, 50, viridis);
+        let count = |color| image.iter().filter(|pixel| **pixel == color).count();
+        assert_eq!((count(viridis(0.0)), count(OUTLINE), count(viridis(1.0))), (100, 44, 2500 - 144));
+        assert_eq!((image[20 * 50 + 20], image[19 * 50 + 19]), (viridis(0.0), OUTLINE));
+        // More cells than pixels: one cell of 10^4 is seen.
+        let mut values = vec![1.0; 10_000];
+        values[5050] = 0.0;
+        let field = Field::new(100, 1.0, values.clone()).unwrap();
+        let touching: Vec<bool> = values.iter().map(|v| *v == 0.0).collect();
+        let picture = FieldPicture { contact: &touching, ..self::picture(&field, Shown::Smallest) };
+        let image = picture.image(10, 10, viridis);
+        assert_eq!(image.iter().filter(|pixel| **pixel == OUTLINE).count(), 8);
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! The cost of a run, predicted from small solves of the same kind.
 
 use crate::scenes::cost::Cost;
+use crate::scenes::grid_comparison::sampled;
 use crate::scenes::loads::Loading;
 use crate::scenes::numerics::{AnyModel, Numerics};
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
-use contact_model::{Cells, ContactState, HeightMap, Surface};
+use contact_model::{Cells, ContactState, Surface};
 use std::time::{Duration, Instant};
 
 /// Cells a side, and elements, of the solves that the cost is predicted from.
@@ -65,6 +66,9 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         solved.later / solved.states.saturating_sub(1).max(1) as f64 * requested.saturating_sub(1) as f64;
     cost.seconds =
         surfaces * (solved.prepare * time.powf(2.0 / TIME_EXPONENT) + (solved.first + later) * time);
+    if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) {
+        cost.seconds *= 1.0 + 0.5f64.powf(TIME_EXPONENT) + 0.25f64.powf(TIME_EXPONENT);
+    }
     cost.applications *= applications * per_state;
     cost.linear_solves *= per_state;
     cost.fields *= per_state;
@@ -127,7 +131,7 @@ fn small_solves(
     let mut physics = scene.scene(numerics, seed)?;
     let mut grid = numerics.boundary_elements().map(|elements| elements.grid(scene.surface.size()));
     if let Surface::Heights(map) = &physics.surface {
-        let thin = thinned(map, coarse)?;
+        let thin = sampled(map, coarse)?;
         grid = Some(thin.cells());
         physics.surface = Surface::Heights(std::sync::Arc::new(thin));
     }
@@ -163,40 +167,4 @@ fn small_solves(
         _ => {}
     }
     Ok((solved, size))
-}
-
-/// Every so many-th cell of a map, at most `coarse` along the longer side.
-fn thinned(map: &HeightMap, coarse: usize) -> contact_model::Result<HeightMap> {
-    let longer = map.columns().max(map.rows());
-    if longer <= coarse {
-        return Ok(map.clone());
-    }
-    let fewer = |count: usize| (count * coarse / longer).max(1);
-    let (columns, rows) = (fewer(map.columns()), fewer(map.rows()));
-    let at = |i: usize| {
-        let (row, column) = (i / columns * map.rows() / rows, i % columns * map.columns() / columns);
-        map.heights()[row * map.columns() + column]
-    };
-    let height = |h: f64| if h.is_finite() { h } else { f64::NAN };
-    let heights = (0..columns * rows).map(|i| height(at(i))).collect();
-    HeightMap::with_undefined([columns, rows], map.size(), heights)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn thin_maps_keep_their_shape_and_undefined_points() {
-        let height = |i: usize| if i.is_multiple_of(16) { f64::NAN } else { i as f64 };
-        let map = HeightMap::with_undefined([16, 4], [8.0, 1.0], (0..64).map(height).collect()).unwrap();
-        let thin = thinned(&map, 8).unwrap();
-        assert_eq!((thin.cells(), thin.size(), thin.undefined()), ([8, 2].into(), map.size(), 2));
-        assert_eq!((thin.heights()[1], thin.heights()[9]), (2.0, 34.0));
-        assert_eq!(thinned(&map, 16).unwrap(), map);
-        assert_eq!(
-            thinned(&map, 1).unwrap_err().to_string(),
-            "defined points = 0: expected at least 1 (every height of the map is undefined)"
-        );
-    }
 }

@@ -1,6 +1,7 @@
 //! The columns of `results.csv`: those that a scene asks for.
 
 use crate::scenes::entries::System;
+use crate::scenes::grid_comparison::GridErrors;
 use crate::scenes::loads::{Loading, Prescribed};
 use crate::scenes::scene_file::SceneFile;
 use analysis::{Column, Value};
@@ -18,6 +19,9 @@ pub(crate) struct State {
     pub normal: Option<ContactState>,
     pub history: Option<HistoryState>,
     pub status: Option<Status>,
+    /// Where it was compared with coarser grids.
+    pub grid_errors: GridErrors,
+    pub rms_slope: Option<f64>,
     /// Why there is no state.
     pub note: Option<String>,
 }
@@ -170,10 +174,39 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
             normal(s, |n| n.report.certificate.stiffness_error)
         }));
     }
+    if scene.requested.grid_error {
+        list.push(kind("rms_slope", "1", "of the surface on the grid that was solved", |s| {
+            s.rms_slope.into()
+        }));
+        let held = |name: &str| list.iter().any(|column| column.name == name);
+        let compared = grid_error_columns().into_iter().filter(|(name, _)| held(name));
+        list.extend(compared.flat_map(|(_, columns)| columns).collect::<Vec<_>>());
+    }
     list.push(kind("note", "-", "why a model refused a load, or what to beware of", |s| {
         s.note.clone().into()
     }));
     list
+}
+
+/// For each quantity that is compared with coarser grids ([`crate::scenes::grid_comparison::COMPARED`]), the estimated error and order.
+fn grid_error_columns() -> [(&'static str, [ResultColumn; 2]); 6] {
+    macro_rules! columns {
+        ($($place:literal $name:literal),*) => { [$(($name, [
+            ResultColumn {
+                name: concat!($name, "_grid_error"),
+                unit: "1",
+                meaning: "estimated relative error of the grid, from cells twice and four times as large",
+                value: |s| s.grid_errors[$place].map(|e| e.error).into(),
+            },
+            ResultColumn {
+                name: concat!($name, "_grid_order"),
+                unit: "1",
+                meaning: "order of convergence as observed on these grids; empty where none is seen",
+                value: |s| s.grid_errors[$place].and_then(|e| e.order).into(),
+            },
+        ])),*] };
+    }
+    columns!(0 "stiffness", 1 "area", 2 "area_corrected", 3 "mean_gap", 4 "largest_pressure", 5 "rms_slope")
 }
 
 /// The columns of a scene with their units.
@@ -200,5 +233,16 @@ fn finite(value: Value) -> Value {
     match value {
         Value::Number(v) if !v.is_finite() => Value::Empty,
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::grid_comparison::COMPARED;
+
+    #[test]
+    fn what_is_compared_has_its_columns() {
+        assert_eq!(grid_error_columns().map(|(name, _)| name), COMPARED);
     }
 }

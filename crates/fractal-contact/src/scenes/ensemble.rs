@@ -44,6 +44,9 @@ pub(crate) struct Mean {
 impl Mean {
     /// Mean and, for two surfaces or more, its standard error.
     pub fn of(&self, name: &str) -> Option<MeanAndDeviation> {
+        if let ("prescribed", Value::Number(value)) = (name, &self.prescribed) {
+            return Some((*value, None));
+        }
         let (_, value) = self.values.iter().find(|([quantity, ..], _)| *quantity == name)?;
         let (mean, deviation) = (*value)?;
         Some((mean, deviation.map(|deviation| deviation / (self.surfaces as f64).sqrt())))

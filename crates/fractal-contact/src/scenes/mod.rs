@@ -68,15 +68,19 @@
 //! No mechanics of its own, no distribution over machines (a model on a surface is the unit that one would
 //! distribute), no means over surfaces (`evaluation` has them): one row per state.
 
+mod accuracy;
 mod calibration;
 mod columns;
 mod cost;
 mod diagnostic;
+mod distributions;
 mod effects;
 mod ensemble;
 mod entries;
 mod error;
+mod field_pictures;
 mod generated_surface;
+mod grid_comparison;
 mod human_readable;
 mod info;
 mod loads;
@@ -96,8 +100,10 @@ mod scene_surface;
 mod summary;
 mod warnings;
 
+pub use accuracy::AccuracyTarget;
 pub use cost::Cost;
 pub use diagnostic::Diagnostic;
+pub use distributions::Distributed;
 pub use effects::{EffectLine, effect_lines};
 pub use entries::System;
 pub use error::{Error, Result};

@@ -1,11 +1,13 @@
 //! One model and one surface under all loads, or along the whole path.
 
 use crate::scenes::columns::{self, State};
+use crate::scenes::distributions::{self, Bin, Distributed};
 use crate::scenes::error::{Error, Result};
+use crate::scenes::field_pictures;
+use crate::scenes::grid_comparison::{GridComparison, solved_map};
 use crate::scenes::loads::Loading;
 use crate::scenes::numerics::{AnyModel, Numerics};
 use crate::scenes::outputs::FieldFormat;
-use crate::scenes::pictures;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
 use crate::scenes::scene_surface::SceneSurface;
@@ -19,7 +21,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Number of the format of stored units; it changes with anything that changes a row.
-pub(crate) const FORMAT: u32 = 4;
+pub(crate) const FORMAT: u32 = 5;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +56,8 @@ pub(crate) struct StateResult {
     pub row: Vec<Value>,
     /// Areas of the connected contacts.
     pub patches: Vec<f64>,
+    /// Distributions.
+    pub distributions: Vec<(Distributed, Vec<Bin>)>,
     /// Files of fields.
     pub files: Vec<StoredFile>,
 }
@@ -70,7 +74,7 @@ pub(crate) struct StoredFile {
 
 impl StoredFile {
     /// Of a file as it is.
-    fn of(out: &Path, name: String) -> Result<Self> {
+    pub fn of(out: &Path, name: String) -> Result<Self> {
         let path = out.join(&name);
         let content = std::fs::read(&path).map_err(runs::Error::file("read", &path))?;
         Ok(Self { name, bytes: content.len() as u64, digest: fnv1a_128(&content) })
@@ -131,9 +135,9 @@ impl ModelOnSurface {
             }
             other => format!("{other:?}"),
         };
-        let SceneFile { modulus, hardness, pair, effects, request, requested, system, .. } = scene;
+        let SceneFile { modulus, hardness, accuracy, pair, effects, request, requested, system, .. } = scene;
         format!(
-            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {modulus:?}\nhardness {hardness:?}\npair {pair:?}\neffects {effects:?}\n\
+            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
              request {request:?}\noutputs {requested:?} {system:?}\nnumber {}\nseed {}\n",
             bem3d::FORMAT,
             env!("CARGO_PKG_VERSION"),
@@ -186,6 +190,7 @@ impl ModelOnSurface {
                     keep(result)
                 };
                 self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
+                field_pictures::draw(*self, scene, cells(scene, numerics), out, &mut result)?;
             }
             (AnyModel::History(model), Loading::Path(steps)) => {
                 let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
@@ -221,6 +226,20 @@ impl ModelOnSurface {
         let normalisation = contact.normalisation();
         let missing: Vec<usize> =
             (0..requests.values.len()).filter(|&i| result.states.iter().all(|s| s.index != i)).collect();
+        let load = |&index: &usize| requests.load(requests.values[index], &normalisation);
+        let loads = missing.iter().map(load).collect::<contact_model::Result<Vec<Load>>>();
+        let numerics = self.numerics(scene);
+        let comparison = match &loads {
+            Ok(loads) if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) => {
+                match GridComparison::solve(scene, numerics, scene.seed(self.surface), loads, stop) {
+                    Err(contact_model::Error::Stopped { .. }) => return Ok(()),
+                    found => Some(found.map_err(|error| {
+                        runs::Error::model(format!("coarser grids of surface {}", self.surface))(error)
+                    })?),
+                }
+            }
+            _ => None,
+        };
         let mut written = Ok(());
         let mut answer = |place: usize, found: contact_model::Result<ContactState>| {
             let index = missing[place];
@@ -236,7 +255,11 @@ impl ModelOnSurface {
             match found {
                 Ok(mut found) => {
                     state.status = Some(found.report.status);
-                    state.note = Warning::note(&Warning::of(scene, &found));
+                    if let Some(comparison) = &comparison {
+                        state.grid_errors = comparison.errors(place, &found);
+                        state.rms_slope = Some(comparison.rms_slope);
+                    }
+                    state.note = Warning::note(&Warning::of(scene, &found, &state.grid_errors));
                     written = self.write_fields(scene, &mut found, out, &mut kept);
                     state.normal = Some(found);
                 }
@@ -259,8 +282,7 @@ impl ModelOnSurface {
             // A file that cannot be written ends the sweep; its error is the one that is returned.
             if written.is_ok() { Ok(()) } else { Err(contact_model::Error::Stopped { best: None }) }
         };
-        let load = |&index: &usize| requests.load(requests.values[index], &normalisation);
-        let swept = match missing.iter().map(load).collect::<contact_model::Result<Vec<Load>>>() {
+        let swept = match loads {
             Ok(loads) => contact.sweep(&loads, stop, &mut answer),
             // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
             Err(error) => (0..missing.len()).try_for_each(|i| answer(i, Err(error.clone()))),
@@ -290,7 +312,7 @@ impl ModelOnSurface {
             let refused = match contact.advance_until(*step, stop) {
                 Ok(found) => {
                     state.status = Some(found.normal.report.status);
-                    state.note = Warning::note(&Warning::of(scene, &found.normal));
+                    state.note = Warning::note(&Warning::of(scene, &found.normal, &state.grid_errors));
                     state.normal = Some(found.normal.clone());
                     state.history = Some(found);
                     false
@@ -311,7 +333,7 @@ impl ModelOnSurface {
         result.complete = true;
     }
 
-    /// Writes the fields that are asked for and lets go of them.
+    /// Writes the fields that are asked for, counts distributions, and lets go of the fields.
     fn write_fields(
         &self,
         scene: &SceneFile,
@@ -323,23 +345,27 @@ impl ModelOnSurface {
             kept.patches = patches.areas().to_vec();
         }
         let Fields { pressure, displacement, gap, .. } = found.fields.take().unwrap_or_default();
+        let cell = scene.surface.size();
+        let cell = cell.x * cell.y / cells(scene, self.numerics(scene)).checked_count().unwrap_or(1) as f64;
+        let state = (pressure.as_ref(), gap.as_ref(), found.patches.as_ref());
+        kept.distributions = distributions::of_state(&scene.requested.distributions, state, cell);
         let first = kept.index == 0 && !scene.requested.heights.is_empty();
         let heights = if first { self.heights(scene)? } else { None };
         let fields = [pressure, displacement, gap, heights];
         for ((name, formats), field) in scene.requested.fields().into_iter().zip(&fields) {
             let Some(field) = field else { continue };
             let values = &on_defined_points(name, field, scene);
+            let (model, surface, state) = (self.numerics(scene).name(), self.surface, kept.index);
+            let file = |extension| FieldFile { field: name, model, surface, state, extension };
+            if field_pictures::is_needed(scene, name) {
+                kept.files.push(field_pictures::keep(out, file(""), values)?);
+            }
             for &format in formats {
-                let (model, extension) = (self.numerics(scene).name(), format.extension());
-                let (surface, state) = (self.surface, kept.index);
-                let file = FieldFile { field: name, model, surface, state, extension }.to_string();
+                let file = file(format.extension()).to_string();
                 let path = out.join(&file);
                 match format {
                     FieldFormat::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
-                    FieldFormat::Png => {
-                        let load = (self.surface, kept.index);
-                        pictures::field(scene, name, model, load, field.cells(), values).save(&path)?;
-                    }
+                    FieldFormat::Png => continue,
                     FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), values)?,
                     FieldFormat::Vti => write_vti(&path, name, scene, field.cells(), values)?,
                 }
@@ -352,13 +378,11 @@ impl ModelOnSurface {
     /// The heights that boundary elements solve, NaN where they are undefined; `None` for a model without cells.
     fn heights(&self, scene: &SceneFile) -> Result<Option<Field>> {
         let numerics = self.numerics(scene);
-        let Some(elements) = numerics.boundary_elements() else { return Ok(None) };
-        let seed = scene.seed(self.surface);
+        if numerics.boundary_elements().is_none() {
+            return Ok(None);
+        }
         let draw = || {
-            let map = match scene.surface.for_model(numerics, seed)? {
-                Surface::Heights(map) => map,
-                surface => surface_gen::height_map(&surface, elements.grid(surface.size()), seed)?,
-            };
+            let map = solved_map(scene, numerics, scene.seed(self.surface))?;
             let known = |h: &f64| if h.is_finite() { *h } else { f64::NAN };
             Field::new(map.cells(), map.size(), map.heights().iter().map(known).collect())
         };
@@ -455,8 +479,15 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let mut kept = StateResult::default();
         let unit = ModelOnSurface { model: 0, surface: 0 };
+        std::fs::create_dir(dir.path().join(".units")).unwrap();
         unit.write_fields(&scene, &mut state, dir.path(), &mut kept).unwrap();
-        assert_eq!((kept.files.len(), state.fields), (8, None));
+        assert_eq!((kept.files.len(), state.fields.is_none()), (8, true));
+        let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
+        field_pictures::draw(unit, &scene, [3, 2].into(), dir.path(), &mut result).unwrap();
+        let files = &result.states[0].files;
+        assert_eq!((files.len(), files.iter().any(StoredFile::is_hidden)), (8, false));
+        assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
+        assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 0);
         let scan = |name: &str| {
             surface_io::Scan::read(&dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };

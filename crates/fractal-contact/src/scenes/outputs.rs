@@ -1,5 +1,6 @@
 //! `[outputs]`: what is not asked for is not computed and not stored.
 
+use crate::scenes::distributions::Distributed;
 use crate::scenes::entries::{Entries, Entry, Read, System};
 use contact_model::{Conductance, Outputs};
 use surface_io::Dimension;
@@ -42,6 +43,10 @@ pub struct RequestedOutputs {
     pub gap: Vec<FieldFormat>,
     /// Formats of the heights as they are solved: after crop, fill and detrend, or as drawn.
     pub heights: Vec<FieldFormat>,
+    /// Distributions that are counted.
+    pub distributions: Vec<Distributed>,
+    /// Whether states of boundary elements are compared with those on coarser grids.
+    pub grid_error: bool,
     /// Whether curves are drawn.
     pub curves: bool,
 }
@@ -67,6 +72,8 @@ impl RequestedOutputs {
             ("displacement", displacement),
             ("gap", gap),
             ("heights", !self.heights.is_empty()),
+            ("distributions", !self.distributions.is_empty()),
+            ("grid_error", self.grid_error),
             ("curves", self.curves),
         ]
     }
@@ -82,6 +89,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     outputs.area = flag("area")?;
     outputs.contact_patches = flag("contact_patches")?;
     requested.outputs.mean_gap = flag("mean_gap")?;
+    requested.grid_error = flag("grid_error")?;
     requested.curves = flag("curves")?;
     let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
     requested.pressure = formats("pressure")?;
@@ -91,9 +99,25 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     if let Some(entry) = table.find("conductance") {
         requested.outputs.conductance = read_conductance(&entry, system)?;
     }
-    requested.outputs.pressure = !requested.pressure.is_empty();
+    if let Some(entry) = table.find("distributions") {
+        for item in entry.list() {
+            let of = item.choice(&Distributed::ALL)?;
+            if !requested.distributions.contains(&of) {
+                requested.distributions.push(of);
+            }
+        }
+    }
+    let counted = |of: Distributed| requested.distributions.contains(&of);
+    // Pictures outline the contact.
+    let outlined = [&requested.gap, &requested.displacement].iter().any(|f| f.contains(&FieldFormat::Png));
+    // Where there is contact, the gap is rounding.
+    requested.outputs.pressure = !requested.pressure.is_empty()
+        || outlined
+        || counted(Distributed::Pressure)
+        || counted(Distributed::Gap);
     requested.outputs.displacement = !requested.displacement.is_empty();
-    requested.outputs.gap = !requested.gap.is_empty();
+    requested.outputs.gap = !requested.gap.is_empty() || counted(Distributed::Gap);
+    requested.outputs.contact_patches |= counted(Distributed::Patches);
     table.finish()?;
     Ok(requested)
 }

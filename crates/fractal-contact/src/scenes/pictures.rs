@@ -12,7 +12,7 @@ use plots::{Chart, Curve, FieldPicture, Shown};
 use std::path::{Path, PathBuf};
 
 /// What is drawn over what: of loads, and of paths.
-const OVER_FORCE: [&str; 5] = ["stiffness", "area", "conductance", "approach", "mean_gap"];
+const OVER_LOAD: [&str; 6] = ["force", "stiffness", "area", "conductance", "approach", "mean_gap"];
 const OVER_TIME: [&str; 2] = ["force", "approach"];
 
 /// `curve-Y.svg` and `.png` for every column that the scene asked for.
@@ -37,8 +37,20 @@ pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
 
 /// What is drawn over what, where the table has it.
 fn pairs(scene: &SceneFile) -> Vec<(&'static str, &'static str)> {
-    if !scene.is_history() {
-        return OVER_FORCE.map(|y| ("force", y)).to_vec();
+    if let Loading::Loads(loads) = &scene.request {
+        let x = match loads.prescribed {
+            Prescribed::Force => "force",
+            Prescribed::ForceBar => "force_bar",
+            Prescribed::MeanPressure => "prescribed",
+            Prescribed::Approach => "approach",
+            Prescribed::MeanGap => "mean_gap",
+        };
+        // A force that is prescribed in other words is no answer.
+        let answers = match loads.prescribed {
+            Prescribed::Approach | Prescribed::MeanGap => &OVER_LOAD[..],
+            _ => &OVER_LOAD[1..],
+        };
+        return answers.iter().filter(|y| **y != x).map(|y| (x, *y)).collect();
     }
     if scene.effects.friction == contact_model::Friction::Off {
         return OVER_TIME.map(|y| ("time", y)).to_vec();
@@ -63,8 +75,37 @@ pub(crate) fn field<'a>(
         "gap" => (format!("gap $g${}", with("m")), Shown::Smallest),
         _ => (format!("height{}", with("m")), Shown::Middle),
     };
-    let load = match &scene.request {
-        _ if name == "heights" => "as solved".to_owned(),
+    let load = if name == "heights" { "as solved".to_owned() } else { load(scene, state) };
+    let mut title = format!("{name}, {}", model_name(model));
+    title[..1].make_ascii_uppercase();
+    let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
+    let subtitle = format!("{}{number}: {load}", scene_name(scene));
+    let length_unit = if si { "m" } else { "" };
+    let size = scene.surface.size();
+    FieldPicture {
+        title,
+        subtitle,
+        quantity,
+        length_unit,
+        cells,
+        size,
+        values,
+        shown,
+        range: None,
+        contact: &[],
+    }
+}
+
+/// The scene's name in a title.
+pub(crate) fn scene_name(scene: &SceneFile) -> String {
+    let file = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    file.replace(['-', '_'], " ")
+}
+
+/// A load in words, with its unit.
+pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
+    let si = scene.system == System::Si;
+    match &scene.request {
         Loading::Loads(loads) => {
             let unit = match loads.prescribed {
                 Prescribed::ForceBar => "",
@@ -77,14 +118,7 @@ pub(crate) fn field<'a>(
             format!("{words} {}{unit}", short(loads.values[state]))
         }
         Loading::Path(_) => format!("step {state}"),
-    };
-    let mut title = format!("{name}, {}", model_name(model));
-    title[..1].make_ascii_uppercase();
-    let file = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
-    let subtitle = format!("{}{number}: {load}", file.replace(['-', '_'], " "));
-    let length_unit = if si { "m" } else { "" };
-    FieldPicture { title, subtitle, quantity, length_unit, cells, size: scene.surface.size(), values, shown }
+    }
 }
 
 /// A constant, such as a force that is held, is no picture.
@@ -97,7 +131,7 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
     let place = |name: &str| table.columns().iter().position(|c| c.name == name);
     let label = |name: &str| {
         let unit = place(name).map_or("1", |i| table.columns()[i].unit);
-        let (words, symbol) = quantity(name);
+        let (words, symbol) = quantity(scene, name);
         let label = if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") };
         match unit {
             "1" | "-" => label,
@@ -127,8 +161,7 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
     };
     let curves: Vec<Curve> =
         scene.models.iter().map(|m| curve(m.name())).filter(|curve| !curve.points.is_empty()).collect();
-    let name = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let mut title = format!("{} over {}", quantity(y).0, quantity(x).0);
+    let mut title = format!("{} over {}", quantity(scene, y).0, quantity(scene, x).0);
     title[..1].make_ascii_uppercase();
     let surfaces = match scene.sampling.surfaces {
         1 => String::new(),
@@ -147,7 +180,7 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
     };
     Chart {
         title,
-        subtitle: format!("scene: {}{surfaces}", name.replace(['-', '_'], " ")),
+        subtitle: format!("scene: {}{surfaces}", scene_name(scene)),
         x_label: label(x),
         y_label: label(y),
         curves,
@@ -156,8 +189,12 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
 }
 
 /// A column in words, and its symbol of the glossary.
-fn quantity(column: &str) -> (&str, &str) {
+fn quantity<'a>(scene: &SceneFile, column: &'a str) -> (&'a str, &'a str) {
+    let of_pressure =
+        matches!(&scene.request, Loading::Loads(loads) if loads.prescribed == Prescribed::MeanPressure);
     match column {
+        "prescribed" if of_pressure => ("mean pressure", "\\bar{p}"),
+        "force_bar" => ("force", "\\bar{F}"),
         "force" => ("force", "F"),
         "approach" => ("approach", "d"),
         "mean_gap" => ("mean gap", "\\bar{g}"),
@@ -173,12 +210,12 @@ fn quantity(column: &str) -> (&str, &str) {
 }
 
 /// A unit with its powers raised: `m^2` and `W/K`.
-fn unit_label(unit: &str) -> String {
+pub(crate) fn unit_label(unit: &str) -> String {
     format!("$\\rm{{{unit}}}$")
 }
 
 /// What a model is called outside code.
-fn model_name(name: &str) -> &str {
+pub(crate) fn model_name(name: &str) -> &str {
     match name {
         "bem3d" => "3D boundary elements",
         "mdr1d" => "1D reduction",

@@ -1,5 +1,6 @@
 //! Whose files are in a directory of results: those that its manifest lists are the program's own.
 
+use crate::scenes::distributions;
 use crate::scenes::error::Result;
 use crate::scenes::model_on_surface::field_of_file;
 use crate::scenes::pictures;
@@ -48,6 +49,7 @@ impl ResultFolder {
         let mut files = self.owned.clone();
         files.extend(["results.csv", "ensemble.csv", "patches.csv", "manifest.json"].map(str::to_owned));
         files.extend(pictures::curve_files(scene));
+        files.extend(distributions::files(scene));
         files.retain(|name| self.owned.contains(name) || may_write(scene, name));
         files
     }
@@ -104,6 +106,7 @@ fn may_write(scene: &SceneFile, name: &str) -> bool {
         "results.csv" | "manifest.json" => true,
         "patches.csv" => requested.outputs.contact_patches,
         "ensemble.csv" => scene.sampling.surfaces > 1,
+        _ if distributions::files(scene).iter().any(|file| file == name) => true,
         _ if requested.curves && pictures::curve_files(scene).iter().any(|file| file == name) => true,
         _ => field_of_file(name).is_some_and(|file| {
             requested.fields().iter().any(|(field, formats)| {

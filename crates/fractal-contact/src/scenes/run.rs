@@ -3,6 +3,7 @@
 use crate::scenes::calibration;
 use crate::scenes::columns;
 use crate::scenes::cost::Cost;
+use crate::scenes::distributions::{self, Solved};
 use crate::scenes::ensemble;
 use crate::scenes::error::Result;
 use crate::scenes::manifest;
@@ -64,11 +65,75 @@ pub fn run(
     let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
     let mut outcome =
         SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
+    let Tables { states: table, patches } = gather(scene, columns, &units, &results, options, &mut outcome)?;
+    let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &table) } else { Vec::new() };
+    let header = header(scene, plan);
+    let mut write = |name: &str, table: &Table| -> Result<()> {
+        let path = options.out.join(name);
+        write_csv(&path, table, &header)?;
+        outcome.files.push(path);
+        Ok(())
+    };
+    write("results.csv", &table)?;
+    if scene.requested.outputs.contact_patches {
+        write("patches.csv", &patches)?;
+    }
+    if !means.is_empty() {
+        let title = format!("{}: means over surfaces", title(scene));
+        let means = ensemble::table(title, table.columns(), &means);
+        write("ensemble.csv", &means.map_err(runs::Error::model("means over surfaces"))?)?;
+    }
+    let solved: Vec<Solved<'_>> = (units.iter().zip(&results))
+        .filter_map(|(unit, result)| {
+            Some((unit.numerics(scene).name(), unit.surface, result.as_ref()?.states.as_slice()))
+        })
+        .collect();
+    for &of in &scene.requested.distributions {
+        let title = format!("{}: distribution of {}", title(scene), of.name());
+        write(&format!("distribution-{}.csv", of.name()), &distributions::table(scene, of, title, &solved)?)?;
+    }
+    for &of in &scene.requested.distributions {
+        if let Some(chart) = distributions::chart(scene, of, &solved) {
+            outcome.files.extend(chart.save(&options.out, &format!("distribution-{}", of.name()))?);
+        }
+    }
+    if scene.requested.curves {
+        outcome.files.extend(pictures::curves(scene, &table, &means, &options.out)?);
+    }
+    outcome.summary = summary::summary(scene, &table, &means);
+    outcome.actual = actual(scene, &units, &results, &table);
+    outcome.peak_memory = runs::peak_memory();
+    outcome.seconds = start.elapsed().as_secs_f64();
+    outcome.files.push(options.out.join("manifest.json"));
+    let removed = folder.remove_others(&outcome.files)?;
+    if removed > 0 {
+        let out = options.out.display();
+        outcome.notes.push(format!("{removed} files that an earlier run left in {out} were removed"));
+    }
+    manifest::write(scene, plan, options, &outcome)?;
+    Ok(outcome)
+}
+
+/// The tables of a run.
+struct Tables {
+    states: Table,
+    patches: Table,
+}
+
+/// Rows of all results in their order; counts, notes and files of fields go to the outcome.
+fn gather(
+    scene: &SceneFile,
+    columns: Vec<Column>,
+    units: &[ModelOnSurface],
+    results: &[Option<ModelResult>],
+    options: &Options,
+    outcome: &mut SceneOutcome,
+) -> Result<Tables> {
     let mut table = Table::new(title(scene), columns);
     let mut patches = patches_table(scene);
     let note = table.columns().iter().position(|c| c.name == "note");
     let mut warned = [0; Warning::ALL.len()];
-    for (unit, result) in units.iter().zip(&results) {
+    for (unit, result) in units.iter().zip(results) {
         let Some(result) = result else {
             outcome.stopped = true;
             continue;
@@ -96,7 +161,8 @@ pub fn run(
                 ];
                 patches.push(row).map_err(runs::Error::model("a patch"))?;
             }
-            outcome.files.extend(state.files.iter().map(|file| options.out.join(&file.name)));
+            let shown = state.files.iter().filter(|file| !file.is_hidden());
+            outcome.files.extend(shown.map(|file| options.out.join(&file.name)));
         }
     }
     outcome.states = table.rows().len();
@@ -108,39 +174,7 @@ pub fn run(
             warning.remedy()
         ));
     }
-    let header = header(scene, plan);
-    let path = options.out.join("results.csv");
-    write_csv(&path, &table, &header)?;
-    outcome.files.insert(0, path);
-    if scene.requested.outputs.contact_patches {
-        let path = options.out.join("patches.csv");
-        write_csv(&path, &patches, &header)?;
-        outcome.files.push(path);
-    }
-    let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &table) } else { Vec::new() };
-    if !means.is_empty() {
-        let path = options.out.join("ensemble.csv");
-        let title = format!("{}: means over surfaces", title(scene));
-        let table = ensemble::table(title, table.columns(), &means)
-            .map_err(runs::Error::model("means over surfaces"))?;
-        write_csv(&path, &table, &header)?;
-        outcome.files.push(path);
-    }
-    if scene.requested.curves {
-        outcome.files.extend(pictures::curves(scene, &table, &means, &options.out)?);
-    }
-    outcome.summary = summary::summary(scene, &table, &means);
-    outcome.actual = actual(scene, &units, &results, &table);
-    outcome.peak_memory = runs::peak_memory();
-    outcome.seconds = start.elapsed().as_secs_f64();
-    outcome.files.push(options.out.join("manifest.json"));
-    let removed = folder.remove_others(&outcome.files)?;
-    if removed > 0 {
-        let out = options.out.display();
-        outcome.notes.push(format!("{removed} files that an earlier run left in {out} were removed"));
-    }
-    manifest::write(scene, plan, options, &outcome)?;
-    Ok(outcome)
+    Ok(Tables { states: table, patches })
 }
 
 /// As many threads as there is memory for.

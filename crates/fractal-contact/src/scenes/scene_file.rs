@@ -1,5 +1,6 @@
 //! A scene as it stands in a file.
 
+use crate::scenes::accuracy::{AccuracyTarget, read_accuracy};
 use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::effects::read_effects;
 use crate::scenes::entries::{Entries, Entry, Read, System};
@@ -36,6 +37,8 @@ pub struct SceneFile {
     pub modulus: f64,
     /// Pressure above which a state is marked; E*/10 where none is given.
     pub hardness: Option<f64>,
+    /// Which accuracy the grid is chosen for ([`SceneFile::with_grid_for_accuracy`]).
+    pub accuracy: Option<AccuracyTarget>,
     /// Both bodies, where they are named.
     pub pair: Option<Pair>,
     /// Effects, off unless named.
@@ -67,6 +70,7 @@ pub struct Sampling {
 struct Places {
     models: Vec<Range<usize>>,
     outputs: Vec<(&'static str, Range<usize>)>,
+    accuracy: Option<Range<usize>>,
 }
 
 impl SceneFile {
@@ -94,6 +98,7 @@ impl SceneFile {
             surface,
             modulus,
             hardness: None,
+            accuracy: None,
             pair: None,
             effects: Effects::default(),
             request,
@@ -187,6 +192,11 @@ impl SceneFile {
         )
     }
 
+    /// A mistake of the accuracy that is asked for.
+    pub(crate) fn at_accuracy(&self, diagnostic: Diagnostic) -> Diagnostic {
+        self.placed(diagnostic, self.places.accuracy.clone())
+    }
+
     fn placed(&self, diagnostic: Diagnostic, span: Option<Range<usize>>) -> Diagnostic {
         let diagnostic = match span {
             Some(span) => diagnostic.at(span),
@@ -234,13 +244,20 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     let requested = read_outputs(outputs_table, system)?;
     let (modulus, pair) = read_material(&scene, system)?;
     let hardness = scene.find("hardness").map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
+    let accuracy = read_accuracy(&scene)?;
     let SurfaceEntry { surface, metadata, mut notes } = read_surface(&scene, system, directory)?;
     check_cells(options.as_ref(), &models, &surface)?;
+    if accuracy.is_some() {
+        check_no_grid(options.as_ref())?;
+    }
     let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
     let sampling = read_sampling(root, &scene, &surface, &mut notes)?;
     scene.finish()?;
-    let places =
-        Places { models: models.iter().map(|(_, entry)| entry.span()).collect(), outputs: output_places };
+    let places = Places {
+        models: models.iter().map(|(_, entry)| entry.span()).collect(),
+        outputs: output_places,
+        accuracy: accuracy.as_ref().map(|(_, entry)| entry.key_span()),
+    };
     check_request(&request, &request_entry, &surface, &effects)?;
     check_histories(&models, &request, &request_entry, &effects)?;
     let models = models.into_iter().map(|(numerics, _)| numerics).collect();
@@ -252,6 +269,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
         surface,
         modulus,
         hardness,
+        accuracy: accuracy.map(|(target, _)| target),
         pair,
         effects,
         request,
@@ -264,7 +282,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
 }
 
 fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
-    const NAMES: [&str; 10] = [
+    const NAMES: [&str; 12] = [
         "stiffness",
         "area",
         "conductance",
@@ -274,6 +292,8 @@ fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
         "displacement",
         "gap",
         "heights",
+        "distributions",
+        "grid_error",
         "curves",
     ];
     let Some(table) = table else { return Vec::new() };
@@ -352,6 +372,20 @@ fn read_sampling(
     }
     table.finish()?;
     Ok(Sampling { seed, surfaces: count as usize })
+}
+
+/// What an accuracy chooses is not given.
+fn check_no_grid(options: Option<&Entries<'_>>) -> Read<()> {
+    let Some(entry) = options.and_then(|options| options.entry("bem3d")) else { return Ok(()) };
+    let table = entry.table()?;
+    for key in ["cells", "rows", "tolerance"] {
+        if let Some(given) = table.entry(key) {
+            return Err(given
+                .diagnostic_at_key(format!("`{key}` is given beside `accuracy`, which chooses it"))
+                .with_help("keep one of them"));
+        }
+    }
+    Ok(())
 }
 
 /// A map brings its own cells, and those of a generated surface are not too many.

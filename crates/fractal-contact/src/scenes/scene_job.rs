@@ -1,5 +1,6 @@
 //! A model and a surface as a job, and its result as text.
 
+use crate::scenes::distributions::{Bin, Distributed};
 use crate::scenes::error::{Error, Result};
 use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult, StateResult, StoredFile};
 use crate::scenes::scene_file::SceneFile;
@@ -81,6 +82,10 @@ fn format(result: &ModelResult) -> String {
             let areas: Vec<String> = state.patches.iter().map(|a| format!("{a:?}")).collect();
             text += &format!("patches {}\n", areas.join(" "));
         }
+        for (of, bins) in &state.distributions {
+            let bins: Vec<String> = bins.iter().map(|[a, b, d]| format!("{a:?},{b:?},{d:?}")).collect();
+            text += &format!("distribution {} {}\n", of.name(), bins.join(" "));
+        }
         for StoredFile { name, bytes, digest } in &state.files {
             text += &format!("file {digest:032x} {bytes} {name}\n");
         }
@@ -128,6 +133,16 @@ fn parse(text: &str, columns: usize) -> Option<ModelResult> {
             ("patches", Some(state)) => {
                 state.patches = rest.split(' ').map(|a| a.parse().ok()).collect::<Option<Vec<f64>>>()?;
             }
+            ("distribution", Some(state)) => {
+                let (name, bins) = rest.split_once(' ')?;
+                let (_, of) = Distributed::ALL.into_iter().find(|(known, _)| *known == name)?;
+                let bin = |text: &str| -> Option<Bin> {
+                    let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.parse().ok()).collect();
+                    numbers?.try_into().ok()
+                };
+                let bins: Option<Vec<Bin>> = bins.split(' ').filter(|bin| !bin.is_empty()).map(bin).collect();
+                state.distributions.push((of, bins?));
+            }
             ("file", Some(state)) => {
                 let mut words = rest.splitn(3, ' ');
                 let digest = u128::from_str_radix(words.next()?, 16).ok()?;
@@ -149,6 +164,11 @@ mod tests {
         let row = vec![Value::Text("a b".into()), Value::Number(1.0 / 3.0), Value::Count(7), Value::Empty];
         let file = StoredFile { name: "a b.npy".into(), bytes: 3, digest: 7 };
         let first = StateResult { row: row.clone(), patches: vec![1e-300, 0.1], ..StateResult::default() };
+        let distributions = vec![
+            (Distributed::Gap, vec![[0.0, 0.1, 1e-300], [0.1, 0.2, 3.0]]),
+            (Distributed::Pressure, vec![]),
+        ];
+        let first = StateResult { distributions, ..first };
         let second = StateResult { index: 2, failed: true, row, files: vec![file], ..StateResult::default() };
         let result = ModelResult {
             seconds: 0.25,

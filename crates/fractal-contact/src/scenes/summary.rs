@@ -5,15 +5,18 @@ use crate::scenes::scene_file::SceneFile;
 use analysis::{Table, Value};
 
 /// Columns that are shown where the table has them.
-const SHOWN: [&str; 11] = [
+const SHOWN: [&str; 14] = [
     "prescribed",
     "time",
     "force",
     "approach",
     "mean_gap",
+    "mean_gap_grid_error",
     "stiffness",
+    "stiffness_grid_error",
     "area",
     "area_corrected",
+    "area_corrected_grid_error",
     "contact_fraction",
     "largest_pressure",
     "contact_cells",

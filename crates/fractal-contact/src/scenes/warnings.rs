@@ -1,5 +1,7 @@
 //! What may be wrong with a state though it is solved as well as it was asked for, and what to do about it.
 
+use crate::scenes::accuracy::within;
+use crate::scenes::grid_comparison::GridErrors;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_surface::SceneSurface;
 use contact_model::{ContactState, Surface};
@@ -21,10 +23,12 @@ pub(crate) enum Warning {
     Edge,
     Yield,
     Area,
+    Accuracy,
 }
 
 impl Warning {
-    pub const ALL: [Self; 5] = [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area];
+    pub const ALL: [Self; 6] =
+        [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area, Self::Accuracy];
 
     /// What stands in the row of the state.
     pub fn as_str(self) -> &'static str {
@@ -34,6 +38,7 @@ impl Warning {
             Self::Edge => "contact at the edge of the rectangle",
             Self::Yield => "pressure above the hardness (E*/10 where none is given)",
             Self::Area => "area not resolved",
+            Self::Accuracy => "accuracy not reached",
         }
     }
 
@@ -53,11 +58,14 @@ impl Warning {
             Self::Area => {
                 "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells"
             }
+            Self::Accuracy => {
+                "the columns `_grid_error` say what was; smaller cells, larger loads, or a lower `accuracy`"
+            }
         }
     }
 
     /// All that concern a state.
-    pub fn of(scene: &SceneFile, state: &ContactState) -> Vec<Self> {
+    pub fn of(scene: &SceneFile, state: &ContactState, errors: &GridErrors) -> Vec<Self> {
         let mut found = Vec::new();
         let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
         let flat = matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. }));
@@ -65,6 +73,7 @@ impl Warning {
         let resolution = state.resolution;
         let holds = |warning: Self| match (warning, resolution) {
             (Self::FewCells, _) => few,
+            (Self::Accuracy, _) => scene.accuracy.is_some_and(|target| !within(scene, errors, target.share)),
             (_, None) => false,
             (Self::OneCell, Some(r)) => r.largest_share > ALONE,
             (Self::Edge, Some(r)) => r.edge_cells > 0 && !flat,

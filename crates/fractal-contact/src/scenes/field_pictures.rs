@@ -1,0 +1,91 @@
+//! Pictures of fields. They are drawn last, when the range of all loads is known: one surface has one scale.
+
+use crate::scenes::error::Result;
+use crate::scenes::model_on_surface::{FieldFile, ModelOnSurface, ModelResult, StoredFile};
+use crate::scenes::outputs::FieldFormat;
+use crate::scenes::pictures;
+use crate::scenes::scene_file::SceneFile;
+use contact_model::Cells;
+use plots::FieldPicture;
+use runs::files;
+use std::path::Path;
+
+/// Where values wait for being drawn, beside the stored results.
+const WAITING: &str = ".units/";
+const EXTENSION: &str = "f64";
+
+impl StoredFile {
+    /// Whether it is of the program's own use only.
+    pub fn is_hidden(&self) -> bool {
+        self.name.starts_with(WAITING)
+    }
+}
+
+/// Whether a field of this name is drawn, or needed for drawing another one: contacts are outlined.
+pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
+    let drawn = |of: &str| {
+        let fields = scene.requested.fields();
+        fields.iter().any(|(field, formats)| *field == of && formats.contains(&FieldFormat::Png))
+    };
+    drawn(name) || name == "pressure" && (drawn("gap") || drawn("displacement"))
+}
+
+/// Keeps the values of a field, little-endian, row-major.
+pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<StoredFile> {
+    let name = format!("{WAITING}{}", FieldFile { extension: EXTENSION, ..file });
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    files::write_whole(&out.join(&name), &bytes)?;
+    StoredFile::of(out, name)
+}
+
+/// Draws the fields of all states, each quantity in one range; of a complete result the values kept for it are then removed.
+pub(crate) fn draw(
+    unit: ModelOnSurface,
+    scene: &SceneFile,
+    cells: Cells,
+    out: &Path,
+    result: &mut ModelResult,
+) -> Result<()> {
+    let model = unit.numerics(scene).name();
+    let file = |field, state, extension| FieldFile { field, model, surface: unit.surface, state, extension };
+    let read = |field, state| -> Option<Vec<f64>> {
+        let name = format!("{WAITING}{}", file(field, state, EXTENSION));
+        let bytes = std::fs::read(out.join(name)).ok()?;
+        let (values, rest) = bytes.as_chunks();
+        (rest.is_empty() && Some(values.len()) == cells.checked_count())
+            .then(|| values.iter().map(|v| f64::from_le_bytes(*v)).collect())
+    };
+    for (field, formats) in scene.requested.fields() {
+        if !formats.contains(&FieldFormat::Png) {
+            continue;
+        }
+        let states: Vec<usize> = result.states.iter().map(|state| state.index).collect();
+        let ends = states.iter().filter_map(|&state| Some(FieldPicture::ends(&read(field, state)?)));
+        let range = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        for state in &mut result.states {
+            let Some(values) = read(field, state.index) else { continue };
+            let pressure =
+                if matches!(field, "gap" | "displacement") { read("pressure", state.index) } else { None };
+            let contact: Vec<bool> = pressure.into_iter().flatten().map(|p| p > 0.0).collect();
+            let name = file(field, state.index, FieldFormat::Png.extension()).to_string();
+            let mut picture =
+                pictures::field(scene, field, model, (unit.surface, state.index), cells, &values);
+            (picture.range, picture.contact) = (range, &contact);
+            if states.len() > 1 && field != "heights" {
+                picture.subtitle += "; one scale for all loads";
+            }
+            picture.save(&out.join(&name))?;
+            state.files.retain(|file| file.name != name);
+            state.files.push(StoredFile::of(out, name)?);
+        }
+    }
+    if result.complete {
+        for state in &mut result.states {
+            for file in state.files.extract_if(.., |file| file.is_hidden()) {
+                // It may be gone since it was read: nobody needs it any more.
+                let _ = std::fs::remove_file(out.join(file.name));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,171 @@
+//! What the grid does to a state: the same load on the same surface with cells twice and four times as large.
+
+use crate::scenes::numerics::{AnyModel, Numerics};
+use crate::scenes::scene_file::{SceneFile, cells};
+use crate::scenes::scene_surface::SceneSurface;
+use analysis::{GridError, grid_error};
+use contact_model::{Boundary, Cells, ContactState, Error, HeightMap, Load, Result, Scene, Stop, Surface};
+use std::sync::Arc;
+
+/// Grids with fewer cells along their longer side say nothing.
+const FEWEST_CELLS: usize = 16;
+
+/// Names of what is compared, in the order of [`Quantities`]; the table has columns for those that it holds.
+pub(crate) const COMPARED: [&str; 6] =
+    ["stiffness", "area", "area_corrected", "mean_gap", "largest_pressure", "rms_slope"];
+
+/// Numbers of one state on one grid.
+pub(crate) type Quantities = [Option<f64>; COMPARED.len()];
+
+/// Their errors.
+pub(crate) type GridErrors = [Option<GridError>; COMPARED.len()];
+
+fn quantities(state: &ContactState, rms_slope: f64) -> Quantities {
+    let (corrected, pressure) =
+        (state.resolution.and_then(|r| r.corrected_area), state.resolution.map(|r| r.largest_pressure));
+    [state.stiffness, state.area, corrected, state.mean_gap, pressure, Some(rms_slope)]
+}
+
+/// Their errors from three grids.
+fn errors(fine: &Quantities, half: &Quantities, quarter: &Quantities) -> GridErrors {
+    std::array::from_fn(|i| grid_error(fine[i]?, half[i]?, quarter[i]?))
+}
+
+/// The states of a surface on coarser grids.
+pub(crate) struct GridComparison {
+    /// Of the surface on its own grid.
+    pub rms_slope: f64,
+    /// Under each load, with cells twice and four times as large; `None` where a grid does not answer.
+    coarser: Vec<Option<[Quantities; 2]>>,
+}
+
+impl GridComparison {
+    /// Solves the loads on both coarser grids, about a quarter of the work of the grid itself.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`]; what drawing the surface or preparing it refuses.
+    pub fn solve(
+        scene: &SceneFile,
+        numerics: &Numerics,
+        seed: u64,
+        loads: &[Load],
+        stop: Stop<'_>,
+    ) -> Result<Self> {
+        let rms_slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
+        let Cells { columns, rows } = cells(scene, numerics);
+        let longer = columns.max(rows);
+        if longer.div_ceil(4) < FEWEST_CELLS {
+            return Ok(Self { rms_slope, coarser: vec![None; loads.len()] });
+        }
+        let solved =
+            |factor: usize| solve(&on_grid(scene, numerics, longer.div_ceil(factor))?, seed, loads, stop);
+        let both = solved(2)?.into_iter().zip(solved(4)?);
+        let coarser = both.map(|(half, quarter)| Some([half?, quarter?])).collect();
+        Ok(Self { rms_slope, coarser })
+    }
+
+    /// The errors of a state under load number `index`.
+    pub fn errors(&self, index: usize, state: &ContactState) -> GridErrors {
+        match self.coarser.get(index) {
+            Some(Some([half, quarter])) => errors(&quantities(state, self.rms_slope), half, quarter),
+            _ => GridErrors::default(),
+        }
+    }
+}
+
+/// One model of a scene, and the scene, on a grid with so many cells along its longer side: a given map is sampled at every so many-th cell.
+pub(crate) fn on_grid(scene: &SceneFile, numerics: &Numerics, longer: usize) -> Result<SceneFile> {
+    let mut coarse = scene.clone();
+    if let SceneSurface::Plain(Surface::Heights(map)) = &scene.surface {
+        coarse.surface = SceneSurface::Plain(Surface::Heights(Arc::new(sampled(map, longer)?)));
+    }
+    coarse.models = vec![numerics.reduced(longer, usize::MAX, scene.surface.size())];
+    Ok(coarse)
+}
+
+/// The numbers of one model, the first of a scene, under loads; `None` where it does not answer one.
+pub(crate) fn solve(
+    scene: &SceneFile,
+    seed: u64,
+    loads: &[Load],
+    stop: Stop<'_>,
+) -> Result<Vec<Option<Quantities>>> {
+    let numerics = &scene.models[0];
+    let slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
+    let mut found = vec![None; loads.len()];
+    let AnyModel::Contact(model) = numerics.model() else { return Ok(found) };
+    let mut outputs = scene.requested.outputs;
+    (outputs.pressure, outputs.displacement, outputs.gap, outputs.contact_patches) =
+        (false, false, false, false);
+    let physics = Scene { outputs, ..scene.scene(numerics, seed)? };
+    model.prepare(&physics, seed)?.sweep(loads, stop, &mut |i, state| {
+        found[i] = state.ok().map(|state| quantities(&state, slope));
+        Ok(())
+    })?;
+    Ok(found)
+}
+
+/// The heights that a model with cells solves.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a model without cells; what drawing a surface refuses.
+pub(crate) fn solved_map(scene: &SceneFile, numerics: &Numerics, seed: u64) -> Result<Arc<HeightMap>> {
+    let Some(elements) = numerics.boundary_elements() else {
+        return Err(Error::unsupported(numerics.name(), "heights on cells: it has none"));
+    };
+    match scene.surface.for_model(numerics, seed)? {
+        Surface::Heights(map) => Ok(map),
+        surface => surface_gen::height_map(&surface, elements.grid(surface.size()), seed),
+    }
+}
+
+fn rms_slope(scene: &SceneFile, map: &HeightMap) -> Result<f64> {
+    if scene.effects.boundary == Boundary::Periodic && map.undefined() == 0 {
+        surface_gen::rms_slope(map)
+    } else {
+        Ok(surface_gen::rms_slope_differences(map))
+    }
+}
+
+/// The cells of a map nearest to the centres of a coarser grid, with at most `longer` along its longer side.
+pub(crate) fn sampled(map: &HeightMap, longer: usize) -> Result<HeightMap> {
+    let most = map.columns().max(map.rows());
+    if most <= longer {
+        return Ok(map.clone());
+    }
+    let fewer = |count: usize| (count * longer).div_ceil(most).max(1);
+    let (columns, rows) = (fewer(map.columns()), fewer(map.rows()));
+    // floor((i + 1/2) n / m)
+    let nearest = |i: usize, all: usize, few: usize| (2 * i + 1) * all / (2 * few);
+    let at = |i: usize| {
+        let (row, column) =
+            (nearest(i / columns, map.rows(), rows), nearest(i % columns, map.columns(), columns));
+        map.heights()[row * map.columns() + column]
+    };
+    let height = |h: f64| if h.is_finite() { h } else { f64::NAN };
+    let heights = (0..columns * rows).map(|i| height(at(i))).collect();
+    HeightMap::with_undefined([columns, rows], map.size(), heights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sampled_maps_keep_their_shape_and_undefined_points() {
+        let height = |i: usize| if i % 16 == 1 { f64::NAN } else { i as f64 };
+        let map = HeightMap::with_undefined([16, 4], [8.0, 1.0], (0..64).map(height).collect()).unwrap();
+        let thin = sampled(&map, 8).unwrap();
+        assert_eq!((thin.cells(), thin.size(), thin.undefined()), ([8, 2].into(), map.size(), 2));
+        assert_eq!((thin.heights()[1], thin.heights()[9]), (19.0, 51.0));
+        assert_eq!(sampled(&map, 16).unwrap(), map);
+        // Of an odd number every second one, beginning with the first.
+        let odd = HeightMap::new([5, 1], [5.0, 1.0], vec![0.0, 1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert_eq!(sampled(&odd, 3).unwrap().heights(), [0.0, 2.0, 4.0]);
+        let all = HeightMap::with_undefined([2, 1], [2.0, 1.0], vec![1.0, f64::NAN]).unwrap();
+        assert_eq!(
+            sampled(&all, 1).unwrap_err().to_string(),
+            "defined points = 0: expected at least 1 (every height of the map is undefined)"
+        );
+    }
+}
