@@ -34,7 +34,7 @@ fn most_true_errors_of_resolved_contacts_are_within_the_estimate() {
         ..SelfAffine::new(2.2, 1.0, 0.01).unwrap()
     };
     let families = [
-        ("sphere", Surface::Sphere { radius: 1.0, size: 1.0.into() }, Boundary::Free, 1, 513),
+        ("sphere", Surface::Sphere { radius: 1.0, size: 1.0.into() }, Boundary::Free, 1, 513_usize),
         ("waves", Surface::SelfAffine(waves), Boundary::Periodic, 3, 512),
     ];
     let forces = [1e-4, 3e-4, 1e-3, 3e-3];

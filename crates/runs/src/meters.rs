@@ -25,12 +25,29 @@ pub fn peak_memory() -> Option<u64> {
     memory("VmHWM:")
 }
 
-/// Memory that the system could give to this process now, in bytes (Linux).
+/// Memory that the system could give to this process now, in bytes (Linux); less where the address space of the process is limited.
 pub fn available_memory() -> Option<u64> {
-    memory_in("/proc/meminfo", "MemAvailable:")
+    let there = memory_in("/proc/meminfo", "MemAvailable:")?;
+    Some(address_space().map_or(there, |left| there.min(left)))
 }
 
-/// Threads that jobs of a size have memory for: at most `threads`.
+/// Address space that a limit (`ulimit -v`) leaves to this process, in bytes; `None` without a limit.
+fn address_space() -> Option<u64> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let line = limits.lines().find_map(|l| l.strip_prefix("Max address space"))?;
+    let limit: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(limit.saturating_sub(memory("VmSize:")?))
+}
+
+/// Address space, not memory, that a thread reserves: twice the largest cache for products of matrices (`private-gemm-x86`), and
+/// 128 MB for the arena of its allocator.
+fn reserved_by_thread() -> u64 {
+    let cache = fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index3/size").unwrap_or_default();
+    let kilobytes = cache.trim().strip_suffix('K').and_then(|k| k.parse::<u64>().ok()).unwrap_or(32 << 10);
+    2 * 1024 * kilobytes + (1 << 27)
+}
+
+/// Threads that jobs of a size have memory for: at most `threads`. Under a limit of the address space what each thread reserves counts too.
 ///
 /// # Errors
 /// [`Error::Parameter`] where a single job needs more memory than there is; `name` and `value` are what its size comes from. Where the
@@ -49,7 +66,8 @@ pub fn threads_for_memory(
         );
         return Err(Error::parameter(name, value, expected));
     }
-    Ok(((available / bytes) as usize).clamp(1, threads.max(1)))
+    let each = if address_space().is_some() { bytes + reserved_by_thread() as f64 } else { bytes };
+    Ok(((available / each) as usize).clamp(1, threads.max(1)))
 }
 
 /// Resident memory of the process now, in bytes (Linux).
