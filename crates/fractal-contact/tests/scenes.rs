@@ -16,6 +16,7 @@ fn folder() -> PathBuf {
 
 fn solved(name: &str) -> (SceneOutcome, CsvFile, tempfile::TempDir) {
     let scene = SceneFile::read(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
+    let scene = scene.with_grid_for_accuracy(&contact_model::never).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}"));
     assert!(!plan.shows.is_empty(), "{name} says nothing");
     let dir = tempfile::tempdir().unwrap();
@@ -215,4 +216,13 @@ fn shown_scenes_are_scenes() {
     let text = help.split("A scene:\n").nth(1).unwrap().split("Examples:").next().unwrap();
     let scene = SceneFile::parse("help.toml".as_ref(), text.to_owned()).unwrap_or_else(|e| panic!("{e}"));
     assert!(Plan::new(&scene).is_ok() && scene.models.len() == 2);
+}
+
+#[test]
+fn an_accuracy_is_what_the_run_finds() {
+    let (outcome, file, _dir) = solved("accuracy.toml");
+    for name in ["stiffness_grid_error", "area_corrected_grid_error"] {
+        assert!(column(&file, "bem3d", name).iter().all(|error| *error <= 0.03), "{name}");
+    }
+    assert!(outcome.notes.iter().all(|note| !note.contains("accuracy")), "{:?}", outcome.notes);
 }

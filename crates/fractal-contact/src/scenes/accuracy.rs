@@ -198,7 +198,11 @@ impl Pilot {
         let candidates: Vec<(usize, f64)> =
             (2..self.rungs.len()).filter_map(|rung| Some((rung, self.expected(rung)?))).collect();
         let given = matches!(scene.surface, SceneSurface::Plain(Surface::Heights(_)));
-        let finest = if given { "the map's own cells" } else { "the finest grid" };
+        let finest = match self.rungs.last() {
+            Some(_) if given => "the map's own cells".to_owned(),
+            Some(cells) => format!("the largest grid, {cells} cells a side,"),
+            None => "no grid".to_owned(),
+        };
         let Some(&(rung, error)) = candidates.iter().find(|(_, error)| *error <= share) else {
             let best = candidates.iter().map(|c| c.1).reduce(f64::min);
             let message = match best {
