@@ -7,16 +7,10 @@ use contact_model::{
     Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
     Stop, Surface, never,
 };
-use runs::collect;
-use runs::files;
-use runs::number;
-use runs::read_map;
-use runs::run_jobs;
-use runs::threads_for_memory;
-use runs::unit_area;
-use runs::write_npy;
-use runs::{Error, Result};
-use runs::{cpu_seconds, peak_memory, reset_peak_memory};
+use runs::{
+    Error, Result, collect, cpu_seconds, files, number, peak_memory, read_map, reset_peak_memory, run_jobs,
+    threads_for_memory, unit_area, write_npy,
+};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;

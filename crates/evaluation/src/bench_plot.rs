@@ -1,8 +1,7 @@
 //! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
 
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
-use runs::CsvFile;
-use runs::{Error, Result};
+use runs::{CsvFile, Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Marks of the loads or of the sizes, smallest first.

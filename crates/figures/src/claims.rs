@@ -14,8 +14,7 @@ mod plateau;
 mod scaling;
 mod speed;
 
-use evaluation::Claim;
-use evaluation::Measured;
+use evaluation::{Claim, Measured};
 
 pub(crate) use paper::paper_against_itself;
 pub(crate) use plateau::plateaus;

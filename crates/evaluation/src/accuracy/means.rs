@@ -8,9 +8,7 @@ use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Surface, never};
-use runs::Progress;
-use runs::cpu_seconds;
-use runs::{Error, Result};
+use runs::{Error, Progress, Result, cpu_seconds};
 use std::sync::Arc;
 
 /// Tolerance of the ensembles: far below their scatter.

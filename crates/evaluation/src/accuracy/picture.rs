@@ -1,8 +1,7 @@
 //! The picture: error of k over seconds, one panel for each load.
 
 use plots::{Axis, Key, Legend, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
-use runs::CsvFile;
-use runs::Result;
+use runs::{CsvFile, Result};
 use std::path::{Path, PathBuf};
 
 /// Shortest time shown: a formula takes less.

@@ -2,8 +2,7 @@
 
 use super::problem::Family;
 use contact_model::{ContactModel, ContactState, Field, Load, Scene};
-use runs::{Error, Result};
-use runs::{cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
+use runs::{Error, Result, cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
 
 /// How an answer is found.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,17 +1,15 @@
 //! Solves every problem in every way and compares.
 
 use super::limit::{Limit, limit, slope};
-use super::means;
-use super::pressure;
 use super::problem::{Family, SQUARE_UNCERTAINTY, StudyProblem};
 use super::row::{Answer, Parts, StudyRow, Way, mark_pareto, measure};
 use super::sizes::{Order, StudySizes};
+use super::{means, pressure};
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
 use contact_model::ContactModel;
 use mdr1d::Mdr1d;
-use runs::Progress;
-use runs::Result;
+use runs::{Progress, Result};
 
 /// How much is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

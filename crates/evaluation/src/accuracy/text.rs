@@ -1,8 +1,7 @@
 //! The text: what it takes, when less is enough, which part dominates. Written from the tables.
 
 use super::picture::{AccuracyPoint, TARGETS, read, values};
-use runs::CsvFile;
-use runs::Result;
+use runs::{CsvFile, Result};
 use std::path::Path;
 
 /// The paper's settings, and the tolerance of its preset here.

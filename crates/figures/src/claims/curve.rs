@@ -4,10 +4,7 @@ use super::common::{label, stiffness_at, usable};
 use analysis::{CollapsePoint, FitWindow, collapse as residual, decades_within, sum};
 use analytic::{F_BAR_UL, K_BAR_UL};
 use contact_model::PAPER_STIFFNESS_FACTOR;
-use evaluation::Claim;
-use evaluation::Measured;
-use evaluation::laws;
-use evaluation::transformed;
+use evaluation::{Claim, Measured, laws, transformed};
 
 /// k_bar at F_bar = 0.086, where "all curves collapse for k_bar = 0.18".
 pub(super) fn near_the_crossing(measured: &Measured) -> Vec<Claim> {
