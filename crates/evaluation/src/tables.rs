@@ -3,7 +3,10 @@
 use crate::measured::Measured;
 use crate::sample::FLOOR_CELLS;
 use analysis::{Column, Table, Value};
-use runs::{Error, Result};
+use csv::StringRecord;
+use runs::{CsvFile, Error, Result, number};
+use serde::de::DeserializeOwned;
+use std::path::Path;
 
 /// A table with one row for each item, built column by column: name, unit, meaning and value stand together.
 ///
@@ -57,6 +60,33 @@ impl<'a, T> TableOf<'a, T> {
         }
         Ok(table)
     }
+}
+
+/// The names of columns that stand beside something else.
+pub(crate) const fn names<T, const N: usize>(columns: &[(&'static str, T); N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut i = 0;
+    while i < N {
+        names[i] = columns[i].0;
+        i += 1;
+    }
+    names
+}
+
+/// A number as text; absent is empty.
+pub(crate) fn maybe(value: Option<f64>) -> String {
+    value.map(number).unwrap_or_default()
+}
+
+/// The rows of a CSV file as what their columns say.
+///
+/// # Errors
+/// [`Error::Content`] for a column that is missing or an entry that does not fit it.
+pub(crate) fn read_rows<T: DeserializeOwned>(path: &Path, file: &CsvFile) -> Result<Vec<T>> {
+    let names = StringRecord::from(file.columns.as_slice());
+    let row = |row: &Vec<String>| StringRecord::from(row.as_slice()).deserialize(Some(&names));
+    let rows: Result<_, csv::Error> = file.rows.iter().map(row).collect();
+    rows.map_err(|e| Error::content(path, e.to_string()))
 }
 
 /// What a column `model` holds.

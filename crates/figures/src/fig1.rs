@@ -8,7 +8,7 @@ use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory, write_np
 use std::path::{Path, PathBuf};
 
 /// Flags that decide what Fig. 1 holds.
-pub const FLAGS: [Flag; 3] = [Flag::Cells, Flag::FractalDimensions, Flag::Seed];
+pub const FLAGS: [Flag; 3] = [Flag::CELLS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
 
 /// Largest side of a map in the CSV.
 const CSV_SIDE: usize = 257;

@@ -8,7 +8,7 @@ use runs::{CsvFile, Error, Progress, Result, write_npy};
 use std::path::{Path, PathBuf};
 
 /// Flags that decide what Fig. 5 holds.
-pub const FLAGS: [Flag; 3] = [Flag::Elements, Flag::FractalDimensions, Flag::Seed];
+pub const FLAGS: [Flag; 3] = [Flag::ELEMENTS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
 
 /// The paper's three lines, from top to bottom.
 const DIMENSIONS: [f64; 3] = [3.0, 2.5, 2.0];

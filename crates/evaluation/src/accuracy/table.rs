@@ -1,6 +1,6 @@
 //! The study as tables.
 
-use super::problem::Family;
+use super::problem::ProblemKey;
 use super::study::Study;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, TableOf};
 use analysis::Table;
@@ -13,12 +13,12 @@ const FAMILY: &str = "sphere, square: exact answers known; band: one surface of 
 fn of_problems<'a, T>(
     title: &'static str,
     items: &'a [T],
-    problem: impl Fn(&T) -> (Family, Option<f64>, Option<f64>),
+    problem: impl Fn(&T) -> ProblemKey,
 ) -> TableOf<'a, T> {
     TableOf::new(title, items)
-        .column("family", "-", FAMILY, |item| problem(item).0.as_str())
-        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |item| problem(item).1)
-        .column("force_bar", "1", FORCE_BAR, |item| problem(item).2)
+        .column("family", "-", FAMILY, |item| problem(item).family.as_str())
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |item| problem(item).fractal_dimension)
+        .column("force_bar", "1", FORCE_BAR, |item| problem(item).force_bar)
 }
 
 pub(crate) fn rows(study: &Study) -> Result<Table> {
@@ -44,7 +44,7 @@ pub(crate) fn rows(study: &Study) -> Result<Table> {
         "resident memory that the row took beyond what the process held, as the system counts it";
     const STATUS: &str = "converged: every number of the certificate is within the tolerance";
     const PARETO: &str = "true where no way to this number is both cheaper and nearer";
-    of_problems(TITLE, &study.rows, |r| (r.family, r.fractal_dimension, r.force_bar))
+    of_problems(TITLE, &study.rows, |r| r.problem)
         .column("model", "-", MODEL, |r| r.way.model())
         .column("size", "1", "cells a side (bem3d) or elements (mdr1d)", |r| r.way.size())
         .column("tolerance", "1", TOLERANCE, |r| r.way.tolerance())
@@ -78,7 +78,7 @@ pub(crate) fn orders(study: &Study) -> Result<Table> {
         "p of error ~ cell^p: of the extrapolation where established, else the slope of the errors";
     const ESTABLISHED: &str = "true against an exact answer, or where four grids or more follow one power";
     const LIMIT: &str = "the reference: exact, extrapolated where established, else the finest grid's";
-    of_problems(TITLE, &study.orders, |o| (o.family, o.fractal_dimension, o.force_bar))
+    of_problems(TITLE, &study.orders, |o| o.problem)
         .column("quantity", "-", "stiffness, approach, area, or pressure (L2)", |o| o.quantity)
         .column("order", "1", ORDER, |o| o.power)
         .column("established", "-", ESTABLISHED, |o| o.established)
