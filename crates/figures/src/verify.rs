@@ -29,7 +29,7 @@ fn all(solid: &Measured, line: &Measured) -> Result<Vec<Claim>> {
     claims.extend(claims::collapse(solid));
     claims.extend(claims::curves_3d(solid));
     claims.extend(claims::curves_1d(line));
-    claims.extend(claims::crossover(solid, line));
+    claims.extend(claims::line_above_solid(solid, line));
     claims.extend(claims::plateaus()?);
     claims.extend(claims::paper_against_itself());
     claims.extend(claims::scaling()?);

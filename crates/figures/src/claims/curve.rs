@@ -89,7 +89,7 @@ pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
 }
 
 /// "In the 1D case, the stiffness is overestimated by up to 25 % in this region" (the crossover).
-pub(super) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> {
+pub(crate) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> {
     let mut largest: Option<(f64, f64, f64, Option<f64>)> = None;
     for (a, b) in solid.series.iter().zip(&line.series) {
         for &f in a.curves.force_bar().iter().filter(|f| (F_BAR_UL..=20.0).contains(*f)) {
@@ -114,7 +114,7 @@ pub(super) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> 
 }
 
 /// Fig. 4: one master curve, on the line of Eq. 12 over four decades.
-pub(super) fn collapse(solid: &Measured) -> Vec<Claim> {
+pub(crate) fn collapse(solid: &Measured) -> Vec<Claim> {
     let curves: Vec<(f64, Vec<CollapsePoint>)> = solid
         .series
         .iter()
