@@ -76,6 +76,7 @@ fn short(v: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use analysis::Value;
     use runs::{CsvFile, Silent};
 
     #[test]
