@@ -9,8 +9,9 @@ pub use bench::BenchArguments;
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
 use sizes::{Both, LineSizes, Maps, Reduced, Solid};
+pub use studies::Redraw;
 use studies::{
-    AccuracyCost, Audit, BookArguments, BudgetCheck, Redraw, Reference, StabilityArguments, TwoCasesArguments,
+    AccuracyCost, Audit, BookArguments, BudgetCheck, Reference, StabilityArguments, TwoCasesArguments,
 };
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
@@ -98,30 +99,6 @@ pub enum Command {
 }
 
 impl Command {
-    /// Its name on the command line.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::ReproduceFig1(_) => "reproduce-fig1",
-            Self::ReproduceFig2(_) => "reproduce-fig2",
-            Self::ReproduceFig3(_) => "reproduce-fig3",
-            Self::ReproduceFig4(_) => "reproduce-fig4",
-            Self::ReproduceFig5(_) => "reproduce-fig5",
-            Self::ReproduceFig6(_) => "reproduce-fig6",
-            Self::ReproduceFig7(_) => "reproduce-fig7",
-            Self::ReproduceAll(_) => "reproduce-all",
-            Self::Verify(_) => "verify",
-            Self::AccuracyCost(_) => "accuracy-cost",
-            Self::BudgetCheck(_) => "budget-check",
-            Self::ReproduceTwoCases(_) => "reproduce-two-cases",
-            Self::Audit(_) => "audit",
-            Self::Bench(_) => "bench",
-            Self::Redraw(_) => "redraw",
-            Self::CheckReference(_) => "check-reference",
-            Self::Stability(_) => "stability",
-            Self::Book(_) => "book",
-        }
-    }
-
     /// The accuracy that a figure is asked for, and which ensembles it needs.
     pub fn target(&self) -> Option<(Requirements, AccuracyTarget)> {
         let (solve, solid, line) = match self {
@@ -198,7 +175,7 @@ mod tests {
             over: None,
         };
         assert_eq!(request, expected);
-        assert_eq!(arguments.command.name(), "verify");
+        assert!(matches!(arguments.command, Command::Verify(_)));
     }
 
     #[test]
@@ -237,7 +214,7 @@ mod tests {
     fn bench(line: &str) -> BenchArguments {
         match parse(line).unwrap().command {
             Command::Bench(options) => options,
-            other => panic!("{}", other.name()),
+            other => panic!("{other:?}"),
         }
     }
 

@@ -10,7 +10,7 @@
 mod arguments;
 mod book;
 
-use arguments::{Arguments, BenchArguments, Command};
+use arguments::{Arguments, BenchArguments, Command, Redraw};
 use clap::Parser as _;
 use evaluation::{BenchRow, Outcome, Run};
 use runs::{Error, Reporter, Result, Store};
@@ -30,27 +30,14 @@ fn main() -> ExitCode {
 }
 
 fn execute(command: Command) -> Result<ExitCode> {
-    if let Command::CheckReference(options) = command {
-        return check_reference(options.bless, &options.out);
+    match &command {
+        Command::CheckReference(options) => return check_reference(options.bless, &options.out),
+        Command::Stability(options) => return stability(options.thorough, &options.out),
+        Command::Bench(options) => return bench(options),
+        Command::Redraw(options) => return redraw(options),
+        Command::Book(options) => return book::book(options.pictures),
+        _ => {}
     }
-    if let Command::Stability(options) = &command {
-        return stability(options.thorough, &options.out);
-    }
-    if let Command::Bench(options) = &command {
-        return bench(options);
-    }
-    if let Command::Redraw(options) = &command {
-        for directory in &options.directories {
-            for file in figures::redraw(directory, &options.beside())? {
-                runs::out!("{}", file.display());
-            }
-        }
-        return Ok(ExitCode::SUCCESS);
-    }
-    if let Command::Book(options) = &command {
-        return book::book(options.pictures);
-    }
-    let name = command.name();
     let reporter = Reporter::new();
     if let Some(out) = command.request().out {
         tell_what_an_interruption_leaves(out)?;
@@ -97,11 +84,8 @@ fn execute(command: Command) -> Result<ExitCode> {
             runs::out!("{summary}");
             vec![outcome]
         }
-        Command::Bench(_)
-        | Command::Redraw(_)
-        | Command::Book(_)
-        | Command::CheckReference(_)
-        | Command::Stability(_) => Vec::new(),
+        // Done above.
+        _ => Vec::new(),
     };
     if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())
@@ -109,10 +93,21 @@ fn execute(command: Command) -> Result<ExitCode> {
         outcomes.push(evaluation::state_budgets(&run, requirements.solid, requirements.line, &reporter)?);
     }
     let typed: Vec<String> = std::env::args().skip(1).collect();
+    // The first word that was typed is the subcommand: no flag stands before it.
+    let name = typed.first().map_or("", String::as_str);
     let manifest =
         evaluation::write_manifest(&run, name, &format!("cargo xtask {}", typed.join(" ")), &outcomes)?;
     let code = report(&outcomes, &manifest);
     Ok(if coverage_fails { ExitCode::from(3) } else { code })
+}
+
+fn redraw(options: &Redraw) -> Result<ExitCode> {
+    for directory in &options.directories {
+        for file in figures::redraw(directory, &options.beside())? {
+            runs::out!("{}", file.display());
+        }
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Ctrl-C, SIGTERM and SIGHUP end the process at once: what is finished is kept, and nothing else was begun that would be lost.

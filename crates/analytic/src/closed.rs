@@ -4,6 +4,7 @@ use contact_model::{
     ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene,
     Size, SolveReport, Stop,
 };
+use std::f64::consts::PI;
 
 /// A closed form between force, approach and stiffness, in the [`Nondimensionalisation`] of its [`Closed`];
 /// loads are positive.
@@ -35,6 +36,26 @@ pub(crate) struct Closed<L> {
     pub strategy: &'static str,
     /// Relative uncertainty of the stiffness that the theory itself states.
     pub stiffness_error: f64,
+}
+
+impl ClosedState {
+    /// A round contact inside a face of this size.
+    pub fn round(force: f64, approach: f64, radius: f64, size: Size) -> Result<Self> {
+        within(radius, size)?;
+        Ok(Self { force, approach, stiffness: 2.0 * radius, area: Some(PI * radius * radius) })
+    }
+}
+
+/// A law of a body in units of its side, made ready for its scene.
+pub(crate) fn prepared<L: ClosedLaw + 'static>(
+    scene: &Scene,
+    model: &'static str,
+    (strategy, stiffness_error): (&'static str, f64),
+    law: L,
+) -> Result<Box<dyn PreparedContact>> {
+    let (nondimensional, normalisation) = of_body(scene)?;
+    let outputs = scene.outputs;
+    Ok(Box::new(Closed { model, law, nondimensional, normalisation, outputs, strategy, stiffness_error }))
 }
 
 impl<L: ClosedLaw> PreparedContact for Closed<L> {

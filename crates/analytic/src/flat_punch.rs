@@ -1,6 +1,6 @@
 //! Rigid flat punches: the circle (Boussinesq) and the square.
 
-use crate::closed::{self, Closed, ClosedLaw, ClosedState};
+use crate::closed::{self, ClosedLaw, ClosedState};
 use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Source, Surface};
 use std::f64::consts::PI;
 
@@ -70,16 +70,7 @@ impl ContactModel for FlatPunch {
             }
             ref other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        let (nondimensional, normalisation) = closed::of_body(scene)?;
-        Ok(Box::new(Closed {
-            model: NAME,
-            law,
-            nondimensional,
-            normalisation,
-            outputs: scene.outputs,
-            strategy,
-            stiffness_error,
-        }))
+        closed::prepared(scene, NAME, (strategy, stiffness_error), law)
     }
 }
 

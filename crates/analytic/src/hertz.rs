@@ -1,8 +1,7 @@
 //! Hertz: a sphere (paraboloid `z = r^2 / (2 R)`).
 
-use crate::closed::{self, Closed, ClosedLaw, ClosedState};
+use crate::closed::{self, ClosedLaw, ClosedState};
 use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
-use std::f64::consts::PI;
 
 const NAME: &str = "hertz";
 
@@ -39,16 +38,8 @@ impl ContactModel for Hertz {
         let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
-        let (nondimensional, normalisation) = closed::of_body(scene)?;
-        Ok(Box::new(Closed {
-            model: NAME,
-            law: HertzSphere { radius: radius / size.length(), size },
-            nondimensional,
-            normalisation,
-            outputs: scene.outputs,
-            strategy: "closed form (Hertz)",
-            stiffness_error: 0.0,
-        }))
+        let law = HertzSphere { radius: radius / size.length(), size };
+        closed::prepared(scene, NAME, ("closed form (Hertz)", 0.0), law)
     }
 }
 
@@ -58,22 +49,15 @@ struct HertzSphere {
     size: Size,
 }
 
-impl HertzSphere {
-    fn point(&self, force: f64, approach: f64, contact: f64) -> Result<ClosedState> {
-        closed::within(contact, self.size)?;
-        Ok(ClosedState { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
-    }
-}
-
 impl ClosedLaw for HertzSphere {
     fn at_force(&self, force: f64) -> Result<ClosedState> {
         let contact = (0.75 * force * self.radius).cbrt();
-        self.point(force, 0.75 * force / contact, contact)
+        ClosedState::round(force, 0.75 * force / contact, contact, self.size)
     }
 
     fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let contact = (approach * self.radius).sqrt();
-        self.point(4.0 / 3.0 * approach * contact, approach, contact)
+        ClosedState::round(4.0 / 3.0 * approach * contact, approach, contact, self.size)
     }
 }
 
@@ -106,6 +90,7 @@ mod tests {
     use contact_model::Load;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
+    use std::f64::consts::PI;
 
     #[test]
     fn reference_numbers() {

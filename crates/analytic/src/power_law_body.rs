@@ -1,6 +1,6 @@
 //! Galin: a power-law body `z = c r^n`, the cone among them.
 
-use crate::closed::{self, Closed, ClosedLaw, ClosedState};
+use crate::closed::{self, ClosedLaw, ClosedState};
 use crate::gamma::half_step_ratio;
 use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
 use std::f64::consts::PI;
@@ -64,16 +64,8 @@ impl ContactModel for PowerLawBody {
                 "a number within the range of f64",
             ));
         }
-        let (nondimensional, normalisation) = closed::of_body(scene)?;
-        Ok(Box::new(Closed {
-            model: NAME,
-            law: PowerLawShape { exponent, depth, size: scene.surface.size() },
-            nondimensional,
-            normalisation,
-            outputs: scene.outputs,
-            strategy: "closed form (Galin)",
-            stiffness_error: 0.0,
-        }))
+        let law = PowerLawShape { exponent, depth, size: scene.surface.size() };
+        closed::prepared(scene, NAME, ("closed form (Galin)", 0.0), law)
     }
 }
 
@@ -107,22 +99,17 @@ impl PowerLawShape {
     fn share(&self) -> f64 {
         self.exponent / (self.exponent + 1.0)
     }
-
-    fn point(&self, force: f64, approach: f64, contact: f64) -> Result<ClosedState> {
-        closed::within(contact, self.size)?;
-        Ok(ClosedState { force, approach, stiffness: 2.0 * contact, area: Some(PI * contact * contact) })
-    }
 }
 
 impl ClosedLaw for PowerLawShape {
     fn at_force(&self, force: f64) -> Result<ClosedState> {
         let contact = (force / (2.0 * self.share()) / self.depth).powf((self.exponent + 1.0).recip());
-        self.point(force, force / (2.0 * self.share()) / contact, contact)
+        ClosedState::round(force, force / (2.0 * self.share()) / contact, contact, self.size)
     }
 
     fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let contact = (approach / self.depth).powf(self.exponent.recip());
-        self.point(2.0 * self.share() * approach * contact, approach, contact)
+        ClosedState::round(2.0 * self.share() * approach * contact, approach, contact, self.size)
     }
 }
 

@@ -6,12 +6,10 @@ use crate::outcome::Outcome;
 use crate::realisation::{Discretisation, Realisation, RealisationResult};
 use crate::run::Run;
 use crate::session::Session;
-use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
-use analysis::{Table, Value};
+use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, TableOf};
+use analysis::Table;
 use contact_model::{Stop, never};
-use runs::Progress;
-use runs::{Error, Result};
-use runs::{collect, run_jobs, write_csv};
+use runs::{Error, Progress, Result, collect, run_jobs, write_csv};
 
 /// One solve and its repetition to a tight tolerance.
 struct SolvePair {
@@ -110,29 +108,19 @@ fn again(
 }
 
 fn table(pairs: &[SolvePair]) -> Result<Table> {
-    let columns = vec![
-        column("fractal_dimension", "1", FRACTAL_DIMENSION),
-        column("surface", "1", "number of the surface in its ensemble"),
-        column("force_bar", "1", FORCE_BAR),
-        column("stiffness_bar", "1", "k/(1.1419 E* L) as in fig2-samples.csv (Eq. 8)"),
-        column("stiffness_bar_tight", "1", "the same from nothing to the tight tolerance"),
-        column("relative_difference", "1", "of the two"),
-        column("claimed_error", "1", "estimated relative error of the first"),
-    ];
-    let mut table = Table::new("Stored stiffnesses beside tight solves", columns);
-    for p in pairs {
-        let row = vec![
-            Value::Number(p.fractal_dimension),
-            Value::Count(p.index as u64),
-            Value::Number(p.force_bar),
-            Value::Number(p.stiffness_bar[0]),
-            Value::Number(p.stiffness_bar[1]),
-            Value::Number(p.difference()),
-            Value::Number(p.claimed),
-        ];
-        table.push(row).map_err(Error::model("audit.csv"))?;
-    }
-    Ok(table)
+    TableOf::new("Stored stiffnesses beside tight solves", pairs)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |p| p.fractal_dimension)
+        .column("surface", "1", "number of the surface in its ensemble", |p| p.index)
+        .column("force_bar", "1", FORCE_BAR, |p| p.force_bar)
+        .column("stiffness_bar", "1", "k/(1.1419 E* L) as in fig2-samples.csv (Eq. 8)", |p| {
+            p.stiffness_bar[0]
+        })
+        .column("stiffness_bar_tight", "1", "the same from nothing to the tight tolerance", |p| {
+            p.stiffness_bar[1]
+        })
+        .column("relative_difference", "1", "of the two", SolvePair::difference)
+        .column("claimed_error", "1", "estimated relative error of the first", |p| p.claimed)
+        .table()
 }
 
 #[cfg(test)]

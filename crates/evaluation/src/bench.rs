@@ -2,21 +2,16 @@
 
 use crate::forces::Forces;
 use crate::realisation::Discretisation;
+use crate::tables::{maybe, names};
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Boundary, Cells, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
-    Stop, Surface, never,
+    Boundary, Cells, Certificate, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene,
+    SelfAffine, Stop, Surface, never,
 };
-use runs::collect;
-use runs::files;
-use runs::number;
-use runs::read_map;
-use runs::run_jobs;
-use runs::threads_for_memory;
-use runs::unit_area;
-use runs::write_npy;
-use runs::{Error, Result};
-use runs::{cpu_seconds, peak_memory, reset_peak_memory};
+use runs::{
+    Error, Result, collect, cpu_seconds, files, number, peak_memory, read_map, reset_peak_memory, run_jobs,
+    threads_for_memory, unit_area, write_npy,
+};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -88,35 +83,40 @@ pub struct BenchRow {
     pub cold: bool,
 }
 
-/// Columns of the table, in order.
-pub const BENCH_COLUMNS: [&str; 26] = [
-    "cells",
-    "force_bar",
-    "approach_over_h",
-    "stiffness_bar",
-    "contact_cells",
-    "penetration",
-    "duality_gap",
-    "iterations",
-    "applications",
-    "seconds",
-    "strategy",
-    "status",
-    "tolerance",
-    "complementarity",
-    "load_error",
-    "stiffness_error",
-    "stiffness",
-    "mean_gap_over_h",
-    "cpu_seconds",
-    "peak_memory_bytes",
-    "start",
-    "surface",
-    "fractal_dimension",
-    "seed",
-    "rows",
-    "version",
+/// Name of a column and what stands in it; absent is empty.
+type BenchColumn = (&'static str, fn(&BenchRow) -> String);
+
+const COLUMNS: [BenchColumn; 26] = [
+    ("cells", |r| r.cells.columns.to_string()),
+    ("force_bar", |r| number(r.force_bar)),
+    ("approach_over_h", |r| maybe(r.approach_over_h().ok().flatten())),
+    ("stiffness_bar", |r| maybe(r.state.stiffness.map(|k| r.normalisation.stiffness_bar(k)))),
+    ("contact_cells", |r| r.state.report.contact_cells.map(|n| n.to_string()).unwrap_or_default()),
+    ("penetration", |r| number(r.certificate().penetration)),
+    ("duality_gap", |r| number(r.certificate().duality_gap)),
+    ("iterations", |r| r.state.report.iterations.to_string()),
+    ("applications", |r| r.state.report.applications.to_string()),
+    ("seconds", |r| number(r.seconds)),
+    ("strategy", |r| r.state.report.strategy.clone()),
+    ("status", |r| r.state.report.status.as_str().to_owned()),
+    ("tolerance", |r| number(r.tolerance)),
+    ("complementarity", |r| number(r.certificate().complementarity)),
+    ("load_error", |r| number(r.certificate().load_error)),
+    ("stiffness_error", |r| maybe(r.certificate().stiffness_error)),
+    ("stiffness", |r| maybe(r.state.stiffness)),
+    ("mean_gap_over_h", |r| maybe(r.height().zip(r.state.mean_gap).map(|(h, gap)| gap / h))),
+    ("cpu_seconds", |r| maybe(r.cpu_seconds)),
+    ("peak_memory_bytes", |r| r.peak_memory.map(|b| b.to_string()).unwrap_or_default()),
+    ("start", |r| if r.cold { "cold" } else { "warm" }.to_owned()),
+    ("surface", |r| r.surface.clone()),
+    ("fractal_dimension", |r| maybe(r.drawn.map(|(d, _)| d))),
+    ("seed", |r| r.drawn.map(|(_, seed)| seed.to_string()).unwrap_or_default()),
+    ("rows", |r| r.cells.rows.to_string()),
+    ("version", |_| env!("CARGO_PKG_VERSION").to_owned()),
 ];
+
+/// Names of the columns of the table, in order.
+pub const BENCH_COLUMNS: [&str; COLUMNS.len()] = names(&COLUMNS);
 
 impl BenchRow {
     /// The row as text, in the order of [`BENCH_COLUMNS`]; absent is empty.
@@ -124,47 +124,22 @@ impl BenchRow {
     /// # Errors
     /// [`Error::Model`] when a value does not fit in a double.
     pub fn fields(&self) -> Result<[String; BENCH_COLUMNS.len()]> {
-        let report = &self.state.report;
-        let certificate = &report.certificate;
-        let text = |v: Option<f64>| v.map(number).unwrap_or_default();
-        let approach = match self.state.approach {
-            Some(d) if self.normalisation.height.is_some_and(|h| h > 0.0) => {
-                Some(self.normalisation.approach_over_h(d).map_err(Error::model("approach"))?)
-            }
-            _ => None,
-        };
-        let mean_gap = match (self.state.mean_gap, self.normalisation.height) {
-            (Some(gap), Some(h)) if h > 0.0 => Some(gap / h),
-            _ => None,
-        };
-        Ok([
-            self.cells.columns.to_string(),
-            number(self.force_bar),
-            text(approach),
-            text(self.state.stiffness.map(|k| self.normalisation.stiffness_bar(k))),
-            report.contact_cells.map(|n| n.to_string()).unwrap_or_default(),
-            number(certificate.penetration),
-            number(certificate.duality_gap),
-            report.iterations.to_string(),
-            report.applications.to_string(),
-            number(self.seconds),
-            report.strategy.clone(),
-            report.status.as_str().to_owned(),
-            number(self.tolerance),
-            number(certificate.complementarity),
-            number(certificate.load_error),
-            text(certificate.stiffness_error),
-            text(self.state.stiffness),
-            text(mean_gap),
-            text(self.cpu_seconds),
-            self.peak_memory.map(|b| b.to_string()).unwrap_or_default(),
-            if self.cold { "cold" } else { "warm" }.to_owned(),
-            self.surface.clone(),
-            text(self.drawn.map(|(d, _)| d)),
-            self.drawn.map(|(_, seed)| seed.to_string()).unwrap_or_default(),
-            self.cells.rows.to_string(),
-            env!("CARGO_PKG_VERSION").to_owned(),
-        ])
+        self.approach_over_h()?;
+        Ok(COLUMNS.map(|(_, field)| field(self)))
+    }
+
+    fn certificate(&self) -> &Certificate {
+        &self.state.report.certificate
+    }
+
+    /// The rms height, where there is one to count in.
+    fn height(&self) -> Option<f64> {
+        self.normalisation.height.filter(|h| *h > 0.0)
+    }
+
+    fn approach_over_h(&self) -> Result<Option<f64>> {
+        let approach = self.state.approach.filter(|_| self.height().is_some());
+        approach.map(|d| self.normalisation.approach_over_h(d)).transpose().map_err(Error::model("approach"))
     }
 
     /// Whether it met its tolerance.

@@ -1,8 +1,9 @@
 //! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
 
+use crate::tables::read_rows;
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
-use runs::CsvFile;
-use runs::{Error, Result};
+use runs::{CsvFile, Error, Result};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Marks of the loads or of the sizes, smallest first.
@@ -19,7 +20,7 @@ pub struct BenchPlot {
 }
 
 /// One solve as the picture sees it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 struct BenchPoint {
     surface: String,
     fractal_dimension: Option<f64>,
@@ -28,7 +29,13 @@ struct BenchPoint {
     cells: f64,
     seconds: f64,
     iterations: f64,
-    converged: bool,
+    status: String,
+}
+
+impl BenchPoint {
+    fn converged(&self) -> bool {
+        self.status == contact_model::Status::Converged.as_str()
+    }
 }
 
 /// What the horizontal axis counts; the other one tells the curves apart.
@@ -129,7 +136,8 @@ fn draw(points: &[BenchPoint], over: Over, directory: &Path, name: &str, plot: &
         let what = first.fractal_dimension.map_or_else(|| first.surface.clone(), |d| format!("D_f = {d:?}"));
         let rank = others.iter().position(|v| v.total_cmp(&other.of(&first)).is_eq()).unwrap_or(0);
         let mark = MARKS[rank % MARKS.len()];
-        let (done, open): (Vec<BenchPoint>, Vec<BenchPoint>) = curve.into_iter().partition(|p| p.converged);
+        let (done, open): (Vec<BenchPoint>, Vec<BenchPoint>) =
+            curve.into_iter().partition(BenchPoint::converged);
         let at = |points: &[BenchPoint]| points.iter().map(|p| (over.of(p), p.seconds)).collect::<Vec<_>>();
         drawing.line(&at(&done), &color, 1.4, LineStyle::Solid);
         drawing.points(&at(&done), &color, 4.6, Mark::Solid(mark));
@@ -219,24 +227,7 @@ fn shown(value: f64) -> String {
 
 fn read(csv: &Path) -> Result<Vec<BenchPoint>> {
     let file = CsvFile::read(csv)?;
-    let columns = ["fractal_dimension", "tolerance", "force_bar", "cells", "seconds", "iterations"];
-    let [d, tolerance, force, cells, seconds, iterations] = columns.map(|name| file.numbers(name));
-    let (d, tolerance, force) = (d?, tolerance?, force?);
-    let (cells, seconds, iterations) = (cells?, seconds?, iterations?);
-    let (surface, status) = (file.texts("surface")?, file.texts("status")?);
-    let rows = (0..force.len()).filter_map(|i| {
-        Some(BenchPoint {
-            surface: surface[i].to_owned(),
-            fractal_dimension: d[i],
-            tolerance: tolerance[i]?,
-            force_bar: force[i]?,
-            cells: cells[i]?,
-            seconds: seconds[i]?,
-            iterations: iterations[i]?,
-            converged: status[i] == contact_model::Status::Converged.as_str(),
-        })
-    });
-    let points: Vec<BenchPoint> = rows.collect();
+    let points: Vec<BenchPoint> = read_rows(csv, &file)?;
     if points.is_empty() {
         return Err(Error::content(csv, "no rows to draw"));
     }

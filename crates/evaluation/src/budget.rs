@@ -5,18 +5,13 @@ use crate::header::{FLAGS_1D, FLAGS_3D, describe, header};
 use crate::measured::{Measured, Series, measure, measure_1d, measure_3d};
 use crate::outcome::Outcome;
 use crate::realisation::Discretisation;
-use crate::run::Flag;
-use crate::run::Run;
+use crate::run::{Flag, Run};
 use crate::sample::{FLOOR_CELLS, Sample};
 use crate::session::Session;
-use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
-use analysis::{Bootstrap, FitWindow, Table, Value, least_squares};
-use runs::Progress;
-use runs::Store;
-use runs::{Error, Result};
-use runs::{Header, write_csv};
-use std::path::Path;
-use std::path::PathBuf;
+use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, TableOf};
+use analysis::{Bootstrap, FitWindow, least_squares};
+use runs::{Header, Progress, Result, Store, write_csv};
+use std::path::{Path, PathBuf};
 
 /// Surfaces that are solved on the coarser grid as well: enough to know the scatter of a difference to a fifth.
 pub(crate) const HALF_GRIDS: usize = 12;
@@ -298,50 +293,28 @@ fn law_difference(series: &Series, half_grids: &Series) -> Option<(f64, f64)> {
 /// Writes the budgets as `NAME-budget.csv`.
 pub(crate) fn write(path: &Path, measured: &Measured, all: &[Budgeted], header: Header) -> Result<()> {
     const TITLE: &str = "Error budgets: half-widths of 95 %";
-    let mut table = Table::new(
-        TITLE,
-        vec![
-            column("model", "-", MODEL),
-            column(
-                "quantity",
-                "-",
-                "stiffness_bar: mean k_bar at a load; alpha, zeta: the fitted law k_bar = zeta F_bar^alpha",
-            ),
-            column("fractal_dimension", "1", FRACTAL_DIMENSION),
-            column("force_bar", "1", FORCE_BAR),
-            column("value", "1", "the number"),
-            column("algebraic", "1", "from the tolerance: mean of the solver's own estimates"),
-            column(
-                "discretisation",
-                "1",
-                "from the grid and its shortest wave; empty without a half-size grid",
-            ),
-            column("ensemble", "1", "from the number of surfaces (Student); empty for one surface"),
-            column("half_width", "1", "algebraic + sqrt(discretisation^2 + ensemble^2)"),
-            column("relative", "1", "half_width over value"),
-            column(
-                "below_floor",
-                "-",
-                "true where some surface has fewer than 10 contact cells: no number to rely on",
-            ),
-        ],
-    );
-    for b in all {
-        let row: Vec<Value> = vec![
-            measured.discretisation.name().into(),
-            b.quantity.into(),
-            b.fractal_dimension.into(),
-            b.force_bar.into(),
-            b.value.into(),
-            b.budget.algebraic.into(),
-            b.budget.discretisation.into(),
-            b.budget.ensemble.into(),
-            b.budget.half_width().into(),
-            b.relative().into(),
-            b.below_floor.into(),
-        ];
-        table.push(row).map_err(Error::model(TITLE))?;
-    }
+    const QUANTITY: &str =
+        "stiffness_bar: mean k_bar at a load; alpha, zeta: the fitted law k_bar = zeta F_bar^alpha";
+    const GRID: &str = "from the grid and its shortest wave; empty without a half-size grid";
+    const FLOOR: &str = "true where some surface has fewer than 10 contact cells: no number to rely on";
+    const TOLERANCE: &str = "from the tolerance: mean of the solver's own estimates";
+    const SCATTER: &str = "from the number of surfaces (Student); empty for one surface";
+    let model = measured.discretisation.name();
+    let table = TableOf::new(TITLE, all)
+        .column("model", "-", MODEL, |_| model)
+        .column("quantity", "-", QUANTITY, |b| b.quantity)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |b| b.fractal_dimension)
+        .column("force_bar", "1", FORCE_BAR, |b| b.force_bar)
+        .column("value", "1", "the number", |b| b.value)
+        .column("algebraic", "1", TOLERANCE, |b| b.budget.algebraic)
+        .column("discretisation", "1", GRID, |b| b.budget.discretisation)
+        .column("ensemble", "1", SCATTER, |b| b.budget.ensemble)
+        .column("half_width", "1", "algebraic + sqrt(discretisation^2 + ensemble^2)", |b| {
+            b.budget.half_width()
+        })
+        .column("relative", "1", "half_width over value", Budgeted::relative)
+        .column("below_floor", "-", FLOOR, |b| b.below_floor)
+        .table()?;
     let header = header
         .with_note(format!(
             "discretisation: {REACH} root mean squares of the relative difference from the same surfaces on a grid half as fine (the first \

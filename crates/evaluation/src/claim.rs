@@ -1,8 +1,8 @@
 //! One line per claim of the paper.
 
-use crate::tables::column;
+use crate::tables::TableOf;
 use analysis::{Table, Value};
-use runs::{Error, Result};
+use runs::Result;
 use std::fmt;
 
 /// What the comparison says.
@@ -164,33 +164,20 @@ pub fn sort(claims: &mut [Claim]) {
 /// # Errors
 /// A row that does not fit the columns, which would be a mistake of this crate.
 pub fn claims_table(title: &str, claims: &[Claim]) -> Result<Table> {
-    let mut table = Table::new(
-        title,
-        vec![
-            column("claim", "-", "the quantity, dimensionless"),
-            column("paper", "1", "what the paper says; words where it gives no number"),
-            column("here", "1", "what was found; empty where this run cannot tell"),
-            column("standard_error", "1", "of what was found; empty for one surface or an exact number"),
-            column("difference", "1", "here minus paper"),
-            column("allowed", "1", "largest difference that counts as agreement, fixed beforehand"),
-            column("verdict", "-", "agrees, disagrees or not tested"),
-            column("why", "-", "where it comes from and why so much is allowed"),
-        ],
-    );
-    for c in claims {
-        let row = vec![
-            c.claim.as_str().into(),
-            c.paper.clone(),
-            c.here.clone(),
-            c.standard_error.into(),
-            c.difference.into(),
-            c.allowed.into(),
-            c.verdict.to_string().into(),
-            c.why.as_str().into(),
-        ];
-        table.push(row).map_err(Error::model(format!("the claim {}", c.claim)))?;
-    }
-    Ok(table)
+    TableOf::new(title, claims)
+        .column("claim", "-", "the quantity, dimensionless", |c| c.claim.as_str())
+        .column("paper", "1", "what the paper says; words where it gives no number", |c| c.paper.clone())
+        .column("here", "1", "what was found; empty where this run cannot tell", |c| c.here.clone())
+        .column("standard_error", "1", "of what was found; empty for one surface or an exact number", |c| {
+            c.standard_error
+        })
+        .column("difference", "1", "here minus paper", |c| c.difference)
+        .column("allowed", "1", "largest difference that counts as agreement, fixed beforehand", |c| {
+            c.allowed
+        })
+        .column("verdict", "-", "agrees, disagrees or not tested", |c| c.verdict.to_string())
+        .column("why", "-", "where it comes from and why so much is allowed", |c| c.why.as_str())
+        .table()
 }
 
 /// The claims as a Markdown table, with short numbers: for `verify.md` and the README.

@@ -1,12 +1,10 @@
 //! The table of hard cases: what was asserted and what was reached.
 
-use crate::tables::column;
-use analysis::{Table, Value};
+use crate::tables::TableOf;
+use analysis::Table;
 use contact_model::ContactModel as _;
-use runs::Progress;
 use runs::files::{create_directory, write_whole};
-use runs::{Error, Result};
-use runs::{Header, write_csv};
+use runs::{Header, Progress, Result, write_csv};
 use stability::{Case, CaseResult, Effort};
 use std::path::{Path, PathBuf};
 
@@ -34,27 +32,17 @@ pub fn hard_cases(
 }
 
 fn table(verdicts: &[CaseResult]) -> Result<Table> {
-    let columns = vec![
-        column("case", "-", "name of the case"),
-        column("why", "-", "why a solver may fail here"),
-        column("asserted", "-", "what must hold besides the certificate of every state"),
-        column("figure", "1", "largest deviation found; empty where it is no finite number"),
-        column("bound", "1", "largest figure that passes; 0 where bits or counts are compared"),
-        column("status", "-", "passed, or failed: the figure is beyond its bound or an assertion is broken"),
-    ];
-    let mut table = Table::new("Hard cases and what they reach", columns);
-    for v in verdicts {
-        let row: Vec<Value> = vec![
-            v.case.name.into(),
-            v.case.why.into(),
-            v.case.asserted.into(),
-            v.figure.into(),
-            v.case.bound.into(),
-            v.status.as_str().into(),
-        ];
-        table.push(row).map_err(Error::model("stability.csv"))?;
-    }
-    Ok(table)
+    const STATUS: &str = "passed, or failed: the figure is beyond its bound or an assertion is broken";
+    TableOf::new("Hard cases and what they reach", verdicts)
+        .column("case", "-", "name of the case", |v| v.case.name)
+        .column("why", "-", "why a solver may fail here", |v| v.case.why)
+        .column("asserted", "-", "what must hold besides the certificate of every state", |v| v.case.asserted)
+        .column("figure", "1", "largest deviation found; empty where it is no finite number", |v| v.figure)
+        .column("bound", "1", "largest figure that passes; 0 where bits or counts are compared", |v| {
+            v.case.bound
+        })
+        .column("status", "-", STATUS, |v| v.status.as_str())
+        .table()
 }
 
 fn markdown(verdicts: &[CaseResult], effort: Effort) -> String {
@@ -88,6 +76,7 @@ fn short(v: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use analysis::Value;
     use runs::{CsvFile, Silent};
 
     #[test]

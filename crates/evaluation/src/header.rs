@@ -16,10 +16,10 @@ pub fn header(command: String) -> Header {
 
 /// The flags that decide the bytes of a 3D ensemble.
 pub const FLAGS_3D: [Flag; 6] =
-    [Flag::Cells, Flag::Surfaces, Flag::FractalDimensions, Flag::Forces, Flag::Tolerance, Flag::Seed];
+    [Flag::CELLS, Flag::SURFACES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::TOLERANCE, Flag::SEED];
 /// The flags that decide the bytes of a 1D ensemble.
 pub const FLAGS_1D: [Flag; 5] =
-    [Flag::Elements, Flag::Lines, Flag::FractalDimensions, Flag::Forces, Flag::Seed];
+    [Flag::ELEMENTS, Flag::LINES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::SEED];
 
 /// Header lines about an ensemble.
 pub fn describe(mut header: Header, run: &Run, measured: &[&Measured]) -> Header {

@@ -65,4 +65,4 @@ pub use runs::{Error, Result};
 pub use sample::{FIELDS, FLOOR_CELLS, Sample};
 pub use session::Session;
 pub use sweep::sweep;
-pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column, curves_table, samples_table};
+pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, TableOf, curves_table, samples_table};

@@ -5,9 +5,7 @@ use crate::run::Run;
 use crate::sample::FLOOR_CELLS;
 use crate::sweep::sweep;
 use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble};
-use runs::Progress;
-use runs::Store;
-use runs::{Error, Result};
+use runs::{Error, Progress, Result, Store};
 use std::sync::Arc;
 
 /// All surfaces of one fractal dimension.

@@ -1,6 +1,7 @@
 //! What a command leaves behind.
 
 use crate::claim::Claim;
+use crate::measured::Measured;
 use std::path::PathBuf;
 
 /// What a figure (or the verification) made.
@@ -29,6 +30,20 @@ impl Outcome {
     #[must_use]
     pub fn new(name: &'static str) -> Self {
         Self { name, ..Self::default() }
+    }
+
+    /// Files that rest on these ensembles, with what is known of their solves.
+    #[must_use]
+    pub fn of(name: &'static str, files: Vec<PathBuf>, ensembles: &[&Measured]) -> Self {
+        let seconds =
+            |model| ensembles.iter().find(|m| m.discretisation.name() == model).map(|m| m.seconds());
+        Self {
+            files,
+            not_converged: ensembles.iter().map(|m| m.not_converged()).sum(),
+            bem3d_seconds: seconds("bem3d"),
+            mdr1d_seconds: seconds("mdr1d"),
+            ..Self::new(name)
+        }
     }
 
     /// A file of budgets and what it says in one line.

@@ -61,15 +61,9 @@ impl Preset {
                 // The scatter from surface to surface is a hundred times larger.
                 tolerance: 1e-3,
             },
-            Self::Extended => PresetSizes {
-                cells: 16385,
-                surfaces: 4,
-                elements: 1 << 20,
-                lines: 500,
-                forces_3d: "1e-9:1e-2:22",
-                forces_1d: "1e-9:20:42,0.086,1",
-                tolerance: 1e-3,
-            },
+            Self::Extended => {
+                PresetSizes { cells: 16385, surfaces: 4, forces_3d: "1e-9:1e-2:22", ..Self::Paper.sizes() }
+            }
         }
     }
 }
@@ -211,73 +205,55 @@ impl Run {
     pub fn command(&self, name: &str, flags: &[Flag]) -> String {
         let mut text = format!("cargo xtask {name} --preset {}", self.preset.as_str());
         for flag in flags {
-            if let Some(value) = self.value(*flag) {
-                text += &format!(" --{} {value}", flag.as_str());
+            if let Some(value) = (flag.value)(self) {
+                text += &format!(" --{} {value}", flag.name);
             }
         }
         text
     }
-
-    fn value(&self, flag: Flag) -> Option<String> {
-        Some(match flag {
-            Flag::Cells => self.cells.to_string(),
-            Flag::Surfaces => self.surfaces.to_string(),
-            Flag::Elements => self.elements.to_string(),
-            Flag::Lines => self.lines.to_string(),
-            Flag::FractalDimensions => return self.fractal_dimensions.as_deref().map(list),
-            Flag::Forces => return self.forces_given.then(|| self.forces_3d.spec().to_owned()),
-            Flag::Tolerance => format!("{:?}", self.tolerance),
-            Flag::Seed => self.seed.to_string(),
-        })
-    }
 }
 
 /// A parameter that changes results, and so belongs into a header.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Flag {
-    /// `--cells`
-    Cells,
-    /// `--surfaces`
-    Surfaces,
-    /// `--elements`
-    Elements,
-    /// `--lines`
-    Lines,
-    /// `--fractal-dimensions`
-    FractalDimensions,
-    /// `--forces`
-    Forces,
-    /// `--tolerance`
-    Tolerance,
-    /// `--seed`
-    Seed,
+#[derive(Debug, Clone, Copy)]
+pub struct Flag {
+    name: &'static str,
+    /// What a run says; `None` where its preset decides.
+    value: fn(&Run) -> Option<String>,
 }
 
 impl Flag {
-    /// All of them.
+    /// `--cells`
+    pub const CELLS: Self = Self::new("cells", |run| Some(run.cells.to_string()));
+    /// `--surfaces`
+    pub const SURFACES: Self = Self::new("surfaces", |run| Some(run.surfaces.to_string()));
+    /// `--elements`
+    pub const ELEMENTS: Self = Self::new("elements", |run| Some(run.elements.to_string()));
+    /// `--lines`
+    pub const LINES: Self = Self::new("lines", |run| Some(run.lines.to_string()));
+    /// `--fractal-dimensions`
+    pub const FRACTAL_DIMENSIONS: Self =
+        Self::new("fractal-dimensions", |run| run.fractal_dimensions.as_deref().map(list));
+    /// `--forces`
+    pub const FORCES: Self =
+        Self::new("forces", |run| run.forces_given.then(|| run.forces_3d.spec().to_owned()));
+    /// `--tolerance`
+    pub const TOLERANCE: Self = Self::new("tolerance", |run| Some(format!("{:?}", run.tolerance)));
+    /// `--seed`
+    pub const SEED: Self = Self::new("seed", |run| Some(run.seed.to_string()));
+    /// All of them, in the order of a command.
     pub const ALL: [Self; 8] = [
-        Self::Cells,
-        Self::Surfaces,
-        Self::Elements,
-        Self::Lines,
-        Self::FractalDimensions,
-        Self::Forces,
-        Self::Tolerance,
-        Self::Seed,
+        Self::CELLS,
+        Self::SURFACES,
+        Self::ELEMENTS,
+        Self::LINES,
+        Self::FRACTAL_DIMENSIONS,
+        Self::FORCES,
+        Self::TOLERANCE,
+        Self::SEED,
     ];
 
-    /// The word on the command line, without its dashes.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Cells => "cells",
-            Self::Surfaces => "surfaces",
-            Self::Elements => "elements",
-            Self::Lines => "lines",
-            Self::FractalDimensions => "fractal-dimensions",
-            Self::Forces => "forces",
-            Self::Tolerance => "tolerance",
-            Self::Seed => "seed",
-        }
+    const fn new(name: &'static str, value: fn(&Run) -> Option<String>) -> Self {
+        Self { name, value }
     }
 }
 
@@ -363,7 +339,7 @@ mod tests {
         };
         let run = Run::new(&request).unwrap();
         assert_eq!(
-            run.command("reproduce-fig2", &[Flag::Cells, Flag::FractalDimensions, Flag::Forces, Flag::Seed]),
+            run.command("reproduce-fig2", &[Flag::CELLS, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::SEED]),
             "cargo xtask reproduce-fig2 --preset default --cells 513 --fractal-dimensions 2.0,2.4 \
              --forces 1e-2,1 --seed 86026710"
         );

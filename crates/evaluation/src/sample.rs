@@ -1,5 +1,6 @@
 //! One surface under one load: what is kept of a state.
 
+use crate::tables::{maybe, names};
 use contact_model::{Certificate, ContactState, Normalisation, Result};
 use runs::number;
 
@@ -69,49 +70,35 @@ impl Sample {
     }
 }
 
-/// Names of the fields of [`Sample::fields`], in order.
-pub const FIELDS: [&str; 16] = [
-    "force_bar",
-    "force",
-    "approach_over_h",
-    "stiffness_bar",
-    "contact_fraction",
-    "contact_cells",
-    "contact_length",
-    "iterations",
-    "applications",
-    "status",
-    "strategy",
-    "duality_gap",
-    "penetration",
-    "complementarity",
-    "load_error",
-    "stiffness_error",
+/// Name of a column of a stored unit and what stands in it; absent is empty.
+type SampleColumn = (&'static str, fn(&Sample) -> String);
+
+const COLUMNS: [SampleColumn; 16] = [
+    ("force_bar", |s| number(s.force_bar)),
+    ("force", |s| number(s.force)),
+    ("approach_over_h", |s| maybe(s.approach_over_h)),
+    ("stiffness_bar", |s| maybe(s.stiffness_bar)),
+    ("contact_fraction", |s| maybe(s.contact_fraction)),
+    ("contact_cells", |s| s.contact_cells.map(|c| c.to_string()).unwrap_or_default()),
+    ("contact_length", |s| maybe(s.contact_length)),
+    ("iterations", |s| s.iterations.to_string()),
+    ("applications", |s| s.applications.to_string()),
+    ("status", |s| s.status.clone()),
+    ("strategy", |s| s.strategy.clone()),
+    ("duality_gap", |s| number(s.certificate.duality_gap)),
+    ("penetration", |s| number(s.certificate.penetration)),
+    ("complementarity", |s| number(s.certificate.complementarity)),
+    ("load_error", |s| number(s.certificate.load_error)),
+    ("stiffness_error", |s| maybe(s.certificate.stiffness_error)),
 ];
+
+/// Names of the fields of [`Sample::fields`], in order.
+pub const FIELDS: [&str; COLUMNS.len()] = names(&COLUMNS);
 
 impl Sample {
     /// Every field as text that reads back to the same bits; absent is empty.
-    pub fn fields(&self) -> [String; 16] {
-        let optional = |v: Option<f64>| v.map(number).unwrap_or_default();
-        let c = &self.certificate;
-        [
-            number(self.force_bar),
-            number(self.force),
-            optional(self.approach_over_h),
-            optional(self.stiffness_bar),
-            optional(self.contact_fraction),
-            self.contact_cells.map(|c| c.to_string()).unwrap_or_default(),
-            optional(self.contact_length),
-            self.iterations.to_string(),
-            self.applications.to_string(),
-            self.status.clone(),
-            self.strategy.clone(),
-            number(c.duality_gap),
-            number(c.penetration),
-            number(c.complementarity),
-            number(c.load_error),
-            optional(c.stiffness_error),
-        ]
+    pub fn fields(&self) -> [String; COLUMNS.len()] {
+        COLUMNS.map(|(_, field)| field(self))
     }
 
     /// Reads [`Sample::fields`] back; `None` for anything else, and for numbers that are not finite.

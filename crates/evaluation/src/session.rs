@@ -2,9 +2,7 @@
 
 use crate::outcome::Outcome;
 use crate::run::Run;
-use runs::Result;
-use runs::Store;
-use runs::files;
+use runs::{Result, Store, files};
 use std::time::Instant;
 
 /// The directory, made and cleaned, and the clock.

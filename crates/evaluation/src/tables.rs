@@ -1,14 +1,92 @@
-//! Tables that several figures share: the curves and their samples.
+//! Tables whose columns say what stands in them; those that several figures share: the curves and their samples.
 
 use crate::measured::Measured;
-use crate::realisation::Discretisation;
-use crate::sample::{FLOOR_CELLS, Sample};
+use crate::sample::FLOOR_CELLS;
 use analysis::{Column, Table, Value};
-use runs::{Error, Result};
+use csv::StringRecord;
+use runs::{CsvFile, Error, Result, number};
+use serde::de::DeserializeOwned;
+use std::path::Path;
 
-/// A column of a table.
-pub fn column(name: &'static str, unit: &'static str, meaning: &'static str) -> Column {
-    Column { name, unit, meaning }
+/// A table with one row for each item, built column by column: name, unit, meaning and value stand together.
+///
+/// ```
+/// use evaluation::TableOf;
+/// let table = TableOf::new("Squares", &[1.0, 2.0])
+///     .column("x", "L", "side", |x| *x)
+///     .column("area", "L^2", "its square", |x| x * x)
+///     .table()?;
+/// assert_eq!(table.rows()[1], [2.0.into(), 4.0.into()]);
+/// # Ok::<(), evaluation::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct TableOf<'a, T> {
+    title: String,
+    items: &'a [T],
+    columns: Vec<Column>,
+    rows: Vec<Vec<Value>>,
+}
+
+impl<'a, T> TableOf<'a, T> {
+    /// A table without columns.
+    pub fn new(title: impl Into<String>, items: &'a [T]) -> Self {
+        Self { title: title.into(), items, columns: Vec::new(), rows: vec![Vec::new(); items.len()] }
+    }
+
+    /// Adds a column, as in [`Column`], and what stands in it for each item.
+    #[must_use]
+    pub fn column<V: Into<Value>>(
+        mut self,
+        name: &'static str,
+        unit: &'static str,
+        meaning: &'static str,
+        value: impl Fn(&'a T) -> V,
+    ) -> Self {
+        self.columns.push(Column { name, unit, meaning });
+        for (row, item) in self.rows.iter_mut().zip(self.items) {
+            row.push(value(item).into());
+        }
+        self
+    }
+
+    /// The finished table.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for a number that is not finite.
+    pub fn table(self) -> Result<Table> {
+        let mut table = Table::new(self.title.clone(), self.columns);
+        for row in self.rows {
+            table.push(row).map_err(Error::model(self.title.as_str()))?;
+        }
+        Ok(table)
+    }
+}
+
+/// The names of columns that stand beside something else.
+pub(crate) const fn names<T, const N: usize>(columns: &[(&'static str, T); N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut i = 0;
+    while i < N {
+        names[i] = columns[i].0;
+        i += 1;
+    }
+    names
+}
+
+/// A number as text; absent is empty.
+pub(crate) fn maybe(value: Option<f64>) -> String {
+    value.map(number).unwrap_or_default()
+}
+
+/// The rows of a CSV file as what their columns say.
+///
+/// # Errors
+/// [`Error::Content`] for a column that is missing or an entry that does not fit it.
+pub(crate) fn read_rows<T: DeserializeOwned>(path: &Path, file: &CsvFile) -> Result<Vec<T>> {
+    let names = StringRecord::from(file.columns.as_slice());
+    let row = |row: &Vec<String>| StringRecord::from(row.as_slice()).deserialize(Some(&names));
+    let rows: Result<_, csv::Error> = file.rows.iter().map(row).collect();
+    rows.map_err(|e| Error::content(path, e.to_string()))
 }
 
 /// What a column `model` holds.
@@ -17,147 +95,83 @@ pub const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";
 pub const FRACTAL_DIMENSION: &str = "D_f = 3 - H of the 3D surface";
 /// What a column `force_bar` holds.
 pub const FORCE_BAR: &str = "F/(E* h L), h the measured rms height of each surface (Eq. 10)";
+const CELLS: &str = "cells a side (bem3d) or elements (mdr1d)";
 
 /// Mean curves: the table of Figs. 2 and 6.
 ///
 /// # Errors
-/// A row that does not fit the columns, which would be a mistake of this crate.
+/// As [`TableOf::table`].
 pub fn curves_table(title: &str, measured: &Measured) -> Result<Table> {
-    let mut table = Table::new(
-        title,
-        vec![
-            column("model", "-", MODEL),
-            column("fractal_dimension", "1", FRACTAL_DIMENSION),
-            column("force_bar", "1", FORCE_BAR),
-            column(
-                "stiffness_bar",
-                "1",
-                "arithmetic mean of k/(1.1419 E* L) (Eq. 8) over the converged surfaces",
-            ),
-            column("stiffness_bar_se", "1", "standard error of that mean; empty for one surface"),
-            column("stiffness_bar_log_mean", "1", "exp(mean ln k_bar)"),
-            column("surfaces", "1", "surfaces in the mean"),
-            column("cells", "1", "cells a side (bem3d) or elements (mdr1d)"),
-            column("not_converged", "1", "surfaces left out because the solver did not meet its tolerance"),
-            column("min_contact_cells", "1", "fewest cells (elements) in contact on any surface of the mean"),
-            column(
-                "below_floor",
-                "-",
-                "true where some surface has fewer than 10 contact cells: left out of fits and lines",
-            ),
-            column(
-                "contact_fraction",
-                "1",
-                "mean contact area over A0; empty where the model claims no area",
-            ),
-        ],
-    );
-    for series in &measured.series {
-        for (j, point) in series.points.iter().enumerate() {
-            let k = point.stiffness_bar;
-            let row: Vec<Value> = vec![
-                measured.discretisation.name().into(),
-                series.fractal_dimension.into(),
-                point.force_bar.into(),
-                k.map(|k| k.mean).into(),
-                k.and_then(|k| k.standard_error).into(),
-                k.map(|k| k.log_mean).into(),
-                k.map_or(0, |k| k.count).into(),
-                measured.discretisation.size().into(),
-                point.missing.into(),
-                point.min_contact_cells.into(),
-                point.min_contact_cells.is_some_and(|c| c < FLOOR_CELLS).into(),
-                series.contact_fraction(j).into(),
-            ];
-            table.push(row).map_err(Error::model(title))?;
-        }
-    }
-    Ok(table)
+    const MEAN: &str = "arithmetic mean of k/(1.1419 E* L) (Eq. 8) over the converged surfaces";
+    const FEWEST: &str = "fewest cells (elements) in contact on any surface of the mean";
+    const FLOOR: &str = "true where some surface has fewer than 10 contact cells: left out of fits and lines";
+    const AREA: &str = "mean contact area over A0; empty where the model claims no area";
+    let (model, size) = (measured.discretisation.name(), measured.discretisation.size());
+    let points: Vec<_> =
+        measured.series.iter().flat_map(|s| s.points.iter().enumerate().map(move |p| (s, p))).collect();
+    TableOf::new(title, &points)
+        .column("model", "-", MODEL, |_| model)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(s, _)| s.fractal_dimension)
+        .column("force_bar", "1", FORCE_BAR, |(_, p)| p.1.force_bar)
+        .column("stiffness_bar", "1", MEAN, |(_, p)| p.1.stiffness_bar.map(|k| k.mean))
+        .column("stiffness_bar_se", "1", "standard error of that mean; empty for one surface", |(_, p)| {
+            p.1.stiffness_bar.and_then(|k| k.standard_error)
+        })
+        .column("stiffness_bar_log_mean", "1", "exp(mean ln k_bar)", |(_, p)| {
+            p.1.stiffness_bar.map(|k| k.log_mean)
+        })
+        .column("surfaces", "1", "surfaces in the mean", |(_, p)| p.1.stiffness_bar.map_or(0, |k| k.count))
+        .column("cells", "1", CELLS, |_| size)
+        .column(
+            "not_converged",
+            "1",
+            "surfaces left out because the solver did not meet its tolerance",
+            |(_, p)| p.1.missing,
+        )
+        .column("min_contact_cells", "1", FEWEST, |(_, p)| p.1.min_contact_cells)
+        .column("below_floor", "-", FLOOR, |(_, p)| p.1.min_contact_cells.is_some_and(|c| c < FLOOR_CELLS))
+        .column("contact_fraction", "1", AREA, |(s, p)| s.contact_fraction(p.0))
+        .table()
 }
 
-/// One row per surface and load.
+/// Every surface and load: the samples of a figure.
 ///
 /// # Errors
-/// A row that does not fit the columns, which would be a mistake of this crate.
+/// As [`TableOf::table`].
 pub fn samples_table(title: &str, measured: &Measured) -> Result<Table> {
-    let mut table = Table::new(
-        title,
-        vec![
-            column("model", "-", MODEL),
-            column("fractal_dimension", "1", FRACTAL_DIMENSION),
-            column("surface", "1", "number of the surface in its ensemble"),
-            column("seed", "1", "seed of this surface"),
-            column("force_bar", "1", FORCE_BAR),
-            column("approach_over_h", "1", "d/h, d from first touch of the highest point"),
-            column("stiffness_bar", "1", "k/(1.1419 E* L) (Eq. 8)"),
-            column("contact_fraction", "1", "contact area over A0; empty where the model claims no area"),
-            column("iterations", "1", "iterations of the solver"),
-            column("applications", "1", "applications of the elastic operator"),
-            column("contact_cells", "1", "cells (elements) in contact"),
-            column("contact_length", "L", "k/E* (Eq. 1)"),
-            column("status", "-", "converged: every number of the certificate is within the tolerance"),
-            column("duality_gap", "1", "sum p (g - min g)/(F h), the duality gap in its Frank-Wolfe form"),
-            column("penetration", "1", "max(0, -min g)/h"),
-            column("complementarity", "1", "sum p |g|/(F h)"),
-            column("load_error", "1", "|F - F_asked|/F_asked"),
-            column("stiffness_error", "1", "estimated relative error of k"),
-            column("below_floor", "-", "fewer than 10 contact cells"),
-            column("force", "E* L^2", "F"),
-            column("rms_height", "L", "measured rms height of this surface"),
-            column("cells", "1", "cells a side (bem3d) or elements (mdr1d)"),
-            column("strategy", "-", "which way the solver took"),
-        ],
-    );
-    for series in &measured.series {
-        for (unit, result) in &series.units {
-            for s in &result.samples {
-                let row = sample_row(
-                    measured.discretisation,
-                    series.fractal_dimension,
-                    unit.index,
-                    unit.seed,
-                    s,
-                    result.rms_height,
-                );
-                table.push(row).map_err(Error::model(title))?;
-            }
-        }
-    }
-    Ok(table)
-}
-
-fn sample_row(
-    discretisation: Discretisation,
-    d: f64,
-    index: usize,
-    seed: u64,
-    s: &Sample,
-    rms_height: f64,
-) -> Vec<Value> {
-    let c = &s.certificate;
-    vec![
-        discretisation.name().into(),
-        d.into(),
-        index.into(),
-        seed.into(),
-        s.force_bar.into(),
-        s.approach_over_h.into(),
-        s.stiffness_bar.into(),
-        s.contact_fraction.into(),
-        s.iterations.into(),
-        s.applications.into(),
-        s.contact_cells.into(),
-        s.contact_length.into(),
-        s.status.as_str().into(),
-        c.duality_gap.into(),
-        c.penetration.into(),
-        c.complementarity.into(),
-        c.load_error.into(),
-        c.stiffness_error.into(),
-        s.below_floor().into(),
-        s.force.into(),
-        rms_height.into(),
-        discretisation.size().into(),
-        s.strategy.as_str().into(),
-    ]
+    const STATUS: &str = "converged: every number of the certificate is within the tolerance";
+    const GAP: &str = "sum p (g - min g)/(F h), the duality gap in its Frank-Wolfe form";
+    const AREA: &str = "contact area over A0; empty where the model claims no area";
+    let (model, size) = (measured.discretisation.name(), measured.discretisation.size());
+    let units = measured.series.iter().flat_map(|s| &s.units);
+    let samples: Vec<_> = units.flat_map(|(u, r)| r.samples.iter().map(move |s| (s, u, r))).collect();
+    TableOf::new(title, &samples)
+        .column("model", "-", MODEL, |_| model)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(_, u, _)| u.fractal_dimension)
+        .column("surface", "1", "number of the surface in its ensemble", |(_, u, _)| u.index)
+        .column("seed", "1", "seed of this surface", |(_, u, _)| u.seed)
+        .column("force_bar", "1", FORCE_BAR, |(s, ..)| s.force_bar)
+        .column("approach_over_h", "1", "d/h, d from first touch of the highest point", |(s, ..)| {
+            s.approach_over_h
+        })
+        .column("stiffness_bar", "1", "k/(1.1419 E* L) (Eq. 8)", |(s, ..)| s.stiffness_bar)
+        .column("contact_fraction", "1", AREA, |(s, ..)| s.contact_fraction)
+        .column("iterations", "1", "iterations of the solver", |(s, ..)| s.iterations)
+        .column("applications", "1", "applications of the elastic operator", |(s, ..)| s.applications)
+        .column("contact_cells", "1", "cells (elements) in contact", |(s, ..)| s.contact_cells)
+        .column("contact_length", "L", "k/E* (Eq. 1)", |(s, ..)| s.contact_length)
+        .column("status", "-", STATUS, |(s, ..)| s.status.as_str())
+        .column("duality_gap", "1", GAP, |(s, ..)| s.certificate.duality_gap)
+        .column("penetration", "1", "max(0, -min g)/h", |(s, ..)| s.certificate.penetration)
+        .column("complementarity", "1", "sum p |g|/(F h)", |(s, ..)| s.certificate.complementarity)
+        .column("load_error", "1", "|F - F_asked|/F_asked", |(s, ..)| s.certificate.load_error)
+        .column("stiffness_error", "1", "estimated relative error of k", |(s, ..)| {
+            s.certificate.stiffness_error
+        })
+        .column("below_floor", "-", "fewer than 10 contact cells", |(s, ..)| s.below_floor())
+        .column("force", "E* L^2", "F", |(s, ..)| s.force)
+        .column("rms_height", "L", "measured rms height of this surface", |(.., r)| r.rms_height)
+        .column("cells", "1", CELLS, |_| size)
+        .column("strategy", "-", "which way the solver took", |(s, ..)| s.strategy.as_str())
+        .table()
 }

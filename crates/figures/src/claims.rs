@@ -14,9 +14,9 @@ mod plateau;
 mod scaling;
 mod speed;
 
-use evaluation::Claim;
-use evaluation::Measured;
+use evaluation::{Claim, Measured};
 
+pub(crate) use curve::{collapse, line_above_solid};
 pub(crate) use paper::paper_against_itself;
 pub(crate) use plateau::plateaus;
 pub(crate) use scaling::scaling;
@@ -54,14 +54,4 @@ pub(crate) fn factors(solid: &Measured, line: &Measured) -> Vec<Claim> {
     claims.extend(factor::crossing(solid));
     claims.extend(factor::line_against_solid(solid, line));
     claims
-}
-
-/// What Fig. 4 can judge.
-pub(crate) fn collapse(solid: &Measured) -> Vec<Claim> {
-    curve::collapse(solid)
-}
-
-/// What Figs. 2 and 6 together can judge.
-pub(crate) fn crossover(solid: &Measured, line: &Measured) -> Vec<Claim> {
-    curve::line_above_solid(solid, line)
 }

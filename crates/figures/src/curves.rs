@@ -1,29 +1,62 @@
 //! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
 
 use crate::words;
-use evaluation::Measured;
-use evaluation::{Flag, Run, describe, header};
-use evaluation::{curves_table, samples_table};
+use analysis::Table;
+use evaluation::{
+    Claim, Flag, Measured, Outcome, Run, Session, curves_table, describe, header, samples_table, write_budget,
+};
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
-use runs::{CsvFile, Error, Result, write_csv};
+use runs::{CsvFile, Error, Header, Progress, Result, Store, write_csv};
 use std::path::{Path, PathBuf};
 
-/// Writes `name.csv`, `name-samples.csv`, `name.svg`, `name.png`.
-pub(crate) fn write(
-    name: &'static str,
-    title: &str,
-    flags: &[Flag],
+/// A figure of mean curves.
+pub(crate) struct CurveFigure {
+    pub name: &'static str,
+    pub title: &'static str,
+    /// Flags that decide the bytes of its files.
+    pub flags: &'static [Flag],
+    pub measure: fn(&Run, &Store, &dyn Progress) -> Result<Measured>,
+    pub claims: fn(&Measured) -> Vec<Claim>,
+}
+
+impl CurveFigure {
+    /// The figure and its ensemble, which is solved where it is not stored.
+    pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<(Outcome, Measured)> {
+        check(run.over.as_deref())?;
+        let session = Session::open(run)?;
+        let measured = (self.measure)(run, &session.store, progress)?;
+        let mut outcome = Outcome::of(self.name, self.write(run, &measured)?, &[&measured]);
+        outcome.add_budget(write_budget(self.name, self.flags, run, &measured, &session.store, progress)?);
+        outcome.claims = (self.claims)(&measured);
+        Ok((session.close(outcome)?, measured))
+    }
+
+    /// Writes `name.csv`, `name-samples.csv`, `name.svg`, `name.png`.
+    fn write(&self, run: &Run, measured: &Measured) -> Result<Vec<PathBuf>> {
+        let Self { name, title, flags, .. } = *self;
+        let header = describe(header(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
+        let samples = run.out.join(format!("{name}-samples.csv"));
+        let all = samples_table(&format!("{title}: every surface and load"), measured)?;
+        write_csv(&samples, &all, &header)?;
+        let draw = |csv: &Path| draw(name, csv, run.over.as_deref(), &run.out);
+        let mut files = written(run, name, &curves_table(title, measured)?, &header, draw)?;
+        files.insert(1, samples);
+        Ok(files)
+    }
+}
+
+/// Writes `name.csv` and draws its pictures from it: the files.
+pub(crate) fn written(
     run: &Run,
-    measured: &Measured,
+    name: &str,
+    table: &Table,
+    header: &Header,
+    draw: impl FnOnce(&Path) -> Result<Vec<PathBuf>>,
 ) -> Result<Vec<PathBuf>> {
-    let header = describe(header(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
     let csv = run.out.join(format!("{name}.csv"));
-    let samples = run.out.join(format!("{name}-samples.csv"));
-    write_csv(&csv, &curves_table(title, measured)?, &header)?;
-    let all = samples_table(&format!("{title}: every surface and load"), measured)?;
-    write_csv(&samples, &all, &header)?;
-    let mut files = vec![csv.clone(), samples];
-    files.extend(draw(name, &csv, run.over.as_deref(), &run.out)?);
+    write_csv(&csv, table, header)?;
+    let mut files = vec![csv.clone()];
+    files.extend(draw(&csv)?);
     Ok(files)
 }
 
@@ -43,7 +76,7 @@ type CurvePoints = (f64, Vec<CurvePoint>);
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn check(over: Option<&Path>) -> Result<()> {
+fn check(over: Option<&Path>) -> Result<()> {
     over.map_or(Ok(()), |over| read(over, &CsvFile::read(over)?).map(|_| ()))
 }
 

@@ -1,24 +1,14 @@
 //! Fig. 1: what the surfaces look like.
 
-use crate::words;
-use analysis::Table;
+use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
-use evaluation::Outcome;
-use evaluation::Session;
-use evaluation::header;
-use evaluation::{FRACTAL_DIMENSION, column};
-use evaluation::{Flag, Run, list};
+use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list};
 use plots::{GreyMap, encode_grey, grey, save_maps};
-use runs::Progress;
-use runs::files;
-use runs::threads_for_memory;
-use runs::write_npy;
-use runs::{CsvFile, write_csv};
-use runs::{Error, Result};
+use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory, write_npy};
 use std::path::{Path, PathBuf};
 
 /// Flags that decide what Fig. 1 holds.
-pub const FLAGS: [Flag; 3] = [Flag::Cells, Flag::FractalDimensions, Flag::Seed];
+pub const FLAGS: [Flag; 3] = [Flag::CELLS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
 
 /// Largest side of a map in the CSV.
 const CSV_SIDE: usize = 257;
@@ -38,15 +28,7 @@ pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     let session = Session::open(run)?;
     let dimensions = run.dimensions();
     let mut outcome = Outcome::new("fig1");
-    let mut table = Table::new(
-        "Fig. 1: self-affine surfaces",
-        vec![
-            column("fractal_dimension", "1", FRACTAL_DIMENSION),
-            column("x", "L", "centre of the cell"),
-            column("y", "L", "centre of the cell"),
-            column("height", "h", "in units of the rms height of the whole map, mean 0"),
-        ],
-    );
+    let mut points = Vec::new();
     let seed = surface_gen::surface_seed(run.seed, 0);
     let (n, cost) = (run.cells, (run.cells * run.cells) as u64);
     progress
@@ -55,11 +37,17 @@ pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
         let map = SelfAffine::new(d, 1.0, 1.0)
             .and_then(|s| surface_gen::self_affine_map(&s, n, seed))
             .map_err(Error::model(format!("the surface of D_f = {d:?}")))?;
-        sample(&mut table, d, &map)?;
+        sample(&mut points, d, &map);
         outcome.files.extend(full_size(&run.out, d, &map)?);
         progress.advance(cost, false);
     }
     progress.end();
+    let table = TableOf::new("Fig. 1: self-affine surfaces", &points)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |p| p[0])
+        .column("x", "L", "centre of the cell", |p| p[1])
+        .column("y", "L", "centre of the cell", |p| p[2])
+        .column("height", "h", "in units of the rms height of the whole map, mean 0", |p| p[3])
+        .table()?;
     let kept = n.min(CSV_SIDE);
     let header = header(run.command("reproduce-fig1", &FLAGS))
         .with_note(format!("fractal_dimensions: {}", list(&dimensions)))
@@ -67,10 +55,7 @@ pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
         .with_note(format!(
             "map: {n} x {n} cells; here {kept} x {kept} of them, cell round(i ({n} - 1)/({kept} - 1)) in each direction, no smoothing"
         ));
-    let csv = run.out.join("fig1.csv");
-    write_csv(&csv, &table, &header)?;
-    outcome.files.push(csv.clone());
-    outcome.files.extend(draw(&csv, &run.out)?);
+    outcome.files.extend(curves::written(run, "fig1", &table, &header, |csv| draw(csv, &run.out))?);
     session.close(outcome)
 }
 
@@ -80,17 +65,14 @@ fn kept(n: usize) -> Vec<usize> {
     (0..m).map(|i| (2 * i * (n - 1) + m - 1) / (2 * (m - 1).max(1))).collect()
 }
 
-fn sample(table: &mut Table, d: f64, map: &HeightMap) -> Result<()> {
+/// Adds D_f, x, y and height of each cell that is kept.
+fn sample(points: &mut Vec<[f64; 4]>, d: f64, map: &HeightMap) {
     let n = map.columns();
     let kept = kept(n);
     let centre = |i: usize| (i as f64 + 0.5) / n as f64;
     for &iy in &kept {
-        for &ix in &kept {
-            let row = vec![d.into(), centre(ix).into(), centre(iy).into(), map.heights()[iy * n + ix].into()];
-            table.push(row).map_err(Error::model("a height"))?;
-        }
+        points.extend(kept.iter().map(|&ix| [d, centre(ix), centre(iy), map.heights()[iy * n + ix]]));
     }
-    Ok(())
 }
 
 /// Rows from the top: y grows upwards in a picture.

@@ -1,20 +1,13 @@
 //! Fig. 4: the collapse of all curves.
 
 use crate::claims;
-use crate::curves;
-use crate::words;
-use analysis::Table;
-use evaluation::Outcome;
-use evaluation::Run;
-use evaluation::Session;
-use evaluation::describe;
-use evaluation::header;
-use evaluation::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, column};
-use evaluation::{Measured, measure_3d, transformed};
+use crate::{curves, words};
+use evaluation::{
+    FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Outcome, Run, Session, TableOf, describe, header,
+    measure_3d, transformed,
+};
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
-use runs::Progress;
-use runs::{CsvFile, write_csv};
-use runs::{Error, Result};
+use runs::{CsvFile, Progress, Result};
 use std::path::{Path, PathBuf};
 
 use evaluation::FLAGS_3D as FLAGS;
@@ -34,43 +27,21 @@ pub fn fig4(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
 }
 
 pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
-    let title = "Fig. 4: collapse of the 3D curves";
-    let mut table = Table::new(
-        title,
-        vec![
-            column("model", "-", MODEL),
-            column("fractal_dimension", "1", FRACTAL_DIMENSION),
-            column("force_bar", "1", FORCE_BAR),
-            column(
-                "force_tilde",
-                "1",
-                "0.086 (k_bar/0.18)^(1/(0.266 D_f)) of the mean k_bar: F_bar where Eq. 12 holds",
-            ),
-            column("below_floor", "-", "true where some surface has fewer than 10 contact cells"),
-        ],
-    );
-    for series in &measured.series {
-        for (p, floor) in transformed(series) {
-            let d = series.fractal_dimension;
-            let row = vec![
-                measured.discretisation.name().into(),
-                d.into(),
-                p.force_bar.into(),
-                p.force_tilde.into(),
-                floor.into(),
-            ];
-            table.push(row).map_err(Error::model(title))?;
-        }
-    }
-    let csv = run.out.join("fig4.csv");
+    const TILDE: &str = "0.086 (k_bar/0.18)^(1/(0.266 D_f)) of the mean k_bar: F_bar where Eq. 12 holds";
+    let model = measured.discretisation.name();
+    let points: Vec<_> = (measured.series.iter())
+        .flat_map(|s| transformed(s).into_iter().map(|(p, floor)| (s.fractal_dimension, p, floor)))
+        .collect();
+    let table = TableOf::new("Fig. 4: collapse of the 3D curves", &points)
+        .column("model", "-", MODEL, |_| model)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |p| p.0)
+        .column("force_bar", "1", FORCE_BAR, |p| p.1.force_bar)
+        .column("force_tilde", "1", TILDE, |p| p.1.force_tilde)
+        .column("below_floor", "-", "true where some surface has fewer than 10 contact cells", |p| p.2)
+        .table()?;
     let header = describe(header(run.command("reproduce-fig4", &FLAGS)), run, &[measured]);
-    write_csv(&csv, &table, &header)?;
-    let mut outcome = Outcome::new("fig4");
-    outcome.files = vec![csv.clone()];
-    outcome.files.extend(draw(&csv, &run.out)?);
-    outcome.not_converged = measured.not_converged();
-    outcome.bem3d_seconds = Some(measured.seconds());
-    Ok(outcome)
+    let files = curves::written(run, "fig4", &table, &header, |csv| draw(csv, &run.out))?;
+    Ok(Outcome::of("fig4", files, &[measured]))
 }
 
 /// Draws `fig4.svg` and `fig4.png` from the table: F_tilde over F_bar would be six curves on one diagonal, their ratio shows them apart.

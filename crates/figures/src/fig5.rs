@@ -1,22 +1,14 @@
 //! Fig. 5: what the equivalent lines look like.
 
-use crate::words;
-use analysis::Table;
+use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
-use evaluation::Outcome;
-use evaluation::Session;
-use evaluation::header;
-use evaluation::{FRACTAL_DIMENSION, column};
-use evaluation::{Flag, Run, list};
+use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list};
 use plots::{Axis, LineStyle, Panels, Picture, extent};
-use runs::Progress;
-use runs::write_npy;
-use runs::{CsvFile, write_csv};
-use runs::{Error, Result};
+use runs::{CsvFile, Error, Progress, Result, write_npy};
 use std::path::{Path, PathBuf};
 
 /// Flags that decide what Fig. 5 holds.
-pub const FLAGS: [Flag; 3] = [Flag::Elements, Flag::FractalDimensions, Flag::Seed];
+pub const FLAGS: [Flag; 3] = [Flag::ELEMENTS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
 
 /// The paper's three lines, from top to bottom.
 const DIMENSIONS: [f64; 3] = [3.0, 2.5, 2.0];
@@ -38,14 +30,7 @@ pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
         .as_ref()
         .map_or_else(|| DIMENSIONS.to_vec(), |given| given.iter().rev().copied().collect());
     let mut outcome = Outcome::new("fig5");
-    let mut table = Table::new(
-        "Fig. 5: equivalent rough lines",
-        vec![
-            column("fractal_dimension", "1", FRACTAL_DIMENSION),
-            column("x", "L", "centre of the element, 0 to L_1D = (2/sqrt(pi)) L"),
-            column("height", "h", "in units of the rms height of the whole line, mean 0"),
-        ],
-    );
+    let mut points = Vec::new();
     let seed = surface_gen::surface_seed(run.seed, 0);
     let cost = run.elements as u64;
     progress.begin(
@@ -56,17 +41,19 @@ pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
         let line = SelfAffine::new(d, 1.0, 1.0)
             .and_then(|s| surface_gen::self_affine_line(&s, run.elements, seed))
             .map_err(Error::model(format!("the line of D_f = {d:?}")))?;
-        for i in extremes(&line) {
-            let x = (i as f64 + 0.5) * line.element();
-            let row = vec![d.into(), x.into(), line.heights()[i].into()];
-            table.push(row).map_err(Error::model("a height"))?;
-        }
+        let at = |i: usize| [d, (i as f64 + 0.5) * line.element(), line.heights()[i]];
+        points.extend(extremes(&line).into_iter().map(at));
         let npy = run.out.join(format!("fig5-df{d:?}.npy"));
         write_npy(&npy, &[run.elements], line.heights())?;
         outcome.files.push(npy);
         progress.advance(cost, false);
     }
     progress.end();
+    let table = TableOf::new("Fig. 5: equivalent rough lines", &points)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |p| p[0])
+        .column("x", "L", "centre of the element, 0 to L_1D = (2/sqrt(pi)) L", |p| p[1])
+        .column("height", "h", "in units of the rms height of the whole line, mean 0", |p| p[2])
+        .table()?;
     let header = header(run.command("reproduce-fig5", &FLAGS))
         .with_note(format!("fractal_dimensions: {}", list(&dimensions)))
         .with_note(format!("seed: {} (line 0: {seed}; the same phases for every D_f)", run.seed))
@@ -75,10 +62,7 @@ pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
             run.elements,
             BINS.min(run.elements)
         ));
-    let csv = run.out.join("fig5.csv");
-    write_csv(&csv, &table, &header)?;
-    outcome.files.push(csv.clone());
-    outcome.files.extend(draw(&csv, &run.out)?);
+    outcome.files.extend(curves::written(run, "fig5", &table, &header, |csv| draw(csv, &run.out))?);
     session.close(outcome)
 }
 

@@ -1,13 +1,120 @@
-//! What the pictures of Figs. 3 and 7 have in common: fitted values over the fractal dimension.
+//! What Figs. 3 and 7 have in common: fitted values over the fractal dimension.
 
-use crate::words;
+use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
-use plots::{Key, Mark, MarkShape, Picture, number};
-use runs::{CsvFile, Error, Result};
-use std::path::Path;
+use evaluation::{
+    Claim, FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, dense_dimensions, describe,
+    header, laws, measure_1d, measure_3d,
+};
+use plots::{Axis, Key, Mark, MarkShape, Picture, number};
+use runs::{CsvFile, Error, Progress, Result};
+use std::path::{Path, PathBuf};
 
 /// Points of one fractal dimension stand this far from each other, so that none hides another.
 const BESIDE: f64 = 0.014;
+
+/// A figure of a parameter of `k_bar = zeta F_bar^alpha` over the fractal dimension.
+pub(crate) struct FittedFigure {
+    pub name: &'static str,
+    pub title: &'static str,
+    /// Names of the columns of the parameter and of its standard error.
+    pub columns: [&'static str; 2],
+    pub value: fn(&FittedPowerLaw) -> (f64, Option<f64>),
+    pub formulas: &'static [Formula],
+    /// Draws the picture from the table, with a finer table of Fig. 2 beside, into a directory.
+    pub draw: fn(&Path, Option<&Path>, &Path) -> Result<Vec<PathBuf>>,
+    pub claims: fn(&Measured, &Measured) -> Vec<Claim>,
+}
+
+/// A formula of the paper: name, note, and the parameter at D_f.
+type Formula = (&'static str, &'static str, fn(f64) -> f64);
+
+/// A row of the table: a fit, why there is none, or a formula.
+struct FittedRow {
+    model: &'static str,
+    fractal_dimension: f64,
+    value: Option<f64>,
+    error: Option<f64>,
+    fit: Option<FittedPowerLaw>,
+    note: Option<String>,
+}
+
+impl FittedFigure {
+    /// The figure; ensembles are solved where they are not stored.
+    pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+        let session = Session::open(run)?;
+        let solid = measure_3d(run, &session.store, progress)?;
+        let line = measure_1d(run, &session.store, progress)?;
+        let mut outcome = self.write(run, &solid, &line)?;
+        outcome.claims = (self.claims)(&solid, &line);
+        session.close(outcome)
+    }
+
+    /// Writes `name.csv`, `name.svg` and `name.png`.
+    pub fn write(&self, run: &Run, solid: &Measured, line: &Measured) -> Result<Outcome> {
+        const VALUE: &str = "of k_bar = zeta F_bar^alpha; empty where there is no fit";
+        const ERROR: &str = "standard error over surfaces; empty for formulas and for one surface";
+        let rows = self.rows(run, solid, line);
+        let fit = |pick: fn(&FittedPowerLaw) -> f64| move |r: &FittedRow| r.fit.as_ref().map(pick);
+        let count = |pick: fn(&FittedPowerLaw) -> usize| move |r: &FittedRow| r.fit.as_ref().map(pick);
+        let table = TableOf::new(self.title, &rows)
+            .column("model", "-", "bem3d, mdr1d: fitted here; others: formulas of the paper", |r| r.model)
+            .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
+            .column(self.columns[0], "1", VALUE, |r| r.value)
+            .column(self.columns[1], "1", ERROR, |r| r.error)
+            .column("force_bar_min", "1", "smallest F_bar of the fit", fit(|l| l.force_bar_min))
+            .column("force_bar_max", "1", "largest F_bar of the fit", fit(|l| l.force_bar_max))
+            .column("points", "1", "loads in the fit", count(|l| l.points))
+            .column("surfaces", "1", "surfaces in the fit", count(|l| l.surfaces))
+            .column("note", "-", "formula, or why there is no fit", |r| r.note.clone())
+            .table()?;
+        let command = run.command(&format!("reproduce-{}", self.name), &Flag::ALL);
+        let header = describe(header(command), run, &[solid, line])
+            .with_note(format!(
+                "fit: ln of the arithmetic mean of k_bar over ln F_bar, equal weights, {}",
+                FitWindow::PAPER
+            ))
+            .with_note(format!(
+                "errors: bootstrap over surfaces, {} resamples; curves of different D_f share phases, their errors are correlated",
+                Bootstrap::default().resamples
+            ));
+        let draw = |csv: &Path| (self.draw)(csv, None, &run.out);
+        let files = curves::written(run, self.name, &table, &header, draw)?;
+        Ok(Outcome::of(self.name, files, &[solid, line]))
+    }
+
+    fn rows(&self, run: &Run, solid: &Measured, line: &Measured) -> Vec<FittedRow> {
+        let fitted = laws(solid).into_iter().chain(laws(line)).map(|law| {
+            let (fit, note) = match law.fit {
+                Ok(fit) => (Some(fit), None),
+                Err(reason) => (None, Some(reason.to_string())),
+            };
+            let (value, error) = fit.as_ref().map(self.value).unzip();
+            let (model, fractal_dimension, error) = (law.model, law.fractal_dimension, error.flatten());
+            FittedRow { model, fractal_dimension, value, error, fit, note }
+        });
+        let dimensions = dense_dimensions(&run.dimensions());
+        let formulas = self.formulas.iter().flat_map(|&(model, note, of)| {
+            dimensions.iter().map(move |&fractal_dimension| FittedRow {
+                model,
+                fractal_dimension,
+                value: Some(of(fractal_dimension)),
+                error: None,
+                fit: None,
+                note: Some(note.to_owned()),
+            })
+        });
+        fitted.chain(formulas).collect()
+    }
+}
+
+/// An empty picture of a parameter over the fractal dimension.
+pub(crate) fn picture(axes: (Axis, Axis), label: &str, title: &str) -> Picture {
+    Picture::new(axes.0, axes.1, words::DIMENSION, label)
+        .with_size(800.0, 560.0)
+        .with_title(title)
+        .with_legend_below()
+}
 
 /// A fitted value.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,9 +2,7 @@
 
 use crate::{fig2, fig6};
 use evaluation::{Request, Run};
-use runs::CsvFile;
-use runs::Progress;
-use runs::{Error, Result};
+use runs::{CsvFile, Error, Progress, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 

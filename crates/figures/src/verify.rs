@@ -1,17 +1,11 @@
 //! Every claim of the paper beside what was found.
 
 use crate::claims;
-use evaluation::Outcome;
-use evaluation::Session;
-use evaluation::describe;
-use evaluation::header;
-use evaluation::{Claim, claims_table, markdown, readme_table, sort};
-use evaluation::{Flag, Run};
-use evaluation::{Measured, measure_1d, measure_3d};
-use runs::Progress;
-use runs::Result;
-use runs::files;
-use runs::write_csv;
+use evaluation::{
+    Claim, Flag, Measured, Outcome, Run, Session, claims_table, describe, header, markdown, measure_1d,
+    measure_3d, readme_table, sort,
+};
+use runs::{Progress, Result, files, write_csv};
 
 /// Judges every claim (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
 /// `verify-table.md`, disagreements first.
@@ -25,10 +19,7 @@ pub fn verify(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     let session = Session::open(run)?;
     let solid = measure_3d(run, &session.store, progress)?;
     let line = measure_1d(run, &session.store, progress)?;
-    let mut outcome = write(run, &solid, &line)?;
-    outcome.bem3d_seconds = Some(solid.seconds());
-    outcome.mdr1d_seconds = Some(line.seconds());
-    session.close(outcome)
+    session.close(write(run, &solid, &line)?)
 }
 
 /// All claims in order of figures; [`sort`] puts the disagreements first.
@@ -38,7 +29,7 @@ fn all(solid: &Measured, line: &Measured) -> Result<Vec<Claim>> {
     claims.extend(claims::collapse(solid));
     claims.extend(claims::curves_3d(solid));
     claims.extend(claims::curves_1d(line));
-    claims.extend(claims::crossover(solid, line));
+    claims.extend(claims::line_above_solid(solid, line));
     claims.extend(claims::plateaus()?);
     claims.extend(claims::paper_against_itself());
     claims.extend(claims::scaling()?);
@@ -62,9 +53,5 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     files::write_whole(&md, text.as_bytes())?;
     let short = run.out.join("verify-table.md");
     files::write_whole(&short, readme_table(&timeless).as_bytes())?;
-    let mut outcome = Outcome::new("verify");
-    outcome.files = vec![csv, md, short];
-    outcome.not_converged = solid.not_converged() + line.not_converged();
-    outcome.claims = claims;
-    Ok(outcome)
+    Ok(Outcome { claims, ..Outcome::of("verify", vec![csv, md, short], &[solid, line]) })
 }

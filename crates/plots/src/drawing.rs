@@ -2,6 +2,8 @@
 
 use crate::map::encode_rgb;
 use crate::text::{Fonts, Piece, Typeset};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use runs::{Error, Result, files};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -135,7 +137,7 @@ impl Drawing {
                     body += "</g>\n";
                 }
                 Item::Image { place: [x, y, w, h], rgb, columns } => {
-                    let data = crate::map::base64(&encode_rgb(path, *columns, rgb)?);
+                    let data = STANDARD.encode(encode_rgb(path, *columns, rgb)?);
                     body += &format!(
                         "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" style=\"image-rendering:pixelated\" \
                          href=\"data:image/png;base64,{data}\"/>\n"
@@ -208,8 +210,7 @@ impl Drawing {
                         pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
                     }
                     for [x, y, w, h] in &set.bars {
-                        let corners = [(*x, *y), (x + w, *y), (x + w, y + h), (*x, y + h)];
-                        let placed = skia_path(&polygon(&corners), |[x, y]| place(x, y));
+                        let placed = skia_path(&rectangle([*x, *y, *w, *h]), |[x, y]| place(x, y));
                         let Some(placed) = placed else { continue };
                         pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
                     }
@@ -240,6 +241,11 @@ pub(crate) fn polygon(corners: &[(f64, f64)]) -> Vec<Piece> {
     let mut pieces = polyline(corners);
     pieces.push(Piece::Close);
     pieces
+}
+
+/// A closed rectangle.
+pub(crate) fn rectangle([x, y, w, h]: Rectangle) -> Vec<Piece> {
+    polygon(&[(x, y), (x + w, y), (x + w, y + h), (x, y + h)])
 }
 
 /// A path through the points.

@@ -1,12 +1,11 @@
 //! A field over a rectangle: axes, colour bar and title.
 
 use crate::axis::Axis;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polyline, rectangle};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
 use contact_model::{Cells, Size};
-use runs::Result;
-use runs::files;
+use runs::{Result, files};
 use std::ops::Range;
 use std::path::Path;
 
@@ -101,7 +100,9 @@ impl FieldPicture<'_> {
         let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
         let image = self.image(columns, rows, color).into_flattened();
         drawing.image(frame, image, columns);
-        axes(&fonts, &mut drawing, frame, [(0.0, size.x), (0.0, size.y)]);
+        ticks(&fonts, &mut drawing, frame, Side::Below, (0.0, size.x));
+        ticks(&fonts, &mut drawing, frame, Side::Left, (0.0, size.y));
+        drawing.path(rectangle(frame), Paint::stroked(INK, 1.2), None);
         let unit =
             if self.length_unit.is_empty() { String::new() } else { format!(" ({})", self.length_unit) };
         let below = (LEFT + 0.5 * w, TOP + h + 3.2 * TICK);
@@ -113,7 +114,8 @@ impl FieldPicture<'_> {
         let steps = (bar[3] * PIXELS) as usize;
         let ramp = |i: usize| color(low + (high - low) * (1.0 - (i as f64 + 0.5) / steps as f64));
         drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
-        scale(&fonts, &mut drawing, bar, (low, high));
+        ticks(&fonts, &mut drawing, bar, Side::Right, (low, high));
+        drawing.path(rectangle(bar), Paint::stroked(INK, 1.2), None);
         let words = (LEFT + w + RIGHT - 0.6 * TICK, TOP + 0.5 * bar[3]);
         drawing.label(fonts.typeset(&self.quantity, 1.2 * TICK), words, Anchor::Middle, true, INK);
         drawing.label(fonts.typeset(&self.title, 19.0), (LEFT, 27.0), Anchor::Start, false, INK);
@@ -174,54 +176,41 @@ impl FieldPicture<'_> {
     }
 }
 
-/// Frame, ticks and labels of a map.
-fn axes(fonts: &Fonts, drawing: &mut Drawing, [x, y, w, h]: Rectangle, ends: [(f64, f64); 2]) {
-    for (i, (low, high)) in ends.into_iter().enumerate() {
-        let (ticks, power) = Axis::Linear(low, high).ticks(None);
-        for tick in ticks.iter().filter(|tick| tick.major) {
-            let label = fonts.typeset(tick.label.as_deref().unwrap_or_default(), TICK);
-            if i == 0 {
-                let at = x + tick.at * w;
-                drawing.path(polyline(&[(at, y + h), (at, y + h + 5.0)]), Paint::stroked(INK, 1.1), None);
-                drawing.label(label, (at, y + h + 5.0 + 1.1 * TICK), Anchor::Middle, false, INK);
-            } else {
-                let at = y + (1.0 - tick.at) * h;
-                drawing.path(polyline(&[(x - 5.0, at), (x, at)]), Paint::stroked(INK, 1.1), None);
-                drawing.label(label, (x - 8.0, at + 0.33 * TICK), Anchor::End, false, INK);
-            }
-        }
-        if let Some(power) = power {
-            let set = fonts.typeset(&format!("$×10^{{{power}}}$"), TICK);
-            let (at, anchor) = if i == 0 {
-                ((x + w, y + h + 3.2 * TICK), Anchor::End)
-            } else {
-                ((x - 8.0, y - 0.5 * TICK), Anchor::End)
-            };
-            drawing.label(set, at, anchor, false, INK);
-        }
-    }
-    outline(drawing, [x, y, w, h]);
+/// Where the ticks of a frame stand.
+#[derive(Clone, Copy)]
+enum Side {
+    Below,
+    Left,
+    Right,
 }
 
-/// Frame, ticks and labels of a colour bar.
-fn scale(fonts: &Fonts, drawing: &mut Drawing, [x, y, w, h]: Rectangle, (low, high): (f64, f64)) {
+/// Ticks and labels at one side of a frame; the power of ten that they share stands at its end.
+fn ticks(fonts: &Fonts, drawing: &mut Drawing, [x, y, w, h]: Rectangle, side: Side, (low, high): (f64, f64)) {
+    const LONG: f64 = 5.0;
     let (ticks, power) = Axis::Linear(low, high).ticks(None);
     for tick in ticks.iter().filter(|tick| tick.major) {
-        let at = y + (1.0 - tick.at) * h;
+        let (along, up) = (x + tick.at * w, y + (1.0 - tick.at) * h);
+        let beside = up + 0.33 * TICK;
+        let (line, at, anchor) = match side {
+            Side::Below => {
+                let end = y + h + LONG;
+                ([(along, y + h), (along, end)], (along, end + 1.1 * TICK), Anchor::Middle)
+            }
+            Side::Left => ([(x - LONG, up), (x, up)], (x - 8.0, beside), Anchor::End),
+            Side::Right => ([(x + w, up), (x + w + LONG, up)], (x + w + 9.0, beside), Anchor::Start),
+        };
+        drawing.path(polyline(&line), Paint::stroked(INK, 1.1), None);
         let label = fonts.typeset(tick.label.as_deref().unwrap_or_default(), TICK);
-        drawing.path(polyline(&[(x + w, at), (x + w + 5.0, at)]), Paint::stroked(INK, 1.1), None);
-        drawing.label(label, (x + w + 9.0, at + 0.33 * TICK), Anchor::Start, false, INK);
+        drawing.label(label, at, anchor, false, INK);
     }
     if let Some(power) = power {
-        let set = fonts.typeset(&format!("$×10^{{{power}}}$"), TICK);
-        drawing.label(set, (x, y - 0.5 * TICK), Anchor::Start, false, INK);
+        let (at, anchor) = match side {
+            Side::Below => ((x + w, y + h + 3.2 * TICK), Anchor::End),
+            Side::Left => ((x - 8.0, y - 0.5 * TICK), Anchor::End),
+            Side::Right => ((x, y - 0.5 * TICK), Anchor::Start),
+        };
+        drawing.label(fonts.power_of_ten(power, TICK), at, anchor, false, INK);
     }
-    outline(drawing, [x, y, w, h]);
-}
-
-fn outline(drawing: &mut Drawing, [x, y, w, h]: Rectangle) {
-    let corners = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)];
-    drawing.path(polygon(&corners), Paint::stroked(INK, 1.2), None);
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! Maps as grey-scale PNG.
 
 use contact_model::{Cells, Size};
-use runs::files;
-use runs::{Error, Result};
+use runs::{Error, Result, files};
 use std::path::Path;
 
 /// Most pixels along a side of a picture whose cells are oblong; one with square cells has a pixel for each.
@@ -120,33 +119,18 @@ fn encode(
     Ok(bytes)
 }
 
-/// Base64 (RFC 4648), for pictures inside an SVG.
-pub fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let word = chunk.iter().fold(0_u32, |w, b| (w << 8) | u32::from(*b)) << (8 * (3 - chunk.len()));
-        for i in 0..4 {
-            if i <= chunk.len() {
-                text.push(char::from(LETTERS[(word >> (18 - 6 * i)) as usize & 63]));
-            } else {
-                text.push('=');
-            }
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use base64::Engine as _;
+    use base64::engine::general_purpose::STANDARD;
 
     #[test]
     fn base64_of_the_rfc() {
         for (plain, coded) in
             [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
         {
-            assert_eq!(base64(plain.as_bytes()), coded);
+            assert_eq!(STANDARD.encode(plain), coded);
         }
     }
 

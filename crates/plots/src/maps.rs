@@ -1,6 +1,6 @@
 //! Several grey maps side by side.
 
-use crate::drawing::{Anchor, Drawing, Paint, polygon};
+use crate::drawing::{Anchor, Drawing, Paint, rectangle};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
 use runs::Result;
@@ -48,8 +48,7 @@ pub fn save_maps(
         drawing.label(label, (x + 0.5 * MAP, y - 8.0), Anchor::Middle, false, INK);
         let rgb = map.shades.iter().flat_map(|&shade| [shade; 3]).collect();
         drawing.image([x, y, MAP, MAP], rgb, map.side);
-        let corners = [(x, y), (x + MAP, y), (x + MAP, y + MAP), (x, y + MAP)];
-        drawing.path(polygon(&corners), Paint::stroked(INK, 1.0), None);
+        drawing.path(rectangle([x, y, MAP, MAP]), Paint::stroked(INK, 1.0), None);
     }
     drawing.save(&fonts, directory, name)
 }

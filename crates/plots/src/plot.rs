@@ -1,7 +1,7 @@
 //! Axes and what is drawn on them.
 
 use crate::axis::Axis;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline, rectangle};
 use crate::legend::{Legend, free_place};
 use crate::mark;
 use crate::style::{INK, Key, LineStyle, Mark, NEUTRAL};
@@ -282,7 +282,7 @@ impl Picture {
                 }
             }
             if let Some(power) = power {
-                let set = fonts.typeset(&format!("$×10^{{{power}}}$"), TICK * scale);
+                let set = fonts.power_of_ten(power, TICK * scale);
                 let (at, anchor) = if i == 0 {
                     ((right, bottom + 2.6 * TICK * scale), Anchor::End)
                 } else {
@@ -291,8 +291,7 @@ impl Picture {
                 drawing.label(set, at, anchor, false, INK);
             }
         }
-        let corners = [(x, y), (right, y), (right, bottom), (x, bottom)];
-        drawing.path(polygon(&corners), Paint::stroked(INK, 1.3), None);
+        drawing.path(rectangle(frame), Paint::stroked(INK, 1.3), None);
         let label = |i: usize| fonts.typeset(&self.labels[i], LABEL * scale);
         let below = (x + 0.5 * w, bottom + 1.55 * TICK * scale + 1.2 * LABEL * scale);
         drawing.label(label(0), below, Anchor::Middle, false, INK);

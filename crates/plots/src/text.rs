@@ -87,6 +87,11 @@ impl Fonts {
         [advance, ends[0], ends[1], ends[2]]
     }
 
+    /// The factor `×10^power` that the labels of an axis share.
+    pub fn power_of_ten(&self, power: i32, size: f64) -> Typeset {
+        self.typeset(&format!("$×10^{{{power}}}$"), size)
+    }
+
     /// Sets a label in one line.
     pub fn typeset(&self, label: &str, size: f64) -> Typeset {
         let mut line = LineOfText { fonts: self, set: Typeset::default(), lean: 0.0 };

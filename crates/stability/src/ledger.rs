@@ -41,6 +41,20 @@ impl Ledger {
         }
     }
 
+    /// States that a state has so many cells in contact.
+    pub fn contact_cells(&mut self, state: &ContactState, expected: usize) {
+        let (force, report) = (state.force, &state.report);
+        self.must(report.contact_cells == Some(expected), || {
+            format!("F {force}: {:?} contact cells, expected {expected}; {report:?}", report.contact_cells)
+        });
+    }
+
+    /// States that a certificate is within a tolerance.
+    pub fn meets(&mut self, state: &ContactState, tolerance: f64) {
+        let (force, report) = (state.force, &state.report);
+        self.must(report.certificate.meets(tolerance), || format!("F {force}: {report:?}"));
+    }
+
     /// Enters the deviations of force, approach and stiffness of one state from another; the contact must have as many cells.
     ///
     /// # Errors

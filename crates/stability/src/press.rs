@@ -4,7 +4,10 @@ use crate::ledger::{Ledger, approach, pressure, stiffness};
 use crate::maps::scene;
 use crate::plain::{PlainSum, relaxed};
 use bem3d::{Bem3d, Method};
-use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact, Result, Scene, Status};
+use contact_model::{
+    Boundary, ContactModel, ContactState, HeightMap, Load, PreparedContact, Result, Scene, Status,
+};
+use std::cell::Cell;
 
 /// Tolerance of the solves.
 pub(crate) const TOLERANCE: f64 = 1e-10;
@@ -32,6 +35,32 @@ pub(crate) fn watched(map: &HeightMap) -> Scene {
     let mut scene = scene(map.clone());
     (scene.outputs.area, scene.outputs.pressure) = (true, true);
     scene
+}
+
+/// The scene of [`watched`], repeated without end in both directions.
+pub(crate) fn watched_periodic(map: &HeightMap) -> Scene {
+    let mut scene = watched(map);
+    scene.effects.boundary = Boundary::Periodic;
+    scene
+}
+
+/// Says stop when it was asked more often than this.
+pub(crate) fn stop_after(patience: usize) -> impl Fn() -> bool {
+    let asked = Cell::new(0_usize);
+    move || asked.replace(asked.get() + 1) >= patience
+}
+
+/// Cells under pressure and the forces on them.
+pub(crate) fn forces(state: &ContactState, map: &HeightMap) -> Result<Vec<(usize, f64)>> {
+    let area = map.dx() * map.dy();
+    let force = |(i, p): (usize, &f64)| (*p > 0.0).then_some((i, p * area));
+    Ok(pressure(state)?.iter().enumerate().filter_map(force).collect())
+}
+
+/// Cells under pressure.
+pub(crate) fn contact_set(state: &ContactState) -> Result<Vec<usize>> {
+    let pressure = pressure(state)?;
+    Ok((0..pressure.len()).filter(|&i| pressure[i] > 0.0).collect())
 }
 
 /// Solves one load from nothing and has the witness look at the state.
@@ -96,9 +125,7 @@ pub(crate) fn witness(
         format!("{load:?}: {:?}, {}", report.status, report.certificate)
     });
     let (p, d, k) = (pressure(state)?, approach(state)?, stiffness(state)?);
-    let area = map.dx() * map.dy();
-    let forces: Vec<(usize, f64)> =
-        p.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, p)| (i, p * area)).collect();
+    let forces = forces(state, map)?;
     ledger.must(p.iter().all(|p| *p >= 0.0 && p.is_finite()), || format!("{load:?}: a pull"));
     ledger.must(report.contact_cells == Some(forces.len()), || {
         format!("{load:?}: {:?} contact cells, {} with pressure", report.contact_cells, forces.len())
@@ -143,8 +170,7 @@ pub(crate) fn witness(
 pub(crate) fn against_relaxation(ledger: &mut Ledger, map: &HeightMap, d: f64) -> Result<()> {
     let state = press_both(ledger, map, Load::Approach(d))?;
     let slow = relaxed(map, d);
-    let found: Vec<usize> =
-        pressure(&state)?.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, _)| i).collect();
+    let found = contact_set(&state)?;
     ledger.must(found == slow.contact, || {
         format!("d {d}: {} cells in contact, {} by relaxation", found.len(), slow.contact.len())
     });

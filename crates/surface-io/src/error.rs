@@ -1,12 +1,9 @@
 //! The one error type of this crate: which file, where in it, which value, what to do.
 
-mod display;
-
 use crate::format::Format;
 use crate::quantity::{Quantity, QuantityError};
-use std::fmt;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fmt, io};
 
 /// Result of everything that reads or writes.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -82,14 +79,17 @@ impl fmt::Display for Place {
 }
 
 /// What is wrong with the content of a file, or with what is asked of it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ContentError {
     /// No data at all.
+    #[error("no data in it")]
     Empty,
     /// Not a regular file.
+    #[error("not a regular file: its length is needed before it is read")]
     NotAFile,
     /// Longer than allowed.
+    #[error("{bytes} bytes: at most {largest} are read; raise largest_bytes for more")]
     TooLarge {
         /// Length in bytes.
         bytes: u64,
@@ -97,6 +97,7 @@ pub enum ContentError {
         largest: u64,
     },
     /// The file ended before the length that the system gave for it: somebody else writes it.
+    #[error("ended after {found} of {expected} bytes: is it being written? read it again later")]
     Changed {
         /// Length at the beginning, in bytes.
         expected: u64,
@@ -104,11 +105,13 @@ pub enum ContentError {
         found: u64,
     },
     /// The memory for its numbers cannot be had.
+    #[error("no memory for its numbers, {bytes} bytes: crop or average it on a larger machine")]
     Memory {
         /// Bytes asked for.
         bytes: u128,
     },
     /// Another kind of file.
+    #[error("looks like {what}: {remedy}")]
     Foreign {
         /// What it looks like.
         what: &'static str,
@@ -116,6 +119,7 @@ pub enum ContentError {
         remedy: &'static str,
     },
     /// Not the format expected.
+    #[error("expected {expected}, but the content is {found}: correct the name or the format")]
     NotOfFormat {
         /// The format expected from the request or by the name's ending.
         expected: Format,
@@ -123,16 +127,26 @@ pub enum ContentError {
         found: Format,
     },
     /// Two columns, the first of equally spaced numbers: x and z along a line.
+    #[error(
+        "{lines} lines of two numbers, the first of them equally spaced: a profile x, z along a line, which is no map \
+         (a map of two columns: say format = \"text\")"
+    )]
     Profile {
         /// Lines.
         lines: usize,
     },
     /// Three columns: a matrix of three columns, or points.
+    #[error(
+        "{lines} lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\""
+    )]
     Ambiguous {
         /// Number of lines of three.
         lines: usize,
     },
     /// A byte that does not occur in text.
+    #[error(
+        "byte 0x{byte:02x} at offset {offset} does not occur in text: expected numbers as text, or an NPY file"
+    )]
     Binary {
         /// Offset in bytes.
         offset: usize,
@@ -140,6 +154,7 @@ pub enum ContentError {
         byte: u8,
     },
     /// The header of an NPY file is not one.
+    #[error("header of an NPY file, offset {offset}: expected {expected}")]
     Header {
         /// Offset in bytes.
         offset: usize,
@@ -147,16 +162,21 @@ pub enum ContentError {
         expected: &'static str,
     },
     /// Numbers of a type that holds no heights.
+    #[error(
+        "numbers of type {found}: expected float64, float32, float16 or integers; numpy's astype('f8') converts"
+    )]
     Type {
         /// The type as written.
         found: String,
     },
     /// Not two dimensions.
+    #[error("an array of {} dimensions {found:?}: expected two, rows and columns", .found.len())]
     Shape {
         /// The lengths of the axes.
         found: Vec<u64>,
     },
     /// An array without rows or without columns.
+    #[error("an array of {rows} rows x {columns} columns: expected at least 1 of each")]
     NoCells {
         /// Rows.
         rows: u64,
@@ -164,6 +184,10 @@ pub enum ContentError {
         columns: u64,
     },
     /// The length of the file is not that of its shape.
+    #[error(
+        "{found} bytes after the header: {rows} x {columns} numbers take {expected} ({})",
+        if *.expected > u128::from(*.found) { "cut short" } else { "more than one array?" }
+    )]
     Length {
         /// Rows.
         rows: u64,
@@ -175,6 +199,7 @@ pub enum ContentError {
         found: u64,
     },
     /// What stands where a number should.
+    #[error("{place}: {text:?}: {kind}")]
     Number {
         /// Where.
         place: Place,
@@ -184,6 +209,7 @@ pub enum ContentError {
         kind: NumberKind,
     },
     /// An infinite height.
+    #[error("{place}: {value}: expected a finite height; write nan where nothing was measured")]
     Infinite {
         /// Where.
         place: Place,
@@ -191,6 +217,7 @@ pub enum ContentError {
         value: f64,
     },
     /// An integer that a double does not hold.
+    #[error("{place}: {value} is not a double: convert to float64 and decide what is rounded")]
     Inexact {
         /// Where.
         place: Place,
@@ -198,6 +225,7 @@ pub enum ContentError {
         value: i128,
     },
     /// A line with another number of values than the first one.
+    #[error("line {line} has {found} values: expected {expected} as in line {first}")]
     Ragged {
         /// Line, from 1.
         line: usize,
@@ -209,6 +237,7 @@ pub enum ContentError {
         first: usize,
     },
     /// Points with coordinates that are not numbers, or lines without three values.
+    #[error("line {line} has {found} values: expected x, y and z of one point")]
     NotPoints {
         /// Line, from 1.
         line: usize,
@@ -216,6 +245,7 @@ pub enum ContentError {
         found: usize,
     },
     /// A point without a coordinate.
+    #[error("line {line} has no {axis}: expected x, y and z of a point (z may be missing)")]
     Coordinate {
         /// `x` or `y`.
         axis: char,
@@ -223,6 +253,10 @@ pub enum ContentError {
         line: usize,
     },
     /// Two points at one place of the grid.
+    #[error(
+        "the points of lines {first} and {second} are both at x = {}, y = {}: expected one height for each place",
+        .at[0], .at[1]
+    )]
     Duplicate {
         /// Line of the first of them, from 1.
         first: usize,
@@ -232,6 +266,10 @@ pub enum ContentError {
         at: [f64; 2],
     },
     /// A coordinate off the grid.
+    #[error(
+        "{axis} = {value} is off the grid {axis} = {origin} + i * {spacing}: expected points of a regular grid; say cell where \
+         noise hides the spacing"
+    )]
     Irregular {
         /// `x` or `y`.
         axis: char,
@@ -243,6 +281,10 @@ pub enum ContentError {
         spacing: f64,
     },
     /// A grid most of whose points are missing.
+    #[error(
+        "{points} points on a grid of {rows} x {columns}: expected heights at half of the places at least; say cell where noise \
+         hides the spacing"
+    )]
     Sparse {
         /// Points.
         points: usize,
@@ -252,6 +294,10 @@ pub enum ContentError {
         columns: f64,
     },
     /// Undefined points without an instruction how to treat them.
+    #[error(
+        "{undefined} of {points} points are undefined, the first in {first}: say undefined = \"no_contact\" (they cannot touch), \
+         or fill = \"neighbours\", \"plane\" or a height"
+    )]
     Undefined {
         /// Points without a height.
         undefined: usize,
@@ -261,11 +307,13 @@ pub enum ContentError {
         first: Place,
     },
     /// No point is defined.
+    #[error("{points} of {points} points are undefined: expected one height at least")]
     AllUndefined {
         /// All points.
         points: usize,
     },
     /// Neither the file nor the caller states it.
+    #[error("{what} is neither in the file nor given: {remedy}")]
     Unspecified {
         /// What.
         what: &'static str,
@@ -273,6 +321,7 @@ pub enum ContentError {
         remedy: &'static str,
     },
     /// The file and the caller, or two statements of one of them, say different things.
+    #[error("{what}: {first}, but {second}")]
     Contradiction {
         /// About what.
         what: &'static str,
@@ -282,6 +331,7 @@ pub enum ContentError {
         second: String,
     },
     /// An option that the format has no use for.
+    #[error("{what} was given: {reason}")]
     Useless {
         /// The option.
         what: &'static str,
@@ -289,6 +339,7 @@ pub enum ContentError {
         reason: &'static str,
     },
     /// A number out of its range.
+    #[error("{what} = {value}: expected {expected}")]
     OutOfRange {
         /// What.
         what: &'static str,
@@ -298,6 +349,7 @@ pub enum ContentError {
         expected: &'static str,
     },
     /// The comment of a text says a unit that heights or coordinates do not have.
+    #[error("line {line}, {key}: {source}; skip_lines leaves out a header")]
     Heading {
         /// Line, from 1.
         line: usize,
@@ -307,6 +359,7 @@ pub enum ContentError {
         source: QuantityError,
     },
     /// The comment of a text says a side that is not positive.
+    #[error("line {line}, {key} = {value}: expected a length > 0; skip_lines leaves out a header")]
     Side {
         /// Line, from 1.
         line: usize,
@@ -316,6 +369,7 @@ pub enum ContentError {
         value: Quantity,
     },
     /// A quantity that cannot be read.
+    #[error("{what}: {source}")]
     Quantity {
         /// What.
         what: &'static str,
@@ -323,6 +377,10 @@ pub enum ContentError {
         source: QuantityError,
     },
     /// The rectangle to be cut out leaves the map.
+    #[error(
+        "crop of {} x {} cells from row {}, column {}: the map has {} rows of {}",
+        .cells[0], .cells[1], .from[0], .from[1], .shape[0], .shape[1]
+    )]
     Crop {
         /// First row and column of the rectangle.
         from: [usize; 2],
@@ -332,6 +390,7 @@ pub enum ContentError {
         shape: [usize; 2],
     },
     /// More cells than the map has along one axis, or none.
+    #[error("{cells} {what}: expected 1 to {found}, as many as the map has; finer cells would be invented")]
     Resample {
         /// `columns` or `rows`.
         what: &'static str,
@@ -341,6 +400,7 @@ pub enum ContentError {
         found: usize,
     },
     /// Too few defined points, or all in a line, for a trend.
+    #[error("a trend of {unknowns} unknowns is not determined by the {present} defined points")]
     Trend {
         /// Defined points.
         present: usize,
@@ -348,16 +408,19 @@ pub enum ContentError {
         unknowns: usize,
     },
     /// Heights that are finite in the file overflow when they are converted or fitted.
+    #[error("height {value}: beyond the range of double precision after conversion")]
     Overflow {
         /// The largest height by amount.
         value: f64,
     },
     /// A name whose ending is none of the formats that are written.
+    #[error("the name ends in {found:?}: expected npy, txt, xyz or vti")]
     Ending {
         /// The ending, shortened.
         found: String,
     },
     /// A field with a number that is not finite (nor NaN at an undefined point, where those are written).
+    #[error("{field}: value {at} (counted from 0) is {value}: expected finite numbers")]
     NotFinite {
         /// Name of the field.
         field: String,
@@ -367,17 +430,8 @@ pub enum ContentError {
         value: f64,
     },
     /// The map was refused.
-    Map(contact_model::Error),
-}
-
-impl std::error::Error for ContentError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Quantity { source, .. } | Self::Heading { source, .. } => Some(source),
-            Self::Map(source) => Some(source),
-            _ => None,
-        }
-    }
+    #[error("{0}")]
+    Map(#[source] contact_model::Error),
 }
 
 /// Why a text is no number.
@@ -391,6 +445,20 @@ pub enum NumberKind {
     Two,
     /// Beyond the range of doubles.
     TooLarge,
+}
+
+impl fmt::Display for NumberKind {
+    /// What to do about it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "expected a number (comments begin with # or %; skip_lines leaves out a heading)",
+            Self::DecimalComma => "a decimal comma? say decimal = \"comma\"",
+            Self::Two => {
+                "two numbers between two delimiters: one delimiter per file, and decimal commas need decimal = \"comma\""
+            }
+            Self::TooLarge => "beyond the range of double precision",
+        })
+    }
 }
 
 impl fmt::Display for Error {

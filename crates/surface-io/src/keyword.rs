@@ -26,6 +26,17 @@ impl KeywordError {
     }
 }
 
+/// What a word stands for among those that are known.
+fn among<T, const N: usize>(
+    what: &'static str,
+    text: &str,
+    known: [(&str, T); N],
+    expected: &'static str,
+) -> Result<T, KeywordError> {
+    let found = known.into_iter().find(|(word, _)| *word == text);
+    found.map(|(_, value)| value).ok_or_else(|| KeywordError::new(what, text, expected))
+}
+
 impl fmt::Display for KeywordError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} = {:?}: expected {}", self.what, self.found, self.expected)?;
@@ -46,12 +57,8 @@ impl FromStr for Format {
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        match text {
-            "npy" => Ok(Self::Npy),
-            "text" => Ok(Self::Text),
-            "xyz" => Ok(Self::Xyz),
-            other => Err(KeywordError::new("format", other, "npy, text or xyz")),
-        }
+        let known = [("npy", Self::Npy), ("text", Self::Text), ("xyz", Self::Xyz)];
+        among("format", text, known, "npy, text or xyz")
     }
 }
 
@@ -63,11 +70,8 @@ impl FromStr for Decimal {
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        match text {
-            "point" => Ok(Self::Point),
-            "comma" => Ok(Self::Comma),
-            other => Err(KeywordError::new("decimal", other, "point or comma")),
-        }
+        let known = [("point", Self::Point), ("comma", Self::Comma)];
+        among("decimal", text, known, "point or comma")
     }
 }
 
@@ -79,13 +83,13 @@ impl FromStr for Detrend {
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        match text {
-            "none" => Ok(Self::Nothing),
-            "mean" => Ok(Self::Mean),
-            "plane" => Ok(Self::Plane),
-            "quadric" => Ok(Self::Quadric),
-            other => Err(KeywordError::new("detrend", other, "none, mean, plane or quadric")),
-        }
+        let known = [
+            ("none", Self::Nothing),
+            ("mean", Self::Mean),
+            ("plane", Self::Plane),
+            ("quadric", Self::Quadric),
+        ];
+        among("detrend", text, known, "none, mean, plane or quadric")
     }
 }
 
@@ -117,14 +121,8 @@ impl FromStr for Undefined {
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        match text {
-            "no_contact" => Ok(Self::NoContact),
-            other => Err(KeywordError::new(
-                "undefined",
-                other,
-                "no_contact (fill gives undefined points a height)",
-            )),
-        }
+        let known = [("no_contact", Self::NoContact)];
+        among("undefined", text, known, "no_contact (fill gives undefined points a height)")
     }
 }
 

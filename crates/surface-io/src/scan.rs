@@ -2,12 +2,11 @@
 
 use crate::content::{FileContent, check_unit};
 use crate::error::{ContentError, Error, Place, Result};
-use crate::extent;
 use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::provenance::{Origin, Sourced, contradiction, sourced};
 use crate::quantity::{Quantity, Unit};
-use crate::{npy, points, text};
+use crate::{extent, npy, points, text};
 use std::fmt;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read};

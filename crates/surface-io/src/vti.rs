@@ -6,7 +6,10 @@
 
 use crate::error::ContentError;
 use crate::lines::Lines;
+use base64::engine::general_purpose::STANDARD;
+use base64::write::EncoderStringWriter;
 use contact_model::{Cells, Size};
+use std::io::Write as _;
 
 /// Numbers on the cells of a rectangle.
 #[derive(Debug, Clone, Copy)]
@@ -136,18 +139,10 @@ pub fn vti(
     if encoding == Encoding::Base64 && !fields.is_empty() {
         file.add(format_args!("<AppendedData encoding=\"base64\">\n_"));
         for field in fields {
-            let mut base64 = Base64::new(&mut file.text);
-            base64.add((8 * field.values.len() as u64).to_le_bytes());
-            for value in field.values {
-                base64.add(value.to_le_bytes());
-            }
-            base64.finish();
+            append(&mut file.text, 8 * field.values.len(), field.values.iter().map(|v| v.to_le_bytes()));
         }
         if !hidden.is_empty() {
-            let mut base64 = Base64::new(&mut file.text);
-            base64.add((hidden.len() as u64).to_le_bytes());
-            base64.add(hidden);
-            base64.finish();
+            append(&mut file.text, hidden.len(), hidden.iter().map(|&v| [v]));
         }
         file.add(format_args!("\n</AppendedData>\n"));
     }
@@ -173,44 +168,15 @@ fn title(field: &DataArray<'_>) -> String {
     safe
 }
 
-/// Base64 (RFC 4648) of a run of bytes.
-struct Base64<'a> {
-    text: &'a mut String,
-    held: [u8; 3],
-    count: usize,
-}
-
-impl<'a> Base64<'a> {
-    fn new(text: &'a mut String) -> Self {
-        Self { text, held: [0; 3], count: 0 }
+/// Appends a run of base64: the number of bytes, then the bytes.
+fn append<const N: usize>(text: &mut String, length: usize, parts: impl Iterator<Item = [u8; N]>) {
+    let mut run = EncoderStringWriter::from_consumer(text, &STANDARD);
+    // A string takes every byte.
+    let _ = run.write_all(&(length as u64).to_le_bytes());
+    for part in parts {
+        let _ = run.write_all(&part);
     }
-
-    fn add(&mut self, bytes: impl IntoIterator<Item = u8>) {
-        for byte in bytes {
-            self.held[self.count] = byte;
-            self.count += 1;
-            if self.count == 3 {
-                self.flush();
-            }
-        }
-    }
-
-    fn flush(&mut self) {
-        const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        let word = self.held.iter().fold(0_u32, |word, byte| (word << 8) | u32::from(*byte));
-        for i in 0..4 {
-            let letter = if i <= self.count { LETTERS[(word >> (18 - 6 * i)) as usize & 63] } else { b'=' };
-            self.text.push(char::from(letter));
-        }
-        self.held = [0; 3];
-        self.count = 0;
-    }
-
-    fn finish(&mut self) {
-        if self.count > 0 {
-            self.flush();
-        }
-    }
+    run.into_inner();
 }
 
 #[cfg(test)]

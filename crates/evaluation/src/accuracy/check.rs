@@ -6,13 +6,10 @@ use crate::outcome::Outcome;
 use crate::realisation::{Discretisation, Realisation};
 use crate::run::FRACTAL_DIMENSIONS;
 use crate::sample::Sample;
-use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, column};
-use analysis::{Table, Value, binomial_test};
+use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, TableOf};
+use analysis::{Table, binomial_test};
 use contact_model::never;
-use runs::Progress;
-use runs::files;
-use runs::{Error, Result};
-use runs::{collect, run_jobs, write_csv};
+use runs::{Error, Progress, Result, collect, files, run_jobs, write_csv};
 use std::path::Path;
 use std::time::Instant;
 use surface_gen::surface_seed;
@@ -240,44 +237,28 @@ fn solve(discretisation: Discretisation, d: f64, seed: u64, force_bar: f64) -> R
 }
 
 fn table(cases: &[RandomCase]) -> Result<Table> {
-    const TITLE: &str = "Error budgets of single surfaces against references";
-    let mut table = Table::new(
-        TITLE,
-        vec![
-            column("fractal_dimension", "1", FRACTAL_DIMENSION),
-            column("seed", "1", "seed of this surface"),
-            column("force_bar", "1", FORCE_BAR),
-            column("cells", "1", "cells a side"),
-            column("tolerance", "1", "asked for"),
-            column("contact_cells", "1", "cells in contact"),
-            column("stiffness_bar", "1", "k/(1.1419 E* L) (Eq. 8)"),
-            column("reference", "1", "the same to 1e-10 on cells four times smaller"),
-            column("error", "1", "relative difference of both"),
-            column("algebraic_error", "1", "relative difference from 1e-10 on the same grid"),
-            column("algebraic", "1", "part of the budget, relative"),
-            column("discretisation", "1", "part of the budget, relative"),
-            column("inside", "-", "true where the error is within both parts together"),
-        ],
-    );
-    for c in cases {
-        let row: Vec<Value> = vec![
-            c.fractal_dimension.into(),
-            c.seed.into(),
-            c.force_bar.into(),
-            c.cells.into(),
-            c.tolerance.into(),
-            c.contact_cells.into(),
-            c.stiffness_bar.into(),
-            c.reference.into(),
-            c.error().into(),
-            c.algebraic_error().into(),
-            c.algebraic.into(),
-            c.discretisation.into(),
-            (c.error() <= c.budget()).into(),
-        ];
-        table.push(row).map_err(Error::model(TITLE))?;
-    }
-    Ok(table)
+    TableOf::new("Error budgets of single surfaces against references", cases)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |c| c.fractal_dimension)
+        .column("seed", "1", "seed of this surface", |c| c.seed)
+        .column("force_bar", "1", FORCE_BAR, |c| c.force_bar)
+        .column("cells", "1", "cells a side", |c| c.cells)
+        .column("tolerance", "1", "asked for", |c| c.tolerance)
+        .column("contact_cells", "1", "cells in contact", |c| c.contact_cells)
+        .column("stiffness_bar", "1", "k/(1.1419 E* L) (Eq. 8)", |c| c.stiffness_bar)
+        .column("reference", "1", "the same to 1e-10 on cells four times smaller", |c| c.reference)
+        .column("error", "1", "relative difference of both", RandomCase::error)
+        .column(
+            "algebraic_error",
+            "1",
+            "relative difference from 1e-10 on the same grid",
+            RandomCase::algebraic_error,
+        )
+        .column("algebraic", "1", "part of the budget, relative", |c| c.algebraic)
+        .column("discretisation", "1", "part of the budget, relative", |c| c.discretisation)
+        .column("inside", "-", "true where the error is within both parts together", |c| {
+            c.error() <= c.budget()
+        })
+        .table()
 }
 
 #[cfg(test)]

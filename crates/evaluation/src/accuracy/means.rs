@@ -1,16 +1,14 @@
 //! Means over ensembles: how far surfaces scatter, and what lines and closed forms are worth as an answer for the mean.
 
 use super::limit::{Limit, limit, slope};
-use super::problem::{DIMENSIONS, Family, LOADS, SQUARE};
+use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey, SQUARE};
 use super::row::{Answer, Parts, StudyRow, Way, measure};
 use super::sizes::{Order, StudySizes};
 use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Surface, never};
-use runs::Progress;
-use runs::cpu_seconds;
-use runs::{Error, Result};
+use runs::{Error, Progress, Result, cpu_seconds};
 use std::sync::Arc;
 
 /// Tolerance of the ensembles: far below their scatter.
@@ -108,12 +106,13 @@ fn at_load(
     let scatter = finest.standard_error.unwrap_or(finest.mean);
     let deviation = scatter * (solids.last().map_or(1.0, |s| s.1.count as f64)).sqrt();
     let sixty = deviation / PAPER_SURFACES.sqrt() / finest.mean;
-    orders.push(order(d, force_bar, reference, &sequence));
+    let problem = ProblemKey::rough(Family::Mean, d, force_bar);
+    orders.push(order(problem, reference, &sequence));
     reference.uncertainty = reference.uncertainty.hypot(scatter);
     let mut rows = Vec::new();
     let mut add = |way: Way, surfaces: usize, answer: Answer, own: Option<f64>| {
         let Some(k) = answer.stiffness else { return };
-        let mut row = StudyRow::new(Family::Mean, (Some(d), Some(force_bar)), way, answer);
+        let mut row = StudyRow::new(problem, way, answer);
         let distance = reference.distance(k);
         row.surfaces = surfaces;
         row.reference_error = Some(reference.relative());
@@ -152,12 +151,10 @@ fn formulas(d: f64, force_bar: f64) -> Result<Vec<(&'static str, Answer)>> {
     Ok(all)
 }
 
-fn order(d: f64, force_bar: f64, limit: Limit, sequence: &[(f64, f64)]) -> Order {
+fn order(problem: ProblemKey, limit: Limit, sequence: &[(f64, f64)]) -> Order {
     let errors: Vec<(f64, f64)> = sequence.iter().map(|&(h, v)| (h, limit.distance(v))).collect();
     Order {
-        family: Family::Mean,
-        fractal_dimension: Some(d),
-        force_bar: Some(force_bar),
+        problem,
         quantity: "stiffness",
         power: limit.order.or_else(|| slope(&errors[..errors.len().saturating_sub(1)])),
         established: limit.order.is_some(),

@@ -1,8 +1,9 @@
 //! The picture: error of k over seconds, one panel for each load.
 
+use crate::tables::read_rows;
 use plots::{Axis, Key, Legend, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
-use runs::CsvFile;
-use runs::Result;
+use runs::{CsvFile, Result};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Shortest time shown: a formula takes less.
@@ -13,7 +14,7 @@ const SMALLEST: f64 = 1e-4;
 pub(crate) const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// A row of the table as picture and text see it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Deserialize)]
 pub(crate) struct AccuracyPoint {
     pub family: String,
     pub fractal_dimension: Option<f64>,
@@ -22,11 +23,13 @@ pub(crate) struct AccuracyPoint {
     pub size: Option<f64>,
     pub tolerance: Option<f64>,
     pub method: String,
+    #[serde(rename = "error_stiffness")]
     pub error: Option<f64>,
     pub reference_error: Option<f64>,
     pub algebraic: Option<f64>,
     pub model_error: Option<f64>,
     pub ensemble: Option<f64>,
+    #[serde(rename = "cpu_seconds")]
     pub seconds: Option<f64>,
     pub pareto: bool,
 }
@@ -44,34 +47,7 @@ fn same(a: Option<f64>, b: Option<f64>) -> bool {
 }
 
 pub(crate) fn read(csv: &Path) -> Result<Vec<AccuracyPoint>> {
-    let file = CsvFile::read(csv)?;
-    let number = |name: &str| file.numbers(name);
-    let (d, f, size, tolerance) =
-        (number("fractal_dimension")?, number("force_bar")?, number("size")?, number("tolerance")?);
-    let (error, reference) = (number("error_stiffness")?, number("reference_error")?);
-    let (algebraic, model_error, ensemble) =
-        (number("algebraic")?, number("model_error")?, number("ensemble")?);
-    let seconds = number("cpu_seconds")?;
-    let (family, model, method) = (file.texts("family")?, file.texts("model")?, file.texts("method")?);
-    let pareto = file.texts("pareto")?;
-    Ok((0..d.len())
-        .map(|i| AccuracyPoint {
-            family: family[i].to_owned(),
-            fractal_dimension: d[i],
-            force_bar: f[i],
-            model: model[i].to_owned(),
-            size: size[i],
-            tolerance: tolerance[i],
-            method: method[i].to_owned(),
-            error: error[i],
-            reference_error: reference[i],
-            algebraic: algebraic[i],
-            model_error: model_error[i],
-            ensemble: ensemble[i],
-            seconds: seconds[i],
-            pareto: pareto[i] == "true",
-        })
-        .collect())
+    read_rows(csv, &CsvFile::read(csv)?)
 }
 
 /// Different values, increasing.

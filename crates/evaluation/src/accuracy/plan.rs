@@ -8,10 +8,7 @@ use crate::realisation::Discretisation;
 use crate::run::{Request, Run};
 use crate::sample::FLOOR_CELLS;
 use analysis::least_squares;
-use runs::Progress;
-use runs::Store;
-use runs::files;
-use runs::{Error, Result};
+use runs::{Error, Progress, Result, Store, files};
 
 /// Cells, elements and surfaces of the pilot.
 const PILOT_CELLS: usize = 129;

@@ -52,23 +52,31 @@ impl Family {
     }
 }
 
-/// One body under one load; E* = L = 1, rough surfaces of rms height 1, so that F = F_bar.
-#[derive(Debug, Clone)]
-pub(crate) struct StudyProblem {
+/// Which problem a row is about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ProblemKey {
     pub family: Family,
     pub fractal_dimension: Option<f64>,
     /// F_bar of a rough surface.
     pub force_bar: Option<f64>,
-    pub scene: Scene,
-    pub load: Load,
 }
 
-/// What is known of a problem without solving it.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Exact {
-    pub stiffness: Option<f64>,
-    pub approach: Option<f64>,
-    pub area: Option<f64>,
+impl ProblemKey {
+    pub fn body(family: Family) -> Self {
+        Self { family, fractal_dimension: None, force_bar: None }
+    }
+
+    pub fn rough(family: Family, fractal_dimension: f64, force_bar: f64) -> Self {
+        Self { family, fractal_dimension: Some(fractal_dimension), force_bar: Some(force_bar) }
+    }
+}
+
+/// One body under one load; E* = L = 1, rough surfaces of rms height 1, so that F = F_bar.
+#[derive(Debug, Clone)]
+pub(crate) struct StudyProblem {
+    pub key: ProblemKey,
+    pub scene: Scene,
+    pub load: Load,
 }
 
 impl StudyProblem {
@@ -84,9 +92,7 @@ impl StudyProblem {
                 };
                 let scene = Scene::new(Surface::SelfAffine(surface.map_err(Error::model(what()))?), 1.0);
                 all.extend(LOADS.map(|force_bar| Self {
-                    family,
-                    fractal_dimension: Some(d),
-                    force_bar: Some(force_bar),
+                    key: ProblemKey::rough(family, d, force_bar),
                     scene: scene.clone(),
                     load: Load::Force(force_bar),
                 }));
@@ -95,7 +101,7 @@ impl StudyProblem {
         for problem in &mut all {
             problem.scene.outputs.area = true;
             // At the edge of a punch the pressure has no square that could be integrated.
-            problem.scene.outputs.pressure = problem.family != Family::Square;
+            problem.scene.outputs.pressure = problem.key.family != Family::Square;
         }
         Ok(all)
     }
@@ -105,38 +111,26 @@ impl StudyProblem {
         // F = (4/3) E* a^3 / R.
         let load = Load::Force(4.0 / 3.0 * RADIUS.powi(3));
         let scene = Scene::new(surface, 1.0);
-        Self { family: Family::Sphere, fractal_dimension: None, force_bar: None, scene, load }
+        Self { key: ProblemKey::body(Family::Sphere), scene, load }
     }
 
     fn square() -> Self {
         let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
-        Self {
-            family: Family::Square,
-            fractal_dimension: None,
-            force_bar: None,
-            scene,
-            load: Load::Force(1.0),
-        }
+        Self { key: ProblemKey::body(Family::Square), scene, load: Load::Force(1.0) }
     }
 
-    /// What formulas say: `a = RADIUS`, `d = a^2 / R`, `k = 2 E* a`; `d = F/k` of the punch.
-    pub fn exact(&self) -> Exact {
-        match self.family {
-            Family::Sphere => Exact {
-                stiffness: Some(2.0 * RADIUS),
-                approach: Some(RADIUS * RADIUS),
-                area: Some(PI * RADIUS * RADIUS),
-            },
-            Family::Square => {
-                Exact { stiffness: Some(SQUARE), approach: Some(1.0 / SQUARE), area: Some(1.0) }
-            }
-            _ => Exact::default(),
+    /// Stiffness, approach and area as formulas say: `a = RADIUS`, `d = a^2 / R`, `k = 2 E* a`; `d = F/k` of the punch.
+    pub fn exact(&self) -> [Option<f64>; 3] {
+        match self.key.family {
+            Family::Sphere => [2.0 * RADIUS, RADIUS * RADIUS, PI * RADIUS * RADIUS].map(Some),
+            Family::Square => [SQUARE, 1.0 / SQUARE, 1.0].map(Some),
+            _ => [None; 3],
         }
     }
 
     /// Hertz's pressure at the cells' centres, in units of E*: `p = (2/pi) (E*/R) sqrt(a^2 - r^2)`.
     pub fn exact_pressure(&self, cells: usize) -> Option<Vec<f64>> {
-        if self.family != Family::Sphere {
+        if self.key.family != Family::Sphere {
             return None;
         }
         let at = |i: usize| (i as f64 + 0.5) / cells as f64 - 0.5;
@@ -148,7 +142,7 @@ impl StudyProblem {
     pub fn line(&self, elements: usize) -> Result<Scene> {
         let mut scene = self.scene.clone();
         scene.outputs.pressure = false;
-        if self.family == Family::Square {
+        if self.key.family == Family::Square {
             let line =
                 Line::new(line_length(1.0), vec![0.0; elements]).map_err(Error::model("a flat line"))?;
             scene.surface = Surface::Line { line: Arc::new(line), size: 1.0.into() };
@@ -198,7 +192,7 @@ mod tests {
         let problem = StudyProblem::sphere();
         let exact = problem.exact();
         // F = (4/3) a^3 = 0.036; the mean pressure times the area is the force.
-        assert_eq!((exact.stiffness, exact.approach), (Some(0.6), Some(0.09)));
+        assert_eq!(exact[..2], [Some(0.6), Some(0.09)]);
         let p = problem.exact_pressure(301).unwrap();
         assert_relative_eq!(p.iter().sum::<f64>() / (301.0 * 301.0), 0.036, max_relative = 1e-4);
         assert_eq!(StudyProblem::all(65).unwrap().len(), 26);

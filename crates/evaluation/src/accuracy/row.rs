@@ -1,9 +1,8 @@
 //! One way to answer one problem: what it gave, what it cost, how far off it is.
 
-use super::problem::Family;
+use super::problem::ProblemKey;
 use contact_model::{ContactModel, ContactState, Field, Load, Scene};
-use runs::{Error, Result};
-use runs::{cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
+use runs::{Error, Result, cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
 
 /// How an answer is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,9 +83,7 @@ pub(crate) struct Parts {
 /// A row of the table.
 #[derive(Debug, Clone)]
 pub(crate) struct StudyRow {
-    pub family: Family,
-    pub fractal_dimension: Option<f64>,
-    pub force_bar: Option<f64>,
+    pub problem: ProblemKey,
     pub way: Way,
     /// Surfaces in the answer.
     pub surfaces: usize,
@@ -101,11 +98,9 @@ pub(crate) struct StudyRow {
 }
 
 impl StudyRow {
-    pub fn new(family: Family, problem: (Option<f64>, Option<f64>), way: Way, answer: Answer) -> Self {
+    pub fn new(problem: ProblemKey, way: Way, answer: Answer) -> Self {
         Self {
-            family,
-            fractal_dimension: problem.0,
-            force_bar: problem.1,
+            problem,
             way,
             surfaces: 1,
             answer,
@@ -162,9 +157,6 @@ pub(crate) fn measure(
 /// Marks in each problem the rows that no other beats in both seconds and error of k. Rows without a clock and rows
 /// that missed their tolerance do not compete.
 pub(crate) fn mark_pareto(rows: &mut [StudyRow]) {
-    let key = |r: &StudyRow| {
-        (r.family.as_str(), r.fractal_dimension.map(f64::to_bits), r.force_bar.map(f64::to_bits))
-    };
     let candidates: Vec<(usize, f64, f64)> = rows
         .iter()
         .enumerate()
@@ -178,7 +170,7 @@ pub(crate) fn mark_pareto(rows: &mut [StudyRow]) {
     let beaten = |&(i, t, e): &(usize, f64, f64)| {
         candidates
             .iter()
-            .any(|&(j, u, f)| key(&rows[i]) == key(&rows[j]) && ((u < t && f <= e) || (u <= t && f < e)))
+            .any(|&(j, u, f)| rows[i].problem == rows[j].problem && ((u < t && f <= e) || (u <= t && f < e)))
     };
     let front: Vec<usize> = candidates.iter().filter(|c| !beaten(c)).map(|c| c.0).collect();
     for i in front {
@@ -188,6 +180,7 @@ pub(crate) fn mark_pareto(rows: &mut [StudyRow]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::problem::Family;
     use super::*;
 
     #[test]
@@ -195,7 +188,7 @@ mod tests {
         let row = |seconds, error, family| {
             let answer =
                 Answer { cpu_seconds: Some(seconds), status: "converged".into(), ..Answer::default() };
-            let mut row = StudyRow::new(family, (None, None), Way::Formula("f"), answer);
+            let mut row = StudyRow::new(ProblemKey::body(family), Way::Formula("f"), answer);
             row.errors[0] = Some(error);
             row
         };

@@ -1,7 +1,7 @@
 //! Grids and tolerances of the study, and the orders that it finds.
 
 use super::limit::Limit;
-use super::problem::Family;
+use super::problem::ProblemKey;
 
 /// StudySizes of a study.
 #[derive(Debug, Clone)]
@@ -29,9 +29,7 @@ pub(crate) struct StudySizes {
 /// Where a number goes on ever finer grids.
 #[derive(Debug, Clone)]
 pub(crate) struct Order {
-    pub family: Family,
-    pub fractal_dimension: Option<f64>,
-    pub force_bar: Option<f64>,
+    pub problem: ProblemKey,
     /// `stiffness`, `approach`, `area`, `pressure`.
     pub quantity: &'static str,
     /// Order in the cell: of the extrapolation where established, else the slope of the errors.

@@ -1,17 +1,15 @@
 //! Solves every problem in every way and compares.
 
 use super::limit::{Limit, limit, slope};
-use super::means;
-use super::pressure;
 use super::problem::{Family, SQUARE_UNCERTAINTY, StudyProblem};
 use super::row::{Answer, Parts, StudyRow, Way, mark_pareto, measure};
 use super::sizes::{Order, StudySizes};
+use super::{means, pressure};
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
 use contact_model::ContactModel;
 use mdr1d::Mdr1d;
-use runs::Progress;
-use runs::Result;
+use runs::{Progress, Result};
 
 /// How much is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -136,7 +134,7 @@ pub(crate) fn study(sizes: &StudySizes, seed: u64, progress: &dyn Progress) -> R
             let Way::Solid { cells, tolerance, method } = way else { continue };
             let model = Bem3d { cells, tolerance, method, ..Bem3d::default() };
             if let Some(answer) = measure(&model, &problem.scene, problem.load, surface_seed)? {
-                rows.push(StudyRow::new(problem.family, key(problem), way, answer));
+                rows.push(StudyRow::new(problem.key, way, answer));
             }
             progress.advance(cost(&way), false);
         }
@@ -153,32 +151,28 @@ pub(crate) fn study(sizes: &StudySizes, seed: u64, progress: &dyn Progress) -> R
     Ok(study)
 }
 
-fn key(problem: &StudyProblem) -> (Option<f64>, Option<f64>) {
-    (problem.fractal_dimension, problem.force_bar)
-}
-
 /// Lines and closed forms for the bodies whose answer is known; rough surfaces have theirs as means.
 fn others(problem: &StudyProblem, sizes: &StudySizes) -> Result<Vec<StudyRow>> {
     let exact = problem.exact();
-    if exact.stiffness.is_none() {
+    if exact[0].is_none() {
         return Ok(Vec::new());
     }
     let elements = sizes.elements[0];
     let scene = problem.line(elements)?;
     let mut ways: Vec<(Way, Box<dyn ContactModel>)> =
         vec![(Way::Line { elements }, Box::new(Mdr1d { elements }))];
-    if problem.family == Family::Sphere {
+    if problem.key.family == Family::Sphere {
         ways.push((Way::Formula("hertz"), Box::new(Hertz)));
     }
     let mut rows = Vec::new();
     for (way, model) in ways {
         let Some(answer) = measure(&*model, &scene, problem.load, 0)? else { continue };
-        let mut row = StudyRow::new(problem.family, key(problem), way, answer);
+        let mut row = StudyRow::new(problem.key, way, answer);
         let relative = |v: Option<f64>, exact: Option<f64>| v.zip(exact).map(|(v, e)| (v / e - 1.0).abs());
         row.errors = [
-            relative(row.answer.stiffness, exact.stiffness),
-            relative(row.answer.approach, exact.approach),
-            relative(row.answer.area, exact.area),
+            relative(row.answer.stiffness, exact[0]),
+            relative(row.answer.approach, exact[1]),
+            relative(row.answer.area, exact[2]),
             None,
         ];
         row.reference_error = Some(uncertainty(problem));
@@ -189,13 +183,12 @@ fn others(problem: &StudyProblem, sizes: &StudySizes) -> Result<Vec<StudyRow>> {
 }
 
 fn uncertainty(problem: &StudyProblem) -> f64 {
-    if problem.family == Family::Square { SQUARE_UNCERTAINTY } else { 0.0 }
+    if problem.key.family == Family::Square { SQUARE_UNCERTAINTY } else { 0.0 }
 }
 
 /// References, errors and parts of the rows of one problem.
 fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], orders: &mut Vec<Order>) {
     let exact = problem.exact();
-    let exact = [exact.stiffness, exact.approach, exact.area];
     let of = |a: &Answer, q: usize| [a.stiffness, a.approach, a.area][q];
     let sequence = sizes.sequence();
     let tight: Vec<Answer> = sequence.iter().filter_map(|&n| on(rows, n, sizes.tight)).cloned().collect();
@@ -218,7 +211,7 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
         .filter_map(|(i, a)| Some((cell(i), pressure_error(problem, a, tight.last()?)?)))
         .collect();
     if !pressures.is_empty() {
-        orders.push(order(problem, 3, None, problem.family == Family::Sphere, &pressures));
+        orders.push(order(problem, 3, None, problem.key.family == Family::Sphere, &pressures));
     }
     for i in 0..rows.len() {
         let row = &rows[i];
@@ -278,9 +271,7 @@ fn order(
     let far: Vec<(f64, f64)> = errors.iter().copied().filter(|e| exact || e.0 > 1.9 * last).collect();
     let extrapolated = limit.and_then(|l| l.order);
     Order {
-        family: problem.family,
-        fractal_dimension: problem.fractal_dimension,
-        force_bar: problem.force_bar,
+        problem: problem.key,
         quantity: QUANTITIES[q],
         power: extrapolated.or_else(|| slope(&far)),
         established: exact || extrapolated.is_some(),

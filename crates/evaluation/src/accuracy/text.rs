@@ -1,8 +1,9 @@
 //! The text: what it takes, when less is enough, which part dominates. Written from the tables.
 
 use super::picture::{AccuracyPoint, TARGETS, read, values};
-use runs::CsvFile;
-use runs::Result;
+use crate::tables::read_rows;
+use runs::{CsvFile, Result};
+use serde::Deserialize;
 use std::path::Path;
 
 /// The paper's settings, and the tolerance of its preset here.
@@ -216,7 +217,7 @@ fn parts(points: &[AccuracyPoint], orders: &Orders) -> String {
             })
             .filter_map(|p| p.algebraic)
             .reduce(f64::max);
-        let discretisation = orders.at("spectrum", d, f).map(Sequence::carried);
+        let discretisation = orders.at("spectrum", d, f).map(|s| s.carried(orders.finest));
         let mean = |of: fn(&AccuracyPoint) -> Option<f64>, model: &str| {
             let mean = |p: &&AccuracyPoint| {
                 p.family == "mean" && p.fractal_dimension == d && p.force_bar == f && p.model == model
@@ -249,6 +250,7 @@ fn parts(points: &[AccuracyPoint], orders: &Orders) -> String {
 }
 
 /// A row of the second table.
+#[derive(Deserialize)]
 struct Sequence {
     family: String,
     fractal_dimension: Option<f64>,
@@ -257,20 +259,24 @@ struct Sequence {
     order: Option<f64>,
     established: bool,
     limit_error: Option<f64>,
-    errors: [Option<f64>; 2],
-    finest: f64,
+    error_coarsest: Option<f64>,
+    error_finest: Option<f64>,
 }
 
 impl Sequence {
     /// The error of the finest grid, or the uncertainty of the limit, carried to the paper's grid by the order (the square root of
     /// the cell where none is seen).
-    fn carried(&self) -> f64 {
-        let error = self.errors[1].unwrap_or(0.0).max(self.limit_error.unwrap_or(0.0));
-        error * (self.finest / PAPER_CELLS).powf(self.order.unwrap_or(0.5).max(0.0))
+    fn carried(&self, finest: f64) -> f64 {
+        let error = self.error_finest.unwrap_or(0.0).max(self.limit_error.unwrap_or(0.0));
+        error * (finest / PAPER_CELLS).powf(self.order.unwrap_or(0.5).max(0.0))
     }
 }
 
-struct Orders(Vec<Sequence>);
+struct Orders {
+    rows: Vec<Sequence>,
+    /// Cells a side of the finest grid.
+    finest: f64,
+}
 
 impl Orders {
     fn read(path: &Path) -> Result<Self> {
@@ -281,28 +287,11 @@ impl Orders {
             .iter()
             .find_map(|c| c.split_once("] cells a side")?.0.rsplit([',', '[']).next()?.trim().parse().ok())
             .unwrap_or(PAPER_CELLS);
-        let number = |name: &str| file.numbers(name);
-        let (d, f, order) = (number("fractal_dimension")?, number("force_bar")?, number("order")?);
-        let (limit_error, first, last) =
-            (number("limit_error")?, number("error_coarsest")?, number("error_finest")?);
-        let (family, quantity) = (file.texts("family")?, file.texts("quantity")?);
-        let established = file.texts("established")?;
-        let rows = (0..d.len()).map(|i| Sequence {
-            family: family[i].to_owned(),
-            fractal_dimension: d[i],
-            force_bar: f[i],
-            quantity: quantity[i].to_owned(),
-            order: order[i],
-            established: established[i] == "true",
-            limit_error: limit_error[i],
-            errors: [first[i], last[i]],
-            finest,
-        });
-        Ok(Self(rows.collect()))
+        Ok(Self { rows: read_rows(path, &file)?, finest })
     }
 
     fn at(&self, family: &str, d: Option<f64>, f: Option<f64>) -> Option<&Sequence> {
-        self.0.iter().find(|s| {
+        self.rows.iter().find(|s| {
             s.family == family && s.quantity == "stiffness" && s.fractal_dimension == d && s.force_bar == f
         })
     }
@@ -314,20 +303,20 @@ impl Orders {
             | surface | D_f | F_bar | k | d | area | pressure (L2) |\n|---|---|---|---|---|---|---|\n"
             .to_owned();
         let mut done: Vec<(&str, Option<f64>, Option<f64>)> = Vec::new();
-        for s in self.0.iter().filter(|s| s.family != "mean") {
+        for s in self.rows.iter().filter(|s| s.family != "mean") {
             let key = (s.family.as_str(), s.fractal_dimension, s.force_bar);
             if done.contains(&key) {
                 continue;
             }
             done.push(key);
             let cell = |quantity: &str| {
-                let found = self.0.iter().find(|t| {
+                let found = self.rows.iter().find(|t| {
                     (t.family.as_str(), t.fractal_dimension, t.force_bar) == key && t.quantity == quantity
                 });
                 found.map_or_else(String::new, |t| {
                     let order = t.order.map_or_else(|| "-".to_owned(), |o| format!("{o:.1}"));
                     let order = if t.established { order } else { format!("({order})") };
-                    format!("{order}: {}, {}", maybe(t.errors[0]), maybe(t.errors[1]))
+                    format!("{order}: {}, {}", maybe(t.error_coarsest), maybe(t.error_finest))
                 })
             };
             let number = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:?}"));

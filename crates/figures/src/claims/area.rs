@@ -1,9 +1,7 @@
 //! A = kappa F/(E* |grad h|).
 
 use contact_model::SelfAffine;
-use evaluation::Claim;
-use evaluation::FLOOR_CELLS;
-use evaluation::{Measured, Series};
+use evaluation::{Claim, FLOOR_CELLS, Measured, Series};
 
 /// Proportionality is a statement about small areas.
 const LARGEST_FRACTION: f64 = 0.1;

@@ -1,8 +1,7 @@
 //! What several groups of claims need.
 
 use analysis::{Bootstrap, FittedPowerLaw, interpolate};
-use evaluation::FittedLaw;
-use evaluation::{Measured, Series};
+use evaluation::{FittedLaw, Measured, Series};
 
 /// Uncertainty of alpha that independent values have (data/paper/VALUES.md).
 pub(super) fn alpha_allowed(d: f64) -> f64 {

@@ -4,10 +4,7 @@ use super::common::{label, stiffness_at, usable};
 use analysis::{CollapsePoint, FitWindow, collapse as residual, decades_within, sum};
 use analytic::{F_BAR_UL, K_BAR_UL};
 use contact_model::PAPER_STIFFNESS_FACTOR;
-use evaluation::Claim;
-use evaluation::Measured;
-use evaluation::laws;
-use evaluation::transformed;
+use evaluation::{Claim, Measured, laws, transformed};
 
 /// k_bar at F_bar = 0.086, where "all curves collapse for k_bar = 0.18".
 pub(super) fn near_the_crossing(measured: &Measured) -> Vec<Claim> {
@@ -92,7 +89,7 @@ pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
 }
 
 /// "In the 1D case, the stiffness is overestimated by up to 25 % in this region" (the crossover).
-pub(super) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> {
+pub(crate) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> {
     let mut largest: Option<(f64, f64, f64, Option<f64>)> = None;
     for (a, b) in solid.series.iter().zip(&line.series) {
         for &f in a.curves.force_bar().iter().filter(|f| (F_BAR_UL..=20.0).contains(*f)) {
@@ -117,7 +114,7 @@ pub(super) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> 
 }
 
 /// Fig. 4: one master curve, on the line of Eq. 12 over four decades.
-pub(super) fn collapse(solid: &Measured) -> Vec<Claim> {
+pub(crate) fn collapse(solid: &Measured) -> Vec<Claim> {
     let curves: Vec<(f64, Vec<CollapsePoint>)> = solid
         .series
         .iter()

@@ -2,9 +2,7 @@
 
 use super::common::{alpha_allowed, label, usable};
 use analysis::{FitWindow, FittedPowerLaw};
-use evaluation::Claim;
-use evaluation::Measured;
-use evaluation::{laws, laws_within};
+use evaluation::{Claim, Measured, laws, laws_within};
 
 fn window(fit: &FittedPowerLaw) -> String {
     format!("fit over {:.1e} .. {:.1e}, {} loads", fit.force_bar_min, fit.force_bar_max, fit.points)

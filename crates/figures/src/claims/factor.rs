@@ -3,9 +3,7 @@
 use super::common::{alpha_allowed, label, usable};
 use analysis::{Bootstrap, FitWindow, FittedPowerLaw, crossing as cross, fit_power_law};
 use analytic::{F_BAR_UL, K_BAR_UL};
-use evaluation::Claim;
-use evaluation::laws;
-use evaluation::{Measured, Series};
+use evaluation::{Claim, Measured, Series, laws};
 
 /// 0.18 is printed with two digits: +-0.005 is 2.8 %.
 const PRINTED: f64 = 0.028;

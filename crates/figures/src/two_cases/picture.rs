@@ -3,60 +3,46 @@
 use super::reading::slopes;
 use super::study::{CASES, CaseCurve, NAME};
 use crate::words;
-use analysis::{Table, Value};
+use analysis::Table;
 use contact_model::{Boundary, PAPER_STIFFNESS_FACTOR};
-use evaluation::FLOOR_CELLS;
-use evaluation::column;
+use evaluation::{FLOOR_CELLS, TableOf};
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, logarithmic};
-use runs::CsvFile;
-use runs::{Error, Result};
+use runs::{CsvFile, Result};
 use std::path::{Path, PathBuf};
 
 /// Stiffness above which the pictures end: towards full contact of a periodic square it has no limit.
 const HIGHEST: f64 = 300.0;
 
 pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
-    let mut table = Table::new(
+    const FORCE: &str =
+        "F/(E* h L), h the rms height of each surface (measured; of the spectrum for a theory)";
+    const PROPORTION: &str = "k h/F: the constant of proportionality where there is one";
+    const LEFT_OUT: &str = "surfaces without a stiffness: not converged, or in full contact";
+    const FEWEST: &str = "fewest cells in contact on any surface of the mean";
+    let points: Vec<_> = (curves.iter())
+        .flat_map(|c| c.points.iter().zip(slopes(&c.points)).map(move |(p, slope)| (c, p, slope)))
+        .collect();
+    TableOf::new(
         "Two cases: k over F with free and periodic boundaries, with and without a roll-off of the spectrum",
-        vec![
-            column("case", "-", "boundary and spectrum"),
-            column("model", "-", "bem3d, or a theory of periodic contact"),
-            column(
-                "force_bar",
-                "1",
-                "F/(E* h L), h the rms height of each surface (measured; of the spectrum for a theory)",
-            ),
-            column("stiffness_bar", "1", "mean of k/(1.1419 E* L)"),
-            column("stiffness_bar_se", "1", "standard error of that mean"),
-            column("slope", "1", "d ln k/d ln F from the loads before and after"),
-            column("k_h_over_force", "1", "k h/F: the constant of proportionality where there is one"),
-            column("area", "1", "mean share of the square in contact"),
-            column("surfaces", "1", "surfaces in the mean (0: a theory)"),
-            column("left_out", "1", "surfaces without a stiffness: not converged, or in full contact"),
-            column("min_contact_cells", "1", "fewest cells in contact on any surface of the mean"),
-            column("below_floor", "-", "true where some surface has fewer than 10 contact cells"),
-        ],
-    );
-    for curve in curves {
-        for (point, slope) in curve.points.iter().zip(slopes(&curve.points)) {
-            let row = vec![
-                curve.case.name().into(),
-                curve.model.into(),
-                point.force_bar.into(),
-                point.stiffness_bar.into(),
-                point.standard_error.into(),
-                slope.into(),
-                (PAPER_STIFFNESS_FACTOR * point.stiffness_bar / point.force_bar).into(),
-                point.area.into(),
-                point.surfaces.into(),
-                point.left_out.into(),
-                point.min_contact_cells.map_or(Value::Empty, Into::into),
-                point.min_contact_cells.is_some_and(|n| n < FLOOR_CELLS).into(),
-            ];
-            table.push(row).map_err(Error::model("a row"))?;
-        }
-    }
-    Ok(table)
+        &points,
+    )
+    .column("case", "-", "boundary and spectrum", |(c, ..)| c.case.name())
+    .column("model", "-", "bem3d, or a theory of periodic contact", |(c, ..)| c.model)
+    .column("force_bar", "1", FORCE, |(_, p, _)| p.force_bar)
+    .column("stiffness_bar", "1", "mean of k/(1.1419 E* L)", |(_, p, _)| p.stiffness_bar)
+    .column("stiffness_bar_se", "1", "standard error of that mean", |(_, p, _)| p.standard_error)
+    .column("slope", "1", "d ln k/d ln F from the loads before and after", |(.., slope)| *slope)
+    .column("k_h_over_force", "1", PROPORTION, |(_, p, _)| {
+        PAPER_STIFFNESS_FACTOR * p.stiffness_bar / p.force_bar
+    })
+    .column("area", "1", "mean share of the square in contact", |(_, p, _)| p.area)
+    .column("surfaces", "1", "surfaces in the mean (0: a theory)", |(_, p, _)| p.surfaces)
+    .column("left_out", "1", LEFT_OUT, |(_, p, _)| p.left_out)
+    .column("min_contact_cells", "1", FEWEST, |(_, p, _)| p.min_contact_cells)
+    .column("below_floor", "-", "true where some surface has fewer than 10 contact cells", |(_, p, _)| {
+        p.min_contact_cells.is_some_and(|n| n < FLOOR_CELLS)
+    })
+    .table()
 }
 
 /// Draws the two pictures from the table.

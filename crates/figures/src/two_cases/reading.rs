@@ -3,8 +3,7 @@
 use super::study::{CaseCurve, CasePoint, TwoCases};
 use analysis::{Bootstrap, Curves, FitWindow, fit_power_law};
 use contact_model::Boundary;
-use evaluation::FLOOR_CELLS;
-use evaluation::{Claim, plain};
+use evaluation::{Claim, FLOOR_CELLS, plain};
 
 /// Shares of the square in contact between which the theories of random surfaces are compared: many summits, far from full contact.
 const AREAS: [f64; 2] = [0.01, 0.2];

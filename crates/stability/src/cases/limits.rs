@@ -1,15 +1,14 @@
 //! What arithmetic and patience cannot reach, and what transforms and sums must.
 
 use crate::case::{Case, Effort};
-use crate::ledger::{Ledger, pressure, stiffness};
+use crate::ledger::{Ledger, approach, stiffness};
 use crate::maps::{map, rough_map};
 use crate::plain::PlainSum;
-use crate::press::{SAME, press, press_both, press_by, tight, watched};
+use crate::press::{SAME, contact_set, forces, press, press_both, press_by, stop_after, tight, watched};
 use bem3d::love::influence;
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, Error, Field, Line, Load, Result, Scene, Status, Surface};
 use mdr1d::Mdr1d;
-use std::cell::Cell;
 use std::sync::Arc;
 
 /// The tolerance of figures is tighter by ten.
@@ -97,14 +96,7 @@ fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             for method in [Method::Auto, Method::SingleLevel] {
                 let model = Bem3d { method, ..tight() };
                 let state = model.prepare(&scene, 0)?.solve(Load::Force(force))?;
-                let area = rough.dx() * rough.dx();
-                let forces: Vec<(usize, f64)> = pressure(&state)?
-                    .iter()
-                    .map(|p| p * area)
-                    .enumerate()
-                    .filter(|(_, f)| *f > 0.0)
-                    .collect();
-                let exact = PlainSum::of(&rough).displacement(&forces);
+                let exact = PlainSum::of(&rough).displacement(&forces(&state, &rough)?);
                 let found = state.displacement().map_or(&[][..], Field::values);
                 ledger.must(found.len() == exact.len(), || format!("{} displacements", found.len()));
                 for (a, b) in found.iter().zip(&exact) {
@@ -197,21 +189,12 @@ fn noise_floor(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let map = rough_map(fractal_dimension, cells, 4)?;
         for method in [Method::SingleLevel, Method::Iterative] {
             let state = press_by(ledger, &Bem3d { method, ..tight() }, &map, Load::Force(force))?;
-            let area = map.dx() * map.dx();
-            let forces: Vec<(usize, f64)> =
-                pressure(&state)?.iter().map(|p| p * area).enumerate().filter(|(_, f)| *f > 0.0).collect();
+            let forces = forces(&state, &map)?;
             let u = PlainSum::of(&map).displacement(&forces);
-            let highest = map.highest();
+            let (highest, d) = (map.highest(), approach(&state)?);
+            let gap = |i: usize| u[i] + highest - map.heights()[i] - d;
             // Weighted by pressure: what the certificate is about.
-            let open: f64 = (forces.iter())
-                .map(|&(i, f)| {
-                    f / force
-                        * (u[i] + highest
-                            - map.heights()[i]
-                            - crate::ledger::approach(&state).unwrap_or(f64::NAN))
-                        .abs()
-                })
-                .sum();
+            let open: f64 = forces.iter().map(|&(i, f)| f / force * gap(i).abs()).sum();
             ledger.enter(open);
         }
     }
@@ -227,11 +210,8 @@ fn loose(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let mut contact = model.prepare(&watched(&map), 0)?;
             for force in [0.01, 0.03, 0.1, 0.3, 1.0] {
                 let state = contact.solve(Load::Force(force))?;
-                ledger.must(state.report.certificate.meets(LOOSE), || format!("{:?}", state.report));
-                let set: Vec<usize> = (pressure(&state)?.iter().enumerate())
-                    .filter(|(_, p)| **p > 0.0)
-                    .map(|(i, _)| i)
-                    .collect();
+                ledger.meets(&state, LOOSE);
+                let set = contact_set(&state)?;
                 if set.len() <= 700 {
                     ledger.near("k of its own set", stiffness(&state)?, PlainSum::of(&map).stiffness(&set));
                 }
@@ -272,8 +252,7 @@ fn few_rounds(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let model = Bem3d { max_outer_iterations: rounds, ..tight() };
         match model.prepare(&watched(&map), 0)?.solve(Load::Force(1.0)) {
             Ok(state) => {
-                ledger
-                    .must(state.report.certificate.meets(model.tolerance), || format!("{:?}", state.report));
+                ledger.meets(&state, model.tolerance);
                 ledger.near("k", stiffness(&state)?, stiffness(&exact)?);
             }
             Err(Error::NotConverged { best }) => {
@@ -298,12 +277,7 @@ fn deadline(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let mut contact = tight().prepare(&watched(&map), 0)?;
     let (mut stopped, mut with_state) = (0, 0);
     for patience in (0..20).chain((20..400).step_by(20)) {
-        let asked = Cell::new(0);
-        let stop = || {
-            asked.set(asked.get() + 1);
-            asked.get() > patience
-        };
-        match contact.solve_until(Load::Force(1.0), &stop) {
+        match contact.solve_until(Load::Force(1.0), &stop_after(patience)) {
             Err(Error::Stopped { best }) => {
                 stopped += 1;
                 if let Some(best) = best {

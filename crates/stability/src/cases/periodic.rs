@@ -3,8 +3,8 @@
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, mean_gap, pressure, stiffness};
 use crate::maps::{map, rough_map};
-use crate::press::{tight, watched};
-use contact_model::{Boundary, ContactModel, HeightMap, Load, PreparedContact, Result};
+use crate::press::{tight, watched_periodic};
+use contact_model::{ContactModel, HeightMap, Load, PreparedContact, Result};
 
 pub(super) const CASES: [Case; 2] = [
     Case {
@@ -24,8 +24,7 @@ pub(super) const CASES: [Case; 2] = [
 ];
 
 fn prepare(map: &HeightMap) -> Result<Box<dyn PreparedContact>> {
-    let mut scene = watched(map);
-    scene.effects.boundary = Boundary::Periodic;
+    let mut scene = watched_periodic(map);
     scene.outputs.mean_gap = true;
     tight().prepare(&scene, 0)
 }
@@ -39,7 +38,7 @@ fn any_origin(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let mut contact = prepare(&here)?;
         for force in [1e-4, 0.03, 0.3, 1.5] {
             let state = contact.solve(Load::Force(force))?;
-            ledger.must(state.report.certificate.meets(tight().tolerance), || format!("{:?}", state.report));
+            ledger.meets(&state, tight().tolerance);
             let gap = mean_gap(&state)?;
             let largest = pressure(&state)?.iter().fold(0.0_f64, |a, &p| a.max(p));
             for (dx, dy) in [(1, 0), (7, 13), (cells / 2, cells / 2)] {
@@ -64,8 +63,8 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let [light, heavy] = [3e3, 5e3];
         let mut press = |force: f64| -> Result<Vec<f64>> {
             let state = contact.solve(Load::Force(force))?;
-            ledger.must(state.report.certificate.meets(tight().tolerance), || format!("{:?}", state.report));
-            ledger.must(state.report.contact_cells == Some(cells * cells), || format!("{:?}", state.report));
+            ledger.meets(&state, tight().tolerance);
+            ledger.contact_cells(&state, cells * cells);
             ledger.must(state.stiffness.is_none(), || format!("k {:?} in full contact", state.stiffness));
             ledger.enter(mean_gap(&state)?);
             Ok(pressure(&state)?.to_vec())

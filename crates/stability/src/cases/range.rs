@@ -3,7 +3,7 @@
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, pressure, stiffness};
 use crate::maps::{map, rough_map};
-use crate::press::{SAME, press, press_again, press_both, tight, watched};
+use crate::press::{SAME, press, press_again, press_both, stop_after, tight, watched};
 use contact_model::{ContactModel, ContactState, HeightMap, Load, Result};
 
 pub(super) const CASES: [Case; 5] = [
@@ -104,9 +104,7 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let one = press(ledger, &map, Load::Force(light))?;
         let other = press(ledger, &map, Load::Force(heavy))?;
         for state in [&one, &other] {
-            ledger.must(state.report.contact_cells == Some(cells * cells), || {
-                format!("{:?} cells", state.report.contact_cells)
-            });
+            ledger.contact_cells(state, cells * cells);
             ledger.near("k of the square", stiffness(state)?, stiffness(&flat)?);
         }
         let largest = punch.iter().fold(0.0_f64, |a, &b| a.max(b)) * heavy;
@@ -151,7 +149,7 @@ fn far_beyond(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         for force in [1e5, 1e6] {
             let model = bem3d::Bem3d { tolerance: 1e-4, ..tight() };
             let state = model.prepare(&watched(&map), 0)?.solve(Load::Force(force))?;
-            ledger.must(state.report.contact_cells == Some(cells * cells), || format!("{:?}", state.report));
+            ledger.contact_cells(&state, cells * cells);
             ledger.near("k of the square", stiffness(&state)?, square);
             // In rms heights: the approach itself is a million of them, and its last digit 1e-10.
             let excess = approach(&state)? - force / square - constant;
@@ -192,12 +190,7 @@ fn warm(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             ledger.same("after another load", &state, exact)?;
             // Stopped at the first question, and after a few.
             for patience in [0, 3, 40] {
-                let asked = std::cell::Cell::new(0);
-                let stop = || {
-                    asked.set(asked.get() + 1);
-                    asked.get() > patience
-                };
-                let _ = contact.solve_until(before, &stop);
+                let _ = contact.solve_until(before, &stop_after(patience));
                 let state = press_again(ledger, &mut *contact, tight().tolerance, map, load)?;
                 ledger.same("after a stopped solve", &state, exact)?;
             }

@@ -3,9 +3,9 @@
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, pressure, stiffness};
 use crate::plain::{PlainSum, relaxed_by};
-use crate::press::{against_relaxation, press, press_both, tight, watched};
+use crate::press::{against_relaxation, press, press_both, tight, watched_periodic};
 use bem3d::love::influence;
-use contact_model::{Boundary, ContactModel, HeightMap, Load, Result};
+use contact_model::{ContactModel, HeightMap, Load, Result};
 use std::f64::consts::PI;
 
 pub(super) const CASES: [Case; 8] = [
@@ -81,14 +81,13 @@ fn waves(cells: [usize; 2], size: [f64; 2], seed: usize) -> Result<HeightMap> {
 /// A periodic state under the force that relaxation finds at an approach.
 fn against_images(ledger: &mut Ledger, map: &HeightMap, approaches: &[f64]) -> Result<()> {
     let sum = PlainSum::periodic(map);
-    let mut scene = watched(map);
-    scene.effects.boundary = Boundary::Periodic;
+    let scene = watched_periodic(map);
     let mut contact = tight().prepare(&scene, 0)?;
     let cell = map.dx() * map.dy();
     for &d in approaches {
         let slow = relaxed_by(&sum, map, d);
         let state = contact.solve(Load::Force(slow.force))?;
-        ledger.must(state.report.certificate.meets(tight().tolerance), || format!("{:?}", state.report));
+        ledger.meets(&state, tight().tolerance);
         let mut expected = vec![0.0; map.heights().len()];
         for (&i, force) in slow.contact.iter().zip(&slow.forces) {
             expected[i] = force / cell;
@@ -198,10 +197,9 @@ fn one_point(ledger: &mut Ledger, _: Effort) -> Result<()> {
         ledger.near("approach of one cell", approach(&state)?, 2.0 / k);
         let state = press_both(ledger, &map, Load::Approach(0.1))?;
         ledger.near("force of one cell", state.force, 0.1 * k);
-        let mut scene = watched(&map);
-        scene.effects.boundary = Boundary::Periodic;
+        let scene = watched_periodic(&map);
         let state = tight().prepare(&scene, 0)?.solve(Load::Force(2.0))?;
-        ledger.must(state.report.contact_cells == Some(1), || format!("{:?}", state.report));
+        ledger.contact_cells(&state, 1);
         ledger.enter((pressure(&state)?[at] / 50.0 - 1.0).abs());
     }
     Ok(())
@@ -213,14 +211,11 @@ fn any_size(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     }
     let largest = effort.pick(97, 513);
     for n in [63, 65, 70, 97, largest] {
-        let mut scene = watched(&crate::maps::rough_map(2.2, n, 3)?);
-        scene.effects.boundary = Boundary::Periodic;
+        let scene = watched_periodic(&crate::maps::rough_map(2.2, n, 3)?);
         let mut contact = tight().prepare(&scene, 0)?;
         for force in [1e-4, 0.01, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4] {
             let state = contact.solve(Load::Force(force))?;
-            ledger.must(state.report.certificate.meets(tight().tolerance), || {
-                format!("{n} cells, force {force}: {:?}", state.report)
-            });
+            ledger.meets(&state, tight().tolerance);
         }
     }
     Ok(())

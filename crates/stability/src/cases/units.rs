@@ -104,8 +104,7 @@ fn neutral(ledger: &mut Ledger, effort: Effort, normalisation: &[(f64, f64, f64)
             ] {
                 let a = solve(&here, 1.0, here_load)?;
                 let b = solve(&there, modulus, there_load)?;
-                ledger
-                    .must(b.report.certificate.meets(tight().tolerance), || b.report.certificate.to_string());
+                ledger.meets(&b, tight().tolerance);
                 let b = divided(b, force, vertical, modulus * lateral, modulus * vertical / lateral);
                 ledger.same(
                     &format!("{here_load:?} in units of {modulus:e}, {lateral:e}, {vertical:e}"),

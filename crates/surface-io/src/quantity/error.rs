@@ -1,30 +1,34 @@
 //! What is wrong with a quantity as written.
 
 use super::dimension::Dimension;
-use std::fmt;
 
 /// Why a text is no quantity.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum QuantityError {
     /// Nothing is written.
+    #[error("empty: expected a number and a unit, such as \"1 mm\"")]
     Empty,
     /// It does not begin with a number.
+    #[error("{text:?} does not begin with a number: expected a number and a unit, such as \"1 mm\"")]
     Number {
         /// The text.
         text: String,
     },
     /// A comma between digits.
+    #[error("{text:?} has a decimal comma: write a point")]
     DecimalComma {
         /// The text.
         text: String,
     },
     /// Not a finite double, or one so small that digits are lost.
+    #[error("{text}: beyond the range of double precision")]
     OutOfRange {
         /// The text.
         text: String,
     },
     /// An unknown symbol.
+    #[error("unknown unit {text:?}: {}", known(.alike))]
     Unit {
         /// The symbol.
         text: String,
@@ -32,11 +36,16 @@ pub enum QuantityError {
         alike: Vec<String>,
     },
     /// A product that is no product or can be read in two ways.
+    #[error("unit {text:?}: expected products and one quotient, such as \"J/m^2\" or \"W/(m K)\"")]
     Form {
         /// The unit, shortened.
         text: String,
     },
     /// The quantity measures something else.
+    #[error(
+        "{text} is {found}: expected {expected}{}",
+        .expected.example().map_or_else(String::new, |example| format!(", such as {example:?}"))
+    )]
     Dimension {
         /// The quantity as written.
         text: String,
@@ -47,43 +56,11 @@ pub enum QuantityError {
     },
 }
 
-impl fmt::Display for QuantityError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => write!(f, "empty: expected a number and a unit, such as \"1 mm\""),
-            Self::Number { text } => {
-                write!(
-                    f,
-                    "{text:?} does not begin with a number: expected a number and a unit, such as \"1 mm\""
-                )
-            }
-            Self::DecimalComma { text } => write!(f, "{text:?} has a decimal comma: write a point"),
-            Self::OutOfRange { text } => write!(f, "{text}: beyond the range of double precision"),
-            Self::Unit { text, alike } if alike.is_empty() => {
-                write!(
-                    f,
-                    "unknown unit {text:?}: expected m, g, s, A, K, N, Pa, J, W, V, Ohm, Hz or bar, with a prefix from f to T, \
-                     angstrom, min, h, % or \"none\""
-                )
-            }
-            Self::Unit { text, alike } => {
-                write!(f, "unknown unit {text:?}: upper and lower case differ, is it {}?", alike.join(" or "))
-            }
-            Self::Form { text } => {
-                write!(
-                    f,
-                    "unit {text:?}: expected products and one quotient, such as \"J/m^2\" or \"W/(m K)\""
-                )
-            }
-            Self::Dimension { text, found, expected } => {
-                write!(f, "{text} is {found}: expected {expected}")?;
-                match expected.example() {
-                    Some(example) => write!(f, ", such as {example:?}"),
-                    None => Ok(()),
-                }
-            }
-        }
+/// What a unit may be: those that differ in case only, or all.
+fn known(alike: &[String]) -> String {
+    if alike.is_empty() {
+        return "expected m, g, s, A, K, N, Pa, J, W, V, Ohm, Hz or bar, with a prefix from f to T, angstrom, min, h, % or \"none\""
+            .to_owned();
     }
+    format!("upper and lower case differ, is it {}?", alike.join(" or "))
 }
-
-impl std::error::Error for QuantityError {}

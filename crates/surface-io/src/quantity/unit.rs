@@ -40,11 +40,6 @@ impl Unit {
         Self { text: String::new(), dimension: Dimension::NONE, exponent: 0, factor: 1.0 }
     }
 
-    /// The metre.
-    pub fn metre() -> Self {
-        Self { text: "m".into(), dimension: Dimension::LENGTH, exponent: 0, factor: 1.0 }
-    }
-
     /// Dimension: what it measures.
     pub fn dimension(&self) -> Dimension {
         self.dimension

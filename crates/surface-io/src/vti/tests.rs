@@ -1,4 +1,5 @@
 use super::*;
+use base64::Engine as _;
 
 fn decode(text: &str) -> Vec<u8> {
     let value = |c: u8| match c {
@@ -28,11 +29,7 @@ fn base64_of_the_rfc() {
         ("foob", "Zm9vYg=="),
         ("foobar", "Zm9vYmFy"),
     ] {
-        let mut text = String::new();
-        let mut base64 = Base64::new(&mut text);
-        base64.add(plain.bytes());
-        base64.finish();
-        assert_eq!(text, coded);
+        assert_eq!(STANDARD.encode(plain), coded);
         assert_eq!(decode(coded), plain.as_bytes());
     }
 }
