@@ -68,6 +68,8 @@
 //! No mechanics of its own, no distribution over machines (a model on a surface is the unit that one would
 //! distribute), no means over surfaces (`evaluation` has them): one row per state.
 
+mod any_model;
+mod assumptions;
 mod calibration;
 mod columns;
 mod cost;
@@ -87,6 +89,7 @@ mod outcome;
 mod outputs;
 mod pictures;
 mod plan;
+mod registry;
 mod result_folder;
 mod run;
 mod scan;
@@ -96,6 +99,7 @@ mod scene_surface;
 mod summary;
 mod warnings;
 
+pub use any_model::{AnyModel, RegisteredModel};
 pub use cost::Cost;
 pub use diagnostic::Diagnostic;
 pub use effects::{EffectLine, effect_lines};
@@ -104,10 +108,11 @@ pub use error::{Error, Result};
 pub use generated_surface::GeneratedSurface;
 pub use info::info;
 pub use loads::{Loading, Loads, Prescribed};
-pub use numerics::{AnyModel, Numerics};
+pub use numerics::Numerics;
 pub use outcome::{Options, SceneOutcome};
 pub use outputs::{FieldFormat, RequestedOutputs};
 pub use plan::{ModelPlan, Plan, check};
+pub use registry::Registry;
 pub use run::{SharedStop, run};
 pub use scene_file::{Sampling, SceneFile};
 pub use scene_surface::SceneSurface;
