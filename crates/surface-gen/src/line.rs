@@ -77,7 +77,9 @@ impl LineGenerator {
             return Err(Error::domain("elements", elements as f64, expected));
         }
         // The waves q and -q share the variance.
-        amplitudes.iter_mut().for_each(|b| *b *= FRAC_1_SQRT_2);
+        for b in &mut amplitudes {
+            *b *= FRAC_1_SQRT_2;
+        }
         let transform = RealFftPlanner::new().plan_fft_inverse(elements);
         Ok(Self { elements, length, amplitudes: amplitudes.into(), transform, spare: Arc::default() })
     }

@@ -7,8 +7,8 @@
 //! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be done, what will not and
 //! why, and what it will cost; [`run`] answers the scene with every model that it names and writes
 //! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`GeneratedSurface`]
-//! draws a surface into one. The mechanics are those of the model crates; the program `fractal-contact` is a
-//! thin layer on this library.
+//! draws a surface into one. A [`Registry`] adds models of the user's own to those that scenes name. The mechanics
+//! are those of the model crates; the program `fractal-contact` is a thin layer on this library.
 //!
 //! ```
 //! use fractal_contact::scenes::{Options, Plan, SceneFile, run};
