@@ -2,13 +2,7 @@
 //!
 //! `cargo run -p fractal-contact --example own_model -- DIRECTORY`
 //!
-//! ```text
-//!    model   d in um     F in N  k in N/mm
-//!    bem3d     2.000      0.399      0.299
-//!    bem3d     8.000      3.189      0.598
-//!  winkler     2.000      1.257      1.257
-//!  winkler     8.000     20.106      5.027
-//! ```
+//! Prints approach, force and stiffness of both: F = pi R (E*/t) d^2 on the layer, Hertz's force on the half-space.
 
 use fractal_contact::scenes::{Options, Plan, Registry, Result, SceneFile, run};
 use fractal_contact::{
@@ -21,10 +15,10 @@ use std::path::{Path, PathBuf};
 const NAME: &str = "winkler";
 
 /// A layer of this thickness on a rigid base: springs of E*/thickness per area, one under each of the cells.
-#[derive(Clone, Copy)]
-pub struct Winkler {
-    pub thickness: f64,
-    pub cells: usize,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Winkler {
+    pub(crate) thickness: f64,
+    pub(crate) cells: usize,
 }
 
 impl ContactModel for Winkler {
@@ -82,7 +76,7 @@ impl PreparedContact for Springs {
 }
 
 /// A ball on a layer and on a half-space of the same modulus.
-pub const SCENE: &str = r#"
+pub(crate) const SCENE: &str = r#"
 [scene]
 models = ["bem3d", "winkler"]
 modulus = "100 MPa"
@@ -101,7 +95,7 @@ stiffness = true
 "#;
 
 /// Answers the scene into a folder and gives the table.
-pub fn answer(out: &Path, layer: Winkler) -> Result<CsvFile> {
+pub(crate) fn answer(out: &Path, layer: Winkler) -> Result<CsvFile> {
     // Another version for every change of the results: what is stored is found by it.
     let version = format!("1: {:?} m, {} cells", layer.thickness, layer.cells);
     let registry = Registry::new().with(layer, version)?;
