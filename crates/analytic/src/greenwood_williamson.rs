@@ -9,6 +9,7 @@ use contact_model::{
     Surface,
 };
 use std::f64::consts::PI;
+use surface_gen::MapStatistics;
 
 const NAME: &str = "greenwood_williamson";
 
@@ -25,8 +26,9 @@ const SUMMIT_SCATTER: f64 = 0.8968;
 /// The mean gap is the distance of the flat from the mean of the undeformed surface: between summits the theory's surface does not
 /// move. Loads beyond t = 0, where half of the summits would be in contact, are [`Error::OutOfRange`].
 ///
-/// Takes a [`Surface::SelfAffine`] with a short cut-off and [`contact_model::Boundary::Periodic`] (it knows no edges); the seed changes
-/// nothing.
+/// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and [`contact_model::Boundary::Periodic`] (it knows
+/// no edges); the seed changes nothing. The moments of a map are measured ([`surface_gen::MapStatistics`]); m4 is that of its
+/// shortest waves.
 ///
 /// ```
 /// use analytic::GreenwoodWilliamson;
@@ -76,7 +78,16 @@ pub struct Summits {
 impl Summits {
     /// Summits of an isotropic Gaussian surface with this spectrum (McCool's variant, see [`GreenwoodWilliamson`]).
     pub fn new(spectrum: &Spectrum) -> Self {
-        let (own, side, height) = (Self::scaled(spectrum), spectrum.side(), spectrum.rms_height());
+        Self::unscaled(spectrum.profile_moments(), spectrum.side(), spectrum.rms_height())
+    }
+
+    /// The same of a map, from its measured moments.
+    pub fn of_map(map: &MapStatistics) -> Self {
+        Self::unscaled(map.profile_moments(), map.length, map.rms_height)
+    }
+
+    fn unscaled(moments: [f64; 3], side: f64, height: f64) -> Self {
+        let own = Self::scaled(moments);
         Self {
             density: own.density / side / side,
             radius: own.radius * side * (side / height),
@@ -86,9 +97,8 @@ impl Summits {
     }
 
     /// In units of the rms height and the side: the radius in L^2/h.
-    fn scaled(spectrum: &Spectrum) -> Self {
-        let [m0, m2, m4] = spectrum.profile_moments();
-        let alpha = spectrum.bandwidth();
+    fn scaled([m0, m2, m4]: [f64; 3]) -> Self {
+        let alpha = m0 * (m4 / m2) / m2;
         Self {
             density: m4 / m2 / (6.0 * 3.0_f64.sqrt() * PI),
             radius: 0.375 * (PI / m4).sqrt(),
@@ -118,18 +128,22 @@ impl ContactModel for GreenwoodWilliamson {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         periodic::check(scene, NAME)?;
-        let Surface::SelfAffine(surface) = &scene.surface else {
-            return Err(Error::unsupported(NAME, scene.surface.kind()));
+        let (moments, height) = match &scene.surface {
+            Surface::SelfAffine(surface) => {
+                let spectrum = Spectrum::new(surface)?;
+                (spectrum.profile_moments(), spectrum.rms_height())
+            }
+            Surface::Heights(map) => {
+                let measured = MapStatistics::new(map)?;
+                (measured.profile_moments(), measured.rms_height)
+            }
+            other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        let spectrum = Spectrum::new(surface)?;
-        let (modulus, length, height) = (scene.modulus, surface.size.length(), spectrum.rms_height());
+        let (modulus, length) = (scene.modulus, scene.surface.size().length());
+        let summits = Summits::scaled(moments);
         Ok(Box::new(Periodic {
             model: NAME,
-            law: AsperityModel {
-                summits: Summits::scaled(&spectrum),
-                heights: self.heights,
-                gauss: Gauss::new(),
-            },
+            law: AsperityModel { summits, heights: self.heights, gauss: Gauss::new() },
             nondimensional: Nondimensionalisation::new(modulus, length, height)?,
             normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
@@ -286,6 +300,43 @@ mod tests {
         scene.effects.boundary = Boundary::Periodic;
         (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
         scene
+    }
+
+    /// Two waves a cos(q x) + a cos(q y): m0 = a^2, m2 = a^2 q^2/2, m4 = (3/8) a^2 q^4, alpha = 3/2.
+    #[test]
+    fn summits_of_a_pair_of_waves() {
+        let (a, q) = (0.01, 8.0 * PI);
+        let wave = |i: usize, n: usize| (8.0 * PI * (i as f64 + 0.5) / n as f64).cos();
+        let map = contact_model::HeightMap::from_fn([64, 96], 1.0, |x, y| a * (wave(x, 64) + wave(y, 96)));
+        let summits = Summits::of_map(&MapStatistics::new(&map.unwrap()).unwrap());
+        let [m0, m2, m4] = [a * a, 0.5 * (a * q).powi(2), 0.375 * (a * q * q).powi(2)];
+        assert_relative_eq!(summits.density, m4 / m2 / (6.0 * 3.0_f64.sqrt() * PI), max_relative = 1e-11);
+        assert_relative_eq!(summits.radius, 0.375 * (PI / m4).sqrt(), max_relative = 1e-11);
+        assert_relative_eq!(
+            summits.scatter,
+            ((1.0 - SUMMIT_SCATTER / 1.5) * m0).sqrt(),
+            max_relative = 1e-11
+        );
+        assert_relative_eq!(summits.elevation, 4.0 * (m0 / (PI * 1.5)).sqrt(), max_relative = 1e-11);
+    }
+
+    /// The map of a surface with many waves everywhere has the summits of the surface, but for the lattice of waves.
+    #[test]
+    fn a_map_is_the_surface_that_it_was_drawn_from() {
+        const LATTICE: f64 = 0.01;
+        let drawn = surface(0.7, Some(8.0), 64.0);
+        let map = surface_gen::self_affine_map(&drawn, 256, 3).unwrap();
+        let states = [Surface::SelfAffine(drawn), Surface::Heights(map.into())].map(|surface| {
+            let mut scene = Scene::new(surface, 1.0);
+            scene.effects.boundary = Boundary::Periodic;
+            (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
+            let state =
+                GreenwoodWilliamson::default().prepare(&scene, 0).unwrap().solve(Load::Force(0.5)).unwrap();
+            [state.area, state.stiffness, state.mean_gap].map(Option::unwrap)
+        });
+        for (of_surface, of_map) in states[0].into_iter().zip(states[1]) {
+            assert_relative_eq!(of_surface, of_map, max_relative = LATTICE);
+        }
     }
 
     #[test]

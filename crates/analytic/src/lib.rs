@@ -8,15 +8,16 @@
 //! | [`FlatPunch`] | flat circle, flat square | F, d, k, area |
 //! | [`Jkr`] | sphere, [`contact_model::Adhesion::ShortRange`] | F, d (of either sign), k, area, pull-off |
 //! | [`Westergaard`] | sine, periodic | F, mean gap, k, area |
-//! | [`Persson`] | self-affine with cut-off, periodic | F, mean gap, k, area |
-//! | [`GreenwoodWilliamson`] | self-affine with cut-off, periodic | F, mean gap, k, area up to half of the summits |
+//! | [`Persson`] | self-affine with cut-off or map, periodic | F, mean gap, k, area |
+//! | [`GreenwoodWilliamson`] | self-affine with cut-off or map, periodic | F, mean gap, k, area up to half of the summits |
 //! | [`CattaneoMindlin`] (a history) | sphere, [`contact_model::Friction::Coulomb`] | tangential force and displacement, stick radius, dissipated energy |
-//! | [`PowerLaw`] | self-affine, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
+//! | [`PowerLaw`] | self-affine or map, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
 //! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11),
 //! [`conductance_fit`] (Eq. 13), [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4). The product of
 //! two waves has no closed form; its limits for small and nearly full contact are functions of
-//! [`westergaard`]. What theories know of a random surface is in [`spectrum`].
+//! [`westergaard`]. What theories know of a random surface is in [`spectrum`], of a given map in
+//! [`surface_gen::MapStatistics`] and [`surface_gen::SelfAffineFit`].
 //!
 //! # Conventions
 //!

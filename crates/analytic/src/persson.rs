@@ -10,6 +10,7 @@ use contact_model::{
     Surface,
 };
 use std::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
+use surface_gen::MapStatistics;
 
 const NAME: &str = "persson";
 
@@ -20,9 +21,11 @@ const NAME: &str = "persson";
 ///   p'/E*)` and `w(q) = (pi int_(q_0)^q q'^3 C dq')^(-1/2)` (Yang and Persson 2008, Eq. 19). Stiffness per area: `-dp/du`.
 /// * At small p this is `p = beta E* exp(-u/u_0)`, so the stiffness is p/u_0 ([`Persson::decay_length`]).
 ///
-/// Takes a [`Surface::SelfAffine`] with a short cut-off and [`contact_model::Boundary::Periodic`]; the seed changes nothing. Moments
-/// of the spectrum are those of [`crate::spectrum`]. The mean gap has no bound as p -> 0 (a Gaussian surface has no highest point):
-/// it is an error at no load, and real, finite surfaces leave the exponential where few summits touch.
+/// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and [`contact_model::Boundary::Periodic`]; the seed
+/// changes nothing. Moments of the spectrum are those of [`crate::spectrum`], those of a map are measured
+/// ([`surface_gen::MapStatistics`]): g is its rms slope, exactly, and `C q^3` is constant within each band. The mean gap has no bound
+/// as p -> 0 (a Gaussian surface has no highest point): it is an error at no load, and real, finite surfaces leave the exponential
+/// where few summits touch.
 ///
 /// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative error below 1e-11. A
 /// state costs some thousand nodes: tens of microseconds, a few hundred for its gap, a few milliseconds for the state at a given
@@ -76,14 +79,22 @@ impl ContactModel for Persson {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         periodic::check(scene, NAME)?;
-        let Surface::SelfAffine(surface) = &scene.surface else {
-            return Err(Error::unsupported(NAME, scene.surface.kind()));
+        let gamma = self.checked()?;
+        let (law, height) = match &scene.surface {
+            Surface::SelfAffine(surface) => {
+                let spectrum = Spectrum::new(surface)?;
+                (PressureDiffusion::new(&spectrum, gamma), spectrum.rms_height())
+            }
+            Surface::Heights(map) => {
+                let measured = MapStatistics::new(map)?;
+                (PressureDiffusion::measured(&measured, gamma), measured.rms_height)
+            }
+            other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        let spectrum = Spectrum::new(surface)?;
-        let (modulus, length, height) = (scene.modulus, surface.size.length(), spectrum.rms_height());
+        let (modulus, length) = (scene.modulus, scene.surface.size().length());
         Ok(Box::new(Periodic {
             model: NAME,
-            law: PressureDiffusion::new(&spectrum, self.checked()?),
+            law,
             nondimensional: Nondimensionalisation::new(modulus, length, height)?,
             normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
@@ -152,9 +163,32 @@ const QUADRATURE: f64 = 1e-11;
 
 impl PressureDiffusion {
     fn new(spectrum: &Spectrum, gamma: f64) -> Self {
+        let edges = spectrum.ladder().into_iter().skip(1).map(|q| spectrum.running_slope(q)).collect();
+        Self::over(edges, |y| spectrum.wavenumber_at(y), gamma)
+    }
+
+    /// Of a map: y^2, half of the variance of the gradient up to q, rises linearly in q through each of its bands.
+    fn measured(map: &MapStatistics, gamma: f64) -> Self {
+        let (mut edges, mut limits, mut square) = (vec![0.0_f64], Vec::new(), 0.0);
+        for band in &map.bands {
+            square += 0.5 * band.variances[1];
+            // Bands without waves have no panel.
+            if square.sqrt() > edges[edges.len() - 1] {
+                edges.push(square.sqrt());
+                limits.push(band.limits);
+            }
+        }
+        let wavenumber_at = |y: f64| {
+            let i = edges.partition_point(|&edge| edge < y).clamp(1, limits.len());
+            let ([low, high], [from, to]) = (limits[i - 1], [edges[i - 1], edges[i]]);
+            low + (high - low) * ((y - from) * (y + from) / ((to - from) * (to + from))).clamp(0.0, 1.0)
+        };
+        Self::over(edges[1..].to_vec(), wavenumber_at, gamma)
+    }
+
+    /// Panels up to each of these rising y, with q as a function of y.
+    fn over(mut edges: Vec<f64>, wavenumber_at: impl Fn(f64) -> f64, gamma: f64) -> Self {
         let gauss = Gauss::new();
-        let mut edges: Vec<f64> =
-            spectrum.ladder().into_iter().skip(1).map(|q| spectrum.running_slope(q)).collect();
         let first = edges.first().copied().unwrap_or(0.0);
         let slope = edges.last().copied().unwrap_or(0.0);
         edges.extend((1..=HALVINGS).map(|i| first * 2.0_f64.powi(-i)));
@@ -163,7 +197,7 @@ impl PressureDiffusion {
         let nodes = edges
             .windows(2)
             .flat_map(|w| gauss.on(w[0], w[1]))
-            .map(|(y, weight)| (y, FRAC_2_SQRT_PI * weight / spectrum.wavenumber_at(y)))
+            .map(|(y, weight)| (y, FRAC_2_SQRT_PI * weight / wavenumber_at(y)))
             .collect();
         let count = (FAR / PANEL) as usize;
         let mut tails = vec![0.5 * exponential_integral(FAR * FAR); count + 1];
@@ -275,6 +309,7 @@ mod tests {
     use contact_model::{Boundary, Load, SelfAffine};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
+    use std::f64::consts::{PI, TAU};
 
     fn scene(surface: SelfAffine) -> Scene {
         let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
@@ -312,6 +347,95 @@ mod tests {
             let fall = law.gap(p).unwrap() - law.gap(10.0 * p).unwrap();
             assert_relative_eq!(fall, law.light() * 10.0_f64.ln(), max_relative = 1e-5);
         }
+    }
+
+    /// A surface whose waves are many everywhere: a roll-off at an eighth of the side, waves down to 64th parts of it.
+    fn many_waves() -> SelfAffine {
+        let surface = surface(0.8, Some(8.0), 64.0);
+        SelfAffine {
+            size: [2.0, 2.0].into(),
+            roll_off: Some(8.0 * PI),
+            short_cutoff: Some(64.0 * PI),
+            ..surface
+        }
+    }
+
+    /// The map of a surface in the theory is the surface itself: what is left is the lattice of its waves, whose longest
+    /// stand for a continuum that begins at them.
+    #[test]
+    fn a_map_is_the_surface_that_it_was_drawn_from() {
+        const LATTICE: f64 = 0.04;
+        let drawn = many_waves();
+        let map = surface_gen::self_affine_map(&drawn, 256, 3).unwrap();
+        let slope = surface_gen::rms_slope(&map).unwrap();
+        let mut on_map = scene(drawn);
+        on_map.surface = Surface::Heights(map.into());
+        let model = Persson::default();
+        let (mut one, mut other) =
+            (model.prepare(&scene(drawn), 0).unwrap(), model.prepare(&on_map, 0).unwrap());
+        assert_relative_eq!(other.normalisation().height.unwrap(), 1.0, max_relative = 1e-12);
+        for pressure in [1e-9, 1e-4, 1e-2, 0.1, 1.0] {
+            let load = Load::Force(4.0 * pressure * slope);
+            let (of_surface, of_map) = (one.solve(load).unwrap(), other.solve(load).unwrap());
+            let values =
+                |s: &contact_model::ContactState| [s.area, s.stiffness, s.mean_gap].map(Option::unwrap);
+            for (a, b) in values(&of_surface).into_iter().zip(values(&of_map)) {
+                assert_relative_eq!(a, b, max_relative = LATTICE);
+            }
+            // The area is that of the map's own rms slope, exactly.
+            let exact = 4.0 * erf(SQRT_2 * pressure);
+            assert_relative_eq!(of_map.area.unwrap(), exact, max_relative = 1e-11);
+        }
+        // A load and its mean gap belong together.
+        let state = other.solve(Load::Force(0.01 * slope)).unwrap();
+        let back = other.solve(Load::MeanGap(state.mean_gap.unwrap())).unwrap();
+        assert_relative_eq!(back.force, state.force, max_relative = 1e-9);
+    }
+
+    /// Bands without waves between others, and a single one: finite numbers, the gap by hand.
+    #[test]
+    fn spectra_with_holes() {
+        let wave = |k: f64, i: usize| (TAU * k * (i as f64 + 0.5) / 64.0).cos();
+        for (low, high) in [(3.0, 20.0), (5.0, 5.0)] {
+            let map = contact_model::HeightMap::from_fn(64, 1.0, |x, y| {
+                0.5 * (wave(low, x) + wave(low, y)) + 0.01 * (wave(high, x) + wave(high, y))
+            });
+            let mut on_map = scene(many_waves());
+            on_map.surface = Surface::Heights(map.unwrap().into());
+            let mut contact = Persson { gamma: 1.0 }.prepare(&on_map, 0).unwrap();
+            let normal = contact.normalisation();
+            for pressure in [1e-8, 1e-3, 1.0, 10.0] {
+                let state = contact.solve(Load::Force(pressure)).unwrap();
+                let [area, k, gap] = [state.area, state.stiffness, state.mean_gap].map(Option::unwrap);
+                assert!(area > 0.0 && area <= 1.0 && k > 0.0 && gap.is_finite() && gap >= 0.0);
+            }
+            if low.total_cmp(&high).is_eq() {
+                // u_0 = gamma (2/sqrt(pi)) y/q for one wavenumber, and its ring from 4.5 to 5.5 of the longest.
+                let light = contact.solve(Load::Force(1e-9)).unwrap();
+                let (u_0, q) = (1e-9 / light.stiffness.unwrap(), TAU * low);
+                let y = 0.51 * q / SQRT_2;
+                assert_relative_eq!(u_0, FRAC_2_SQRT_PI * y / q, max_relative = 0.04);
+                assert_relative_eq!(normal.height.unwrap(), 0.51, max_relative = 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn maps_without_statistics_are_refused() {
+        let refused = |map: contact_model::Result<contact_model::HeightMap>| {
+            let mut on_map = scene(many_waves());
+            on_map.surface = Surface::Heights(map.unwrap().into());
+            Persson::default().prepare(&on_map, 0).map(|_| ()).unwrap_err().to_string()
+        };
+        let height = |x: usize, y: usize| ((x * 37 + y * 101) % 17) as f64;
+        let flat = refused(contact_model::HeightMap::from_fn(8, 1.0, |_, _| 1.0));
+        assert!(flat.starts_with("rms height of the map = 0"), "{flat}");
+        let tilted =
+            refused(contact_model::HeightMap::from_fn(32, 1.0, |x, y| height(x, y) + 9.0 * x as f64));
+        assert!(tilted.contains("`detrend = \"plane\"`"), "{tilted}");
+        let holes = (0..64).map(|i| if i == 3 { f64::NAN } else { height(i, i / 8) }).collect();
+        let holes = refused(contact_model::HeightMap::with_undefined(8, 1.0, holes));
+        assert!(holes.starts_with("undefined points = 1"), "{holes}");
     }
 
     /// A reference implementation: rectangles in ln q over a regularised integrand, and trapezoids in ln p.

@@ -4,7 +4,9 @@
 
 mod answers;
 mod bad_scenes;
+mod own_models;
 mod program;
 mod rectangles;
 mod resume;
 mod scenes;
+mod theories_on_maps;

@@ -14,8 +14,9 @@ const NAME: &str = "mdr1d";
 
 /// The method of reduction of dimensionality.
 ///
-/// Takes a [`Surface::SelfAffine`] (the line is drawn from the seed), a [`Surface::Line`], and the bodies of [`Profile`]. For
-/// rough lines it claims force, approach and stiffness; for axisymmetric bodies also the area, `pi a^2`, which is exact there.
+/// Takes a [`Surface::SelfAffine`] (the line is drawn from the seed), a [`Surface::Heights`] (phases are drawn, the spectrum of the
+/// line is `pi q C_2D` of the map's own: [`LineGenerator::of_map`]; `sqrt(Lx Ly)` stands for the side, and the map has to be
+/// isotropic), a [`Surface::Line`], and the bodies of [`Profile`]. For rough lines it claims force, approach and stiffness; for axisymmetric bodies also the area, `pi a^2`, which is exact there.
 ///
 /// The bodies of [`Profile`] may adhere ([`Adhesion::ShortRange`]): their loads may then be negative, down to the pull-off, which is
 /// [`Error::OutOfRange`] with the smallest admissible load; no load means the adhered contact. The stiffness stays that of the
@@ -96,7 +97,9 @@ impl ContactModel for Mdr1d {
             );
             return Err(Error::unsupported(NAME, what));
         }
-        if outputs.area && matches!(scene.surface, Surface::SelfAffine(_) | Surface::Line { .. }) {
+        if outputs.area
+            && matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. })
+        {
             return Err(Error::unsupported(
                 NAME,
                 "the area of a rough surface (a line has a length in contact only)",
@@ -109,6 +112,10 @@ impl ContactModel for Mdr1d {
             }
             Surface::Line { line, .. } => {
                 Ok(Box::new(RoughLine::new(Bearing::new(line), line, length, modulus, outputs)))
+            }
+            Surface::Heights(map) => {
+                let line = LineGenerator::of_map(map, self.elements)?.line(seed)?;
+                Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, modulus, outputs)))
             }
             other => Err(Error::unsupported(NAME, other.kind())),
         }

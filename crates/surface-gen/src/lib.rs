@@ -37,6 +37,9 @@
 //! * **Sampling.** Row-major, x along a row, at the cells' centres; the phases count from the rectangle's
 //!   corner. So the same seed is the same surface on any grid, with more or fewer short waves (and its own
 //!   factor where the rms is prescribed).
+//! * **Given maps.** [`MapStatistics`] is what theories of rough contact take from a map and how far it is what they
+//!   assume; [`SelfAffineFit`] is its Hurst exponent, or why it has none; [`LineGenerator::of_map`] draws the line that
+//!   stands for it. A map whose opposite edges differ is measured under Hann's window ([`windowed`]).
 //! * **Chance.** The phase of a wave is a function of (seed, i, j) alone; the stream is written down in the
 //!   source of [`map_phase`] and pinned by tests. The fractal dimension does not enter: surfaces of one seed
 //!   and different D_f share their phases.
@@ -71,8 +74,9 @@ pub use hash::surface_seed;
 pub use line::{LineGenerator, self_affine_line};
 pub use map::{MapGenerator, self_affine_map};
 pub use measure::{
-    boundary_edges, hurst_from_line_spectrum, hurst_from_spectrum, line_spectrum, patches, radial_spectrum,
-    rms_height, rms_slope, rms_slope_differences,
+    Band, MapStatistics, SelfAffineFit, boundary_edges, fit_range, hurst_from_line_spectrum,
+    hurst_from_spectrum, line_spectrum, patches, radial_spectrum, rms_height, rms_slope,
+    rms_slope_differences, windowed,
 };
 pub use phases::{line_phase, map_phase};
 pub use surface::{height_map, line};

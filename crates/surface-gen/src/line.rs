@@ -1,12 +1,13 @@
 //! Self-affine lines (Eqs. 14-18).
 
+use crate::measure::rms_by_wave;
 use crate::phases::{Stream, Turns};
-use crate::spectrum::line_amplitudes;
+use crate::spectrum::{checked_elements, line_amplitudes};
 use crate::turn::Circle;
-use contact_model::{Line, Result, SelfAffine, line_length};
+use contact_model::{Error, HeightMap, Line, Result, SelfAffine, line_length};
 use realfft::{ComplexToReal, RealFftPlanner};
 use rustfft::num_complex::Complex64;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
@@ -54,6 +55,33 @@ impl LineGenerator {
             transform: RealFftPlanner::new().plan_fft_inverse(elements),
             spare: Arc::default(),
         })
+    }
+
+    /// Plans lines of `elements` elements that stand for a given map: the wave m of the line has the height variance
+    /// `2 B_1D^2` of all waves of the map with |q| nearest to `m 2 pi / L_1D`, the rule `C_1D = pi q C_2D` (Eq. 17) of
+    /// the map's own spectrum, whatever its shape. Waves longer than the line go to m = 1, shorter ones than the
+    /// line carries are left out: with as many elements as the map has cells along its diagonal the rms height is that
+    /// of the map, where that is periodic. Elsewhere the spectrum is that under Hann's window ([`crate::windowed`]).
+    ///
+    /// # Errors
+    /// Those of [`crate::MapStatistics::new`], and as [`LineGenerator::new`]. Cost O(N log N) for N cells.
+    pub fn of_map(map: &HeightMap, elements: usize) -> Result<Self> {
+        checked_elements(elements)?;
+        let length = line_length(map.length());
+        let mut amplitudes = rms_by_wave(map, TAU / length)?;
+        let largest = |of: &[f64]| of.iter().copied().fold(0.0, f64::max);
+        let rounding = 1e-12 * largest(&amplitudes);
+        amplitudes.truncate((elements - 1) / 2);
+        if largest(&amplitudes) <= rounding {
+            let expected = "more: the line carries no wave of the map";
+            return Err(Error::domain("elements", elements as f64, expected));
+        }
+        // The waves q and -q share the variance.
+        for b in &mut amplitudes {
+            *b *= FRAC_1_SQRT_2;
+        }
+        let transform = RealFftPlanner::new().plan_fft_inverse(elements);
+        Ok(Self { elements, length, amplitudes: amplitudes.into(), transform, spare: Arc::default() })
     }
 
     /// The rms height that every line of this generator has, from the amplitudes alone: `sqrt(sum B^2)`.
@@ -153,7 +181,7 @@ mod tests {
     use super::*;
     use crate::{MapGenerator, hurst_from_line_spectrum, line_phase, line_spectrum, rms_height};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::{Amplitude, Error};
+    use contact_model::Amplitude;
     use std::f64::consts::PI;
 
     /// Rounding of a transform and of sums over up to 1e6 waves, relative to the rms.

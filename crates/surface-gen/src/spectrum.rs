@@ -140,13 +140,19 @@ fn last(order: u64, guess: f64, inside: impl Fn(u64) -> bool) -> u64 {
     m
 }
 
-/// Amplitudes `B_1D` of the waves m = 1, 2, ... of a line (index 0 is m = 1).
-pub(crate) fn line_amplitudes(surface: &SelfAffine, elements: usize) -> Result<Vec<f64>> {
-    surface.validate()?;
+/// Errors for a number of elements that no line has.
+pub(crate) fn checked_elements(elements: usize) -> Result<()> {
     if elements == 0 || elements > MOST_ELEMENTS {
         let expected = format!("between 1 and {MOST_ELEMENTS} elements");
         return Err(Error::domain("elements", elements as f64, expected));
     }
+    Ok(())
+}
+
+/// Amplitudes `B_1D` of the waves m = 1, 2, ... of a line (index 0 is m = 1).
+pub(crate) fn line_amplitudes(surface: &SelfAffine, elements: usize) -> Result<Vec<f64>> {
+    surface.validate()?;
+    checked_elements(elements)?;
     let length = line_length(surface.size.length());
     let mut last = (elements - 1) / 2;
     if let Some(q) = surface.short_cutoff {

@@ -1,19 +1,11 @@
 //! What a map holds.
 
 use contact_model::{Cells, HeightMap, Size};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt;
-use surface_gen::{hurst_from_spectrum, radial_spectrum, rms_height, rms_slope_differences};
-
-/// First ring of the fit: the first ones bend it (see [`surface_gen::radial_spectrum`]), and a window smears
-/// each over its neighbours.
-const FIRST_RING: f64 = 8.0;
-
-/// The fit ends at this share of the shortest wave's wavenumber: instruments damp what is next to it.
-const LAST_SHARE: f64 = 0.5;
-
-/// Mean square of Hann's window sin^2 along one axis, 3/8, for both axes: the square root of `(3/8)^2`.
-const WINDOW: f64 = 0.375;
+use surface_gen::{
+    fit_range, hurst_from_spectrum, radial_spectrum, rms_height, rms_slope_differences, windowed,
+};
 
 /// Numbers that describe a map, in its own unit of length.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,9 +84,8 @@ pub fn describe(map: &HeightMap) -> Description {
     let ends = |(low, high): (f64, f64), h: f64| (low.min(h), high.max(h));
     let (low, high) = map.defined().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
     let whole = undefined == 0;
-    let windowed = if whole { windowed(map, 0.5 * low + 0.5 * high) } else { None };
-    let spectrum = windowed.and_then(|map| radial_spectrum(&map).ok()).unwrap_or_default();
-    let fitted = [TAU / size.shorter() * FIRST_RING, LAST_SHARE * PI / map.dx().max(map.dy())];
+    let spectrum = windowed(map).and_then(|map| radial_spectrum(&map).ok()).unwrap_or_default();
+    let fitted = fit_range(map);
     let hurst = if !whole {
         Err(Absent::Undefined)
     } else if high <= low {
@@ -113,25 +104,6 @@ pub fn describe(map: &HeightMap) -> Description {
         hurst,
         fitted,
     }
-}
-
-/// The map about its mean under Hann's window; `None` where the mean is not representable, which finite
-/// reliefs exclude.
-fn windowed(map: &HeightMap, middle: f64) -> Option<HeightMap> {
-    let Cells { columns, rows } = map.cells();
-    let window = |count: usize| -> Vec<f64> {
-        (0..count).map(|i| (PI * (i as f64 + 0.5) / count as f64).sin().powi(2)).collect()
-    };
-    let (across, down) = (window(columns), window(rows));
-    let about: Vec<f64> = map.heights().iter().map(|h| h - middle).collect();
-    let count = about.len() as f64;
-    let mean: f64 = about.chunks_exact(columns).map(|row| row.iter().map(|h| h / count).sum::<f64>()).sum();
-    let heights = about
-        .iter()
-        .enumerate()
-        .map(|(i, h)| (h - mean) * across[i % columns] * down[i / columns] / WINDOW)
-        .collect();
-    HeightMap::new(map.cells(), map.size(), heights).ok()
 }
 
 impl fmt::Display for Description {

@@ -1,5 +1,6 @@
 //! `accuracy` in `[scene]`: the grid that an accuracy asks for, instead of the other way round.
 
+use crate::scenes::any_model::AnyModel;
 use crate::scenes::calibration;
 use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::entries::{Entries, Entry, Read, System};
@@ -7,7 +8,7 @@ use crate::scenes::error::Result;
 use crate::scenes::grid_comparison::{COMPARED, GridErrors, Quantities, on_grid, solve};
 use crate::scenes::human_readable::time;
 use crate::scenes::loads::Loading;
-use crate::scenes::numerics::{AnyModel, MOST_CELLS, Numerics};
+use crate::scenes::numerics::{MOST_CELLS, Numerics};
 use crate::scenes::scene_file::{SceneFile, cells};
 use crate::scenes::scene_surface::SceneSurface;
 use analysis::{grid_error, least_squares};
@@ -113,7 +114,7 @@ impl SceneFile {
                 Diagnostic::new("`accuracy` with two models that have cells").with_help("name one of them");
             return Err(self.at_accuracy(diagnostic).into());
         }
-        let pilot = Pilot::solve(&self, self.models[place], target, stop)?;
+        let pilot = Pilot::solve(&self, &self.models[place], target, stop)?;
         let chosen = pilot.choose(&self, target).map_err(|diagnostic| self.at_accuracy(*diagnostic))?;
         let Cells { columns, rows } = cells(&chosen.scene, &chosen.scene.models[0]);
         let percent = |share: f64| format!("{:.2} %", 100.0 * share);
@@ -123,7 +124,7 @@ impl SceneFile {
             percent(chosen.error),
             time(chosen.seconds)
         ));
-        self.models[place] = chosen.scene.models[0];
+        self.models[place] = chosen.scene.models[0].clone();
         self.surface = chosen.scene.surface;
         self.requested.grid_error = true;
         self.notes.push(note.with_help("`grid_error` in the results says what it came to"));
@@ -151,15 +152,15 @@ struct Pilot {
 }
 
 impl Pilot {
-    fn solve(scene: &SceneFile, model: Numerics, target: AccuracyTarget, stop: Stop<'_>) -> Result<Self> {
+    fn solve(scene: &SceneFile, model: &Numerics, target: AccuracyTarget, stop: Stop<'_>) -> Result<Self> {
         let tolerance = (target.share * TOLERANCE_PER_ACCURACY).clamp(TOLERANCES.0, TOLERANCES.1);
         // One digit: it stands in the plan and in every header.
         let tolerance = format!("{tolerance:.0e}").parse().unwrap_or(tolerance);
         let model = match model {
             Numerics::Bem3d(numerics) => {
-                Numerics::Bem3d(Bem3d { cells: largest_cells(scene), rows: None, tolerance, ..numerics })
+                Numerics::Bem3d(Bem3d { cells: largest_cells(scene), rows: None, tolerance, ..*numerics })
             }
-            other => other,
+            other => other.clone(),
         };
         let rungs = rungs(scene);
         let tried =

@@ -1,9 +1,10 @@
 //! The cost of a run, predicted from small solves of the same kind.
 
+use crate::scenes::any_model::AnyModel;
 use crate::scenes::cost::Cost;
 use crate::scenes::grid_comparison::sampled;
 use crate::scenes::loads::Loading;
-use crate::scenes::numerics::{AnyModel, Numerics};
+use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
 use contact_model::{Cells, ContactState, Surface};
@@ -36,12 +37,12 @@ const BOX_OVER_CONTACT: f64 = 6.0;
 pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let (grid, size) = (cells(scene, numerics), scene.surface.size());
     let coarse = (grid.columns.max(grid.rows) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);
-    let small = numerics.reduced(coarse, CALIBRATION_ELEMENTS, size);
+    let small = numerics.clone().reduced(coarse, CALIBRATION_ELEMENTS, size);
     // Code and memory that are touched for the first time are no part of what grows with N.
-    let warm = numerics.reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
+    let warm = numerics.clone().reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
     let _ = small_solves(scene, &warm, WARM_CELLS, &contact_model::never);
     let requested = scene.request.count();
-    let surfaces = if numerics.depends_on_realisation() { scene.sampling.surfaces as f64 } else { 1.0 };
+    let surfaces = if scene.surface.is_random_for(numerics) { scene.sampling.surfaces as f64 } else { 1.0 };
     let total = requested as f64 * surfaces;
     let begin = Instant::now();
     let stop = || begin.elapsed() > CALIBRATION_TIME;

@@ -1,6 +1,7 @@
 //! What the grid does to a state: the same load on the same surface with cells twice and four times as large.
 
-use crate::scenes::numerics::{AnyModel, Numerics};
+use crate::scenes::any_model::AnyModel;
+use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::{SceneFile, cells};
 use crate::scenes::scene_surface::SceneSurface;
 use analysis::{GridError, grid_error};
@@ -79,7 +80,7 @@ pub(crate) fn on_grid(scene: &SceneFile, numerics: &Numerics, longer: usize) -> 
     if let SceneSurface::Plain(Surface::Heights(map)) = &scene.surface {
         coarse.surface = SceneSurface::Plain(Surface::Heights(Arc::new(sampled(map, longer)?)));
     }
-    coarse.models = vec![numerics.reduced(longer, usize::MAX, scene.surface.size())];
+    coarse.models = vec![numerics.clone().reduced(longer, usize::MAX, scene.surface.size())];
     Ok(coarse)
 }
 

@@ -7,8 +7,8 @@
 //! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be done, what will not and
 //! why, and what it will cost; [`run`] answers the scene with every model that it names and writes
 //! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`GeneratedSurface`]
-//! draws a surface into one. The mechanics are those of the model crates; the program `fractal-contact` is a
-//! thin layer on this library.
+//! draws a surface into one. A [`Registry`] adds models of the user's own to those that scenes name. The mechanics
+//! are those of the model crates; the program `fractal-contact` is a thin layer on this library.
 //!
 //! ```
 //! use fractal_contact::scenes::{Options, Plan, SceneFile, run};
@@ -69,6 +69,8 @@
 //! distribute), no means over surfaces (`evaluation` has them): one row per state.
 
 mod accuracy;
+mod any_model;
+mod assumptions;
 mod calibration;
 mod columns;
 mod cost;
@@ -91,6 +93,7 @@ mod outcome;
 mod outputs;
 mod pictures;
 mod plan;
+mod registry;
 mod result_folder;
 mod run;
 mod scan;
@@ -101,6 +104,7 @@ mod summary;
 mod warnings;
 
 pub use accuracy::AccuracyTarget;
+pub use any_model::{AnyModel, RegisteredModel};
 pub use cost::Cost;
 pub use diagnostic::Diagnostic;
 pub use distributions::Distributed;
@@ -110,10 +114,11 @@ pub use error::{Error, Result};
 pub use generated_surface::GeneratedSurface;
 pub use info::info;
 pub use loads::{Loading, Loads, Prescribed};
-pub use numerics::{AnyModel, Numerics};
+pub use numerics::Numerics;
 pub use outcome::{Options, SceneOutcome};
 pub use outputs::{FieldFormat, RequestedOutputs};
 pub use plan::{ModelPlan, Plan, check};
+pub use registry::Registry;
 pub use run::{SharedStop, run};
 pub use scene_file::{Sampling, SceneFile};
 pub use scene_surface::SceneSurface;

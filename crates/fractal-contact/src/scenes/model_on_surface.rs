@@ -1,12 +1,13 @@
 //! One model and one surface under all loads, or along the whole path.
 
+use crate::scenes::any_model::AnyModel;
 use crate::scenes::columns::{self, State};
 use crate::scenes::distributions::{self, Bin, Distributed};
 use crate::scenes::error::{Error, Result};
 use crate::scenes::field_pictures;
 use crate::scenes::grid_comparison::{GridComparison, solved_map};
 use crate::scenes::loads::Loading;
-use crate::scenes::numerics::{AnyModel, Numerics};
+use crate::scenes::numerics::Numerics;
 use crate::scenes::outputs::FieldFormat;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
@@ -467,7 +468,7 @@ mod tests {
         let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
         let surface = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
         let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
-        let mut scene = SceneFile::new(vec![Numerics::ALL[0]], surface, 1.0, loads);
+        let mut scene = SceneFile::new(vec![Numerics::ALL[0].clone()], surface, 1.0, loads);
         let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];
         (scene.requested.pressure, scene.requested.gap) = (all.clone(), all);
         let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];

@@ -1,13 +1,15 @@
 //! The models by name, and what `[models.NAME]` says about their numerics.
 
+use crate::scenes::any_model::{AnyModel, RegisteredModel};
 use crate::scenes::entries::{Entries, Entry, Read, suggestion};
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
 };
 use bem3d::{Bem3d, Method};
-use contact_model::{Cells, ContactModel, HistoryModel, Size, Source};
+use contact_model::{Cells, Size};
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
+use std::sync::Arc;
 
 /// Largest grids: 54 GB for a light load (the square of this many cells), 4 GB for a line.
 pub(crate) const MOST_CELLS: usize = 1 << 15;
@@ -18,7 +20,7 @@ const PROBE_CELLS: usize = 33;
 const PROBE_ELEMENTS: usize = 1 << 10;
 
 /// A model with its numerics.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Numerics {
     /// Boundary elements in three dimensions.
@@ -49,6 +51,8 @@ pub enum Numerics {
     Viscoelastic,
     /// Friction or rheology of any surface that boundary elements can press, a history.
     Equivalent(Equivalent<Bem3d>),
+    /// A model of the user's own.
+    Registered(RegisteredModel),
 }
 
 /// The same with at most so many cells along the longer side of the grid on a rectangle of this size, in the same proportion.
@@ -65,25 +69,6 @@ fn reduced(model: Bem3d, most: usize, size: Size) -> Bem3d {
 /// What `[models.bem3d]` says by default.
 const BEM3D: Bem3d =
     Bem3d { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto };
-
-/// A model behind one of the two traits.
-#[allow(missing_debug_implementations)] // Trait objects.
-pub enum AnyModel {
-    /// It answers one load, whatever came before.
-    Contact(Box<dyn ContactModel>),
-    /// It follows a path.
-    History(Box<dyn HistoryModel>),
-}
-
-impl AnyModel {
-    /// Its sources.
-    pub fn sources(&self) -> &'static [Source] {
-        match self {
-            Self::Contact(model) => model.sources(),
-            Self::History(model) => model.sources(),
-        }
-    }
-}
 
 impl Numerics {
     /// Every model with its defaults.
@@ -107,20 +92,21 @@ impl Numerics {
     /// The model itself.
     pub fn model(&self) -> AnyModel {
         match *self {
-            Self::Bem3d(model) => AnyModel::Contact(Box::new(model)),
-            Self::Mdr1d(model) => AnyModel::Contact(Box::new(model)),
-            Self::Hertz => AnyModel::Contact(Box::new(Hertz)),
-            Self::PowerLawBody => AnyModel::Contact(Box::new(PowerLawBody)),
-            Self::FlatPunch => AnyModel::Contact(Box::new(FlatPunch)),
-            Self::Jkr => AnyModel::Contact(Box::new(Jkr)),
-            Self::PowerLaw => AnyModel::Contact(Box::new(PowerLaw)),
-            Self::Westergaard => AnyModel::Contact(Box::new(Westergaard)),
-            Self::Persson(model) => AnyModel::Contact(Box::new(model)),
-            Self::GreenwoodWilliamson(model) => AnyModel::Contact(Box::new(model)),
-            Self::CattaneoMindlin => AnyModel::History(Box::new(CattaneoMindlin)),
-            Self::PartialSlip => AnyModel::History(Box::new(PartialSlip)),
-            Self::Viscoelastic => AnyModel::History(Box::new(Viscoelastic)),
-            Self::Equivalent(model) => AnyModel::History(Box::new(model)),
+            Self::Registered(ref own) => own.model(),
+            Self::Bem3d(model) => AnyModel::Contact(Arc::new(model)),
+            Self::Mdr1d(model) => AnyModel::Contact(Arc::new(model)),
+            Self::Hertz => AnyModel::Contact(Arc::new(Hertz)),
+            Self::PowerLawBody => AnyModel::Contact(Arc::new(PowerLawBody)),
+            Self::FlatPunch => AnyModel::Contact(Arc::new(FlatPunch)),
+            Self::Jkr => AnyModel::Contact(Arc::new(Jkr)),
+            Self::PowerLaw => AnyModel::Contact(Arc::new(PowerLaw)),
+            Self::Westergaard => AnyModel::Contact(Arc::new(Westergaard)),
+            Self::Persson(model) => AnyModel::Contact(Arc::new(model)),
+            Self::GreenwoodWilliamson(model) => AnyModel::Contact(Arc::new(model)),
+            Self::CattaneoMindlin => AnyModel::History(Arc::new(CattaneoMindlin)),
+            Self::PartialSlip => AnyModel::History(Arc::new(PartialSlip)),
+            Self::Viscoelastic => AnyModel::History(Arc::new(Viscoelastic)),
+            Self::Equivalent(model) => AnyModel::History(Arc::new(model)),
         }
     }
 
@@ -134,21 +120,32 @@ impl Numerics {
 
     /// Whether it follows a path rather than answers loads.
     pub fn is_history(&self) -> bool {
-        matches!(self, Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_))
+        match self {
+            Self::Registered(own) => own.is_history(),
+            _ => matches!(
+                self,
+                Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_)
+            ),
+        }
     }
 
     /// Whether it answers for one surface rather than for the spectrum that it was drawn from: a theory gives the same for every seed.
     pub fn depends_on_realisation(&self) -> bool {
-        self.size() > 0
+        self.is_stored()
+    }
+
+    /// Whether it takes of a rough map what is measured on it, not the map.
+    pub(crate) fn is_statistical(&self) -> bool {
+        matches!(self, Self::Persson(_) | Self::GreenwoodWilliamson(_) | Self::PowerLaw | Self::Mdr1d(_))
     }
 
     /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version
     /// has to be compared.
     pub fn is_stored(&self) -> bool {
-        self.size() > 0
+        self.size() > 0 || matches!(self, Self::Registered(_))
     }
 
-    /// Columns of a grid, elements of a line; 0 for a formula.
+    /// Columns of a grid, elements of a line; 0 for a formula, and for a registered model.
     pub fn size(&self) -> usize {
         match self {
             Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => numerics.cells,
@@ -183,7 +180,7 @@ impl Numerics {
     /// The same on a grid that is only asked whether it can answer.
     #[must_use]
     pub(crate) fn probe(&self, size: Size) -> Self {
-        self.reduced(PROBE_CELLS, PROBE_ELEMENTS, size)
+        self.clone().reduced(PROBE_CELLS, PROBE_ELEMENTS, size)
     }
 
     /// What one may expect of its numbers, in a sentence; `cells` of models that have them.
@@ -214,6 +211,7 @@ impl Numerics {
                  bodies, about two for rough ones (its uncertainty is in `strategy`)"
             ),
             Self::Viscoelastic => "exact while the contact grows, which is checked; 1e-12".into(),
+            Self::Registered(own) => format!("that of a model of the user's own, version \"{}\"", own.version()),
         }
     }
 }
@@ -222,13 +220,16 @@ impl Numerics {
 pub(crate) fn read_models<'a>(
     scene: &Entries<'a>,
     options: Option<&Entries<'a>>,
+    registered: &[RegisteredModel],
 ) -> Read<Vec<(Numerics, Entry<'a>)>> {
     let entry = scene.require("models", "[\"bem3d\"]")?;
-    let names: Vec<&str> = Numerics::ALL.iter().map(Numerics::name).collect();
+    let own = registered.iter().cloned().map(Numerics::Registered);
+    let known: Vec<Numerics> = Numerics::ALL.into_iter().chain(own).collect();
+    let names: Vec<&str> = known.iter().map(Numerics::name).collect();
     let mut models: Vec<(Numerics, Entry<'a>)> = Vec::new();
     for item in entry.list() {
         let name = item.text()?;
-        let Some(default) = Numerics::ALL.iter().find(|m| m.name() == name) else {
+        let Some(default) = known.iter().find(|m| m.name() == name) else {
             return Err(item
                 .diagnostic(format!("there is no model \"{name}\""))
                 .with_help(suggestion(name, &names)));
@@ -238,7 +239,7 @@ pub(crate) fn read_models<'a>(
                 .diagnostic(format!("the model \"{name}\" is named twice"))
                 .with_help("name it once"));
         }
-        models.push((*default, item));
+        models.push((default.clone(), item));
     }
     if models.is_empty() {
         return Err(entry.diagnostic("`models` is empty").with_help(format!("known: {}", names.join(", "))));
@@ -246,7 +247,7 @@ pub(crate) fn read_models<'a>(
     let Some(options) = options else { return Ok(models) };
     for (numerics, _) in &mut models {
         if let Some(table) = options.table(numerics.name())? {
-            *numerics = configured(*numerics, table)?;
+            *numerics = configured(numerics.clone(), table)?;
         }
     }
     let used: Vec<&str> = models.iter().map(|(m, _)| m.name()).collect();

@@ -1,5 +1,6 @@
 //! What will be computed, what will not and why, and what it will cost.
 
+use crate::scenes::assumptions::Assumptions;
 use crate::scenes::calibration;
 use crate::scenes::cost::Cost;
 use crate::scenes::diagnostic::Diagnostic;
@@ -101,13 +102,15 @@ impl Plan {
     /// As [`check`].
     pub fn new(scene: &SceneFile) -> Result<Self> {
         check(scene)?;
+        let assumptions = Assumptions::measured(scene);
+        let taken = |m: &Numerics| assumptions.as_ref().map_or_else(String::new, |a| a.taken(m));
         let models = scene
             .models
             .iter()
             .map(|m| ModelPlan {
                 name: m.name(),
                 grid: grid(scene, m),
-                accuracy: m.accuracy(scene.surface.is_rough(), cells(scene, m)),
+                accuracy: m.accuracy(scene.surface.is_rough(), cells(scene, m)) + &taken(m),
                 predicted: None,
             })
             .collect();
@@ -116,7 +119,12 @@ impl Plan {
             surface: scene.surface.describe(),
             metadata: scene.metadata.clone(),
             prepared: prepared(scene),
-            notes: scene.notes.clone(),
+            notes: scene
+                .notes
+                .iter()
+                .cloned()
+                .chain(assumptions.iter().flat_map(|a| a.notes(scene)))
+                .collect(),
             modulus: scene.modulus,
             units: match scene.system {
                 crate::scenes::System::Si => "SI (m, N, Pa, s)",
@@ -184,6 +192,7 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
             }
         }
         Numerics::Mdr1d(m) if scene.surface.is_rough() => format!("a line of {} elements", m.elements),
+        Numerics::Registered(_) => "the model's own".into(),
         _ => "none: a formula".into(),
     }
 }

@@ -53,7 +53,7 @@ pub fn run(
     manifest::write_begun(scene, options, &folder.files(scene))?;
     let columns = columns::columns(scene);
     let surfaces = |model: usize| {
-        if scene.models[model].depends_on_realisation() { scene.sampling.surfaces } else { 1 }
+        if scene.surface.is_random_for(&scene.models[model]) { scene.sampling.surfaces } else { 1 }
     };
     let units: Vec<ModelOnSurface> = (0..scene.models.len())
         .flat_map(|model| (0..surfaces(model)).map(move |surface| ModelOnSurface { model, surface }))
@@ -222,7 +222,7 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
             line.reason
         ));
     }
-    if scene.surface.is_random() {
+    if scene.is_random() {
         header = header.with_note(format!("seed: {}", scene.sampling.seed));
     }
     header

@@ -8,6 +8,7 @@ use crate::scenes::error::Result;
 use crate::scenes::loads::{Loading, Prescribed, read_request};
 use crate::scenes::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::scenes::outputs::{RequestedOutputs, read_outputs};
+use crate::scenes::registry::Registry;
 use crate::scenes::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
 use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Pair, Rheology, Scene, Surface};
 use std::ops::Range;
@@ -115,6 +116,14 @@ impl SceneFile {
     /// # Errors
     /// [`crate::scenes::Error::Run`] where it cannot be read, [`crate::scenes::Error::Scene`] with the place of the first mistake.
     pub fn read(path: &Path) -> Result<Self> {
+        Self::read_with(path, &Registry::new())
+    }
+
+    /// Reads a file whose models may be those of a registry.
+    ///
+    /// # Errors
+    /// As [`SceneFile::read`].
+    pub fn read_with(path: &Path, registry: &Registry) -> Result<Self> {
         let about = std::fs::metadata(path).map_err(runs::Error::file("read", path))?;
         let length = about.len();
         if about.is_file() && length > LONGEST {
@@ -129,7 +138,7 @@ impl SceneFile {
             let help = "`fractal-contact info FILE` says what a surface or a result holds";
             return Err(Diagnostic::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());
         };
-        Self::parse(path, text)
+        Self::parse_with(path, text, registry)
     }
 
     /// Reads a text; `path` is where messages say that it stands, and where its files are looked for.
@@ -146,10 +155,18 @@ impl SceneFile {
     /// # Ok::<(), fractal_contact::scenes::Error>(())
     /// ```
     pub fn parse(path: &Path, text: String) -> Result<Self> {
+        Self::parse_with(path, text, &Registry::new())
+    }
+
+    /// Reads a text whose models may be those of a registry: names of the library come first.
+    ///
+    /// # Errors
+    /// As [`SceneFile::parse`].
+    pub fn parse_with(path: &Path, text: String, registry: &Registry) -> Result<Self> {
         let read = || -> Read<Self> {
             let document = toml::de::DeTable::parse(&text).map_err(|e| syntax(&e))?;
             let root = Entries::root(document.get_ref());
-            let scene = read_scene(&root, path.parent().unwrap_or(Path::new("")))?;
+            let scene = read_scene(&root, path.parent().unwrap_or(Path::new("")), registry)?;
             root.finish()?;
             Ok(scene)
         };
@@ -205,6 +222,12 @@ impl SceneFile {
         if self.text.is_empty() { diagnostic } else { diagnostic.placed(&self.path, &self.text) }
     }
 
+    /// Whether a seed decides what a model is given or draws.
+    pub(crate) fn is_random(&self) -> bool {
+        let given = matches!(self.surface, SceneSurface::Plain(Surface::Heights(_)));
+        self.surface.is_random() || given && self.models.iter().any(|m| self.surface.is_random_for(m))
+    }
+
     /// Whether it needs models that remember.
     pub fn is_history(&self) -> bool {
         matches!(self.request, Loading::Path(_))
@@ -227,7 +250,7 @@ fn syntax(error: &toml::de::Error) -> Diagnostic {
     }
 }
 
-fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
+fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read<SceneFile> {
     let Some(scene) = root.table("scene")? else {
         return Err(Diagnostic::new("there is no [scene]")
             .with_help("a scene begins with [scene]: `models`, `modulus` and a load"));
@@ -236,7 +259,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
         .find("units")
         .map_or(Ok(System::Si), |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
     let options = root.table("models")?;
-    let models = read_models(&scene, options.as_ref())?;
+    let models = read_models(&scene, options.as_ref(), registry.models())?;
     let effects_table = root.table("effects")?;
     let effects = read_effects(effects_table, system)?;
     let outputs_table = root.table("outputs")?;
@@ -250,8 +273,9 @@ fn read_scene(root: &Entries<'_>, directory: &Path) -> Read<SceneFile> {
     if accuracy.is_some() {
         check_no_grid(options.as_ref())?;
     }
+    check_homogeneous(&scene, &models, &surface)?;
     let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
-    let sampling = read_sampling(root, &scene, &surface, &mut notes)?;
+    let sampling = read_sampling(root, &scene, &models, &surface, &mut notes)?;
     scene.finish()?;
     let places = Places {
         models: models.iter().map(|(_, entry)| entry.span()).collect(),
@@ -341,11 +365,21 @@ fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
 fn read_sampling(
     root: &Entries<'_>,
     scene: &Entries<'_>,
+    models: &[(Numerics, Entry<'_>)],
     surface: &SceneSurface,
     notes: &mut Vec<Diagnostic>,
 ) -> Read<Sampling> {
+    let line = models.iter().find(|(m, _)| {
+        matches!(surface, SceneSurface::Plain(Surface::Heights(_))) && surface.is_random_for(m)
+    });
+    let is_random = surface.is_random() || line.is_some();
     let Some((name, entry)) = root.one_of(&["sampling", "chance"])? else {
-        if surface.is_random() {
+        if let Some((_, model)) = line {
+            return Err(model
+                .diagnostic("the line that stands for the map is random and no seed is given")
+                .with_help("add [sampling] with `seed = 1`; with `surfaces = 60` there are as many lines"));
+        }
+        if is_random {
             return Err(scene
                 .diagnostic("the surface is random and no seed is given")
                 .with_help("add [sampling] with `seed = 1`: the same seed is the same surface"));
@@ -359,7 +393,7 @@ fn read_sampling(
     }
     let seed = table.require("seed", "1")?.count(0)?;
     let surfaces = table.find("surfaces");
-    if let (Some(entry), false) = (&surfaces, surface.is_random()) {
+    if let (Some(entry), false) = (&surfaces, is_random) {
         return Err(entry
             .diagnostic_at_key("`surfaces` is given, but nothing here is random")
             .with_help("remove it: there is one surface"));
@@ -424,6 +458,21 @@ fn check_cells(
         }
     }
     Ok(())
+}
+
+/// Theories of rough surfaces take a map, or none: heights of a body are no part of its statistics.
+fn check_homogeneous(
+    scene: &Entries<'_>,
+    models: &[(Numerics, Entry<'_>)],
+    surface: &SceneSurface,
+) -> Read<()> {
+    if !matches!(surface, SceneSurface::Plain(Surface::Heights(_))) || scene.entry("body").is_none() {
+        return Ok(());
+    }
+    let Some((numerics, name)) = models.iter().find(|(m, _)| m.is_statistical()) else { return Ok(()) };
+    let message =
+        format!("the model {} does not support a map on a body (it takes one or the other)", numerics.name());
+    Err(name.diagnostic(message).with_help("remove [scene.body], or the model from `models`"))
 }
 
 /// Loads that contradict the boundary or the surface.

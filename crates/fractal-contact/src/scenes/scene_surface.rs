@@ -39,6 +39,12 @@ impl SceneSurface {
         matches!(self, Self::Plain(Surface::SelfAffine(_)) | Self::Sum { .. })
     }
 
+    /// Whether a model has other numbers for other seeds: of a given map only the line that stands for it has.
+    pub(crate) fn is_random_for(&self, numerics: &Numerics) -> bool {
+        let given = matches!(self, Self::Plain(Surface::Heights(_)));
+        numerics.depends_on_realisation() && (!given || matches!(numerics, Numerics::Mdr1d(_)))
+    }
+
     /// Whether it is rough: it has an rms height in which forces can be counted.
     pub fn is_rough(&self) -> bool {
         matches!(

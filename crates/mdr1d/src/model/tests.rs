@@ -119,8 +119,11 @@ fn what_the_model_lacks_is_refused() {
     assert!(refused(&asking_for_area(rough(2.0))));
     assert!(refused(&scene(Surface::Flat { size: 1.0.into() })));
     assert!(refused(&scene(Surface::Sine { amplitude: 0.1, wavelength: 1.0, size: 1.0.into() })));
+    let rough_map = HeightMap::from_fn(8, 1.0, |x, y| ((3 * x + 5 * y) % 7) as f64).unwrap();
+    assert!(refused(&asking_for_area(Surface::Heights(Arc::new(rough_map)))));
     let map = Arc::new(HeightMap::new(2, 1.0, vec![0.0; 4]).unwrap());
-    assert!(refused(&scene(Surface::Heights(map))));
+    let flat = model.prepare(&scene(Surface::Heights(map)), 0).map(|_| ()).unwrap_err();
+    assert!(flat.to_string().starts_with("rms height of the map = 0"), "{flat}");
     for effects in [
         Effects { boundary: Boundary::Periodic, ..Effects::default() },
         Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() },
@@ -201,4 +204,24 @@ fn adhesion_where_the_rule_has_no_radius_is_refused() {
     assert!(
         refusal(Surface::PowerLaw { coefficient: 1.0, exponent: 0.5, size: 1.0.into() }).contains("exponent")
     );
+}
+
+/// A map has a line of its own: the rms height of the map, another line for another seed, and the plateau of Eq. 18.
+#[test]
+fn a_map_is_pressed_through_its_line() {
+    let surface = SelfAffine::new(2.3, [2.0, 1.0], 0.01).unwrap();
+    let map = Arc::new(surface_gen::self_affine_map(&surface, [128, 64], 1).unwrap());
+    let model = Mdr1d { elements: 4096 };
+    let on_map = scene(Surface::Heights(map));
+    let mut contacts = [1, 1, 2].map(|seed| model.prepare(&on_map, seed).unwrap());
+    let normalisation = contacts[0].normalisation();
+    assert_relative_eq!(normalisation.height.unwrap(), 0.01, max_relative = 1e-11);
+    assert_relative_eq!(normalisation.length, 2.0_f64.sqrt());
+    let force = normalisation.force(0.01).unwrap();
+    let [one, same, other] =
+        contacts.each_mut().map(|c| c.solve(Load::Force(force)).unwrap().stiffness.unwrap());
+    assert!(one.to_bits() == same.to_bits() && one.to_bits() != other.to_bits());
+    let full = contacts[0].solve(Load::Force(normalisation.force(1e3).unwrap())).unwrap();
+    let plateau = crate::rule::full_contact_stiffness(on_map.modulus, normalisation.length);
+    assert_relative_eq!(full.stiffness.unwrap(), plateau, max_relative = 1e-12);
 }

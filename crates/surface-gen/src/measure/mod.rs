@@ -3,9 +3,16 @@
 mod hurst;
 mod moments;
 mod patches;
+mod self_affine_fit;
 mod spectra;
+mod statistics;
+mod window;
 
 pub use hurst::{hurst_from_line_spectrum, hurst_from_spectrum};
 pub use moments::{rms_height, rms_slope_differences};
 pub use patches::{boundary_edges, patches};
+pub use self_affine_fit::SelfAffineFit;
 pub use spectra::{line_spectrum, radial_spectrum, rms_slope};
+pub(crate) use statistics::rms_by_wave;
+pub use statistics::{Band, MapStatistics};
+pub use window::{fit_range, windowed};

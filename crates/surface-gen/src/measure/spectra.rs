@@ -43,12 +43,16 @@ impl RowTransform {
     }
 }
 
-/// Calls `visit(|q|^2, |H|^2, copies)` for every wave but the mean, in a fixed order; returns the unit of H.
-/// Wavenumbers are in units of `2 pi / L`, `L = sqrt(Lx Ly)`; `copies` counts the conjugate wave.
+/// Calls `visit(|q|^2, |H|^2, copies, [q_x^2, q_x q_y])` for every wave but the mean, in a fixed order; returns the
+/// unit of H. Wavenumbers are in units of `2 pi / L`, `L = sqrt(Lx Ly)`; `copies` counts the conjugate wave.
 ///
 /// # Errors
 /// [`Error::Domain`] for a map with undefined points.
-fn waves(map: &HeightMap, lattice: &Lattice, mut visit: impl FnMut(f64, f64, f64)) -> Result<f64> {
+pub(super) fn waves(
+    map: &HeightMap,
+    lattice: &Lattice,
+    mut visit: impl FnMut(f64, f64, f64, [f64; 2]),
+) -> Result<f64> {
     if map.undefined() > 0 {
         let expected = "0: a spectrum needs every height (fill the undefined points or crop the map)";
         return Err(Error::domain("undefined points", map.undefined() as f64, expected));
@@ -71,7 +75,11 @@ fn waves(map: &HeightMap, lattice: &Lattice, mut visit: impl FnMut(f64, f64, f64
         for (iy, value) in column.iter().enumerate() {
             let my = iy.min(ny - iy);
             if (mx, my) != (0, 0) {
-                visit(lattice.square(mx as u64, my as u64), value.norm_sqr() / (ny as f64).powi(2), copies);
+                let (square, power) =
+                    (lattice.square(mx as u64, my as u64), value.norm_sqr() / (ny as f64).powi(2));
+                // (L/Lx) (L/Ly) = 1.
+                let product = if iy == my { (mx * my) as f64 } else { -((mx * my) as f64) };
+                visit(square, power, copies, [lattice.square(mx as u64, 0), product]);
             }
         }
     }
@@ -98,7 +106,7 @@ fn waves(map: &HeightMap, lattice: &Lattice, mut visit: impl FnMut(f64, f64, f64
 pub fn rms_slope(map: &HeightMap) -> Result<f64> {
     let mut sum = 0.0;
     let lattice = Lattice::new(map.cells(), map.size());
-    let unit = waves(map, &lattice, |square, power, copies| sum += copies * square * power)?;
+    let unit = waves(map, &lattice, |square, power, copies, _| sum += copies * square * power)?;
     Ok(TAU * sum.sqrt() * (unit / map.length()))
 }
 
@@ -133,7 +141,7 @@ pub fn radial_spectrum(map: &HeightMap) -> Result<Vec<(f64, f64)>> {
     let last = (lattice.limit() * rings * (1.0 + CUTOFF_SLACK)) as usize;
     // Count, sum of |q|, sum of |H|^2.
     let mut sums = vec![(0.0, 0.0, 0.0); last + 1];
-    let unit = waves(map, &lattice, |square, power, copies| {
+    let unit = waves(map, &lattice, |square, power, copies, _| {
         let m = square.sqrt() * rings;
         if let Some(sum) = sums.get_mut(m.round() as usize) {
             *sum = (sum.0 + copies, sum.1 + copies * m, sum.2 + copies * power);

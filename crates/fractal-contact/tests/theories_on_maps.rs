@@ -1,0 +1,187 @@
+//! Theories of rough surfaces beside the solved map: what they take from it, what is said, what is refused.
+
+use contact_model::{HeightMap, SelfAffine};
+use fractal_contact::scenes::{Options, Plan, SceneFile, run};
+use runs::{CsvFile, Silent};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// A surface of many waves: roll-off at an eighth of the side.
+fn surface() -> SelfAffine {
+    let paper = SelfAffine::new(2.2, 1.0, 0.01).unwrap();
+    SelfAffine { roll_off: Some(8.0 * TAU), short_cutoff: Some(32.0 * TAU), ..paper }
+}
+
+fn drawn(cells: usize) -> HeightMap {
+    surface_gen::self_affine_map(&surface(), cells, 1).unwrap()
+}
+
+/// Writes a map as comma-separated values, NaN where it is undefined.
+fn write(dir: &Path, map: &HeightMap) {
+    let mut text = String::new();
+    for row in map.heights().chunks(map.columns()) {
+        let row: Vec<String> =
+            row.iter().map(|h| if h.is_finite() { format!("{h:e}") } else { "nan".into() }).collect();
+        writeln!(text, "{}", row.join(",")).unwrap();
+    }
+    std::fs::write(dir.join("map.csv"), text).unwrap();
+}
+
+const PERIODIC: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"persson\", \"greenwood_williamson\"]\nmodulus = 1\n\
+    mean_pressure = [0.002, 0.01]\n[scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nsize = 1\nunit = \"none\"\n\
+    [effects]\nboundary = \"periodic\"\n[outputs]\narea = true\nstiffness = true\nmean_gap = true\n";
+
+const FREE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\", \"power_law\"]\nmodulus = 1\n\
+    force_bar = [0.01, 0.05]\n[scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nsize = 1\nunit = \"none\"\n\
+    [models.mdr1d]\nelements = 4096\n[sampling]\nseed = 1\nsurfaces = 3\n[outputs]\nstiffness = true\n";
+
+fn read(dir: &Path, text: &str) -> fractal_contact::scenes::Result<SceneFile> {
+    SceneFile::parse(&dir.join("a.toml"), text.to_owned())
+}
+
+fn refused(map: &HeightMap, text: &str) -> String {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), map);
+    read(dir.path(), text).and_then(|scene| Plan::new(&scene)).unwrap_err().to_string()
+}
+
+fn notes(map: &HeightMap, text: &str) -> Vec<String> {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), map);
+    let plan = Plan::new(&read(dir.path(), text).unwrap()).unwrap_or_else(|e| panic!("{e}"));
+    plan.notes.iter().map(ToString::to_string).collect()
+}
+
+fn solved(map: &HeightMap, text: &str) -> (Plan, CsvFile) {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), map);
+    let scene = read(dir.path(), text).unwrap_or_else(|e| panic!("{e}"));
+    let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options { out: dir.path().join("out"), threads: 2, fresh: false };
+    let outcome = run(&scene, &plan, &options, &Silent, &contact_model::never).unwrap();
+    assert_eq!(outcome.failed, 0, "{:?}", outcome.notes);
+    (plan, CsvFile::read(&outcome.files[0]).unwrap())
+}
+
+/// A column of one model; every one of its rows has a finite number.
+fn column(file: &CsvFile, model: &str, name: &str) -> Vec<f64> {
+    let models = file.texts("model").unwrap();
+    let values = file.numbers(name).unwrap();
+    let own = models.iter().zip(values).filter(|(m, _)| **m == model);
+    let found: Vec<f64> = own.map(|(_, v)| v.unwrap_or(f64::NAN)).collect();
+    assert!(found.iter().all(|v| v.is_finite()), "{model} {name}: {found:?}");
+    found
+}
+
+#[test]
+fn periodic_theories_answer_for_a_map_beside_the_solver() {
+    let map = drawn(128);
+    let (plan, file) = solved(&map, PERIODIC);
+    assert!(plan.notes.is_empty(), "{:?}", plan.notes);
+    let gradient = surface_gen::rms_slope(&map).unwrap();
+    assert!(plan.models[1].accuracy.contains("of this map: rms slope"), "{}", plan.models[1].accuracy);
+    assert!(plan.models[2].accuracy.contains("summits of radius"), "{}", plan.models[2].accuracy);
+    for name in ["area", "stiffness", "mean_gap"] {
+        for model in ["persson", "greenwood_williamson"] {
+            let (theory, exact) = (column(&file, model, name), column(&file, "bem3d", name));
+            println!("{model} {name}: {theory:?} over {exact:?}");
+            for (theory, exact) in theory.iter().zip(exact) {
+                // Theories of an infinite surface, and a grid of four cells a wave.
+                assert!((0.4..1.6).contains(&(theory / exact)), "{model} {name}: {theory} {exact}");
+            }
+        }
+    }
+    // Light loads: A/A0 = sqrt(8/pi) p/(E* g) with the map's own gradient, to the second order in p.
+    let area = column(&file, "persson", "area");
+    let slope = (8.0 / std::f64::consts::PI).sqrt() / gradient;
+    assert!((area[0] / (0.002 * slope) - 1.0).abs() < 0.01, "{area:?} {slope}");
+}
+
+#[test]
+fn a_line_and_the_fit_stand_for_a_map_with_free_edges() {
+    let map = surface_gen::self_affine_map(&SelfAffine::new(2.3, 1.0, 0.01).unwrap(), 128, 2).unwrap();
+    let (plan, file) = solved(&map, FREE);
+    assert!(plan.models[2].accuracy.contains("of this map: D_f = 2."), "{}", plan.models[2].accuracy);
+    let of = |model: &str| column(&file, model, "stiffness");
+    // The map is one, its lines are three; a fit has no realisation.
+    assert_eq!([of("bem3d").len(), of("mdr1d").len(), of("power_law").len()], [2, 6, 2]);
+    let lines = of("mdr1d");
+    assert!(lines[0].to_bits() != lines[2].to_bits() && lines[2].to_bits() != lines[4].to_bits());
+    println!("bem3d {:?} mdr1d {lines:?} power_law {:?}", of("bem3d"), of("power_law"));
+    for i in 0..2 {
+        let line = (0..3).map(|n| lines[2 * n + i]).sum::<f64>() / 3.0;
+        for theory in [line, of("power_law")[i]] {
+            // One surface scatters by a quarter, the line is 1.2 times as stiff.
+            assert!((0.5..2.0).contains(&(theory / of("bem3d")[i])));
+        }
+    }
+}
+
+/// Heights `h(ix, iy)` of a map of 64 cells a side.
+fn changed(h: impl Fn(&HeightMap, usize, usize) -> f64) -> HeightMap {
+    let map = drawn(64);
+    let heights = (0..64 * 64).map(|i| h(&map, i % 64, i / 64)).collect();
+    HeightMap::with_undefined(64, 1.0, heights).unwrap()
+}
+
+#[test]
+fn what_a_map_lacks_is_said() {
+    assert!(notes(&drawn(64), PERIODIC).is_empty());
+    let of = |map: &HeightMap, words: &str| {
+        let notes = notes(map, PERIODIC);
+        let own =
+            |n: &&String| n.starts_with("note: persson, greenwood_williamson: ") && n.contains("= help: ");
+        assert!(notes.iter().filter(own).any(|n| n.contains(words)), "{words}: {notes:#?}");
+    };
+    of(
+        &drawn(128).cropped(0..100, 0..100).unwrap().scaled(1.28, 1.0).unwrap(),
+        "opposite edges of the map differ by",
+    );
+    of(
+        &changed(|map, ix, iy| map.heights()[ix] + 0.1 * map.heights()[64 * iy + ix]),
+        "the map is anisotropic",
+    );
+    of(&changed(|map, ix, iy| map.heights()[64 * iy + ix].min(0.001)), "heights are not Gaussian");
+    let few = surface_gen::self_affine_map(&SelfAffine::new(2.1, 1.0, 0.01).unwrap(), 64, 1).unwrap();
+    of(&few, "of the variance of heights is in the longest waves");
+    // In units the slope counts.
+    let steep = PERIODIC.replace("units = \"none\"\n", "").replace("modulus = 1", "modulus = \"1 GPa\"");
+    let steep = steep.replace("[0.002, 0.01]", "\"1 MPa\"").replace("unit = \"none\"", "unit = \"um\"");
+    let notes = notes(&drawn(64), &steep.replace("size = 1", "size = \"0.1 um\""));
+    assert!(notes.iter().any(|n| n.contains("slopes are assumed small")), "{notes:#?}");
+}
+
+#[test]
+fn maps_that_theories_have_no_meaning_for_are_refused() {
+    let tilted = changed(|map, ix, iy| map.heights()[64 * iy + ix] + 0.01 * ix as f64);
+    for text in [PERIODIC, FREE] {
+        let message = refused(&tilted, text);
+        assert!(message.contains("the map is tilted, subtract it (`detrend = \"plane\"`)"), "{message}");
+    }
+    // Without the tilt it is taken.
+    let level = PERIODIC.replace("size = 1\n", "size = 1\ndetrend = \"plane\"\n");
+    assert!(notes(&tilted, &level).iter().all(|n| n.contains("opposite edges")));
+    let holes =
+        changed(|map, ix, iy| if (ix, iy) == (3, 5) { f64::NAN } else { map.heights()[64 * iy + ix] });
+    let kept = PERIODIC.replace("size = 1\n", "size = 1\nundefined = \"no_contact\"\n");
+    let message = refused(&holes, &kept);
+    assert!(message.contains("undefined points = 1: expected 0") && message.contains("`fill`"), "{message}");
+    assert!(notes(&holes, &PERIODIC.replace("size = 1\n", "size = 1\nfill = \"neighbours\"\n")).is_empty());
+    // A roll-off, and too few waves.
+    let message = refused(&drawn(256), FREE);
+    assert!(
+        message.contains("expected") && message.contains("of a self-affine surface without roll-off"),
+        "{message}"
+    );
+    let message = refused(&drawn(64), FREE);
+    assert!(message.contains("about 128 cells along the shorter side"), "{message}");
+    let line = FREE.replace(", \"power_law\"", "");
+    let message = refused(&drawn(64), &line.replace("[sampling]\nseed = 1\nsurfaces = 3\n", ""));
+    assert!(message.contains("the line that stands for the map is random"), "{message}");
+    let message = refused(&drawn(64), &(line + "[scene.body]\nkind = \"sphere\"\nradius = 1\n"));
+    assert!(message.contains("the model mdr1d does not support a map on a body"), "{message}");
+    let only = PERIODIC.replace(", \"persson\", \"greenwood_williamson\"", "")
+        + "[sampling]\nseed = 1\nsurfaces = 2\n";
+    assert!(refused(&drawn(64), &only).contains("nothing here is random"));
+}

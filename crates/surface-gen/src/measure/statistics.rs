@@ -1,0 +1,255 @@
+//! What theories of rough contact take from a given map, and how far it is what they assume.
+
+use super::moments::rms_height;
+use super::spectra::waves;
+use super::window::windowed;
+use crate::lattice::Lattice;
+use contact_model::{Cells, Error, HeightMap, Result};
+use std::borrow::Cow;
+use std::f64::consts::TAU;
+
+/// Opposite edges of a periodic map differ by no more than this times the largest step between neighbouring lines
+/// of cells inside.
+const MATCHING: f64 = 1.5;
+
+/// Largest share of a plane in the variance of heights; a periodic wave has 6/pi^2 = 0.61 at most.
+const TILTED: f64 = 0.75;
+
+/// Bands are no narrower than this ratio of wavenumbers: an eighth of an octave.
+const BAND: f64 = 1.090_507_732_665_257_7;
+
+/// Waves with wavenumbers between two limits, of all directions together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Wavenumbers between which they lie, the edges of rings, in 1/L with `L = sqrt(Lx Ly)`.
+    pub limits: [f64; 2],
+    /// Variance of their heights, gradients and Laplacians: `2 pi int q^(1 + k) C_2D dq` for k = 0, 2, 4, in `h^2`,
+    /// `(h/L)^2` and `(h/L^2)^2` with the rms height h.
+    pub variances: [f64; 3],
+}
+
+/// Statistics of a map as a sample of a homogeneous surface.
+///
+/// Where opposite edges of the map match, it is taken as periodic and its gradient is the spectral derivative, that
+/// of [`crate::rms_slope`]; elsewhere the spectrum is that under Hann's window ([`windowed`]).
+///
+/// ```
+/// use contact_model::Surface;
+/// use surface_gen::{MapStatistics, height_map};
+/// // h = 0.1 cos(2 pi x): variance 0.005, that of the gradient (2 pi)^2 times as much.
+/// let sine = Surface::Sine { amplitude: 0.1, wavelength: 1.0, size: 1.0.into() };
+/// let found = MapStatistics::new(&*height_map(&sine, 16, 0)?)?;
+/// assert!((found.rms_slope() - 0.4442882938158366).abs() < 1e-14 && !found.windowed);
+/// // All of it runs along x, and a sine has the kurtosis 3/2.
+/// assert!(found.isotropy < 1e-7 && (found.kurtosis - 1.5).abs() < 1e-12);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapStatistics {
+    /// `L = sqrt(Lx Ly)`, a length.
+    pub length: f64,
+    /// Rms height h of the map itself, a length.
+    pub rms_height: f64,
+    /// Third moment of the heights about their mean over the cube of the rms height; 0 for Gaussian heights.
+    pub skewness: f64,
+    /// Fourth moment over the fourth power; 3 for Gaussian heights.
+    pub kurtosis: f64,
+    /// Share of the plane of least squares in the variance of heights.
+    pub tilt: f64,
+    /// Rms step between opposite edges over the largest one between neighbouring columns or rows inside, the larger
+    /// of both directions.
+    pub edge_step: f64,
+    /// Whether the spectrum is that under Hann's window, because opposite edges differ.
+    pub windowed: bool,
+    /// Smallest over largest rms slope along a line, over all directions; 1 for an isotropic surface.
+    pub isotropy: f64,
+    /// Share in the variance of heights of the waves up to 2.5 times the smallest wavenumber.
+    pub longest_waves: f64,
+    /// The spectrum, bands of rising wavenumbers without gaps between them.
+    pub bands: Vec<Band>,
+}
+
+impl MapStatistics {
+    /// Measures a map.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for undefined points, heights that are all one, a tilt (a plane with more than 3/4 of the
+    /// variance of a map that is not periodic), and numbers beyond the range of f64. Cost O(N log N) for N cells,
+    /// memory about that of the map.
+    pub fn new(map: &HeightMap) -> Result<Self> {
+        let Homogeneous { map: homogeneous, edge_step, tilt } = homogeneous(map)?;
+        let (lattice, length) = (Lattice::new(map.cells(), map.size()), map.length());
+        let rings = lattice.longest() / length;
+        let mut sums: Vec<[f64; 3]> = Vec::new();
+        let (mut along_x, mut product) = (0.0, 0.0);
+        let unit = waves(&homogeneous, &lattice, |square, power, copies, [xx, xy]| {
+            let ring = ((square.sqrt() * rings).round() as usize).max(1);
+            if sums.len() < ring {
+                sums.resize(ring, [0.0; 3]);
+            }
+            let weight = copies * power;
+            for (sum, factor) in sums[ring - 1].iter_mut().zip([1.0, square, square * square]) {
+                *sum += weight * factor;
+            }
+            along_x += weight * xx;
+            product += weight * xy;
+        })?;
+        let total = |k: usize| sums.iter().map(|s| s[k]).sum::<f64>();
+        // Eigenvalues of the tensor of slopes, from its trace.
+        let gradient = total(1);
+        let spread = (2.0 * along_x - gradient).hypot(2.0 * product);
+        let isotropy = ((gradient - spread).max(0.0) / (gradient + spread)).sqrt();
+        let longest_waves = sums.iter().take(2).map(|s| s[0]).sum::<f64>() / total(0);
+        let rms = rms_height(map.heights());
+        let scales = [0, 2, 4].map(|k| (unit / rms).powi(2) * TAU.powi(k));
+        let bands = bands(&sums, scales, TAU / rings);
+        let count = map.heights().len() as f64;
+        let mean = map.heights().iter().map(|h| h / rms).sum::<f64>() / count;
+        let central = |power| map.heights().iter().map(|h| (h / rms - mean).powi(power)).sum::<f64>() / count;
+        let (skewness, kurtosis) = (central(3), central(4));
+        let windowed = edge_step > MATCHING;
+        let found = Self {
+            length,
+            rms_height: rms,
+            skewness,
+            kurtosis,
+            tilt,
+            edge_step,
+            windowed,
+            isotropy,
+            longest_waves,
+            bands,
+        };
+        let gradient = found.rms_slope();
+        if !gradient.is_normal() {
+            let expected = "a number within the range of f64 (choose other units)";
+            return Err(Error::domain("rms slope of the map", gradient, expected));
+        }
+        Ok(found)
+    }
+
+    /// Rms gradient `sqrt(mean |grad h|^2)`, dimensionless.
+    pub fn rms_slope(&self) -> f64 {
+        self.moment(1).sqrt() * (self.rms_height / self.length)
+    }
+
+    /// Moments m0, m2, m4 of a profile of the isotropic surface with this spectrum: variances of height, slope and
+    /// curvature along a line, in `h^2`, `(h/L)^2` and `(h/L^2)^2`.
+    ///
+    /// Of the variances over the plane 1, 1/2 and 3/8, the angular means of cos^2 and cos^4 (Nayak 1971).
+    pub fn profile_moments(&self) -> [f64; 3] {
+        [self.moment(0), 0.5 * self.moment(1), 0.375 * self.moment(2)]
+    }
+
+    fn moment(&self, k: usize) -> f64 {
+        self.bands.iter().map(|band| band.variances[k]).sum()
+    }
+}
+
+/// Rings put together until their limits differ by [`BAND`]; the first ring begins at the `longest` wave's wavenumber.
+fn bands(rings: &[[f64; 3]], scales: [f64; 3], longest: f64) -> Vec<Band> {
+    let (mut bands, mut low, mut sum) = (Vec::new(), 1.0, [0.0; 3]);
+    for (i, ring) in rings.iter().enumerate() {
+        let high = i as f64 + 1.5;
+        for ((sum, ring), scale) in sum.iter_mut().zip(ring).zip(scales) {
+            *sum += ring * scale;
+        }
+        if high >= low * BAND || i + 1 == rings.len() {
+            bands.push(Band { limits: [low * longest, high * longest], variances: sum });
+            (low, sum) = (high, [0.0; 3]);
+        }
+    }
+    bands
+}
+
+/// Rms heights of a map's waves by their wavenumber in multiples m = 1, 2, ... of `step`: wave q goes to the nearest
+/// m, and to 1 where it is longer. For `step = 2 pi / L_1D` their squares are the variances `2 B_1D^2` of the waves of
+/// the equivalent line: `C_1D = pi q C_2D` in each of its bands (Eq. 17).
+///
+/// # Errors
+/// As [`MapStatistics::new`].
+pub(crate) fn rms_by_wave(map: &HeightMap, step: f64) -> Result<Vec<f64>> {
+    let (lattice, length) = (Lattice::new(map.cells(), map.size()), map.length());
+    let mut sums: Vec<f64> = Vec::new();
+    let unit = waves(&homogeneous(map)?.map, &lattice, |square, power, copies, _| {
+        let m = ((square.sqrt() * (TAU / length / step)).round() as usize).max(1);
+        if sums.len() < m {
+            sums.resize(m, 0.0);
+        }
+        sums[m - 1] += copies * power;
+    })?;
+    Ok(sums.into_iter().map(|sum| sum.sqrt() * unit).collect())
+}
+
+/// A map as a sample of a homogeneous surface.
+struct Homogeneous<'a> {
+    /// The map where it is periodic, else under a window.
+    map: Cow<'a, HeightMap>,
+    edge_step: f64,
+    tilt: f64,
+}
+
+fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
+    if map.undefined() > 0 {
+        let expected = "0: statistics of a surface need every height (`fill` or `crop` the map)";
+        return Err(Error::domain("undefined points", map.undefined() as f64, expected));
+    }
+    let rms = rms_height(map.heights());
+    // NaN and infinity are refused, too.
+    if !(rms > 0.0 && rms.is_finite()) {
+        return Err(Error::domain("rms height of the map", rms, "a rough surface: a finite number > 0"));
+    }
+    let (edge_step, tilt) = (edge_step(map, rms).max(edge_step(&map.transposed(), rms)), tilt(map, rms));
+    if edge_step <= MATCHING {
+        return Ok(Homogeneous { map: Cow::Borrowed(map), edge_step, tilt });
+    }
+    if tilt > TILTED {
+        let expected = format!("at most {TILTED}: the map is tilted, subtract it (`detrend = \"plane\"`)");
+        return Err(Error::domain("share of a plane in the variance of heights", tilt, expected));
+    }
+    let Some(windowed) = windowed(map) else {
+        return Err(Error::domain("rms height of the map", rms, "a number within the range of f64"));
+    };
+    Ok(Homogeneous { map: Cow::Owned(windowed), edge_step, tilt })
+}
+
+/// Rms step from the last column to the first over the largest one from a column to the next; 0 for fewer than 3
+/// columns, which carry no wave.
+fn edge_step(map: &HeightMap, rms: f64) -> f64 {
+    let columns = map.columns();
+    if columns < 3 {
+        return 0.0;
+    }
+    let mut steps = vec![0.0; columns];
+    for row in map.heights().chunks_exact(columns) {
+        for (i, step) in steps.iter_mut().enumerate() {
+            *step += ((row[(i + 1) % columns] - row[i]) / rms).powi(2);
+        }
+    }
+    let across = steps.pop().unwrap_or(0.0);
+    let inside = steps.into_iter().fold(0.0, f64::max);
+    // Without a step inside there is none across.
+    if inside > 0.0 { (across / inside).sqrt() } else { 0.0 }
+}
+
+/// Share of the plane of least squares in the variance of heights.
+fn tilt(map: &HeightMap, rms: f64) -> f64 {
+    let Cells { columns, rows } = map.cells();
+    // Coordinates of mean 0; along both axes they are orthogonal on a full rectangle.
+    let about = |i: usize, count: usize| i as f64 - 0.5 * (count as f64 - 1.0);
+    let square = |count: usize| (0..count).map(|i| about(i, count).powi(2)).sum::<f64>();
+    let (mut x, mut y) = (0.0, 0.0);
+    for (iy, row) in map.heights().chunks_exact(columns).enumerate() {
+        for (ix, h) in row.iter().enumerate() {
+            x += about(ix, columns) * (h / rms);
+            y += about(iy, rows) * (h / rms);
+        }
+    }
+    let share = |sum: f64, count: usize, others: usize| {
+        if count > 1 { sum * sum / (square(count) * others as f64) } else { 0.0 }
+    };
+    (share(x, columns, rows) + share(y, rows, columns)) / (columns * rows) as f64
+}
+
+#[cfg(test)]
+mod tests;
