@@ -2,7 +2,7 @@
 
 use crate::forces::Forces;
 use crate::realisation::Discretisation;
-use crate::tables::{maybe, names};
+use crate::table_of::{maybe, names};
 use bem3d::{Bem3d, Method};
 use contact_model::{
     Boundary, Cells, Certificate, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene,

@@ -1,6 +1,6 @@
 //! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
 
-use crate::tables::read_rows;
+use crate::table_of::read_rows;
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
 use runs::{CsvFile, Error, Result};
 use serde::Deserialize;

@@ -1,6 +1,6 @@
 //! One line per claim of the paper.
 
-use crate::tables::TableOf;
+use crate::table_of::TableOf;
 use analysis::{Table, Value};
 use runs::Result;
 use std::fmt;

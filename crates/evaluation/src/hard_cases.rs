@@ -1,6 +1,6 @@
 //! The table of hard cases: what was asserted and what was reached.
 
-use crate::tables::TableOf;
+use crate::table_of::TableOf;
 use analysis::Table;
 use contact_model::ContactModel as _;
 use runs::files::{create_directory, write_whole};

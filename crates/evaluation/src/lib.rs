@@ -41,6 +41,7 @@ mod run;
 mod sample;
 mod session;
 mod sweep;
+mod table_of;
 mod tables;
 
 pub use accuracy::{
@@ -65,4 +66,5 @@ pub use runs::{Error, Result};
 pub use sample::{FIELDS, FLOOR_CELLS, Sample};
 pub use session::Session;
 pub use sweep::sweep;
-pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, TableOf, curves_table, samples_table};
+pub use table_of::TableOf;
+pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, curves_table, samples_table};

@@ -1,6 +1,6 @@
 //! One surface under one load: what is kept of a state.
 
-use crate::tables::{maybe, names};
+use crate::table_of::{maybe, names};
 use contact_model::{Certificate, ContactState, Normalisation, Result};
 use runs::number;
 

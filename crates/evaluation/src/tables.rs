@@ -1,93 +1,10 @@
-//! Tables whose columns say what stands in them; those that several figures share: the curves and their samples.
+//! Tables that several figures share: the curves and their samples.
 
 use crate::measured::Measured;
 use crate::sample::FLOOR_CELLS;
-use analysis::{Column, Table, Value};
-use csv::StringRecord;
-use runs::{CsvFile, Error, Result, number};
-use serde::de::DeserializeOwned;
-use std::path::Path;
-
-/// A table with one row for each item, built column by column: name, unit, meaning and value stand together.
-///
-/// ```
-/// use evaluation::TableOf;
-/// let table = TableOf::new("Squares", &[1.0, 2.0])
-///     .column("x", "L", "side", |x| *x)
-///     .column("area", "L^2", "its square", |x| x * x)
-///     .table()?;
-/// assert_eq!(table.rows()[1], [2.0.into(), 4.0.into()]);
-/// # Ok::<(), evaluation::Error>(())
-/// ```
-#[derive(Debug)]
-pub struct TableOf<'a, T> {
-    title: String,
-    items: &'a [T],
-    columns: Vec<Column>,
-    rows: Vec<Vec<Value>>,
-}
-
-impl<'a, T> TableOf<'a, T> {
-    /// A table without columns.
-    pub fn new(title: impl Into<String>, items: &'a [T]) -> Self {
-        Self { title: title.into(), items, columns: Vec::new(), rows: vec![Vec::new(); items.len()] }
-    }
-
-    /// Adds a column, as in [`Column`], and what stands in it for each item.
-    #[must_use]
-    pub fn column<V: Into<Value>>(
-        mut self,
-        name: &'static str,
-        unit: &'static str,
-        meaning: &'static str,
-        value: impl Fn(&'a T) -> V,
-    ) -> Self {
-        self.columns.push(Column { name, unit, meaning });
-        for (row, item) in self.rows.iter_mut().zip(self.items) {
-            row.push(value(item).into());
-        }
-        self
-    }
-
-    /// The finished table.
-    ///
-    /// # Errors
-    /// [`Error::Model`] for a number that is not finite.
-    pub fn table(self) -> Result<Table> {
-        let mut table = Table::new(self.title.clone(), self.columns);
-        for row in self.rows {
-            table.push(row).map_err(Error::model(self.title.as_str()))?;
-        }
-        Ok(table)
-    }
-}
-
-/// The names of columns that stand beside something else.
-pub(crate) const fn names<T, const N: usize>(columns: &[(&'static str, T); N]) -> [&'static str; N] {
-    let mut names = [""; N];
-    let mut i = 0;
-    while i < N {
-        names[i] = columns[i].0;
-        i += 1;
-    }
-    names
-}
-
-/// A number as text; absent is empty.
-pub(crate) fn maybe(value: Option<f64>) -> String {
-    value.map(number).unwrap_or_default()
-}
-
-/// The rows of a CSV file as what their columns say.
-///
-/// # Errors
-/// [`Error::Content`] for a column that is missing or an entry that does not fit it.
-pub(crate) fn read_rows<T: DeserializeOwned>(path: &Path, file: &CsvFile) -> Result<Vec<T>> {
-    let names = StringRecord::from(file.columns.as_slice());
-    let row = |row: &Vec<String>| StringRecord::from(row.as_slice()).deserialize(Some(&names));
-    let rows: Result<_, csv::Error> = file.rows.iter().map(row).collect();
-    rows.map_err(|e| Error::content(path, e.to_string()))
-}
+use crate::table_of::TableOf;
+use analysis::Table;
+use runs::Result;
 
 /// What a column `model` holds.
 pub const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";

@@ -90,10 +90,10 @@ fn histories_leave_the_shorter_side_too() {
 }
 
 #[test]
-fn maps_are_no_lines() {
+fn maps_with_undefined_points_and_negative_sides_are_refused() {
     let map = HeightMap::with_undefined([2, 1], [2.0, 1.0], vec![f64::NAN, 0.0]).unwrap();
     let scene = Scene::new(Surface::Heights(map.into()), 1.0);
-    assert!(matches!(Mdr1d::default().prepare(&scene, 0), Err(Error::Unsupported { .. })));
+    assert!(matches!(Mdr1d::default().prepare(&scene, 0), Err(Error::Domain { .. })));
     let line = Arc::new(Line::new(2.0, vec![0.0, 1.0]).unwrap());
     let negative = Surface::Line { line, size: Size { x: 1.0, y: -1.0 } };
     assert!(matches!(Mdr1d::default().prepare(&Scene::new(negative, 1.0), 0), Err(Error::Domain { .. })));

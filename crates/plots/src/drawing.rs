@@ -58,6 +58,11 @@ pub(crate) enum Anchor {
 }
 
 impl Drawing {
+    /// In units of the drawing.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
     pub fn new(width: f64, height: f64) -> Self {
         Self { width, height, items: Vec::new() }
     }

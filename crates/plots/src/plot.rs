@@ -275,7 +275,10 @@ impl Picture {
                 let set = fonts.typeset(&label, TICK * scale);
                 if i == 0 {
                     let at = (ends[0][0].0, bottom + 1.3 * TICK * scale);
-                    drawing.label(set, at, Anchor::Middle, false, INK);
+                    // A label that would leave the picture is left out.
+                    if at.0 + 0.5 * set.width < drawing.width() {
+                        drawing.label(set, at, Anchor::Middle, false, INK);
+                    }
                 } else {
                     let at = (x - 0.45 * TICK * scale, ends[0][0].1 + 0.33 * TICK * scale);
                     drawing.label(set, at, Anchor::End, false, INK);

@@ -1,6 +1,6 @@
 //! The picture: error of k over seconds, one panel for each load.
 
-use crate::tables::read_rows;
+use crate::table_of::read_rows;
 use plots::{Axis, Key, Legend, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
 use runs::{CsvFile, Result};
 use serde::Deserialize;

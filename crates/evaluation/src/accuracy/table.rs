@@ -2,7 +2,8 @@
 
 use super::problem::ProblemKey;
 use super::study::Study;
-use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, TableOf};
+use crate::table_of::TableOf;
+use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::Table;
 use runs::Result;
 

@@ -1,7 +1,7 @@
 //! The text: what it takes, when less is enough, which part dominates. Written from the tables.
 
 use super::picture::{AccuracyPoint, TARGETS, read, values};
-use crate::tables::read_rows;
+use crate::table_of::read_rows;
 use runs::{CsvFile, Result};
 use serde::Deserialize;
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! `accuracy` in `[scene]`: the grid that an accuracy asks for, instead of the other way round.
 
+use crate::scenes::accuracy_target::AccuracyTarget;
 use crate::scenes::any_model::AnyModel;
 use crate::scenes::calibration;
 use crate::scenes::diagnostic::Diagnostic;
-use crate::scenes::entries::{Entries, Entry, Read, System};
 use crate::scenes::error::Result;
 use crate::scenes::grid_comparison::{COMPARED, GridErrors, Quantities, on_grid, solve};
 use crate::scenes::human_readable::time;
@@ -14,25 +14,13 @@ use crate::scenes::scene_surface::SceneSurface;
 use analysis::{grid_error, least_squares};
 use bem3d::Bem3d;
 use contact_model::{Boundary, Cells, Load, Stop, Surface};
-use surface_io::Dimension;
 
-/// Seconds that an accuracy may cost where nothing is said.
-const BUDGET: f64 = 600.0;
 /// Tolerance of the solver as a part of the accuracy, and its limits.
 const TOLERANCE_PER_ACCURACY: f64 = 1.0 / 30.0;
 const TOLERANCES: (f64, f64) = (1e-6, 1e-3);
 /// Cells along the longer side of the grids of the pilot: at most, and its coarsest grid.
 const PILOT_CELLS: usize = 257;
 const COARSEST: usize = 33;
-
-/// What `accuracy` asks for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AccuracyTarget {
-    /// Relative error of the grid that each state may have, of those among stiffness, corrected area and mean gap that are asked for.
-    pub share: f64,
-    /// Predicted seconds of one thread that it may take.
-    pub seconds: f64,
-}
 
 /// Whether errors of a state are within a share, in all of what an accuracy is about.
 pub(crate) fn within(scene: &SceneFile, errors: &GridErrors, share: f64) -> bool {
@@ -51,33 +39,6 @@ fn controlled(scene: &SceneFile) -> Vec<usize> {
 /// The largest error of what an accuracy is about; `None` where one is unknown.
 fn largest(scene: &SceneFile, errors: &GridErrors) -> Option<f64> {
     controlled(scene).into_iter().try_fold(0.0_f64, |largest, i| Some(largest.max(errors[i]?.error)))
-}
-
-/// Reads `accuracy` and `budget`, with the place of the former.
-pub(crate) fn read_accuracy<'a>(scene: &Entries<'a>) -> Read<Option<(AccuracyTarget, Entry<'a>)>> {
-    let (accuracy, budget) = (scene.find("accuracy"), scene.find("budget"));
-    let Some(entry) = accuracy else {
-        return match budget {
-            Some(budget) => Err(budget
-                .diagnostic_at_key("`budget` is given, but no `accuracy`")
-                .with_help("it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it")),
-            None => Ok(None),
-        };
-    };
-    let share = match entry.as_word() {
-        Some(text) => {
-            text.trim().strip_suffix('%').and_then(|t| t.trim().parse().ok()).map(|p: f64| p / 100.0)
-        }
-        None => Some(entry.number()?),
-    };
-    let Some(share) = share.filter(|share| *share > 0.0 && *share < 1.0) else {
-        return Err(entry
-            .diagnostic(format!("`accuracy` = {}: expected a share above 0 and below 100 %", entry.shown()))
-            .with_help("such as \"1 %\" or 0.01"));
-    };
-    // A time of the one who waits: it has a unit in every scene.
-    let seconds = budget.map_or(Ok(BUDGET), |entry| entry.positive(Dimension::TIME, System::Si))?;
-    Ok(Some((AccuracyTarget { share, seconds }, entry)))
 }
 
 impl SceneFile {

@@ -1,10 +1,11 @@
 //! Pictures of fields. They are drawn last, when the range of all loads is known: one surface has one scale.
 
 use crate::scenes::error::Result;
-use crate::scenes::model_on_surface::{FieldFile, ModelOnSurface, ModelResult, StoredFile};
+
 use crate::scenes::outputs::FieldFormat;
 use crate::scenes::pictures;
 use crate::scenes::scene_file::SceneFile;
+use crate::scenes::state_result::{FieldFile, ModelResult, StoredFile};
 use contact_model::Cells;
 use plots::FieldPicture;
 use runs::files;
@@ -40,14 +41,13 @@ pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<St
 
 /// Draws the fields of all states, each quantity in one range; of a complete result the values kept for it are then removed.
 pub(crate) fn draw(
-    unit: ModelOnSurface,
     scene: &SceneFile,
+    (model, surface): (&str, usize),
     cells: Cells,
     out: &Path,
     result: &mut ModelResult,
 ) -> Result<()> {
-    let model = unit.numerics(scene).name();
-    let file = |field, state, extension| FieldFile { field, model, surface: unit.surface, state, extension };
+    let file = |field, state, extension| FieldFile { field, model, surface, state, extension };
     let read = |field, state| -> Option<Vec<f64>> {
         let name = format!("{WAITING}{}", file(field, state, EXTENSION));
         let bytes = std::fs::read(out.join(name)).ok()?;
@@ -68,8 +68,7 @@ pub(crate) fn draw(
                 if matches!(field, "gap" | "displacement") { read("pressure", state.index) } else { None };
             let contact: Vec<bool> = pressure.into_iter().flatten().map(|p| p > 0.0).collect();
             let name = file(field, state.index, FieldFormat::Png.extension()).to_string();
-            let mut picture =
-                pictures::field(scene, field, model, (unit.surface, state.index), cells, &values);
+            let mut picture = pictures::field(scene, field, model, (surface, state.index), cells, &values);
             (picture.range, picture.contact) = (range, &contact);
             if states.len() > 1 && field != "heights" {
                 picture.subtitle += "; one scale for all loads";

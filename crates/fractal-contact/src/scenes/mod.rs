@@ -69,12 +69,14 @@
 //! distribute), no means over surfaces (`evaluation` has them): one row per state.
 
 mod accuracy;
+mod accuracy_target;
 mod any_model;
 mod assumptions;
 mod calibration;
 mod columns;
 mod cost;
 mod diagnostic;
+mod distributed;
 mod distributions;
 mod effects;
 mod ensemble;
@@ -100,14 +102,15 @@ mod scan;
 mod scene_file;
 mod scene_job;
 mod scene_surface;
+mod state_result;
 mod summary;
 mod warnings;
 
-pub use accuracy::AccuracyTarget;
+pub use accuracy_target::AccuracyTarget;
 pub use any_model::{AnyModel, RegisteredModel};
 pub use cost::Cost;
 pub use diagnostic::Diagnostic;
-pub use distributions::Distributed;
+pub use distributed::Distributed;
 pub use effects::{EffectLine, effect_lines};
 pub use entries::System;
 pub use error::{Error, Result};

@@ -2,7 +2,7 @@
 
 use crate::scenes::any_model::AnyModel;
 use crate::scenes::columns::{self, State};
-use crate::scenes::distributions::{self, Bin, Distributed};
+use crate::scenes::distributed;
 use crate::scenes::error::{Error, Result};
 use crate::scenes::field_pictures;
 use crate::scenes::grid_comparison::{GridComparison, solved_map};
@@ -12,12 +12,11 @@ use crate::scenes::outputs::FieldFormat;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
 use crate::scenes::scene_surface::SceneSurface;
+use crate::scenes::state_result::{FieldFile, ModelResult, StateResult, StoredFile};
 use crate::scenes::warnings::Warning;
-use analysis::Value;
 use contact_model::{Cells, ContactState, Field, Fields, Load, Scene, Step, Stop, Surface};
 use runs::fnv1a_128;
 use std::borrow::Cow;
-use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
@@ -31,95 +30,6 @@ pub(crate) struct ModelOnSurface {
     pub model: usize,
     /// Number of the surface.
     pub surface: usize,
-}
-
-/// What it gave.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct ModelResult {
-    /// Of all runs that had a part in it.
-    pub seconds: f64,
-    /// States in the order of the loads.
-    pub states: Vec<StateResult>,
-    /// Whether nothing is left to be solved.
-    pub complete: bool,
-    /// How many states an earlier run had kept.
-    pub kept: usize,
-}
-
-/// One state as it is kept.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct StateResult {
-    /// Number of the load or step.
-    pub index: usize,
-    /// Whether it was refused or missed its tolerance.
-    pub failed: bool,
-    /// The row of the table.
-    pub row: Vec<Value>,
-    /// Areas of the connected contacts.
-    pub patches: Vec<f64>,
-    /// Distributions.
-    pub distributions: Vec<(Distributed, Vec<Bin>)>,
-    /// Files of fields.
-    pub files: Vec<StoredFile>,
-}
-
-/// A file that belongs to a state.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct StoredFile {
-    /// Relative to the directory of the results.
-    pub name: String,
-    pub bytes: u64,
-    /// [`fnv1a_128`] of its bytes.
-    pub digest: u128,
-}
-
-impl StoredFile {
-    /// Of a file as it is.
-    pub fn of(out: &Path, name: String) -> Result<Self> {
-        let path = out.join(&name);
-        let content = std::fs::read(&path).map_err(runs::Error::file("read", &path))?;
-        Ok(Self { name, bytes: content.len() as u64, digest: fnv1a_128(&content) })
-    }
-
-    /// Whether the file is still what it was.
-    fn is_whole(&self, out: &Path) -> bool {
-        Self::of(out, self.name.clone()).is_ok_and(|found| found == *self)
-    }
-}
-
-impl StateResult {
-    /// Whether all its files are still what they were.
-    pub fn is_whole(&self, out: &Path) -> bool {
-        self.files.iter().all(|file| file.is_whole(out))
-    }
-}
-
-/// What the name of a field's file says.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FieldFile<'a> {
-    pub field: &'a str,
-    pub model: &'a str,
-    pub surface: usize,
-    pub state: usize,
-    pub extension: &'a str,
-}
-
-impl fmt::Display for FieldFile<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}-{}-{}-{:03}.{}", self.field, self.model, self.surface, self.state, self.extension)
-    }
-}
-
-/// Reads the name of a field's file; `None` for other names.
-pub(crate) fn field_of_file(name: &str) -> Option<FieldFile<'_>> {
-    let (field, rest) = name.split_once('-')?;
-    let (rest, last) = rest.rsplit_once('-')?;
-    let (state, extension) = last.split_once('.')?;
-    let (model, surface) = rest.rsplit_once('-')?;
-    let file =
-        FieldFile { field, model, surface: surface.parse().ok()?, state: state.parse().ok()?, extension };
-    (["pressure", "displacement", "gap", "heights"].contains(&field) && file.to_string() == name)
-        .then_some(file)
 }
 
 impl ModelOnSurface {
@@ -191,7 +101,13 @@ impl ModelOnSurface {
                     keep(result)
                 };
                 self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
-                field_pictures::draw(*self, scene, cells(scene, numerics), out, &mut result)?;
+                field_pictures::draw(
+                    scene,
+                    (numerics.name(), self.surface),
+                    cells(scene, numerics),
+                    out,
+                    &mut result,
+                )?;
             }
             (AnyModel::History(model), Loading::Path(steps)) => {
                 let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
@@ -349,7 +265,7 @@ impl ModelOnSurface {
         let cell = scene.surface.size();
         let cell = cell.x * cell.y / cells(scene, self.numerics(scene)).checked_count().unwrap_or(1) as f64;
         let state = (pressure.as_ref(), gap.as_ref(), found.patches.as_ref());
-        kept.distributions = distributions::of_state(&scene.requested.distributions, state, cell);
+        kept.distributions = distributed::of_state(&scene.requested.distributions, state, cell);
         let first = kept.index == 0 && !scene.requested.heights.is_empty();
         let heights = if first { self.heights(scene)? } else { None };
         let fields = [pressure, displacement, gap, heights];
@@ -443,24 +359,6 @@ mod tests {
     use contact_model::{HeightMap, SolveReport};
     use std::sync::Arc;
 
-    #[test]
-    fn names_of_files_say_what_they_hold() {
-        let file = FieldFile { field: "gap", model: "bem3d", surface: 3, state: 1234, extension: "npy" };
-        assert_eq!(file.to_string(), "gap-bem3d-3-1234.npy");
-        assert_eq!(field_of_file("gap-bem3d-3-1234.npy"), Some(file));
-        assert_eq!(field_of_file("gap-bem3d-3-1234.pixels.png").map(|f| f.extension), Some("pixels.png"));
-        for other in [
-            "gap-bem3d-3-12.npy",
-            "height-bem3d-3-012.npy",
-            "gap-bem3d-012.npy",
-            "gap.npy",
-            "results.csv",
-            "",
-        ] {
-            assert_eq!(field_of_file(other), None, "{other}");
-        }
-    }
-
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
     #[test]
     fn fields_are_arrays_of_rows_and_columns() {
@@ -484,7 +382,7 @@ mod tests {
         unit.write_fields(&scene, &mut state, dir.path(), &mut kept).unwrap();
         assert_eq!((kept.files.len(), state.fields.is_none()), (8, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
-        field_pictures::draw(unit, &scene, [3, 2].into(), dir.path(), &mut result).unwrap();
+        field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result).unwrap();
         let files = &result.states[0].files;
         assert_eq!((files.len(), files.iter().any(StoredFile::is_hidden)), (8, false));
         assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");

@@ -1,6 +1,6 @@
 //! `[outputs]`: what is not asked for is not computed and not stored.
 
-use crate::scenes::distributions::Distributed;
+use crate::scenes::distributed::Distributed;
 use crate::scenes::entries::{Entries, Entry, Read, System};
 use contact_model::{Conductance, Outputs};
 use surface_io::Dimension;

@@ -2,9 +2,9 @@
 
 use crate::scenes::distributions;
 use crate::scenes::error::Result;
-use crate::scenes::model_on_surface::field_of_file;
 use crate::scenes::pictures;
 use crate::scenes::scene_file::SceneFile;
+use crate::scenes::state_result::field_of_file;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};

@@ -1,6 +1,6 @@
 //! A scene as it stands in a file.
 
-use crate::scenes::accuracy::{AccuracyTarget, read_accuracy};
+use crate::scenes::accuracy_target::{AccuracyTarget, read_accuracy};
 use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::effects::read_effects;
 use crate::scenes::entries::{Entries, Entry, Read, System};

@@ -1,9 +1,10 @@
 //! A model and a surface as a job, and its result as text.
 
-use crate::scenes::distributions::{Bin, Distributed};
+use crate::scenes::distributed::{Bin, Distributed};
 use crate::scenes::error::{Error, Result};
-use crate::scenes::model_on_surface::{ModelOnSurface, ModelResult, StateResult, StoredFile};
+use crate::scenes::model_on_surface::ModelOnSurface;
 use crate::scenes::scene_file::SceneFile;
+use crate::scenes::state_result::{ModelResult, StateResult, StoredFile};
 use analysis::Value;
 use contact_model::Stop;
 use runs::Job;

@@ -11,7 +11,7 @@ const LEAST_RANGE: f64 = 4.0;
 /// A fitted exponent is that of a self-affine surface within this error of the fit.
 const OUTSIDE: f64 = 0.1;
 /// Where the spectrum is no power law, the exponents of the longer and the shorter half of the waves differ by more than
-/// this over ln of the ratio of longest to shortest. Of 32 generated surfaces of 128 cells a side, one reaches 0.7 of it.
+/// this over ln of the ratio of longest to shortest. Of 32 generated surfaces of 128 cells a side, one reaches three quarters of it.
 const BEND: f64 = 1.0;
 /// The waves longer than those of the fit have less than this share of the power law's height variance where the
 /// spectrum rolls off. The few waves of one Gaussian map scatter by half of theirs.

@@ -1,0 +1,110 @@
+//! How pressure, gap and contact areas are distributed in one state.
+
+use contact_model::{Field, Patches};
+
+/// Bins of pressures and gaps.
+const BINS: usize = 50;
+/// What may be distributed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Distributed {
+    /// The pressure of the cells in contact, as a density over the nominal area: its integral is the contact fraction.
+    Pressure,
+    /// The gap of the others, in the same way.
+    Gap,
+    /// Areas of connected contacts: number of contacts per area.
+    Patches,
+}
+
+impl Distributed {
+    /// All of them with their names in `[outputs]`.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("pressure", Self::Pressure), ("gap", Self::Gap), ("patches", Self::Patches)];
+
+    /// Its name in `[outputs]` and in names of files.
+    pub fn name(self) -> &'static str {
+        Self::ALL[self as usize].0
+    }
+
+    pub(crate) fn words(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Pressure => ("pressure", "Pa", "1/Pa"),
+            Self::Gap => ("gap", "m", "1/m"),
+            Self::Patches => ("area of a contact", "m^2", "1/m^2"),
+        }
+    }
+}
+
+/// A bin: its ends and the density in it.
+pub(crate) type Bin = [f64; 3];
+
+/// Those of a state with pressure, gap and contacts, as far as they were asked for; each cell has this area.
+pub(crate) fn of_state(
+    asked: &[Distributed],
+    (pressure, gap, patches): (Option<&Field>, Option<&Field>, Option<&Patches>),
+    cell: f64,
+) -> Vec<(Distributed, Vec<Bin>)> {
+    let of = |of: Distributed| match of {
+        Distributed::Pressure => Some(of_cells(pressure?.values())),
+        Distributed::Gap => {
+            // Where there is contact, the gap is rounding.
+            let open = |(g, p): (&f64, &f64)| if *p > 0.0 { 0.0 } else { *g };
+            Some(of_cells(&gap?.values().iter().zip(pressure?.values()).map(open).collect::<Vec<_>>()))
+        }
+        Distributed::Patches => Some(of_patches(patches?.areas(), cell)),
+    };
+    asked.iter().filter_map(|&name| Some((name, of(name)?))).collect()
+}
+
+/// Densities of the positive values in [`BINS`] equal bins from 0 to the largest, with all values (cells) as the whole.
+pub(crate) fn of_cells(values: &[f64]) -> Vec<Bin> {
+    let positive = || values.iter().copied().filter(|v| *v > 0.0 && v.is_finite());
+    let largest = positive().fold(0.0, f64::max);
+    let width = largest / BINS as f64;
+    if width == 0.0 {
+        return Vec::new();
+    }
+    let mut counts = [0_usize; BINS];
+    for value in positive() {
+        counts[((value / width) as usize).min(BINS - 1)] += 1;
+    }
+    let whole = values.len() as f64 * width;
+    counts
+        .iter()
+        .enumerate()
+        .map(|(i, &n)| [i as f64 * width, (i + 1) as f64 * width, n as f64 / whole])
+        .collect()
+}
+
+/// Numbers of contacts per area in bins that double, the first of which holds contacts of one cell alone; empty bins are left out.
+pub(crate) fn of_patches(areas: &[f64], cell: f64) -> Vec<Bin> {
+    let bin = |area: &f64| (area / (0.75 * cell)).log2().floor().max(0.0) as i32;
+    let last = areas.iter().map(bin).max().unwrap_or(-1);
+    let count = |i: i32| areas.iter().filter(|area| bin(area) == i).count();
+    let ends = |i: i32| [0.75 * cell * f64::from(i).exp2(), 1.5 * cell * f64::from(i).exp2()];
+    let density = |i: i32| count(i) as f64 / (ends(i)[1] - ends(i)[0]);
+    (0..=last).filter(|&i| count(i) > 0).map(|i| [ends(i)[0], ends(i)[1], density(i)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn densities_integrate_to_shares_and_numbers() {
+        let values = [0.0, 0.0, 1.0, 2.0, 50.0, f64::NAN, f64::INFINITY, 0.5];
+        let bins = of_cells(&values);
+        assert_eq!((bins.len(), bins[0], bins[49][1]), (BINS, [0.0, 1.0, 1.0 / 8.0], 50.0));
+        let integral = |bins: &[Bin]| bins.iter().map(|[a, b, d]| (b - a) * d).sum::<f64>();
+        approx::assert_relative_eq!(integral(&bins), 0.5, max_relative = 1e-14);
+        assert_eq!(of_cells(&[0.0, f64::NAN]), Vec::<Bin>::new());
+        // Contacts of 1, 1, 2, 3 and 1000 cells.
+        let areas = [500.0, 1.5, 1.0, 0.5, 0.5];
+        let bins = of_patches(&areas, 0.5);
+        assert_eq!(bins[..2], [[0.375, 0.75, 2.0 / 0.375], [0.75, 1.5, 1.0 / 0.75]]);
+        approx::assert_relative_eq!(integral(&bins), 5.0, max_relative = 1e-14);
+        assert_eq!(of_patches(&[], 1.0), Vec::<Bin>::new());
+        for (place, (name, of)) in Distributed::ALL.into_iter().enumerate() {
+            assert_eq!((of as usize, of.name()), (place, name));
+        }
+    }
+}
