@@ -159,10 +159,10 @@ fn an_accuracy_chooses_the_grid() {
         |accuracy: &str| WAVES.replace("\n[models.bem3d]\ncells = 64", "").replace("modulus", accuracy);
     let scene = read(&asked("accuracy = \"4 %\"\nmodulus")).unwrap();
     let cells = |scene: &SceneFile| scene.models[0].size();
-    assert!((64..=256).contains(&cells(&scene)), "{}", cells(&scene));
-    assert!(cells(&scene) < cells(&read(&asked("accuracy = 0.002\nmodulus")).unwrap()));
+    assert_eq!(cells(&scene), 256);
+    assert!(cells(&scene) < cells(&read(&asked("accuracy = 0.004\nmodulus")).unwrap()));
     let notes: String = scene.notes.iter().map(ToString::to_string).collect();
-    assert!(notes.contains("accuracy of 4.00 %: bem3d on "), "{notes}");
+    assert!(notes.contains("accuracy of 4.000 %: bem3d on "), "{notes}");
     // The run says what it came to; one that misses it says so.
     let options = Options { out: dir.path().join("out"), threads: 1, fresh: false };
     let answer = |scene: &SceneFile| {
@@ -185,9 +185,16 @@ fn an_accuracy_chooses_the_grid() {
         coarse.surface.describe().contains("a map of 20 x 15 cells")
             || coarse.surface.describe().contains("40 x 30")
     );
+    std::fs::write(dir.path().join("one.csv"), "1.0\n").unwrap();
     for (text, words) in [
-        (map("0.001 %"), "accuracy of 0.00 %: the map's own cells should give "),
-        (asked("accuracy = 0.002\nbudget = \"1 us\"\nmodulus"), "the budget of under 1 ms buys"),
+        (map("1 %").replace("map.csv", "one.csv"), "the map's own cells are too few to compare"),
+        (map("0.1 %"), "accuracy of 0.1000 %: the map's own cells leave "),
+        (map("0.1 %"), "(`area_corrected` under force 5.000 N)"),
+        (asked("accuracy = 0.002\nbudget = \"1 us\"\nmodulus"), "and the budget is under 1 ms"),
+        (
+            asked("accuracy = 0.0001\nbudget = \"2 s\"\nmodulus"),
+            "doublings, which fit the budget of 2.0 s, do not halve that",
+        ),
         (asked("budget = \"1 s\"\nmodulus"), "`budget` is given, but no `accuracy`"),
         (asked("accuracy = \"100 %\"\nmodulus"), "expected a share above 0 and below 100 %"),
         (asked("accuracy = \"few\"\nmodulus"), "expected a share above 0 and below 100 %"),

@@ -113,3 +113,30 @@ fn states_are_kept_one_by_one() {
         assert!((a / b - 1.0).abs() <= bound, "{i}: {a}, {b}");
     }
 }
+
+/// A name in the store that leads elsewhere is replaced, never followed; a lock that is none is refused.
+#[cfg(unix)]
+#[test]
+fn links_in_the_store_are_not_followed() {
+    let dir = tempfile::tempdir().unwrap();
+    let kept = dir.path().join("kept");
+    std::fs::write(&kept, "somebody else's").unwrap();
+    let out = dir.path().join("out");
+    std::fs::create_dir_all(out.join(".units")).unwrap();
+    std::os::unix::fs::symlink(&kept, out.join(".units/pressure-bem3d-0-000.f64")).unwrap();
+    // What a run that was killed kept for drawing.
+    std::fs::write(out.join(".units/gap-bem3d-7-000.f64"), "old").unwrap();
+    let text = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\nforce = 0.01\n\
+        [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 1\n[outputs]\npressure = [\"png\"]\n[models.bem3d]\ncells = 17\n";
+    let scene = SceneFile::parse("scene.toml".as_ref(), text.into()).unwrap();
+    let options = Options { out: out.clone(), threads: 1, fresh: false };
+    let plan = Plan::new(&scene).unwrap();
+    assert_eq!(run(&scene, &plan, &options, &Silent, &|| false).unwrap().states, 1);
+    assert_eq!(std::fs::read_to_string(&kept).unwrap(), "somebody else's");
+    let left = std::fs::read_dir(out.join(".units")).unwrap().flatten();
+    assert!(left.into_iter().all(|entry| !entry.file_name().to_string_lossy().ends_with("f64")));
+    std::fs::remove_file(out.join(".units/lock")).unwrap();
+    std::fs::create_dir(out.join(".units/lock")).unwrap();
+    let refused = run(&scene, &plan, &options, &Silent, &|| false).unwrap_err().to_string();
+    assert!(refused.contains("lock") && refused.contains("not a regular file"), "{refused}");
+}

@@ -59,14 +59,14 @@ pub fn threads_for_memory(
     value: impl fmt::Display,
 ) -> Result<usize> {
     let Some(available) = available_memory().map(|bytes| bytes as f64) else { return Ok(threads) };
-    if bytes > available {
-        let (needed, there) = (bytes * 1e-9, available * 1e-9);
+    let each = if address_space().is_some() { bytes + reserved_by_thread() as f64 } else { bytes };
+    if each > available {
+        let (needed, there) = (each * 1e-9, available * 1e-9);
         let expected = format!(
             "a size that fits in memory (it needs about {needed:.1} GB, {there:.1} GB are available)"
         );
         return Err(Error::parameter(name, value, expected));
     }
-    let each = if address_space().is_some() { bytes + reserved_by_thread() as f64 } else { bytes };
     Ok(((available / each) as usize).clamp(1, threads.max(1)))
 }
 

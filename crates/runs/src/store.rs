@@ -60,7 +60,7 @@ impl Store {
         if self.fresh {
             return None;
         }
-        let text = fs::read_to_string(self.path(key)).ok()?;
+        let text = String::from_utf8(files::read(&self.path(key), u64::MAX).ok()?).ok()?;
         let (body, digest) = text.split_at(text.rfind("# whole ")?);
         let digest = u128::from_str_radix(digest.strip_prefix("# whole ")?.trim_end(), 16).ok()?;
         let whole = digest == fnv1a_128(body.as_bytes());
@@ -83,6 +83,10 @@ impl Store {
 fn lock(path: &Path, out: &Path) -> Result<Option<Arc<Lock>>> {
     static HELD: Mutex<Vec<(PathBuf, Weak<Lock>)>> = Mutex::new(Vec::new());
     let mut held = HELD.lock().unwrap_or_else(PoisonError::into_inner);
+    // Opening a pipe would wait for its other end.
+    if path.symlink_metadata().is_ok_and(|about| !about.is_file()) {
+        return Err(Error::content(path, "not a regular file: remove it"));
+    }
     let file = File::options().create(true).append(true).open(path).map_err(Error::file("write", path))?;
     let path = fs::canonicalize(path).map_err(Error::file("read", path))?;
     held.retain(|(_, lock)| lock.strong_count() > 0);

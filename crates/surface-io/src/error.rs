@@ -267,8 +267,8 @@ pub enum ContentError {
     },
     /// A coordinate off the grid.
     #[error(
-        "{axis} = {value} is off the grid {axis} = {origin} + i * {spacing}: expected points of a regular grid; say cell where \
-         noise hides the spacing"
+        "{axis} = {value} is off the grid {axis} = {origin} + i * {spacing}: expected points of a regular grid (scattered points are \
+         not interpolated); say cell where noise hides the spacing"
     )]
     Irregular {
         /// `x` or `y`.

@@ -18,9 +18,6 @@ const SKEWNESS: f64 = 0.5;
 const KURTOSIS: f64 = 1.0;
 /// Share of the longest waves in the variance of heights from which the map is a sample of one.
 const LONGEST: f64 = 0.5;
-/// Largest rms slope of which linear elasticity of half-spaces is an approximation of some per cent.
-const SMALL_SLOPE: f64 = 0.3;
-
 /// The map of a scene, as theories see it.
 pub(crate) struct Assumptions(MapStatistics, Option<SelfAffineFit>);
 
@@ -28,7 +25,8 @@ impl Assumptions {
     /// Measured where a theory is to answer for a map; `None` elsewhere. Cost of some transforms of the map.
     pub fn measured(scene: &SceneFile) -> Option<Self> {
         let SceneSurface::Plain(Surface::Heights(map)) = &scene.surface else { return None };
-        if !scene.models.iter().any(Numerics::is_statistical) {
+        let periodic = scene.effects.boundary == Boundary::Periodic;
+        if !periodic && !scene.models.iter().any(Numerics::is_statistical) {
             return None;
         }
         let fits = scene.models.iter().any(|m| matches!(m, Numerics::PowerLaw));
@@ -75,15 +73,17 @@ impl Assumptions {
         };
         let statistical = |m: &Numerics| matches!(m, Numerics::Persson(_) | Numerics::GreenwoodWilliamson(_));
         let message = format!(
-            "opposite edges of the map differ by {:.1} times the largest step inside: it is taken as a piece of an infinite surface",
+            "opposite edges of the map differ by {:.1} times the largest step inside: it is no period of a surface",
             map.edge_step
         );
         let help = if scene.effects.boundary == Boundary::Periodic {
-            "a solved periodic surface has this step, the theory has not: compare loads that do not touch it, or take a periodic map"
+            "`bem3d` solves the map with this step, theories take it as a piece of an infinite surface: free boundaries, or loads that do not touch the step"
         } else {
             "waves as long as the map are known least: prefer a larger map, and `detrend = \"plane\"` where it is tilted"
         };
-        note(!map.windowed, &Numerics::is_statistical, message, help);
+        let periodic = scene.effects.boundary == Boundary::Periodic;
+        let concerned = |m: &Numerics| m.is_statistical() || (periodic && m.boundary_elements().is_some());
+        note(!map.windowed, &concerned, message, help);
         let message = format!(
             "the map is anisotropic: the rms slope along one direction is {:.2} of that along another, and the theory has one spectrum for all",
             map.isotropy
@@ -104,10 +104,6 @@ impl Assumptions {
         let help =
             "the theory is one of many long waves: take a map several times larger, or trust the area alone";
         note(map.longest_waves <= LONGEST, &statistical, message, help);
-        let message = format!("the rms slope is {}, and slopes are assumed small", number(map.rms_slope()));
-        let help = "so they are in `bem3d`: both take half-spaces, whatever the scale of the heights";
-        let without_scale = scene.system == crate::scenes::System::None;
-        note(map.rms_slope() <= SMALL_SLOPE || without_scale, &Numerics::is_statistical, message, help);
         notes
     }
 }

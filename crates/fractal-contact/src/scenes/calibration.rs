@@ -2,6 +2,7 @@
 
 use crate::scenes::any_model::AnyModel;
 use crate::scenes::cost::Cost;
+use crate::scenes::error::Result;
 use crate::scenes::grid_comparison::sampled;
 use crate::scenes::loads::Loading;
 use crate::scenes::numerics::Numerics;
@@ -86,13 +87,24 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
 }
 
 /// Memory that a model needs for one surface at least, bytes; at least 1.
-pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
+fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let Cells { columns, rows } = cells(scene, numerics);
     let bytes = match numerics {
         Numerics::Bem3d(_) | Numerics::Equivalent(_) => LIGHT_BYTES * columns as f64 * rows as f64,
         _ => ELEMENT_BYTES * numerics.size() as f64,
     };
     bytes.max(1.0)
+}
+
+/// As many threads as there is memory for.
+pub(crate) fn threads(scene: &SceneFile, most: usize) -> Result<usize> {
+    let mut threads = most;
+    for numerics in &scene.models {
+        let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
+        let memory = least_memory(scene, numerics);
+        threads = runs::threads_for_memory(threads, memory, name, numerics.size())?;
+    }
+    Ok(threads)
 }
 
 #[derive(Default)]

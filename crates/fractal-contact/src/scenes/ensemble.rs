@@ -16,7 +16,7 @@ macro_rules! quantities {
 type MeanAndDeviation = (f64, Option<f64>);
 
 /// What is averaged, where the table has it.
-const QUANTITIES: [Quantity; 11] = quantities!(
+const QUANTITIES: [Quantity; 15] = quantities!(
     "force",
     "force_bar",
     "approach",
@@ -27,7 +27,11 @@ const QUANTITIES: [Quantity; 11] = quantities!(
     "area_corrected",
     "contact_fraction",
     "conductance",
-    "largest_pressure"
+    "largest_pressure",
+    "stiffness_grid_error",
+    "area_grid_error",
+    "area_corrected_grid_error",
+    "mean_gap_grid_error"
 );
 
 /// One model under one load, over the surfaces on which it reached its tolerance.

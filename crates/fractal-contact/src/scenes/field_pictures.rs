@@ -8,7 +8,7 @@ use crate::scenes::scene_file::SceneFile;
 use crate::scenes::state_result::{FieldFile, ModelResult, StoredFile};
 use contact_model::Cells;
 use plots::FieldPicture;
-use runs::files;
+use std::io::Write as _;
 use std::path::Path;
 
 /// Where values wait for being drawn, beside the stored results.
@@ -35,7 +35,12 @@ pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
 pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<StoredFile> {
     let name = format!("{WAITING}{}", FieldFile { extension: EXTENSION, ..file });
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-    files::write_whole(&out.join(&name), &bytes)?;
+    let path = out.join(&name);
+    // A new file, not what a link of this name leads to.
+    let _ = std::fs::remove_file(&path);
+    let file = std::fs::File::options().write(true).create_new(true).open(&path);
+    let written = file.and_then(|mut file| file.write_all(&bytes));
+    written.map_err(runs::Error::file("write", &path))?;
     StoredFile::of(out, name)
 }
 
@@ -50,7 +55,7 @@ pub(crate) fn draw(
     let file = |field, state, extension| FieldFile { field, model, surface, state, extension };
     let read = |field, state| -> Option<Vec<f64>> {
         let name = format!("{WAITING}{}", file(field, state, EXTENSION));
-        let bytes = std::fs::read(out.join(name)).ok()?;
+        let bytes = runs::files::read(&out.join(name), u64::MAX).ok()?;
         let (values, rest) = bytes.as_chunks();
         (rest.is_empty() && Some(values.len()) == cells.checked_count())
             .then(|| values.iter().map(|v| f64::from_le_bytes(*v)).collect())
@@ -87,4 +92,15 @@ pub(crate) fn draw(
         }
     }
     Ok(())
+}
+
+/// Removes what a run that was killed kept for drawing.
+pub(crate) fn sweep(out: &Path) {
+    let entries = std::fs::read_dir(out.join(WAITING)).into_iter().flatten().flatten();
+    for path in
+        entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == EXTENSION))
+    {
+        // It is the program's own folder; what cannot be removed does no harm.
+        let _ = std::fs::remove_file(path);
+    }
 }

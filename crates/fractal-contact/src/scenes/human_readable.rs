@@ -2,6 +2,8 @@
 
 /// Digits without a row of zeros.
 pub(crate) fn number(value: f64) -> String {
+    // What units leave behind the 14th digit is rounding.
+    let value = format!("{value:.13e}").parse().unwrap_or(value);
     let size = value.abs();
     if size > 0.0 && !(1e-3..1e6).contains(&size) { format!("{value:e}") } else { value.to_string() }
 }
@@ -34,8 +36,15 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         assert_eq!(
-            [number(1e300), number(2e-7), number(0.25), number(0.0), number(-3e9)],
-            ["1e300", "2e-7", "0.25", "0", "-3e9"]
+            [
+                number(1e300),
+                number(2e-7),
+                number(0.25),
+                number(0.0),
+                number(-3e9),
+                number(3.199_999_999_999_999_7e-4)
+            ],
+            ["1e300", "2e-7", "0.25", "0", "-3e9", "3.2e-4"]
         );
         assert_eq!(
             [time(0.0), time(0.5), time(60.0), time(600.0), time(36000.0)],

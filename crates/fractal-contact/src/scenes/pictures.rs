@@ -12,7 +12,8 @@ use plots::{Chart, Curve, FieldPicture, Shown};
 use std::path::{Path, PathBuf};
 
 /// What is drawn over what: of loads, and of paths.
-const OVER_LOAD: [&str; 6] = ["force", "stiffness", "area", "conductance", "approach", "mean_gap"];
+const OVER_LOAD: [&str; 7] =
+    ["force", "stiffness", "area", "conductance", "approach", "mean_gap", "largest_pressure"];
 const OVER_TIME: [&str; 2] = ["force", "approach"];
 
 /// `curve-Y.svg` and `.png` for every column that the scene asked for.
@@ -170,7 +171,8 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
             let solved = |mean: &&Mean| mean.surfaces > 1 || asked == 1;
             let counts: Vec<usize> = means.iter().filter(solved).map(|mean| mean.surfaces).collect();
             let surfaces = match (counts.iter().min(), counts.iter().max()) {
-                (Some(few), Some(many)) if few < many || *many < asked => {
+                (Some(few), Some(many)) if few == many && *many < asked => format!("{few} of {asked}"),
+                (Some(few), Some(many)) if few < many => {
                     format!("{few} to {many} of {asked}")
                 }
                 _ => asked.to_string(),
@@ -201,6 +203,7 @@ fn quantity<'a>(scene: &SceneFile, column: &'a str) -> (&'a str, &'a str) {
         "stiffness" => ("stiffness", "k"),
         "area" => ("contact area", "A"),
         "conductance" => ("conductance", "Λ"),
+        "largest_pressure" => ("largest pressure", "p_{\\rm{max}}"),
         "time" => ("time", "t"),
         "tangential_force" => ("tangential force", "T"),
         "tangential_displacement" => ("tangential displacement", "u_x"),

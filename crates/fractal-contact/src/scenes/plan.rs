@@ -5,6 +5,7 @@ use crate::scenes::calibration;
 use crate::scenes::cost::Cost;
 use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::effects::{EffectLine, effect_lines};
+use crate::scenes::entries::System;
 use crate::scenes::error::Result;
 use crate::scenes::human_readable::{memory, number, time};
 use crate::scenes::model_on_surface::{ModelOnSurface, probe};
@@ -114,16 +115,19 @@ impl Plan {
                 predicted: None,
             })
             .collect();
+        let prepared = prepared(scene);
+        let steep = steep(scene, prepared.as_ref());
         Ok(Self {
             shows: scene.comment(),
             surface: scene.surface.describe(),
             metadata: scene.metadata.clone(),
-            prepared: prepared(scene),
+            prepared,
             notes: scene
                 .notes
                 .iter()
                 .cloned()
                 .chain(assumptions.iter().flat_map(|a| a.notes(scene)))
+                .chain(steep)
                 .collect(),
             modulus: scene.modulus,
             units: match scene.system {
@@ -144,6 +148,7 @@ impl Plan {
     /// # Errors
     /// As [`check`].
     pub fn calibrated(scene: &SceneFile) -> Result<Self> {
+        calibration::threads(scene, 1)?;
         let mut plan = Self::new(scene)?;
         for (numerics, model) in scene.models.iter().zip(&mut plan.models) {
             model.predicted = Some(calibration::predict(scene, numerics));
@@ -169,6 +174,17 @@ impl Plan {
 
 /// Its spectrum takes seconds and three times its memory on the largest map.
 const LARGEST_DESCRIBED: usize = 1 << 24;
+/// Largest rms slope of which linear elasticity of half-spaces is an approximation of some per cent.
+const SMALL_SLOPE: f64 = 0.3;
+
+/// Without units, heights may have a scale of their own.
+fn steep(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
+    let slope = map?.rms_slope;
+    let message =
+        format!("the rms slope of the map is {}, and every model here assumes small slopes", number(slope));
+    let help = "is the unit of the heights right? beyond 0.3 take the results as those of a linear theory";
+    (scene.system == System::Si && slope > SMALL_SLOPE).then(|| Diagnostic::note(message).with_help(help))
+}
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
     match &scene.surface {
@@ -181,6 +197,9 @@ fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
 
 fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
     match numerics {
+        Numerics::Bem3d(_) if scene.accuracy.is_some() && !scene.requested.grid_error => {
+            "chosen for the accuracy when it is planned".into()
+        }
         Numerics::Bem3d(_) | Numerics::Equivalent(_) => {
             let (cells, size) = (cells(scene, numerics), scene.surface.size());
             let Cells { columns, rows } = cells;

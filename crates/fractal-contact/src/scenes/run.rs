@@ -6,6 +6,8 @@ use crate::scenes::cost::Cost;
 use crate::scenes::distributions::{self, Solved};
 use crate::scenes::ensemble;
 use crate::scenes::error::Result;
+use crate::scenes::field_pictures;
+use crate::scenes::human_readable::number;
 use crate::scenes::manifest;
 use crate::scenes::model_on_surface::ModelOnSurface;
 use crate::scenes::outcome::{Options, SceneOutcome};
@@ -46,7 +48,7 @@ pub fn run(
 ) -> Result<SceneOutcome> {
     let start = Instant::now();
     runs::reset_peak_memory();
-    let threads = threads(scene, options.threads)?;
+    let threads = calibration::threads(scene, options.threads)?;
     runs::files::create_directory(&options.out)?;
     let store = Store::open(&options.out, options.fresh)?;
     runs::files::clean(&options.out)?;
@@ -106,6 +108,9 @@ pub fn run(
     outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
     outcome.files.push(options.out.join("manifest.json"));
+    if !outcome.stopped {
+        field_pictures::sweep(&options.out);
+    }
     let removed = folder.remove_others(&outcome.files)?;
     if removed > 0 {
         let out = options.out.display();
@@ -134,6 +139,8 @@ fn gather(
     let mut patches = patches_table(scene);
     let note = table.columns().iter().position(|c| c.name == "note");
     let mut warned = [0; Warning::ALL.len()];
+    // A formula has no cells that a warning could be about.
+    let mut counted = 0;
     for (unit, result) in units.iter().zip(results) {
         let Some(result) = result else {
             outcome.stopped = true;
@@ -143,6 +150,7 @@ fn gather(
         outcome.kept += result.kept;
         for state in &result.states {
             outcome.failed += usize::from(state.failed);
+            counted += usize::from(unit.numerics(scene).size() > 0);
             if let Some(Value::Text(text)) = note.and_then(|i| state.row.get(i)) {
                 let warnings: Vec<Warning> = Warning::in_note(text).collect();
                 if warnings.is_empty() && !outcome.notes.contains(text) {
@@ -168,25 +176,13 @@ fn gather(
     }
     outcome.states = table.rows().len();
     for (warning, count) in Warning::ALL.into_iter().zip(warned).filter(|(_, count)| *count > 0) {
-        let states = outcome.states;
         outcome.notes.push(format!(
-            "{} ({count} of {states} states): {}",
+            "{} ({count} of {counted} states): {}",
             warning.as_str(),
             warning.remedy()
         ));
     }
     Ok(Tables { states: table, patches })
-}
-
-/// As many threads as there is memory for.
-fn threads(scene: &SceneFile, most: usize) -> Result<usize> {
-    let mut threads = most;
-    for numerics in &scene.models {
-        let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
-        let memory = calibration::least_memory(scene, numerics);
-        threads = runs::threads_for_memory(threads, memory, name, numerics.size())?;
-    }
-    Ok(threads)
 }
 
 /// What the tables are called.
@@ -209,9 +205,19 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
         crate::scenes::System::Si => "units: SI",
         crate::scenes::System::None => "units: none; lengths, forces and moduli in the scene's own",
     });
+    // Which file, and what was done to it.
+    let tables = scene.text.lines().skip_while(|line| line.trim() != "[scene.surface]").skip(1);
+    let surface = tables.take_while(|line| !line.trim_start().starts_with('['));
+    for line in surface.map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        header = header.with_note(format!("surface: {line}"));
+    }
     let size = scene.surface.size();
-    header =
-        header.with_note(format!("modulus: {:?} (E*); size: {:?} x {:?}", scene.modulus, size.x, size.y));
+    header = header.with_note(format!(
+        "modulus: {} (E*); size: {} x {}",
+        number(scene.modulus),
+        number(size.x),
+        number(size.y)
+    ));
     for ModelPlan { name, grid, accuracy, .. } in &plan.models {
         header = header.with_note(format!("model {name}: grid: {grid}; {accuracy}"));
     }

@@ -51,7 +51,7 @@ impl StoredFile {
     /// Of a file as it is.
     pub fn of(out: &Path, name: String) -> Result<Self> {
         let path = out.join(&name);
-        let content = std::fs::read(&path).map_err(runs::Error::file("read", &path))?;
+        let content = runs::files::read(&path, u64::MAX)?;
         Ok(Self { name, bytes: content.len() as u64, digest: fnv1a_128(&content) })
     }
 

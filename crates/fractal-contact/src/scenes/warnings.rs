@@ -47,7 +47,7 @@ impl Warning {
         match self {
             Self::FewCells => "the numbers are those of the grid: a larger load or smaller cells",
             Self::OneCell => {
-                "is it a spike of the measurement? fill it or filter the map; else smaller cells"
+                "is it a spike of the measurement? `missing = HEIGHT` (as in the file) takes it out; else smaller cells"
             }
             Self::Edge => {
                 "the edge decides too: a larger map, a smaller load, `detrend`, or `boundary = \"periodic\"`"
@@ -59,7 +59,7 @@ impl Warning {
                 "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells"
             }
             Self::Accuracy => {
-                "the columns `_grid_error` say what was; smaller cells, larger loads, or a lower `accuracy`"
+                "the columns `_grid_error` say what was: the grid was chosen on surface 0, others may need more cells (ask for an `accuracy` of half the share)"
             }
         }
     }
@@ -73,8 +73,8 @@ impl Warning {
         let resolution = state.resolution;
         let holds = |warning: Self| match (warning, resolution) {
             (Self::FewCells, _) => few,
-            (Self::Accuracy, _) => scene.accuracy.is_some_and(|target| !within(scene, errors, target.share)),
             (_, None) => false,
+            (Self::Accuracy, _) => scene.accuracy.is_some_and(|target| !within(scene, errors, target.share)),
             (Self::OneCell, Some(r)) => r.largest_share > ALONE,
             (Self::Edge, Some(r)) => r.edge_cells > 0 && !flat,
             (Self::Yield, Some(r)) => r.largest_pressure > hardness,
