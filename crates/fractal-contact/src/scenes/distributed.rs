@@ -2,8 +2,8 @@
 
 use contact_model::{Field, Patches};
 
-/// Bins of pressures and gaps.
-const BINS: usize = 50;
+/// Bins of pressures and gaps: the square root of the number of values, within these.
+const BINS: (usize, usize) = (4, 50);
 /// What may be distributed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Distributed {
@@ -55,17 +55,18 @@ pub(crate) fn of_state(
     asked.iter().filter_map(|&name| Some((name, of(name)?))).collect()
 }
 
-/// Densities of the positive values in [`BINS`] equal bins from 0 to the largest, with all values (cells) as the whole.
+/// Densities of the positive values in equal bins from 0 to the largest, with all values (cells) as the whole.
 pub(crate) fn of_cells(values: &[f64]) -> Vec<Bin> {
     let positive = || values.iter().copied().filter(|v| *v > 0.0 && v.is_finite());
     let largest = positive().fold(0.0, f64::max);
-    let width = largest / BINS as f64;
+    let bins = (positive().count() as f64).sqrt().round().clamp(BINS.0 as f64, BINS.1 as f64) as usize;
+    let width = largest / bins as f64;
     if width == 0.0 {
         return Vec::new();
     }
-    let mut counts = [0_usize; BINS];
+    let mut counts = vec![0_usize; bins];
     for value in positive() {
-        counts[((value / width) as usize).min(BINS - 1)] += 1;
+        counts[((value / width) as usize).min(bins - 1)] += 1;
     }
     let whole = values.len() as f64 * width;
     counts
@@ -93,7 +94,8 @@ mod tests {
     fn densities_integrate_to_shares_and_numbers() {
         let values = [0.0, 0.0, 1.0, 2.0, 50.0, f64::NAN, f64::INFINITY, 0.5];
         let bins = of_cells(&values);
-        assert_eq!((bins.len(), bins[0], bins[49][1]), (BINS, [0.0, 1.0, 1.0 / 8.0], 50.0));
+        assert_eq!((bins.len(), bins[0], bins[3][1]), (4, [0.0, 12.5, 3.0 / 100.0], 50.0));
+        assert_eq!([100, 10_000].map(|n| of_cells(&vec![1.0; n]).len()), [10, 50]);
         let integral = |bins: &[Bin]| bins.iter().map(|[a, b, d]| (b - a) * d).sum::<f64>();
         approx::assert_relative_eq!(integral(&bins), 0.5, max_relative = 1e-14);
         assert_eq!(of_cells(&[0.0, f64::NAN]), Vec::<Bin>::new());
