@@ -160,7 +160,7 @@ fn an_accuracy_chooses_the_grid() {
     let scene = read(&asked("accuracy = \"4 %\"\nmodulus")).unwrap();
     let cells = |scene: &SceneFile| scene.models[0].size();
     assert_eq!(cells(&scene), 256);
-    assert!(cells(&scene) < cells(&read(&asked("accuracy = 0.004\nmodulus")).unwrap()));
+    assert!(cells(&scene) < cells(&read(&asked("accuracy = 0.02\nbudget = \"1 h\"\nmodulus")).unwrap()));
     let notes: String = scene.notes.iter().map(ToString::to_string).collect();
     assert!(notes.contains("accuracy of 4.000 %: bem3d on "), "{notes}");
     // The run says what it came to; one that misses it says so.
@@ -191,10 +191,7 @@ fn an_accuracy_chooses_the_grid() {
         (map("0.1 %"), "accuracy of 0.1000 %: the map's own cells leave "),
         (map("0.1 %"), "(`area_corrected` under force 5.000 N)"),
         (asked("accuracy = 0.002\nbudget = \"1 us\"\nmodulus"), "and the budget is under 1 ms"),
-        (
-            asked("accuracy = 0.0001\nbudget = \"2 s\"\nmodulus"),
-            "doublings, which fit the budget of 2.0 s, do not halve that",
-        ),
+        (asked("accuracy = 0.0001\nbudget = \"2 s\"\nmodulus"), " cells along the longer side leave "),
         (asked("budget = \"1 s\"\nmodulus"), "`budget` is given, but no `accuracy`"),
         (asked("accuracy = \"100 %\"\nmodulus"), "expected a share above 0 and below 100 %"),
         (asked("accuracy = \"few\"\nmodulus"), "expected a share above 0 and below 100 %"),
