@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// the cases, and the files.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be written. A case that fails is no error but a row.
+/// [`runs::Error::File`] where a file cannot be written. A case that fails is no error but a row.
 pub fn hard_cases(
     cases: &[Case],
     effort: Effort,
