@@ -147,9 +147,8 @@ fn an_interrupt_keeps_the_states_so_far() {
         .stdout(std::process::Stdio::null())
         .spawn()
         .unwrap();
-    let units = dir.path().join("out/.units");
-    let finished = || std::fs::read_dir(&units).map_or(0, Iterator::count);
-    while finished() < 3 && child.try_wait().unwrap().is_none() {
+    let out = dir.path().join("out");
+    while runs::Store::count(&out) < 3 && child.try_wait().unwrap().is_none() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();

@@ -47,8 +47,8 @@
 //!   with the models that have it.
 //! * A load outside a model's range has its row with the reason (`status` is `refused`), and the others go
 //!   on.
-//! * `results.csv` has the same bytes for any number of threads and after any interruption; times and the
-//!   machine are in `manifest.json`.
+//! * `results.csv` has the same bytes for any number of threads; after an interruption, states that follow the
+//!   kept ones of a surface agree within the tolerance. Times and the machine are in `manifest.json`.
 //!
 //! # Errors
 //!
@@ -66,7 +66,7 @@
 //! # What it does not do
 //!
 //! No mechanics of its own, no distribution over machines (a model on a surface is the unit that one would
-//! distribute), no means over surfaces (`evaluation` has them): one row per state.
+//! distribute), no error budgets of means (`evaluation` has them).
 
 mod accuracy;
 mod accuracy_target;
