@@ -75,12 +75,6 @@ impl SceneFile {
                     .with_help("ask for `stiffness`, `area` or `mean_gap` in [outputs]");
             return Err(self.at_accuracy(diagnostic).into());
         }
-        // A theory beside it says what a map is good for on its own grid; only bem3d has another one.
-        if self.models.iter().enumerate().any(|(i, m)| i != place && m.boundary_elements().is_some()) {
-            let diagnostic =
-                Diagnostic::new("`accuracy` with two models that have cells").with_help("name one of them");
-            return Err(self.at_accuracy(diagnostic).into());
-        }
         let chosen = self.first_grid(&self.models[place], target, stop)?;
         let Cells { columns, rows } = cells(&chosen.scene, &chosen.scene.models[0]);
         let percent = |share: f64| format!("{} %", short(100.0 * share));
@@ -146,12 +140,9 @@ impl SceneFile {
             if rung >= 3 && worst.error * 0.5_f64.powf(affordable) > share {
                 let (found, where_) = (percent(worst.error), worst.words(self));
                 let message = format!(
-                    "{longer} cells along the longer side leave {found} ({where_}), and {affordable} doublings, which {}, do not halve that often enough",
-                    if given {
-                        "the map has".to_owned()
-                    } else {
-                        format!("fit the budget of {}", time(budget))
-                    }
+                    "{longer} cells along the longer side leave {found} ({where_}), and the {affordable} doublings that cells and \
+                     budget ({}) have room for do not halve that often enough",
+                    time(budget)
                 );
                 return Err(refused(
                     message,
