@@ -1,7 +1,7 @@
 //! Laws of several fractal dimensions that meet in one point: where they cross, and how well all of them
 //! collapse on one line.
 //!
-//! `cargo run -p analysis --example crossing`
+//! `cargo run -p fractal-contact-analysis --example crossing`
 //!
 //! ```text
 //! crossing: F_bar = 0.0917, k_bar = 0.1878, spread 0.0191

@@ -1,7 +1,7 @@
 //! An ensemble of stiffness curves whose law is known: means, the fitted law and the errors of its exponent
 //! and factor.
 //!
-//! `cargo run -p analysis --example fit_with_errors`
+//! `cargo run -p fractal-contact-analysis --example fit_with_errors`
 //!
 //! ```text
 //! F_bar 1e-4: k_bar = 0.00256 +- 0.00013, 40 surfaces

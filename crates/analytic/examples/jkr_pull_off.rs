@@ -1,7 +1,7 @@
 //! A sphere with JKR adhesion that is pulled off: the states of negative force and the load at which the
 //! contact breaks.
 //!
-//! `cargo run -p analytic --example jkr_pull_off`
+//! `cargo run -p fractal-contact-analytic --example jkr_pull_off`
 //!
 //! ```text
 //!  F in mN   d in um  a in mm k in N/mm

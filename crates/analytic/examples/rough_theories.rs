@@ -1,7 +1,7 @@
 //! Persson against Greenwood and Williamson: area and mean gap of the same random surface under the same
 //! pressures.
 //!
-//! `cargo run -p analytic --example rough_theories`
+//! `cargo run -p fractal-contact-analytic --example rough_theories`
 //!
 //! ```text
 //! rms slope 0.0290

@@ -1,7 +1,7 @@
 //! The error budget of a small ensemble: what solver, grid and number of surfaces each leave open in the mean
 //! stiffness.
 //!
-//! `cargo run -p evaluation --example error_budget -- DIRECTORY`
+//! `cargo run -p fractal-contact-evaluation --example error_budget -- DIRECTORY`
 //!
 //! ```text
 //!   F_bar    k_bar     solver           grid  surfaces

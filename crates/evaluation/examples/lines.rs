@@ -1,7 +1,7 @@
 //! Exponents of ensembles of equivalent lines for three fractal dimensions beside the scaling 1/(1 + H) of
 //! Eq. 24.
 //!
-//! `cargo run -p evaluation --example lines -- DIRECTORY`
+//! `cargo run -p fractal-contact-evaluation --example lines -- DIRECTORY`
 //!
 //! ```text
 //! claim                             paper        here       s.e.    allowed  verdict

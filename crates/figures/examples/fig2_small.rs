@@ -1,7 +1,7 @@
 //! Fig. 2 of the paper in small: stiffness over force of an ensemble in three dimensions, with the paper's
 //! claims beside it.
 //!
-//! `cargo run -p figures --example fig2_small -- DIRECTORY`
+//! `cargo run -p fractal-contact-figures --example fig2_small -- DIRECTORY`
 //!
 //! ```text
 //! fig2.csv, fig2-samples.csv, fig2.svg, fig2.png, fig2-budget.csv

@@ -1,7 +1,7 @@
 //! Fig. 5 of the paper: what equivalent lines of three fractal dimensions look like, as CSV, SVG, PNG and
 //! NPY.
 //!
-//! `cargo run -p figures --example fig5_lines -- DIRECTORY`
+//! `cargo run -p fractal-contact-figures --example fig5_lines -- DIRECTORY`
 //!
 //! ```text
 //! fig5-df3.0.npy, fig5-df2.5.npy, fig5-df2.0.npy, fig5.csv, fig5.svg, fig5.png

@@ -1,6 +1,6 @@
 //! A chart of three closed forms, force over approach, as SVG and PNG.
 //!
-//! `cargo run -p plots --example chart -- DIRECTORY`
+//! `cargo run -p fractal-contact-plots --example chart -- DIRECTORY`
 //!
 //! ```text
 //! flat cylinder, 2 E* a d: F ~ d^1.000

@@ -1,7 +1,7 @@
 //! A rough surface on an oblong grid with a hole as a grey picture: high is dark, undefined points are
 //! transparent.
 //!
-//! `cargo run -p plots --example map -- DIRECTORY`
+//! `cargo run -p fractal-contact-plots --example map -- DIRECTORY`
 //!
 //! ```text
 //! 384 x 128 pixels, 2056 of them transparent

@@ -1,7 +1,7 @@
 //! A list of jobs with a result store: an interrupted run resumes where it stopped, and a finished one
 //! computes nothing.
 //!
-//! `cargo run -p runs --example resume -- DIRECTORY`
+//! `cargo run -p fractal-contact-runs --example resume -- DIRECTORY`
 //!
 //! ```text
 //! first run: 3 results, 3 solved

@@ -1,7 +1,7 @@
 //! A table as CSV that explains itself: columns with units, sources, the command; absent entries are empty,
 //! numbers keep their bits.
 //!
-//! `cargo run -p runs --example table -- DIRECTORY`
+//! `cargo run -p fractal-contact-runs --example table -- DIRECTORY`
 //!
 //! ```text
 //! approach = NaN: expected a finite number (or an empty entry)
@@ -11,7 +11,7 @@
 //! # source: H. Hertz, J. reine angew. Math. 92, 156 (1882): k of d
 //! # R = 1 mm
 //! # version: fractal-contact 0.1.0
-//! # command: cargo run -p runs --example table
+//! # command: cargo run -p fractal-contact-runs --example table
 //! approach,stiffness
 //! 0.0,
 //! 1e-7,20000.0
@@ -41,8 +41,9 @@ fn main() -> Result<()> {
     println!("{}", refused.err().map_or_else(String::new, |e| e.to_string()));
 
     let hertz = Source { citation: "H. Hertz, J. reine angew. Math. 92, 156 (1882)", what: "k of d" };
-    let header =
-        Header::new("cargo run -p runs --example table").with_sources(&[hertz]).with_note("R = 1 mm");
+    let header = Header::new("cargo run -p fractal-contact-runs --example table")
+        .with_sources(&[hertz])
+        .with_note("R = 1 mm");
     let path = out.join("sphere.csv");
     write_csv(&path, &table, &header)?;
     println!("{}", std::fs::read_to_string(&path).map_err(Error::file("read", &path))?);

@@ -1,7 +1,7 @@
 //! A map small enough to try every contact set: the one that satisfies the contact conditions against the
 //! solver's.
 //!
-//! `cargo run -p stability --example every_contact_set`
+//! `cargo run -p fractal-contact-stability --example every_contact_set`
 //!
 //! ```text
 //! force  cells   approach          k   error of d  error of k

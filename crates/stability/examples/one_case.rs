@@ -1,6 +1,6 @@
 //! One hard case of the registry, solved and reported: why it is hard, what is asserted, what was found.
 //!
-//! `cargo run -p stability --example one_case -- NAME` (without a name: a checkerboard)
+//! `cargo run -p fractal-contact-stability --example one_case -- NAME` (without a name: a checkerboard)
 //!
 //! ```text
 //! a checkerboard (one of 50)
