@@ -78,6 +78,7 @@ mod kernel;
 mod linear;
 mod model;
 mod operator;
+mod parallel;
 mod real;
 mod stiffness;
 mod tuning;

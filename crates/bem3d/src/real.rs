@@ -1,6 +1,7 @@
 //! Single and double precision.
 
-use crate::tuning::{BLOCK, LANES};
+use crate::parallel::map;
+use crate::tuning::{BLOCK, LANES, PIECE};
 use rustfft::FftNum;
 use std::ops::AddAssign;
 
@@ -50,12 +51,15 @@ pub fn binary_unit(values: &[f64]) -> f64 {
 
 /// Largest magnitude.
 pub fn largest<T: Real>(values: &[T]) -> T {
-    fold(values, T::default(), T::or_larger)
+    let pieces = map(values.len(), values.chunks(PIECE), |v| fold(v, T::default(), T::or_larger));
+    fold(&pieces, T::default(), T::or_larger)
 }
 
 /// Smallest number; infinite if there is none.
 pub fn smallest(values: &[f64]) -> f64 {
-    fold(values, f64::INFINITY, |smallest, value| if value < smallest { value } else { smallest })
+    let smaller = |smallest: f64, value: f64| if value < smallest { value } else { smallest };
+    let pieces = map(values.len(), values.chunks(PIECE), |v| fold(v, f64::INFINITY, smaller));
+    fold(&pieces, f64::INFINITY, smaller)
 }
 
 /// Folds values in an order that a vector loop can take; `start` changes nothing.
@@ -72,7 +76,10 @@ fn fold<T: Copy>(values: &[T], start: T, take: impl Fn(T, T) -> T) -> T {
 
 /// Scalar product, in double precision over blocks: rounding stays far below that of a transform.
 pub fn dot<T: Real>(a: &[T], b: &[T]) -> f64 {
-    a.chunks(BLOCK).zip(b.chunks(BLOCK)).map(|(a, b)| block(a, b).to_f64()).sum()
+    let piece = |(a, b): (&[T], &[T])| -> f64 {
+        a.chunks(BLOCK).zip(b.chunks(BLOCK)).map(|(a, b)| block(a, b).to_f64()).sum()
+    };
+    map(a.len(), a.chunks(PIECE).zip(b.chunks(PIECE)), piece).into_iter().sum()
 }
 
 fn block<T: Real>(a: &[T], b: &[T]) -> T {
@@ -99,7 +106,17 @@ pub fn sum<T: Real>(values: &[T]) -> f64 {
         }
         lanes.iter().chain(rest).map(|value| value.to_f64()).sum::<f64>()
     };
-    values.chunks(BLOCK).map(block).sum()
+    let piece = |values: &[T]| -> f64 { values.chunks(BLOCK).map(block).sum() };
+    map(values.len(), values.chunks(PIECE), piece).into_iter().sum()
+}
+
+/// Changes each number of one list by those of another at its place.
+pub fn update<A: Send, B: Sync>(a: &mut [A], b: &[B], change: impl Fn(&mut A, &B) + Sync) {
+    map(a.len(), a.chunks_mut(PIECE).zip(b.chunks(PIECE)), |(a, b)| {
+        for (a, b) in a.iter_mut().zip(b) {
+            change(a, b);
+        }
+    });
 }
 
 #[cfg(test)]

@@ -195,18 +195,22 @@ impl Tuning {
 
 // Layout: constants of the compiled code.
 
-/// Rows of a transform that are transposed together: 32 complex numbers in single precision are four cache lines.
-pub const TILE: usize = 32;
+/// Elements of a vector loop that are worth a thread: some ten microseconds, several times what waking one takes.
+pub const SHARE: usize = 1 << 15;
+/// Rows that a thread takes at a time; even, as the blocks of the extension are.
+pub const BAND: usize = 32;
+/// Bytes of a row in one stripe of a spectrum: four cache lines, so that a stripe of some thousand rows lies in the second cache.
+pub const STRIPE_BYTES: usize = 256;
 /// Bytes of a cache line.
 pub const CACHE_LINE: usize = 64;
-/// Columns at a distance of a multiple of so many numbers would fall into the same few lines of the cache.
-pub const ALIASED: usize = 64;
-/// Side of the squares in which columns are read back as rows; divides [`TILE`].
+/// Side of the squares in which columns and rows are exchanged: it divides the columns of a cache line.
 pub const SQUARE: usize = 4;
 /// Accumulators side by side in a sum: one 512-bit register of single precision.
 pub const LANES: usize = 16;
 /// Numbers that they take in before a sum goes on in double precision.
 pub const BLOCK: usize = 2048;
+/// Numbers of a vector that a thread takes at a time, a multiple of [`BLOCK`].
+pub const PIECE: usize = 8 * BLOCK;
 /// From so many cells a run on, values move run by run; below it, cell by cell is faster.
 pub const LONG_RUN: usize = 8;
 /// Levels of the preconditioner's extension at most: below `decay^8` nothing is left.

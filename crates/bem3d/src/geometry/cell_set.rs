@@ -42,6 +42,11 @@ pub struct SetRow<'a> {
 }
 
 impl SetRow<'_> {
+    /// The row where the values of the set from position `start` on are given.
+    pub fn after(self, start: usize) -> Self {
+        Self { start: self.start - start, ..self }
+    }
+
     /// Positions of its cells in the list of the set.
     pub fn span(&self) -> Range<usize> {
         self.start..self.start + self.columns.len()
@@ -218,14 +223,57 @@ impl CellSet {
 
     /// The rows of the grid that hold cells of the set, in order.
     pub fn rows(&self) -> impl Iterator<Item = SetRow<'_>> + Clone {
+        self.numbered_rows(0..self.rows.len())
+    }
+
+    /// Those of them that lie in a range of rows of the grid.
+    pub fn rows_within(&self, ys: Range<usize>) -> impl Iterator<Item = SetRow<'_>> + Clone {
+        self.numbered_rows(self.number(ys.start)..self.number(ys.end))
+    }
+
+    /// The cells in one row of the grid, where there are any.
+    pub fn row(&self, y: usize) -> Option<SetRow<'_>> {
+        self.rows_within(y..y + 1).next()
+    }
+
+    /// Number of rows with cells before row y of the grid.
+    fn number(&self, y: usize) -> usize {
+        self.rows.partition_point(|row| (row.y as usize) < y)
+    }
+
+    /// Position of the first cell in row y of the grid or after it.
+    fn position(&self, y: usize) -> usize {
+        self.rows.get(self.number(y)).map_or(self.columns.len(), |row| row.cells as usize)
+    }
+
+    fn numbered_rows(&self, numbers: Range<usize>) -> impl Iterator<Item = SetRow<'_>> + Clone {
         let end = RowStart { y: u32::MAX, cells: self.columns.len() as u32, runs: self.runs.len() as u32 };
-        let next = self.rows.iter().skip(1).copied().chain(std::iter::once(end));
-        self.rows.iter().zip(next).map(|(row, next)| SetRow {
-            y: row.y as usize,
-            start: row.cells as usize,
-            columns: &self.columns[row.cells as usize..next.cells as usize],
-            runs: &self.runs[row.runs as usize..next.runs as usize],
+        numbers.map(move |i| {
+            let (row, next) = (self.rows[i], self.rows.get(i + 1).copied().unwrap_or(end));
+            SetRow {
+                y: row.y as usize,
+                start: row.cells as usize,
+                columns: &self.columns[row.cells as usize..next.cells as usize],
+                runs: &self.runs[row.runs as usize..next.runs as usize],
+            }
         })
+    }
+
+    /// Cuts values on the set into those of bands of rows that begin at these rows of the grid, each with its first position. The first band
+    /// begins at the first row of the set or before it.
+    pub fn split<'v, T>(
+        &self,
+        mut values: &'v mut [T],
+        bands: impl Iterator<Item = usize>,
+    ) -> Vec<(usize, &'v mut [T])> {
+        let mut starts: Vec<usize> = bands.map(|y| self.position(y)).collect();
+        starts.push(self.len());
+        let cut = |pair: &[usize]| {
+            let (band, rest) = std::mem::take(&mut values).split_at_mut(pair[1] - pair[0]);
+            values = rest;
+            (pair[0], band)
+        };
+        starts.windows(2).map(cut).collect()
     }
 
     /// Column and row of each cell.

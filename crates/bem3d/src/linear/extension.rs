@@ -6,7 +6,8 @@
 //! that has contact there, times a decay for each level; this halves the number of steps where contact is full of holes.
 
 use crate::geometry::{CellSet, Window};
-use crate::tuning::EXTENSION_LEVELS;
+use crate::parallel::map;
+use crate::tuning::{BAND, EXTENSION_LEVELS};
 use std::iter::zip;
 
 /// Sums over blocks of 2^l x 2^l cells of a window, for a set.
@@ -45,12 +46,15 @@ impl Extension {
         self.decay = decay;
         let Some(first) = self.levels.first_mut() else { return };
         first.weight.fill(0.0);
-        let mut line = vec![0.0; window.width];
-        for row in set.rows() {
-            row.fill(1.0, &mut line, window.x);
-            gather(&line, &mut first.weight[(row.y - window.y) / 2 * first.width..][..first.width]);
-            row.fill(0.0, &mut line, window.x);
-        }
+        let width = first.width;
+        map(set.len(), first.weight.chunks_mut(BAND / 2 * width).enumerate(), |(band, weights)| {
+            let mut line = vec![0.0; window.width];
+            for row in set.rows_within(window.y + band * BAND..window.y + (band + 1) * BAND) {
+                row.fill(1.0, &mut line, window.x);
+                gather(&line, &mut weights[(row.y - window.y) % BAND / 2 * width..][..width]);
+                row.fill(0.0, &mut line, window.x);
+            }
+        });
         for l in 1..self.levels.len() {
             let (fine, coarse) = neighbours(&mut self.levels, l);
             coarse.weight.fill(0.0);
@@ -63,6 +67,16 @@ impl Extension {
         }
     }
 
+    /// Whether there are levels: without, an extension by zeros needs no sums.
+    pub fn is_wanted(&self) -> bool {
+        !self.levels.is_empty()
+    }
+
+    /// What a gap takes over of a coarser value.
+    pub fn decay(&self) -> f32 {
+        self.decay
+    }
+
     /// Begins a new set of sums.
     pub fn clear(&mut self) {
         if let Some(first) = self.levels.first_mut() {
@@ -70,19 +84,13 @@ impl Extension {
         }
     }
 
-    /// Adds row y of the window (zero outside the set) to the sums over blocks.
-    pub fn add(&mut self, y: usize, row: &[f32]) {
-        if let Some(first) = self.levels.first_mut() {
-            gather(row, &mut first.value[y / 2 * first.width..][..first.width]);
-        }
-    }
-
-    /// Adds row y outside the set (zero inside), as the transposed extension wants it.
-    pub fn add_outside(&mut self, y: usize, row: &mut [f32]) {
-        for value in row.iter_mut() {
-            *value *= self.decay;
-        }
-        self.add(y, row);
+    /// The sums over blocks, of each of `count` bands of rows of the window; empty where there are no levels.
+    pub fn bands(&mut self, count: usize) -> Vec<BandSums<'_>> {
+        let Some(first) = self.levels.first_mut() else {
+            return (0..count).map(|_| BandSums { width: 0, values: &mut [] }).collect();
+        };
+        let width = first.width;
+        first.value.chunks_mut(BAND / 2 * width).map(|values| BandSums { width, values }).collect()
     }
 
     /// From sums over the contact of each block to the values that their open cells take.
@@ -91,60 +99,51 @@ impl Extension {
         for l in 1..self.levels.len() {
             let (fine, coarse) = neighbours(&mut self.levels, l);
             coarse.value.fill(0.0);
-            for (y, row) in fine.value.chunks_exact(fine.width).enumerate() {
-                gather(row, &mut coarse.value[y / 2 * coarse.width..][..coarse.width]);
-            }
+            for_rows(fine, coarse, |row, _, above| gather(row, above));
         }
-        if let Some(last) = self.levels.last_mut() {
-            for (value, weight) in last.value.iter_mut().zip(&last.weight) {
-                *value *= weight;
-            }
-        }
+        self.weigh_last();
         for l in (1..self.levels.len()).rev() {
             let (fine, coarse) = neighbours(&mut self.levels, l);
-            for (y, (row, weights)) in
-                fine.value.chunks_exact_mut(fine.width).zip(fine.weight.chunks_exact(fine.width)).enumerate()
-            {
-                let above = &coarse.value[y / 2 * coarse.width..][..coarse.width];
+            for_rows(fine, coarse, |row, weights, above| {
                 for ((pair, weights), above) in zip(pairs_mut(row), pairs(weights)).zip(above) {
-                    let passed = decay * above;
+                    let passed = decay * *above;
                     *pair = std::array::from_fn(|i| {
                         pair[i] * weights[i] + if weights[i] > 0.0 { 0.0 } else { passed }
                     });
                 }
-            }
+            });
         }
     }
 
-    /// The transpose of [`Self::extend`], from what [`Self::add_outside`] summed to what each contact cell of a block receives.
+    /// The transpose of [`Self::extend`], from what [`BandSums::add`] summed to what each contact cell of a block receives.
     pub fn collect(&mut self) {
         let decay = self.decay;
         for l in 1..self.levels.len() {
             let (fine, coarse) = neighbours(&mut self.levels, l);
             coarse.value.fill(0.0);
-            for (y, (row, weights)) in
-                fine.value.chunks_exact_mut(fine.width).zip(fine.weight.chunks_exact(fine.width)).enumerate()
-            {
-                let above = &mut coarse.value[y / 2 * coarse.width..][..coarse.width];
+            for_rows(fine, coarse, |row, weights, above| {
                 for ((pair, weights), above) in zip(pairs_mut(row), pairs(weights)).zip(above) {
                     let open = |i: usize| if weights[i] > 0.0 { 0.0 } else { pair[i] };
                     *above += decay * (open(0) + open(1));
                     *pair = [pair[0] * weights[0], pair[1] * weights[1]];
                 }
-            }
+            });
         }
+        self.weigh_last();
+        for l in (1..self.levels.len()).rev() {
+            let (fine, coarse) = neighbours(&mut self.levels, l);
+            for_rows(fine, coarse, |row, _, above| {
+                for (pair, above) in zip(pairs_mut(row), above) {
+                    *pair = [pair[0] + *above, pair[1] + *above];
+                }
+            });
+        }
+    }
+
+    fn weigh_last(&mut self) {
         if let Some(last) = self.levels.last_mut() {
             for (value, weight) in last.value.iter_mut().zip(&last.weight) {
                 *value *= weight;
-            }
-        }
-        for l in (1..self.levels.len()).rev() {
-            let (fine, coarse) = neighbours(&mut self.levels, l);
-            for (y, row) in fine.value.chunks_exact_mut(fine.width).enumerate() {
-                let above = &coarse.value[y / 2 * coarse.width..][..coarse.width];
-                for (pair, above) in zip(pairs_mut(row), above) {
-                    *pair = [pair[0] + above, pair[1] + above];
-                }
             }
         }
     }
@@ -172,6 +171,38 @@ impl Extension {
             *value = factor * above;
         }
     }
+}
+
+/// Sums over the finest blocks in one band of rows.
+#[derive(Debug)]
+pub struct BandSums<'a> {
+    width: usize,
+    values: &'a mut [f32],
+}
+
+impl BandSums<'_> {
+    /// Whether there are any: without levels, an extension by zeros needs no sums.
+    pub fn is_wanted(&self) -> bool {
+        self.width > 0
+    }
+
+    /// Adds row y of the window: zero outside the set for [`Extension::extend`]; zero on it, and times the decay, for
+    /// [`Extension::collect`].
+    pub fn add(&mut self, y: usize, row: &[f32]) {
+        gather(row, &mut self.values[y % BAND / 2 * self.width..][..self.width]);
+    }
+}
+
+/// Shows each row of a level with its weights and the row of the coarser level above it.
+fn for_rows(fine: &mut Level, coarse: &mut Level, show: impl Fn(&mut [f32], &[f32], &mut [f32]) + Sync) {
+    let (total, width, above) = (fine.value.len(), fine.width, coarse.width);
+    let bands = fine.value.chunks_mut(BAND * width).zip(fine.weight.chunks(BAND * width));
+    map(total, bands.zip(coarse.value.chunks_mut(BAND / 2 * above)), |((values, weights), coarse)| {
+        for (y, (row, weights)) in values.chunks_exact_mut(width).zip(weights.chunks_exact(width)).enumerate()
+        {
+            show(row, weights, &mut coarse[y / 2 * above..][..above]);
+        }
+    });
 }
 
 /// Adds neighbouring pairs of a row to its sums.
@@ -239,7 +270,7 @@ mod tests {
     fn forward(e: &mut Extension, mask: &[f32], r: &[f32]) -> Vec<f32> {
         e.clear();
         for (y, row) in r.chunks_exact(WIDTH).enumerate() {
-            e.add(y, row);
+            e.bands(1)[y / BAND].add(y, row);
         }
         e.extend();
         let mut out = vec![0.0; r.len()];
@@ -255,9 +286,9 @@ mod tests {
 
     fn transposed(e: &mut Extension, mask: &[f32], u: &[f32]) -> Vec<f32> {
         e.clear();
-        let mut outside: Vec<f32> = u.iter().zip(mask).map(|(u, m)| u * (1.0 - m)).collect();
-        for (y, row) in outside.chunks_exact_mut(WIDTH).enumerate() {
-            e.add_outside(y, row);
+        let outside: Vec<f32> = u.iter().zip(mask).map(|(u, m)| DECAY * u * (1.0 - m)).collect();
+        for (y, row) in outside.chunks_exact(WIDTH).enumerate() {
+            e.bands(1)[y / BAND].add(y, row);
         }
         e.collect();
         let mut out = vec![0.0; u.len()];

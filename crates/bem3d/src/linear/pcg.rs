@@ -3,7 +3,9 @@
 use super::preconditioner::Preconditioner;
 use crate::geometry::CellSet;
 use crate::operator::InfluenceOperator;
-use crate::real::{Real, dot, sum};
+use crate::parallel::map;
+use crate::real::{Real, dot, sum, update};
+use crate::tuning::PIECE;
 use contact_model::Stop;
 
 /// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as much as the last one, would
@@ -163,15 +165,16 @@ pub fn pcg<T: Real>(
 }
 
 fn add<T: Real>(a: &mut [T], factor: T, b: &[T]) {
-    for (a, &b) in a.iter_mut().zip(b) {
-        *a += factor * b;
-    }
+    update(a, b, |a, &b| *a += factor * b);
 }
 
 /// `x += step t`, then `t = z + beta t`: each is read once.
 fn advance<T: Real>(x: &mut [T], step: T, t: &mut [T], beta: T, z: &[T]) {
-    for ((x, t), &z) in x.iter_mut().zip(t).zip(z) {
-        *x += step * *t;
-        *t = z + beta * *t;
-    }
+    let pieces = x.chunks_mut(PIECE).zip(t.chunks_mut(PIECE)).zip(z.chunks(PIECE));
+    map(z.len(), pieces, |((x, t), z)| {
+        for ((x, t), &z) in x.iter_mut().zip(t).zip(z) {
+            *x += step * *t;
+            *t = z + beta * *t;
+        }
+    });
 }

@@ -1,10 +1,11 @@
 //! Preconditioners of the influence matrix on a set of cells.
 
 use super::extension::Extension;
-use crate::geometry::CellSet;
+use crate::geometry::{CellSet, Window};
 use crate::operator::FftConvolution;
+use crate::parallel::map;
 use crate::real::{Real, dot, largest, sum};
-use std::cell::RefCell;
+use crate::tuning::BAND;
 
 /// What one application of a preconditioner finds.
 #[derive(Debug, Clone, Copy)]
@@ -68,55 +69,87 @@ impl TorusInverse<'_> {
 impl Preconditioner<f32> for TorusInverse<'_> {
     fn apply(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
         let Self { transform, extension, .. } = self;
-        let window = transform.window();
-        let (x0, y0) = (window.x, window.y);
-        let mut line = vec![0.0; window.width];
-        let mut largest_residual = 0.0f32;
+        let Window { x: x0, y: y0, width, .. } = transform.window();
+        let bands = transform.bands();
+        let first_rows = || bands.clone().map(|y| y + y0);
+        let rows = |y: usize| set.rows_within(y..y + BAND);
+        // The residual, and its sums over blocks.
         extension.clear();
-        for row in set.rows() {
-            let values = &mut r[row.span()];
-            for r in values.iter_mut() {
-                *r -= offset;
-            }
-            largest_residual = largest_residual.max(largest(values));
-            row.spread(r, &mut line, x0);
-            extension.add(row.y - y0, &line);
-            row.fill(0.0, &mut line, x0);
-        }
-        extension.extend();
-        let shared = RefCell::new(&mut **extension);
-        let (mut sources, mut targets) = (set.rows().peekable(), set.rows().peekable());
-        transform.rows(
-            |_| true,
-            |y, out| {
-                shared.borrow().fill(y, out);
-                if let Some(row) = sources.next_if(|row| row.y == y + y0) {
-                    row.spread(r, out, x0);
+        let parts = first_rows().zip(set.split(r, first_rows())).zip(extension.bands(bands.len()));
+        let largest_residuals = map(set.len(), parts, |((y, (start, r)), mut sums)| {
+            let mut line = vec![0.0; width];
+            let mut largest_residual = 0.0f32;
+            for row in rows(y).map(|row| row.after(start)) {
+                let values = &mut r[row.span()];
+                for r in values.iter_mut() {
+                    *r -= offset;
                 }
-            },
-            |_| true,
-            |y, u| {
-                let mut extension = shared.borrow_mut();
-                if y == 0 {
-                    extension.clear(); // All rows have been filled.
-                }
-                line.copy_from_slice(u);
-                if let Some(row) = targets.next_if(|row| row.y == y + y0) {
-                    row.collect(u, z, x0);
+                largest_residual = largest_residual.max(largest(values));
+                if sums.is_wanted() {
+                    row.spread(r, &mut line, x0);
+                    sums.add(row.y - y0, &line);
                     row.fill(0.0, &mut line, x0);
                 }
-                extension.add_outside(y, &mut line);
+            }
+            largest_residual
+        });
+        extension.extend();
+        let (extended, residual) = (&**extension, &*r);
+        transform.forward(
+            |_| true,
+            |y, out| {
+                extended.fill(y, out);
+                if let Some(row) = set.row(y + y0) {
+                    row.spread(residual, out, x0);
+                }
+            },
+        );
+        transform.multiply(|_| true);
+        extension.clear();
+        let decay = extension.decay();
+        let outputs = set.split(z, first_rows()).into_iter().zip(extension.bands(bands.len()));
+        transform.backward(
+            |_| true,
+            outputs.map(|output| (output, Vec::new())),
+            |(((start, z), sums), line), y, u| {
+                let row = set.row(y + y0).map(|row| row.after(*start));
+                if let Some(row) = row {
+                    row.collect(u, z, x0);
+                }
+                if sums.is_wanted() {
+                    line.clear();
+                    line.extend(u.iter().map(|u| decay * u));
+                    if let Some(row) = row {
+                        row.fill(0.0, line, x0);
+                    }
+                    sums.add(y, line);
+                }
             },
         );
         extension.collect();
-        let (mut product, mut total) = (0.0, 0.0);
-        for row in set.rows() {
-            extension.take(row.y - y0, &mut line);
-            row.add(&line, z, x0);
-            product += dot(&r[row.span()], &z[row.span()]);
-            total += sum(&z[row.span()]);
+        let extended = &**extension;
+        let parts = first_rows().zip(set.split(z, first_rows()));
+        let sums = map(set.len(), parts, |(y, (start, z))| {
+            let mut line = vec![0.0; width];
+            let (mut product, mut total) = (0.0, 0.0);
+            for row in rows(y) {
+                let (at, z_row) = (row.span(), row.after(start));
+                if extended.is_wanted() {
+                    extended.take(row.y - y0, &mut line);
+                    z_row.add(&line, z, x0);
+                }
+                let z = &z[z_row.span()];
+                product += dot(&r[at], z);
+                total += sum(z);
+            }
+            (product, total)
+        });
+        let (product, total) = sums.into_iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
+        Preconditioned {
+            largest: f64::from(largest_residuals.into_iter().fold(0.0, f32::max)),
+            product,
+            sum: total,
         }
-        Preconditioned { largest: f64::from(largest_residual), product, sum: total }
     }
 
     fn energy_factor(&self) -> f64 {

@@ -2,8 +2,9 @@
 
 use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
+use crate::parallel::{for_each, threads_for};
 use crate::real::{Real, binary_unit};
-use crate::tuning::{ALIASED, CACHE_LINE, SQUARE, TILE};
+use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
@@ -13,8 +14,8 @@ use std::sync::Arc;
 
 /// A planned convolution on a window: `u = kernel * p` from rows of the window to rows of the window.
 ///
-/// Rows are transformed one by one; their spectra are stored column by column, [`TILE`] rows at a time, so that whole cache lines
-/// move and the column transforms run through memory in order. Most of the time of a plain implementation goes into that move.
+/// The spectra of rows are kept in stripes of a few columns each, stripe by stripe: a row writes whole cache lines, the columns of a
+/// stripe are transformed where it lies in the cache, and threads share rows and stripes among them.
 pub struct FftConvolution<T: Real> {
     window: Window,
     lengths: Lengths,
@@ -24,14 +25,20 @@ pub struct FftConvolution<T: Real> {
     row_inverse: Arc<dyn ComplexToReal<T>>,
     column_forward: Arc<dyn Fft<T>>,
     column_inverse: Arc<dyn Fft<T>>,
-    /// Row spectra, column after column at a distance of `pitch`, from `start` on (where a cache line begins).
+    /// Row spectra: of each stripe all rows, of each row the columns of the stripe; from `start` on (where a cache line begins).
     spectrum: Vec<Complex<T>>,
     start: usize,
-    pitch: usize,
-    /// One tile of row spectra, row after row.
-    lines: Vec<Complex<T>>,
-    column: Vec<Complex<T>>,
+    /// Which bands of rows were given last.
+    given: Vec<bool>,
+    rooms: Vec<Room<T>>,
+}
+
+/// What one thread needs.
+struct Room<T: Real> {
     row: Vec<T>,
+    line: Vec<Complex<T>>,
+    /// Columns that share cache lines, one after the other.
+    columns: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
 }
 
@@ -42,45 +49,32 @@ impl<T: Real> fmt::Debug for FftConvolution<T> {
 }
 
 impl<T: Real> FftConvolution<T> {
+    /// Columns of a stripe.
+    const STRIPE: usize = STRIPE_BYTES / size_of::<Complex<T>>();
+    /// Columns of one cache line: they are read and written together.
+    const TOGETHER: usize = CACHE_LINE / size_of::<Complex<T>>();
+
     /// Plans for a window with a symbol of [`crate::kernel::Symbol::scaled`].
     ///
-    /// Memory: `height * (lx / 2 + 1)` complex numbers besides the symbol.
+    /// Memory: `height * (lx / 2 + 1)` complex numbers besides the symbol, and a few columns for each thread.
     pub fn new(window: Window, lengths: Lengths, symbol: Arc<Vec<T>>) -> Self {
         let mut real = RealFftPlanner::<T>::new();
         let mut complex = FftPlanner::<T>::new();
-        let (row_forward, row_inverse) = (real.plan_fft_forward(lengths.x), real.plan_fft_inverse(lengths.x));
-        let column_forward = complex.plan_fft_forward(lengths.y);
-        let column_inverse = complex.plan_fft_inverse(lengths.y);
-        let scratch = [
-            row_forward.get_scratch_len(),
-            row_inverse.get_scratch_len(),
-            column_forward.get_inplace_scratch_len(),
-            column_inverse.get_inplace_scratch_len(),
-        ];
-        let scratch = scratch.into_iter().max().unwrap_or(0);
-        let zero = Complex::default();
-        let half = lengths.x / 2 + 1;
-        let mut pitch = window.height.next_multiple_of(TILE);
-        if pitch.is_multiple_of(ALIASED) {
-            pitch += TILE;
-        }
-        let spectrum = vec![zero; half * pitch + TILE];
-        let start = Some(spectrum.as_ptr().align_offset(CACHE_LINE)).filter(|&s| s <= TILE).unwrap_or(0);
+        let stripes = (lengths.x / 2 + 1).div_ceil(Self::STRIPE);
+        let spectrum = vec![Complex::default(); stripes * Self::STRIPE * window.height + Self::TOGETHER];
+        let start = spectrum.as_ptr().align_offset(CACHE_LINE);
         Self {
             window,
             lengths,
             symbol,
-            row_forward,
-            row_inverse,
-            column_forward,
-            column_inverse,
+            row_forward: real.plan_fft_forward(lengths.x),
+            row_inverse: real.plan_fft_inverse(lengths.x),
+            column_forward: complex.plan_fft_forward(lengths.y),
+            column_inverse: complex.plan_fft_inverse(lengths.y),
             spectrum,
-            start,
-            pitch,
-            lines: vec![zero; TILE * half],
-            column: vec![zero; lengths.y],
-            row: vec![T::default(); lengths.x],
-            scratch: vec![zero; scratch],
+            start: if start <= Self::TOGETHER { start } else { 0 },
+            given: vec![false; window.height.div_ceil(BAND)],
+            rooms: Vec::new(),
         }
     }
 
@@ -89,77 +83,146 @@ impl<T: Real> FftConvolution<T> {
         self.window
     }
 
-    /// The convolution of whole rows of the window: `fill` writes row y (given as zeros) where `given` says so, `take` reads the result
-    /// where it is `wanted`. Both see the rows in increasing order, all of `fill` before the first of `take`.
-    ///
-    /// Cost: O(lx ly log) at most; rows and columns of zeros are not transformed.
-    pub fn rows(
-        &mut self,
-        given: impl Fn(usize) -> bool,
-        mut fill: impl FnMut(usize, &mut [T]),
-        wanted: impl Fn(usize) -> bool,
-        mut take: impl FnMut(usize, &[T]),
-    ) {
-        let tiles = self.window.height.div_ceil(TILE);
-        let within = |tile: usize| tile * TILE..((tile + 1) * TILE).min(self.window.height);
-        let runs = |has: &dyn Fn(usize) -> bool| runs(tiles, |tile| within(tile).any(has));
-        let (sources, targets) = (runs(&given), runs(&wanted));
-        let half = self.lengths.x / 2 + 1;
-        for tile in sources.iter().flat_map(Range::clone) {
-            for (j, line) in self.lines.chunks_exact_mut(half).enumerate() {
-                let y = tile * TILE + j;
-                if y < self.window.height && given(y) {
-                    self.row.fill(T::default());
-                    fill(y, &mut self.row[..self.window.width]);
-                    let done = self.row_forward.process_with_scratch(&mut self.row, line, &mut self.scratch);
-                    debug_assert!(done.is_ok());
-                } else {
-                    line.fill(Complex::default());
+    /// The bands of rows of the window, which threads share: first row of each.
+    pub fn bands(&self) -> impl ExactSizeIterator<Item = usize> + Clone + use<T> {
+        (0..self.window.height.div_ceil(BAND)).map(|band| band * BAND)
+    }
+
+    /// Rooms for as many threads as the transform is worth.
+    fn make_rooms(&mut self) {
+        let zero = Complex::default();
+        let Lengths { x, y } = self.lengths;
+        let scratch = [
+            self.row_forward.get_scratch_len(),
+            self.row_inverse.get_scratch_len(),
+            self.column_forward.get_inplace_scratch_len(),
+            self.column_inverse.get_inplace_scratch_len(),
+        ];
+        let scratch = scratch.into_iter().max().unwrap_or(0);
+        self.rooms.resize_with(threads_for(self.lengths.points()), || Room {
+            row: vec![T::default(); x],
+            line: vec![zero; x / 2 + 1],
+            columns: vec![zero; Self::TOGETHER * Self::pitch(y)],
+            scratch: vec![zero; scratch],
+        });
+    }
+
+    /// Distance of columns that are transformed one after the other: at a multiple of a page they would share few lines of the cache.
+    fn pitch(length: usize) -> usize {
+        length + Self::TOGETHER
+    }
+
+    /// Transforms the rows of the window: `fill` writes row y (given as zeros) where `given` says so.
+    pub fn forward(&mut self, given: impl Fn(usize) -> bool + Sync, fill: impl Fn(usize, &mut [T]) + Sync) {
+        self.make_rooms();
+        let Self { window: Window { width, height, .. }, row_forward, rooms, .. } = self;
+        let (width, height) = (*width, *height);
+        for (band, any) in self.given.iter_mut().enumerate() {
+            *any = (band * BAND..((band + 1) * BAND).min(height)).any(&given);
+        }
+        let mut bands: Vec<Vec<&mut [Complex<T>]>> = self.given.iter().map(|_| Vec::new()).collect();
+        for stripe in self.spectrum[self.start..].chunks_exact_mut(Self::STRIPE * height) {
+            for (band, piece) in bands.iter_mut().zip(stripe.chunks_mut(Self::STRIPE * BAND)) {
+                band.push(piece);
+            }
+        }
+        let known = &self.given;
+        let bands: Vec<_> = bands.into_iter().enumerate().filter(|(band, _)| known[*band]).collect();
+        for_each(rooms, bands.into_iter(), |room, (band, mut pieces)| {
+            for (j, y) in (band * BAND..((band + 1) * BAND).min(height)).enumerate() {
+                let at = j * Self::STRIPE;
+                if !given(y) {
+                    for piece in pieces.iter_mut() {
+                        piece[at..at + Self::STRIPE].fill(Complex::default());
+                    }
+                    continue;
+                }
+                room.row.fill(T::default());
+                fill(y, &mut room.row[..width]);
+                let Room { row, line, scratch, .. } = room;
+                let done = row_forward.process_with_scratch(row, line, scratch);
+                debug_assert!(done.is_ok());
+                for (piece, values) in pieces.iter_mut().zip(line.chunks(Self::STRIPE)) {
+                    piece[at..at + values.len()].copy_from_slice(values);
                 }
             }
-            to_columns(&self.lines, half, &mut self.spectrum[self.start + tile * TILE..], self.pitch);
-        }
-        self.columns(&sources, &targets);
-        for tile in targets.iter().flat_map(Range::clone) {
-            to_rows(&self.spectrum[self.start + tile * TILE..], self.pitch, &mut self.lines, half);
-            for (j, line) in self.lines.chunks_exact_mut(half).enumerate() {
-                let y = tile * TILE + j;
-                if y >= self.window.height || !wanted(y) {
-                    continue;
+        });
+    }
+
+    /// Multiplies the spectrum by the symbol: a transform of each column forward and back. Only the bands of rows `wanted` are right afterwards.
+    ///
+    /// Cost: O(lx ly log) with [`Self::forward`] and [`Self::backward`]; rows of zeros are not transformed.
+    pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool) {
+        let Self { window: Window { height, .. }, lengths, column_forward, column_inverse, rooms, .. } = self;
+        let (height, half_y) = (*height, lengths.y / 2 + 1);
+        let rows = |bands: Vec<Range<usize>>| -> Vec<Range<usize>> {
+            bands.into_iter().map(|bands| bands.start * BAND..(bands.end * BAND).min(height)).collect()
+        };
+        let bands = self.given.len();
+        let sources = rows(runs(bands, |band| self.given[band]));
+        let targets = rows(runs(bands, |band| (band * BAND..((band + 1) * BAND).min(height)).any(&wanted)));
+        let pitch = Self::pitch(lengths.y);
+        let stripes = self.spectrum[self.start..].chunks_exact_mut(Self::STRIPE * height);
+        let symbols = self.symbol.chunks(half_y * Self::STRIPE);
+        for_each(rooms, stripes.zip(symbols), |room, (stripe, symbols)| {
+            let Room { columns, scratch, .. } = room;
+            for (k, symbols) in symbols.chunks(half_y * Self::TOGETHER).enumerate() {
+                let first = k * Self::TOGETHER;
+                let mut end = 0;
+                for rows in &sources {
+                    clear(columns, pitch, end..rows.start);
+                    to_columns::<T>(stripe, Self::STRIPE, first, rows.clone(), columns, pitch);
+                    end = rows.end;
+                }
+                clear(columns, pitch, end..lengths.y);
+                for (column, symbol) in columns.chunks_exact_mut(pitch).zip(symbols.chunks_exact(half_y)) {
+                    let column = &mut column[..lengths.y];
+                    column_forward.process_with_scratch(column, scratch);
+                    multiply_even(column, symbol);
+                    column_inverse.process_with_scratch(column, scratch);
+                }
+                for rows in &targets {
+                    to_rows::<T>(columns, pitch, stripe, Self::STRIPE, first, rows.clone());
+                }
+            }
+        });
+    }
+
+    /// Transforms rows back: `take` reads row y where it is `wanted`. Each band of rows has its own output, of those given in order.
+    pub fn backward<O: Send>(
+        &mut self,
+        wanted: impl Fn(usize) -> bool + Sync,
+        outputs: impl ExactSizeIterator<Item = O> + Send,
+        take: impl Fn(&mut O, usize, &[T]) + Sync,
+    ) {
+        let Self { window: Window { width, height, .. }, lengths, row_inverse, rooms, .. } = self;
+        let (width, height, half) = (*width, *height, lengths.x / 2 + 1);
+        let even = lengths.x.is_multiple_of(2);
+        let spectrum = &self.spectrum[self.start..];
+        for_each(rooms, outputs.enumerate(), |room, (band, mut output)| {
+            let Room { row, line, scratch, .. } = room;
+            for y in (band * BAND..((band + 1) * BAND).min(height)).filter(|&y| wanted(y)) {
+                let stripes = spectrum.chunks_exact(Self::STRIPE * height);
+                for (values, stripe) in line.chunks_mut(Self::STRIPE).zip(stripes) {
+                    values.copy_from_slice(&stripe[y * Self::STRIPE..][..values.len()]);
                 }
                 // The spectrum of a real row has real ends; rounding may say otherwise and the plan would complain.
                 line[0].im = T::default();
-                if self.lengths.x.is_multiple_of(2) {
+                if even {
                     line[half - 1].im = T::default();
                 }
-                let done = self.row_inverse.process_with_scratch(line, &mut self.row, &mut self.scratch);
+                let done = row_inverse.process_with_scratch(line, row, scratch);
                 debug_assert!(done.is_ok());
-                take(y, &self.row[..self.window.width]);
+                take(&mut output, y, &row[..width]);
             }
-        }
+        });
     }
+}
 
-    /// Transforms each column, multiplies it by the symbol and transforms it back.
-    fn columns(&mut self, sources: &[Range<usize>], targets: &[Range<usize>]) {
-        let (half, half_y) = (self.lengths.x / 2 + 1, self.lengths.y / 2 + 1);
-        let height = self.window.height;
-        let rows = |tiles: &Range<usize>| tiles.start * TILE..(tiles.end * TILE).min(height);
-        for (kx, symbol) in self.symbol.chunks_exact(half_y).take(half).enumerate() {
-            let line = &mut self.spectrum[self.start + kx * self.pitch..][..height];
-            let mut end = 0;
-            for y in sources.iter().map(rows) {
-                self.column[end..y.start].fill(Complex::default());
-                self.column[y.clone()].copy_from_slice(&line[y.clone()]);
-                end = y.end;
-            }
-            self.column[end..].fill(Complex::default());
-            self.column_forward.process_with_scratch(&mut self.column, &mut self.scratch);
-            multiply_even(&mut self.column, symbol);
-            self.column_inverse.process_with_scratch(&mut self.column, &mut self.scratch);
-            for y in targets.iter().map(rows) {
-                line[y.clone()].copy_from_slice(&self.column[y]);
-            }
-        }
+/// Clears the same rows of each column.
+fn clear<T: Real>(columns: &mut [Complex<T>], pitch: usize, rows: Range<usize>) {
+    for column in columns.chunks_exact_mut(pitch) {
+        column[rows.clone()].fill(Complex::default());
     }
 }
 
@@ -178,30 +241,23 @@ fn runs(count: usize, has: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
 impl<T: Real> InfluenceOperator<T> for FftConvolution<T> {
     /// Both sets lie inside the window. Rows without sources are not transformed forward, rows without targets not backward.
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
-        let Window { x: x0, y: y0, height, .. } = self.window;
-        let held = |set: &CellSet| {
-            let mut held = vec![false; height];
-            for row in set.rows() {
-                held[row.y - y0] = true;
-            }
-            held
-        };
-        let (given, wanted) = (held(sources), held(targets));
-        let (mut from, mut to) = (sources.rows(), targets.rows());
-        self.rows(
-            |y| given[y],
-            |_, line| {
-                if let Some(row) = from.next() {
+        let Window { x: x0, y: y0, .. } = self.window;
+        let held = |y: usize| targets.row(y + y0).is_some();
+        self.forward(
+            |y| sources.row(y + y0).is_some(),
+            |y, line| {
+                if let Some(row) = sources.row(y + y0) {
                     row.spread(p, line, x0);
                 }
             },
-            |y| wanted[y],
-            |_, line| {
-                if let Some(row) = to.next() {
-                    row.collect(line, u, x0);
-                }
-            },
         );
+        self.multiply(held);
+        let outputs = targets.split(u, self.bands().map(|y| y + y0));
+        self.backward(held, outputs.into_iter(), |(start, u), y, line| {
+            if let Some(row) = targets.row(y + y0) {
+                row.after(*start).collect(line, u, x0);
+            }
+        });
     }
 }
 
@@ -219,33 +275,57 @@ impl InfluenceOperator<f64> for FftConvolution<f32> {
     }
 }
 
-/// Writes a tile of rows as columns: `columns[k * pitch + j] = lines[j * half + k]`.
-fn to_columns<T: Real>(lines: &[Complex<T>], half: usize, columns: &mut [Complex<T>], pitch: usize) {
-    let mut row = lines.chunks_exact(half);
-    let rows: [&[Complex<T>]; TILE] = std::array::from_fn(|_| row.next().unwrap_or_default());
-    for (k, column) in columns.chunks_mut(pitch).take(half).enumerate() {
-        for (value, row) in column[..TILE].iter_mut().zip(&rows) {
-            *value = row[k];
+/// Reads columns from `first` on out of some rows of a stripe, square by square: `columns[i * pitch + y] = stripe[y * width + first + i]`.
+fn to_columns<T: Real>(
+    stripe: &[Complex<T>],
+    width: usize,
+    first: usize,
+    rows: Range<usize>,
+    columns: &mut [Complex<T>],
+    pitch: usize,
+) {
+    let count = columns.len() / pitch;
+    let squares = rows.start..rows.end - rows.len() % SQUARE;
+    for y in squares.clone().step_by(SQUARE) {
+        let lines: [&[Complex<T>]; SQUARE] =
+            std::array::from_fn(|j| &stripe[(y + j) * width + first..][..count]);
+        for (i, column) in columns.chunks_exact_mut(pitch).enumerate() {
+            column[y..y + SQUARE].copy_from_slice(&lines.map(|line| line[i]));
+        }
+    }
+    for y in squares.end..rows.end {
+        let line = &stripe[y * width + first..][..count];
+        for (column, &value) in columns.chunks_exact_mut(pitch).zip(line) {
+            column[y] = value;
         }
     }
 }
 
-/// Reads a tile of rows back from columns, square by square: the inverse of [`to_columns`].
-fn to_rows<T: Real>(columns: &[Complex<T>], pitch: usize, lines: &mut [Complex<T>], half: usize) {
-    let squares = half - half % SQUARE;
-    for k in (0..squares).step_by(SQUARE) {
-        for j in (0..TILE).step_by(SQUARE) {
+/// Writes columns back to some rows of a stripe: the inverse of [`to_columns`].
+fn to_rows<T: Real>(
+    columns: &[Complex<T>],
+    pitch: usize,
+    stripe: &mut [Complex<T>],
+    width: usize,
+    first: usize,
+    rows: Range<usize>,
+) {
+    let count = columns.len() / pitch;
+    let squares = rows.start..rows.end - rows.len() % SQUARE;
+    for y in squares.clone().step_by(SQUARE) {
+        for i in (0..count).step_by(SQUARE) {
             let square: [&[Complex<T>]; SQUARE] =
-                std::array::from_fn(|i| &columns[(k + i) * pitch + j..][..SQUARE]);
-            for i in 0..SQUARE {
-                let row = &mut lines[(j + i) * half + k..][..SQUARE];
-                row.copy_from_slice(&square.map(|column| column[i]));
+                std::array::from_fn(|k| &columns[(i + k) * pitch + y..][..SQUARE]);
+            for j in 0..SQUARE {
+                let line = &mut stripe[(y + j) * width + first + i..][..SQUARE];
+                line.copy_from_slice(&square.map(|column| column[j]));
             }
         }
     }
-    for (k, column) in columns.chunks(pitch).enumerate().take(half).skip(squares) {
-        for (j, &value) in column[..TILE].iter().enumerate() {
-            lines[j * half + k] = value;
+    for y in squares.end..rows.end {
+        let line = &mut stripe[y * width + first..][..count];
+        for (value, column) in line.iter_mut().zip(columns.chunks_exact(pitch)) {
+            *value = column[y];
         }
     }
 }
@@ -268,6 +348,7 @@ mod tests {
     use crate::geometry::Grid;
     use crate::kernel::Symbol;
     use crate::kernel::love::influence;
+    use std::sync::Mutex;
 
     #[test]
     fn single_precision_serves_pressures_of_any_size() {
@@ -302,26 +383,30 @@ mod tests {
 
     #[test]
     fn only_rows_with_cells_are_read_and_written() {
-        // More rows than two tiles; rows are seen in order, the given ones before the wanted ones.
-        let grid = Grid::square(6, 2 * TILE + 5);
+        // More rows than two bands; each is seen once.
+        let grid = Grid::square(6, 2 * BAND + 5);
         let lengths = Lengths::free(grid.window());
         let symbol = Symbol::of_kernel(lengths, influence);
         let mut operator = FftConvolution::<f64>::new(grid.window(), lengths, symbol.scaled());
-        let (given, wanted) = ([1, TILE + 1, 2 * TILE + 4], [0, 3, 2 * TILE]);
+        let (given, wanted) = ([1, BAND + 1, 2 * BAND + 4], [0, 3, 2 * BAND]);
         let (mut read, mut written) = (Vec::new(), Vec::new());
         for _ in 0..2 {
-            (read, written) = (Vec::new(), Vec::new());
-            operator.rows(
+            let seen = Mutex::new(Vec::new());
+            operator.forward(
                 |y| given.contains(&y),
                 |y, row| {
                     assert!(row.len() == 6 && row.iter().all(|&p| p == 0.0));
                     row[2] = 1.0;
-                    read.push(y);
+                    seen.lock().unwrap().push(y);
                 },
-                |y| wanted.contains(&y),
-                |y, row| written.push((y, row[4])),
             );
+            operator.multiply(|y| wanted.contains(&y));
+            let mut bands: Vec<Vec<(usize, f64)>> = operator.bands().map(|_| Vec::new()).collect();
+            let take = |band: &mut &mut Vec<_>, y: usize, row: &[f64]| band.push((y, row[4]));
+            operator.backward(|y| wanted.contains(&y), bands.iter_mut(), take);
+            (read, written) = (seen.into_inner().unwrap(), bands.concat());
         }
+        read.sort_unstable();
         assert_eq!(read, given);
         for (&(y, u), wanted) in written.iter().zip(wanted) {
             assert_eq!(y, wanted);
