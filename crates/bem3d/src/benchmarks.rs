@@ -1,4 +1,6 @@
-//! The operators as a benchmark sees them. Not part of the interface: nothing here is kept from version to version.
+//! The operators and the parts of a solve as a benchmark sees them. Not part of the interface: nothing here is kept from version to version.
+
+pub use crate::parts::{Part, Spent, measure as measure_parts, take as take_parts};
 
 use crate::geometry::{CellSet, Grid, Lengths};
 use crate::kernel::KernelTable;

@@ -79,6 +79,7 @@ mod linear;
 mod model;
 mod operator;
 mod parallel;
+mod parts;
 mod real;
 mod stiffness;
 mod tuning;

@@ -110,6 +110,26 @@ pub fn sum<T: Real>(values: &[T]) -> f64 {
     map(values.len(), values.chunks(PIECE), piece).into_iter().sum()
 }
 
+/// Sum over two lists of what `value` makes of the numbers at one place.
+pub fn sum_of_pairs(a: &[f64], b: &[f64], value: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+    let piece = |(a, b): (&[f64], &[f64])| -> f64 {
+        let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+        let mut lanes = [0.0; LANES];
+        for (a, b) in a.iter().zip(b) {
+            for ((lane, &a), &b) in lanes.iter_mut().zip(a).zip(b) {
+                *lane += value(a, b);
+            }
+        }
+        lanes.into_iter().chain(rest_a.iter().zip(rest_b).map(|(&a, &b)| value(a, b))).sum()
+    };
+    map(a.len(), a.chunks(PIECE).zip(b.chunks(PIECE)), piece).into_iter().sum()
+}
+
+/// Changes each number of a list.
+pub fn each<A: Send>(values: &mut [A], change: impl Fn(&mut A) + Sync) {
+    map(values.len(), values.chunks_mut(PIECE), |values| values.iter_mut().for_each(&change));
+}
+
 /// Changes each number of one list by those of another at its place.
 pub fn update<A: Send, B: Sync>(a: &mut [A], b: &[B], change: impl Fn(&mut A, &B) + Sync) {
     map(a.len(), a.chunks_mut(PIECE).zip(b.chunks(PIECE)), |(a, b)| {

@@ -4,7 +4,7 @@ use crate::active_set::{Problem, Solved};
 use crate::kernel::KernelTable;
 use crate::linear::{Energy, StoppingCriteria};
 use crate::operator::{Conditioning, Recipe};
-use crate::real::dot;
+use crate::real::{dot, each, sum, update};
 use contact_model::Stop;
 
 /// Nondimensional stiffness with its evidence.
@@ -66,21 +66,25 @@ pub fn solve(
     let mut best = Stiffness::unknown();
     let (mut steps, mut unimproved) = (0, 0);
     for round in 0..tuning.stiffness_rounds {
+        // A guess will be corrected.
+        let rough = round == 0 && state.q.is_none() && tolerance >= tuning.stiffness_single;
         if let Some(q) = &q {
-            operators.exact(contact, q, &targets, &mut v);
-            contact.carry_to(&targets, &v, &mut r);
-            for r in &mut r {
-                *r = 1.0 - *r;
+            if rough {
+                operators.rough(contact, q, &targets, &mut v);
+            } else {
+                operators.exact(contact, q, &targets, &mut v);
             }
+            contact.carry_to(&targets, &v, &mut r);
+            each(&mut r, |r| *r = 1.0 - *r);
         }
-        let (sum, rq) = q.as_ref().map_or((0.0, 0.0), |q| (q.iter().sum(), dot(&r, q)));
+        let (total, rq) = q.as_ref().map_or((0.0, 0.0), |q| (sum(q), dot(&r, q)));
         if !std::mem::replace(&mut started, true) {
             workspace.take(operators, contact.clone(), recipe);
         }
         let last = round + 1 == tuning.stiffness_rounds || unimproved > 2;
         let criteria = StoppingCriteria {
             reduction: tuning.stiffness_reduction,
-            energy: Some(Energy { share: tuning.stiffness_aim * tolerance, base: sum + rq }),
+            energy: Some(Energy { share: tuning.stiffness_aim * tolerance, base: total + rq }),
             floor: 0.0,
             steps: if last { 0 } else { tuning.stiffness_steps },
         };
@@ -90,20 +94,20 @@ pub fn solve(
             q = Some(r.clone());
             continue;
         };
-        let (ritz, error) = bounds(sum, rq, outcome.energy);
-        unimproved = if error < 0.9 * best.solve_error { 0 } else { unimproved + 1 };
-        if error < best.solve_error {
+        let (ritz, error) = bounds(total, rq, outcome.energy);
+        if !rough {
+            unimproved = if error < 0.9 * best.solve_error { 0 } else { unimproved + 1 };
+        }
+        if error < best.solve_error && !rough {
             let at_undecided = undecided.carry(&targets, &v);
             let set_error = set_error(operators.table(), state, &left, &at_undecided, q) / ritz;
             best = Stiffness { value: ritz, solve_error: error, set_error, q: q.clone(), steps };
         }
-        if error <= tuning.stiffness_share * tolerance || last || stop() {
+        if !rough && (error <= tuning.stiffness_share * tolerance || last || stop()) {
             break;
         }
         steps += outcome.steps;
-        for (q, x) in q.iter_mut().zip(&r) {
-            *q += x;
-        }
+        update(q, &r, |q, x| *q += x);
     }
     Stiffness { steps, ..best }
 }

@@ -71,11 +71,10 @@ pub struct Tuning {
     pub better: f64,
     /// Outer iterations without better residuals after which the solve has stagnated.
     pub patience: usize,
-    /// Above these residuals, and above so many times the tolerance (`rough_factor`), the next gap is evaluated in single precision.
-    pub rough: f64,
-    /// See `rough`.
-    pub rough_factor: f64,
-    /// ... as long as that gap exceeds the noise of single precision, this share of the approach.
+    /// The next gap is evaluated in single precision where the tolerance will not be met: the residuals are expected to fall as they did
+    /// last, by a factor within this range ...
+    pub gain: (f64, f64),
+    /// ... and as long as that gap exceeds the noise of single precision, this share of the approach.
     pub single_noise: f64,
     /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact: penetrations below are within
     /// the error of the inner solve, and adding those cells would regrow the set.
@@ -96,6 +95,8 @@ pub struct Tuning {
     pub stiffness_rounds: usize,
     /// Steps of one correction at most.
     pub stiffness_steps: usize,
+    /// Tolerance from which on the residual of a guess of q is evaluated in single precision; what comes of it in double.
+    pub stiffness_single: f64,
     /// Share of the tolerance that the linear solve may use up; the rest is left to undecided cells.
     pub stiffness_share: f64,
     /// Share of the tolerance that the iteration aims at: its own estimate is not yet checked in double precision.
@@ -163,8 +164,7 @@ impl Tuning {
         floor: 0.2,
         better: 0.9,
         patience: 12,
-        rough: 0.03,
-        rough_factor: 10.0,
+        gain: (0.1, 0.4),
         single_noise: 1e-4,
         noise: 1.0,
         candidates: 1.05,
@@ -174,6 +174,7 @@ impl Tuning {
         undecided_far: 0.125,
         stiffness_rounds: 40,
         stiffness_steps: 60,
+        stiffness_single: 1e-5,
         stiffness_share: 0.5,
         stiffness_aim: 0.3,
         stiffness_reduction: 1e-3,

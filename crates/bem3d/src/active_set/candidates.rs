@@ -1,7 +1,9 @@
 //! The cells that may touch at a given approach: those whose undeformed gap z is smaller.
 
 use crate::geometry::{CellSet, Grid};
-use crate::tuning::{CANDIDATES_AHEAD, LISTED_CANDIDATES};
+use crate::parallel::map;
+use crate::parts::{Part, timed};
+use crate::tuning::{CANDIDATES_AHEAD, LISTED_CANDIDATES, PIECE};
 use std::sync::Arc;
 
 /// Finds the cells with `z < d`.
@@ -12,20 +14,63 @@ use std::sync::Arc;
 pub struct Candidates {
     grid: Grid,
     z: Arc<Vec<f64>>,
+    depths: Depths,
     /// Cells with z < cap, where they are few.
     list: CellSet,
     cap: f64,
 }
 
+/// Where the undeformed gaps begin and end.
+#[derive(Debug, Clone, Copy)]
+pub struct Depths {
+    /// The defined cell with the smallest gap, as a linear index.
+    pub highest: u32,
+    /// Its gap.
+    pub first: f64,
+    /// The largest finite gap, at least 0.
+    pub deepest: f64,
+}
+
+impl Depths {
+    fn of(z: &[f64]) -> Self {
+        let pieces = map(z.len(), z.chunks(PIECE), |z| {
+            let (mut lowest, mut deepest) = (0, 0.0f64);
+            for (i, &value) in z.iter().enumerate() {
+                if value < z[lowest] {
+                    lowest = i;
+                }
+                if value.is_finite() {
+                    deepest = deepest.max(value);
+                }
+            }
+            (lowest, z[lowest], deepest)
+        });
+        let mut depths = Self { highest: 0, first: f64::INFINITY, deepest: 0.0 };
+        for (k, (at, first, deepest)) in pieces.into_iter().enumerate() {
+            if first < depths.first {
+                (depths.highest, depths.first) = ((k * PIECE + at) as u32, first);
+            }
+            depths.deepest = depths.deepest.max(deepest);
+        }
+        depths
+    }
+}
+
 impl Candidates {
     /// Takes the undeformed gaps of a grid, row-major.
     pub fn new(grid: Grid, z: Arc<Vec<f64>>) -> Self {
-        Self { grid, z, list: CellSet::default(), cap: 0.0 }
+        let depths = Depths::of(&z);
+        Self { grid, z, depths, list: CellSet::default(), cap: 0.0 }
     }
 
     /// The undeformed gaps of the whole grid.
     pub fn z(&self) -> &[f64] {
         &self.z
+    }
+
+    /// Where the gaps begin and end.
+    pub fn depths(&self) -> Depths {
+        self.depths
     }
 
     /// The cells with `z < d`.
@@ -46,7 +91,7 @@ impl Candidates {
     ///
     /// Cost: the grid at most, much less where the answer is yes.
     pub fn more_than(&self, count: usize, d: f64) -> bool {
-        self.z.iter().filter(|&&z| z < d).nth(count).is_some()
+        timed(Part::Sets, || self.z.iter().filter(|&&z| z < d).nth(count).is_some())
     }
 
     /// The undeformed gaps on a set.
@@ -58,9 +103,11 @@ impl Candidates {
 
     /// Adds the undeformed gaps on a set to values on it.
     pub fn add_to(&self, set: &CellSet, values: &mut [f64]) {
-        for row in set.rows() {
-            row.add(&self.z[row.y * self.grid.columns..][..self.grid.columns], values, 0);
-        }
+        timed(Part::Sets, || {
+            set.update(set.len(), values, |row, values| {
+                row.add(&self.z[row.y * self.grid.columns..][..self.grid.columns], values, 0);
+            });
+        });
     }
 }
 

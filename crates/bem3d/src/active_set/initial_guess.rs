@@ -1,10 +1,12 @@
 //! Where a solve begins: from the tangent of the last state, or by nested iteration from the same surface on coarser grids.
 
+use super::candidates::Depths;
 use super::solver::solve;
 use super::state::{Guess, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 use contact_model::Stop;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The state solved last, from which the next is extrapolated.
@@ -103,7 +105,7 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
     let (grid, tuning) = (problem.grid(), *problem.operators.tuning());
     let own = problem.operators.table().own();
     // The highest cell of a coarse grid lies below the plane of first touch.
-    let (highest, first, deepest) = range(problem.candidates.z());
+    let Depths { highest, first, deepest } = problem.candidates.depths();
     let reach = match target {
         Target::Force(force) => first + force * own,
         Target::Approach(d) => d,
@@ -130,7 +132,7 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
     }
     let mut coarse = problem.coarser.take().unwrap_or_else(|| Box::new(coarser(problem)));
     if let Target::Approach(d) = target
-        && range(coarse.candidates.z()).1 >= d
+        && coarse.candidates.depths().first >= d
     {
         problem.coarser = Some(coarse);
         return from_above(problem);
@@ -146,21 +148,6 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
     let guess = prolonged(problem, &solved);
     problem.coarser = Some(coarse);
     guess
-}
-
-/// The defined cell with the smallest gap, that gap, and the largest finite one.
-fn range(z: &[f64]) -> (u32, f64, f64) {
-    let mut highest = 0;
-    let mut deepest = 0.0f64;
-    for (i, &value) in z.iter().enumerate() {
-        if value < z[highest] {
-            highest = i;
-        }
-        if value.is_finite() {
-            deepest = deepest.max(value);
-        }
-    }
-    (highest as u32, z[highest], deepest)
 }
 
 /// Fine columns and rows of a coarse cell: a direction with few cells is left as it is.
@@ -198,23 +185,37 @@ fn prolonged(problem: &Problem, solved: &Solved) -> Guess {
     let (grid, z, d) = (problem.grid(), problem.candidates.z(), solved.d);
     let tuning = problem.operators.tuning();
     let ((across, down), ratio) = (blocks(grid, tuning), pressure_ratio(grid, tuning));
-    let mut cells: Vec<(u32, f64)> = Vec::with_capacity(across * down * solved.p.len());
-    for ((x, y), p) in solved.contact.places().zip(&solved.p) {
-        let rows = y * down..((y + 1) * down).min(grid.rows);
-        let below = rows.flat_map(|y| {
-            let columns = x * across..((x + 1) * across).min(grid.columns);
-            columns.map(move |x| y * grid.columns + x)
-        });
-        let under_plane = below.clone().filter(|&i| z[i] < d).count();
-        let limit = if under_plane > 0 { d } else { f64::INFINITY };
-        let carrying = below.filter(|&i| z[i] < limit);
-        let share = ratio * p / carrying.clone().count() as f64;
-        cells.extend(carrying.map(|i| (i as u32, share)));
+    let columns_of = |x: usize| x * across..((x + 1) * across).min(grid.columns);
+    let (mut rows, mut p) =
+        (Vec::with_capacity(grid.rows), Vec::with_capacity(across * down * solved.p.len()));
+    for row in solved.contact.rows() {
+        let below = row.y * down..((row.y + 1) * down).min(grid.rows);
+        let pressed: Vec<(Range<usize>, f64, f64)> = (row.columns.iter().zip(&solved.p[row.span()]))
+            .map(|(&x, p)| {
+                let columns = columns_of(x as usize);
+                let lower = |limit: f64| {
+                    let lines = below.clone().map(|y| &z[y * grid.columns..][columns.clone()]);
+                    lines.flatten().filter(|&&z| z < limit).count()
+                };
+                let under_plane = lower(d);
+                let (limit, count) =
+                    if under_plane > 0 { (d, under_plane) } else { (f64::INFINITY, lower(f64::INFINITY)) };
+                (columns, limit, ratio * p / count as f64)
+            })
+            .collect();
+        for y in below {
+            let line = &z[y * grid.columns..][..grid.columns];
+            let mut carrying = Vec::with_capacity(across * pressed.len());
+            for (columns, limit, share) in &pressed {
+                for x in columns.clone().filter(|&x| line[x] < *limit) {
+                    carrying.push(x as u32);
+                    p.push(*share);
+                }
+            }
+            rows.push((y, carrying));
+        }
     }
-    cells.sort_unstable_by_key(|&(i, _)| i);
-    let index: Vec<u32> = cells.iter().map(|&(i, _)| i).collect();
-    let p = cells.iter().map(|&(_, p)| p).collect();
-    Guess { set: CellSet::from_index(grid, &index), p, d, far: true }
+    Guess { set: CellSet::from_rows(rows), p, d, far: true }
 }
 
 #[cfg(test)]

@@ -34,6 +34,8 @@ pub struct OuterProgress {
     pub best: f64,
     /// Whether the next gap is evaluated in single precision.
     pub rough: bool,
+    /// The residuals before.
+    last: f64,
     iteration: usize,
     since_best: usize,
 }
@@ -41,7 +43,7 @@ pub struct OuterProgress {
 impl OuterProgress {
     /// Nothing is known yet; `rough`: whether the first gap is evaluated in single precision.
     pub fn new(limits: Limits, rough: bool) -> Self {
-        Self { limits, best: f64::INFINITY, rough, iteration: 0, since_best: 0 }
+        Self { limits, best: f64::INFINITY, rough, last: f64::INFINITY, iteration: 0, since_best: 0 }
     }
 
     /// Decides after the evaluation of a gap at the approach d.
@@ -60,8 +62,12 @@ impl OuterProgress {
         }
         self.iteration += 1;
         let length = error * limits.height.unwrap_or(d);
-        self.rough = error > tuning.rough
-            && error > tuning.rough_factor * limits.tolerance
+        let (least, most) = tuning.gain;
+        let gain = error / self.last;
+        self.last = error;
+        // Residuals that do not fall may be those of the precision.
+        self.rough = gain < tuning.better
+            && gain.clamp(least, most) * error > limits.tolerance
             && length > tuning.single_noise * d;
         let best = complete && error < tuning.better * self.best;
         if best {
@@ -146,10 +152,19 @@ mod tests {
         assert_eq!(*last, Decision::End(Status::Stagnated));
         assert_eq!(before[0], Decision::Continue { best: true });
         assert!(before[1..].iter().all(|&decision| decision == Decision::Continue { best: false }));
+        // Large ones that do not fall end it, too.
+        let end = Decision::End(Status::Stagnated);
+        let decisions = judged(TIGHT, &[0.5; Tuning::DEFAULT.patience + 3]);
+        assert_eq!(decisions.iter().position(|&d| d == end), Some(TUNING.patience + 2));
         // What is followed by a gap in single precision takes no patience: only the limit of iterations ends it.
-        let decisions = judged(TIGHT, &[0.5; TIGHT.outer_iterations + 1]);
+        let mut progress = OuterProgress::new(TIGHT, false);
+        let mut error = 0.5;
+        let decisions = (0..=TIGHT.outer_iterations).map(|_| {
+            error *= 0.89;
+            progress.judge(Evaluated { complete: false, ..seen(error) }, 1e-3, &TUNING, &never)
+        });
         let end = Decision::End(Status::IterationLimit);
-        assert_eq!(decisions.iter().position(|&d| d == end), Some(TIGHT.outer_iterations));
+        assert_eq!(decisions.into_iter().position(|d| d == end), Some(TIGHT.outer_iterations));
         // Better residuals begin anew.
         let errors: Vec<f64> =
             (0..5 * TUNING.patience).map(|i| 1e-3 * 0.8f64.powf((i / 10) as f64)).collect();
@@ -176,8 +191,7 @@ mod tests {
         // (residuals, tolerance, height, approach) -> whether the next gap is evaluated in single precision.
         for (error, tolerance, height, d, rough) in [
             (0.5, 1e-6, 1.0, 1.0, true),
-            (0.02, 1e-6, 1.0, 1.0, false),
-            (TUNING.rough, 1e-6, 1.0, 1.0, false),
+            (0.02, 1e-6, 1.0, 1.0, true),
             // Ten times the tolerance is near enough for double precision.
             (0.5, 0.1, 1.0, 1.0, false),
             (0.5, 0.05, 1.0, 1.0, false),
@@ -192,6 +206,19 @@ mod tests {
             assert!(!progress.rough);
             progress.judge(seen(error), d, &TUNING, &never);
             assert_eq!(progress.rough, rough, "{error} {tolerance} {height} {d}");
+        }
+        // What they fell by last is expected again; those that do not fall may be noise.
+        for (next, tolerance, rough) in [
+            (0.05, 0.0051, false),
+            (0.05, 0.0049, true),
+            (0.1, 0.021, false),
+            (0.1, 0.019, true),
+            (0.46, 1e-6, false),
+        ] {
+            let mut progress = OuterProgress::new(Limits { tolerance, ..TIGHT }, false);
+            progress.judge(seen(0.5), 1.0, &TUNING, &never);
+            progress.judge(seen(next), 1.0, &TUNING, &never);
+            assert_eq!(progress.rough, rough, "{next} {tolerance}");
         }
         // Without a height gaps are compared with the approach, whatever its unit.
         let mut progress = OuterProgress::new(Limits { height: None, ..TIGHT }, true);

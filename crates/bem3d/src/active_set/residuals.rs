@@ -1,5 +1,7 @@
 //! How well a pressure satisfies the contact conditions (KKT), from its gap.
 
+use crate::real::{sum, sum_of_pairs};
+
 /// The numbers of [`contact_model::Certificate`] that do not concern the load or the stiffness.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Residuals {
@@ -25,18 +27,14 @@ impl Residuals {
     /// Outside the candidates the gap is positive, so that their minimum is the minimum of all.
     pub fn measure(p: &[f64], gap: &[f64], lowest: f64, s: f64) -> Self {
         let deepest = (-lowest).max(0.0);
-        let force: f64 = p.iter().sum();
+        let force = sum(p);
         if force <= 0.0 {
             // No pressure yet: only the penetration has a meaning.
             return Self { penetration: deepest / s, deepest, ..Self::default() };
         }
-        let (mut weighted, mut duality) = (0.0, 0.0);
-        for (&p, &g) in p.iter().zip(gap) {
-            // Shares of the force, so that no product of two tiny or two huge numbers is ever formed.
-            let share = p / force;
-            weighted += share * g.abs();
-            duality += share * (g - lowest);
-        }
+        // Shares of the force, so that no product of two tiny or two huge numbers is ever formed.
+        let weighted = sum_of_pairs(p, gap, |p, g| p / force * g.abs());
+        let duality = sum_of_pairs(p, gap, |p, g| p / force * (g - lowest));
         Self { duality_gap: duality / s, penetration: deepest / s, complementarity: weighted / s, deepest }
     }
 }

@@ -5,7 +5,8 @@ use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
 use crate::geometry::CellSet;
 use crate::linear::Factor;
-use crate::real::{largest, smallest};
+use crate::parts::{Part, timed};
+use crate::real::{each, largest, smallest, sum, sum_of_pairs};
 use contact_model::{Status, Stop};
 
 /// Solves for one load from a guess.
@@ -84,9 +85,13 @@ impl<'a> Solver<'a> {
     fn iterate(mut self, mut known: Option<Evaluated>, rough: bool, stop: Stop<'_>) -> Solved {
         let tuning = *self.problem.operators.tuning();
         let mut progress = OuterProgress::new(self.limits, rough);
-        let mut steps = 0;
+        let (mut steps, tolerance) = (0, self.limits.tolerance);
         let (status, last) = loop {
-            let evaluated = known.take().unwrap_or_else(|| self.evaluate(progress.rough));
+            let mut evaluate = |rough| timed(Part::Residuals, || self.evaluate(rough));
+            let mut evaluated = known.take().unwrap_or_else(|| evaluate(progress.rough));
+            if progress.rough && evaluated.residuals.worst() <= tolerance {
+                evaluated = evaluate(false); // Better than expected.
+            }
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
                 Decision::End(status) => break (status, evaluated),
                 Decision::Continue { best } => self.now_is_best |= best,
@@ -129,17 +134,18 @@ impl<'a> Solver<'a> {
         }
         candidates.add_to(checked, gap);
         now.contact.carry_to(checked, gap, left);
-        let force: f64 = now.p.iter().sum();
+        let force = sum(&now.p);
         match *target {
             // The mean weighted by the pressure: the gap is then right where it carries.
             Target::Force(_) if now.q.is_none() && force > 0.0 => {
-                now.d = now.p.iter().zip(&*left).map(|(p, g)| p / force * g).sum();
+                now.d = sum_of_pairs(&now.p, left, |p, g| p / force * g);
             }
             Target::Force(_) => {}
             Target::Approach(asked) => now.d = asked,
         }
-        for g in gap.iter_mut().chain(&mut *left) {
-            *g -= now.d;
+        let d = now.d;
+        for values in [&mut *gap, &mut *left] {
+            each(values, |g| *g -= d);
         }
         // Just above the plane: a generous guess must not make every outer iteration evaluate the whole grid.
         *reach = tuning.candidates * now.d;
@@ -165,9 +171,7 @@ impl<'a> Solver<'a> {
             return 0;
         }
         let mut change = set.carry(checked, gap);
-        for value in &mut change {
-            *value = -*value;
-        }
+        each(&mut change, |value| *value = -*value);
         let criteria = criteria(*limits, error, now.d, &tuning);
         let Problem { operators, workspace, .. } = &mut **problem;
         workspace.take(operators, set, recipe);
@@ -197,7 +201,8 @@ fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Optio
     loop {
         let z = problem.candidates.gaps(&set);
         problem.operators.solves += 1;
-        let (q, w) = Factor::new(problem.operators.table(), &set)?.solve_pair(&z);
+        let factored = || Some(Factor::new(problem.operators.table(), &set)?.solve_pair(&z));
+        let (q, w) = timed(Part::Factor, factored)?;
         let d = match target {
             Target::Force(force) => (force + w.iter().sum::<f64>()) / q.iter().sum::<f64>(),
             Target::Approach(d) => d,
@@ -220,18 +225,16 @@ fn root_mean_square(values: &[f64]) -> f64 {
     if unit <= 0.0 {
         return 0.0;
     }
-    let square: f64 = values.iter().map(|v| (v / unit).powi(2)).sum();
+    let square = sum_of_pairs(values, values, |v, _| (v / unit).powi(2));
     unit * (square / values.len() as f64).sqrt()
 }
 
 /// Brings a pressure to a force.
 fn rescale(p: &mut [f64], force: f64) {
-    let sum: f64 = p.iter().sum();
+    let sum = sum(p);
     if sum > 0.0 {
         let factor = force / sum;
-        for p in p {
-            *p *= factor;
-        }
+        each(p, |p| *p *= factor);
     }
 }
 

@@ -7,6 +7,7 @@ use crate::geometry::{CellSet, Grid};
 use crate::kernel::KernelTable;
 use crate::linear::Workspace;
 use crate::operator::Operators;
+use crate::parts::{Part, timed};
 use crate::tuning::Tuning;
 use contact_model::{Boundary, Status};
 use std::sync::Arc;
@@ -31,7 +32,7 @@ impl Problem {
     pub fn new(grid: Grid, z: Arc<Vec<f64>>, boundary: Boundary, tuning: &Tuning) -> Self {
         Self {
             candidates: Candidates::new(grid, z),
-            operators: Operators::new(KernelTable::shared(grid, boundary), tuning),
+            operators: timed(Part::Plans, || Operators::new(KernelTable::shared(grid, boundary), tuning)),
             workspace: Workspace::default(),
             coarser: None,
             nested: true,

@@ -1,7 +1,9 @@
 //! Sets of cells of a grid: work follows the contact, not the grid.
 
 use super::grid::{Grid, Window};
-use crate::tuning::{LANES, LONG_RUN};
+use crate::parallel::{map, threads_for};
+use crate::parts::{Part, timed};
+use crate::tuning::{BAND, LANES, LONG_RUN};
 use std::ops::{AddAssign, Range};
 
 /// A set of cells, row by row. Values on it stand one after the other in the order of the cells.
@@ -143,12 +145,51 @@ impl CellSet {
     }
 
     /// The cells of a grid whose value, row-major, is kept.
-    pub fn of_grid<T: Copy>(grid: Grid, values: &[T], keep: impl Fn(T) -> bool) -> Self {
-        let mut set = Self::default();
-        for (y, values) in values.chunks_exact(grid.columns).enumerate() {
-            set.push_kept(y, |k| k as u32, values, &keep);
-        }
-        set
+    pub fn of_grid<T: Copy + Sync>(grid: Grid, values: &[T], keep: impl Fn(T) -> bool + Sync) -> Self {
+        let columns = grid.columns;
+        Self::of_bands(values.len(), values.chunks(BAND * columns).enumerate(), |set, (band, values)| {
+            for (y, values) in values.chunks_exact(columns).enumerate() {
+                set.push_kept(band * BAND + y, |k| k as u32, values, &keep);
+            }
+        })
+    }
+
+    /// Puts bands of rows together, each made by one thread.
+    fn of_bands<P: Send>(
+        work: usize,
+        bands: impl ExactSizeIterator<Item = P> + Send,
+        make: impl Fn(&mut Self, P) + Sync,
+    ) -> Self {
+        timed(Part::Sets, || {
+            if threads_for(work) == 1 {
+                let mut whole = Self::default();
+                bands.for_each(|piece| make(&mut whole, piece));
+                return whole;
+            }
+            let parts = map(work, bands, |piece| {
+                let mut part = Self::default();
+                make(&mut part, piece);
+                part
+            });
+            let mut parts = parts.into_iter();
+            let mut whole = parts.next().unwrap_or_default();
+            for part in parts {
+                let (cells, runs) = (whole.columns.len() as u32, whole.runs.len() as u32);
+                let moved =
+                    |row: &RowStart| RowStart { cells: row.cells + cells, runs: row.runs + runs, ..*row };
+                whole.rows.extend(part.rows.iter().map(moved));
+                whole.columns.extend_from_slice(&part.columns);
+                whole.runs.extend_from_slice(&part.runs);
+            }
+            whole
+        })
+    }
+
+    /// Ranges of rows of the grid that threads share.
+    fn bands(&self) -> impl ExactSizeIterator<Item = Range<usize>> + use<> {
+        let first = self.rows.first().map_or(0, |row| row.y as usize / BAND);
+        let end = self.rows.last().map_or(0, |row| row.y as usize / BAND + 1);
+        (first..end).map(|band| band * BAND..(band + 1) * BAND)
     }
 
     /// The cells of a grid whose linear index is kept.
@@ -296,82 +337,114 @@ impl CellSet {
     }
 
     /// The cells whose value is kept.
-    pub fn filter<T: Copy>(&self, values: &[T], keep: impl Fn(T) -> bool) -> Self {
-        let mut kept = Self::default();
-        for row in self.rows() {
-            kept.push_kept(row.y, |k| row.columns[k], &values[row.span()], &keep);
-        }
-        kept
+    pub fn filter<T: Copy + Sync>(&self, values: &[T], keep: impl Fn(T) -> bool + Sync) -> Self {
+        Self::of_bands(self.len(), self.bands(), |kept, ys| {
+            for row in self.rows_within(ys) {
+                kept.push_kept(row.y, |k| row.columns[k], &values[row.span()], &keep);
+            }
+        })
     }
 
     /// The cells that `other` lacks.
     pub fn without(&self, other: &Self) -> Self {
-        let mut others = other.rows().peekable();
-        let mut rest = Self::default();
-        for row in self.rows() {
-            while others.next_if(|other| other.y < row.y).is_some() {}
-            let mut taken = others.next_if(|other| other.y == row.y).map_or(&[][..], |other| other.columns);
-            rest.push_row(
-                row.y,
-                row.columns.iter().copied().filter(|&x| {
-                    while taken.first().is_some_and(|&first| first < x) {
+        Self::of_bands(self.len(), self.bands(), |rest, ys| {
+            for row in self.rows_within(ys) {
+                let mut taken = columns(other.row(row.y));
+                let lacks = |x: &u32| {
+                    while taken.first().is_some_and(|first| first < x) {
                         taken = &taken[1..];
                     }
-                    taken.first() != Some(&x)
-                }),
-            );
-        }
-        rest
+                    taken.first() != Some(x)
+                };
+                rest.push_row(row.y, row.columns.iter().copied().filter(lacks));
+            }
+        })
     }
 
     /// The cells of either set.
     pub fn union(&self, other: &Self) -> Self {
-        let (mut a, mut b) = (self.rows().peekable(), other.rows().peekable());
-        let mut both = Self::default();
-        while let Some(y) = [a.peek(), b.peek()].into_iter().flatten().map(|row| row.y).min() {
-            let (a, b) = (a.next_if(|row| row.y == y), b.next_if(|row| row.y == y));
-            both.push_row(y, merged(columns(a), columns(b)));
-        }
-        both
+        let ends =
+            [self, other].into_iter().flat_map(|set| set.rows.first().into_iter().chain(set.rows.last()));
+        let bands = ends.map(|row| row.y as usize / BAND);
+        let (first, end) =
+            bands.fold((usize::MAX, 0), |(first, end), band| (first.min(band), end.max(band + 1)));
+        Self::of_bands(self.len() + other.len(), first.min(end)..end, |both, band| {
+            for y in band * BAND..(band + 1) * BAND {
+                let (a, b) = (self.row(y), other.row(y));
+                if a.is_some() || b.is_some() {
+                    both.push_row(y, merged(columns(a), columns(b)));
+                }
+            }
+        })
     }
 
     /// Values on `other` carried over to this set: 0 on cells that `other` lacks, dropped where this set lacks them.
-    pub fn carry<T: Copy + Default>(&self, other: &Self, values: &[T]) -> Vec<T> {
+    pub fn carry<T: Copy + Default + Send + Sync>(&self, other: &Self, values: &[T]) -> Vec<T> {
         let mut carried = Vec::new();
         self.carry_to(other, values, &mut carried);
         carried
     }
 
     /// The same into a vector that is at hand.
-    pub fn carry_to<T: Copy + Default>(&self, other: &Self, values: &[T], carried: &mut Vec<T>) {
-        carried.clear();
-        carried.resize(self.len(), T::default());
-        self.beside(other, values, |row, line, x0| row.collect(line, carried, x0));
-    }
-
-    /// Adds values on `other` to values on this set.
-    pub fn add_carried<T: Copy + Default + AddAssign>(&self, other: &Self, values: &[T], sums: &mut [T]) {
-        self.beside(other, values, |row, line, x0| row.add(line, sums, x0));
-    }
-
-    /// Shows the values on `other` to each row that both sets have, as a line that begins at a column and is zero elsewhere.
-    fn beside<T: Copy + Default>(
+    pub fn carry_to<T: Copy + Default + Send + Sync>(
         &self,
         other: &Self,
         values: &[T],
-        mut show: impl FnMut(SetRow<'_>, &[T], usize),
+        carried: &mut Vec<T>,
+    ) {
+        carried.clear();
+        carried.resize(self.len(), T::default());
+        self.beside(other, values, carried, |row, line, own, x0| row.collect(line, own, x0));
+    }
+
+    /// Adds values on `other` to values on this set.
+    pub fn add_carried<T: Copy + Default + AddAssign + Send + Sync>(
+        &self,
+        other: &Self,
+        values: &[T],
+        sums: &mut [T],
+    ) {
+        self.beside(other, values, sums, |row, line, own, x0| row.add(line, own, x0));
+    }
+
+    /// Changes values on the set row by row, `work` in all.
+    pub fn update<T: Send>(
+        &self,
+        work: usize,
+        values: &mut [T],
+        change: impl Fn(SetRow<'_>, &mut [T]) + Sync,
+    ) {
+        let parts = self.split(values, self.bands().map(|ys| ys.start));
+        map(work, self.bands().zip(parts), |(ys, (start, values))| {
+            for row in self.rows_within(ys) {
+                change(row.after(start), values);
+            }
+        });
+    }
+
+    /// Changes the values `own` of each row that both sets have by those on `other`, given as a line that begins at a column and is zero
+    /// elsewhere.
+    fn beside<T: Copy + Default + Send + Sync>(
+        &self,
+        other: &Self,
+        values: &[T],
+        own: &mut [T],
+        change: impl Fn(&SetRow<'_>, &[T], &mut [T], usize) + Sync,
     ) {
         let window = self.window().into_iter().chain(other.window()).reduce(Window::union);
         let Some(window) = window else { return };
-        let mut line = vec![T::default(); window.width];
-        let mut others = other.rows().peekable();
-        for row in self.rows() {
-            while others.next_if(|other| other.y < row.y).is_some() {}
-            let Some(other) = others.next_if(|other| other.y == row.y) else { continue };
-            other.spread(values, &mut line, window.x);
-            show(row, &line, window.x);
-            other.fill(T::default(), &mut line, window.x);
-        }
+        timed(Part::Sets, || {
+            let parts = self.split(own, self.bands().map(|ys| ys.start));
+            map(self.len() + other.len(), self.bands().zip(parts), |(ys, (start, own))| {
+                let mut line = vec![T::default(); window.width];
+                for row in self.rows_within(ys) {
+                    let Some(other) = other.row(row.y) else { continue };
+                    other.spread(values, &mut line, window.x);
+                    change(&row.after(start), &line, own, window.x);
+                    other.fill(T::default(), &mut line, window.x);
+                }
+            });
+        });
     }
 }
 

@@ -3,5 +3,5 @@
 mod cell_set;
 mod grid;
 
-pub use cell_set::{CellSet, SetRow};
+pub use cell_set::CellSet;
 pub use grid::{Grid, Lengths, Window};

@@ -4,7 +4,8 @@ use super::extension::Extension;
 use crate::geometry::{CellSet, Window};
 use crate::operator::FftConvolution;
 use crate::parallel::map;
-use crate::real::{Real, dot, largest, sum};
+use crate::parts::{Part, timed};
+use crate::real::{Real, dot, each, largest, sum};
 use crate::tuning::BAND;
 
 /// What one application of a preconditioner finds.
@@ -36,10 +37,8 @@ pub struct Identity {
 
 impl<T: Real> Preconditioner<T> for Identity {
     fn apply(&mut self, _: &CellSet, offset: T, r: &mut [T], z: &mut [T]) -> Preconditioned {
-        for (r, z) in r.iter_mut().zip(&mut *z) {
-            *r = *r - offset;
-            *z = *r;
-        }
+        each(r, |r| *r = *r - offset);
+        z.copy_from_slice(r);
         Preconditioned { largest: largest(r).to_f64(), product: dot(r, z), sum: sum(z) }
     }
 
@@ -64,10 +63,8 @@ impl TorusInverse<'_> {
     /// `(G_CC)^-1 <= (G^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound; wrapping the lattice on a torus
     /// makes it an estimate that a residual as wide as the torus can exceed by some ten per cent.
     pub const SAFETY: f64 = 2.0;
-}
 
-impl Preconditioner<f32> for TorusInverse<'_> {
-    fn apply(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
+    fn precondition(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
         let Self { transform, extension, .. } = self;
         let Window { x: x0, y: y0, width, .. } = transform.window();
         let bands = transform.bands();
@@ -150,6 +147,12 @@ impl Preconditioner<f32> for TorusInverse<'_> {
             product,
             sum: total,
         }
+    }
+}
+
+impl Preconditioner<f32> for TorusInverse<'_> {
+    fn apply(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
+        timed(Part::Preconditioner, || self.precondition(set, offset, r, z))
     }
 
     fn energy_factor(&self) -> f64 {

@@ -5,7 +5,8 @@ use super::pcg::{Energy, PcgOutcome, StoppingCriteria, Vectors, pcg};
 use super::preconditioner::{Identity, TorusInverse};
 use crate::geometry::CellSet;
 use crate::operator::{Conditioning, Operators, Recipe};
-use crate::real::{Real, largest};
+use crate::parts::{Part, timed};
+use crate::real::{Real, largest, update};
 use contact_model::Stop;
 
 /// Room for linear systems, kept from one to the next.
@@ -70,24 +71,26 @@ impl Workspace {
         };
         let mut identity = Identity { smallest_eigenvalue: operators.table().smallest_eigenvalue() };
         let (mut operator, torus) = operators.system(recipe);
-        let outcome = if recipe.is_single() {
-            let v = &mut self.single;
-            v.load(right, unit);
-            let outcome = if let Some(transform) = torus {
-                let mut inverse = TorusInverse { transform, extension: &mut self.extension };
-                pcg(&mut operator, &mut inverse, v, fixed_sum, criteria, stop)
+        let outcome = timed(Part::Vectors, || {
+            if recipe.is_single() {
+                let v = &mut self.single;
+                v.load(right, unit);
+                let outcome = if let Some(transform) = torus {
+                    let mut inverse = TorusInverse { transform, extension: &mut self.extension };
+                    pcg(&mut operator, &mut inverse, v, fixed_sum, criteria, stop)
+                } else {
+                    pcg(&mut operator, &mut identity, v, fixed_sum, criteria, stop)
+                };
+                v.unload(right, unit);
+                outcome
             } else {
-                pcg(&mut operator, &mut identity, v, fixed_sum, criteria, stop)
-            };
-            v.unload(right, unit);
-            outcome
-        } else {
-            let v = &mut self.double;
-            v.load(right, unit);
-            let outcome = pcg(&mut operator, &mut identity, v, fixed_sum, criteria, stop);
-            v.unload(right, unit);
-            outcome
-        };
+                let v = &mut self.double;
+                v.load(right, unit);
+                let outcome = pcg(&mut operator, &mut identity, v, fixed_sum, criteria, stop);
+                v.unload(right, unit);
+                outcome
+            }
+        });
         operators.applications += outcome.applications;
         PcgOutcome { energy: outcome.energy * square, ..outcome }
     }
@@ -95,15 +98,11 @@ impl Workspace {
 
 impl<T: Real> Vectors<T> {
     fn load(&mut self, right: &[f64], unit: f64) {
-        for (r, right) in self.r.iter_mut().zip(right) {
-            *r = T::of(right / unit);
-        }
+        update(&mut self.r, right, |r, right| *r = T::of(right / unit));
     }
 
     fn unload(&self, solution: &mut [f64], unit: f64) {
-        for (solution, x) in solution.iter_mut().zip(&self.x) {
-            *solution = unit * x.to_f64();
-        }
+        update(solution, &self.x, |solution, x| *solution = unit * x.to_f64());
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::prepared::{NAME, PreparedBem3d};
 use crate::active_set::{self, Limits, Solved, Target};
+use crate::parts::{Part, timed};
 use crate::stiffness::{self, Stiffness};
 use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
 use std::f64::consts::PI;
@@ -36,7 +37,7 @@ impl PreparedContact for PreparedBem3d {
             Target::Force(asked) => ((solved.p.iter().sum::<f64>() - asked) / asked).abs(),
             Target::Approach(_) => 0.0,
         };
-        self.state(solved, tangent, miss, stop)
+        timed(Part::Results, || self.state(solved, tangent, miss, stop))
     }
 }
 

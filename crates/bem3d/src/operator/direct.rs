@@ -12,18 +12,18 @@ pub struct DirectSum<'a>(pub &'a KernelTable);
 impl<T: Real> InfluenceOperator<T> for DirectSum<'_> {
     /// `u_i = sum_j I(i - j) p_j`. Cost: O(sources x targets).
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
-        u.fill(T::default());
-        for source in sources.rows() {
-            let pressure = &p[source.span()];
-            for target in targets.rows() {
+        targets.update(sources.len() * targets.len(), u, |target, u| {
+            let u = &mut u[target.span()];
+            u.fill(T::default());
+            for source in sources.rows() {
                 let line = self.0.row(source.y.abs_diff(target.y));
-                for (&x, u) in target.columns.iter().zip(&mut u[target.span()]) {
-                    let pairs = source.columns.iter().zip(pressure);
+                for (&x, u) in target.columns.iter().zip(&mut *u) {
+                    let pairs = source.columns.iter().zip(&p[source.span()]);
                     let sum: f64 = pairs.map(|(&xs, p)| line[x.abs_diff(xs) as usize] * p.to_f64()).sum();
                     *u += T::of(sum);
                 }
             }
-        }
+        });
     }
 }
 

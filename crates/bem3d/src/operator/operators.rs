@@ -7,6 +7,7 @@ use super::recipe::{Application, Conditioning, Planner, Recipe};
 use super::two_level::TwoLevel;
 use crate::geometry::{CellSet, Window};
 use crate::kernel::KernelTable;
+use crate::parts::{Part, timed};
 use crate::real::Real;
 use crate::tuning::Tuning;
 use std::sync::Arc;
@@ -38,8 +39,8 @@ pub enum Planned<'a> {
     Direct(DirectSum<'a>),
     /// Smooth part on a lattice, near part by pairs.
     TwoLevel(&'a mut TwoLevel),
-    /// Transform in single precision.
-    Fft(&'a mut FftConvolution<f32>),
+    /// Transform in single precision, exact or shortened.
+    Fft(&'a mut FftConvolution<f32>, Part),
 }
 
 impl<T: Real> InfluenceOperator<T> for Planned<'_>
@@ -48,9 +49,9 @@ where
 {
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
         match self {
-            Self::Direct(direct) => direct.apply(sources, p, targets, u),
-            Self::TwoLevel(two_level) => two_level.apply(sources, p, targets, u),
-            Self::Fft(transform) => transform.apply(sources, p, targets, u),
+            Self::Direct(direct) => timed(Part::Direct, || direct.apply(sources, p, targets, u)),
+            Self::TwoLevel(two_level) => timed(Part::TwoLevel, || two_level.apply(sources, p, targets, u)),
+            Self::Fft(transform, part) => timed(*part, || transform.apply(sources, p, targets, u)),
         }
     }
 }
@@ -97,14 +98,14 @@ impl Operators {
     pub fn exact(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
         let Some(window) = self.begin(sources, targets, u) else { return };
         if self.planner().exact(sources.len(), targets.len(), window) == Application::Direct {
-            return DirectSum(&self.table).apply(sources, p, targets, u);
+            return timed(Part::Direct, || DirectSum(&self.table).apply(sources, p, targets, u));
         }
         let table = &self.table;
         let transform = planned(&mut self.double, window, &self.tuning, || {
             let lengths = table.exact_lengths(window);
             FftConvolution::new(window, lengths, table.symbol_f64(lengths))
         });
-        transform.apply(sources, p, targets, u);
+        timed(Part::Double, || transform.apply(sources, p, targets, u));
     }
 
     /// `u = G p` to five digits or more, for decisions that are checked with [`Self::exact`].
@@ -162,15 +163,18 @@ fn plan<'a>(
             if !two_level.as_ref().is_some_and(|o| o.split() == split && o.window().serves(window, tuning)) {
                 *two_level = None;
             }
-            Planned::TwoLevel(two_level.get_or_insert_with(|| TwoLevel::new(window, split)))
+            Planned::TwoLevel(
+                two_level.get_or_insert_with(|| timed(Part::Plans, || TwoLevel::new(window, split))),
+            )
         }
         Application::Fft(lengths) => {
             let exact = lengths == table.exact_lengths(window);
-            let slot = if exact { single } else { shortened };
-            Planned::Fft(planned(slot, window, tuning, || {
+            let (slot, part) = if exact { (single, Part::Single) } else { (shortened, Part::Shortened) };
+            let transform = planned(slot, window, tuning, || {
                 let symbol = if exact { table.symbol_f32(lengths) } else { table.shortened_symbol(lengths) };
                 FftConvolution::new(window, lengths, symbol)
-            }))
+            });
+            Planned::Fft(transform, part)
         }
     }
 }
@@ -185,7 +189,7 @@ fn planned<'a, T: Real>(
     if !slot.as_ref().is_some_and(|c| c.window().serves(window, tuning)) {
         *slot = None;
     }
-    slot.get_or_insert_with(make)
+    slot.get_or_insert_with(|| timed(Part::Plans, make))
 }
 
 #[cfg(test)]

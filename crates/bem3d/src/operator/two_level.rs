@@ -12,6 +12,7 @@ use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::Symbol;
 use crate::kernel::love::influence;
+use crate::parallel::map;
 use crate::real::Real;
 use std::fmt;
 
@@ -110,30 +111,33 @@ impl TwoLevel {
         (cell / self.split.spacing - first, &self.weights[cell % self.split.spacing])
     }
 
-    /// Pressure to the nodes: the transpose of [`Self::interpolate`].
+    /// Pressure to the nodes: the transpose of [`Self::interpolate`]. A row of nodes gathers from the rows of cells around it.
     fn restrict<T: Real>(&mut self, sources: &CellSet, p: &[T]) {
         let mut charge = std::mem::take(&mut self.charge);
-        charge.fill(0.0);
-        let width = self.lattice.width;
-        for row in sources.rows() {
-            let (ny, wy) = self.node(row.y, self.lattice.y);
-            for (&x, p) in row.columns.iter().zip(&p[row.span()]) {
-                let (nx, wx) = self.node(x as usize, self.lattice.x);
-                for (j, &wy) in wy.iter().enumerate() {
-                    let line = &mut charge[(ny + j) * width + nx..][..wx.len()];
+        let (Split { spacing, order, .. }, lattice) = (self.split, self.lattice);
+        let rows = charge.chunks_mut(lattice.width).enumerate();
+        map(sources.len() * order * order, rows, |(ny, line)| {
+            line.fill(0.0);
+            let last = ny + lattice.y;
+            let cells = (last + 1).saturating_sub(order) * spacing..(last + 1) * spacing;
+            for row in sources.rows_within(cells) {
+                let (first, wy) = self.node(row.y, lattice.y);
+                let wy = wy[ny - first];
+                for (&x, p) in row.columns.iter().zip(&p[row.span()]) {
+                    let (nx, wx) = self.node(x as usize, lattice.x);
                     let weighted = p.to_f64() * wy;
-                    for (c, &wx) in line.iter_mut().zip(wx) {
+                    for (c, &wx) in line[nx..].iter_mut().zip(wx) {
                         *c += weighted * wx;
                     }
                 }
             }
-        }
+        });
         self.charge = charge;
     }
 
     fn interpolate<T: Real>(&self, targets: &CellSet, u: &mut [T]) {
-        let width = self.lattice.width;
-        for row in targets.rows() {
+        let (width, order) = (self.lattice.width, self.split.order);
+        targets.update(targets.len() * order * order, u, |row, u| {
             let (ny, wy) = self.node(row.y, self.lattice.y);
             for (&x, u) in row.columns.iter().zip(&mut u[row.span()]) {
                 let (nx, wx) = self.node(x as usize, self.lattice.x);
@@ -144,18 +148,15 @@ impl TwoLevel {
                 }
                 *u = T::of(sum);
             }
-        }
+        });
     }
 
     fn add_near<T: Real>(&self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
         let radius = self.split.radius();
-        let mut near_rows = sources.rows();
-        for target in targets.rows() {
-            let above = |row: &crate::geometry::SetRow<'_>| row.y + radius <= target.y;
-            while near_rows.clone().next().is_some_and(|row| above(&row)) {
-                near_rows.next();
-            }
-            for source in near_rows.clone().take_while(|row| row.y < target.y + radius) {
+        // A guess of the pairs: all cells of a row of discs.
+        let work = targets.len() * radius * radius / self.window.count().div_ceil(sources.len().max(1));
+        targets.update(work, u, |target, u| {
+            for source in sources.rows_within((target.y + 1).saturating_sub(radius)..target.y + radius) {
                 let line = &self.near[source.y.abs_diff(target.y) * radius..][..radius];
                 let (columns, p) = (source.columns, &p[source.span()]);
                 let (mut low, mut high) = (0, 0);
@@ -171,7 +172,7 @@ impl TwoLevel {
                     *u += T::of(sum);
                 }
             }
-        }
+        });
     }
 }
 
