@@ -1,8 +1,11 @@
 //! Discrete Fourier transforms of even kernels.
 
 use crate::geometry::Lengths;
+use crate::parallel::{for_each, threads_for};
 use crate::real::Real;
-use realfft::RealFftPlanner;
+use crate::tuning::CACHE_LINE;
+use realfft::{RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex;
 use std::sync::Arc;
 
 /// Real symbol of an even kernel on the half spectrum quarter, `symbol[kx * (ly / 2 + 1) + ky]`.
@@ -18,7 +21,7 @@ impl Symbol {
     /// Discrete Fourier transform of the even kernel `kernel(x, y)`, lags 0 ..= l/2 in each direction.
     ///
     /// Cost: one evaluation of the kernel a lag and two passes of real FFTs.
-    pub fn of_kernel(lengths: Lengths, kernel: impl Fn(usize, usize) -> f64) -> Self {
+    pub fn of_kernel(lengths: Lengths, kernel: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         Self::of_rows(lengths, |y, row| {
             for (x, value) in row.iter_mut().enumerate() {
                 *value = kernel(x, y);
@@ -27,26 +30,29 @@ impl Symbol {
     }
 
     /// The same of a kernel that `fill` writes row by row: at the lags `(0 ..= lx / 2, y)`.
-    pub fn of_rows(lengths: Lengths, fill: impl FnMut(usize, &mut [f64])) -> Self {
+    pub fn of_rows(lengths: Lengths, fill: impl Fn(usize, &mut [f64]) + Sync) -> Self {
         let (half_x, half_y) = (lengths.x / 2 + 1, lengths.y / 2 + 1);
-        let mut planner = RealFftPlanner::<f64>::new();
-        // table[y][x] -> transform along x -> transpose -> transform along y.
-        let mut by_column = vec![0.0; half_x * half_y];
-        even_rows(&mut planner, lengths.x, half_y, fill, |y, row| {
-            for (kx, &value) in row.iter().enumerate() {
-                by_column[kx * half_y + y] = value;
-            }
-        });
+        // Transform along x, then along y: some columns at a time are gathered from the rows.
+        let mut rows = vec![0.0; half_x * half_y];
         let mut values = vec![0.0; half_x * half_y];
-        even_rows(
-            &mut planner,
-            lengths.y,
-            half_x,
-            |kx, row| {
-                row.copy_from_slice(&by_column[kx * half_y..(kx + 1) * half_y]);
-            },
-            |kx, row| values[kx * half_y..(kx + 1) * half_y].copy_from_slice(row),
-        );
+        let threads = threads_for(rows.len());
+        let rooms = |length| -> Vec<EvenTransform> {
+            let plan = RealFftPlanner::new().plan_fft_forward(length);
+            (0..threads).map(|_| EvenTransform::new(&plan)).collect()
+        };
+        for_each(&mut rooms(lengths.x), rows.chunks_exact_mut(half_x).enumerate(), |transform, (y, row)| {
+            fill(y, row);
+            transform.apply(row);
+        });
+        let blocks = values.chunks_mut(GATHERED * half_y).enumerate();
+        for_each(&mut rooms(lengths.y), blocks, |transform, (block, columns)| {
+            for (y, row) in rows.chunks_exact(half_x).enumerate() {
+                for (column, &value) in columns.chunks_exact_mut(half_y).zip(&row[block * GATHERED..]) {
+                    column[y] = value;
+                }
+            }
+            columns.chunks_exact_mut(half_y).for_each(|column| transform.apply(column));
+        });
         Self { lengths, values }
     }
 
@@ -57,32 +63,39 @@ impl Symbol {
     }
 }
 
-/// Transforms `count` even sequences of circular length `length`, given and returned by their first `length / 2 + 1` values.
-fn even_rows(
-    planner: &mut RealFftPlanner<f64>,
-    length: usize,
-    count: usize,
-    mut fill: impl FnMut(usize, &mut [f64]),
-    mut take: impl FnMut(usize, &[f64]),
-) {
-    let plan = planner.plan_fft_forward(length);
-    let (mut input, mut output, mut scratch) =
-        (plan.make_input_vec(), plan.make_output_vec(), plan.make_scratch_vec());
-    let half = length / 2 + 1;
-    let mut row = vec![0.0; half];
-    for i in 0..count {
-        fill(i, &mut row);
-        input[..half].copy_from_slice(&row);
-        for x in 1..=(length - half) {
-            input[length - x] = row[x];
+/// Columns that are gathered from the rows at a time: a cache line of each.
+const GATHERED: usize = CACHE_LINE / size_of::<f64>();
+
+/// Transforms even sequences.
+struct EvenTransform {
+    plan: Arc<dyn RealToComplex<f64>>,
+    input: Vec<f64>,
+    output: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+}
+
+impl EvenTransform {
+    fn new(plan: &Arc<dyn RealToComplex<f64>>) -> Self {
+        let plan = Arc::clone(plan);
+        let (input, output, scratch) =
+            (plan.make_input_vec(), plan.make_output_vec(), plan.make_scratch_vec());
+        Self { plan, input, output, scratch }
+    }
+
+    /// Transforms a sequence given by its first half, `length / 2 + 1` values, to that half of its transform.
+    fn apply(&mut self, half: &mut [f64]) {
+        let Self { plan, input, output, scratch } = self;
+        let length = input.len();
+        input[..half.len()].copy_from_slice(half);
+        for x in 1..=(length - half.len()) {
+            input[length - x] = half[x];
         }
         // Lengths come from the plan itself, so this cannot fail.
-        let done = plan.process_with_scratch(&mut input, &mut output, &mut scratch);
+        let done = plan.process_with_scratch(input, output, scratch);
         debug_assert!(done.is_ok());
-        for (value, spectrum) in row.iter_mut().zip(&output) {
+        for (value, spectrum) in half.iter_mut().zip(output) {
             *value = spectrum.re;
         }
-        take(i, &row);
     }
 }
 

@@ -164,6 +164,8 @@ impl KernelTable {
 
     /// Symbol of the kernel at the lags of a circular grid, each taken the shorter way round.
     fn exact_symbol(&self, lengths: Lengths) -> Symbol {
+        // The periodic kernel is made before threads ask for it.
+        let _ = self.shift();
         Symbol::of_rows(lengths, |y, row| self.fill(y, row))
     }
 }

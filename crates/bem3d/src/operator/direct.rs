@@ -12,6 +12,8 @@ pub struct DirectSum<'a>(pub &'a KernelTable);
 impl<T: Real> InfluenceOperator<T> for DirectSum<'_> {
     /// `u_i = sum_j I(i - j) p_j`. Cost: O(sources x targets).
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
+        // The periodic kernel is made before threads ask for it.
+        let _ = self.0.shift();
         targets.update(sources.len() * targets.len(), u, |target, u| {
             let u = &mut u[target.span()];
             u.fill(T::default());
