@@ -9,10 +9,10 @@ pub use bench::BenchArguments;
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
 use sizes::{Both, LineSizes, Maps, Reduced, Solid};
-pub use studies::Redraw;
 use studies::{
     AccuracyCost, Audit, BookArguments, BudgetCheck, Reference, StabilityArguments, TwoCasesArguments,
 };
+pub use studies::{Redraw, TuningArguments};
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
 ///
@@ -76,6 +76,8 @@ pub enum Command {
     /// What an answer costs: work, time, memory and certificate of each solve.
     #[command(after_long_help = bench::HELP)]
     Bench(BenchArguments),
+    /// What half and twice of each tuned constant of the solver cost on this machine (tuning.csv).
+    Tuning(TuningArguments),
     /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and picture).
     #[command(after_help = EXPAND)]
     AccuracyCost(AccuracyCost),
@@ -124,7 +126,7 @@ impl Command {
                 a.fill(&mut request);
             }
             Self::Audit(a) => a.solid.fill(&mut request),
-            Self::Bench(_) | Self::Redraw(_) | Self::Book(_) => {}
+            Self::Bench(_) | Self::Redraw(_) | Self::Book(_) | Self::Tuning(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),
             Self::AccuracyCost(a) => request.out = Some(a.out.clone()),

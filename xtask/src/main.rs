@@ -10,7 +10,7 @@
 mod arguments;
 mod book;
 
-use arguments::{Arguments, BenchArguments, Command, Redraw};
+use arguments::{Arguments, BenchArguments, Command, Redraw, TuningArguments};
 use clap::Parser as _;
 use evaluation::{BenchRow, Outcome, Run};
 use runs::{Error, Reporter, Result, Store};
@@ -34,6 +34,7 @@ fn execute(command: Command) -> Result<ExitCode> {
         Command::CheckReference(options) => return check_reference(options.bless, &options.out),
         Command::Stability(options) => return stability(options.thorough, &options.out),
         Command::Bench(options) => return bench(options),
+        Command::Tuning(options) => return tuning(options),
         Command::Redraw(options) => return redraw(options),
         Command::Book(options) => return book::book(options.pictures),
         _ => {}
@@ -165,6 +166,9 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
     if let Some(directory) = csv.as_deref().and_then(Path::parent) {
         runs::files::create_directory(directory)?;
     }
+    if options.parts {
+        evaluation::measure_parts();
+    }
     let table = Mutex::new(BenchTable::default());
     let rows = evaluation::bench(&options.bench()?, &|row| {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
@@ -184,6 +188,9 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
             drawn.files.iter().for_each(|file| runs::out!("{}", file.display()));
             drawn.slopes.iter().for_each(|slope| runs::out!("{slope}"));
         }
+    }
+    if options.parts {
+        evaluation::parts_table(&rows).iter().for_each(|line| runs::out!("{line}"));
     }
     let missing = rows.iter().filter(|row| !row.converged()).count();
     if missing > 0 {
@@ -254,6 +261,25 @@ fn line(row: &BenchRow) -> Result<String> {
         _ => field(name).to_owned(),
     };
     Ok(printed(row).map(|(name, width)| format!("{:>width$}", short(name))).join(" "))
+}
+
+/// Prints what each constant is worth as it is found.
+fn tuning(options: &TuningArguments) -> Result<ExitCode> {
+    let TuningArguments { only, repetitions, out } = options;
+    let header = std::sync::Once::new();
+    let print = |row: &evaluation::ConstantRow| {
+        header.call_once(|| {
+            let (name, time, work) = ("constant", "time, half", "applications, half");
+            runs::out!("{name:<22} {time:>10} {:>10} {work:>18} {:>18}", "twice", "twice");
+        });
+        let evaluation::ConstantRow { name, half, twice } = *row;
+        let missed = if half.converged && twice.converged { "" } else { "  not all loads converged" };
+        let (a, b) = (half.applications, twice.applications);
+        runs::out!("{name:<22} {:>10.2} {:>10.2} {a:>18.2} {b:>18.2}{missed}", half.time, twice.time);
+    };
+    let path = evaluation::tuning(only, usize::from(*repetitions), out, &Reporter::new(), &print)?;
+    runs::out!("{}", path.display());
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Prints the table of hard cases; one that fails does not stop the others.

@@ -1,15 +1,14 @@
-//! Sweeps one surface over forces and prints the work of each load, and where the time went.
+//! Sweeps one surface over forces and prints the work of each load.
 //!
-//! `sweep MAP.npy TOLERANCE F1,F2,...` for a square float64 NPY map (L = E* = 1), or `sweep CELLS:DF:SEED TOLERANCE F1,...` for a
-//! self-affine one. Forces are F_bar in the measured rms height. `RAYON_NUM_THREADS` is the number of threads.
+//! `sweep MAP.npy TOLERANCE F1,F2,...` for a square float64 NPY map (L = E* = 1), or `sweep CELLS:DF:SEED
+//! TOLERANCE F1,...` for a
+//! self-affine one. Forces are F_bar in the measured rms height.
 
-use bem3d::{Bem3d, benchmarks};
+use bem3d::Bem3d;
 use contact_model::{ContactModel, Error, HeightMap, Load, Scene, SelfAffine, Surface};
 use std::error::Error as StdError;
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 use std::time::Instant;
-
-static CLOCK: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 fn main() -> Result<(), Box<dyn StdError>> {
     let arguments: Vec<String> = std::env::args().collect();
@@ -20,7 +19,6 @@ fn main() -> Result<(), Box<dyn StdError>> {
     let model = Bem3d { cells, tolerance: tolerance.parse()?, ..Bem3d::default() };
     let mut scene = Scene::new(surface, 1.0);
     scene.outputs.area = true;
-    benchmarks::measure_parts(|| CLOCK.elapsed().as_nanos() as u64);
     let start = Instant::now();
     let mut prepared = model.prepare(&scene, seed)?;
     let normalisation = prepared.normalisation();
@@ -52,13 +50,6 @@ fn main() -> Result<(), Box<dyn StdError>> {
         );
     }
     println!("all loads {:.3} s", all.elapsed().as_secs_f64());
-    let parts = benchmarks::take_parts();
-    let total: u64 = parts.iter().map(|(_, spent)| spent.time).sum();
-    for (part, spent) in parts {
-        let share = 100.0 * spent.time as f64 / total as f64;
-        let seconds = spent.time as f64 * 1e-9;
-        println!("{:<32} {:>7} times {seconds:>9.3} s {share:>5.1} %", part.name(), spent.times);
-    }
     Ok(())
 }
 

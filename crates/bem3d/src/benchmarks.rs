@@ -1,12 +1,31 @@
 //! The operators and the parts of a solve as a benchmark sees them. Not part of the interface: nothing here is kept from version to version.
 
 pub use crate::parts::{Part, Spent, measure as measure_parts, take as take_parts};
+pub use crate::tuning::{CONSTANTS, Constant};
 
 use crate::geometry::{CellSet, Grid, Lengths};
 use crate::kernel::KernelTable;
 use crate::linear::Factor;
+use crate::model::Bem3d;
 use crate::operator::{DirectSum, FftConvolution, InfluenceOperator, Split, TwoLevel};
-use contact_model::Boundary;
+use crate::tuning::Tuning;
+use contact_model::{Boundary, PreparedContact, Result, Scene};
+
+/// A surface prepared with half, twice or another multiple of one constant.
+///
+/// # Errors
+/// As [`contact_model::ContactModel::prepare`].
+pub fn prepare_tuned(
+    model: &Bem3d,
+    scene: &Scene,
+    seed: u64,
+    constant: Constant,
+    factor: f64,
+) -> Result<Box<dyn PreparedContact>> {
+    let mut tuning = Tuning::DEFAULT;
+    (constant.1)(&mut tuning, factor);
+    model.prepare_tuned(scene, seed, &tuning)
+}
 
 /// One application of the named operator (`direct`, `two levels`, `f32`, `f64`, `inverse`) between every `step`-th cell of a grid.
 pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> f64>> {

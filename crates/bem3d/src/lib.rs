@@ -67,10 +67,20 @@
 //! `cargo xtask bench` prints the work of each load on any surface; the book has tables. The two-level operator is for square
 //! cells with free boundaries; oblong cells and periodic maps take transforms instead.
 //!
+//! # Threads and bits
+//!
+//! A solve shares transforms, vectors, sums and factors among the threads of the `rayon` pool in which it is called (without one, the
+//! global pool: all cores), where they are large enough. Work is cut into pieces by sizes alone: no bit of a state depends on the number
+//! of threads, and a solve needs no more memory on many. Ensembles run one surface a thread in one pool; threads that have run out of
+//! surfaces help inside the last ones.
+//!
+//! Transforms and factors choose the widest vector instructions that the processor has, so that results are the same bits on processors
+//! with the same instructions, and the same to rounding elsewhere. Without the features `simd` and `faer` they take none beyond those of
+//! the architecture.
+//!
 //! # What it does not do
 //!
-//! Adhesion, friction and rheology are refused at `prepare`. One solve runs on one thread, but for factorisations; ensembles
-//! are parallel over surfaces.
+//! Adhesion, friction and rheology are refused at `prepare`.
 
 mod active_set;
 mod geometry;

@@ -1,9 +1,9 @@
 //! Every tuned constant of this crate: meaning, unit and value.
 //!
-//! All but `extended` and `kept_candidates` come from the first engine with their values unchanged, set between 2026-11-20 and
-//! 2026-11-21. The benchmarks of those days (`data/bench`) are of a two-core AMD EPYC of 2024; which command measured which constant was
-//! not recorded. None of these numbers changes what a result converges to: they choose between ways to it and decide when an iteration
-//! evaluates the exact gap. Results that are compared bit by bit need the same values.
+//! None of these numbers changes what a result converges to: they choose between ways to it and decide when an iteration evaluates the
+//! exact gap. Results that are compared bit by bit need the same values. `cargo xtask tuning` measures on the machine in hand what half and
+//! twice of each constant cost; `data/bench/tuning.csv` is such a table. Most were set between 2026-11-20 and 2026-11-22 on two-core
+//! machines (AMD EPYC of 2024, Intel Xeon with AVX-512).
 
 /// Constants that a solve reads; [`Tuning::DEFAULT`] is what is shipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -194,6 +194,76 @@ impl Tuning {
     };
 }
 
+/// A constant by its name, and what multiplies it.
+pub type Constant = (&'static str, fn(&mut Tuning, f64));
+
+/// Every constant of [`Tuning`], for a study of what each is worth. A torus is never shorter than its window, an order never odd, a count
+/// never 0.
+pub const CONSTANTS: [Constant; 58] = [
+    ("pair_ns", |t, f| t.pair_ns *= f),
+    ("point_ns", |t, f| t.point_ns *= f),
+    ("single", |t, f| t.single *= f),
+    ("close_pair_ns", |t, f| t.close_pair_ns *= f),
+    ("spread_ns", |t, f| t.spread_ns *= f),
+    ("reach", |t, f| t.reach = scaled(t.reach, f)),
+    ("order", |t, f| t.order = 2 * scaled(t.order / 2, f)),
+    ("scattered", |t, f| t.scattered = scaled(t.scattered, f)),
+    ("largest_scattered", |t, f| t.largest_scattered = scaled(t.largest_scattered, f)),
+    ("kept_window", |t, f| t.kept_window *= f),
+    ("shortened", |t, f| t.shortened = (t.shortened * f).max(1.1)),
+    ("factor_ns", |t, f| t.factor_ns *= f),
+    ("applications", |t, f| t.applications *= f),
+    ("factors", |t, f| t.factors *= f),
+    ("largest_factor", |t, f| t.largest_factor = scaled(t.largest_factor, f)),
+    ("always_factored", |t, f| t.always_factored = scaled(t.always_factored, f)),
+    ("preconditioned", |t, f| t.preconditioned *= f),
+    ("preconditioned_large", |t, f| t.preconditioned_large *= f),
+    ("extended", |t, f| t.extended = scaled(t.extended, f)),
+    ("decay", |t, f| t.decay *= f as f32),
+    ("reduction.0", |t, f| t.reduction.0 *= f),
+    ("reduction.1", |t, f| t.reduction.1 *= f),
+    ("early_reduction", |t, f| t.early_reduction *= f),
+    ("early", |t, f| t.early *= f),
+    ("inner_steps", |t, f| t.inner_steps = scaled(t.inner_steps, f)),
+    ("floor", |t, f| t.floor *= f),
+    ("better", |t, f| t.better *= f),
+    ("patience", |t, f| t.patience = scaled(t.patience, f)),
+    ("gain.0", |t, f| t.gain.0 *= f),
+    ("gain.1", |t, f| t.gain.1 *= f),
+    ("single_noise", |t, f| t.single_noise *= f),
+    ("noise", |t, f| t.noise *= f),
+    ("candidates", |t, f| t.candidates *= f),
+    ("kept_candidates", |t, f| t.kept_candidates *= f),
+    ("factor_rounding", |t, f| t.factor_rounding *= f),
+    ("undecided_square", |t, f| t.undecided_square = scaled(t.undecided_square, f)),
+    ("undecided_far", |t, f| t.undecided_far *= f),
+    ("stiffness_rounds", |t, f| t.stiffness_rounds = scaled(t.stiffness_rounds, f)),
+    ("stiffness_steps", |t, f| t.stiffness_steps = scaled(t.stiffness_steps, f)),
+    ("stiffness_single", |t, f| t.stiffness_single *= f),
+    ("stiffness_share", |t, f| t.stiffness_share *= f),
+    ("stiffness_aim", |t, f| t.stiffness_aim *= f),
+    ("stiffness_reduction", |t, f| t.stiffness_reduction *= f),
+    ("tightenings", |t, f| t.tightenings = scaled(t.tightenings, f)),
+    ("tighter.0", |t, f| t.tighter.0 *= f),
+    ("tighter.1", |t, f| t.tighter.1 *= f),
+    ("tight_aim", |t, f| t.tight_aim *= f),
+    ("misjudged", |t, f| t.misjudged *= f),
+    ("warm", |t, f| t.warm *= f),
+    ("near.0", |t, f| t.near.0 *= f),
+    ("near.1", |t, f| t.near.1 *= f),
+    ("filling", |t, f| t.filling *= f),
+    ("counted", |t, f| t.counted *= f),
+    ("overshoot", |t, f| t.overshoot *= f),
+    ("extrapolation", |t, f| t.extrapolation *= f),
+    ("coarsest", |t, f| t.coarsest = scaled(t.coarsest, f)),
+    ("coarse_tolerance", |t, f| t.coarse_tolerance *= f),
+    ("coarse_iterations", |t, f| t.coarse_iterations = scaled(t.coarse_iterations, f)),
+];
+
+fn scaled(count: usize, factor: f64) -> usize {
+    ((count as f64 * factor).round() as usize).max(1)
+}
+
 // Layout: constants of the compiled code.
 
 /// Elements of a vector loop that are worth a thread: some ten microseconds, several times what waking one takes.
@@ -228,3 +298,20 @@ pub const MAGNIFIED: f64 = 1e10;
 pub const GAP_LOADS: usize = 60;
 /// Largest step of ln F between two of them.
 pub const GAP_STEP: f64 = 3.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_name_is_one_constant() {
+        for (i, (name, multiply)) in CONSTANTS.into_iter().enumerate() {
+            let (mut changed, mut back) = (Tuning::DEFAULT, Tuning::DEFAULT);
+            multiply(&mut changed, 2.0);
+            multiply(&mut back, 1.0);
+            assert_ne!(changed, Tuning::DEFAULT, "{name}");
+            assert_eq!(back, Tuning::DEFAULT, "{name}");
+            assert!(CONSTANTS[i + 1..].iter().all(|(other, _)| *other != name), "{name} twice");
+        }
+    }
+}

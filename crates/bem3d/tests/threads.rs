@@ -49,7 +49,7 @@ fn scene(fractal_dimension: f64, boundary: Boundary) -> Scene {
 
 #[test]
 fn no_bit_depends_on_the_number_of_threads() {
-    let model = Bem3d { cells: 600, tolerance: 1e-7, ..Bem3d::default() };
+    let model = Bem3d { cells: 400, tolerance: 1e-7, ..Bem3d::default() };
     // Factors, two levels, transforms of a part and of the whole; transforms of the period itself.
     for (scene, forces) in [
         (scene(2.2, Boundary::Free), &[1e-3, 0.02, 0.3, 5.0][..]),

@@ -10,7 +10,7 @@ use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::Table;
 use contact_model::{Stop, never};
-use runs::{Error, Progress, Result, collect, run_jobs, write_csv};
+use runs::{Error, Progress, Result, Threads, collect, run_jobs, write_csv};
 
 /// One solve and its repetition to a tight tolerance.
 struct SolvePair {
@@ -59,7 +59,7 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     all.truncate(wanted);
     progress.begin(&format!("{wanted} solves again, to {tolerance:?}"), wanted as u64);
     let order: Vec<usize> = (0..all.len()).collect();
-    let done = run_jobs(run.threads, &order, &never, |i, stop| {
+    let done = run_jobs(Threads::all(run.threads), &order, &never, |i, stop| {
         let (_, u, j) = all[i];
         let pair = again(units[u], j, tolerance, stop)?;
         progress.advance(1, false);

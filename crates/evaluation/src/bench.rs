@@ -3,17 +3,18 @@
 use crate::forces::Forces;
 use crate::realisation::Discretisation;
 use crate::table_of::{maybe, names};
+use bem3d::benchmarks::{Part, Spent, take_parts};
 use bem3d::{Bem3d, Method};
 use contact_model::{
     Boundary, Cells, Certificate, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene,
     SelfAffine, Stop, Surface, never,
 };
 use runs::{
-    Error, Result, collect, cpu_seconds, files, number, peak_memory, read_map, reset_peak_memory, run_jobs,
-    threads_for_memory, unit_area, write_npy,
+    Error, Result, Threads, collect, files, number, peak_memory, process_cpu_seconds, read_map,
+    reset_peak_memory, run_jobs, threads_for_memory, unit_area, write_npy,
 };
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
 /// What is measured.
@@ -31,10 +32,37 @@ pub struct Bench {
     pub method: Method,
     /// Each load from nothing, set-up included; else one prepared contact under increasing loads.
     pub cold: bool,
-    /// Series solved at the same time, at least 1. One solve runs on one thread.
+    /// Threads, at least 1: as many series are solved at the same time, and threads without a series help inside the others.
     pub threads: usize,
     /// Directory for the pressure of each row (NPY, row-major, in units of E*).
     pub pressure: Option<PathBuf>,
+}
+
+/// Lets each row say where its time went, from now on in every solve of the process.
+pub fn measure_parts() {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    bem3d::benchmarks::measure_parts(|| START.elapsed().as_nanos() as u64);
+}
+
+/// Where the time of some rows went: a line for each part, the largest first.
+pub fn parts_table(rows: &[BenchRow]) -> Vec<String> {
+    let mut parts: Vec<(Part, Spent)> = Vec::new();
+    for &(part, spent) in rows.iter().flat_map(|row| &row.parts) {
+        match parts.iter_mut().find(|(p, _)| *p == part) {
+            Some((_, sum)) => {
+                *sum = Spent { time: sum.time + spent.time, times: sum.times + spent.times };
+            }
+            None => parts.push((part, spent)),
+        }
+    }
+    parts.sort_by_key(|(_, spent)| std::cmp::Reverse(spent.time));
+    let all: u64 = parts.iter().map(|(_, spent)| spent.time).sum();
+    let line = |(part, spent): &(Part, Spent)| {
+        let (seconds, share) = (spent.time as f64 * 1e-9, 100.0 * spent.time as f64 / all.max(1) as f64);
+        format!("{:<34} {:>8} {seconds:>10.3} {share:>6.1} %", part.name(), spent.times)
+    };
+    let head = format!("{:<34} {:>8} {:>10} {:>8}", "part", "times", "seconds", "share");
+    std::iter::once(head).chain(parts.iter().map(line)).collect()
 }
 
 /// Reliefs of a bench.
@@ -74,8 +102,10 @@ pub struct BenchRow {
     pub normalisation: Normalisation,
     /// Wall-clock seconds: the first row of a prepared contact includes preparing it.
     pub seconds: f64,
-    /// Seconds of the processor on this thread, where the platform tells.
+    /// Seconds of the processor on all threads, where the platform tells and no other series was solved meanwhile.
     pub cpu_seconds: Option<f64>,
+    /// Where the time went: parts with their nanoseconds and how often they were done; empty unless [`measure_parts`] was called.
+    pub parts: Vec<(Part, Spent)>,
     /// Largest resident memory of the process during this row, in bytes, where the platform tells (with what other threads hold; since
     /// the start of the process where the count cannot be set back).
     pub peak_memory: Option<u64>,
@@ -148,6 +178,17 @@ impl BenchRow {
     }
 }
 
+impl Bench {
+    /// Number of series: a surface at a tolerance each.
+    fn series(&self) -> usize {
+        let surfaces = match &self.surfaces {
+            Surfaces::File(_) => 1,
+            Surfaces::SelfAffine { cells, fractal_dimensions, .. } => cells.len() * fractal_dimensions.len(),
+        };
+        surfaces * self.tolerances.len()
+    }
+}
+
 /// One relief at one tolerance.
 struct BenchSeries {
     surface: String,
@@ -186,7 +227,8 @@ pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) ->
         files::create_directory(directory)?;
     }
     let order: Vec<usize> = (0..series.len()).collect();
-    let done = run_jobs(bench.threads, &order, &never, |i, stop| series[i].run(bench, stop, found))?;
+    let done =
+        run_jobs(Threads::all(bench.threads), &order, &never, |i, stop| series[i].run(bench, stop, found))?;
     Ok(collect(done)?.into_iter().flatten().collect())
 }
 
@@ -244,7 +286,9 @@ impl BenchSeries {
                 contact = None; // Its memory first.
             }
             reset_peak_memory();
-            let cpu = cpu_seconds();
+            let alone = bench.threads == 1 || bench.series() == 1;
+            let cpu = process_cpu_seconds().filter(|_| alone);
+            let _ = take_parts();
             let start = Instant::now();
             let prepared = match &mut contact {
                 Some(prepared) => prepared,
@@ -265,7 +309,8 @@ impl BenchSeries {
                 state,
                 normalisation,
                 seconds,
-                cpu_seconds: cpu.zip(cpu_seconds()).map(|(a, b)| b - a),
+                cpu_seconds: cpu.zip(process_cpu_seconds()).map(|(a, b)| b - a),
+                parts: take_parts(),
                 peak_memory: peak_memory(),
                 cold: fresh,
             };

@@ -43,13 +43,14 @@ mod session;
 mod sweep;
 mod table_of;
 mod tables;
+mod tuning;
 
 pub use accuracy::{
     AccuracyPlan, AccuracyTarget, Coverage, Depth, Requirements, accuracy_cost, budget_check, plan,
     redraw_accuracy, settle,
 };
 pub use audit::audit;
-pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, write_bench};
+pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, measure_parts, parts_table, write_bench};
 pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
 pub use budget::{Budget, Budgeted, state_budgets, write_budget};
 pub use claim::{Claim, Verdict, claims_table, markdown, plain, readme_table, short, sort};
@@ -68,3 +69,4 @@ pub use session::Session;
 pub use sweep::sweep;
 pub use table_of::TableOf;
 pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, curves_table, samples_table};
+pub use tuning::{ConstantRow, Multiple, tuning};

@@ -3,12 +3,13 @@
 use crate::realisation::{Discretisation, Models, Realisation, RealisationResult};
 use crate::sample::{FIELDS, Sample};
 use contact_model::{Stop, never};
-use runs::{Error, Job, Progress, Result, Store, collect, number, run_stored, threads_for_memory};
+use runs::{Error, Job, Progress, Result, Store, Threads, collect, number, run_stored, threads_for_memory};
 
-/// Solves all units that the store does not hold, one per thread, the largest first, and gives the results in the order of
+/// Solves all units that the store does not hold, the largest first, and gives the results in the order of
 /// `units`. The results do not depend on `threads`.
 ///
-/// Each finished unit is stored at once: an interruption loses those in flight. There are no more threads than units that fit in memory.
+/// Each finished unit is stored at once: an interruption loses those in flight. No more units are in flight than fit in memory; threads without
+/// a unit help inside the others.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a size that does not fit in memory;
@@ -23,12 +24,13 @@ pub fn sweep(
     let models = Models::default();
     let largest =
         units.iter().map(|unit| unit.discretisation).max_by(|a, b| a.memory().total_cmp(&b.memory()));
-    let threads = largest.map_or(Ok(threads), |largest| {
+    let in_flight = largest.map_or(Ok(threads), |largest| {
         let name = if matches!(largest, Discretisation::Bem3d { .. }) { "cells" } else { "elements" };
         threads_for_memory(threads, largest.memory(), name, largest.size())
     })?;
     let jobs: Vec<RealisationJob<'_>> =
         units.iter().map(|unit| RealisationJob { unit, models: &models }).collect();
+    let threads = Threads { total: threads, jobs: in_flight };
     collect(run_stored(what, &jobs, store, threads, progress, &never)?)
 }
 

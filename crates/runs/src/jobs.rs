@@ -7,7 +7,35 @@ use contact_model::Stop;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Runs the jobs of `order` on some threads, those that stand first in it first, and gives their results by number; `None` where none was begun.
+/// Who works at the same time.
+///
+/// Each job in flight has a thread; those without a job help inside the others, where their work is large enough to share. Which jobs are
+/// in flight at the same time follows from their number, their memory and the threads; the results do not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Threads {
+    /// All threads.
+    pub total: usize,
+    /// Jobs in flight at most, by the memory that they need.
+    pub jobs: usize,
+}
+
+impl Threads {
+    /// As many jobs in flight as there are threads.
+    pub fn all(total: usize) -> Self {
+        Self { total, jobs: total }
+    }
+}
+
+/// Does some work on one thread, whatever the pool around: for what is timed and compared.
+pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
+        Ok(pool) => pool.install(work),
+        // A system that grants no thread has one, this one.
+        Err(_) => work(),
+    }
+}
+
+/// Runs the jobs of `order`, those that stand first in it first, and gives their results by number; `None` where none was begun.
 ///
 /// After a failure, or when `stop` says so, no further job begins, and those in flight are told by their own closure.
 ///
@@ -17,7 +45,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// # Errors
 /// [`Error::Parameter`] where the system does not grant the threads.
 pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
-    threads: usize,
+    threads: Threads,
     order: &[usize],
     stop: &(dyn Fn() -> bool + Sync),
     job: impl Fn(usize, Stop<'_>) -> Result<T, E> + Sync,
@@ -27,11 +55,15 @@ pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
     let halt = || failed.load(Ordering::Relaxed) || stop();
     // More threads than jobs only help where there are processors for them.
     let useful = order.len().max(std::thread::available_parallelism().map_or(1, usize::from));
+    let Threads { total, jobs } = threads;
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.clamp(1, useful))
+        .num_threads(total.clamp(1, useful))
         .build()
-        .map_err(|e| Error::parameter("threads", threads, format!("threads that the system grants ({e})")))?;
-    pool.broadcast(|_| {
+        .map_err(|e| Error::parameter("threads", total, format!("threads that the system grants ({e})")))?;
+    pool.broadcast(|worker| {
+        if worker.index() >= jobs.max(1) {
+            return;
+        }
         while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             if halt() {
                 return;
@@ -76,7 +108,7 @@ pub fn collect<T>(done: Vec<Option<Result<T, Error>>>) -> Result<Vec<T>, Error> 
     stopped.map_or(Ok(results), Err)
 }
 
-/// One independent piece of work, done on one thread and kept in a result store.
+/// One independent piece of work, kept in a result store.
 pub trait Job: Sync {
     /// What it gives.
     type Output: Send + Sync;
@@ -129,7 +161,7 @@ pub fn run_stored<J: Job>(
     what: &str,
     jobs: &[J],
     store: &Store,
-    threads: usize,
+    threads: Threads,
     progress: &dyn Progress,
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Vec<Option<Result<J::Output, J::Error>>>, Error> {
@@ -163,9 +195,26 @@ mod tests {
         let order = largest_first(7, |i| i % 3);
         assert_eq!(order, [2, 5, 1, 4, 0, 3, 6]);
         for threads in [0, 1, 2, 4] {
-            let squares = run_jobs::<_, ()>(threads, &order, &never, |i, _| Ok(i * i)).unwrap();
+            let squares = run_jobs::<_, ()>(Threads::all(threads), &order, &never, |i, _| Ok(i * i)).unwrap();
             assert_eq!(squares.into_iter().flatten().flatten().collect::<Vec<_>>(), [0, 1, 4, 9, 16, 25, 36]);
         }
+    }
+
+    #[test]
+    fn no_more_jobs_in_flight_than_there_is_memory_for() {
+        let (flying, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let order = largest_first(12, |_| 0);
+        let done = run_jobs::<_, ()>(Threads { total: 4, jobs: 2 }, &order, &never, |i, _| {
+            most.fetch_max(flying.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+            std::thread::sleep(std::time::Duration::from_millis(2));
+            flying.fetch_sub(1, Ordering::SeqCst);
+            Ok((i, rayon::current_num_threads()))
+        });
+        let threads = 4.min(order.len().max(std::thread::available_parallelism().map_or(1, usize::from)));
+        let expected: Vec<_> = (0..12).map(|i| (i, threads)).collect();
+        assert_eq!(done.unwrap().into_iter().flatten().flatten().collect::<Vec<_>>(), expected);
+        assert!(most.into_inner() <= 2);
+        assert_eq!(on_one_thread(rayon::current_num_threads), 1);
     }
 
     #[test]
@@ -227,7 +276,9 @@ mod tests {
         let jobs: Vec<Doubled> = (0..3).map(Doubled).collect();
         let run = || {
             let counter = Counter::default();
-            let done = collect(run_stored("doubles", &jobs, &store, 2, &counter, &never).unwrap()).unwrap();
+            let done =
+                collect(run_stored("doubles", &jobs, &store, Threads::all(2), &counter, &never).unwrap())
+                    .unwrap();
             assert_eq!(done, [0, 2, 4]);
             (counter.0.into_inner(), counter.1.into_inner())
         };
@@ -239,12 +290,12 @@ mod tests {
     #[test]
     fn a_failure_and_a_stop_begin_nothing_more() {
         let order = largest_first(3, |_| 0);
-        let failing = run_jobs(1, &order, &never, |i, halt| {
+        let failing = run_jobs(Threads::all(1), &order, &never, |i, halt| {
             assert!(!halt());
             if i == 1 { Err("no") } else { Ok(i) }
         });
         assert_eq!(failing.unwrap(), [Some(Ok(0)), Some(Err("no")), None]);
-        let stopped = run_jobs::<usize, ()>(1, &order, &|| true, |i, _| Ok(i)).unwrap();
+        let stopped = run_jobs::<usize, ()>(Threads::all(1), &order, &|| true, |i, _| Ok(i)).unwrap();
         assert_eq!(stopped, [None, None, None]);
     }
 }

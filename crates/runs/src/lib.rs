@@ -38,10 +38,11 @@ mod terminal;
 
 pub use csv_file::{CsvFile, Header, number, write_csv};
 pub use error::{Error, Result};
-pub use jobs::{Job, collect, largest_first, run_jobs, run_stored};
+pub use jobs::{Job, Threads, collect, largest_first, on_one_thread, run_jobs, run_stored};
 pub use manifest::{file_names, machine, write_manifest};
 pub use meters::{
-    available_memory, cpu_seconds, peak_memory, reset_peak_memory, resident_memory, threads_for_memory,
+    available_memory, cpu_seconds, peak_memory, process_cpu_seconds, reset_peak_memory, resident_memory,
+    threads_for_memory,
 };
 pub use npy::{read_map, unit_area, write_npy};
 pub use progress::{Progress, Silent};

@@ -28,5 +28,26 @@ pub fn machine() -> Value {
         let line = text.lines().find(|l| l.starts_with("model name"))?;
         Some(line.split_once(':')?.1.trim().to_owned())
     });
-    json!({ "os": std::env::consts::OS, "architecture": std::env::consts::ARCH, "cores": cores, "cpu": cpu })
+    let instructions = instructions();
+    json!({ "os": std::env::consts::OS, "architecture": std::env::consts::ARCH, "cores": cores, "cpu": cpu, "instructions": instructions })
+}
+
+/// The vector instructions of the processor that transforms and factors choose between at run time: results are the same bytes where they
+/// are the same.
+fn instructions() -> Vec<&'static str> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let all = [
+            ("sse4.1", std::arch::is_x86_feature_detected!("sse4.1")),
+            ("avx", std::arch::is_x86_feature_detected!("avx")),
+            ("avx2", std::arch::is_x86_feature_detected!("avx2")),
+            ("fma", std::arch::is_x86_feature_detected!("fma")),
+            ("avx512f", std::arch::is_x86_feature_detected!("avx512f")),
+        ];
+        all.into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect()
+    }
+    #[cfg(target_arch = "aarch64")]
+    return if std::arch::is_aarch64_feature_detected!("neon") { vec!["neon"] } else { Vec::new() };
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    Vec::new()
 }

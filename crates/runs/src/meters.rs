@@ -14,6 +14,17 @@ pub fn cpu_seconds() -> Option<f64> {
     text.split_whitespace().next()?.parse::<u64>().ok().map(|ns| ns as f64 * 1e-9)
 }
 
+/// Processor seconds of all threads of the process that are alive (Linux).
+pub fn process_cpu_seconds() -> Option<f64> {
+    std::thread::sleep(Duration::from_micros(1));
+    let tasks = fs::read_dir("/proc/self/task").ok()?;
+    let of = |task: std::io::Result<fs::DirEntry>| -> Option<u64> {
+        let text = fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse().ok()
+    };
+    Some(tasks.filter_map(of).sum::<u64>() as f64 * 1e-9)
+}
+
 /// Lets [`peak_memory`] count from here where the system allows it; else it goes on counting from the start of the process.
 pub fn reset_peak_memory() {
     // 5: the peak becomes what is resident now (proc(5), clear_refs).
@@ -47,7 +58,7 @@ fn reserved_by_thread() -> u64 {
     2 * 1024 * kilobytes + (1 << 27)
 }
 
-/// Threads that jobs of a size have memory for: at most `threads`. Under a limit of the address space what each thread reserves counts too.
+/// Jobs of a size that there is memory for at the same time: at most `threads`. Under a limit of the address space what each thread reserves counts too.
 ///
 /// # Errors
 /// [`Error::Parameter`] where a single job needs more memory than there is; `name` and `value` are what its size comes from. Where the
@@ -95,7 +106,7 @@ mod tests {
         let before = peak_memory().unwrap();
         let block: Vec<u64> = (0..1 << 20).collect();
         assert!(std::hint::black_box(&block).iter().sum::<u64>() > 0);
-        assert!(cpu_seconds().unwrap() > cpu);
+        assert!(cpu_seconds().unwrap() > cpu && process_cpu_seconds().unwrap() >= cpu);
         assert!(before > 0 && peak_memory().is_some() && resident_memory().is_some());
         reset_peak_memory();
     }

@@ -15,8 +15,9 @@ Examples:
 
 `seconds` is wall-clock time of everything that a row took: transforms and tables, coarse grids, every look with the exact operator,
 pressure and stiffness; not the reading and writing of files. The first row of a series (a surface at a tolerance) includes drawing or
-scaling the surface; with --cold every row does. `cpu_seconds` is processor time of the row's thread, `peak_memory_bytes` the most
-that the process held during the row, maps and all; both are empty where the system does not tell.
+scaling the surface; with --cold every row does. `cpu_seconds` is processor time of all threads, empty where several
+series are solved at the same time; `peak_memory_bytes` is the most that the process held during the row, maps and all. Both are empty
+where the system does not tell.
 
 Loads are solved and printed from the smallest up, whatever their order; the rows of the file stand in the order asked for. The file is
 whole all along: an interruption keeps the rows so far. A load that does not converge has its row with its status and the certificate
@@ -100,9 +101,13 @@ pub struct BenchArguments {
     /// out/bench-scaling.* unless named.
     #[arg(long, conflicts_with = "surface")]
     scaling: bool,
-    /// Series (surface and tolerance) solved at the same time; one solve runs on one thread.
+    /// Threads: as many series (surface and tolerance) are solved at the same time, and a thread without a series helps inside the others.
+    /// One series has all of them.
     #[arg(long, default_value_t = 1)]
     threads: usize,
+    /// Print where the time of the rows went, part by part.
+    #[arg(long)]
+    pub parts: bool,
     /// Write the pressure of every row as NPY into this directory.
     #[arg(long, value_name = "DIR")]
     pressure: Option<PathBuf>,

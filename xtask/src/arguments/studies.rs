@@ -168,6 +168,20 @@ pub struct StabilityArguments {
     pub out: PathBuf,
 }
 
+/// Flags of the tuned constants.
+#[derive(Debug, Args)]
+pub struct TuningArguments {
+    /// Constants with this in their names only.
+    #[arg(long, value_name = "NAME", default_value = "")]
+    pub only: String,
+    /// Runs of each value; their median counts.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    pub repetitions: u16,
+    /// Directory of the table.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
 /// Flags of the book.
 #[derive(Debug, Args)]
 pub struct BookArguments {

@@ -8,6 +8,7 @@ mod state;
 
 pub use options::{Bem3d, Method};
 
+use crate::tuning::Tuning;
 use contact_model::{
     Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface,
 };
@@ -33,6 +34,18 @@ impl ContactModel for Bem3d {
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
+        self.prepare_tuned(scene, seed, &Tuning::DEFAULT)
+    }
+}
+
+impl Bem3d {
+    /// [`ContactModel::prepare`] with other constants than those shipped.
+    pub(crate) fn prepare_tuned(
+        &self,
+        scene: &Scene,
+        seed: u64,
+        tuning: &Tuning,
+    ) -> Result<Box<dyn PreparedContact>> {
         scene.validate()?;
         let boundary = scene.effects.boundary;
         if boundary != Boundary::Periodic {
@@ -48,7 +61,7 @@ impl ContactModel for Bem3d {
             surface => surface_gen::height_map(surface, self.grid(surface.size()), seed)?,
         };
         let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));
-        Ok(Box::new(PreparedBem3d::new(*self, scene, &map, has_rms)?))
+        Ok(Box::new(PreparedBem3d::new(*self, scene, &map, has_rms, tuning)?))
     }
 }
 
@@ -94,10 +107,11 @@ mod tests {
         let tangent =
             |value| Stiffness { value, solve_error: 0.01, set_error: 0.02, q: Vec::new(), steps: 0 };
         let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);
-        let free = PreparedBem3d::new(Bem3d::default(), &scene, &map, true).unwrap();
+        let tuning = &Tuning::DEFAULT;
+        let free = PreparedBem3d::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
         approx::assert_relative_eq!(free.stiffness_error(&tangent(3.0)), 0.03);
         scene.effects.boundary = Boundary::Periodic;
-        let periodic = PreparedBem3d::new(Bem3d::default(), &scene, &map, true).unwrap();
+        let periodic = PreparedBem3d::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
         // k = k'/(1 - c k') is four times k' where c k' = 3/4, and so is its relative error.
         let value = 0.75 / periodic.problem.operators.table().shift();
         approx::assert_relative_eq!(periodic.stiffness_error(&tangent(value)), 0.12, max_relative = 1e-12);

@@ -31,7 +31,13 @@ pub struct PreparedBem3d {
 }
 
 impl PreparedBem3d {
-    pub(super) fn new(options: Bem3d, scene: &Scene, map: &HeightMap, has_rms: bool) -> Result<Self> {
+    pub(super) fn new(
+        options: Bem3d,
+        scene: &Scene,
+        map: &HeightMap,
+        has_rms: bool,
+        tuning: &Tuning,
+    ) -> Result<Self> {
         let highest = map.highest();
         // Differences first: an offset of the heights changes nothing.
         let mut z: Vec<f64> = map.heights().iter().map(|h| highest - h).collect();
@@ -49,7 +55,7 @@ impl PreparedBem3d {
         let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = z.iter().filter(|z| z.is_finite()).sum::<f64>() / defined as f64;
-        let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, &Tuning::DEFAULT);
+        let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, tuning);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         let normalisation =

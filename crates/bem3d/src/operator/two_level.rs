@@ -153,8 +153,8 @@ impl TwoLevel {
 
     fn add_near<T: Real>(&self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
         let radius = self.split.radius();
-        // A guess of the pairs: all cells of a row of discs.
-        let work = targets.len() * radius * radius / self.window.count().div_ceil(sources.len().max(1));
+        // Contact comes in clusters: most cells have others all around.
+        let work = targets.len() * sources.len().min(radius * radius);
         targets.update(work, u, |target, u| {
             for source in sources.rows_within((target.y + 1).saturating_sub(radius)..target.y + radius) {
                 let line = &self.near[source.y.abs_diff(target.y) * radius..][..radius];

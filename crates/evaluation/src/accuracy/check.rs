@@ -10,7 +10,7 @@ use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::{Table, binomial_test};
 use contact_model::never;
-use runs::{Error, Progress, Result, collect, files, run_jobs, write_csv};
+use runs::{Error, Progress, Result, Threads, collect, files, run_jobs, write_csv};
 use std::path::Path;
 use std::time::Instant;
 use surface_gen::surface_seed;
@@ -133,7 +133,7 @@ pub fn budget_check(
     files::create_directory(out)?;
     progress.begin(&format!("{cases} random cases against references"), cases as u64);
     let order: Vec<usize> = (0..cases).collect();
-    let done = run_jobs(threads, &order, &never, |i, _| {
+    let done = run_jobs(Threads::all(threads), &order, &never, |i, _| {
         let case = case(seed, i as u64);
         progress.advance(1, false);
         case

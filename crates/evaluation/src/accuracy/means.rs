@@ -8,7 +8,7 @@ use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Surface, never};
-use runs::{Error, Progress, Result, cpu_seconds};
+use runs::{Error, Progress, Result, cpu_seconds, on_one_thread};
 use std::sync::Arc;
 
 /// Tolerance of the ensembles: far below their scatter.
@@ -41,7 +41,7 @@ pub(crate) fn means(
     for d in DIMENSIONS {
         let mut found = Vec::new();
         for &discretisation in &all {
-            found.push(ensemble(discretisation, d, sizes.surfaces, seed)?);
+            found.push(on_one_thread(|| ensemble(discretisation, d, sizes.surfaces, seed))?);
             progress.advance(cost(&discretisation), false);
         }
         for (j, &force_bar) in LOADS.iter().enumerate() {

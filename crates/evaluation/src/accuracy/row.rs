@@ -2,7 +2,7 @@
 
 use super::problem::ProblemKey;
 use contact_model::{ContactModel, ContactState, Field, Load, Scene};
-use runs::{Error, Result, cpu_seconds, peak_memory, reset_peak_memory, resident_memory};
+use runs::{Error, Result, cpu_seconds, on_one_thread, peak_memory, reset_peak_memory, resident_memory};
 
 /// How an answer is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,13 +116,17 @@ impl StudyRow {
     }
 }
 
-/// Prepares and solves from nothing, with the meters running. A model that does not claim this load or surface gives `None`.
+/// Prepares and solves from nothing, on one thread, with the meters running. A model that does not claim this load or surface gives `None`.
 pub(crate) fn measure(
     model: &dyn ContactModel,
     scene: &Scene,
     load: Load,
     seed: u64,
 ) -> Result<Option<Answer>> {
+    on_one_thread(|| measure_here(model, scene, load, seed))
+}
+
+fn measure_here(model: &dyn ContactModel, scene: &Scene, load: Load, seed: u64) -> Result<Option<Answer>> {
     reset_peak_memory();
     let before = resident_memory();
     let start = cpu_seconds();

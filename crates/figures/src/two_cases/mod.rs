@@ -14,7 +14,7 @@ use evaluation::{Outcome, header};
 pub(crate) use picture::draw;
 use picture::table;
 use reading::{claim, summary};
-use runs::{Error, Progress, Result, collect, files, run_jobs, write_csv};
+use runs::{Error, Progress, Result, Threads, collect, files, run_jobs, write_csv};
 use std::path::Path;
 use std::time::Instant;
 pub(crate) use study::NAME;
@@ -99,7 +99,7 @@ fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> 
         .collect();
     progress.begin(&format!("{} surfaces of {} cells a side", units.len(), study.cells), units.len() as u64);
     let order: Vec<usize> = (0..units.len()).collect();
-    let done = run_jobs(study.threads, &order, &never, |i, stop| {
+    let done = run_jobs(Threads::all(study.threads), &order, &never, |i, stop| {
         let solves = one(study, units[i].0, units[i].1, stop)?;
         progress.advance(1, false);
         Ok(solves)

@@ -9,13 +9,14 @@ use crate::scenes::grid_comparison::{COMPARED, GridErrors, Quantities, on_grid, 
 use crate::scenes::human_readable::time;
 use crate::scenes::loads::Loading;
 use crate::scenes::numerics::{MOST_CELLS, Numerics};
+use crate::scenes::outcome::SharedStop;
 use crate::scenes::pictures;
 use crate::scenes::scene_file::{SceneFile, cells};
 use crate::scenes::scene_surface::SceneSurface;
 use crate::scenes::summary::short;
 use analysis::grid_error;
 use bem3d::Bem3d;
-use contact_model::{Boundary, Cells, Load, Stop, Surface};
+use contact_model::{Boundary, Cells, Load, Surface};
 use std::time::Instant;
 
 /// Tolerance of the solver as a part of the accuracy, and its limits.
@@ -59,9 +60,9 @@ impl SceneFile {
     /// [`crate::scenes::Error::Scene`] where no grid gives the accuracy or the predicted time is beyond the budget, with the accuracy that is to be had;
     /// for a scene without a model, a load or an output that an accuracy could be about; [`crate::scenes::Error::Run`] for what the pilot's
     /// solves refuse.
-    pub fn with_grid_for_accuracy(mut self, stop: Stop<'_>) -> Result<Self> {
+    pub fn with_grid_for_accuracy(mut self, stop: SharedStop<'_>) -> Result<Self> {
         let Some(target) = self.accuracy else { return Ok(self) };
-        calibration::threads(&self, 1)?;
+        calibration::jobs_in_memory(&self, 1)?;
         let place = self.models.iter().position(|m| matches!(m, Numerics::Bem3d(_)));
         let Some(place) = place.filter(|_| matches!(self.request, Loading::Loads(_))) else {
             let diagnostic =
@@ -92,7 +93,7 @@ impl SceneFile {
     }
 
     /// The first grid that gives an accuracy, with its scene.
-    fn first_grid(&self, model: &Numerics, target: AccuracyTarget, stop: Stop<'_>) -> Result<Chosen> {
+    fn first_grid(&self, model: &Numerics, target: AccuracyTarget, stop: SharedStop<'_>) -> Result<Chosen> {
         let AccuracyTarget { share, seconds: budget } = target;
         let percent = |share: f64| format!("{} %", short(100.0 * share));
         let failed = |error| runs::Error::model("the pilot of `accuracy`")(error);
@@ -123,7 +124,8 @@ impl SceneFile {
             }
             let start = Instant::now();
             let grid = on_grid(self, &model, longer).map_err(failed)?;
-            solved.push(solve(&grid, self.seed(0), &loads, stop).map_err(failed)?);
+            let timed = || solve(&grid, self.seed(0), &loads, stop);
+            solved.push(runs::on_one_thread(timed).map_err(failed)?);
             took = start.elapsed().as_secs_f64();
             let Some(worst) = Worst::of(&controlled(self), &solved) else { continue };
             // One small difference may be chance: the grid before may have had twice the error, no more.

@@ -47,7 +47,8 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let total = requested as f64 * surfaces;
     let begin = Instant::now();
     let stop = || begin.elapsed() > CALIBRATION_TIME;
-    let (solved, used) = small_solves(scene, &small, coarse, &stop).unwrap_or_default();
+    let timed = || small_solves(scene, &small, coarse, &stop);
+    let (solved, used) = runs::on_one_thread(timed).unwrap_or_default();
     let mut cost = solved.cost;
     let count = grid.columns as f64 * grid.rows as f64;
     let per_state = total / (solved.states.max(1)) as f64;
@@ -96,15 +97,15 @@ fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
     bytes.max(1.0)
 }
 
-/// As many threads as there is memory for.
-pub(crate) fn threads(scene: &SceneFile, most: usize) -> Result<usize> {
-    let mut threads = most;
+/// As many jobs at the same time as there is memory for.
+pub(crate) fn jobs_in_memory(scene: &SceneFile, most: usize) -> Result<usize> {
+    let mut jobs = most;
     for numerics in &scene.models {
         let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
         let memory = least_memory(scene, numerics);
-        threads = runs::threads_for_memory(threads, memory, name, numerics.size())?;
+        jobs = runs::threads_for_memory(jobs, memory, name, numerics.size())?;
     }
-    Ok(threads)
+    Ok(jobs)
 }
 
 #[derive(Default)]

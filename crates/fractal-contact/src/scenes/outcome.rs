@@ -3,12 +3,15 @@
 use crate::scenes::cost::Cost;
 use std::path::PathBuf;
 
+/// Polled from any thread, between iterations: `true` means stop now.
+pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// Where and how a scene is run; nothing here changes a number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
     /// Directory of the results.
     pub out: PathBuf,
-    /// Threads; each takes one model on one surface.
+    /// Threads: each takes one model on one surface; those that are left help inside the others.
     pub threads: usize,
     /// Whether stored results are computed again.
     pub fresh: bool,

@@ -148,7 +148,7 @@ impl Plan {
     /// # Errors
     /// As [`check`].
     pub fn calibrated(scene: &SceneFile) -> Result<Self> {
-        calibration::threads(scene, 1)?;
+        calibration::jobs_in_memory(scene, 1)?;
         let mut plan = Self::new(scene)?;
         for (numerics, model) in scene.models.iter().zip(&mut plan.models) {
             model.predicted = Some(calibration::predict(scene, numerics));

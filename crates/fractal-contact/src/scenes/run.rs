@@ -10,7 +10,7 @@ use crate::scenes::field_pictures;
 use crate::scenes::human_readable::number;
 use crate::scenes::manifest;
 use crate::scenes::model_on_surface::ModelOnSurface;
-use crate::scenes::outcome::{Options, SceneOutcome};
+use crate::scenes::outcome::{Options, SceneOutcome, SharedStop};
 use crate::scenes::pictures;
 use crate::scenes::plan::{ModelPlan, Plan};
 use crate::scenes::result_folder::ResultFolder;
@@ -20,11 +20,8 @@ use crate::scenes::state_result::{ModelResult, StateResult};
 use crate::scenes::summary;
 use crate::scenes::warnings::Warning;
 use analysis::{Column, Table, Value};
-use runs::{Header, Progress, Store, run_stored, write_csv};
+use runs::{Header, Progress, Store, Threads, run_stored, write_csv};
 use std::time::Instant;
-
-/// Polled from any thread, between iterations: `true` means stop now.
-pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
 ///
@@ -48,7 +45,8 @@ pub fn run(
 ) -> Result<SceneOutcome> {
     let start = Instant::now();
     runs::reset_peak_memory();
-    let threads = calibration::threads(scene, options.threads)?;
+    let threads =
+        Threads { total: options.threads, jobs: calibration::jobs_in_memory(scene, options.threads)? };
     runs::files::create_directory(&options.out)?;
     let store = Store::open(&options.out, options.fresh)?;
     runs::files::clean(&options.out)?;
