@@ -190,7 +190,9 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
         }
     }
     if options.parts {
-        evaluation::parts_table(&rows).iter().for_each(|line| runs::out!("{line}"));
+        for line in evaluation::parts_table(&rows) {
+            runs::out!("{line}");
+        }
     }
     let missing = rows.iter().filter(|row| !row.converged()).count();
     if missing > 0 {

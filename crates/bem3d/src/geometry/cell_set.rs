@@ -429,7 +429,7 @@ impl CellSet {
         other: &Self,
         values: &[T],
         own: &mut [T],
-        change: impl Fn(&SetRow<'_>, &[T], &mut [T], usize) + Sync,
+        change: impl Fn(SetRow<'_>, &[T], &mut [T], usize) + Sync,
     ) {
         let window = self.window().into_iter().chain(other.window()).reduce(Window::union);
         let Some(window) = window else { return };
@@ -440,7 +440,7 @@ impl CellSet {
                 for row in self.rows_within(ys) {
                     let Some(other) = other.row(row.y) else { continue };
                     other.spread(values, &mut line, window.x);
-                    change(&row.after(start), &line, own, window.x);
+                    change(row.after(start), &line, own, window.x);
                     other.fill(T::default(), &mut line, window.x);
                 }
             });

@@ -3,6 +3,7 @@
 use super::options::{Bem3d, Method};
 use crate::active_set::{self, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::Grid;
+use crate::real::{each, sum_of_pairs};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
@@ -40,21 +41,20 @@ impl PreparedBem3d {
     ) -> Result<Self> {
         let highest = map.highest();
         // Differences first: an offset of the heights changes nothing.
-        let mut z: Vec<f64> = map.heights().iter().map(|h| highest - h).collect();
+        let mut z = map.heights().to_vec();
+        each(&mut z, |h| *h = highest - *h);
         let rms = if map.undefined() == 0 {
             surface_gen::rms_height(&z)
         } else {
             surface_gen::rms_height(&z.iter().copied().filter(|z| z.is_finite()).collect::<Vec<_>>())
         };
         let height = if rms > 0.0 { rms } else { 1.0 };
-        for z in &mut z {
-            *z /= height;
-        }
+        each(&mut z, |z| *z /= height);
         let (grid, (dx, dy)) = (Grid::of(map), (map.dx(), map.dy()));
         let length = if grid.has_square_cells() { dx } else { dx.sqrt() * dy.sqrt() };
         let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
         let defined = z.len() - map.undefined();
-        let mean = z.iter().filter(|z| z.is_finite()).sum::<f64>() / defined as f64;
+        let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
         let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, tuning);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;

@@ -132,7 +132,7 @@ impl<T: Real> FftConvolution<T> {
             for (j, y) in (band * BAND..((band + 1) * BAND).min(height)).enumerate() {
                 let at = j * Self::STRIPE;
                 if !given(y) {
-                    for piece in pieces.iter_mut() {
+                    for piece in &mut pieces {
                         piece[at..at + Self::STRIPE].fill(Complex::default());
                     }
                     continue;
