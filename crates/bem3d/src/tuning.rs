@@ -197,7 +197,7 @@ impl Tuning {
 /// A constant by its name, and what multiplies it.
 pub type Constant = (&'static str, fn(&mut Tuning, f64));
 
-/// Every constant of [`Tuning`], for a study of what each is worth. A torus is never shorter than its window, an order never odd, a count
+/// Every constant of `Tuning`, for a study of what each is worth. A torus is never shorter than its window, an order never odd, a count
 /// never 0.
 pub const CONSTANTS: [Constant; 58] = [
     ("pair_ns", |t, f| t.pair_ns *= f),

@@ -1,6 +1,6 @@
 //! No bit of a state depends on the number of threads, nor on what else they do.
 
-use bem3d::{Bem3d, Boundary, ContactModel, ContactState, Load, Scene, SelfAffine, Surface};
+use bem3d::{Bem3d, Boundary, ContactModel, ContactState, Field, Load, Result, Scene, SelfAffine, Surface};
 use rayon::ThreadPoolBuilder;
 
 /// Every number of some states as bits.
@@ -18,7 +18,7 @@ fn bits(states: &[ContactState]) -> Vec<u64> {
             Some(certificate.complementarity),
             certificate.stiffness_error,
         ];
-        let fields = [state.pressure(), state.gap()].into_iter().flatten().flat_map(|field| field.values());
+        let fields = [state.pressure(), state.gap()].into_iter().flatten().flat_map(Field::values);
         let all = numbers.into_iter().flatten().chain(fields.copied());
         let counts = [state.report.iterations, state.report.applications].map(|n| n as u64);
         all.map(f64::to_bits).chain(counts).collect::<Vec<_>>()
@@ -26,41 +26,39 @@ fn bits(states: &[ContactState]) -> Vec<u64> {
     states.iter().flat_map(of).collect()
 }
 
-/// A path with fields on so many threads.
-fn path(threads: usize, model: Bem3d, scene: &Scene, forces: &[f64]) -> Vec<ContactState> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
-        let mut contact = model.prepare(scene, 5).unwrap();
-        let normalisation = contact.normalisation();
-        let load = |&f: &f64| Load::Force(normalisation.force(f).unwrap());
-        forces.iter().map(|f| contact.solve(load(f)).unwrap()).collect()
-    })
+/// A path with fields.
+fn path(model: Bem3d, scene: &Scene, forces: &[f64]) -> Result<Vec<ContactState>> {
+    let mut contact = model.prepare(scene, 5)?;
+    let normalisation = contact.normalisation();
+    forces.iter().map(|&f| contact.solve(Load::Force(normalisation.force(f)?))).collect()
 }
 
-fn scene(fractal_dimension: f64, boundary: Boundary) -> Scene {
-    let surface = SelfAffine::new(fractal_dimension, 1.0, 1.0).map(Surface::SelfAffine).unwrap();
-    let mut scene = Scene::new(surface, 1.0);
+fn scene(fractal_dimension: f64, boundary: Boundary) -> Result<Scene> {
+    let surface = SelfAffine::new(fractal_dimension, 1.0, 1.0)?;
+    let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
     scene.effects.boundary = boundary;
     let outputs = &mut scene.outputs;
     (outputs.pressure, outputs.gap, outputs.area) = (true, true, true);
     outputs.mean_gap = boundary == Boundary::Periodic;
-    scene
+    Ok(scene)
 }
 
 #[test]
 fn no_bit_depends_on_the_number_of_threads() {
     let model = Bem3d { cells: 400, tolerance: 1e-7, ..Bem3d::default() };
+    let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     // Factors, two levels, transforms of a part and of the whole; transforms of the period itself.
     for (scene, forces) in [
         (scene(2.2, Boundary::Free), &[1e-3, 0.02, 0.3, 5.0][..]),
         (scene(2.8, Boundary::Free), &[0.3, 1.0][..]),
         (scene(2.4, Boundary::Periodic), &[0.05, 2.0][..]),
     ] {
-        let states = path(1, model, &scene, forces);
+        let scene = scene.unwrap();
+        let on = |threads| pool(threads).install(|| path(model, &scene, forces).unwrap());
+        let states = on(1);
         let strategies: Vec<&str> = states.iter().map(|s| s.report.strategy.as_str()).collect();
-        let one = bits(&states);
         for threads in [2, 5] {
-            assert!(one == bits(&path(threads, model, &scene, forces)), "{threads} threads: {strategies:?}");
+            assert!(bits(&states) == bits(&on(threads)), "{threads} threads: {strategies:?}");
         }
     }
 }
@@ -69,22 +67,15 @@ fn no_bit_depends_on_the_number_of_threads() {
 #[test]
 fn solves_side_by_side_do_not_disturb_each_other() {
     let model = Bem3d { cells: 300, tolerance: 1e-6, ..Bem3d::default() };
-    let scenes = [scene(2.2, Boundary::Periodic), scene(2.5, Boundary::Periodic), scene(2.2, Boundary::Free)];
-    let alone: Vec<_> = scenes.iter().map(|scene| bits(&path(1, model, scene, &[0.1, 3.0]))).collect();
+    let scenes = [(2.2, Boundary::Periodic), (2.5, Boundary::Periodic), (2.2, Boundary::Free)]
+        .map(|(d, boundary)| scene(d, boundary).unwrap());
+    let solved = |scene| bits(&path(model, scene, &[0.1, 3.0]).unwrap());
+    let one = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let alone: Vec<_> = one.install(|| scenes.iter().map(solved).collect());
     let pool = ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     for _ in 0..3 {
-        let together = pool.broadcast(|context| {
-            scenes
-                .iter()
-                .skip(context.index())
-                .map(|scene| {
-                    let mut contact = model.prepare(scene, 5).unwrap();
-                    let normalisation = contact.normalisation();
-                    let load = |f| Load::Force(normalisation.force(f).unwrap());
-                    bits(&[0.1, 3.0].map(|f| contact.solve(load(f)).unwrap()))
-                })
-                .collect::<Vec<_>>()
-        });
+        let together =
+            pool.broadcast(|worker| scenes.iter().skip(worker.index()).map(solved).collect::<Vec<_>>());
         assert!(together[0] == alone && together[1] == alone[1..]);
     }
 }

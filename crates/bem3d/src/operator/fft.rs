@@ -402,8 +402,11 @@ mod tests {
             );
             operator.multiply(|y| wanted.contains(&y));
             let mut bands: Vec<Vec<(usize, f64)>> = operator.bands().map(|_| Vec::new()).collect();
-            let take = |band: &mut &mut Vec<_>, y: usize, row: &[f64]| band.push((y, row[4]));
-            operator.backward(|y| wanted.contains(&y), bands.iter_mut(), take);
+            operator.backward(
+                |y| wanted.contains(&y),
+                bands.iter_mut(),
+                |band, y, row| band.push((y, row[4])),
+            );
             (read, written) = (seen.into_inner().unwrap(), bands.concat());
         }
         read.sort_unstable();
