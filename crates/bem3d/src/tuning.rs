@@ -2,7 +2,7 @@
 //!
 //! None of these numbers changes what a result converges to: they choose between ways to it and decide when an iteration evaluates the
 //! exact gap. Results that are compared bit by bit need the same values. `cargo xtask tuning` measures on the machine in hand what half and
-//! twice of each constant cost; `data/bench/tuning.csv` is such a table. Most were set between 2026-11-20 and 2026-11-22 on two-core
+//! twice of each constant cost. Most were set between 2026-11-20 and 2026-11-22 on two-core
 //! machines (AMD EPYC of 2024, Intel Xeon with AVX-512).
 
 /// Constants that a solve reads; [`Tuning::DEFAULT`] is what is shipped.
