@@ -22,9 +22,7 @@ pub fn prepare_tuned(
     constant: Constant,
     factor: f64,
 ) -> Result<Box<dyn PreparedContact>> {
-    let mut tuning = Tuning::DEFAULT;
-    (constant.1)(&mut tuning, factor);
-    model.prepare_tuned(scene, seed, &tuning)
+    model.prepare_tuned(scene, seed, &Tuning::with_multiple(constant, factor))
 }
 
 /// One application of the named operator (`direct`, `two levels`, `f32`, `f64`, `inverse`) between every `step`-th cell of a grid.

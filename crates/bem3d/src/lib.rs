@@ -70,9 +70,10 @@
 //! # Threads and bits
 //!
 //! A solve shares transforms, vectors, sums and factors among the threads of the `rayon` pool in which it is called (without one, the
-//! global pool: all cores), where they are large enough. Work is cut into pieces by sizes alone: no bit of a state depends on the number
-//! of threads, and a solve needs no more memory on many. Ensembles run one surface a thread in one pool; threads that have run out of
-//! surfaces help inside the last ones.
+//! global pool: all cores), where they are large enough. Work is cut into tasks by sizes alone: no bit of a state depends on the number
+//! of threads. Each thread needs room for a few rows and columns. Ensembles run one surface a thread in one pool; threads that have run
+//! out of surfaces help inside the last ones. In a parallel iterator over surfaces, a thread that waits for its helpers may begin another
+//! surface, which then runs on it alone.
 //!
 //! Transforms and factors choose the widest vector instructions that the processor has, so that results are the same bits on processors
 //! with the same instructions, and the same to rounding elsewhere. Without the features `simd` and `faer` they take none beyond those of

@@ -1,63 +1,98 @@
-//! Work in pieces on the threads of the caller's pool.
+//! Work in tasks on the threads of the caller's pool.
 //!
-//! What a piece is depends on sizes alone, each is done by one thread, and what pieces give is put together in their order: no bit of a
-//! result depends on the number of threads. The pool is that of `rayon` in which a solve runs; its threads that have nothing else to do help,
-//! and none begins another solve while it waits. Without the feature `rayon` there is one thread.
+//! What a task is depends on sizes alone, each is done by one thread, and their results are put together in their order: no bit of a result
+//! depends on the number of threads. The pool is that of `rayon` in which a solve runs; its threads that have nothing else to do help.
+//! Parallel iterators of `rayon` would make buffers for each split instead of each thread, and need a second code without the feature
+//! `rayon`, where there is one thread.
+//!
+//! A thread that waits for its helpers may be given any other work of its pool, such as another solve of a parallel iterator over surfaces.
+//! Two rules keep that harmless: nothing is locked while tasks are shared, and what such a thread begins meanwhile runs on it alone, so that
+//! solves are never nested deeper than that.
 
-use crate::tuning::SHARE;
+use crate::tuning::WORK_PER_THREAD;
+#[cfg(feature = "rayon")]
+use std::cell::Cell;
 #[cfg(feature = "rayon")]
 use std::sync::{Mutex, PoisonError};
+
+#[cfg(feature = "rayon")]
+thread_local! {
+    /// Whether this thread shares tasks, and may be waiting for its helpers.
+    static SHARING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Says that this thread shares tasks for as long as it lives.
+#[cfg(feature = "rayon")]
+struct Sharing;
+
+#[cfg(feature = "rayon")]
+impl Sharing {
+    /// `None` where the thread shares tasks already.
+    fn begin() -> Option<Self> {
+        (!SHARING.replace(true)).then(|| Self)
+    }
+}
+
+#[cfg(feature = "rayon")]
+impl Drop for Sharing {
+    fn drop(&mut self) {
+        SHARING.set(false);
+    }
+}
 
 /// Threads that so much work is worth, in elements of a vector loop.
 pub fn threads_for(work: usize) -> usize {
     #[cfg(feature = "rayon")]
-    let threads = rayon::current_num_threads();
+    let threads = if SHARING.get() { 1 } else { rayon::current_num_threads() };
     #[cfg(not(feature = "rayon"))]
     let threads = 1;
-    threads.min(work / SHARE).max(1)
+    threads.min(work / WORK_PER_THREAD).max(1)
 }
 
-/// Does `work` on each piece, on as many threads as there are rooms; each thread has its room.
-pub fn for_each<P: Send, R: Send>(
-    rooms: &mut [R],
-    pieces: impl ExactSizeIterator<Item = P> + Send,
-    work: impl Fn(&mut R, P) + Sync,
+/// Does `work` on each task, on as many threads as there are buffers; each thread has its own.
+pub fn for_each<T: Send, B: Send>(
+    buffers: &mut [B],
+    tasks: impl ExactSizeIterator<Item = T> + Send,
+    work: impl Fn(&mut B, T) + Sync,
 ) {
-    let helpers = pieces.len().saturating_sub(1);
-    let Some((own, others)) = rooms.split_first_mut() else { return };
+    let helpers = tasks.len().saturating_sub(1);
+    let Some((own, others)) = buffers.split_first_mut() else { return };
     #[cfg(feature = "rayon")]
-    if helpers > 0 && !others.is_empty() {
-        let queue = Mutex::new(pieces);
+    if helpers > 0
+        && !others.is_empty()
+        && let Some(_sharing) = Sharing::begin()
+    {
+        let queue = Mutex::new(tasks);
         let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-        let go_on = &|room: &mut R| {
-            while let Some(piece) = next() {
-                work(room, piece);
+        let go_on = &|buffer: &mut B| {
+            while let Some(task) = next() {
+                work(buffer, task);
             }
         };
         rayon::in_place_scope(|scope| {
-            for room in others.iter_mut().take(helpers) {
-                scope.spawn(move |_| go_on(room));
+            for buffer in others.iter_mut().take(helpers) {
+                scope.spawn(move |_| go_on(buffer));
             }
             go_on(own);
         });
         return;
     }
     let _ = (helpers, others);
-    for piece in pieces {
-        work(own, piece);
+    for task in tasks {
+        work(own, task);
     }
 }
 
-/// Does `work` on each piece, where there is so much work in all, and gives the results in the order of the pieces.
-pub fn map<P: Send, T: Send + Default>(
+/// Does `work` on each task, where there is so much work in all, and gives the results in the order of the tasks.
+pub fn map<T: Send, R: Send + Default>(
     total: usize,
-    pieces: impl ExactSizeIterator<Item = P> + Send,
-    work: impl Fn(P) -> T + Sync,
-) -> Vec<T> {
-    let mut results: Vec<T> = Vec::new();
-    results.resize_with(pieces.len(), T::default);
-    let mut rooms = vec![(); threads_for(total)];
-    for_each(&mut rooms, pieces.zip(&mut results), |(), (piece, result)| *result = work(piece));
+    tasks: impl ExactSizeIterator<Item = T> + Send,
+    work: impl Fn(T) -> R + Sync,
+) -> Vec<R> {
+    let mut results: Vec<R> = Vec::new();
+    results.resize_with(tasks.len(), R::default);
+    let mut buffers = vec![(); threads_for(total)];
+    for_each(&mut buffers, tasks.zip(&mut results), |(), (task, result)| *result = work(task));
     results
 }
 
@@ -66,21 +101,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_piece_is_done_once_and_results_keep_their_order() {
+    fn every_task_is_done_once_and_results_keep_their_order() {
         for threads in [1, 2, 5] {
             for count in [0, 1, 2, 100] {
-                let mut rooms = vec![0_usize; threads];
+                let mut buffers = vec![0_usize; threads];
                 let mut done = vec![0; count];
-                for_each(&mut rooms, done.iter_mut(), |room, piece| {
-                    *room += 1;
-                    *piece += 1;
+                for_each(&mut buffers, done.iter_mut(), |buffer, task| {
+                    *buffer += 1;
+                    *task += 1;
                 });
-                assert!(done.iter().all(|&times| times == 1), "{threads} threads, {count} pieces");
-                assert_eq!(rooms.iter().sum::<usize>(), count);
+                assert!(done.iter().all(|&times| times == 1), "{threads} threads, {count} tasks");
+                assert_eq!(buffers.iter().sum::<usize>(), count);
             }
         }
         assert_eq!(map(usize::MAX, 0..50, |i| i * i), (0..50).map(|i| i * i).collect::<Vec<_>>());
         assert_eq!(threads_for(0), 1);
-        assert_eq!(threads_for(2 * SHARE - 1), 1, "half a share is not worth a thread");
+        assert_eq!(threads_for(2 * WORK_PER_THREAD - 1), 1, "not enough for two");
+    }
+
+    #[cfg(feature = "rayon")]
+    #[test]
+    fn what_a_thread_begins_while_it_shares_tasks_runs_on_it_alone() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+        pool.install(|| {
+            assert_eq!(threads_for(usize::MAX), 3);
+            let sharing = Sharing::begin();
+            assert!(sharing.is_some() && Sharing::begin().is_none());
+            assert_eq!(threads_for(usize::MAX), 1);
+            let me = std::thread::current().id();
+            let ids = map(usize::MAX, 0..40, |_| Some(std::thread::current().id()));
+            assert!(ids.iter().all(|id| *id == Some(me)));
+            drop(sharing);
+            assert_eq!(threads_for(usize::MAX), 3);
+        });
     }
 }

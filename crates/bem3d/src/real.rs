@@ -1,7 +1,7 @@
 //! Single and double precision.
 
 use crate::parallel::map;
-use crate::tuning::{BLOCK, LANES, PIECE};
+use crate::tuning::{BLOCK, CHUNK, LANES};
 use rustfft::FftNum;
 use std::ops::AddAssign;
 
@@ -51,15 +51,15 @@ pub fn binary_unit(values: &[f64]) -> f64 {
 
 /// Largest magnitude.
 pub fn largest<T: Real>(values: &[T]) -> T {
-    let pieces = map(values.len(), values.chunks(PIECE), |v| fold(v, T::default(), T::or_larger));
-    fold(&pieces, T::default(), T::or_larger)
+    let chunks = map(values.len(), values.chunks(CHUNK), |v| fold(v, T::default(), T::or_larger));
+    fold(&chunks, T::default(), T::or_larger)
 }
 
 /// Smallest number; infinite if there is none.
 pub fn smallest(values: &[f64]) -> f64 {
     let smaller = |smallest: f64, value: f64| if value < smallest { value } else { smallest };
-    let pieces = map(values.len(), values.chunks(PIECE), |v| fold(v, f64::INFINITY, smaller));
-    fold(&pieces, f64::INFINITY, smaller)
+    let chunks = map(values.len(), values.chunks(CHUNK), |v| fold(v, f64::INFINITY, smaller));
+    fold(&chunks, f64::INFINITY, smaller)
 }
 
 /// Folds values in an order that a vector loop can take; `start` changes nothing.
@@ -76,10 +76,10 @@ fn fold<T: Copy>(values: &[T], start: T, take: impl Fn(T, T) -> T) -> T {
 
 /// Scalar product, in double precision over blocks: rounding stays far below that of a transform.
 pub fn dot<T: Real>(a: &[T], b: &[T]) -> f64 {
-    let piece = |(a, b): (&[T], &[T])| -> f64 {
+    let chunk = |(a, b): (&[T], &[T])| -> f64 {
         a.chunks(BLOCK).zip(b.chunks(BLOCK)).map(|(a, b)| block(a, b).to_f64()).sum()
     };
-    map(a.len(), a.chunks(PIECE).zip(b.chunks(PIECE)), piece).into_iter().sum()
+    map(a.len(), a.chunks(CHUNK).zip(b.chunks(CHUNK)), chunk).into_iter().sum()
 }
 
 fn block<T: Real>(a: &[T], b: &[T]) -> T {
@@ -106,13 +106,13 @@ pub fn sum<T: Real>(values: &[T]) -> f64 {
         }
         lanes.iter().chain(rest).map(|value| value.to_f64()).sum::<f64>()
     };
-    let piece = |values: &[T]| -> f64 { values.chunks(BLOCK).map(block).sum() };
-    map(values.len(), values.chunks(PIECE), piece).into_iter().sum()
+    let chunk = |values: &[T]| -> f64 { values.chunks(BLOCK).map(block).sum() };
+    map(values.len(), values.chunks(CHUNK), chunk).into_iter().sum()
 }
 
 /// Sum over two lists of what `value` makes of the numbers at one place.
 pub fn sum_of_pairs(a: &[f64], b: &[f64], value: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
-    let piece = |(a, b): (&[f64], &[f64])| -> f64 {
+    let chunk = |(a, b): (&[f64], &[f64])| -> f64 {
         let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
         let mut lanes = [0.0; LANES];
         for (a, b) in a.iter().zip(b) {
@@ -122,17 +122,17 @@ pub fn sum_of_pairs(a: &[f64], b: &[f64], value: impl Fn(f64, f64) -> f64 + Sync
         }
         lanes.into_iter().chain(rest_a.iter().zip(rest_b).map(|(&a, &b)| value(a, b))).sum()
     };
-    map(a.len(), a.chunks(PIECE).zip(b.chunks(PIECE)), piece).into_iter().sum()
+    map(a.len(), a.chunks(CHUNK).zip(b.chunks(CHUNK)), chunk).into_iter().sum()
 }
 
 /// Changes each number of a list.
 pub fn each<A: Send>(values: &mut [A], change: impl Fn(&mut A) + Sync) {
-    map(values.len(), values.chunks_mut(PIECE), |values| values.iter_mut().for_each(&change));
+    map(values.len(), values.chunks_mut(CHUNK), |values| values.iter_mut().for_each(&change));
 }
 
 /// Changes each number of one list by those of another at its place.
 pub fn update<A: Send, B: Sync>(a: &mut [A], b: &[B], change: impl Fn(&mut A, &B) + Sync) {
-    map(a.len(), a.chunks_mut(PIECE).zip(b.chunks(PIECE)), |(a, b)| {
+    map(a.len(), a.chunks_mut(CHUNK).zip(b.chunks(CHUNK)), |(a, b)| {
         for (a, b) in a.iter_mut().zip(b) {
             change(a, b);
         }

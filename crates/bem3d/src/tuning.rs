@@ -197,77 +197,113 @@ impl Tuning {
 /// A constant by its name, and what multiplies it.
 pub type Constant = (&'static str, fn(&mut Tuning, f64));
 
-/// Every constant of `Tuning`, for a study of what each is worth. A torus is never shorter than its window, an order never odd, a count
-/// never 0.
-pub const CONSTANTS: [Constant; 58] = [
-    ("pair_ns", |t, f| t.pair_ns *= f),
-    ("point_ns", |t, f| t.point_ns *= f),
-    ("single", |t, f| t.single *= f),
-    ("close_pair_ns", |t, f| t.close_pair_ns *= f),
-    ("spread_ns", |t, f| t.spread_ns *= f),
-    ("reach", |t, f| t.reach = scaled(t.reach, f)),
-    ("order", |t, f| t.order = 2 * scaled(t.order / 2, f)),
-    ("scattered", |t, f| t.scattered = scaled(t.scattered, f)),
-    ("largest_scattered", |t, f| t.largest_scattered = scaled(t.largest_scattered, f)),
-    ("kept_window", |t, f| t.kept_window *= f),
-    ("shortened", |t, f| t.shortened = (t.shortened * f).max(1.1)),
-    ("factor_ns", |t, f| t.factor_ns *= f),
-    ("applications", |t, f| t.applications *= f),
-    ("factors", |t, f| t.factors *= f),
-    ("largest_factor", |t, f| t.largest_factor = scaled(t.largest_factor, f)),
-    ("always_factored", |t, f| t.always_factored = scaled(t.always_factored, f)),
-    ("preconditioned", |t, f| t.preconditioned *= f),
-    ("preconditioned_large", |t, f| t.preconditioned_large *= f),
-    ("extended", |t, f| t.extended = scaled(t.extended, f)),
-    ("decay", |t, f| t.decay *= f as f32),
-    ("reduction.0", |t, f| t.reduction.0 *= f),
-    ("reduction.1", |t, f| t.reduction.1 *= f),
-    ("early_reduction", |t, f| t.early_reduction *= f),
-    ("early", |t, f| t.early *= f),
-    ("inner_steps", |t, f| t.inner_steps = scaled(t.inner_steps, f)),
-    ("floor", |t, f| t.floor *= f),
-    ("better", |t, f| t.better *= f),
-    ("patience", |t, f| t.patience = scaled(t.patience, f)),
-    ("gain.0", |t, f| t.gain.0 *= f),
-    ("gain.1", |t, f| t.gain.1 *= f),
-    ("single_noise", |t, f| t.single_noise *= f),
-    ("noise", |t, f| t.noise *= f),
-    ("candidates", |t, f| t.candidates *= f),
-    ("kept_candidates", |t, f| t.kept_candidates *= f),
-    ("factor_rounding", |t, f| t.factor_rounding *= f),
-    ("undecided_square", |t, f| t.undecided_square = scaled(t.undecided_square, f)),
-    ("undecided_far", |t, f| t.undecided_far *= f),
-    ("stiffness_rounds", |t, f| t.stiffness_rounds = scaled(t.stiffness_rounds, f)),
-    ("stiffness_steps", |t, f| t.stiffness_steps = scaled(t.stiffness_steps, f)),
-    ("stiffness_single", |t, f| t.stiffness_single *= f),
-    ("stiffness_share", |t, f| t.stiffness_share *= f),
-    ("stiffness_aim", |t, f| t.stiffness_aim *= f),
-    ("stiffness_reduction", |t, f| t.stiffness_reduction *= f),
-    ("tightenings", |t, f| t.tightenings = scaled(t.tightenings, f)),
-    ("tighter.0", |t, f| t.tighter.0 *= f),
-    ("tighter.1", |t, f| t.tighter.1 *= f),
-    ("tight_aim", |t, f| t.tight_aim *= f),
-    ("misjudged", |t, f| t.misjudged *= f),
-    ("warm", |t, f| t.warm *= f),
-    ("near.0", |t, f| t.near.0 *= f),
-    ("near.1", |t, f| t.near.1 *= f),
-    ("filling", |t, f| t.filling *= f),
-    ("counted", |t, f| t.counted *= f),
-    ("overshoot", |t, f| t.overshoot *= f),
-    ("extrapolation", |t, f| t.extrapolation *= f),
-    ("coarsest", |t, f| t.coarsest = scaled(t.coarsest, f)),
-    ("coarse_tolerance", |t, f| t.coarse_tolerance *= f),
-    ("coarse_iterations", |t, f| t.coarse_iterations = scaled(t.coarse_iterations, f)),
+/// Names of constants, and of the ends of those that are ranges, with what multiplies them.
+macro_rules! constants {
+    ($($name:ident $(. $end:tt)?),+ $(,)?) => {
+        [$((
+            concat!(stringify!($name) $(, ".", stringify!($end))?),
+            |tuning, factor| tuning.$name $(. $end)?.multiply(factor),
+        )),+]
+    };
+}
+
+/// Every constant of `Tuning`, for a study of what each is worth.
+pub const CONSTANTS: [Constant; 58] = constants![
+    pair_ns,
+    point_ns,
+    single,
+    close_pair_ns,
+    spread_ns,
+    reach,
+    order,
+    scattered,
+    largest_scattered,
+    kept_window,
+    shortened,
+    factor_ns,
+    applications,
+    factors,
+    largest_factor,
+    always_factored,
+    preconditioned,
+    preconditioned_large,
+    extended,
+    decay,
+    reduction.0,
+    reduction.1,
+    early_reduction,
+    early,
+    inner_steps,
+    floor,
+    better,
+    patience,
+    gain.0,
+    gain.1,
+    single_noise,
+    noise,
+    candidates,
+    kept_candidates,
+    factor_rounding,
+    undecided_square,
+    undecided_far,
+    stiffness_rounds,
+    stiffness_steps,
+    stiffness_single,
+    stiffness_share,
+    stiffness_aim,
+    stiffness_reduction,
+    tightenings,
+    tighter.0,
+    tighter.1,
+    tight_aim,
+    misjudged,
+    warm,
+    near.0,
+    near.1,
+    filling,
+    counted,
+    overshoot,
+    extrapolation,
+    coarsest,
+    coarse_tolerance,
+    coarse_iterations,
 ];
 
-fn scaled(count: usize, factor: f64) -> usize {
-    ((count as f64 * factor).round() as usize).max(1)
+impl Tuning {
+    /// What is shipped but for one constant; a torus is never shorter than its window, an order never odd, a count never 0.
+    pub fn with_multiple((_, multiply): Constant, factor: f64) -> Self {
+        let mut tuning = Self::DEFAULT;
+        multiply(&mut tuning, factor);
+        Self { shortened: tuning.shortened.max(1.1), order: tuning.order.next_multiple_of(2), ..tuning }
+    }
+}
+
+trait Multiply {
+    fn multiply(&mut self, factor: f64);
+}
+
+impl Multiply for f64 {
+    fn multiply(&mut self, factor: f64) {
+        *self *= factor;
+    }
+}
+
+impl Multiply for f32 {
+    fn multiply(&mut self, factor: f64) {
+        *self *= factor as Self;
+    }
+}
+
+impl Multiply for usize {
+    fn multiply(&mut self, factor: f64) {
+        *self = ((*self as f64 * factor).round() as Self).max(1);
+    }
 }
 
 // Layout: constants of the compiled code.
 
-/// Elements of a vector loop that are worth a thread: some ten microseconds, several times what waking one takes.
-pub const SHARE: usize = 1 << 15;
+/// Elements of a vector loop that are worth a thread. This and the next two were chosen without a measurement of other values.
+pub const WORK_PER_THREAD: usize = 1 << 15;
 /// Rows that a thread takes at a time; even, as the blocks of the extension are.
 pub const BAND: usize = 32;
 /// Bytes of a row in one stripe of a spectrum: four cache lines, so that a stripe of some thousand rows lies in the second cache.
@@ -281,7 +317,7 @@ pub const LANES: usize = 16;
 /// Numbers that they take in before a sum goes on in double precision.
 pub const BLOCK: usize = 2048;
 /// Numbers of a vector that a thread takes at a time, a multiple of [`BLOCK`].
-pub const PIECE: usize = 8 * BLOCK;
+pub const CHUNK: usize = 8 * BLOCK;
 /// From so many cells a run on, values move run by run; below it, cell by cell is faster.
 pub const LONG_RUN: usize = 8;
 /// Levels of the preconditioner's extension at most: below `decay^8` nothing is left.
@@ -305,12 +341,10 @@ mod tests {
 
     #[test]
     fn each_name_is_one_constant() {
-        for (i, (name, multiply)) in CONSTANTS.into_iter().enumerate() {
-            let (mut changed, mut back) = (Tuning::DEFAULT, Tuning::DEFAULT);
-            multiply(&mut changed, 2.0);
-            multiply(&mut back, 1.0);
-            assert_ne!(changed, Tuning::DEFAULT, "{name}");
-            assert_eq!(back, Tuning::DEFAULT, "{name}");
+        for (i, constant) in CONSTANTS.into_iter().enumerate() {
+            let name = constant.0;
+            assert_ne!(Tuning::with_multiple(constant, 2.0), Tuning::DEFAULT, "{name}");
+            assert_eq!(Tuning::with_multiple(constant, 1.0), Tuning::DEFAULT, "{name}");
             assert!(CONSTANTS[i + 1..].iter().all(|(other, _)| *other != name), "{name} twice");
         }
     }

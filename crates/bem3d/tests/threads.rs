@@ -2,6 +2,7 @@
 
 use bem3d::{Bem3d, Boundary, ContactModel, ContactState, Field, Load, Result, Scene, SelfAffine, Surface};
 use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 
 /// Every number of some states as bits.
 fn bits(states: &[ContactState]) -> Vec<u64> {
@@ -77,5 +78,20 @@ fn solves_side_by_side_do_not_disturb_each_other() {
         let together =
             pool.broadcast(|worker| scenes.iter().skip(worker.index()).map(solved).collect::<Vec<_>>());
         assert!(together[0] == alone && together[1] == alone[1..]);
+    }
+}
+
+/// A parallel iterator over surfaces of one grid, whose threads may begin another solve while they wait for one.
+#[test]
+fn a_parallel_iterator_over_surfaces_ends() {
+    let pool = ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let model = Bem3d { cells: 290, tolerance: 1e-3, ..Bem3d::default() };
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        // Contacts of many sizes: tables and symbols of one grid are made by whoever comes first.
+        let scenes: Vec<Scene> =
+            (0..16).map(|i| scene(2.0 + 0.06 * f64::from(i), boundary).unwrap()).collect();
+        let solved = |scene: &Scene| bits(&path(model, scene, &[0.03, 0.5]).unwrap());
+        let all: Vec<_> = pool.install(|| scenes.par_iter().with_max_len(1).map(solved).collect());
+        assert!(all[7] == solved(&scenes[7]));
     }
 }

@@ -14,8 +14,9 @@ use std::sync::Arc;
 /// Rows that are gathered from the columns at a time: 16 complex numbers are four cache lines.
 const ROWS: usize = 16;
 
-/// From this number of cells on one map is worth several threads.
-const PARALLEL_CELLS: usize = 512 * 512;
+/// From this number of cells on one map is worth several threads; below, ensembles are parallel over their
+/// surfaces.
+const PARALLEL_CELLS: usize = 4096 * 4096;
 
 /// Plans self-affine maps of one size: amplitudes normalised, transforms planned.
 ///

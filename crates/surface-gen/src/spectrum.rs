@@ -2,17 +2,11 @@
 
 use crate::lattice::{FEWEST, Lattice};
 use contact_model::{Amplitude, Cells, Error, Result, SelfAffine, line_length};
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// A limit that is meant to be a multiple of the longest wave may be rounded below it: it includes waves up
 /// to this much beyond.
 pub(crate) const CUTOFF_SLACK: f64 = 1e-12;
-
-/// From this number of columns of a spectrum on its sum is worth several threads.
-#[cfg(feature = "rayon")]
-const PARALLEL_COLUMNS: usize = 256;
 
 /// Most cells a side of a map that the normalising sum and the indices are made for.
 pub(crate) const MOST_CELLS: usize = 1 << 17;
@@ -117,8 +111,9 @@ impl MapSpectrum {
 
     /// `sum |q|^(2 power) B^2` over all waves: the variance of the heights for power 0.
     pub(crate) fn moment(&self, power: i32) -> f64 {
+        let mut sum = 0.0;
         // From short waves to long ones: small terms first.
-        let column = |mx: u64| {
+        for mx in (0..self.columns() as u64).rev() {
             let mut column = 0.0;
             for my in (0..=self.reach(mx)).rev() {
                 if (mx, my) != (0, 0) {
@@ -126,15 +121,9 @@ impl MapSpectrum {
                     column += copies * self.amplitude(square).powi(2) * square.powi(power);
                 }
             }
-            if mx > 0 { 2.0 * column } else { column }
-        };
-        let columns = self.columns() as u64;
-        #[cfg(feature = "rayon")]
-        if self.columns() >= PARALLEL_COLUMNS {
-            let columns: Vec<f64> = (0..columns).into_par_iter().map(column).collect();
-            return columns.into_iter().rev().sum();
+            sum += if mx > 0 { 2.0 * column } else { column };
         }
-        (0..columns).rev().map(column).sum()
+        sum
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::geometry::{CellSet, Grid};
 use crate::parallel::map;
 use crate::parts::{Part, timed};
-use crate::tuning::{CANDIDATES_AHEAD, LISTED_CANDIDATES, PIECE};
+use crate::tuning::{CANDIDATES_AHEAD, CHUNK, LISTED_CANDIDATES};
 use std::sync::Arc;
 
 /// Finds the cells with `z < d`.
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct Candidates {
     grid: Grid,
     z: Arc<Vec<f64>>,
-    depths: Depths,
+    range: GapRange,
     /// Cells with z < cap, where they are few.
     list: CellSet,
     cap: f64,
@@ -22,7 +22,7 @@ pub struct Candidates {
 
 /// Where the undeformed gaps begin and end.
 #[derive(Debug, Clone, Copy)]
-pub struct Depths {
+pub struct GapRange {
     /// The defined cell with the smallest gap, as a linear index.
     pub highest: u32,
     /// Its gap.
@@ -31,9 +31,9 @@ pub struct Depths {
     pub deepest: f64,
 }
 
-impl Depths {
+impl GapRange {
     fn of(z: &[f64]) -> Self {
-        let pieces = map(z.len(), z.chunks(PIECE), |z| {
+        let chunks = map(z.len(), z.chunks(CHUNK), |z| {
             let (mut lowest, mut deepest) = (0, 0.0f64);
             for (i, &value) in z.iter().enumerate() {
                 if value < z[lowest] {
@@ -45,22 +45,22 @@ impl Depths {
             }
             (lowest, z[lowest], deepest)
         });
-        let mut depths = Self { highest: 0, first: f64::INFINITY, deepest: 0.0 };
-        for (k, (at, first, deepest)) in pieces.into_iter().enumerate() {
-            if first < depths.first {
-                (depths.highest, depths.first) = ((k * PIECE + at) as u32, first);
+        let mut range = Self { highest: 0, first: f64::INFINITY, deepest: 0.0 };
+        for (k, (at, first, deepest)) in chunks.into_iter().enumerate() {
+            if first < range.first {
+                (range.highest, range.first) = ((k * CHUNK + at) as u32, first);
             }
-            depths.deepest = depths.deepest.max(deepest);
+            range.deepest = range.deepest.max(deepest);
         }
-        depths
+        range
     }
 }
 
 impl Candidates {
     /// Takes the undeformed gaps of a grid, row-major.
     pub fn new(grid: Grid, z: Arc<Vec<f64>>) -> Self {
-        let depths = Depths::of(&z);
-        Self { grid, z, depths, list: CellSet::default(), cap: 0.0 }
+        let range = GapRange::of(&z);
+        Self { grid, z, range, list: CellSet::default(), cap: 0.0 }
     }
 
     /// The undeformed gaps of the whole grid.
@@ -69,8 +69,8 @@ impl Candidates {
     }
 
     /// Where the gaps begin and end.
-    pub fn depths(&self) -> Depths {
-        self.depths
+    pub fn range(&self) -> GapRange {
+        self.range
     }
 
     /// The cells with `z < d`.

@@ -1,6 +1,6 @@
 //! Where a solve begins: from the tangent of the last state, or by nested iteration from the same surface on coarser grids.
 
-use super::candidates::Depths;
+use super::candidates::GapRange;
 use super::solver::solve;
 use super::state::{Guess, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
@@ -105,7 +105,7 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
     let (grid, tuning) = (problem.grid(), *problem.operators.tuning());
     let own = problem.operators.table().own();
     // The highest cell of a coarse grid lies below the plane of first touch.
-    let Depths { highest, first, deepest } = problem.candidates.depths();
+    let GapRange { highest, first, deepest } = problem.candidates.range();
     let reach = match target {
         Target::Force(force) => first + force * own,
         Target::Approach(d) => d,
@@ -132,7 +132,7 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
     }
     let mut coarse = problem.coarser.take().unwrap_or_else(|| Box::new(coarser(problem)));
     if let Target::Approach(d) = target
-        && coarse.candidates.depths().first >= d
+        && coarse.candidates.range().first >= d
     {
         problem.coarser = Some(coarse);
         return from_above(problem);

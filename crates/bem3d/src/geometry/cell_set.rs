@@ -163,12 +163,12 @@ impl CellSet {
         timed(Part::Sets, || {
             if threads_for(work) == 1 {
                 let mut whole = Self::default();
-                bands.for_each(|piece| make(&mut whole, piece));
+                bands.for_each(|band| make(&mut whole, band));
                 return whole;
             }
-            let parts = map(work, bands, |piece| {
+            let parts = map(work, bands, |band| {
                 let mut part = Self::default();
-                make(&mut part, piece);
+                make(&mut part, band);
                 part
             });
             let mut parts = parts.into_iter();

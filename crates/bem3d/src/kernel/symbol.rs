@@ -36,16 +36,20 @@ impl Symbol {
         let mut rows = vec![0.0; half_x * half_y];
         let mut values = vec![0.0; half_x * half_y];
         let threads = threads_for(rows.len());
-        let rooms = |length| -> Vec<EvenTransform> {
+        let buffers = |length| -> Vec<EvenTransform> {
             let plan = RealFftPlanner::new().plan_fft_forward(length);
             (0..threads).map(|_| EvenTransform::new(&plan)).collect()
         };
-        for_each(&mut rooms(lengths.x), rows.chunks_exact_mut(half_x).enumerate(), |transform, (y, row)| {
-            fill(y, row);
-            transform.apply(row);
-        });
+        for_each(
+            &mut buffers(lengths.x),
+            rows.chunks_exact_mut(half_x).enumerate(),
+            |transform, (y, row)| {
+                fill(y, row);
+                transform.apply(row);
+            },
+        );
         let blocks = values.chunks_mut(GATHERED * half_y).enumerate();
-        for_each(&mut rooms(lengths.y), blocks, |transform, (block, columns)| {
+        for_each(&mut buffers(lengths.y), blocks, |transform, (block, columns)| {
             for (y, row) in rows.chunks_exact(half_x).enumerate() {
                 for (column, &value) in columns.chunks_exact_mut(half_y).zip(&row[block * GATHERED..]) {
                     column[y] = value;

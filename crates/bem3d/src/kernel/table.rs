@@ -71,7 +71,12 @@ impl KernelTable {
     }
 
     fn periodic(&self) -> &PeriodicKernel {
-        self.periodic.get_or_init(|| PeriodicKernel::new(self.grid))
+        if let Some(kernel) = self.periodic.get() {
+            return kernel;
+        }
+        // Made outside the cell: see `cached`.
+        let kernel = PeriodicKernel::new(self.grid);
+        self.periodic.get_or_init(|| kernel)
     }
 
     /// The constant in the kernel: nothing with free boundaries, [`PeriodicKernel::shift`] with periodic ones.
@@ -95,6 +100,8 @@ impl KernelTable {
 
     /// Kernel at the lags `(0 .. columns, y)`.
     pub fn row(&self, y: usize) -> &[f64] {
+        // The periodic kernel is made outside the cell of the row: see `cached`.
+        let _ = self.shift();
         self.rows[y].get_or_init(|| {
             let mut row = vec![0.0; self.grid.columns].into_boxed_slice();
             self.fill(y, &mut row);
@@ -135,23 +142,23 @@ impl KernelTable {
 
     /// Scaled symbol of the operator in double precision.
     pub fn symbol_f64(&self, lengths: Lengths) -> Arc<Vec<f64>> {
-        lock(&self.double).get(lengths, || self.exact_symbol(lengths).scaled())
+        cached(&self.double, lengths, || self.exact_symbol(lengths).scaled())
     }
 
     /// Scaled symbol of the operator in single precision, rounded from the one in double precision, which certificates need.
     pub fn symbol_f32(&self, lengths: Lengths) -> Arc<Vec<f32>> {
         let double = self.symbol_f64(lengths);
-        lock(&self.single).get(lengths, || Arc::new(double.iter().map(|&value| value as f32).collect()))
+        cached(&self.single, lengths, || Arc::new(double.iter().map(|&value| value as f32).collect()))
     }
 
     /// The same for lengths that no operator in double precision takes.
     pub fn shortened_symbol(&self, lengths: Lengths) -> Arc<Vec<f32>> {
-        lock(&self.single).get(lengths, || self.exact_symbol(lengths).scaled())
+        cached(&self.single, lengths, || self.exact_symbol(lengths).scaled())
     }
 
     /// Scaled inverse symbol of the kernel wrapped on a torus.
     pub fn inverse_symbol(&self, lengths: Lengths) -> Arc<Vec<f32>> {
-        lock(&self.inverse).get(lengths, || {
+        cached(&self.inverse, lengths, || {
             let mut symbol = self.exact_symbol(lengths);
             // The wrapped kernel is positive definite; a rounding error in a tiny window must not turn a sign.
             let floor = self.smallest_eigenvalue / 2.0;
@@ -177,17 +184,32 @@ struct Kept<T> {
 }
 
 impl<T> Kept<T> {
-    fn get(&mut self, lengths: Lengths, make: impl FnOnce() -> Arc<Vec<T>>) -> Arc<Vec<T>> {
-        if let Some((_, symbol)) = self.made.iter().find(|(l, _)| *l == lengths) {
-            return Arc::clone(symbol);
+    fn find(&self, lengths: Lengths) -> Option<Arc<Vec<T>>> {
+        self.made.iter().find(|(l, _)| *l == lengths).map(|(_, symbol)| Arc::clone(symbol))
+    }
+
+    fn keep(&mut self, lengths: Lengths, symbol: Arc<Vec<T>>) -> Arc<Vec<T>> {
+        if let Some(symbol) = self.find(lengths) {
+            return symbol; // Another thread was faster.
         }
-        let symbol = make();
         self.made.push((lengths, Arc::clone(&symbol)));
         while self.made.len() > 1 && self.made.iter().map(|(_, s)| s.len()).sum::<usize>() > KEPT_SYMBOLS {
             self.made.remove(0);
         }
         symbol
     }
+}
+
+/// The symbol of some lengths, made where there is none.
+///
+/// Nothing is locked while it is made: threads share that work, and one that waits may begin another solve, which would wait for the lock
+/// for ever. Two threads may make the same symbol; one of them is kept.
+fn cached<T>(kept: &Mutex<Kept<T>>, lengths: Lengths, make: impl FnOnce() -> Arc<Vec<T>>) -> Arc<Vec<T>> {
+    let found = lock(kept).find(lengths);
+    found.unwrap_or_else(|| {
+        let symbol = make();
+        lock(kept).keep(lengths, symbol)
+    })
 }
 
 /// Locks; a panic of another thread while it filled a cache leaves nothing half-made behind.
@@ -289,11 +311,26 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_locked_while_a_symbol_is_made() {
+        // As a thread does that begins another solve while it waits: of other lengths, and of the same.
+        let kept = Mutex::new(Kept::<u8>::default());
+        let (a, b) = (Lengths { x: 2, y: 2 }, Lengths { x: 4, y: 2 });
+        let symbol = cached(&kept, a, || {
+            cached(&kept, b, || Arc::new(vec![2]));
+            cached(&kept, a, || Arc::new(vec![1]));
+            Arc::new(vec![1])
+        });
+        assert_eq!((*symbol).clone(), [1]);
+        assert!(Arc::ptr_eq(&symbol, &cached(&kept, a, || unreachable!())));
+        assert_eq!(lock(&kept).made.len(), 2);
+    }
+
+    #[test]
     fn the_oldest_symbols_are_dropped_where_they_fill_the_memory() {
-        let mut kept = Kept::<u8>::default();
+        let kept = Mutex::new(Kept::<u8>::default());
         let made = Cell::new(0);
-        let mut get = |x: usize, count: usize| {
-            kept.get(Lengths { x, y: 2 }, || {
+        let get = |x: usize, count: usize| {
+            cached(&kept, Lengths { x, y: 2 }, || {
                 made.set(made.get() + 1);
                 Arc::new(vec![0; count])
             });

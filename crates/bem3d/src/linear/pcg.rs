@@ -5,7 +5,7 @@ use crate::geometry::CellSet;
 use crate::operator::InfluenceOperator;
 use crate::parallel::map;
 use crate::real::{Real, dot, sum, update};
-use crate::tuning::PIECE;
+use crate::tuning::CHUNK;
 use contact_model::Stop;
 
 /// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as much as the last one, would
@@ -170,8 +170,8 @@ fn add<T: Real>(a: &mut [T], factor: T, b: &[T]) {
 
 /// `x += step t`, then `t = z + beta t`: each is read once.
 fn advance<T: Real>(x: &mut [T], step: T, t: &mut [T], beta: T, z: &[T]) {
-    let pieces = x.chunks_mut(PIECE).zip(t.chunks_mut(PIECE)).zip(z.chunks(PIECE));
-    map(z.len(), pieces, |((x, t), z)| {
+    let chunks = x.chunks_mut(CHUNK).zip(t.chunks_mut(CHUNK)).zip(z.chunks(CHUNK));
+    map(z.len(), chunks, |((x, t), z)| {
         for ((x, t), &z) in x.iter_mut().zip(t).zip(z) {
             *x += step * *t;
             *t = z + beta * *t;

@@ -30,11 +30,11 @@ pub struct FftConvolution<T: Real> {
     start: usize,
     /// Which bands of rows were given last.
     given: Vec<bool>,
-    rooms: Vec<Room<T>>,
+    buffers: Vec<Buffers<T>>,
 }
 
-/// What one thread needs.
-struct Room<T: Real> {
+/// Buffers of one thread.
+struct Buffers<T: Real> {
     row: Vec<T>,
     line: Vec<Complex<T>>,
     /// Columns that share cache lines, one after the other.
@@ -74,7 +74,7 @@ impl<T: Real> FftConvolution<T> {
             spectrum,
             start: if start <= Self::TOGETHER { start } else { 0 },
             given: vec![false; window.height.div_ceil(BAND)],
-            rooms: Vec::new(),
+            buffers: Vec::new(),
         }
     }
 
@@ -88,8 +88,8 @@ impl<T: Real> FftConvolution<T> {
         (0..self.window.height.div_ceil(BAND)).map(|band| band * BAND)
     }
 
-    /// Rooms for as many threads as the transform is worth.
-    fn make_rooms(&mut self) {
+    /// Buffers for as many threads as the transform is worth.
+    fn make_buffers(&mut self) {
         let zero = Complex::default();
         let Lengths { x, y } = self.lengths;
         let scratch = [
@@ -99,7 +99,7 @@ impl<T: Real> FftConvolution<T> {
             self.column_inverse.get_inplace_scratch_len(),
         ];
         let scratch = scratch.into_iter().max().unwrap_or(0);
-        self.rooms.resize_with(threads_for(self.lengths.points()), || Room {
+        self.buffers.resize_with(threads_for(self.lengths.points()), || Buffers {
             row: vec![T::default(); x],
             line: vec![zero; x / 2 + 1],
             columns: vec![zero; Self::TOGETHER * Self::pitch(y)],
@@ -114,8 +114,8 @@ impl<T: Real> FftConvolution<T> {
 
     /// Transforms the rows of the window: `fill` writes row y (given as zeros) where `given` says so.
     pub fn forward(&mut self, given: impl Fn(usize) -> bool + Sync, fill: impl Fn(usize, &mut [T]) + Sync) {
-        self.make_rooms();
-        let Self { window: Window { width, height, .. }, row_forward, rooms, .. } = self;
+        self.make_buffers();
+        let Self { window: Window { width, height, .. }, row_forward, buffers, .. } = self;
         let (width, height) = (*width, *height);
         for (band, any) in self.given.iter_mut().enumerate() {
             *any = (band * BAND..((band + 1) * BAND).min(height)).any(&given);
@@ -128,7 +128,7 @@ impl<T: Real> FftConvolution<T> {
         }
         let known = &self.given;
         let bands: Vec<_> = bands.into_iter().enumerate().filter(|(band, _)| known[*band]).collect();
-        for_each(rooms, bands.into_iter(), |room, (band, mut pieces)| {
+        for_each(buffers, bands.into_iter(), |buffer, (band, mut pieces)| {
             for (j, y) in (band * BAND..((band + 1) * BAND).min(height)).enumerate() {
                 let at = j * Self::STRIPE;
                 if !given(y) {
@@ -137,9 +137,9 @@ impl<T: Real> FftConvolution<T> {
                     }
                     continue;
                 }
-                room.row.fill(T::default());
-                fill(y, &mut room.row[..width]);
-                let Room { row, line, scratch, .. } = room;
+                buffer.row.fill(T::default());
+                fill(y, &mut buffer.row[..width]);
+                let Buffers { row, line, scratch, .. } = buffer;
                 let done = row_forward.process_with_scratch(row, line, scratch);
                 debug_assert!(done.is_ok());
                 for (piece, values) in pieces.iter_mut().zip(line.chunks(Self::STRIPE)) {
@@ -153,7 +153,8 @@ impl<T: Real> FftConvolution<T> {
     ///
     /// Cost: O(lx ly log) with [`Self::forward`] and [`Self::backward`]; rows of zeros are not transformed.
     pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool) {
-        let Self { window: Window { height, .. }, lengths, column_forward, column_inverse, rooms, .. } = self;
+        let Self { window: Window { height, .. }, lengths, column_forward, column_inverse, buffers, .. } =
+            self;
         let (height, half_y) = (*height, lengths.y / 2 + 1);
         let rows = |bands: Vec<Range<usize>>| -> Vec<Range<usize>> {
             bands.into_iter().map(|bands| bands.start * BAND..(bands.end * BAND).min(height)).collect()
@@ -164,8 +165,8 @@ impl<T: Real> FftConvolution<T> {
         let pitch = Self::pitch(lengths.y);
         let stripes = self.spectrum[self.start..].chunks_exact_mut(Self::STRIPE * height);
         let symbols = self.symbol.chunks(half_y * Self::STRIPE);
-        for_each(rooms, stripes.zip(symbols), |room, (stripe, symbols)| {
-            let Room { columns, scratch, .. } = room;
+        for_each(buffers, stripes.zip(symbols), |buffer, (stripe, symbols)| {
+            let Buffers { columns, scratch, .. } = buffer;
             for (k, symbols) in symbols.chunks(half_y * Self::TOGETHER).enumerate() {
                 let first = k * Self::TOGETHER;
                 let mut end = 0;
@@ -195,12 +196,12 @@ impl<T: Real> FftConvolution<T> {
         outputs: impl ExactSizeIterator<Item = O> + Send,
         take: impl Fn(&mut O, usize, &[T]) + Sync,
     ) {
-        let Self { window: Window { width, height, .. }, lengths, row_inverse, rooms, .. } = self;
+        let Self { window: Window { width, height, .. }, lengths, row_inverse, buffers, .. } = self;
         let (width, height, half) = (*width, *height, lengths.x / 2 + 1);
         let even = lengths.x.is_multiple_of(2);
         let spectrum = &self.spectrum[self.start..];
-        for_each(rooms, outputs.enumerate(), |room, (band, mut output)| {
-            let Room { row, line, scratch, .. } = room;
+        for_each(buffers, outputs.enumerate(), |buffer, (band, mut output)| {
+            let Buffers { row, line, scratch, .. } = buffer;
             for y in (band * BAND..((band + 1) * BAND).min(height)).filter(|&y| wanted(y)) {
                 let stripes = spectrum.chunks_exact(Self::STRIPE * height);
                 for (values, stripe) in line.chunks_mut(Self::STRIPE).zip(stripes) {
