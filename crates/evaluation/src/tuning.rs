@@ -1,4 +1,4 @@
-//! What each tuned constant of the boundary-element solver is worth: the time of a set of problems with half and with twice its value.
+//! What each tuned constant of the boundary-element solver is worth: the time of a set of paths with half and with twice its value.
 
 use crate::table_of::TableOf;
 use bem3d::Bem3d;
@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Cells a side, D_f, loads F_bar of one warm path, tolerance.
-type Problem = (usize, f64, &'static [f64], f64);
+type WarmPath = (usize, f64, &'static [f64], f64);
 
-/// The problems: factors, two-level sums, transforms of scattered, half and nearly full contact; from three to eight digits.
-const PROBLEMS: [Problem; 5] = [
+/// The paths: factors, two-level sums, transforms of scattered, half and nearly full contact; from three to eight digits.
+const PATHS: [WarmPath; 5] = [
     (257, 2.4, &[1e-6, 1e-4, 1e-2, 0.1, 1.0, 20.0], 1e-8),
     (513, 2.0, &[1e-3, 0.03, 0.3, 3.0, 20.0], 1e-6),
     (513, 2.8, &[1e-3, 0.1, 1.0, 10.0], 1e-3),
@@ -45,8 +45,8 @@ pub struct ConstantRow {
     pub twice: Multiple,
 }
 
-/// Time, work and whether all loads converged.
-struct Run {
+/// Time and work of the paths, and whether all loads converged.
+struct PathsCost {
     seconds: f64,
     applications: usize,
     converged: bool,
@@ -100,20 +100,17 @@ pub fn tuning(
     progress.end();
     let path = out.join("tuning.csv");
     let command = format!("cargo xtask tuning --repetitions {repetitions}");
-    let header = Header { command, ..Header::default() }.with_note(problems());
+    let header = Header { command, ..Header::default() }.with_note(paths());
     write_csv(&path, &table(&rows)?, &header)?;
     Ok(path)
 }
 
-/// The problems in words.
-fn problems() -> String {
-    let one = |(cells, d, loads, tolerance): &Problem| {
+/// The paths in words.
+fn paths() -> String {
+    let one = |(cells, d, loads, tolerance): &WarmPath| {
         format!("N = {cells}, D_f = {d:?}, F_bar = {loads:?}, tolerance {tolerance:e}")
     };
-    format!(
-        "one thread; seed 1; each a warm path: {}",
-        PROBLEMS.iter().map(one).collect::<Vec<_>>().join("; ")
-    )
+    format!("one thread; seed 1; each a warm path: {}", PATHS.iter().map(one).collect::<Vec<_>>().join("; "))
 }
 
 fn table(rows: &[ConstantRow]) -> Result<analysis::Table> {
@@ -131,13 +128,13 @@ fn table(rows: &[ConstantRow]) -> Result<analysis::Table> {
         .table()
 }
 
-/// All problems with a multiple of a constant, until the time is up.
-fn run((name, multiply): Constant, factor: f64, longest: f64) -> Result<Run> {
+/// All paths with a multiple of a constant, until the time is up.
+fn run((name, multiply): Constant, factor: f64, longest: f64) -> Result<PathsCost> {
     let start = Instant::now();
     let stop = || start.elapsed().as_secs_f64() > longest;
-    let mut run = Run { seconds: 0.0, applications: 0, converged: true };
+    let mut cost = PathsCost { seconds: 0.0, applications: 0, converged: true };
     let failed = |e| Error::model(format!("{factor} x {name}"))(e);
-    for (cells, d, loads, tolerance) in PROBLEMS {
+    for (cells, d, loads, tolerance) in PATHS {
         let surface = SelfAffine::new(d, 1.0, 1.0).map_err(failed)?;
         let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
         let model = Bem3d { cells, tolerance, ..Bem3d::default() };
@@ -148,14 +145,14 @@ fn run((name, multiply): Constant, factor: f64, longest: f64) -> Result<Run> {
                 contact.solve_until(Load::Force(force), &stop).or_else(contact_model::Error::into_best);
             match state {
                 Ok(state) => {
-                    run.applications += state.report.applications;
-                    run.converged &= state.report.status == contact_model::Status::Converged;
+                    cost.applications += state.report.applications;
+                    cost.converged &= state.report.status == contact_model::Status::Converged;
                 }
-                Err(contact_model::Error::Stopped { .. }) => run.converged = false,
+                Err(contact_model::Error::Stopped { .. }) => cost.converged = false,
                 Err(e) => return Err(failed(e)),
             }
         }
     }
-    run.seconds = start.elapsed().as_secs_f64();
-    Ok(run)
+    cost.seconds = start.elapsed().as_secs_f64();
+    Ok(cost)
 }
