@@ -89,7 +89,6 @@ mod kernel;
 mod linear;
 mod model;
 mod operator;
-mod parallel;
 mod parts;
 mod real;
 mod stiffness;

@@ -302,9 +302,8 @@ impl Multiply for usize {
 
 // Layout: constants of the compiled code.
 
-/// Elements of a vector loop that are worth a thread. This and the next two were chosen without a measurement of other values.
-pub const WORK_PER_THREAD: usize = 1 << 15;
-/// Rows that a thread takes at a time; even, as the blocks of the extension are.
+/// Rows that a thread takes at a time; even, as the blocks of the extension are. This and the next were chosen without a measurement of
+/// other values.
 pub const BAND: usize = 32;
 /// Bytes of a row in one stripe of a spectrum: four cache lines, so that a stripe of some thousand rows lies in the second cache.
 pub const STRIPE_BYTES: usize = 256;
@@ -316,6 +315,8 @@ pub const SQUARE: usize = 4;
 pub const LANES: usize = 16;
 /// Numbers that they take in before a sum goes on in double precision.
 pub const BLOCK: usize = 2048;
+/// Chunks that are counted before a count that is large enough ends.
+pub const COUNTED_CHUNKS: usize = 32;
 /// Numbers of a vector that a thread takes at a time, a multiple of [`BLOCK`].
 pub const CHUNK: usize = 8 * BLOCK;
 /// From so many cells a run on, values move run by run; below it, cell by cell is faster.

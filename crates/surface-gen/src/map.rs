@@ -1,11 +1,10 @@
 //! Self-affine maps (Eqs. 2-5).
 
+use crate::parallel::{for_each, threads_for};
 use crate::phases::{Stream, Turns};
 use crate::spectrum::MapSpectrum;
 use crate::turn::Circle;
 use contact_model::{Cells, Error, HeightMap, Result, SelfAffine, Size};
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner};
 use rustfft::{Fft, FftPlanner, num_complex::Complex64};
 use std::fmt;
@@ -13,10 +12,6 @@ use std::sync::Arc;
 
 /// Rows that are gathered from the columns at a time: 16 complex numbers are four cache lines.
 const ROWS: usize = 16;
-
-/// From this number of cells on one map is worth several threads; below, ensembles are parallel over their
-/// surfaces.
-const PARALLEL_CELLS: usize = 4096 * 4096;
 
 /// Plans self-affine maps of one size: amplitudes normalised, transforms planned.
 ///
@@ -87,41 +82,30 @@ impl MapGenerator {
     /// # Errors
     /// [`Error::Domain`] when the map does not fit in memory or its heights overflow.
     pub fn map(&self, seed: u64) -> Result<HeightMap> {
-        self.synthesise(seed, self.cells.columns * self.cells.rows >= PARALLEL_CELLS)
-    }
-
-    fn synthesise(&self, seed: u64, parallel: bool) -> Result<HeightMap> {
         let Cells { columns: nx, rows: ny } = self.cells;
-        let mut columns = zeroed(ny, self.spectrum.columns(), Complex64::new(0.0, 0.0))?;
-        let mut heights = zeroed(ny, nx, 0.0)?;
+        let zero = Complex64::new(0.0, 0.0);
+        fits_in_memory::<Complex64>(ny, self.spectrum.columns())?;
+        fits_in_memory::<f64>(ny, nx)?;
 
-        let column_scratch = || vec![Complex64::new(0.0, 0.0); self.along_y.get_inplace_scratch_len()];
-        let fill = |scratch: &mut Vec<Complex64>, (mx, column): (usize, &mut [Complex64])| {
+        let threads = threads_for(nx * ny);
+        let mut scratch = vec![vec![zero; self.along_y.get_inplace_scratch_len()]; threads];
+        let mut columns = vec![Vec::new(); self.spectrum.columns()];
+        for_each(&mut scratch, columns.iter_mut().enumerate(), |scratch, (mx, column)| {
+            column.resize(ny, zero);
             self.fill_column(seed, mx as u64, column);
             self.along_y.process_with_scratch(column, scratch);
-        };
-        let row_scratch = || RowScratch {
-            gathered: vec![Complex64::new(0.0, 0.0); ROWS * (nx / 2 + 1)],
-            fft: self.along_x.make_scratch_vec(),
-        };
-        #[cfg(feature = "rayon")]
-        if parallel {
-            columns.par_chunks_exact_mut(ny).enumerate().for_each_init(column_scratch, fill);
-            heights
-                .par_chunks_mut(ROWS * nx)
-                .enumerate()
-                .for_each_init(row_scratch, |scratch, (i, rows)| self.rows(&columns, i, rows, scratch));
-            drop(columns);
-            return HeightMap::new(self.cells, self.size, heights);
-        }
-        #[cfg(not(feature = "rayon"))]
-        let _ = parallel;
-        let mut scratch = column_scratch();
-        columns.chunks_exact_mut(ny).enumerate().for_each(|item| fill(&mut scratch, item));
-        let mut scratch = row_scratch();
-        for (i, rows) in heights.chunks_mut(ROWS * nx).enumerate() {
-            self.rows(&columns, i, rows, &mut scratch);
-        }
+        });
+        let mut scratch = vec![
+            RowScratch {
+                gathered: vec![zero; ROWS * (nx / 2 + 1)],
+                fft: self.along_x.make_scratch_vec(),
+            };
+            threads
+        ];
+        let mut heights = vec![0.0; ny * nx];
+        for_each(&mut scratch, heights.chunks_mut(ROWS * nx).enumerate(), |scratch, (block, rows)| {
+            self.rows(&columns, block, rows, scratch);
+        });
         drop(columns);
         HeightMap::new(self.cells, self.size, heights)
     }
@@ -156,11 +140,11 @@ impl MapGenerator {
     }
 
     /// Transforms block number `block` of rows along x.
-    fn rows(&self, columns: &[Complex64], block: usize, rows: &mut [f64], scratch: &mut RowScratch) {
-        let Cells { columns: nx, rows: ny } = self.cells;
+    fn rows(&self, columns: &[Vec<Complex64>], block: usize, rows: &mut [f64], scratch: &mut RowScratch) {
+        let nx = self.cells.columns;
         let (first, width) = (block * ROWS, nx / 2 + 1);
         scratch.gathered.fill(Complex64::new(0.0, 0.0));
-        for (mx, column) in columns.chunks_exact(ny).enumerate() {
+        for (mx, column) in columns.iter().enumerate() {
             let part = &column[first..first + rows.len() / nx];
             for (iy, &value) in part.iter().enumerate() {
                 scratch.gathered[iy * width + mx] = value;
@@ -175,20 +159,17 @@ impl MapGenerator {
     }
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct RowScratch {
     gathered: Vec<Complex64>,
     fft: Vec<Complex64>,
 }
 
-/// `n * m` zeros, or an error where the memory cannot be had.
-fn zeroed<T: Copy>(n: usize, m: usize, zero: T) -> Result<Vec<T>> {
-    let mut values = Vec::new();
-    match n.checked_mul(m).map(|len| (len, values.try_reserve_exact(len))) {
-        Some((len, Ok(()))) => {
-            values.resize(len, zero);
-            Ok(values)
-        }
+/// An error where `n * m` values cannot be had. They are not kept: each thread touches its own part of them first.
+fn fits_in_memory<T>(n: usize, m: usize) -> Result<()> {
+    let mut values = Vec::<T>::new();
+    match n.checked_mul(m).map(|len| values.try_reserve_exact(len)) {
+        Some(Ok(())) => Ok(()),
         _ => Err(Error::domain("cells", n as f64, "a map that fits in memory")),
     }
 }
@@ -443,14 +424,19 @@ mod tests {
         assert!(project(&self_affine_map(&unit(3.0), 15, 4).unwrap(), 7.0, 0.0).norm() > 1e-3);
     }
 
+    #[cfg(feature = "rayon")]
     #[test]
     fn threads_change_no_byte() {
-        let generator = MapGenerator::new(&unit(2.2), 100).unwrap();
-        let alone = generator.synthesise(6, false).unwrap();
-        for threads in [1, 2, 4] {
+        let generator = MapGenerator::new(&unit(2.2), 500).unwrap();
+        let map = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let shared = pool.install(|| generator.synthesise(6, true)).unwrap();
-            assert!(alone.heights().iter().zip(shared.heights()).all(|(a, b)| a.to_bits() == b.to_bits()));
+            pool.install(|| generator.map(6)).unwrap()
+        };
+        let alone = map(1);
+        for threads in [2, 4] {
+            assert!(
+                alone.heights().iter().zip(map(threads).heights()).all(|(a, b)| a.to_bits() == b.to_bits())
+            );
         }
     }
 

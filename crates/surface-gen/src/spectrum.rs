@@ -1,6 +1,7 @@
 //! Which waves a grid carries, and their amplitudes.
 
 use crate::lattice::{FEWEST, Lattice};
+use crate::parallel::map;
 use contact_model::{Amplitude, Cells, Error, Result, SelfAffine, line_length};
 use std::f64::consts::{PI, TAU};
 
@@ -111,9 +112,8 @@ impl MapSpectrum {
 
     /// `sum |q|^(2 power) B^2` over all waves: the variance of the heights for power 0.
     pub(crate) fn moment(&self, power: i32) -> f64 {
-        let mut sum = 0.0;
         // From short waves to long ones: small terms first.
-        for mx in (0..self.columns() as u64).rev() {
+        let column = |mx: u64| {
             let mut column = 0.0;
             for my in (0..=self.reach(mx)).rev() {
                 if (mx, my) != (0, 0) {
@@ -121,9 +121,11 @@ impl MapSpectrum {
                     column += copies * self.amplitude(square).powi(2) * square.powi(power);
                 }
             }
-            sum += if mx > 0 { 2.0 * column } else { column };
-        }
-        sum
+            if mx > 0 { 2.0 * column } else { column }
+        };
+        let columns = self.columns();
+        let work = columns * self.orders[1] as usize;
+        map(work, (0..columns).rev(), |mx| column(mx as u64)).iter().fold(0.0, |sum, column| sum + column)
     }
 }
 

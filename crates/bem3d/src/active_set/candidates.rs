@@ -1,10 +1,10 @@
 //! The cells that may touch at a given approach: those whose undeformed gap z is smaller.
 
 use crate::geometry::{CellSet, Grid};
-use crate::parallel::map;
 use crate::parts::{Part, timed};
-use crate::tuning::{CANDIDATES_AHEAD, CHUNK, LISTED_CANDIDATES};
+use crate::tuning::{CANDIDATES_AHEAD, CHUNK, COUNTED_CHUNKS, LISTED_CANDIDATES};
 use std::sync::Arc;
+use surface_gen::parallel::map;
 
 /// Finds the cells with `z < d`.
 ///
@@ -91,7 +91,14 @@ impl Candidates {
     ///
     /// Cost: the grid at most, much less where the answer is yes.
     pub fn more_than(&self, count: usize, d: f64) -> bool {
-        timed(Part::Sets, || self.z.iter().filter(|&&z| z < d).nth(count).is_some())
+        let below = |z: &[f64]| z.iter().filter(|&&z| z < d).count();
+        let mut counted = 0;
+        timed(Part::Sets, || {
+            self.z.chunks(COUNTED_CHUNKS * CHUNK).any(|z| {
+                counted += map(z.len(), z.chunks(CHUNK), below).iter().sum::<usize>();
+                counted > count
+            })
+        })
     }
 
     /// The undeformed gaps on a set.

@@ -8,6 +8,7 @@ use crate::tuning::Tuning;
 use contact_model::Stop;
 use std::ops::Range;
 use std::sync::Arc;
+use surface_gen::parallel::{for_each, threads_for};
 
 /// The state solved last, from which the next is extrapolated.
 #[derive(Debug)]
@@ -169,14 +170,22 @@ fn coarser(problem: &Problem) -> Problem {
     let stretch =
         if across == down { fine.stretch } else { fine.stretch * (across as f64 / down as f64).sqrt() };
     let grid = Grid { columns: fine.columns.div_ceil(across), rows: fine.rows.div_ceil(down), stretch };
-    let mut sums = vec![(0.0, 0.0); grid.count()];
-    for (i, &z) in problem.candidates.z().iter().enumerate().filter(|(_, z)| z.is_finite()) {
-        let (x, y) = (i % fine.columns / across, i / fine.columns / down);
-        let (sum, count) = &mut sums[y * grid.columns + x];
-        (*sum, *count) = (*sum + z, *count + 1.0);
-    }
-    let mean = |&(sum, count): &(f64, f64)| if count > 0.0 { sum / count } else { f64::INFINITY };
-    let z = sums.iter().map(mean).collect();
+    let mut z = vec![0.0; grid.count()];
+    let rows = z.chunks_exact_mut(grid.columns).zip(problem.candidates.z().chunks(down * fine.columns));
+    let mut sums = vec![vec![(0.0, 0.0); grid.columns]; threads_for(fine.count())];
+    for_each(&mut sums, rows, |sums, (coarse, block)| {
+        sums.fill((0.0, 0.0));
+        for row in block.chunks_exact(fine.columns) {
+            for ((sum, count), cells) in sums.iter_mut().zip(row.chunks(across)) {
+                for &z in cells.iter().filter(|z| z.is_finite()) {
+                    (*sum, *count) = (*sum + z, *count + 1.0);
+                }
+            }
+        }
+        for (mean, &(sum, count)) in coarse.iter_mut().zip(sums.iter()) {
+            *mean = if count > 0.0 { sum / count } else { f64::INFINITY };
+        }
+    });
     Problem::new(grid, Arc::new(z), problem.operators.table().boundary(), &tuning)
 }
 

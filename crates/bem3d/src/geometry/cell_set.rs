@@ -1,10 +1,10 @@
 //! Sets of cells of a grid: work follows the contact, not the grid.
 
 use super::grid::{Grid, Window};
-use crate::parallel::{map, threads_for};
 use crate::parts::{Part, timed};
 use crate::tuning::{BAND, LANES, LONG_RUN};
 use std::ops::{AddAssign, Range};
+use surface_gen::parallel::{map, threads_for};
 
 /// A set of cells, row by row. Values on it stand one after the other in the order of the cells.
 ///

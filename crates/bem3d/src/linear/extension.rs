@@ -6,9 +6,9 @@
 //! that has contact there, times a decay for each level; this halves the number of steps where contact is full of holes.
 
 use crate::geometry::{CellSet, Window};
-use crate::parallel::map;
 use crate::tuning::{BAND, EXTENSION_LEVELS};
 use std::iter::zip;
+use surface_gen::parallel::map;
 
 /// Sums over blocks of 2^l x 2^l cells of a window, for a set.
 #[derive(Debug, Default)]

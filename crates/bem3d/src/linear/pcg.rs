@@ -3,10 +3,10 @@
 use super::preconditioner::Preconditioner;
 use crate::geometry::CellSet;
 use crate::operator::InfluenceOperator;
-use crate::parallel::map;
 use crate::real::{Real, dot, sum, update};
 use crate::tuning::CHUNK;
 use contact_model::Stop;
+use surface_gen::parallel::map;
 
 /// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as much as the last one, would
 /// meet a criterion. The caller measures the result.

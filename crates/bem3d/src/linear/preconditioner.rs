@@ -3,10 +3,10 @@
 use super::extension::Extension;
 use crate::geometry::{CellSet, Window};
 use crate::operator::FftConvolution;
-use crate::parallel::map;
 use crate::parts::{Part, timed};
 use crate::real::{Real, dot, each, largest, sum};
 use crate::tuning::BAND;
+use surface_gen::parallel::map;
 
 /// What one application of a preconditioner finds.
 #[derive(Debug, Clone, Copy)]

@@ -3,7 +3,7 @@
 use super::options::{Bem3d, Method};
 use crate::active_set::{self, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::Grid;
-use crate::real::{each, sum_of_pairs};
+use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
@@ -41,8 +41,8 @@ impl PreparedBem3d {
     ) -> Result<Self> {
         let highest = map.highest();
         // Differences first: an offset of the heights changes nothing.
-        let mut z = map.heights().to_vec();
-        each(&mut z, |h| *h = highest - *h);
+        let mut z = vec![0.0; map.heights().len()];
+        update(&mut z, map.heights(), |z, h| *z = highest - h);
         let rms = if map.undefined() == 0 {
             surface_gen::rms_height(&z)
         } else {

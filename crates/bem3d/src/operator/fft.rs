@@ -2,7 +2,6 @@
 
 use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
-use crate::parallel::{for_each, threads_for};
 use crate::real::{Real, binary_unit};
 use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
@@ -11,6 +10,7 @@ use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
+use surface_gen::parallel::{for_each, threads_for};
 
 /// A planned convolution on a window: `u = kernel * p` from rows of the window to rows of the window.
 ///

@@ -12,9 +12,9 @@ use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::Symbol;
 use crate::kernel::love::influence;
-use crate::parallel::map;
 use crate::real::Real;
 use std::fmt;
+use surface_gen::parallel::map;
 
 /// Spacing, reach and order of a two-level operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

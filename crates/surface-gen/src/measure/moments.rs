@@ -1,5 +1,6 @@
 //! Moments of samples.
 
+use crate::parallel::{map, threads_for};
 use contact_model::HeightMap;
 
 /// Below this many values a plain sum is as good as a pairwise one.
@@ -8,8 +9,29 @@ const PLAIN: usize = 128;
 /// Sums side by side, so that the compiler adds several at once.
 const LANES: usize = 8;
 
+/// Values of which a thread takes the range at a time.
+const CHUNK: usize = 1 << 15;
+
+/// Halvings of a long sum that threads share.
+const HALVINGS: u32 = 6;
+
 /// Sum of `term` over the values, pairwise: the rounding error grows with log n only.
-pub(crate) fn pairwise(values: &[f64], term: &impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn pairwise(values: &[f64], term: &(impl Fn(f64) -> f64 + Sync)) -> f64 {
+    if threads_for(values.len()) == 1 {
+        return pairwise_alone(values, term);
+    }
+    let mut parts = vec![values];
+    for _ in 0..HALVINGS {
+        parts = parts.into_iter().flat_map(|part| <[_; 2]>::from(part.split_at(part.len() / 2))).collect();
+    }
+    let mut sums = map(values.len(), parts.into_iter(), |part| pairwise_alone(part, term));
+    while sums.len() > 1 {
+        sums = sums.chunks(2).map(|pair| pair.iter().sum()).collect();
+    }
+    sums[0]
+}
+
+fn pairwise_alone(values: &[f64], term: &impl Fn(f64) -> f64) -> f64 {
     if values.len() <= PLAIN {
         let (groups, rest) = values.as_chunks::<LANES>();
         let mut lanes = [0.0; LANES];
@@ -21,7 +43,7 @@ pub(crate) fn pairwise(values: &[f64], term: &impl Fn(f64) -> f64) -> f64 {
         return lanes.iter().sum::<f64>() + rest.iter().map(|&v| term(v)).sum::<f64>();
     }
     let (left, right) = values.split_at(values.len() / 2);
-    pairwise(left, term) + pairwise(right, term)
+    pairwise_alone(left, term) + pairwise_alone(right, term)
 }
 
 /// Root mean square of the heights about their mean, `sqrt(mean (h - mean h)^2)`, in the unit of the heights.
@@ -56,6 +78,13 @@ pub fn rms_height(heights: &[f64]) -> f64 {
 
 /// Smallest and largest value, NaN ignored; (inf, -inf) for none.
 fn range(values: &[f64]) -> (f64, f64) {
+    let chunks = map(values.len(), values.chunks(CHUNK), range_alone);
+    chunks
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), range| (low.min(range.0), high.max(range.1)))
+}
+
+fn range_alone(values: &[f64]) -> (f64, f64) {
     let (groups, rest) = values.as_chunks::<LANES>();
     let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
     for group in groups {

@@ -2,18 +2,20 @@
 //!
 //! What a task is depends on sizes alone, each is done by one thread, and their results are put together in their order: no bit of a result
 //! depends on the number of threads. The pool is that of `rayon` in which a solve runs; its threads that have nothing else to do help.
-//! Parallel iterators of `rayon` would make buffers for each split instead of each thread, and need a second code without the feature
+//! For this project's crates: drawing of maps and `bem3d`. Parallel iterators of `rayon` would make buffers for each split instead of each thread, and need a second code without the feature
 //! `rayon`, where there is one thread.
 //!
 //! A thread that waits for its helpers may be given any other work of its pool, such as another solve of a parallel iterator over surfaces.
 //! Two rules keep that harmless: nothing is locked while tasks are shared, and what such a thread begins meanwhile runs on it alone, so that
-//! solves are never nested deeper than that.
+//! work is never nested deeper than that.
 
-use crate::tuning::WORK_PER_THREAD;
 #[cfg(feature = "rayon")]
 use std::cell::Cell;
 #[cfg(feature = "rayon")]
 use std::sync::{Mutex, PoisonError};
+
+/// Elements of a vector loop that are worth a thread; chosen without a measurement of other values.
+const WORK_PER_THREAD: usize = 1 << 15;
 
 #[cfg(feature = "rayon")]
 thread_local! {
