@@ -10,7 +10,8 @@ use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
 use sizes::{Both, LineSizes, Maps, Reduced, Solid};
 use studies::{
-    AccuracyCost, Audit, BookArguments, BudgetCheck, Reference, StabilityArguments, TwoCasesArguments,
+    AccuracyCost, Audit, BookArguments, BudgetCheck, ExponentArguments, Reference, StabilityArguments,
+    TwoCasesArguments,
 };
 pub use studies::{Redraw, TuningArguments};
 
@@ -87,6 +88,9 @@ pub enum Command {
     /// Sec. II's two problems side by side: free and fractal, periodic with a roll-off; with Persson's and Greenwood-Williamson's theories.
     #[command(after_help = EXPAND)]
     ReproduceTwoCases(TwoCasesArguments),
+    /// The exponent of stiffness over force with bands, by pairs of surfaces on neighbouring grids (exponent.csv and others).
+    #[command(after_help = EXPAND)]
+    Exponent(ExponentArguments),
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
@@ -126,6 +130,7 @@ impl Command {
                 a.fill(&mut request);
             }
             Self::Audit(a) => a.solid.fill(&mut request),
+            Self::Exponent(a) => a.fill(&mut request),
             Self::Bench(_) | Self::Redraw(_) | Self::Book(_) | Self::Tuning(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),

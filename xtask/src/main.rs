@@ -1,5 +1,5 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `redraw`, `check-reference`, `stability`, `book`.
+//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `exponent`, `redraw`, `check-reference`, `stability`, `book`.
 //!
 //! Argument parsing and exit codes; the figures are in the crate `figures`.
 //!
@@ -79,6 +79,17 @@ fn execute(command: Command) -> Result<ExitCode> {
             runs::out!("{coverage}");
             coverage_fails = !coverage.holds();
             vec![outcome]
+        }
+        Command::Exponent(options) => {
+            let study = options.study(&run)?;
+            for line in evaluation::exponent_plan(&study, options.budget, &reporter)? {
+                runs::out!("{line}");
+            }
+            if options.plan {
+                return Ok(ExitCode::SUCCESS);
+            }
+            // The plan has dealt with what was stored.
+            vec![evaluation::exponent(&evaluation::Exponent { fresh: false, ..study }, &reporter)?]
         }
         Command::Audit(options) => {
             let (outcome, summary) = evaluation::audit(&run, options.share, options.tight, &reporter)?;

@@ -9,6 +9,7 @@
 //! * [`crossing`], [`least_spread`]: where the laws, or the curves, of several fractal dimensions come together.
 //! * [`collapse`]: the master curve of Fig. 4 and what is left around it.
 //! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
+//! * [`Multilevel`]: means on the finest of several grids from differences between grids, with bands.
 //! * [`binomial_test`]: whether as many intervals hold the truth as should.
 //! * [`Table`]: named columns with units that hold no NaN; `figures` writes them.
 //!
@@ -45,6 +46,7 @@ mod ensemble;
 mod fit;
 mod grid_error;
 mod kappa;
+mod multilevel;
 mod sum;
 mod table;
 
@@ -58,5 +60,6 @@ pub use ensemble::{EnsemblePoint, Statistics, ensemble, mean_and_deviation, stat
 pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law, least_squares};
 pub use grid_error::{GridError, grid_error};
 pub use kappa::kappa;
+pub use multilevel::{Multilevel, Uncertain, slope_weights, student};
 pub use sum::sum;
 pub use table::{Column, Table, Value};

@@ -22,8 +22,8 @@ fn lanes(values: &[f64], start: f64, take: impl Fn(f64, f64) -> f64) -> f64 {
 }
 
 pub(crate) fn check_heights(heights: &[f64], place: impl Fn(usize) -> String) -> Result<()> {
-    // A difference of equal numbers is 0, of infinite ones or NaN it is NaN.
-    if lanes(heights, 0.0, |sum, h| sum + (h - h)).is_nan()
+    // 0 times a finite number is 0, times an infinite one or NaN it is NaN.
+    if lanes(heights, 0.0, |sum, h| sum + 0.0 * h).is_nan()
         && let Some((i, &h)) = heights.iter().enumerate().find(|(_, h)| !h.is_finite())
     {
         return Err(Error::domain(place(i), h, "a finite height"));

@@ -85,7 +85,7 @@ impl SolveSizes {
 }
 
 /// A share: `0.02` or `2%`.
-fn share(text: &str) -> Result<f64, String> {
+pub(super) fn share(text: &str) -> Result<f64, String> {
     let (digits, unit) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
     let value = digits.trim().parse::<f64>().map_err(|e| e.to_string())? / unit;
     if value > 0.0 && value < 1.0 {
@@ -96,7 +96,7 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 /// A time: `90s`, `10min`, `2h`; a bare number is seconds.
-fn seconds(text: &str) -> Result<f64, String> {
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
     let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
     let (digits, unit) = (units.iter())
         .find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))

@@ -1,8 +1,8 @@
 //! Flags of the commands beside the paper's figures.
 
-use super::sizes::Solid;
+use super::sizes::{Solid, seconds, share};
 use clap::{Args, ValueEnum};
-use evaluation::{Depth, Forces};
+use evaluation::{Depth, Exponent, ExponentSizes, Forces, Request, Run};
 use figures::TwoCases;
 use std::path::PathBuf;
 
@@ -121,6 +121,114 @@ impl TwoCasesArguments {
             threads: self
                 .threads
                 .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get)),
+        })
+    }
+}
+
+/// Sizes of the study of the exponent.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum ExponentSizesName {
+    /// Up to 129 cells and 2^12 elements: seconds.
+    Quick,
+    /// Up to 1025 cells and 2^20 elements: a quarter of an hour on two cores.
+    Default,
+    /// Up to 16385 cells and 2^26 elements: many hours; 7 GB.
+    Full,
+}
+
+/// Flags of the study of the exponent.
+#[derive(Debug, Args)]
+pub struct ExponentArguments {
+    /// Sizes to start from; the other flags override them.
+    #[arg(long, value_enum, default_value = "default")]
+    preset: ExponentSizesName,
+    /// Cells a side, from the coarsest grid to the finest, separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    grids: Option<Vec<usize>>,
+    /// Surfaces of each grid, separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    surfaces: Option<Vec<usize>>,
+    /// Elements of the lines, from few to many, separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    elements: Option<Vec<usize>>,
+    /// Lines of each number of elements, separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    lines: Option<Vec<usize>>,
+    /// Loads F_bar of the surfaces: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    forces: Option<String>,
+    /// Loads of the lines; the factor between both exists at loads that both have.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    line_forces: Option<String>,
+    /// Fractal dimensions in [2, 3], separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    fractal_dimensions: Option<Vec<f64>>,
+    /// Share of k_bar that the finest grid may leave: each curve ends where it leaves more.
+    #[arg(long, value_name = "SHARE", value_parser = share, default_value = "3%", allow_hyphen_values = true)]
+    error: f64,
+    /// Master seed.
+    #[arg(long, default_value_t = evaluation::SEED)]
+    seed: u64,
+    /// Threads; 0 is one per core. Changes no byte of a CSV.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Ignore stored results and solve everything again.
+    #[arg(long)]
+    fresh: bool,
+    /// Say what it will cost, and how many surfaces --budget is worth, and stop.
+    #[arg(long)]
+    pub plan: bool,
+    /// The time of --plan for surfaces, and again for lines, such as 90s, 10min, 2h.
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "1h", allow_hyphen_values = true)]
+    pub budget: f64,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+impl ExponentArguments {
+    pub(super) fn fill(&self, request: &mut Request) {
+        request.fractal_dimensions.clone_from(&self.fractal_dimensions);
+        (request.seed, request.threads) = (Some(self.seed), Some(self.threads));
+        (request.out, request.fresh) = (Some(self.out.clone()), self.fresh);
+    }
+
+    /// What it asks for; dimensions, seed, threads and directory are those of the run.
+    ///
+    /// # Errors
+    /// [`runs::Error::Parameter`] for a list of loads that is none.
+    pub fn study(&self, run: &Run) -> runs::Result<Exponent> {
+        let mut study = Exponent::new(match self.preset {
+            ExponentSizesName::Quick => ExponentSizes::Quick,
+            ExponentSizesName::Default => ExponentSizes::Default,
+            ExponentSizesName::Full => ExponentSizes::Full,
+        })?;
+        let lists = [
+            (&mut study.solid.sizes, &self.grids),
+            (&mut study.solid.surfaces, &self.surfaces),
+            (&mut study.line.sizes, &self.elements),
+            (&mut study.line.surfaces, &self.lines),
+        ];
+        for (own, asked) in lists {
+            if let Some(asked) = asked {
+                own.clone_from(asked);
+            }
+        }
+        for (own, asked) in
+            [(&mut study.solid.forces, &self.forces), (&mut study.line.forces, &self.line_forces)]
+        {
+            if let Some(asked) = asked {
+                *own = Forces::parse(asked)?;
+            }
+        }
+        Ok(Exponent {
+            fractal_dimensions: run.dimensions(),
+            error: self.error,
+            seed: run.seed,
+            threads: run.threads,
+            out: run.out.clone(),
+            fresh: run.fresh,
+            ..study
         })
     }
 }

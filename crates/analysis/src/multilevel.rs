@@ -1,0 +1,233 @@
+//! Means on the finest of several grids, from differences between neighbouring ones.
+
+use crate::ensemble::mean_and_deviation;
+use crate::grid_error;
+use crate::sum::sum;
+use contact_model::{Error, Result};
+use statrs::distribution::{ContinuousCDF as _, StudentsT};
+
+/// Multilevel Monte Carlo: curves on the coarsest grid, and differences between each finer grid and the next coarser one on the same
+/// surfaces.
+///
+/// The mean on the finest grid is the sum of the mean on the coarsest one and of the mean differences. The differences scatter less than the
+/// curves, so that few surfaces on the expensive grids are enough. Surfaces of different levels are independent. A level may end before
+/// the last point of the others: beyond its end the next coarser grid is the finest.
+///
+/// Source: M. B. Giles, Oper. Res. 56, 607 (2008).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Multilevel {
+    /// Level, surface, point; from the coarsest grid to the finest.
+    levels: Vec<Vec<Vec<f64>>>,
+}
+
+/// A number that is known from few surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uncertain {
+    /// The number.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Degrees of freedom of that error (Welch and Satterthwaite).
+    pub degrees_of_freedom: f64,
+}
+
+impl Uncertain {
+    /// Half-width of the 95 % interval by Student's distribution.
+    pub fn half_width(&self) -> f64 {
+        self.standard_error * student(self.degrees_of_freedom)
+    }
+}
+
+/// 97.5 % quantile of Student's distribution: half-width of a 95 % interval in standard errors; that of one degree of freedom below 1.
+///
+/// ```
+/// assert!((analysis::student(4.0) - 2.776_445).abs() < 1e-6);
+/// ```
+pub fn student(degrees_of_freedom: f64) -> f64 {
+    let distribution = StudentsT::new(0.0, 1.0, degrees_of_freedom.max(1.0));
+    distribution.map_or(f64::INFINITY, |distribution| distribution.inverse_cdf(0.975))
+}
+
+impl Multilevel {
+    /// Takes, for each level, the curves of its surfaces: values on the coarsest grid, then differences.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for no level, a level of fewer than two surfaces, surfaces of one level with unlike numbers of points, or a level that
+    /// has more points than the one before; [`Error::Domain`] for a number that is not finite.
+    pub fn new(levels: Vec<Vec<Vec<f64>>>) -> Result<Self> {
+        let shape = |name: String, found: usize, expected: String| Error::Shape {
+            name: name.into(),
+            found,
+            expected: expected.into(),
+        };
+        let mut points = levels.first().and_then(|level| level.first()).map_or(0, Vec::len);
+        if points == 0 {
+            return Err(shape("levels".into(), levels.len(), "at least one, with points".into()));
+        }
+        for (l, level) in levels.iter().enumerate() {
+            if level.len() < 2 {
+                let found = level.len();
+                return Err(shape(format!("surfaces of level {l}"), found, "at least 2".into()));
+            }
+            let own = level[0].len();
+            if own == 0 || own > points {
+                return Err(shape(format!("points of level {l}"), own, format!("1 to {points}")));
+            }
+            for surface in level {
+                if surface.len() != own {
+                    return Err(shape(format!("points of level {l}"), surface.len(), own.to_string()));
+                }
+                if let Some(&value) = surface.iter().find(|value| !value.is_finite()) {
+                    return Err(Error::domain("value", value, "a finite number"));
+                }
+            }
+            points = own;
+        }
+        Ok(Self { levels })
+    }
+
+    /// Number of levels.
+    pub fn levels(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Points of the coarsest level, which has all.
+    pub fn points(&self) -> usize {
+        self.levels[0][0].len()
+    }
+
+    /// Levels that reach the point.
+    pub fn levels_at(&self, point: usize) -> usize {
+        self.levels.iter().take_while(|level| level[0].len() > point).count()
+    }
+
+    /// Mean curve, all points, of the first `levels` levels.
+    pub fn means(&self, levels: usize) -> Vec<f64> {
+        (0..self.points())
+            .map(|j| sum(self.levels.iter().take(levels).filter_map(|level| mean_at(level, j))))
+            .collect()
+    }
+
+    /// Mean of a level and its standard deviation over the surfaces; `None` beyond its end.
+    pub fn at(&self, level: usize, point: usize) -> Option<(f64, f64)> {
+        let values: Option<Vec<f64>> = self.levels[level].iter().map(|s| s.get(point).copied()).collect();
+        mean_and_deviation(&values?).and_then(|(mean, deviation)| Some((mean, deviation?)))
+    }
+
+    /// Surfaces of a level.
+    pub fn surfaces(&self, level: usize) -> usize {
+        self.levels[level].len()
+    }
+
+    /// A number that depends on the mean curve of the finest grid: its value there, and its error from the scatter of the surfaces by its
+    /// derivatives (`gradient`, one for each point).
+    ///
+    /// # Panics
+    /// Where there are fewer derivatives than points.
+    pub fn propagated(&self, value: f64, gradient: &[f64]) -> Uncertain {
+        let (mut variance, mut spread) = (0.0, 0.0);
+        for level in &self.levels {
+            let each: Vec<f64> =
+                level.iter().map(|s| sum(s.iter().zip(gradient).map(|(v, g)| v * g))).collect();
+            let n = each.len() as f64;
+            if let Some((_, Some(deviation))) = mean_and_deviation(&each) {
+                let own = deviation * deviation / n;
+                variance += own;
+                spread += own * own / (n - 1.0);
+            }
+        }
+        let degrees_of_freedom = if spread > 0.0 { variance * variance / spread } else { f64::MAX };
+        Uncertain { value, standard_error: variance.sqrt(), degrees_of_freedom }
+    }
+
+    /// What the cells of the finest grid leave of a number that depends on the mean curve: [`grid_error`] of its values on the three finest
+    /// grids, absolute. `None` for fewer than three grids, or where the number does not exist on one of them.
+    pub fn bias(&self, levels: usize, quantity: impl Fn(&[f64]) -> Option<f64>) -> Option<f64> {
+        let on = |levels: usize| quantity(&self.means(levels));
+        let (fine, half, quarter) =
+            (on(levels)?, on(levels - 1)?, on(levels.checked_sub(2).filter(|&l| l > 0)?)?);
+        Some(grid_error(fine, half, quarter)?.error * fine.abs())
+    }
+}
+
+fn mean_at(level: &[Vec<f64>], point: usize) -> Option<f64> {
+    let values: Option<Vec<f64>> = level.iter().map(|s| s.get(point).copied()).collect();
+    values.map(|values| sum(values.iter().copied()) / values.len() as f64)
+}
+
+/// Weights w with `sum w y` the slope of the straight line through (x, y) by least squares; `None` for fewer than two different x.
+///
+/// ```
+/// let w = analysis::slope_weights(&[0.0, 1.0, 2.0]).unwrap();
+/// assert!(w.iter().zip([-0.5, 0.0, 0.5]).all(|(a, b)| (a - b).abs() < 1e-15));
+/// ```
+pub fn slope_weights(x: &[f64]) -> Option<Vec<f64>> {
+    let mean = sum(x.iter().copied()) / x.len() as f64;
+    let square = sum(x.iter().map(|x| (x - mean) * (x - mean)));
+    (square > 0.0 && square.is_finite()).then(|| x.iter().map(|x| (x - mean) / square).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// A generator of even numbers in (-1, 1) by a Weyl sequence: enough for means.
+    fn even(n: usize, seed: f64) -> Vec<f64> {
+        (1..=n).map(|i| 2.0 * (seed + i as f64 * 0.618_033_988_749_895).fract() - 1.0).collect()
+    }
+
+    #[test]
+    fn means_add_up_and_a_level_may_end_early() {
+        let levels = vec![
+            vec![vec![1.0, 10.0], vec![3.0, 30.0]],
+            vec![vec![0.5, 1.0], vec![1.5, 3.0], vec![1.0, 2.0]],
+            vec![vec![0.25], vec![0.35]],
+        ];
+        let m = Multilevel::new(levels).unwrap();
+        assert_eq!((m.levels(), m.levels_at(0), m.levels_at(1)), (3, 3, 2));
+        assert_relative_eq!(m.means(3)[0], 2.0 + 1.0 + 0.3, max_relative = 1e-15);
+        assert_relative_eq!(m.means(3)[1], 22.0, max_relative = 1e-15);
+        assert_eq!(m.means(1), [2.0, 20.0]);
+        assert_eq!(m.at(2, 1), None);
+        assert_eq!(m.at(1, 0), Some((1.0, 0.5)));
+        // Variances of the means: 2/2, 0.25/3, 0.005/2.
+        let first = m.propagated(3.3, &[1.0, 0.0]);
+        assert_relative_eq!(first.standard_error.powi(2), 1.0 + 0.25 / 3.0 + 0.0025, max_relative = 1e-12);
+        // A difference between points that move together scatters less: 10 y_0 - y_1 is 0 on both first levels but for 4, 12, 8.
+        let both = m.propagated(0.0, &[10.0, -1.0]);
+        assert_relative_eq!(both.standard_error.powi(2), 0.0 + 16.0 / 3.0 + 0.25, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn one_level_is_students_interval() {
+        let values = even(8, 0.1);
+        let m = Multilevel::new(vec![values.iter().map(|&v| vec![v]).collect()]).unwrap();
+        let u = m.propagated(m.means(1)[0], &[1.0]);
+        let (_, deviation) = mean_and_deviation(&values).unwrap();
+        assert_relative_eq!(u.standard_error, deviation.unwrap() / 8f64.sqrt(), max_relative = 1e-12);
+        assert_relative_eq!(u.degrees_of_freedom, 7.0, max_relative = 1e-12);
+        // t(0.975, 7) = 2.364624.
+        assert_relative_eq!(u.half_width(), 2.364_624 * u.standard_error, max_relative = 1e-6);
+    }
+
+    #[test]
+    fn the_bias_is_that_of_three_grids() {
+        let level = |v: f64| vec![vec![v], vec![v]];
+        let m = Multilevel::new(vec![level(4.0), level(-1.0), level(-0.5)]).unwrap();
+        // 2.5, 3, 4: differences 0.5 and 1, first order.
+        assert_relative_eq!(m.bias(3, |means| Some(means[0])).unwrap(), 1.5 * 0.5, max_relative = 1e-12);
+        assert_eq!(m.bias(2, |means| Some(means[0])), None);
+        assert_eq!(m.bias(3, |_| None), None);
+    }
+
+    #[test]
+    fn bad_levels_are_named() {
+        let e = |levels| Multilevel::new(levels).unwrap_err().to_string();
+        assert!(e(vec![]).contains("levels"));
+        assert!(e(vec![vec![vec![1.0]]]).contains("surfaces of level 0"));
+        assert!(e(vec![vec![vec![1.0], vec![1.0, 2.0]]]).contains("points of level 0"));
+        assert!(e(vec![vec![vec![1.0]; 2], vec![vec![1.0, 2.0]; 2]]).contains("points of level 1"));
+        assert!(e(vec![vec![vec![f64::NAN], vec![1.0]]]).contains("NaN"));
+    }
+}

@@ -1,0 +1,257 @@
+//! Mean curves, local slopes and fits, each with its band.
+
+use super::ladder::{Ladder, Pair, Rungs};
+use crate::realisation::{Discretisation, RealisationResult};
+use analysis::{Multilevel, Uncertain, slope_weights};
+use contact_model::{Amplitude, SelfAffine};
+use runs::{Error, Result};
+use std::ops::Range;
+use surface_gen::{LineGenerator, MapGenerator};
+
+/// Points on each side of a local slope: at six loads a decade the line goes through two thirds of one.
+pub const SLOPE_REACH: usize = 2;
+
+/// The grid whose rms height counts the forces of a fixed spectrum: the paper's.
+pub const REFERENCE_CELLS: usize = 2049;
+
+/// In which rms height F_bar is counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Convention {
+    /// The measured one of each grid, as the paper has it: a finer grid has lower long waves.
+    Measured,
+    /// That of one spectrum on 2049 x 2049 cells: a finer grid has the same long waves and more short ones; the line has the same spectrum.
+    FixedSpectrum,
+}
+
+impl Convention {
+    /// The word in tables.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Measured => "measured_rms",
+            Self::FixedSpectrum => "fixed_spectrum",
+        }
+    }
+}
+
+/// A number with the two parts of its 95 % half-width.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Banded {
+    /// From the scatter of the surfaces.
+    pub scatter: Uncertain,
+    /// What the finest grid leaves.
+    pub grid: f64,
+}
+
+impl Banded {
+    /// The number.
+    pub fn value(&self) -> f64 {
+        self.scatter.value
+    }
+
+    /// Both parts together.
+    pub fn half_width(&self) -> f64 {
+        self.scatter.half_width() + self.grid
+    }
+}
+
+/// The mean curve of one model and fractal dimension in one convention.
+#[derive(Debug, Clone)]
+pub struct MeanCurve {
+    /// `bem3d` or `mdr1d`.
+    pub model: &'static str,
+    /// How forces are counted.
+    pub convention: Convention,
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// F_bar.
+    pub forces: Vec<f64>,
+    /// Cells a side, or elements, of each level.
+    pub sizes: Vec<usize>,
+    /// Stiffnesses and their differences.
+    pub levels: Multilevel,
+    /// Pairs left out because a solve did not meet its tolerance.
+    pub left_out: usize,
+    /// Points, from the top of the loads down to where the grid leaves more than the stated error.
+    pub resolved: Range<usize>,
+}
+
+impl MeanCurve {
+    /// The mean curve of all pairs of a fractal dimension; `error` is the relative error that the finest grid may leave.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for fewer than two whole pairs on a level.
+    pub fn new(ladder: &Ladder, rungs: &Rungs, convention: Convention, error: f64) -> Result<Self> {
+        let d = rungs.fractal_dimension;
+        let what = |e| Error::model(format!("the mean curve of {} at D_f = {d:?}", ladder.model.name()))(e);
+        let heights = match convention {
+            Convention::Measured => vec![1.0; ladder.sizes.len()],
+            Convention::FixedSpectrum => spectrum_heights(ladder, d).map_err(what)?,
+        };
+        // The lowest load that every grid has solved.
+        let all = ladder.forces.values();
+        let highest = heights.iter().copied().fold(1.0, f64::max);
+        let first = all.iter().position(|f| f / highest >= all[0]).unwrap_or(0);
+        let asked = &all[first..];
+        let mut left_out = 0;
+        let (mut levels, mut reach) = (Vec::new(), asked.len());
+        for (level, pairs) in rungs.levels.iter().enumerate() {
+            let mut curves = Vec::new();
+            for pair in pairs {
+                match difference(pair, level, asked, &heights) {
+                    Some(curve) => curves.push(curve),
+                    None => left_out += 1,
+                }
+            }
+            // A level ends where one of its surfaces does, and no later than the level before.
+            reach = curves.iter().map(Vec::len).min().unwrap_or(0).min(reach);
+            for curve in &mut curves {
+                curve.truncate(reach);
+            }
+            levels.push(curves);
+        }
+        let levels = Multilevel::new(levels).map_err(what)?;
+        let forces = &asked[..levels.points()];
+        let mut curve = Self {
+            model: ladder.model.name(),
+            convention,
+            fractal_dimension: d,
+            forces: forces.to_vec(),
+            sizes: ladder.sizes.clone(),
+            levels,
+            left_out,
+            resolved: 0..forces.len(),
+        };
+        let fine = |j: &usize| curve.stiffness(*j).is_some_and(|k| k.grid <= error * k.value());
+        let resolved = (0..forces.len()).rev().take_while(fine).count();
+        curve.resolved = forces.len() - resolved..forces.len();
+        Ok(curve)
+    }
+
+    /// Cells a side, or elements, of the finest grid at a point.
+    pub fn finest(&self, point: usize) -> usize {
+        self.sizes[self.levels.levels_at(point) - 1]
+    }
+
+    /// Mean k_bar at a point; `None` for fewer than three grids.
+    pub fn stiffness(&self, point: usize) -> Option<Banded> {
+        let mut gradient = vec![0.0; self.forces.len()];
+        gradient[point] = 1.0;
+        self.banded(point..point + 1, &gradient, |means| Some(means[point]))
+    }
+
+    /// Slope of ln k_bar over ln F_bar by least squares through the points.
+    pub fn slope(&self, points: Range<usize>) -> Option<Banded> {
+        let ln_f: Vec<f64> = self.forces[points.clone()].iter().map(|f| f.ln()).collect();
+        self.logarithmic(points, &slope_weights(&ln_f)?)
+    }
+
+    /// Local slope: through [`SLOPE_REACH`] points on each side, where all of them are resolved.
+    pub fn local_slope(&self, point: usize) -> Option<Banded> {
+        let points = point.checked_sub(SLOPE_REACH)?..point + SLOPE_REACH + 1;
+        (points.start >= self.resolved.start && points.end <= self.resolved.end)
+            .then(|| self.slope(points))
+            .flatten()
+    }
+
+    /// `sum w ln k_bar` over the points.
+    pub fn logarithmic(&self, points: Range<usize>, weights: &[f64]) -> Option<Banded> {
+        let means = self.levels.means(self.levels.levels());
+        let mut gradient = vec![0.0; self.forces.len()];
+        for (j, weight) in points.clone().zip(weights) {
+            gradient[j] = weight / means[j];
+        }
+        let start = points.start;
+        self.banded(points, &gradient, |means| {
+            let terms = weights.iter().enumerate().map(|(i, w)| w * means[start + i].ln());
+            Some(analysis::sum(terms)).filter(|sum| sum.is_finite())
+        })
+    }
+
+    fn banded(
+        &self,
+        points: Range<usize>,
+        gradient: &[f64],
+        quantity: impl Fn(&[f64]) -> Option<f64>,
+    ) -> Option<Banded> {
+        let value = quantity(&self.levels.means(self.levels.levels()))?;
+        // Points on unlike grids: the larger of what they leave.
+        let mut grids: Vec<usize> = points.map(|j| self.levels.levels_at(j)).collect();
+        grids.dedup();
+        let mut grid = 0.0_f64;
+        for levels in grids {
+            grid = grid.max(self.levels.bias(levels, &quantity)?);
+        }
+        Some(Banded { scatter: self.levels.propagated(value, gradient), grid })
+    }
+
+    /// Resolved points with loads in a range, as far as there are at least `2 SLOPE_REACH + 1`.
+    pub fn points_within(&self, forces: &Range<f64>) -> Option<Range<usize>> {
+        let inside = |j: &usize| (forces.start..=forces.end).contains(&self.forces[*j]);
+        let points: Vec<usize> = self.resolved.clone().filter(inside).collect();
+        (points.len() > 2 * SLOPE_REACH).then(|| points[0]..points[points.len() - 1] + 1)
+    }
+}
+
+/// Rms heights of one spectrum on the grids of a ladder, in that of the reference grid.
+fn spectrum_heights(ladder: &Ladder, d: f64) -> contact_model::Result<Vec<f64>> {
+    let surface = SelfAffine { amplitude: Amplitude::Spectrum(1.0), ..SelfAffine::new(d, 1.0, 1.0)? };
+    let reference = MapGenerator::new(&surface, REFERENCE_CELLS)?.rms_height();
+    let height = |&size: &usize| {
+        Ok(match ladder.model {
+            Discretisation::Bem3d { .. } => MapGenerator::new(&surface, size)?.rms_height(),
+            Discretisation::Mdr1d { .. } => LineGenerator::new(&surface, size)?.rms_height(),
+        } / reference)
+    };
+    ladder.sizes.iter().map(height).collect()
+}
+
+/// k_bar of a pair at the forces, or its difference; as far as the loads go. `None` where a solve did not meet its tolerance.
+fn difference(pair: &Pair, level: usize, forces: &[f64], heights: &[f64]) -> Option<Vec<f64>> {
+    let fine = stiffnesses(&pair.fine, forces, heights[level])?;
+    let Some(coarse) = &pair.coarse else { return Some(fine) };
+    let coarse = stiffnesses(coarse, forces, heights[level - 1])?;
+    Some(fine.iter().zip(&coarse).map(|(fine, coarse)| fine - coarse).collect())
+}
+
+/// k_bar at forces that are counted in another height than the surface's own, `height` of its own; up to the last load that was solved.
+fn stiffnesses(result: &RealisationResult, forces: &[f64], height: f64) -> Option<Vec<f64>> {
+    let points: Option<Vec<(f64, f64)>> = (result.samples.iter())
+        .map(|s| Some((s.force_bar.ln(), s.stiffness_bar.filter(|_| s.converged())?.ln())))
+        .collect();
+    let points = points?;
+    // ln 1 is 0: with its own height a load is found bit for bit.
+    let asked = forces.iter().map(|f| f.ln() - height.ln());
+    Some(asked.map_while(|x| cubic(&points, x)).map(f64::exp).collect())
+}
+
+/// Cubic interpolation between points (x, y), x increasing; `None` outside.
+fn cubic(points: &[(f64, f64)], x: f64) -> Option<f64> {
+    let upper = points.iter().position(|p| p.0 >= x - 1e-12 * x.abs())?;
+    if (points[upper].0 - x).abs() <= 1e-12 * x.abs() {
+        return Some(points[upper].1);
+    }
+    let lower = upper.checked_sub(1)?;
+    let first = lower.saturating_sub(1).min(points.len().saturating_sub(4));
+    let near = &points[first..points.len().min(first + 4)];
+    let term = |(i, &(xi, yi)): (usize, &(f64, f64))| {
+        let others = near.iter().enumerate().filter(|(j, _)| *j != i);
+        yi * others.map(|(_, &(xj, _))| (x - xj) / (xi - xj)).product::<f64>()
+    };
+    Some(near.iter().enumerate().map(term).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubics_are_exact_and_end_where_the_points_end() {
+        let y = |x: f64| 1.0 + x - 0.5 * x * x + 0.25 * x * x * x;
+        let points: Vec<(f64, f64)> = (0..6).map(|i| (f64::from(i), y(f64::from(i)))).collect();
+        for x in [0.0, 0.3, 2.5, 4.9, 5.0] {
+            assert!((cubic(&points, x).unwrap() - y(x)).abs() < 1e-12, "{x}");
+        }
+        assert_eq!(cubic(&points, 5.1), None);
+        assert_eq!(cubic(&points, -0.1), None);
+    }
+}

@@ -1,0 +1,186 @@
+//! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
+
+use crate::forces::Forces;
+use crate::realisation::{Discretisation, Realisation, RealisationResult};
+use crate::sweep::sweep;
+use runs::{Error, Progress, Result, Store};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use surface_gen::surface_seed;
+
+/// Grids, from coarse to fine, and how many surfaces each has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ladder {
+    /// The model; cells a side or elements are those of each level.
+    pub model: Discretisation,
+    /// Cells a side, or elements, increasing.
+    pub sizes: Vec<usize>,
+    /// Surfaces of each level.
+    pub surfaces: Vec<usize>,
+    /// Loads F_bar.
+    pub forces: Forces,
+    /// Loads above the first are solved on grids up to the second only.
+    pub heavy: Option<(f64, usize)>,
+}
+
+/// One surface on the grid of its level, and on the next coarser one.
+#[derive(Debug, Clone)]
+pub struct Pair {
+    /// Number of the surface on its level.
+    pub index: usize,
+    /// On the grid of the level.
+    pub fine: RealisationResult,
+    /// On the next coarser grid; absent on the coarsest.
+    pub coarse: Option<RealisationResult>,
+}
+
+/// All pairs of one fractal dimension, level by level.
+#[derive(Debug, Clone)]
+pub struct Rungs {
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// Level, surface.
+    pub levels: Vec<Vec<Pair>>,
+}
+
+/// A realisation of a study and where it belongs.
+struct Place {
+    dimension: usize,
+    level: usize,
+    fine: bool,
+    unit: Realisation,
+}
+
+impl Ladder {
+    /// Checks sizes and numbers.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for sizes that do not increase, or another number of surfaces than of sizes, or fewer than two of them.
+    pub fn validate(&self, sizes: &'static str, surfaces: &'static str) -> Result<()> {
+        if let Some(pair) = self.sizes.windows(2).find(|pair| pair[1] <= pair[0]) {
+            return Err(Error::parameter(sizes, pair[1], format!("sizes that increase, after {}", pair[0])));
+        }
+        if self.surfaces.len() != self.sizes.len() {
+            let expected = format!("{} numbers, one for each size", self.sizes.len());
+            return Err(Error::parameter(surfaces, format!("{} numbers", self.surfaces.len()), expected));
+        }
+        match self.surfaces.iter().find(|&&count| count < 2) {
+            Some(count) => Err(Error::parameter(surfaces, count, "at least 2 on each grid")),
+            None => Ok(()),
+        }
+    }
+
+    /// Loads on the grid of this size.
+    fn forces_on(&self, size: usize) -> Arc<[f64]> {
+        let all = self.forces.values();
+        match self.heavy {
+            Some((most, largest)) if size > largest => all.iter().copied().filter(|&f| f <= most).collect(),
+            _ => all.into(),
+        }
+    }
+
+    fn on(&self, size: usize) -> Discretisation {
+        match self.model {
+            Discretisation::Bem3d { tolerance, .. } => Discretisation::Bem3d { cells: size, tolerance },
+            Discretisation::Mdr1d { .. } => Discretisation::Mdr1d { elements: size },
+        }
+    }
+
+    /// The realisation of a level, on its own grid or on the coarser one under the loads of its own.
+    fn unit(&self, d: f64, seed: u64, level: usize, index: usize, fine: bool) -> Realisation {
+        let own = self.sizes[level];
+        Realisation {
+            discretisation: self.on(if fine { own } else { self.sizes[level - 1] }),
+            fractal_dimension: d,
+            index,
+            // Levels are independent: each has a master seed of its own.
+            seed: surface_seed(surface_seed(seed, level as u64), index as u64),
+            forces: self.forces_on(own),
+        }
+    }
+
+    fn places(&self, dimensions: &[f64], seed: u64, surfaces: &[usize]) -> Vec<Place> {
+        let mut places = Vec::new();
+        for (level, &count) in surfaces.iter().enumerate() {
+            for index in 0..count {
+                for (dimension, &d) in dimensions.iter().enumerate() {
+                    for fine in [true, false].into_iter().filter(|fine| *fine || level > 0) {
+                        let unit = self.unit(d, seed, level, index, fine);
+                        places.push(Place { dimension, level, fine, unit });
+                    }
+                }
+            }
+        }
+        places
+    }
+
+    /// Surfaces of the level of this size that the store holds whole, from the first on.
+    pub fn stored(&self, dimensions: &[f64], seed: u64, size: usize, store: &Store) -> usize {
+        let Some(level) = self.sizes.iter().position(|&own| own == size) else { return 0 };
+        let is_there = |index: usize| {
+            dimensions.iter().all(|&d| {
+                [true, false]
+                    .into_iter()
+                    .filter(|fine| *fine || level > 0)
+                    .all(|fine| store.load(&self.unit(d, seed, level, index, fine).key()).is_some())
+            })
+        };
+        (0..self.surfaces[level]).take_while(|&index| is_there(index)).count()
+    }
+
+    /// Solves so many surfaces of each level, or takes them from the store: the largest grids first, each with the threads that its memory
+    /// allows.
+    ///
+    /// # Errors
+    /// As [`sweep`].
+    pub fn solve(
+        &self,
+        dimensions: &[f64],
+        seed: u64,
+        surfaces: &[usize],
+        (store, threads): (&Store, usize),
+        progress: &dyn Progress,
+    ) -> Result<Vec<Rungs>> {
+        let places = self.places(dimensions, seed, surfaces);
+        let mut by_size: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (i, place) in places.iter().enumerate() {
+            by_size.entry(place.unit.discretisation.size()).or_default().push(i);
+        }
+        let mut results: Vec<Option<RealisationResult>> = places.iter().map(|_| None).collect();
+        for (size, members) in by_size.into_iter().rev() {
+            let units: Vec<Realisation> = members.iter().map(|&i| places[i].unit.clone()).collect();
+            let what = format!("{}: {} surfaces, size {size}", self.model.name(), units.len());
+            for (i, result) in members.into_iter().zip(sweep(&what, &units, store, threads, progress)?) {
+                results[i] = Some(result);
+            }
+        }
+        let mut rungs: Vec<Rungs> = (dimensions.iter())
+            .map(|&fractal_dimension| Rungs {
+                fractal_dimension,
+                levels: surfaces.iter().map(|&count| Vec::with_capacity(count)).collect(),
+            })
+            .collect();
+        for (place, result) in places.into_iter().zip(results.into_iter().flatten()) {
+            let level = &mut rungs[place.dimension].levels[place.level];
+            match level.last_mut() {
+                // The coarse grid follows the fine one.
+                Some(pair) if !place.fine => pair.coarse = Some(result),
+                _ => level.push(Pair { index: place.unit.index, fine: result, coarse: None }),
+            }
+        }
+        Ok(rungs)
+    }
+}
+
+impl Pair {
+    /// Seconds of both solves.
+    pub fn seconds(&self) -> f64 {
+        self.fine.seconds + self.coarse.as_ref().map_or(0.0, |coarse| coarse.seconds)
+    }
+
+    /// Loads at which one of the solves did not meet its tolerance.
+    pub fn not_converged(&self) -> usize {
+        let results = std::iter::once(&self.fine).chain(&self.coarse);
+        results.flat_map(|r| &r.samples).filter(|s| !s.converged()).count()
+    }
+}

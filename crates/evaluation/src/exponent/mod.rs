@@ -1,0 +1,296 @@
+//! The exponent of stiffness over force, by multilevel Monte Carlo over grids.
+//!
+//! Pairs of the same surface on two neighbouring grids give the mean difference between them with few surfaces; the mean on the finest grid
+//! is the sum of the mean on the coarsest and of all differences ([`analysis::Multilevel`]). From it come local slopes with bands, fits over
+//! stated windows, and the factor between line and surface, each with the part that the finest grid leaves. Nothing is extrapolated: a curve
+//! ends where that part exceeds the stated error.
+
+mod curve;
+mod ladder;
+mod laws;
+mod picture;
+mod plan;
+mod tables;
+
+pub use ladder::Ladder;
+pub use picture::draw as draw_exponent;
+
+use crate::header::header;
+use crate::outcome::Outcome;
+use crate::run::{FRACTAL_DIMENSIONS, SEED, list};
+use crate::{Discretisation, Forces};
+use analysis::Table;
+use contact_model::ContactModel as _;
+use curve::{Convention, MeanCurve};
+use ladder::Rungs;
+use runs::{Error, Progress, Result, Store, files, write_csv};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// What the study solves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exponent {
+    /// D_f.
+    pub fractal_dimensions: Vec<f64>,
+    /// Boundary elements.
+    pub solid: Ladder,
+    /// The one-dimensional reduction.
+    pub line: Ladder,
+    /// Relative error that the finest grid may leave of k_bar.
+    pub error: f64,
+    /// Master seed.
+    pub seed: u64,
+    /// Threads.
+    pub threads: usize,
+    /// Directory of the results.
+    pub out: PathBuf,
+    /// Ignore stored results.
+    pub fresh: bool,
+}
+
+/// Sizes of the study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ExponentSizes {
+    /// Seconds, for tests.
+    Quick,
+    /// Minutes: up to 1025 cells and 2^20 elements.
+    #[default]
+    Default,
+    /// Hours: up to 16385 cells and 2^26 elements.
+    Full,
+}
+
+impl Exponent {
+    /// The study at these sizes.
+    ///
+    /// # Errors
+    /// None for the sizes there are; [`Error::Parameter`] of a list of loads.
+    pub fn new(sizes: ExponentSizes) -> Result<Self> {
+        let (cells, surfaces, elements, lines, solid_forces, line_forces): (&[_], &[_], &[_], &[_], _, _) =
+            match sizes {
+                ExponentSizes::Quick => {
+                    (&[33, 65, 129], &[8, 4, 3], &[10, 11, 12], &[8, 4, 3], "2e-3:2e-1:13", "2e-3:2e-1:13")
+                }
+                ExponentSizes::Default => (
+                    &[129, 257, 513, 1025],
+                    &[256, 96, 48, 24],
+                    &[14, 16, 18, 20],
+                    &[400, 200, 100, 50],
+                    "2e-5:2e-1:25",
+                    "2e-5:2e-1:25",
+                ),
+                ExponentSizes::Full => (
+                    &[257, 513, 1025, 2049, 4097, 8193, 16385],
+                    &[400, 160, 80, 40, 20, 10, 6],
+                    &[18, 20, 22, 24, 26],
+                    &[800, 200, 100, 40, 16],
+                    "2e-7:2e-1:37",
+                    "2e-8:2e-1:43",
+                ),
+            };
+        Ok(Self {
+            fractal_dimensions: FRACTAL_DIMENSIONS.to_vec(),
+            solid: Ladder {
+                model: Discretisation::Bem3d { cells: 0, tolerance: 1e-3 },
+                sizes: cells.to_vec(),
+                surfaces: surfaces.to_vec(),
+                forces: Forces::parse(solid_forces)?,
+                heavy: Some((laws::LARGEST * (1.0 + 1e-9), 2049)),
+            },
+            line: Ladder {
+                model: Discretisation::Mdr1d { elements: 0 },
+                sizes: elements.iter().map(|power| 1 << power).collect(),
+                surfaces: lines.to_vec(),
+                forces: Forces::parse(line_forces)?,
+                heavy: None,
+            },
+            error: 0.03,
+            seed: SEED,
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
+            out: "out".into(),
+            fresh: false,
+        })
+    }
+
+    fn ladders(&self) -> [(&'static str, &Ladder); 2] {
+        [("surfaces", &self.solid), ("lines", &self.line)]
+    }
+
+    fn validate(&self) -> Result<()> {
+        if !(self.error > 0.0 && self.error < 1.0) {
+            return Err(Error::parameter("error", self.error, "a share above 0 and below 1"));
+        }
+        self.solid.validate("grids", "surfaces")?;
+        self.line.validate("elements", "lines")
+    }
+
+    fn command(&self) -> String {
+        let join = |sizes: &[usize]| sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
+        let Self { solid, line, .. } = self;
+        format!(
+            "cargo xtask exponent --grids {} --surfaces {} --elements {} --lines {} --forces {} --line-forces {} --fractal-dimensions {} --error {:?} --seed {}",
+            join(&solid.sizes),
+            join(&solid.surfaces),
+            join(&line.sizes),
+            join(&line.surfaces),
+            solid.forces.spec(),
+            line.forces.spec(),
+            list(&self.fractal_dimensions),
+            self.error,
+            self.seed
+        )
+    }
+}
+
+/// Surfaces of each level that are solved first, so that the cost is known before the rest begins.
+const PILOT: usize = 2;
+
+/// Lines that say what the study costs, and how many surfaces `seconds` of all threads are worth.
+///
+/// What is stored counts as measured; besides, a few surfaces of the smaller grids are solved (those of the study, nothing is lost): grids
+/// that together take a thousandth of the cells of the largest one.
+///
+/// # Errors
+/// What the study refuses; what a model or the store refuses.
+pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) -> Result<Vec<String>> {
+    study.validate()?;
+    let store = Store::open(&study.out, study.fresh)?;
+    let mut lines = Vec::new();
+    for (name, ladder) in study.ladders() {
+        let largest = ladder.sizes.last().copied().unwrap_or(0);
+        let pilot: Vec<usize> = (ladder.sizes.iter().zip(&ladder.surfaces))
+            .map(|(&size, &count)| {
+                let stored = ladder.stored(&study.fractal_dimensions, study.seed, size, &store);
+                let small = size <= (largest / 16).max(ladder.sizes[0]);
+                stored.max(if small { PILOT } else { 0 }).min(count)
+            })
+            .collect();
+        let rungs =
+            ladder.solve(&study.fractal_dimensions, study.seed, &pilot, (&store, study.threads), progress)?;
+        let costs = plan::costs(ladder, &rungs, seconds * study.threads as f64);
+        lines.extend(plan::lines(name, &ladder.forces, &costs, study.threads));
+    }
+    Ok(lines)
+}
+
+/// Solves what is not stored, and writes `exponent.csv` (curves and local slopes), `exponent-levels.csv`, `exponent-laws.csv`,
+/// `exponent-ratio.csv`, `exponent-factor.csv` and `exponent-samples.csv`, and the pictures of slopes and ratios.
+///
+/// # Errors
+/// [`Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
+pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Outcome> {
+    study.validate()?;
+    let start = Instant::now();
+    files::create_directory(&study.out)?;
+    files::clean(&study.out)?;
+    let store = Store::open(&study.out, study.fresh)?;
+    let mut curves = Vec::new();
+    let mut solved: Vec<(&Ladder, Vec<Rungs>)> = Vec::new();
+    // Lines first: they are cheap.
+    for (_, ladder) in study.ladders().into_iter().rev() {
+        let rungs = ladder.solve(
+            &study.fractal_dimensions,
+            study.seed,
+            &ladder.surfaces,
+            (&store, study.threads),
+            progress,
+        )?;
+        for convention in [Convention::Measured, Convention::FixedSpectrum] {
+            for rung in &rungs {
+                curves.push(MeanCurve::new(ladder, rung, convention, study.error)?);
+            }
+        }
+        solved.push((ladder, rungs));
+    }
+    let laws = laws::law_rows(&curves);
+    let (ratios, factors) = laws::ratios(&curves);
+    let ladders: Vec<(&Ladder, &[Rungs])> =
+        solved.iter().map(|(ladder, rungs)| (*ladder, rungs.as_slice())).collect();
+    let mut outcome = Outcome::new("exponent");
+    let pairs = || solved.iter().flat_map(|(_, rungs)| rungs).flat_map(|r| r.levels.iter().flatten());
+    outcome.not_converged = pairs().map(ladder::Pair::not_converged).sum();
+    let tables: [(&str, Result<Table>); 6] = [
+        (picture::CURVES, tables::curves(&curves)),
+        ("exponent-levels.csv", tables::levels(&curves)),
+        ("exponent-laws.csv", tables::laws(&laws)),
+        (picture::RATIOS, tables::ratios(&ratios)),
+        ("exponent-factor.csv", tables::factors(&factors)),
+        ("exponent-samples.csv", tables::samples(&ladders)),
+    ];
+    let left_out: usize =
+        curves.iter().filter(|c| c.convention == Convention::Measured).map(|c| c.left_out).sum();
+    let header = header(study.command())
+        .with_sources(bem3d::Bem3d::default().sources())
+        .with_sources(mdr1d::Mdr1d::default().sources())
+        .with_note("multilevel Monte Carlo: M. B. Giles, Oper. Res. 56, 607 (2008); the surfaces of each level are independent, those of different D_f share phases")
+        .with_note(format!(
+            "loads above {:?} on grids up to {:?} cells only; a curve is resolved where the finest grid leaves at most {:?} of k_bar",
+            laws::LARGEST,
+            study.solid.heavy.map_or(0, |heavy| heavy.1),
+            study.error
+        ))
+        .with_note(format!("{} solves not converged; {left_out} pairs left out for them", outcome.not_converged));
+    for (name, table) in tables {
+        let path = study.out.join(name);
+        write_csv(&path, &table?, &header)?;
+        outcome.files.push(path);
+    }
+    outcome.files.extend(picture::draw(&study.out)?);
+    let seconds = |model: &str| {
+        let of = solved.iter().filter(|(ladder, _)| ladder.model.name() == model);
+        analysis::sum(
+            of.flat_map(|(_, rungs)| rungs)
+                .flat_map(|r| r.levels.iter().flatten())
+                .map(ladder::Pair::seconds),
+        )
+    };
+    (outcome.bem3d_seconds, outcome.mdr1d_seconds) = (Some(seconds("bem3d")), Some(seconds("mdr1d")));
+    outcome.seconds = start.elapsed().as_secs_f64();
+    Ok(outcome)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use runs::{CsvFile, Silent};
+
+    fn quick(out: &std::path::Path) -> Exponent {
+        Exponent {
+            fractal_dimensions: vec![2.2, 2.8],
+            out: out.to_owned(),
+            error: 0.2,
+            ..Exponent::new(ExponentSizes::Quick).unwrap()
+        }
+    }
+
+    #[test]
+    fn a_small_study_resumes_to_the_same_bytes() {
+        let dir = tempfile::tempdir().unwrap();
+        let study = quick(dir.path());
+        let plan = exponent_plan(&study, 60.0, &Silent).unwrap();
+        assert!(plan.iter().any(|line| line.contains("processor hours")), "{plan:?}");
+        let read = || -> Vec<Vec<u8>> {
+            let outcome = exponent(&study, &Silent).unwrap();
+            outcome.files.iter().map(|file| std::fs::read(file).unwrap()).collect()
+        };
+        let first = read();
+        assert_eq!(first, read());
+        let file = CsvFile::read(&dir.path().join("exponent.csv")).unwrap();
+        let resolved = file.numbers("slope").unwrap().into_iter().flatten().count();
+        assert!(resolved > 4, "{resolved} slopes");
+        assert!(file.numbers("slope").unwrap().into_iter().flatten().all(|s| (0.2..1.2).contains(&s)));
+    }
+
+    #[test]
+    fn sizes_that_make_no_sense_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut study = quick(dir.path());
+        study.solid.surfaces.pop();
+        let e = exponent(&study, &Silent).unwrap_err().to_string();
+        assert!(e.starts_with("surfaces = 2 numbers: expected 3 numbers"), "{e}");
+        let mut study = quick(dir.path());
+        study.line.sizes[1] = 4;
+        assert!(exponent(&study, &Silent).unwrap_err().to_string().starts_with("elements = 4"));
+        assert!(exponent(&Exponent { error: f64::NAN, ..quick(dir.path()) }, &Silent).is_err());
+    }
+}
