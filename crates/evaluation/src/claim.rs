@@ -1,112 +1,176 @@
-//! One line per claim of the paper.
+//! What the paper states, what a fair reading of it is, and what was found.
 
 use crate::table_of::TableOf;
-use analysis::{Table, Value};
+use analysis::Table;
 use runs::Result;
 use std::fmt;
 
-/// What the comparison says.
+/// What was found of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// The difference is larger than allowed.
-    Disagrees,
-    /// The difference is within what is allowed.
-    Agrees,
-    /// This run cannot tell; the reason is in `why`.
-    NotTested,
+    /// The interval found lies outside the fair reading.
+    Contradicted,
+    /// The interval found holds other readings, or another law, as well; the remark says what would decide.
+    Unresolved,
+    /// It holds in one convention and not in another; the remark says in which.
+    Convention,
+    /// The interval found lies inside the fair reading, or about it and is no wider.
+    Confirmed,
+}
+
+impl Verdict {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 4] = [Self::Contradicted, Self::Unresolved, Self::Convention, Self::Confirmed];
+
+    /// The words of a table.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Contradicted => "contradicted",
+            Self::Unresolved => "not resolved at this size",
+            Self::Convention => "matter of convention",
+            Self::Confirmed => "confirmed",
+        }
+    }
 }
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Disagrees => "disagrees",
-            Self::Agrees => "agrees",
-            Self::NotTested => "not tested",
-        })
+        f.pad(self.as_str())
     }
 }
 
-/// A claim of the paper beside what was found here.
+/// Words of the paper and how they are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Statement {
+    /// The words, or the formula.
+    pub quotation: &'static str,
+    /// Where they stand.
+    pub place: &'static str,
+    /// What a fair reader takes them to say, fixed before the comparison.
+    pub reading: &'static str,
+}
+
+/// A number with the half-width of its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Half-width of the 95 % interval: scatter of the surfaces and whatever else the number depends on; 0 where it is exact.
+    pub half_width: f64,
+}
+
+impl Estimate {
+    /// A number that is exact for the purpose.
+    pub fn exact(value: f64) -> Self {
+        Self { value, half_width: 0.0 }
+    }
+
+    /// From a standard error; `None` without one.
+    ///
+    /// ```
+    /// use evaluation::Estimate;
+    /// assert_eq!(Estimate::normal(1.0, Some(0.5)), Some(Estimate { value: 1.0, half_width: 0.98 }));
+    /// ```
+    pub fn normal(value: f64, standard_error: Option<f64>) -> Option<Self> {
+        standard_error.map(|error| Self { value, half_width: 1.96 * error })
+    }
+
+    /// Whether the interval holds a number.
+    pub fn holds(&self, other: f64) -> bool {
+        (other - self.value).abs() <= self.half_width
+    }
+}
+
+/// A statement of the paper beside what was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
     /// The quantity.
-    pub claim: String,
-    /// What the paper says: a number, or words where it gives none.
-    pub paper: Value,
-    /// What was found.
-    pub here: Value,
-    /// Standard error of what was found; `None` for one surface or an exact number.
-    pub standard_error: Option<f64>,
-    /// Found minus paper.
-    pub difference: Option<f64>,
-    /// Largest difference that counts as agreement, stated before the run.
-    pub allowed: Option<f64>,
+    pub quantity: String,
+    /// The paper's words.
+    pub statement: Statement,
+    /// What the reading allows the quantity to be; infinite ends for "above" and "below".
+    pub paper: [f64; 2],
+    /// What was found; `None` where this run has nothing to say.
+    pub here: Option<Estimate>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Why so much is allowed, where it comes from, what explains a difference.
-    pub why: String,
-    /// Whether the numbers depend on the machine (run times): such a claim stays out of figures.
+    /// Conditions of the number, and what would decide where it does not.
+    pub remark: String,
+    /// Whether the numbers depend on the machine (run times): such a claim stays out of files.
     pub timed: bool,
 }
 
 impl Claim {
-    /// `|here - paper| <= allowed` agrees.
+    /// Judges a number by its interval alone: contradicted where it misses the reading, confirmed where it lies inside it, or meets it and
+    /// is no wider; else unresolved.
     ///
     /// ```
-    /// use evaluation::{Claim, Verdict};
-    /// let c = Claim::compare("alpha", 0.532, 0.54, Some(0.01), 0.03, "two digits of the print");
-    /// assert_eq!(c.verdict, Verdict::Agrees);
-    /// assert_eq!(Claim::compare("alpha", 0.532, 0.60, None, 0.03, "").verdict, Verdict::Disagrees);
+    /// use evaluation::{Claim, Estimate, Statement, Verdict};
+    /// let statement = Statement { quotation: "", place: "", reading: "" };
+    /// let judge = |value, half_width| Claim::judge("k", statement, [0.175, 0.185], Estimate { value, half_width }, "").verdict;
+    /// assert_eq!(judge(0.172, 0.004), Verdict::Confirmed);
+    /// assert_eq!(judge(0.172, 0.02), Verdict::Unresolved);
+    /// assert_eq!(judge(0.172, 0.002), Verdict::Contradicted);
     /// ```
-    pub fn compare(
-        claim: impl Into<String>,
-        paper: f64,
-        here: f64,
-        standard_error: Option<f64>,
-        allowed: f64,
-        why: impl Into<String>,
+    pub fn judge(
+        quantity: impl Into<String>,
+        statement: Statement,
+        paper: [f64; 2],
+        here: Estimate,
+        remark: impl Into<String>,
     ) -> Self {
-        let difference = here - paper;
-        let verdict = if difference.abs() <= allowed { Verdict::Agrees } else { Verdict::Disagrees };
+        let Estimate { value, half_width } = here;
+        let [low, high] = [value - half_width, value + half_width];
+        let verdict = if high < paper[0] || low > paper[1] || !value.is_finite() {
+            Verdict::Contradicted
+        } else if (low >= paper[0] && high <= paper[1]) || 2.0 * half_width <= paper[1] - paper[0] {
+            Verdict::Confirmed
+        } else {
+            Verdict::Unresolved
+        };
         Self {
-            claim: claim.into(),
-            paper: paper.into(),
-            here: here.into(),
-            standard_error,
-            difference: Some(difference),
-            allowed: Some(allowed),
+            quantity: quantity.into(),
+            statement,
+            paper,
+            here: Some(here),
             verdict,
-            why: why.into(),
+            remark: remark.into(),
             timed: false,
         }
     }
 
-    /// Agrees within `tolerance` + 2 standard errors; but where 2 standard errors are more than twice the tolerance, an agreement
-    /// would say nothing: not tested, with the numbers.
-    ///
-    /// ```
-    /// use evaluation::{Claim, Verdict};
-    /// let verdict = |here, error| Claim::within("zeta", 0.66, here, Some(error), 0.05, "").verdict;
-    /// assert_eq!(verdict(0.70, 0.02), Verdict::Agrees);
-    /// assert_eq!(verdict(0.90, 0.02), Verdict::Disagrees);
-    /// assert_eq!(verdict(0.90, 0.15), Verdict::NotTested);
-    /// ```
-    pub fn within(
-        claim: impl Into<String>,
-        paper: f64,
-        here: f64,
-        standard_error: Option<f64>,
-        tolerance: f64,
-        why: impl Into<String>,
-    ) -> Self {
-        let scatter = 2.0 * standard_error.unwrap_or(0.0);
-        let why = format!("{}; allowed: this + 2 s.e.", why.into());
-        let mut claim = Self::compare(claim, paper, here, standard_error, tolerance + scatter, why);
-        if claim.verdict == Verdict::Agrees && scatter > 2.0 * tolerance {
-            claim.verdict = Verdict::NotTested;
-            claim.why = format!("the scatter of so few surfaces hides it; {}", claim.why);
+    /// Beside another law: where the interval holds that as well, the numbers do not decide.
+    #[must_use]
+    pub fn beside(mut self, law: &str, value: f64) -> Self {
+        if self.verdict != Verdict::Contradicted && self.here.is_some_and(|here| here.holds(value)) {
+            self.verdict = Verdict::Unresolved;
+            self.remark = joined(&self.remark, &format!("the interval holds {law} = {} too", short(value)));
         }
-        claim
+        self
+    }
+
+    /// Beside the same quantity in another convention: where one is inside the reading and the other is not, the convention decides.
+    #[must_use]
+    pub fn in_convention(mut self, convention: &str, value: f64) -> Self {
+        let inside = |value: f64| (self.paper[0]..=self.paper[1]).contains(&value);
+        let [own, other] = [self.verdict == Verdict::Confirmed, inside(value)];
+        self.remark = joined(&self.remark, &format!("{}: {convention}", short(value)));
+        if own != other {
+            self.verdict = Verdict::Convention;
+        }
+        self
+    }
+
+    /// A statement on which this run has no number; the remark says what would decide.
+    pub fn unresolved(
+        quantity: impl Into<String>,
+        statement: Statement,
+        paper: [f64; 2],
+        remark: impl Into<String>,
+    ) -> Self {
+        let here = Estimate::exact(0.0);
+        let claim = Self::judge(quantity, statement, paper, here, remark);
+        Self { here: None, verdict: Verdict::Unresolved, ..claim }
     }
 
     /// The same without numbers that depend on the machine.
@@ -115,48 +179,50 @@ impl Claim {
         if !self.timed {
             return self.clone();
         }
-        let reason = "depends on the machine: the seconds of both models are in manifest.json";
-        Self { timed: true, ..Self::not_tested(self.claim.clone(), self.paper.clone(), reason) }
+        let remark = "depends on the machine: the seconds of both models are in manifest.json";
+        Self { timed: true, ..Self::unresolved(self.quantity.clone(), self.statement, self.paper, remark) }
     }
 
-    /// A claim in words (`at least 4`), judged by the caller.
-    pub fn judge(
-        claim: impl Into<String>,
-        paper: &str,
-        here: f64,
-        standard_error: Option<f64>,
-        holds: bool,
-        why: impl Into<String>,
-    ) -> Self {
-        let verdict = if holds { Verdict::Agrees } else { Verdict::Disagrees };
-        Self {
-            paper: paper.into(),
-            difference: None,
-            allowed: None,
-            verdict,
-            ..Self::compare(claim, 0.0, here, standard_error, 0.0, why)
+    /// What the reading allows, in words.
+    fn allowed(&self) -> String {
+        match self.paper {
+            [low, high] if !high.is_finite() => format!(">= {}", short(low)),
+            [low, high] if !low.is_finite() => format!("<= {}", short(high)),
+            [low, high] if (high - low).abs() <= f64::EPSILON * low.abs() => short(low),
+            [low, high] => format!("{} to {}", short(low), short(high)),
         }
     }
 
-    /// A claim that this run cannot judge.
-    pub fn not_tested(claim: impl Into<String>, paper: impl Into<Value>, reason: impl Into<String>) -> Self {
-        Self {
-            claim: claim.into(),
-            paper: paper.into(),
-            here: Value::Empty,
-            standard_error: None,
-            difference: None,
-            allowed: None,
-            verdict: Verdict::NotTested,
-            why: reason.into(),
-            timed: false,
+    /// What was found, with its interval.
+    fn found(&self) -> String {
+        match self.here {
+            None => String::new(),
+            Some(Estimate { value, half_width }) if half_width <= 0.0 => short(value),
+            Some(Estimate { value, half_width }) => format!("{} +- {}", short(value), rounded(half_width)),
         }
     }
 }
 
-/// Disagreements first, then agreements, then what was not tested; otherwise in the order given.
+fn joined(a: &str, b: &str) -> String {
+    if a.is_empty() { b.to_owned() } else { format!("{a}; {b}") }
+}
+
+/// In the order of [`Verdict::ALL`], otherwise in the order given.
 pub fn sort(claims: &mut [Claim]) {
     claims.sort_by_key(|c| c.verdict);
+}
+
+/// How many there are of each verdict, in one line.
+///
+/// ```
+/// assert_eq!(
+///     evaluation::counts(&[]),
+///     "0 comparisons: 0 contradicted, 0 not resolved at this size, 0 matter of convention, 0 confirmed"
+/// );
+/// ```
+pub fn counts(claims: &[Claim]) -> String {
+    let each = Verdict::ALL.map(|v| format!("{} {v}", claims.iter().filter(|c| c.verdict == v).count()));
+    format!("{} comparisons: {}", claims.len(), each.join(", "))
 }
 
 /// The table of `verify.csv`.
@@ -164,63 +230,68 @@ pub fn sort(claims: &mut [Claim]) {
 /// # Errors
 /// A row that does not fit the columns, which would be a mistake of this crate.
 pub fn claims_table(title: &str, claims: &[Claim]) -> Result<Table> {
+    let end = |value: f64| Some(value).filter(|v| v.is_finite());
     TableOf::new(title, claims)
-        .column("claim", "-", "the quantity, dimensionless", |c| c.claim.as_str())
-        .column("paper", "1", "what the paper says; words where it gives no number", |c| c.paper.clone())
-        .column("here", "1", "what was found; empty where this run cannot tell", |c| c.here.clone())
-        .column("standard_error", "1", "of what was found; empty for one surface or an exact number", |c| {
-            c.standard_error
+        .column("quantity", "-", "what is compared, dimensionless", |c| c.quantity.as_str())
+        .column("quotation", "-", "the paper's words or formula", |c| c.statement.quotation)
+        .column("place", "-", "where they stand", |c| c.statement.place)
+        .column("reading", "-", "what a fair reader takes them to say", |c| c.statement.reading)
+        .column("paper_min", "1", "smallest value that this reading allows; empty for none", |c| {
+            end(c.paper[0])
         })
-        .column("difference", "1", "here minus paper", |c| c.difference)
-        .column("allowed", "1", "largest difference that counts as agreement, fixed beforehand", |c| {
-            c.allowed
+        .column("paper_max", "1", "largest value that this reading allows; empty for none", |c| {
+            end(c.paper[1])
         })
-        .column("verdict", "-", "agrees, disagrees or not tested", |c| c.verdict.to_string())
-        .column("why", "-", "where it comes from and why so much is allowed", |c| c.why.as_str())
+        .column("here", "1", "what was found; empty where this run has no number", |c| {
+            c.here.map(|h| h.value)
+        })
+        .column("half_width", "1", "of its 95 % interval; 0 where it is exact", |c| {
+            c.here.map(|h| h.half_width)
+        })
+        .column(
+            "verdict",
+            "-",
+            "confirmed, contradicted, not resolved at this size, matter of convention",
+            |c| c.verdict.as_str(),
+        )
+        .column("remark", "-", "conditions, and what would decide", |c| c.remark.as_str())
         .table()
 }
 
-/// The claims as a Markdown table, with short numbers: for `verify.md` and the README.
-///
-/// ```
-/// let c = evaluation::Claim::compare("alpha | D_f = 2", 0.532, 0.54, Some(0.01), 0.03, "");
-/// let text = evaluation::markdown(&[c]);
-/// assert!(text.ends_with("| alpha \\| D_f = 2 | 0.532 | 0.54 | 0.01 | 0.008 | 0.03 | agrees |  |\n"));
-/// ```
+/// The claims as a Markdown table, with short numbers: for `verify.md`.
 pub fn markdown(claims: &[Claim]) -> String {
-    let mut text = String::from(
-        "| claim | paper | here | standard error | difference | allowed | verdict | why |\n|---|---|---|---|---|---|---|---|\n",
+    let mut text = format!(
+        "{}\n\n| quantity | the paper | fair reading | allowed | here, 95 % | verdict | remark |\n|---|---|---|---|---|---|---|\n",
+        counts(claims)
     );
     for c in claims {
         let cells = [
-            c.claim.clone(),
-            value(&c.paper),
-            value(&c.here),
-            c.standard_error.map(short).unwrap_or_default(),
-            c.difference.map(short).unwrap_or_default(),
-            c.allowed.map(short).unwrap_or_default(),
-            if c.verdict == Verdict::Disagrees { "**disagrees**".to_owned() } else { c.verdict.to_string() },
-            c.why.clone(),
+            c.quantity.clone(),
+            format!("{} ({})", c.statement.quotation, c.statement.place),
+            c.statement.reading.to_owned(),
+            c.allowed(),
+            c.found(),
+            c.verdict.to_string(),
+            c.remark.clone(),
         ];
-        let cells = cells.map(|c| c.replace('|', "\\|"));
-        text += &format!("| {} |\n", cells.join(" | "));
+        text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
     }
     text
 }
 
-/// The short table of a README: claim, paper, here (with its standard error), verdict; untested claims and run times are left out.
+/// The short table: quantity, what the paper allows, what was found, verdict; run times are left out.
 ///
 /// ```
-/// let c = evaluation::Claim::compare("alpha", 0.532, 0.54, Some(0.01), 0.03, "");
-/// assert!(evaluation::readme_table(&[c]).ends_with("| alpha | 0.532 | 0.54 +- 0.01 | agrees |\n"));
+/// use evaluation::{Claim, Estimate, Statement};
+/// let statement = Statement { quotation: "", place: "", reading: "" };
+/// let c = Claim::judge("alpha", statement, [0.5, 0.6], Estimate { value: 0.54, half_width: 0.012 }, "");
+/// assert!(evaluation::short_table(&[c]).ends_with("| alpha | 0.5 to 0.6 | 0.54 +- 0.01 | confirmed |\n"));
 /// ```
-pub fn readme_table(claims: &[Claim]) -> String {
-    let mut text = String::from("| quantity | paper | here | verdict |\n|---|---|---|---|\n");
-    for c in claims.iter().filter(|c| c.verdict != Verdict::NotTested && !c.timed) {
-        let error = c.standard_error.map(|e| format!(" +- {}", rounded(e))).unwrap_or_default();
-        let verdict =
-            if c.verdict == Verdict::Disagrees { "**disagrees**".to_owned() } else { c.verdict.to_string() };
-        let cells = [c.claim.clone(), value(&c.paper), format!("{}{error}", value(&c.here)), verdict];
+pub fn short_table(claims: &[Claim]) -> String {
+    let mut text =
+        format!("{}\n\n| quantity | paper | here, 95 % | verdict |\n|---|---|---|---|\n", counts(claims));
+    for c in claims.iter().filter(|c| !c.timed) {
+        let cells = [c.quantity.clone(), c.allowed(), c.found(), c.verdict.to_string()];
         text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
     }
     text
@@ -231,38 +302,17 @@ fn rounded(v: f64) -> String {
     short(format!("{v:.0e}").parse().unwrap_or(v))
 }
 
-/// The claims as aligned plain text, `why` below each disagreement and each untested claim.
+/// The claims as aligned plain text, with the remark below what is not confirmed.
 pub fn plain(claims: &[Claim]) -> String {
-    let wide = claims.iter().map(|c| c.claim.chars().count()).max().unwrap_or(0).clamp(5, 64);
-    let mut text = format!(
-        "{:wide$}  {:>12}  {:>10}  {:>9}  {:>9}  verdict\n",
-        "claim", "paper", "here", "s.e.", "allowed"
-    );
+    let wide = claims.iter().map(|c| c.quantity.chars().count()).max().unwrap_or(0).clamp(8, 64);
+    let mut text = format!("{:wide$}  {:>16}  {:>18}  verdict\n", "quantity", "paper", "here, 95 %");
     for c in claims {
-        text += &format!(
-            "{:wide$}  {:>12}  {:>10}  {:>9}  {:>9}  {}\n",
-            c.claim,
-            value(&c.paper),
-            value(&c.here),
-            c.standard_error.map(short).unwrap_or_default(),
-            c.allowed.map(short).unwrap_or_default(),
-            c.verdict,
-        );
-        if c.verdict != Verdict::Agrees && !c.why.is_empty() {
-            text += &format!("    {}\n", c.why);
+        text += &format!("{:wide$}  {:>16}  {:>18}  {}\n", c.quantity, c.allowed(), c.found(), c.verdict);
+        if c.verdict != Verdict::Confirmed && !c.remark.is_empty() {
+            text += &format!("    {}\n", c.remark);
         }
     }
-    text
-}
-
-fn value(v: &Value) -> String {
-    match v {
-        Value::Text(t) => t.clone(),
-        Value::Number(v) => short(*v),
-        Value::Count(n) => n.to_string(),
-        Value::Flag(b) => b.to_string(),
-        Value::Empty => String::new(),
-    }
+    text + &format!("{}\n", counts(claims))
 }
 
 /// Four significant digits.
@@ -279,28 +329,63 @@ pub fn short(v: f64) -> String {
 mod tests {
     use super::*;
 
+    const STATEMENT: Statement = Statement { quotation: "a | b", place: "Sec. I", reading: "so" };
+
+    fn claim(quantity: &str, value: f64, half_width: f64) -> Claim {
+        Claim::judge(quantity, STATEMENT, [0.9, 1.1], Estimate { value, half_width }, "")
+    }
+
     #[test]
-    fn disagreements_come_first_and_ties_keep_their_order() {
+    fn the_interval_decides() {
+        assert_eq!(claim("inside", 1.0, 0.05).verdict, Verdict::Confirmed);
+        assert_eq!(claim("across an end, narrow", 1.12, 0.05).verdict, Verdict::Confirmed);
+        assert_eq!(claim("across an end, wide", 1.12, 0.2).verdict, Verdict::Unresolved);
+        assert_eq!(claim("wider than the reading", 1.0, 0.2).verdict, Verdict::Unresolved);
+        assert_eq!(claim("outside", 1.2, 0.05).verdict, Verdict::Contradicted);
+        let above =
+            Claim::judge("x", STATEMENT, [3.0, f64::INFINITY], Estimate { value: 3.6, half_width: 0.2 }, "");
+        assert_eq!((above.verdict, above.allowed().as_str()), (Verdict::Confirmed, ">= 3"));
+    }
+
+    #[test]
+    fn rivals_and_conventions_are_said() {
+        let held = claim("x", 1.0, 0.05).beside("Eq. 24", 1.04);
+        assert_eq!(held.verdict, Verdict::Unresolved);
+        assert!(held.remark.contains("Eq. 24 = 1.04"), "{}", held.remark);
+        assert_eq!(claim("x", 1.0, 0.05).beside("Eq. 24", 1.06).verdict, Verdict::Confirmed);
+        assert_eq!(claim("x", 1.2, 0.05).beside("Eq. 24", 1.2).verdict, Verdict::Contradicted);
+        assert_eq!(claim("x", 1.0, 0.05).in_convention("log mean", 1.2).verdict, Verdict::Convention);
+        assert_eq!(claim("x", 1.2, 0.05).in_convention("log mean", 1.0).verdict, Verdict::Convention);
+        assert_eq!(claim("x", 1.0, 0.05).in_convention("log mean", 1.05).verdict, Verdict::Confirmed);
+    }
+
+    #[test]
+    fn contradictions_come_first_and_ties_keep_their_order() {
         let mut claims = vec![
-            Claim::not_tested("a", 1.0, "too small"),
-            Claim::compare("b", 1.0, 1.0, None, 0.1, ""),
-            Claim::compare("c", 1.0, 2.0, None, 0.1, "why c"),
-            Claim::judge("d", "at least 4", 3.0, None, false, "why d"),
+            claim("a", 1.0, 0.05),
+            claim("b", 2.0, 0.05),
+            Claim::unresolved("c", STATEMENT, [0.0, 1.0], "more cells"),
+            claim("d", 1.0, 0.01),
         ];
         sort(&mut claims);
-        let order: Vec<&str> = claims.iter().map(|c| c.claim.as_str()).collect();
-        assert_eq!(order, ["c", "d", "b", "a"]);
-        let text = plain(&claims);
-        assert!(text.contains("why c") && text.contains("too small"), "{text}");
+        let order: Vec<&str> = claims.iter().map(|c| c.quantity.as_str()).collect();
+        assert_eq!(order, ["b", "c", "a", "d"]);
+        assert!(plain(&claims).contains("more cells"));
+        assert!(plain(&claims).ends_with(
+            "4 comparisons: 1 contradicted, 1 not resolved at this size, 0 matter of convention, 2 confirmed\n"
+        ));
+        assert!(
+            markdown(&claims)
+                .contains("| b | a \\| b (Sec. I) | so | 0.9 to 1.1 | 2 +- 0.05 | contradicted |  |")
+        );
         let table = claims_table("t", &claims).unwrap();
-        assert_eq!(table.rows()[0][6], Value::Text("disagrees".into()));
-        assert_eq!(table.rows()[3][2], Value::Empty);
+        assert_eq!(table.rows()[1][6], analysis::Value::Empty);
     }
 
     #[test]
     fn a_nan_never_agrees_and_never_reaches_the_table() {
-        let c = Claim::compare("x", 1.0, f64::NAN, None, 1.0, "");
-        assert_eq!(c.verdict, Verdict::Disagrees);
+        let c = claim("x", f64::NAN, 0.0);
+        assert_eq!(c.verdict, Verdict::Contradicted);
         assert!(claims_table("t", &[c]).is_err());
     }
 

@@ -1,6 +1,6 @@
 //! What Figs. 3 and 7 have in common: the fitted power laws.
 
-use crate::measured::Measured;
+use crate::measured::{Measured, Series};
 use analysis::{Bootstrap, FitWindow, FittedPowerLaw, NoFit, fit_power_law};
 
 /// A fitted law, or why there is none.
@@ -21,12 +21,59 @@ pub fn laws(measured: &Measured) -> Vec<FittedLaw> {
 
 /// The same over another window.
 pub fn laws_within(measured: &Measured, window: &FitWindow) -> Vec<FittedLaw> {
-    let law = |s: &crate::measured::Series| FittedLaw {
+    let law = |s: &Series| FittedLaw {
         model: measured.discretisation.name(),
         fractal_dimension: s.fractal_dimension,
         fit: fit_power_law(&s.curves, window, &Bootstrap::default()),
     };
     measured.series.iter().map(law).collect()
+}
+
+/// Floors of contact cells and upper ends of the window between which the exponents of one series are compared.
+const FLOORS: [usize; 3] = [10, 30, 100];
+const LARGEST: [f64; 2] = [0.086, 0.03];
+/// A window shorter than this says little about a power law.
+const LEAST_DECADES: f64 = 1.0;
+
+/// A law over [`FitWindow::PAPER`] and what other windows make of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WindowedLaw {
+    /// The law.
+    pub fit: FittedPowerLaw,
+    /// Largest changes of alpha and of zeta with floors of 30 and 100 contact cells on every surface and an upper end of 0.03, over at least a
+    /// decade.
+    pub windows: (f64, f64),
+}
+
+/// The law of a series, or why there is none to judge.
+///
+/// # Errors
+/// Words: too few loads, or a window of less than a decade.
+pub fn windowed_law(series: &Series) -> Result<WindowedLaw, String> {
+    let law = |floor: usize, largest: f64| {
+        let window = FitWindow { max_force_bar: largest, min_contact_cells: floor, ..FitWindow::PAPER };
+        let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
+        let errors = if (floor, largest) == (FLOORS[0], LARGEST[0]) { Bootstrap::default() } else { once };
+        fit_power_law(&series.curves, &window, &errors).map_err(|e| e.to_string())
+    };
+    let decades = |fit: &FittedPowerLaw| (fit.force_bar_max / fit.force_bar_min).log10();
+    let fit = law(FLOORS[0], LARGEST[0])?;
+    if decades(&fit) < LEAST_DECADES {
+        return Err(format!(
+            "the window {:.1e} to {:.1e} spans {:.2} decades, at least {LEAST_DECADES} is needed: finer grids widen it",
+            fit.force_bar_min,
+            fit.force_bar_max,
+            decades(&fit)
+        ));
+    }
+    let others = FLOORS.iter().flat_map(|&floor| LARGEST.map(|largest| law(floor, largest)));
+    let windows = others.filter_map(Result::ok).filter(|other| decades(other) >= LEAST_DECADES).fold(
+        (0.0, 0.0),
+        |(alpha, zeta), other| {
+            (f64::max(alpha, (other.alpha - fit.alpha).abs()), f64::max(zeta, (other.zeta - fit.zeta).abs()))
+        },
+    );
+    Ok(WindowedLaw { fit, windows })
 }
 
 /// 2.0, 2.05 .. 3.0 and the given ones: where formulas are tabulated.

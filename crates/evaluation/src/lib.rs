@@ -29,6 +29,7 @@ mod bench;
 mod bench_plot;
 mod budget;
 mod claim;
+mod exponent;
 mod fitted_laws;
 mod forces;
 mod hard_cases;
@@ -53,8 +54,11 @@ pub use audit::audit;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, measure_parts, parts_table, write_bench};
 pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
 pub use budget::{Budget, Budgeted, state_budgets, write_budget};
-pub use claim::{Claim, Verdict, claims_table, markdown, plain, readme_table, short, sort};
-pub use fitted_laws::{FittedLaw, dense_dimensions, laws, laws_within};
+pub use claim::{
+    Claim, Estimate, Statement, Verdict, claims_table, counts, markdown, plain, short, short_table, sort,
+};
+pub use exponent::{Exponent, ExponentSizes, Ladder, draw_exponent, exponent, exponent_plan};
+pub use fitted_laws::{FittedLaw, WindowedLaw, dense_dimensions, laws, laws_within, windowed_law};
 pub use forces::Forces;
 pub use hard_cases::hard_cases;
 pub use header::{FLAGS_1D, FLAGS_3D, PAPER, describe, header};

@@ -113,6 +113,13 @@ impl Series {
         Ok(Self { fractal_dimension, units, curves, points })
     }
 
+    /// The same curves of the surfaces `draw` (a surface may be drawn more than once); its units stay those of the whole.
+    #[must_use]
+    pub fn redrawn(&self, draw: &[usize]) -> Self {
+        let curves = self.curves.resampled(draw);
+        Self { points: ensemble(&curves), curves, ..self.clone() }
+    }
+
     /// Arithmetic mean of k_bar over the converged surfaces at each force.
     pub fn means(&self) -> Vec<Option<f64>> {
         self.points.iter().map(|p| p.stiffness_bar.map(|s| s.mean)).collect()

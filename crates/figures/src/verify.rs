@@ -3,12 +3,12 @@
 use crate::claims;
 use evaluation::{
     Claim, Flag, Measured, Outcome, Run, Session, claims_table, describe, header, markdown, measure_1d,
-    measure_3d, readme_table, sort,
+    measure_3d, short_table, sort,
 };
 use runs::{Progress, Result, files, write_csv};
 
-/// Judges every claim (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
-/// `verify-table.md`, disagreements first.
+/// Judges every statement (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
+/// `verify-table.md`, contradictions first.
 ///
 /// The ratio of run times is on the terminal and, in seconds, in the manifest: the files have the same bytes on every machine and for
 /// any number of threads.
@@ -22,17 +22,15 @@ pub fn verify(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
     session.close(write(run, &solid, &line)?)
 }
 
-/// All claims in order of figures; [`sort`] puts the disagreements first.
+/// All claims in order of figures; [`sort`] puts the contradictions first.
 fn all(solid: &Measured, line: &Measured) -> Result<Vec<Claim>> {
     let mut claims = claims::exponents(solid, line);
     claims.extend(claims::factors(solid, line));
     claims.extend(claims::collapse(solid));
     claims.extend(claims::curves_3d(solid));
     claims.extend(claims::curves_1d(line));
-    claims.extend(claims::line_above_solid(solid, line));
+    claims.extend(claims::together(solid, line));
     claims.extend(claims::plateaus()?);
-    claims.extend(claims::paper_against_itself());
-    claims.extend(claims::scaling()?);
     claims.push(claims::speed(solid, line));
     Ok(claims)
 }
@@ -41,7 +39,7 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     let mut claims = all(solid, line)?;
     sort(&mut claims);
     let command = run.command("verify", &Flag::ALL);
-    let title = "Claims of the paper beside what was found, disagreements first";
+    let title = "Statements of the paper beside what was found, contradictions first";
     let header = describe(header(command.clone()), run, &[solid, line]);
     let csv = run.out.join("verify.csv");
     // Files have the same bytes on every machine.
@@ -52,6 +50,6 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     let md = run.out.join("verify.md");
     files::write_whole(&md, text.as_bytes())?;
     let short = run.out.join("verify-table.md");
-    files::write_whole(&short, readme_table(&timeless).as_bytes())?;
+    files::write_whole(&short, short_table(&timeless).as_bytes())?;
     Ok(Outcome { claims, ..Outcome::of("verify", vec![csv, md, short], &[solid, line]) })
 }

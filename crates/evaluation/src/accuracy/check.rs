@@ -1,6 +1,6 @@
 //! Coverage of the error budgets: random cases against references.
 
-use crate::budget::{HALF_GRIDS, algebraic, discretisation_error, half_grid};
+use crate::budget::{COARSER_SURFACES, algebraic, coarser, discretisation_error, relative_differences};
 use crate::header::header;
 use crate::outcome::Outcome;
 use crate::realisation::{Discretisation, Realisation};
@@ -19,19 +19,19 @@ use surface_gen::surface_seed;
 const REFERENCE: f64 = 1e-10;
 /// The reference grid has cells so many times smaller.
 const FINER: usize = 4;
-/// Grids, loads and tolerances that are drawn from.
+/// Grids and tolerances that are drawn from.
 const CELLS: [usize; 5] = [65, 97, 129, 193, 257];
-const FORCES: (f64, f64) = (1e-3, 20.0);
 const TOLERANCES: (f64, f64) = (1e-6, 1e-1);
+/// Ranges of loads; each with each of the paper's fractal dimensions is a stratum, and the cases go round them.
+const LOADS: [(f64, f64); 3] = [(1e-3, 0.086), (0.086, 2.0), (2.0, 20.0)];
+const STRATA: usize = LOADS.len() * FRACTAL_DIMENSIONS.len();
 /// Share of the true errors that a budget is to hold, and the level of the exact binomial test of it.
 const COVERED: f64 = 0.95;
 const LEVEL: f64 = 0.01;
-/// Most that a budget may be of the median error of cases like it.
-const GENEROUS: f64 = 10.0;
-/// Cases with the nearest budgets whose median error a budget is measured by.
-const LIKE: usize = 20;
-/// Of fewer cases the nearest ones are not alike.
-const ENOUGH: usize = 3 * LIKE;
+/// Smallest median of error over budget: below, budgets are too wide to be of use. Normal errors have 0.34.
+const SHARP: f64 = 0.2;
+/// Fewest cases.
+const FEWEST: usize = STRATA;
 
 /// One case with its truth.
 #[derive(Debug, Clone)]
@@ -65,60 +65,97 @@ impl RandomCase {
     }
 }
 
+/// One range of loads at one fractal dimension.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stratum {
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// Smallest and largest F_bar.
+    pub loads: (f64, f64),
+    /// Cases.
+    pub cases: usize,
+    /// True errors inside the whole budget.
+    pub inside: usize,
+    /// Median of error over budget.
+    pub median: f64,
+}
+
+impl Stratum {
+    /// Two-sided p-value of "95 % of the errors are inside".
+    pub fn p_value(&self) -> f64 {
+        binomial_test(self.inside, self.cases, COVERED)
+    }
+}
+
 /// What the check found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coverage {
     /// Cases.
     pub cases: usize,
-    /// Share of true errors inside the whole budget.
-    pub inside: f64,
+    /// True errors inside the whole budget.
+    pub inside: usize,
     /// Share of algebraic errors inside the algebraic part.
     pub algebraic_inside: f64,
-    /// Largest ratio of a budget to the median error of the 20 cases with the nearest budgets; `None` for fewer than 60 cases, of which
-    /// the nearest ones are not alike.
-    pub widest: Option<f64>,
+    /// Median of error over budget.
+    pub median: f64,
+    /// By load and fractal dimension.
+    pub strata: Vec<Stratum>,
 }
 
 impl Coverage {
-    /// Whether the share can be that of a correct 95 % budget (exact binomial test at 1 %), and no budget is more than ten times the median error, where there are enough cases to tell.
+    /// Whether the shares can be those of a correct 95 % budget (exact binomial test at 1 %, all cases and each stratum), and the median of
+    /// error over budget is not below 0.2.
     pub fn holds(&self) -> bool {
-        self.p_value() >= LEVEL && self.widest.is_none_or(|widest| widest <= GENEROUS)
+        self.p_value() >= LEVEL && self.median >= SHARP && self.rejected().next().is_none()
     }
 
     fn p_value(&self) -> f64 {
-        binomial_test((self.inside * self.cases as f64).round() as usize, self.cases, COVERED)
+        binomial_test(self.inside, self.cases, COVERED)
+    }
+
+    fn rejected(&self) -> impl Iterator<Item = &Stratum> {
+        self.strata.iter().filter(|s| s.p_value() < LEVEL)
     }
 }
 
 impl std::fmt::Display for Coverage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let fewest = self.strata.iter().map(|s| s.cases).min().unwrap_or(0);
         write!(
             f,
-            "{} cases: {:.0} % of the true errors inside their budget (95 % wanted; exact binomial test: p = {:.2}, at least {LEVEL} \
-             wanted), {:.0} % of the algebraic errors inside their part; ",
+            "{} cases: {:.1} % of the true errors inside their budget (95 % wanted; exact binomial test: p = {:.2}, at least {LEVEL} wanted), \
+             {:.0} % of the algebraic errors inside their part; median error over budget {:.2} (at least {SHARP} wanted); of {} strata (loads and \
+             D_f, at least {fewest} cases each) ",
             self.cases,
-            100.0 * self.inside,
+            100.0 * self.inside as f64 / self.cases.max(1) as f64,
             self.p_value(),
             100.0 * self.algebraic_inside,
+            self.median,
+            self.strata.len()
         )?;
-        match self.widest {
-            Some(widest) => write!(
-                f,
-                "the widest budget is {widest:.1} times the median error of its like (at most {GENEROUS} wanted)"
-            ),
-            None => write!(f, "whether budgets are too wide takes {ENOUGH} cases to tell"),
+        let rejected: Vec<String> = self
+            .rejected()
+            .map(|s| {
+                let ((low, high), d) = (s.loads, s.fractal_dimension);
+                format!("D_f {d:?}, F_bar {low:?} to {high:?}: {} of {}", s.inside, s.cases)
+            })
+            .collect();
+        if rejected.is_empty() {
+            write!(f, "none is rejected")
+        } else {
+            write!(f, "rejected: {}", rejected.join("; "))
         }
     }
 }
 
 /// Draws random (surface, load, grid, tolerance), predicts the error of k as the figures do, compares with the same surface on cells
-/// four times smaller at 1e-10, and writes `budget-check.csv`.
+/// four times smaller at 1e-10, and writes `budget-check.csv`. The cases go round the strata: 720 are 40 in each.
 ///
 /// Cases on the one-cell floor (fewer than 10 contact cells on some surface) are drawn again, as the figures mark such rows. The truth is itself on
 /// a finite grid: with errors of first order it is known to a quarter of them.
 ///
 /// # Errors
-/// [`Error::Parameter`] for fewer than twenty cases or no thread; what the solver refuses; files that cannot be written.
+/// [`Error::Parameter`] for fewer cases than strata or no thread; what the solver refuses; files that cannot be written.
 pub fn budget_check(
     cases: usize,
     seed: u64,
@@ -127,8 +164,8 @@ pub fn budget_check(
     progress: &dyn Progress,
 ) -> Result<(Outcome, Coverage)> {
     let start = Instant::now();
-    if cases < LIKE {
-        return Err(Error::parameter("cases", cases, format!("at least {LIKE}")));
+    if cases < FEWEST {
+        return Err(Error::parameter("cases", cases, format!("at least {FEWEST}, one for each stratum")));
     }
     files::create_directory(out)?;
     progress.begin(&format!("{cases} random cases against references"), cases as u64);
@@ -142,9 +179,10 @@ pub fn budget_check(
     let found = collect(done)?;
     let coverage = judge(&found);
     let path = out.join("budget-check.csv");
-    let header = header(format!("cargo xtask budget-check --cases {cases} --seed {seed}"))
+    let mut header = header(format!("cargo xtask budget-check --cases {cases} --seed {seed}"))
         .with_note(format!("references: tolerance {REFERENCE:?} on cells {FINER} times smaller"))
         .with_note(coverage.to_string());
+    header.notes.extend(strata(&coverage));
     write_csv(&path, &table(&found)?, &header)?;
     let mut outcome = Outcome::new("budget-check");
     outcome.files.push(path);
@@ -152,24 +190,50 @@ pub fn budget_check(
     Ok((outcome, coverage))
 }
 
-/// Shares and ratios.
+/// One line for each stratum.
+fn strata(coverage: &Coverage) -> Vec<String> {
+    let line = |s: &Stratum| {
+        let ((low, high), d) = (s.loads, s.fractal_dimension);
+        format!(
+            "D_f {d:?}, F_bar {low:?} to {high:?}: {} of {} inside, p = {:.2}, median error over budget {:.2}",
+            s.inside,
+            s.cases,
+            s.p_value(),
+            s.median
+        )
+    };
+    coverage.strata.iter().map(line).collect()
+}
+
+/// Stratum of a case by its number.
+fn stratum(number: usize) -> (f64, (f64, f64)) {
+    let of = number % STRATA;
+    (FRACTAL_DIMENSIONS[of % FRACTAL_DIMENSIONS.len()], LOADS[of / FRACTAL_DIMENSIONS.len()])
+}
+
+/// Shares and ratios; the cases are in the order of their numbers.
 fn judge(cases: &[RandomCase]) -> Coverage {
-    let share = |inside: &dyn Fn(&RandomCase) -> bool| {
-        cases.iter().filter(|c| inside(c)).count() as f64 / cases.len().max(1) as f64
+    let inside = |cases: &[&RandomCase]| cases.iter().filter(|c| c.error() <= c.budget()).count();
+    let median = |cases: &[&RandomCase]| {
+        let mut ratios: Vec<f64> = cases.iter().map(|c| c.error() / c.budget()).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios.get(ratios.len() / 2).copied().unwrap_or_default()
     };
-    let ratio = |c: &RandomCase| {
-        let far = |other: &RandomCase| (other.budget() / c.budget()).ln().abs();
-        let mut like: Vec<&RandomCase> = cases.iter().collect();
-        like.sort_by(|a, b| far(a).total_cmp(&far(b)));
-        let mut errors: Vec<f64> = like.iter().take(LIKE).map(|c| c.error()).collect();
-        errors.sort_by(f64::total_cmp);
-        c.budget() / errors[errors.len() / 2]
-    };
+    let strata = (0..STRATA.min(cases.len()))
+        .map(|of| {
+            let own: Vec<&RandomCase> = cases.iter().skip(of).step_by(STRATA).collect();
+            let (fractal_dimension, loads) = stratum(of);
+            Stratum { fractal_dimension, loads, cases: own.len(), inside: inside(&own), median: median(&own) }
+        })
+        .collect();
+    let all: Vec<&RandomCase> = cases.iter().collect();
+    let algebraic = all.iter().filter(|c| c.algebraic_error() <= c.algebraic + REFERENCE).count();
     Coverage {
-        cases: cases.len(),
-        inside: share(&|c| c.error() <= c.budget()),
-        algebraic_inside: share(&|c| c.algebraic_error() <= c.algebraic + REFERENCE),
-        widest: (cases.len() >= ENOUGH).then(|| cases.iter().map(ratio).fold(0.0, f64::max)),
+        cases: all.len(),
+        inside: inside(&all),
+        algebraic_inside: algebraic as f64 / all.len().max(1) as f64,
+        median: median(&all),
+        strata,
     }
 }
 
@@ -188,12 +252,12 @@ fn pick<T: Copy>(u: f64, of: &[T]) -> T {
 
 /// Draws until a case lies above the floor.
 fn case(seed: u64, number: u64) -> Result<RandomCase> {
-    // The heaviest load never lies on the floor; light ones do in a few draws out of ten.
+    let (d, loads) = stratum(number as usize);
+    // The heaviest load of a range never lies on the floor of the finest grid; light ones do in a few draws out of ten.
     for attempt in 0_u64.. {
         let u = |stream| uniform(seed, number, 16 * attempt + stream);
-        let d = pick(u(0), &FRACTAL_DIMENSIONS);
         let cells = pick(u(1), &CELLS);
-        let (force_bar, tolerance) = (logarithmic(u(2), FORCES), logarithmic(u(3), TOLERANCES));
+        let (force_bar, tolerance) = (logarithmic(u(2), loads), logarithmic(u(3), TOLERANCES));
         let surface = surface_seed(seed ^ 0xca5e, 1 + number);
         let discretisation = Discretisation::Bem3d { cells, tolerance };
         let mine = solve(discretisation, d, surface, force_bar)?;
@@ -201,9 +265,9 @@ fn case(seed: u64, number: u64) -> Result<RandomCase> {
         if mine.below_floor() || !mine.converged() {
             continue;
         }
-        let Some(coarse) = half_grid(discretisation) else { continue };
+        let Some([half, quarter]) = coarser(discretisation) else { continue };
         let on = |discretisation| -> Result<Vec<Sample>> {
-            (0..HALF_GRIDS as u64)
+            (0..COARSER_SURFACES as u64)
                 .map(|i| solve(discretisation, d, surface_seed(seed, i), force_bar))
                 .collect()
         };
@@ -211,8 +275,10 @@ fn case(seed: u64, number: u64) -> Result<RandomCase> {
         if fine.iter().any(Sample::below_floor) {
             continue;
         }
-        let differences: Vec<f64> = (fine.iter().zip(on(coarse)?))
-            .filter_map(|(fine, coarse)| Some(coarse.stiffness_bar? / fine.stiffness_bar? - 1.0))
+        let differences: Vec<[f64; 2]> = (fine.iter().zip(on(half)?).zip(on(quarter)?))
+            .filter_map(|((fine, half), quarter)| {
+                relative_differences(fine.stiffness_bar?, half.stiffness_bar?, quarter.stiffness_bar?)
+            })
             .collect();
         let Some(discretisation) = discretisation_error(&differences, 1) else { continue };
         let truth = |cells| {
@@ -292,20 +358,21 @@ mod tests {
 
     #[test]
     fn shares_and_ratios_by_hand() {
-        // 57 of 60 inside; each budget twice the median error.
-        let mut cases: Vec<RandomCase> = (0..60).map(|_| made(0.01, 0.02)).collect();
-        for i in [7, 20, 41] {
-            cases[i] = made(0.03, 0.02);
-        }
+        // Twenty in each stratum, one of them outside: each budget twice the error.
+        let number = 20 * STRATA;
+        let case = |i: usize| if i < STRATA { made(0.03, 0.02) } else { made(0.01, 0.02) };
+        let cases: Vec<RandomCase> = (0..number).map(case).collect();
         let coverage = judge(&cases);
-        approx::assert_relative_eq!(coverage.inside, 0.95);
-        approx::assert_relative_eq!(coverage.widest.unwrap(), 2.0, max_relative = 1e-9);
+        assert_eq!((coverage.inside, coverage.strata.len()), (19 * STRATA, STRATA));
+        assert!(coverage.strata.iter().all(|s| (s.cases, s.inside) == (20, 19)));
+        approx::assert_relative_eq!(coverage.median, 0.5, max_relative = 1e-9);
         assert!(coverage.holds() && coverage.algebraic_inside > 0.99);
-        // All of few cases inside can be by chance; ten of twenty cannot, and twelve times the error is too wide, where it can be told.
-        assert!(judge(&vec![made(0.01, 0.02); 20]).holds() && !judge(&vec![made(0.01, 0.12); 60]).holds());
-        assert_eq!(judge(&vec![made(0.01, 0.12); 20]).widest, None);
-        let half = |i: usize| if i < 10 { made(0.03, 0.02) } else { made(0.01, 0.02) };
-        assert!(!judge(&(0..20).map(half).collect::<Vec<_>>()).holds());
+        assert!(coverage.to_string().contains("none is rejected"), "{coverage}");
+        // Budgets that are too wide, and one stratum in which they are too narrow.
+        assert!(!judge(&vec![made(0.01, 0.12); number]).holds());
+        let narrow = |i: usize| if i % STRATA == 3 && i % 2 == 1 { made(0.03, 0.02) } else { case(i) };
+        let narrow = judge(&(0..number).map(narrow).collect::<Vec<_>>());
+        assert!(!narrow.holds() && narrow.to_string().contains("rejected: D_f 2.6"), "{narrow}");
     }
 
     #[test]
@@ -313,8 +380,10 @@ mod tests {
         for i in 0..50 {
             let u = uniform(1, i, 3);
             assert!((0.0..1.0).contains(&u));
-            let f = logarithmic(u, FORCES);
-            assert!(f >= FORCES.0 && f <= FORCES.1 && CELLS.contains(&pick(u, &CELLS)));
+            let f = logarithmic(u, LOADS[0]);
+            assert!(f >= LOADS[0].0 && f <= LOADS[0].1 && CELLS.contains(&pick(u, &CELLS)));
         }
+        assert_eq!(stratum(0), (2.0, LOADS[0]));
+        assert_eq!(stratum(STRATA + 17), (3.0, LOADS[2]));
     }
 }

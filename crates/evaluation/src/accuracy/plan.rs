@@ -7,7 +7,7 @@ use crate::measured::{Measured, Series, measure, measure_1d, measure_3d};
 use crate::realisation::Discretisation;
 use crate::run::{Request, Run};
 use crate::sample::FLOOR_CELLS;
-use analysis::least_squares;
+use analysis::{least_squares, student};
 use runs::{Error, Progress, Result, Store, files};
 
 /// Cells, elements and surfaces of the pilot.
@@ -171,8 +171,8 @@ pub fn settle(
             let run = &plan.run;
             let measured =
                 if solid { measure_3d(run, &store, progress)? } else { measure_1d(run, &store, progress)? };
-            let half_grids = budget::measure_half_grids(run, &measured, &store, progress)?;
-            let all = budget::budgets(&measured, half_grids.as_ref());
+            let coarser = budget::measure_coarser(run, &measured, &store, progress)?;
+            let all = budget::budgets(&measured, coarser.as_ref());
             let count = if solid { run.surfaces } else { run.lines };
             let wanted = surfaces_wanted(&all, target.accuracy, count);
             let seconds = plan.seconds * (wanted - count as f64) / count as f64;
@@ -290,16 +290,16 @@ impl Pilot {
         progress: &dyn Progress,
     ) -> Result<Self> {
         let fine = measure(discretisation, surfaces, forces, run, store, progress)?;
-        let half_grids = budget::measure_half_grids(run, &fine, store, progress)?;
-        Ok(Self::of(&fine, half_grids.as_ref()))
+        let coarser = budget::measure_coarser(run, &fine, store, progress)?;
+        Ok(Self::of(&fine, coarser.as_ref()))
     }
 
-    fn of(fine: &Measured, half_grids: Option<&Measured>) -> Self {
+    fn of(fine: &Measured, coarser: Option<&[Measured; 2]>) -> Self {
         let mut rows = Vec::new();
         let (mut growths, mut falls) = (Vec::new(), Vec::new());
         for series in &fine.series {
-            let half_grid = half_grids.and_then(|t| t.at(series.fractal_dimension));
-            let (found, growth) = series_rows(series, half_grid);
+            let coarser = budget::coarser_series(coarser, series.fractal_dimension);
+            let (found, growth) = series_rows(series, coarser);
             growths.extend(growth);
             let law: Vec<(f64, f64)> =
                 found.iter().filter(|r| size(r) > 0.0).map(|r| (r.cells.ln(), size(r).ln())).collect();
@@ -326,8 +326,10 @@ impl Pilot {
             return None;
         }
         let falls = (cells / row.seen_at).powf(-self.fall);
-        let grid = budget::reach(falls * row.mean, falls * row.spread, count.min(budget::HALF_GRIDS as f64));
-        Some(2.0 * tolerance + grid.hypot(SAFETY * student95(count) * row.scatter / count.sqrt()))
+        let surfaces = count.min(budget::COARSER_SURFACES as f64).sqrt();
+        let grid = REACH * (falls * row.mean).hypot(falls * row.spread / surfaces);
+        let freedom = (count - 1.0).max(1.0);
+        Some(2.0 * tolerance + grid.hypot(SAFETY * student(freedom) * row.scatter / count.sqrt()))
     }
 
     /// The widest row at a size and a number of surfaces; `None` where all rows are floor.
@@ -350,13 +352,15 @@ impl Pilot {
                 let middle = f64::floor(f64::midpoint(low, high));
                 if enough(middle) { high = middle } else { low = middle }
             }
-            let half_grids = if budget::half_grid(self.with(size, tolerance)).is_some() {
-                budget::HALF_GRIDS as f64
+            let coarser = if budget::coarser(self.with(size, tolerance)).is_some() {
+                budget::COARSER_SURFACES as f64
             } else {
                 0.0
             };
             let seconds = (high * self.surface_seconds(size, tolerance)
-                + half_grids.min(high) * self.surface_seconds(size.div_ceil(2), tolerance))
+                + coarser.min(high)
+                    * (self.surface_seconds(size.div_ceil(2), tolerance)
+                        + self.surface_seconds(size.div_ceil(4), tolerance)))
                 / threads.max(1) as f64;
             let accuracy = self.accuracy(size, high, algebraic)?;
             Some(Choice { size, count: high as usize, tolerance, seconds, accuracy })
@@ -396,12 +400,6 @@ impl Pilot {
     }
 }
 
-/// 97.5 % quantile of Student's distribution to a few per cent, smooth in the number of surfaces.
-fn student95(count: f64) -> f64 {
-    let freedom = (count - 1.0).max(0.5);
-    1.96 + 2.4 / freedom + 8.0 / freedom.powi(3)
-}
-
 /// Root mean square of the differences of a row.
 fn size(r: &PilotRow) -> f64 {
     r.mean.hypot(r.spread)
@@ -409,13 +407,14 @@ fn size(r: &PilotRow) -> f64 {
 
 /// Rows of one fractal dimension: those above the floor as measured, those below from the power laws of the ones above. And how contact
 /// cells grew from the half-size grid to the pilot.
-fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<PilotRow>, Option<f64>) {
+fn series_rows(series: &Series, coarser: Option<[&Series; 2]>) -> (Vec<PilotRow>, Option<f64>) {
     let mut above = Vec::new();
     let mut growth = Vec::new();
     for (j, point) in series.points.iter().enumerate() {
         let (Some(k), Some(cells)) = (point.stiffness_bar, point.min_contact_cells) else { continue };
-        let Some(half_grid) = half_grid else { continue };
-        let differences = budget::differences(series, half_grid, j);
+        let Some([half, quarter]) = coarser else { continue };
+        let differences: Vec<f64> =
+            budget::differences(series, [half, quarter], j).iter().map(|d| d[0]).collect();
         if cells < FLOOR_CELLS || differences.len() < 2 {
             continue;
         }
@@ -424,7 +423,7 @@ fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<PilotRow>, O
         let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
         let scatter = k.relative_error().unwrap_or(0.0) * (k.count as f64).sqrt();
         if let Some(coarse) =
-            half_grid.points.get(j).and_then(|p| p.min_contact_cells).filter(|c| *c >= FLOOR_CELLS)
+            half.points.get(j).and_then(|p| p.min_contact_cells).filter(|c| *c >= FLOOR_CELLS)
         {
             growth.push((cells as f64 / coarse as f64).log2());
         }
@@ -451,6 +450,10 @@ fn series_rows(series: &Series, half_grid: Option<&Series>) -> (Vec<PilotRow>, O
     rows.extend(above);
     (rows, growth)
 }
+
+/// 95 % half-width of what the grid leaves, in root mean squares of the last difference between grids, before the grids of the choice are
+/// solved and tell: 0.88 where differences halve and are independent, 1.96 where they have one sign.
+const REACH: f64 = 1.35;
 
 /// Seconds of one element of a line, drawing, sorting and all loads.
 const LINE_SECONDS: f64 = 1.6e-8;
@@ -516,7 +519,12 @@ mod tests {
             fractal_dimension: 2.0,
             force_bar: Some(1.0),
             value: 2.0,
-            budget: budget::Budget { algebraic: 0.0, discretisation: Some(grid), ensemble: Some(ensemble) },
+            budget: budget::Budget {
+                algebraic: 0.0,
+                discretisation: Some(grid),
+                ensemble: Some(ensemble),
+                window: None,
+            },
             below_floor,
         };
         // Twice the target, from the scatter alone: four times the surfaces and a tenth.

@@ -1,40 +1,75 @@
 //! What several groups of claims need.
 
 use analysis::{Bootstrap, FittedPowerLaw, interpolate};
-use evaluation::{FittedLaw, Measured, Series};
-
-/// Uncertainty of alpha that independent values have (data/paper/VALUES.md).
-pub(super) fn alpha_allowed(d: f64) -> f64 {
-    if d > 2.9 { 0.08 } else { 0.03 }
-}
+use evaluation::{Estimate, Measured, Series, WindowedLaw, windowed_law};
 
 /// How a model is called in a claim.
 pub(super) fn label(measured: &Measured) -> &'static str {
     if measured.discretisation.name() == "bem3d" { "3D" } else { "1D" }
 }
 
-/// k_bar at any force of the curve, with the standard error of its mean.
-pub(super) fn stiffness_at(series: &Series, force_bar: f64) -> Option<(f64, Option<f64>)> {
+/// k_bar at any force of the curve.
+pub(super) fn stiffness_at(series: &Series, force_bar: f64) -> Option<Estimate> {
     let forces = series.curves.force_bar();
     let value = interpolate(forces, &series.means(), force_bar)?;
     let error = Bootstrap::default().standard_error(series.units.len(), |draw| {
         interpolate(forces, &series.curves.mean_of(draw), force_bar)
     });
-    Some((value, error))
+    Estimate::normal(value, error)
 }
 
-/// A window shorter than this says little about a power law.
-const LEAST_DECADES: f64 = 1.0;
+/// A power law of one series, with what its window leaves.
+#[derive(Debug, Clone)]
+pub(super) struct Law {
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// The fit over the window of Figs. 3 and 7.
+    pub fit: FittedPowerLaw,
+    /// alpha: scatter and, in quadrature, the largest change with other windows.
+    pub alpha: Estimate,
+    /// The same of zeta.
+    pub zeta: Estimate,
+}
 
-/// A fit that can be judged, or why it cannot.
-pub(super) fn usable(law: &FittedLaw) -> Result<&FittedPowerLaw, String> {
-    let fit = law.fit.as_ref().map_err(ToString::to_string)?;
-    let decades = (fit.force_bar_max / fit.force_bar_min).log10();
-    if decades < LEAST_DECADES {
-        return Err(format!(
-            "the window {:.1e} .. {:.1e} spans {decades:.2} decades, at least {LEAST_DECADES} is needed: finer grids widen it",
-            fit.force_bar_min, fit.force_bar_max
-        ));
+impl Law {
+    /// The window in words.
+    pub fn window(&self) -> String {
+        let FittedPowerLaw { force_bar_min, force_bar_max, points, .. } = self.fit;
+        format!("{points} loads, {force_bar_min:.1e} to {force_bar_max:.1e}")
     }
-    Ok(fit)
+}
+
+/// What the intervals of exponents hold.
+pub(super) const INTERVAL: &str =
+    "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03; this grid";
+
+/// The law of a series, or why there is none to judge.
+fn law(series: &Series) -> Result<Law, String> {
+    let WindowedLaw { fit, windows } = windowed_law(series)?;
+    let estimate = |value: f64, error: Option<f64>, window: f64| {
+        let scatter = Estimate::normal(value, error).ok_or("one surface has no scatter")?;
+        Ok::<_, String>(Estimate { value, half_width: scatter.half_width.hypot(window) })
+    };
+    Ok(Law {
+        fractal_dimension: series.fractal_dimension,
+        alpha: estimate(fit.alpha, fit.alpha_se, windows.0)?,
+        zeta: estimate(fit.zeta, fit.zeta_se, windows.1)?,
+        fit,
+    })
+}
+
+/// The laws of all series, in their order.
+pub(super) fn laws(measured: &Measured) -> Vec<Result<Law, String>> {
+    measured.series.iter().map(law).collect()
+}
+
+/// Independent numbers: `a/b`.
+pub(super) fn ratio(a: Estimate, b: Estimate) -> Estimate {
+    let value = a.value / b.value;
+    Estimate { value, half_width: value.abs() * (a.half_width / a.value).hypot(b.half_width / b.value) }
+}
+
+/// Independent numbers: `a - b`.
+pub(super) fn difference(a: Estimate, b: Estimate) -> Estimate {
+    Estimate { value: a.value - b.value, half_width: a.half_width.hypot(b.half_width) }
 }

@@ -12,8 +12,8 @@ use bem3d::Bem3d;
 use contact_model::{Boundary, ContactModel, ContactState, Stop, never};
 use evaluation::{Outcome, header};
 pub(crate) use picture::draw;
-use picture::table;
-use reading::{claim, summary};
+use picture::{pairs_table, table};
+use reading::{areas, claims, pairs, summary};
 use runs::{Error, Progress, Result, Threads, collect, files, run_jobs, write_csv};
 use std::path::Path;
 use std::time::Instant;
@@ -32,14 +32,17 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     let solved = solve(study, progress)?;
     let mut outcome = Outcome::new(NAME);
     let mut curves = Vec::new();
+    let pairs = pairs(study, &solved)?;
     for (case, surfaces) in CASES.into_iter().zip(solved) {
+        let slope = case.slope(study)?;
         outcome.not_converged +=
             surfaces.iter().flatten().filter(|s| matches!(s, CaseSolve::NotConverged)).count();
         let samples = surfaces.iter().map(|s| s.iter().map(|s| s.sample().map(|s| s.0)).collect()).collect();
         let means =
             Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.name()))?;
-        let curve = mean_curve(case, &means, &surfaces);
-        outcome.claims.extend(claim(study, &curve, &means));
+        let curve = mean_curve(case, slope, &means, &surfaces);
+        outcome.claims.extend(claims(study, &curve, &means));
+        outcome.claims.extend(areas(&curve, &surfaces));
         curves.push(curve);
     }
     for case in CASES.into_iter().filter(|c| c.boundary == Boundary::Periodic) {
@@ -60,9 +63,12 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     let csv = out.join(format!("{NAME}.csv"));
     write_csv(&csv, &table(&curves)?, &header)?;
     outcome.files.push(csv.clone());
+    let beside = out.join(format!("{NAME}-pairs.csv"));
+    write_csv(&beside, &pairs_table(&pairs)?, &header)?;
+    outcome.files.push(beside);
     outcome.files.extend(draw(&csv, out)?);
     let text = out.join(format!("{NAME}.md"));
-    files::write_whole(&text, summary(study, &curves, &outcome.claims).as_bytes())?;
+    files::write_whole(&text, summary(study, &curves, &pairs, &outcome.claims).as_bytes())?;
     outcome.files.push(text);
     outcome.seconds = start.elapsed().as_secs_f64();
     Ok(outcome)
@@ -138,20 +144,22 @@ fn one(study: &TwoCases, case: SurfaceCase, seed: u64, stop: Stop<'_>) -> Result
     Ok(solves)
 }
 
-fn mean_curve(case: SurfaceCase, means: &Curves, surfaces: &[Solves]) -> CaseCurve {
+fn mean_curve(case: SurfaceCase, slope: f64, means: &Curves, surfaces: &[Solves]) -> CaseCurve {
     let points = ensemble(means)
         .into_iter()
         .enumerate()
         .filter_map(|(j, p)| {
             let k = p.stiffness_bar?;
             let area: Vec<f64> = surfaces.iter().filter_map(|s| s[j].sample().map(|s| s.1)).collect();
+            let mean_area = analysis::sum(area.iter().copied()) / area.len() as f64;
             Some(CasePoint {
                 force_bar: p.force_bar,
+                kappa: analysis::kappa(mean_area, p.force_bar, 1.0, slope).ok(),
                 stiffness_bar: k.mean,
                 standard_error: k.standard_error,
                 surfaces: area.len(),
                 left_out: p.missing,
-                area: Some(analysis::sum(area.iter().copied()) / area.len() as f64),
+                area: Some(mean_area),
                 min_contact_cells: p.min_contact_cells,
             })
         })
@@ -163,6 +171,7 @@ fn mean_curve(case: SurfaceCase, means: &Curves, surfaces: &[Solves]) -> CaseCur
 fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Result<CaseCurve> {
     let mut scene = case.scene(study)?;
     scene.outputs.area = true;
+    let slope = case.slope(study)?;
     let mut points = Vec::new();
     let mut solve = || {
         let mut contact = model.prepare(&scene, 0)?;
@@ -177,6 +186,7 @@ fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Resu
                     surfaces: 0,
                     left_out: 0,
                     area,
+                    kappa: area.and_then(|area| analysis::kappa(area, forces[i], 1.0, slope).ok()),
                     min_contact_cells: None,
                 }),
                 Ok(_) | Err(contact_model::Error::OutOfRange { .. }) => {}
@@ -240,6 +250,7 @@ mod tests {
                     surfaces: 1,
                     left_out: 0,
                     area: Some(f / 1e4),
+                    kappa: None,
                     min_contact_cells: None,
                 }
             });

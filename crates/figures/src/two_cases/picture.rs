@@ -1,7 +1,7 @@
 //! The table of the two cases, and the pictures drawn from it.
 
 use super::reading::slopes;
-use super::study::{CASES, CaseCurve, NAME};
+use super::study::{CASES, CaseCurve, NAME, PairRow};
 use crate::words;
 use analysis::Table;
 use contact_model::{Boundary, PAPER_STIFFNESS_FACTOR};
@@ -36,6 +36,7 @@ pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
         PAPER_STIFFNESS_FACTOR * p.stiffness_bar / p.force_bar
     })
     .column("area", "1", "mean share of the square in contact", |(_, p, _)| p.area)
+    .column("kappa", "1", "A E* |grad h|/F, |grad h| of the spectrum", |(_, p, _)| p.kappa)
     .column("surfaces", "1", "surfaces in the mean (0: a theory)", |(_, p, _)| p.surfaces)
     .column("left_out", "1", LEFT_OUT, |(_, p, _)| p.left_out)
     .column("min_contact_cells", "1", FEWEST, |(_, p, _)| p.min_contact_cells)
@@ -43,6 +44,24 @@ pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
         p.min_contact_cells.is_some_and(|n| n < FLOOR_CELLS)
     })
     .table()
+}
+
+/// Periodic over free stiffness.
+pub(super) fn pairs_table(pairs: &[PairRow]) -> Result<Table> {
+    TableOf::new("Periodic over free stiffness of the same surfaces", pairs)
+        .column("spectrum", "-", "fractal to the side, or with a roll-off", |p| p.spectrum)
+        .column("force_bar", "1", "F/(E* h L), h the measured rms height of each surface", |p| p.force_bar)
+        .column(
+            "ratio",
+            "1",
+            "mean -dF/d(mean gap) of the periodic square over mean dF/dd of the free one",
+            |p| p.ratio.value,
+        )
+        .column("half_width", "1", "of its 95 % interval, by Student's distribution over the pairs", |p| {
+            p.ratio.half_width
+        })
+        .column("surfaces", "1", "pairs in the means", |p| p.surfaces)
+        .table()
 }
 
 /// Draws the two pictures from the table.

@@ -1,9 +1,12 @@
 //! What the curves say about the paper's belief.
 
-use super::study::{CaseCurve, CasePoint, TwoCases};
-use analysis::{Bootstrap, Curves, FitWindow, fit_power_law};
+use super::Solves;
+use super::study::{CASES, CaseCurve, CasePoint, PairRow, TwoCases};
+use crate::claims::{KAPPA, LINEAR};
+use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
-use evaluation::{Claim, FLOOR_CELLS, plain};
+use evaluation::{Claim, Estimate, FLOOR_CELLS, Statement, plain};
+use runs::{Error, Result};
 
 /// Shares of the square in contact between which the theories of random surfaces are compared: many summits, far from full contact.
 const AREAS: [f64; 2] = [0.01, 0.2];
@@ -21,34 +24,155 @@ pub(super) fn slopes(points: &[CasePoint]) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// The exponent that Sec. II expects: that of Eq. 6 without a roll-off, 1 for the periodic surface with one. It names none for a free
-/// square with a roll-off.
-pub(super) fn claim(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Option<Claim> {
+const FRACTAL: Statement = Statement {
+    quotation: "Whenever the surfaces are truly fractal with no cut-off wavelength, a power law applies",
+    place: "Sec. II, Eq. 6",
+    reading: "the exponent below F_bar = 0.086 is 0.266 D_f to 0.05",
+};
+
+const PROPORTION: Statement = Statement {
+    quotation: "the proportionality found by Persson appears only in the first case",
+    place: "Sec. II",
+    reading: "the exponent of the periodic surface with a roll-off, where 1 to 20 % of the square touch, is 1 to 0.1",
+};
+
+const UNITY: Statement = Statement {
+    quotation: "k = xi F/h, where xi is a constant of the order of unity",
+    place: "Sec. II",
+    reading: "k h/F of the periodic surface with a roll-off, in the same window, is between a third and three",
+};
+
+/// What Sec. II expects: the exponent of Eq. 6 without a roll-off; 1, and a factor of the order of unity, for the periodic surface with
+/// one. It names none for a free square with a roll-off.
+pub(super) fn claims(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Vec<Claim> {
     let case = curve.case;
-    let (window, expected, tolerance, why) = if !case.rolls_off {
-        let expected = analytic::exponent_fit(study.fractal_dimension);
-        (
-            FitWindow::PAPER,
-            expected,
-            0.05,
-            "Sec. II: a power law wherever there is no cut-off; Eq. 6".to_owned(),
-        )
-    } else if case.boundary == Boundary::Periodic {
-        let window = loads_between(curve);
-        let [low, high] = AREAS;
-        let why =
-            format!("Persson's proportionality, where the contact covers {low:?} to {high:?} of the square");
-        (window, 1.0, 0.1, why)
-    } else {
-        return None;
-    };
-    let name = format!("exponent of k over F, {}", case.name());
-    Some(match fit_power_law(means, &window, &Bootstrap::default()) {
-        Ok(law) => {
-            Claim::within(name, expected, law.alpha, law.alpha_se, tolerance, format!("{why}; {window}"))
+    let named = |what: &str| format!("{what}, {}", case.name());
+    let exponent = |window: &FitWindow, statement: Statement, paper: [f64; 2]| {
+        let name = named("exponent of k over F");
+        let fit = fit_power_law(means, window, &Bootstrap::default());
+        match fit.map(|law| Estimate::normal(law.alpha, law.alpha_se)) {
+            Ok(Some(alpha)) => {
+                let remark =
+                    format!("{window}; {} cells a side; the interval holds the scatter", study.cells);
+                Claim::judge(name, statement, paper, alpha, remark)
+            }
+            Ok(None) => Claim::unresolved(name, statement, paper, "one surface has no scatter"),
+            Err(reason) => Claim::unresolved(name, statement, paper, reason.to_string()),
         }
-        Err(reason) => Claim::not_tested(name, expected, reason.to_string()),
-    })
+    };
+    if !case.rolls_off {
+        let expected = analytic::exponent_fit(study.fractal_dimension);
+        return vec![exponent(&FitWindow::PAPER, FRACTAL, [expected - 0.05, expected + 0.05])];
+    }
+    if case.boundary != Boundary::Periodic {
+        return Vec::new();
+    }
+    let window = loads_between(curve);
+    let inside = window.min_force_bar..=window.max_force_bar;
+    // k h/F: k_bar counts 1.1419 E* L, F_bar counts E* h L.
+    let factors = curve.points.iter().filter(|p| inside.contains(&p.force_bar));
+    let factors: Vec<f64> =
+        factors.map(|p| p.stiffness_bar * contact_model::PAPER_STIFFNESS_FACTOR / p.force_bar).collect();
+    let (low, high) =
+        factors.iter().fold((f64::INFINITY, 0.0), |(low, high), &x| (f64::min(low, x), f64::max(high, x)));
+    let name = named("k h/F");
+    let unity = if factors.is_empty() {
+        Claim::unresolved(name, UNITY, [1.0 / 3.0, 3.0], "no load in the window")
+    } else {
+        let found = Estimate { value: 0.5 * (low + high), half_width: 0.5 * (high - low) };
+        Claim::judge(
+            name,
+            UNITY,
+            [1.0 / 3.0, 3.0],
+            found,
+            format!("the interval is the range over the loads; {window}"),
+        )
+    };
+    vec![exponent(&window, PROPORTION, [0.9, 1.1]), unity]
+}
+
+/// Cells in contact from which an area with waves of eight cells counts as resolved, and the largest share of the square.
+const RESOLVED: (usize, f64) = (100, 0.1);
+
+/// Area over force, where the shortest wave has eight cells: its exponent, and kappa.
+pub(super) fn areas(curve: &CaseCurve, surfaces: &[Solves]) -> Vec<Claim> {
+    let inside = |p: &CasePoint| {
+        p.left_out == 0
+            && p.min_contact_cells.is_some_and(|n| n >= RESOLVED.0)
+            && p.area.is_some_and(|a| a <= RESOLVED.1)
+    };
+    // Every load of the window has all surfaces, so that points and loads of the solves are in step.
+    let first = curve.points.iter().position(inside);
+    let count = first.map_or(0, |first| curve.points[first..].iter().take_while(|p| inside(p)).count());
+    let names = ["exponent of A over F", "kappa"].map(|what| format!("{what}, {}", curve.case.name()));
+    let papers = [(LINEAR, [0.95, 1.05]), (KAPPA, [1.6, 2.51])];
+    let found = first.filter(|_| count >= 3).and_then(|first| {
+        let points = &curve.points[first..first + count];
+        let each: Option<Vec<Vec<f64>>> = (surfaces.iter())
+            .map(|s| (first..first + count).map(|j| s.get(j)?.sample().map(|s| s.1)).collect())
+            .collect();
+        let areas = Multilevel::new(vec![each?]).ok()?;
+        let means = areas.means(1);
+        let weights = slope_weights(&points.iter().map(|p| p.force_bar.ln()).collect::<Vec<_>>())?;
+        let exponent = weights.iter().zip(&means).map(|(w, a)| w * a.ln()).sum();
+        let gradient: Vec<f64> = weights.iter().zip(&means).map(|(w, a)| w / a).collect();
+        // kappa is the area in other units: its mean over the loads.
+        let units: Option<Vec<f64>> =
+            points.iter().zip(&means).map(|(p, a)| Some(p.kappa? / a / count as f64)).collect();
+        let units = units?;
+        let kappa = units.iter().zip(&means).map(|(u, a)| u * a).sum();
+        let estimate = |value: f64, gradient: &[f64]| {
+            let found = areas.propagated(value, gradient);
+            Estimate { value, half_width: found.half_width() }
+        };
+        let loads = [points[0].force_bar, points[count - 1].force_bar];
+        Some(([estimate(exponent, &gradient), estimate(kappa, &units)], loads))
+    });
+    let mut claims = Vec::new();
+    for (i, (name, (statement, paper))) in names.into_iter().zip(papers).enumerate() {
+        claims.push(if let Some((found, [low, high])) = &found {
+                let remark = format!(
+                    "F_bar {low:.1e} to {high:.1e}, at most {} of the square; shortest waves of eight cells; the interval holds the scatter",
+                    RESOLVED.1
+                );
+                Claim::judge(name, statement, paper, found[i], remark)
+            } else {
+                let reason = format!("fewer than 3 loads with {} cells in contact and at most {} of the square", RESOLVED.0, RESOLVED.1);
+                Claim::unresolved(name, statement, paper, reason)
+        });
+    }
+    claims
+}
+
+/// Periodic over free stiffness, surface by surface, for both spectra.
+pub(super) fn pairs(study: &TwoCases, solved: &[Vec<Solves>]) -> Result<Vec<PairRow>> {
+    let mut rows = Vec::new();
+    for (free, case) in CASES.iter().enumerate().filter(|(_, c)| c.boundary == Boundary::Free) {
+        let same =
+            |c: &super::study::SurfaceCase| c.boundary == Boundary::Periodic && c.rolls_off == case.rolls_off;
+        let Some(periodic) = CASES.iter().position(same) else { continue };
+        for (j, &force_bar) in study.forces.values().iter().enumerate() {
+            let stiffness = |solves: &Solves| solves[j].sample().map(|s| s.0.stiffness_bar);
+            let pairs: Vec<Vec<f64>> = (solved[free].iter().zip(&solved[periodic]))
+                .filter_map(|(a, b)| Some(vec![stiffness(a)?, stiffness(b)?]))
+                .collect();
+            if pairs.len() < 2 {
+                continue;
+            }
+            let surfaces = pairs.len();
+            let means = Multilevel::new(vec![pairs]).map_err(Error::model("pairs of surfaces"))?;
+            let [a, b] = [means.means(1)[0], means.means(1)[1]];
+            let half_width = means.propagated(b / a, &[-b / (a * a), 1.0 / a]).half_width();
+            let spectrum = if case.rolls_off { "roll-off" } else { "fractal" };
+            rows.push(PairRow {
+                spectrum,
+                force_bar,
+                ratio: Estimate { value: b / a, half_width },
+                surfaces,
+            });
+        }
+    }
+    Ok(rows)
 }
 
 /// The loads at which the mean area lies within [`AREAS`].
@@ -99,7 +223,7 @@ pub(super) fn difference(theory: &CaseCurve, solved: &CaseCurve) -> Option<f64> 
     relative.max_by(f64::total_cmp)
 }
 
-pub(super) fn summary(study: &TwoCases, curves: &[CaseCurve], claims: &[Claim]) -> String {
+pub(super) fn summary(study: &TwoCases, curves: &[CaseCurve], pairs: &[PairRow], claims: &[Claim]) -> String {
     let mut text = format!(
         "# Two cases\n\nSec. II of the paper tells two problems apart. A surface that is fractal up to the size of the system has physical \
          edges, an approach, and k ~ F^alpha; a surface whose spectrum ends at a longest wave is stood for by a periodic patch, has a mean gap, \
@@ -128,6 +252,11 @@ pub(super) fn summary(study: &TwoCases, curves: &[CaseCurve], claims: &[Claim]) 
         if let Some(difference) = solved.and_then(|solved| difference(theory, solved)) {
             text.push_str(&format!("| {} | {} | {difference:.3} |\n", theory.case.name(), theory.model));
         }
+    }
+    text.push_str("\nPeriodic over free stiffness of the same surfaces, with 95 % half-width:\n\n| spectrum | F_bar | ratio |\n| --- | ---: | ---: |\n");
+    for p in pairs.iter().filter(|p| p.force_bar <= 1.0) {
+        let Estimate { value, half_width } = p.ratio;
+        text.push_str(&format!("| {} | {:.3e} | {value:.3} +- {half_width:.3} |\n", p.spectrum, p.force_bar));
     }
     text.push_str("\n```\n");
     text.push_str(&plain(claims));

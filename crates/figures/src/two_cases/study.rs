@@ -1,7 +1,7 @@
 //! The two problems and what is found of them.
 
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
-use evaluation::Forces;
+use evaluation::{Estimate, Forces};
 use runs::{Error, Result};
 use std::f64::consts::TAU;
 
@@ -83,6 +83,25 @@ impl SurfaceCase {
     }
 }
 
+impl SurfaceCase {
+    /// Rms slope of the spectrum, in h/L.
+    pub(super) fn slope(self, study: &TwoCases) -> Result<f64> {
+        let Surface::SelfAffine(surface) = self.scene(study)?.surface else { return Ok(0.0) };
+        let generator =
+            surface_gen::MapGenerator::new(&surface, study.cells).map_err(Error::model(self.name()))?;
+        Ok(generator.rms_slope())
+    }
+}
+
+/// Periodic over free stiffness of the same surfaces.
+pub(super) struct PairRow {
+    pub(super) spectrum: &'static str,
+    pub(super) force_bar: f64,
+    /// Mean of one over mean of the other, and the half-width of its 95 % interval.
+    pub(super) ratio: Estimate,
+    pub(super) surfaces: usize,
+}
+
 impl TwoCases {
     /// Waves a side at the end of the spectrum.
     pub(super) fn shortest(&self) -> f64 {
@@ -134,5 +153,7 @@ pub(super) struct CasePoint {
     pub(super) surfaces: usize,
     pub(super) left_out: usize,
     pub(super) area: Option<f64>,
+    /// A E* |grad h|/F.
+    pub(super) kappa: Option<f64>,
     pub(super) min_contact_cells: Option<usize>,
 }
