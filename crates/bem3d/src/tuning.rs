@@ -46,8 +46,11 @@ pub struct Tuning {
     pub always_factored: usize,
     /// Share of the window in contact from which the preconditioner saves more applications than it costs.
     pub preconditioned: f64,
-    /// The same for sets too large to factor.
+    /// The same for sets too large to factor, where it costs less than the steps that it saves.
     pub preconditioned_large: f64,
+    /// By this factor fewer steps with the preconditioner on sets between both shares: 1.6 to 1.8 for N = 1024 and 2048, D_f = 2.4 and 2.8,
+    /// F_bar = 0.1 and 0.3, 1e-3 and 1e-8 (2026-11, Xeon, applications counted).
+    pub preconditioner_saves: f64,
     /// From so many cells on, residuals are extended into the gaps between contacts: below, zeros take fewer steps. 2026-11, Xeon, five sweeps
     /// (`examples/sweep`) at N = 257 and 513, D_f = 2.0 to 2.8, 1e-8: applications counted, no other set of surfaces tried.
     pub extended: usize,
@@ -155,6 +158,7 @@ impl Tuning {
         always_factored: 256,
         preconditioned: 0.02,
         preconditioned_large: 1.0 / 300.0,
+        preconditioner_saves: 1.75,
         extended: 2000,
         decay: 0.7,
         reduction: (0.1, 0.3),
@@ -208,7 +212,7 @@ macro_rules! constants {
 }
 
 /// Every constant of `Tuning`, for a study of what each is worth.
-pub const CONSTANTS: [Constant; 58] = constants![
+pub const CONSTANTS: [Constant; 59] = constants![
     pair_ns,
     point_ns,
     single,
@@ -227,6 +231,7 @@ pub const CONSTANTS: [Constant; 58] = constants![
     always_factored,
     preconditioned,
     preconditioned_large,
+    preconditioner_saves,
     extended,
     decay,
     reduction.0,

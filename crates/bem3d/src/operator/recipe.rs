@@ -107,6 +107,11 @@ impl Planner<'_> {
     ///
     /// Cost: nothing for a dense set, a count of the cells on coarse tiles for a scattered one.
     pub fn fast(&self, sources: &CellSet, targets: &CellSet, window: Window) -> Application {
+        self.fastest(sources, targets, window).1
+    }
+
+    /// The same with its time, ns.
+    fn fastest(&self, sources: &CellSet, targets: &CellSet, window: Window) -> (f64, Application) {
         let tuning = self.tuning;
         let lengths = self.table.exact_lengths(window);
         let direct = self.direct_ns(sources.len(), targets.len());
@@ -118,7 +123,7 @@ impl Planner<'_> {
         let known = self.table.boundary() == Boundary::Free && self.table.grid().has_square_cells();
         let few = cells <= tuning.largest_scattered && cells * tuning.scattered <= window.count();
         if !(self.two_levels && known && few) {
-            return best.1;
+            return best;
         }
         for spacing in [4, 8, 16, 32] {
             let split = Split { spacing, reach: tuning.reach, order: tuning.order };
@@ -133,7 +138,7 @@ impl Planner<'_> {
                 best = (far + near, Application::TwoLevel(split));
             }
         }
-        best.1
+        best
     }
 
     /// How a system on a set is solved of which `contact` cells are known to be in contact. `every_lag`: whether the kernel must be exact at
@@ -142,12 +147,15 @@ impl Planner<'_> {
     pub fn system(&self, set: &CellSet, contact: usize, every_lag: bool) -> Option<Recipe> {
         let (window, tuning) = (set.window()?, self.tuning);
         let share = contact as f64 / window.count() as f64;
-        let large = contact > tuning.largest_factor && share >= tuning.preconditioned_large;
-        let application = if large {
-            Application::Fft(self.table.exact_lengths(window))
-        } else {
-            self.fast(set, set, window)
-        };
+        let (fastest, application) = self.fastest(set, set, window);
+        let torus = self.table.torus_lengths(window);
+        let exact = self.table.exact_lengths(window);
+        // Transforms of the window and of the torus against more steps of what is fastest alone.
+        let conditioned = tuning.single * (self.fft_ns(exact) + self.fft_ns(torus));
+        let large = contact > tuning.largest_factor
+            && share >= tuning.preconditioned_large
+            && conditioned <= tuning.preconditioner_saves * fastest;
+        let application = if large { Application::Fft(exact) } else { application };
         let application = match application {
             Application::Fft(_) if !every_lag => {
                 Application::Fft(self.table.shortened_lengths(window, tuning.shortened))
@@ -156,7 +164,7 @@ impl Planner<'_> {
         };
         let conditioning = if large || share >= tuning.preconditioned {
             let extended = contact >= tuning.extended;
-            Conditioning::Torus { lengths: self.table.torus_lengths(window), extended }
+            Conditioning::Torus { lengths: torus, extended }
         } else {
             Conditioning::Identity
         };
@@ -255,7 +263,14 @@ mod tests {
             let scattered = plan(&every(400), true);
             assert_eq!(scattered.conditioning, Conditioning::Identity);
             assert!(!scattered.is_single() && scattered.to_string().starts_with("two levels, spacing"));
-            assert!(plan(&every(290), true).is_single() && !plan(&every(310), true).is_single());
+            // Between both shares the cost of the transforms decides, beside more steps of sums over the same cells.
+            for (preconditioner_saves, step, single) in
+                [(1e9, 290, true), (1e-9, 290, false), (1e9, 310, false)]
+            {
+                let tuning = Tuning { preconditioner_saves, ..Tuning::DEFAULT };
+                let (set, planner) = (every(step), Planner { tuning: &tuning, ..planner });
+                assert_eq!(planner.system(&set, set.len(), true).unwrap().is_single(), single, "{step}");
+            }
             let few = CellSet::from_index(GRID, &[5, 2049 * 2000]);
             assert_eq!(planner.system(&few, 0, true).unwrap().to_string(), "direct");
             assert!(planner.system(&CellSet::default(), 0, true).is_none());
