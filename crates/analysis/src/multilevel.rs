@@ -125,19 +125,27 @@ impl Multilevel {
     /// # Panics
     /// Where there are fewer derivatives than points.
     pub fn propagated(&self, value: f64, gradient: &[f64]) -> Uncertain {
-        let (mut variance, mut spread) = (0.0, 0.0);
-        for level in &self.levels {
-            let each: Vec<f64> =
-                level.iter().map(|s| sum(s.iter().zip(gradient).map(|(v, g)| v * g))).collect();
-            let n = each.len() as f64;
-            if let Some((_, Some(deviation))) = mean_and_deviation(&each) {
-                let own = deviation * deviation / n;
-                variance += own;
-                spread += own * own / (n - 1.0);
-            }
-        }
+        let variances = self.variances(gradient);
+        let variance = sum(variances.iter().copied());
+        let spread =
+            sum(variances.iter().zip(&self.levels).map(|(v, level)| v * v / (level.len() as f64 - 1.0)));
         let degrees_of_freedom = if spread > 0.0 { variance * variance / spread } else { f64::MAX };
         Uncertain { value, standard_error: variance.sqrt(), degrees_of_freedom }
+    }
+
+    /// What each level adds to the variance of a number that depends on the mean curve of the finest grid by these derivatives.
+    ///
+    /// # Panics
+    /// Where there are fewer derivatives than points.
+    pub fn variances(&self, gradient: &[f64]) -> Vec<f64> {
+        (self.levels.iter())
+            .map(|level| {
+                let each: Vec<f64> =
+                    level.iter().map(|s| sum(s.iter().zip(gradient).map(|(v, g)| v * g))).collect();
+                let deviation = mean_and_deviation(&each).and_then(|(_, deviation)| deviation).unwrap_or(0.0);
+                deviation * deviation / each.len() as f64
+            })
+            .collect()
     }
 
     /// What the cells of the finest grid leave of a number that depends on the mean curve: [`grid_error`] of its values on the three finest

@@ -72,5 +72,5 @@ pub use sample::{FIELDS, FLOOR_CELLS, Sample};
 pub use session::Session;
 pub use sweep::sweep;
 pub use table_of::TableOf;
-pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, curves_table, samples_table};
+pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, compact_table, curves_table, samples_table};
 pub use tuning::{ConstantRow, Multiple, tuning};

@@ -2,7 +2,7 @@
 
 use crate::realisation::{Discretisation, Realisation, RealisationResult};
 use crate::run::Run;
-use crate::sample::FLOOR_CELLS;
+use crate::sample::{FLOOR_CELLS, Sample};
 use crate::sweep::sweep;
 use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble};
 use runs::{Error, Progress, Result, Store};
@@ -100,7 +100,7 @@ impl Series {
         let rows = units
             .iter()
             .map(|(_, result)| {
-                let sample = |s: &crate::sample::Sample| {
+                let sample = |s: &Sample| {
                     let stiffness_bar = s.stiffness_bar.filter(|_| s.converged())?;
                     Some(analysis::StiffnessSample { stiffness_bar, contact_cells: s.contact_cells })
                 };
@@ -127,12 +127,18 @@ impl Series {
 
     /// Mean contact fraction over the converged surfaces at force number `j`, where the model claims an area.
     pub fn contact_fraction(&self, j: usize) -> Option<f64> {
-        let fractions: Vec<f64> = (self.units.iter())
-            .map(|(_, r)| &r.samples[j])
-            .filter(|s| s.converged())
-            .filter_map(|s| s.contact_fraction)
-            .collect();
-        (!fractions.is_empty()).then(|| analysis::sum(fractions.iter().copied()) / fractions.len() as f64)
+        self.mean_at(j, |s| s.contact_fraction)
+    }
+
+    /// Mean d/h over the converged surfaces at force number `j`.
+    pub fn approach_over_h(&self, j: usize) -> Option<f64> {
+        self.mean_at(j, |s| s.approach_over_h)
+    }
+
+    fn mean_at(&self, j: usize, of: impl Fn(&Sample) -> Option<f64>) -> Option<f64> {
+        let samples = self.units.iter().map(|(_, r)| &r.samples[j]).filter(|s| s.converged());
+        let values: Vec<f64> = samples.filter_map(of).collect();
+        (!values.is_empty()).then(|| analysis::sum(values.iter().copied()) / values.len() as f64)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Tables that several figures share: the curves and their samples.
 
 use crate::measured::Measured;
-use crate::sample::FLOOR_CELLS;
+use crate::realisation::RealisationResult;
+use crate::sample::{FLOOR_CELLS, Sample};
 use crate::table_of::TableOf;
 use analysis::Table;
 use runs::Result;
@@ -48,6 +49,36 @@ pub fn curves_table(title: &str, measured: &Measured) -> Result<Table> {
         .column("min_contact_cells", "1", FEWEST, |(_, p)| p.1.min_contact_cells)
         .column("below_floor", "-", FLOOR, |(_, p)| p.1.min_contact_cells.is_some_and(|c| c < FLOOR_CELLS))
         .column("contact_fraction", "1", AREA, |(s, p)| s.contact_fraction(p.0))
+        .column("approach_over_h", "1", "mean d/h, d from first touch of the highest point", |(s, p)| {
+            s.approach_over_h(p.0)
+        })
+        .table()
+}
+
+fn seven_digits(value: f64) -> String {
+    format!("{value:.6e}")
+}
+
+/// Every surface in one row, seven digits: what means and their errors can be computed from again.
+///
+/// # Errors
+/// As [`TableOf::table`].
+pub fn compact_table(title: &str, measured: &Measured) -> Result<Table> {
+    const LOADS: &str =
+        "at the loads of the curves' table, from the smallest up, separated by blanks; - where there is none";
+    let units: Vec<_> = measured.series.iter().flat_map(|s| &s.units).collect();
+    let values = |result: &RealisationResult, of: fn(&Sample) -> Option<String>| {
+        let each =
+            result.samples.iter().map(|s| of(s).filter(|_| s.converged()).unwrap_or_else(|| "-".to_owned()));
+        each.collect::<Vec<_>>().join(" ")
+    };
+    TableOf::new(title, &units)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(u, _)| u.fractal_dimension)
+        .column("surface", "1", "number of the surface in its ensemble", |(u, _)| u.index)
+        .column("seed", "1", "seed of this surface", |(u, _)| u.seed)
+        .column("stiffness_bar", "1", LOADS, |(_, r)| values(r, |s| s.stiffness_bar.map(seven_digits)))
+        .column("approach_over_h", "1", LOADS, |(_, r)| values(r, |s| s.approach_over_h.map(seven_digits)))
+        .column("contact_cells", "1", LOADS, |(_, r)| values(r, |s| s.contact_cells.map(|c| c.to_string())))
         .table()
 }
 

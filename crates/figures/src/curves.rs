@@ -3,7 +3,8 @@
 use crate::words;
 use analysis::Table;
 use evaluation::{
-    Claim, Flag, Measured, Outcome, Run, Session, curves_table, describe, header, samples_table, write_budget,
+    Claim, Flag, Measured, Outcome, Run, Session, compact_table, curves_table, describe, header,
+    samples_table, write_budget,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
 use runs::{CsvFile, Error, Header, Progress, Result, Store, write_csv};
@@ -31,16 +32,22 @@ impl CurveFigure {
         Ok((session.close(outcome)?, measured))
     }
 
-    /// Writes `name.csv`, `name-samples.csv`, `name.svg`, `name.png`.
+    /// Writes `name.csv`, `name-samples.csv`, `name-compact.csv`, `name.svg`, `name.png`.
     fn write(&self, run: &Run, measured: &Measured) -> Result<Vec<PathBuf>> {
         let Self { name, title, flags, .. } = *self;
         let header = describe(header(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
         let samples = run.out.join(format!("{name}-samples.csv"));
         let all = samples_table(&format!("{title}: every surface and load"), measured)?;
         write_csv(&samples, &all, &header)?;
+        let compact = run.out.join(format!("{name}-compact.csv"));
+        write_csv(
+            &compact,
+            &compact_table(&format!("{title}: every surface in one row"), measured)?,
+            &header,
+        )?;
         let draw = |csv: &Path| draw(name, csv, run.over.as_deref(), &run.out);
         let mut files = written(run, name, &curves_table(title, measured)?, &header, draw)?;
-        files.insert(1, samples);
+        files.splice(1..1, [samples, compact]);
         Ok(files)
     }
 }

@@ -153,13 +153,29 @@ impl MeanCurve {
             .flatten()
     }
 
-    /// `sum w ln k_bar` over the points.
-    pub fn logarithmic(&self, points: Range<usize>, weights: &[f64]) -> Option<Banded> {
+    /// The largest share of the variance of the slope through the points that comes from one level, and the size of its finer grid.
+    pub fn widest_level(&self, points: Range<usize>) -> Option<(usize, f64)> {
+        let ln_f: Vec<f64> = self.forces[points.clone()].iter().map(|f| f.ln()).collect();
+        let gradient = self.gradient(points, &slope_weights(&ln_f)?);
+        let variances = self.levels.variances(&gradient);
+        let whole = analysis::sum(variances.iter().copied());
+        let (level, most) = variances.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+        (whole > 0.0).then(|| (self.sizes[level], most / whole))
+    }
+
+    /// Derivatives of `sum w ln k_bar` over the points.
+    fn gradient(&self, points: Range<usize>, weights: &[f64]) -> Vec<f64> {
         let means = self.levels.means(self.levels.levels());
         let mut gradient = vec![0.0; self.forces.len()];
-        for (j, weight) in points.clone().zip(weights) {
+        for (j, weight) in points.zip(weights) {
             gradient[j] = weight / means[j];
         }
+        gradient
+    }
+
+    /// `sum w ln k_bar` over the points.
+    pub fn logarithmic(&self, points: Range<usize>, weights: &[f64]) -> Option<Banded> {
+        let gradient = self.gradient(points.clone(), weights);
         let start = points.start;
         self.banded(points, &gradient, |means| {
             let terms = weights.iter().enumerate().map(|(i, w)| w * means[start + i].ln());

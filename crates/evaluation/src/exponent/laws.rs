@@ -22,6 +22,8 @@ pub struct LawRow {
     pub forces: Range<f64>,
     /// The exponent.
     pub alpha: Banded,
+    /// Size of the level from which most of the scatter comes, and its share of the variance.
+    pub widest: Option<(usize, f64)>,
 }
 
 impl LawRow {
@@ -74,10 +76,11 @@ pub fn law_rows(curves: &[MeanCurve]) -> Vec<LawRow> {
                 continue;
             };
             let forces = curve.forces[points.start]..curve.forces[points.end - 1];
-            if let Some(alpha) = curve.slope(points) {
+            if let Some(alpha) = curve.slope(points.clone()) {
                 let (model, convention, fractal_dimension) =
                     (curve.model, curve.convention, curve.fractal_dimension);
-                rows.push(LawRow { model, convention, fractal_dimension, window, forces, alpha });
+                let widest = curve.widest_level(points);
+                rows.push(LawRow { model, convention, fractal_dimension, window, forces, alpha, widest });
             }
         }
     }

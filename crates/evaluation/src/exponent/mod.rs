@@ -10,6 +10,7 @@ mod ladder;
 mod laws;
 mod picture;
 mod plan;
+mod report;
 mod tables;
 
 pub use ladder::Ladder;
@@ -174,7 +175,8 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
 }
 
 /// Solves what is not stored, and writes `exponent.csv` (curves and local slopes), `exponent-levels.csv`, `exponent-laws.csv`,
-/// `exponent-ratio.csv`, `exponent-factor.csv` and `exponent-samples.csv`, and the pictures of slopes and ratios.
+/// `exponent-ratio.csv`, `exponent-factor.csv` and `exponent-samples.csv`, the pictures of slopes and ratios, and
+/// `exponent.md`, tables for a page (with processor hours: the only file that depends on the machine).
 ///
 /// # Errors
 /// [`Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
@@ -236,6 +238,12 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Outcome> {
         outcome.files.push(path);
     }
     outcome.files.extend(picture::draw(&study.out)?);
+    let text = study.out.join("exponent.md");
+    files::write_whole(
+        &text,
+        report::report(&study.command(), &ladders, &curves, &laws, &factors).as_bytes(),
+    )?;
+    outcome.files.push(text);
     let seconds = |model: &str| {
         let of = solved.iter().filter(|(ladder, _)| ladder.model.name() == model);
         analysis::sum(
@@ -271,7 +279,8 @@ mod tests {
         assert!(plan.iter().any(|line| line.contains("processor hours")), "{plan:?}");
         let read = || -> Vec<Vec<u8>> {
             let outcome = exponent(&study, &Silent).unwrap();
-            outcome.files.iter().map(|file| std::fs::read(file).unwrap()).collect()
+            let tables = outcome.files.iter().filter(|file| file.extension().is_some_and(|e| e != "md"));
+            tables.map(|file| std::fs::read(file).unwrap()).collect()
         };
         let first = read();
         assert_eq!(first, read());

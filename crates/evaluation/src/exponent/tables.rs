@@ -119,6 +119,10 @@ pub fn laws(rows: &[LawRow]) -> Result<Table> {
             r.alpha.scatter.half_width()
         })
         .column("grid", "1", "what the grid leaves", |r| r.alpha.grid)
+        .column("widest_level", "1", "size of the level that adds most to the scatter", |r| {
+            r.widest.map(|w| w.0)
+        })
+        .column("widest_share", "1", "its share of the variance", |r| r.widest.map(|w| w.1))
         .column("eq6", "1", "0.266 D_f", LawRow::eq6)
         .column("one_over_one_plus_hurst", "1", "1/(1 + H) = 1/(4 - D_f)", LawRow::power_law)
         .column("inside", "-", "which of them lies within scatter and grid together", LawRow::verdict)

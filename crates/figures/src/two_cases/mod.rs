@@ -18,7 +18,7 @@ use runs::{Error, Progress, Result, Threads, collect, files, run_jobs, write_csv
 use std::path::Path;
 use std::time::Instant;
 pub(crate) use study::NAME;
-use study::{CASES, CaseCurve, CasePoint, SHORTEST, SurfaceCase};
+use study::{CASES, CaseCurve, CasePoint, CaseSolve, SHORTEST, Solves, SurfaceCase};
 
 /// Solves the two cases (and the two mixed ones) with boundary elements, Persson's and Greenwood and Williamson's theories, and
 /// writes `two-cases.csv`, `.svg`, `.png` and `.md` into a directory.
@@ -73,28 +73,6 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     outcome.seconds = start.elapsed().as_secs_f64();
     Ok(outcome)
 }
-
-/// What one solve gave.
-#[derive(Debug, Clone, Copy)]
-enum CaseSolve {
-    /// A stiffness and the share of the square in contact.
-    StiffnessSample(StiffnessSample, f64),
-    /// Full contact of a periodic square, which has no stiffness.
-    FullContact,
-    /// It missed its tolerance.
-    NotConverged,
-}
-
-impl CaseSolve {
-    fn sample(self) -> Option<(StiffnessSample, f64)> {
-        match self {
-            Self::StiffnessSample(sample, area) => Some((sample, area)),
-            Self::FullContact | Self::NotConverged => None,
-        }
-    }
-}
-
-type Solves = Vec<CaseSolve>;
 
 /// All surfaces of all cases, each under increasing loads; in order, whatever the number of threads.
 fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {

@@ -1,7 +1,6 @@
 //! What the curves say about the paper's belief.
 
-use super::Solves;
-use super::study::{CASES, CaseCurve, CasePoint, PairRow, TwoCases};
+use super::study::{CASES, CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
 use crate::claims::{KAPPA, LINEAR};
 use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
@@ -148,8 +147,7 @@ pub(super) fn areas(curve: &CaseCurve, surfaces: &[Solves]) -> Vec<Claim> {
 pub(super) fn pairs(study: &TwoCases, solved: &[Vec<Solves>]) -> Result<Vec<PairRow>> {
     let mut rows = Vec::new();
     for (free, case) in CASES.iter().enumerate().filter(|(_, c)| c.boundary == Boundary::Free) {
-        let same =
-            |c: &super::study::SurfaceCase| c.boundary == Boundary::Periodic && c.rolls_off == case.rolls_off;
+        let same = |c: &SurfaceCase| c.boundary == Boundary::Periodic && c.rolls_off == case.rolls_off;
         let Some(periodic) = CASES.iter().position(same) else { continue };
         for (j, &force_bar) in study.forces.values().iter().enumerate() {
             let stiffness = |solves: &Solves| solves[j].sample().map(|s| s.0.stiffness_bar);

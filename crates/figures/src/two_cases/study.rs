@@ -1,5 +1,6 @@
 //! The two problems and what is found of them.
 
+use analysis::StiffnessSample;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
 use evaluation::{Estimate, Forces};
 use runs::{Error, Result};
@@ -138,6 +139,28 @@ impl TwoCases {
         Ok(())
     }
 }
+
+/// What one solve gave.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum CaseSolve {
+    /// A stiffness and the share of the square in contact.
+    StiffnessSample(StiffnessSample, f64),
+    /// Full contact of a periodic square, which has no stiffness.
+    FullContact,
+    /// It missed its tolerance.
+    NotConverged,
+}
+
+impl CaseSolve {
+    pub(super) fn sample(self) -> Option<(StiffnessSample, f64)> {
+        match self {
+            Self::StiffnessSample(sample, area) => Some((sample, area)),
+            Self::FullContact | Self::NotConverged => None,
+        }
+    }
+}
+
+pub(super) type Solves = Vec<CaseSolve>;
 
 /// One curve: k_bar over F_bar.
 pub(super) struct CaseCurve {
