@@ -5,7 +5,10 @@
 //!
 //! ```text
 //! quantity                              paper          here, 95 %  verdict
-//! TO BE FILLED
+//! alpha of lines, D_f = 2        0.47 to 0.53      0.4994 +- 0.02  confirmed
+//! alpha of lines, D_f = 2.2  0.5256 to 0.5856      0.5561 +- 0.01  confirmed
+//! alpha of lines, D_f = 2.4    0.595 to 0.655       0.629 +- 0.01  confirmed
+//! 3 comparisons: 0 contradicted, 0 not resolved at this size, 0 matter of convention, 3 confirmed
 //! ```
 
 use evaluation::{

@@ -152,8 +152,10 @@ impl Claim {
     /// Beside the same quantity in another convention: where one is inside the reading and the other is not, the convention decides.
     #[must_use]
     pub fn in_convention(mut self, convention: &str, value: f64) -> Self {
-        let inside = |value: f64| (self.paper[0]..=self.paper[1]).contains(&value);
-        let [own, other] = [self.verdict == Verdict::Confirmed, inside(value)];
+        // With the same half-width, so that both are judged alike.
+        let half_width = self.here.map_or(0.0, |here| here.half_width);
+        let other = Self::judge("", self.statement, self.paper, Estimate { value, half_width }, "");
+        let [own, other] = [self.verdict, other.verdict].map(|verdict| verdict == Verdict::Confirmed);
         self.remark = joined(&self.remark, &format!("{}: {convention}", short(value)));
         if own != other {
             self.verdict = Verdict::Convention;

@@ -51,8 +51,8 @@
 //!
 //! The synthesis agrees with the sum over waves to 1e-12 of the rms, the rms with the prescribed one to
 //! 1e-12. Bytes do not depend on the number of threads; another processor or version of the transform library
-//! may change last digits. A map is drawn
-//! on the threads of the `rayon` pool in which it is called (without one, the global pool). On one core of a 2020s machine a map of 2049 x 2049 cells takes about 0.15 s and a
+//! may change last digits. A map is drawn on the threads of the `rayon` pool in which it is called (without one,
+//! the global pool). On one core of a 2020s machine a map of 2049 x 2049 cells takes about 0.15 s and a
 //! line of 2^20 elements about 6 ms; memory is twice that of the map. Keep a [`MapGenerator`] or
 //! [`LineGenerator`] to draw many.
 //!

@@ -130,9 +130,9 @@ impl TwoCasesArguments {
 pub enum ExponentSizesName {
     /// Up to 129 cells and 2^12 elements: seconds.
     Quick,
-    /// Up to 1025 cells and 2^20 elements: a quarter of an hour on two cores.
+    /// Up to 1025 cells and 2^20 elements; --plan says how long.
     Default,
-    /// Up to 16385 cells and 2^26 elements: many hours; 7 GB.
+    /// Up to 16385 cells and 2^26 elements; --plan says how long.
     Full,
 }
 

@@ -54,10 +54,10 @@ pub struct Exponent {
 pub enum ExponentSizes {
     /// Seconds, for tests.
     Quick,
-    /// Minutes: up to 1025 cells and 2^20 elements.
+    /// Up to 1025 cells and 2^20 elements.
     #[default]
     Default,
-    /// Hours: up to 16385 cells and 2^26 elements.
+    /// Up to 16385 cells and 2^26 elements.
     Full,
 }
 
