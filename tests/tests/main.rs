@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
 mod adhesion;
+mod committed;
 mod ensembles;
 mod equivalent;
 mod exact_bodies;

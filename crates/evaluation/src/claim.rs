@@ -14,7 +14,7 @@ pub enum Verdict {
     Unresolved,
     /// It holds in one convention and not in another; the remark says in which.
     Convention,
-    /// The interval found lies inside the fair reading, or about it and is no wider.
+    /// The interval found lies inside the fair reading.
     Confirmed,
 }
 
@@ -101,15 +101,14 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Judges a number by its interval alone: contradicted where it misses the reading, confirmed where it lies inside it, or meets it and
-    /// is no wider; else unresolved.
+    /// Judges a number by its interval alone: confirmed where it lies inside the reading, contradicted where it misses it, else unresolved.
     ///
     /// ```
     /// use evaluation::{Claim, Estimate, Statement, Verdict};
     /// let statement = Statement { quotation: "", place: "", reading: "" };
     /// let judge = |value, half_width| Claim::judge("k", statement, [0.175, 0.185], Estimate { value, half_width }, "").verdict;
-    /// assert_eq!(judge(0.172, 0.004), Verdict::Confirmed);
-    /// assert_eq!(judge(0.172, 0.02), Verdict::Unresolved);
+    /// assert_eq!(judge(0.180, 0.004), Verdict::Confirmed);
+    /// assert_eq!(judge(0.172, 0.004), Verdict::Unresolved);
     /// assert_eq!(judge(0.172, 0.002), Verdict::Contradicted);
     /// ```
     pub fn judge(
@@ -123,41 +122,71 @@ impl Claim {
         let [low, high] = [value - half_width, value + half_width];
         let verdict = if high < paper[0] || low > paper[1] || !value.is_finite() {
             Verdict::Contradicted
-        } else if (low >= paper[0] && high <= paper[1]) || 2.0 * half_width <= paper[1] - paper[0] {
+        } else if low >= paper[0] && high <= paper[1] {
             Verdict::Confirmed
         } else {
             Verdict::Unresolved
         };
-        Self {
-            quantity: quantity.into(),
-            statement,
-            paper,
-            here: Some(here),
-            verdict,
-            remark: remark.into(),
-            timed: false,
-        }
+        let remark = remark.into();
+        let remark = if verdict == Verdict::Unresolved {
+            let nearest = paper.iter().map(|end| (end - value).abs()).fold(f64::INFINITY, f64::min);
+            joined(&remark, &would_decide(nearest))
+        } else {
+            remark
+        };
+        let quantity = quantity.into();
+        Self { quantity, statement, paper, here: Some(here), verdict, remark, timed: false }
     }
 
-    /// Beside another law: where the interval holds that as well, the numbers do not decide.
+    /// One of two laws: contradicted where the interval misses the reading of this law, unresolved where it meets that of the rival as well,
+    /// else confirmed.
+    ///
+    /// ```
+    /// use evaluation::{Claim, Estimate, Statement, Verdict};
+    /// let statement = Statement { quotation: "", place: "", reading: "" };
+    /// let judge = |half_width| {
+    ///     let claim = Claim::judge("alpha", statement, [0.52, 0.54], Estimate { value: 0.52, half_width }, "");
+    ///     claim.beside("1/(1 + H)", [0.49, 0.51]).verdict
+    /// };
+    /// assert_eq!(judge(0.005), Verdict::Confirmed);
+    /// assert_eq!(judge(0.02), Verdict::Unresolved);
+    /// ```
     #[must_use]
-    pub fn beside(mut self, law: &str, value: f64) -> Self {
-        if self.verdict != Verdict::Contradicted && self.here.is_some_and(|here| here.holds(value)) {
-            self.verdict = Verdict::Unresolved;
-            self.remark = joined(&self.remark, &format!("the interval holds {law} = {} too", short(value)));
+    pub fn beside(mut self, law: &str, rival: [f64; 2]) -> Self {
+        if let Some(here) = self.here.filter(|_| self.verdict != Verdict::Contradicted) {
+            let meets = here.value - here.half_width <= rival[1] && here.value + here.half_width >= rival[0];
+            self.verdict = if meets { Verdict::Unresolved } else { Verdict::Confirmed };
+            let middle = short(0.5 * (rival[0] + rival[1]));
+            let word = if meets { "meets" } else { "misses" };
+            // What would decide is another interval here than for the law alone.
+            if let Some(cut) = self.remark.find(WOULD) {
+                self.remark.truncate(self.remark[..cut].rfind("; ").unwrap_or(0));
+            }
+            self.remark = joined(&self.remark, &format!("the interval {word} {law} = {middle}"));
+            if meets {
+                let away = (rival[0] - here.value).max(here.value - rival[1]);
+                self.remark = joined(
+                    &self.remark,
+                    &if away > 0.0 {
+                        would_decide(away)
+                    } else {
+                        "the number lies within both laws' tolerance".to_owned()
+                    },
+                );
+            }
         }
         self
     }
 
-    /// Beside the same quantity in another convention: where one is inside the reading and the other is not, the convention decides.
+    /// Beside the same quantity in another convention: where one is confirmed and the other contradicted, the convention decides.
     #[must_use]
     pub fn in_convention(mut self, convention: &str, value: f64) -> Self {
         // With the same half-width, so that both are judged alike.
         let half_width = self.here.map_or(0.0, |here| here.half_width);
         let other = Self::judge("", self.statement, self.paper, Estimate { value, half_width }, "");
-        let [own, other] = [self.verdict, other.verdict].map(|verdict| verdict == Verdict::Confirmed);
         self.remark = joined(&self.remark, &format!("{}: {convention}", short(value)));
-        if own != other {
+        let both = [self.verdict, other.verdict];
+        if both.contains(&Verdict::Confirmed) && both.contains(&Verdict::Contradicted) {
             self.verdict = Verdict::Convention;
         }
         self
@@ -203,6 +232,14 @@ impl Claim {
             Some(Estimate { value, half_width }) => format!("{} +- {}", short(value), rounded(half_width)),
         }
     }
+}
+
+/// Begins the remark on what would decide.
+const WOULD: &str = "decided by a half-width below ";
+
+fn would_decide(half_width: f64) -> String {
+    let two_digits = format!("{half_width:.1e}").parse().unwrap_or(half_width);
+    format!("{WOULD}{}: more surfaces or finer grids", short(two_digits))
 }
 
 fn joined(a: &str, b: &str) -> String {
@@ -340,7 +377,7 @@ mod tests {
     #[test]
     fn the_interval_decides() {
         assert_eq!(claim("inside", 1.0, 0.05).verdict, Verdict::Confirmed);
-        assert_eq!(claim("across an end, narrow", 1.12, 0.05).verdict, Verdict::Confirmed);
+        assert_eq!(claim("across an end, narrow", 1.12, 0.05).verdict, Verdict::Unresolved);
         assert_eq!(claim("across an end, wide", 1.12, 0.2).verdict, Verdict::Unresolved);
         assert_eq!(claim("wider than the reading", 1.0, 0.2).verdict, Verdict::Unresolved);
         assert_eq!(claim("outside", 1.2, 0.05).verdict, Verdict::Contradicted);
@@ -351,11 +388,11 @@ mod tests {
 
     #[test]
     fn rivals_and_conventions_are_said() {
-        let held = claim("x", 1.0, 0.05).beside("Eq. 24", 1.04);
+        let held = claim("x", 1.0, 0.05).beside("Eq. 24", [1.03, 1.05]);
         assert_eq!(held.verdict, Verdict::Unresolved);
         assert!(held.remark.contains("Eq. 24 = 1.04"), "{}", held.remark);
-        assert_eq!(claim("x", 1.0, 0.05).beside("Eq. 24", 1.06).verdict, Verdict::Confirmed);
-        assert_eq!(claim("x", 1.2, 0.05).beside("Eq. 24", 1.2).verdict, Verdict::Contradicted);
+        assert_eq!(claim("x", 1.0, 0.05).beside("Eq. 24", [1.06, 1.08]).verdict, Verdict::Confirmed);
+        assert_eq!(claim("x", 1.2, 0.05).beside("Eq. 24", [1.19, 1.21]).verdict, Verdict::Contradicted);
         assert_eq!(claim("x", 1.0, 0.05).in_convention("log mean", 1.2).verdict, Verdict::Convention);
         assert_eq!(claim("x", 1.2, 0.05).in_convention("log mean", 1.0).verdict, Verdict::Convention);
         assert_eq!(claim("x", 1.0, 0.05).in_convention("log mean", 1.05).verdict, Verdict::Confirmed);

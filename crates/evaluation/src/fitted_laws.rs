@@ -1,5 +1,6 @@
 //! What Figs. 3 and 7 have in common: the fitted power laws.
 
+use crate::grid_error::law_error;
 use crate::measured::{Measured, Series};
 use analysis::{Bootstrap, FitWindow, FittedPowerLaw, NoFit, fit_power_law};
 
@@ -32,7 +33,7 @@ pub fn laws_within(measured: &Measured, window: &FitWindow) -> Vec<FittedLaw> {
 /// Floors of contact cells and upper ends of the window between which the exponents of one series are compared.
 const FLOORS: [usize; 3] = [10, 30, 100];
 const LARGEST: [f64; 2] = [0.086, 0.03];
-/// A window shorter than this says little about a power law.
+/// A window shorter than this says little about a power law; the windows beside it may be half as long.
 const LEAST_DECADES: f64 = 1.0;
 
 /// A law over [`FitWindow::PAPER`] and what other windows make of it.
@@ -40,16 +41,18 @@ const LEAST_DECADES: f64 = 1.0;
 pub struct WindowedLaw {
     /// The law.
     pub fit: FittedPowerLaw,
-    /// Largest changes of alpha and of zeta with floors of 30 and 100 contact cells on every surface and an upper end of 0.03, over at least a
-    /// decade.
+    /// Largest changes of alpha and of zeta with floors of 30 and 100 contact cells on every surface and an upper end of 0.03, over at least
+    /// half a decade.
     pub windows: (f64, f64),
+    /// 95 % half-widths of alpha and of ln zeta that the grid leaves; `None` without coarser grids.
+    pub grid: Option<(f64, f64)>,
 }
 
 /// The law of a series, or why there is none to judge.
 ///
 /// # Errors
 /// Words: too few loads, or a window of less than a decade.
-pub fn windowed_law(series: &Series) -> Result<WindowedLaw, String> {
+pub fn windowed_law(measured: &Measured, series: &Series) -> Result<WindowedLaw, String> {
     let law = |floor: usize, largest: f64| {
         let window = FitWindow { max_force_bar: largest, min_contact_cells: floor, ..FitWindow::PAPER };
         let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
@@ -67,13 +70,14 @@ pub fn windowed_law(series: &Series) -> Result<WindowedLaw, String> {
         ));
     }
     let others = FLOORS.iter().flat_map(|&floor| LARGEST.map(|largest| law(floor, largest)));
-    let windows = others.filter_map(Result::ok).filter(|other| decades(other) >= LEAST_DECADES).fold(
+    let windows = others.filter_map(Result::ok).filter(|other| decades(other) >= 0.5 * LEAST_DECADES).fold(
         (0.0, 0.0),
         |(alpha, zeta), other| {
             (f64::max(alpha, (other.alpha - fit.alpha).abs()), f64::max(zeta, (other.zeta - fit.zeta).abs()))
         },
     );
-    Ok(WindowedLaw { fit, windows })
+    let grid = measured.coarser_at(series.fractal_dimension).and_then(|coarser| law_error(series, coarser));
+    Ok(WindowedLaw { fit, windows, grid })
 }
 
 /// 2.0, 2.05 .. 3.0 and the given ones: where formulas are tabulated.

@@ -8,6 +8,9 @@ use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble};
 use runs::{Error, Progress, Result, Store};
 use std::sync::Arc;
 
+/// Surfaces that are solved on the coarser grids as well: enough to know the scatter of a difference to a fifth.
+pub const COARSER_SURFACES: usize = 12;
+
 /// All surfaces of one fractal dimension.
 #[derive(Debug, Clone)]
 pub struct Series {
@@ -28,6 +31,8 @@ pub struct Measured {
     pub discretisation: Discretisation,
     /// One series per fractal dimension, increasing.
     pub series: Vec<Series>,
+    /// The first surfaces on grids half and a quarter as fine, which say what the grid leaves; `None` where those are too coarse.
+    pub coarser: Option<Box<[Self; 2]>>,
 }
 
 /// The 3D ensemble of a run, from the store where it is there.
@@ -36,7 +41,7 @@ pub struct Measured {
 /// See [`sweep`].
 pub fn measure_3d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
     let discretisation = Discretisation::Bem3d { cells: run.cells, tolerance: run.tolerance };
-    measure(discretisation, run.surfaces, run.forces_3d.values(), run, store, progress)
+    with_coarser(discretisation, run.surfaces, run.forces_3d.values(), run, store, progress)
 }
 
 /// The 1D ensemble of a run, from the store where it is there.
@@ -45,9 +50,31 @@ pub fn measure_3d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<M
 /// See [`sweep`].
 pub fn measure_1d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
     let discretisation = Discretisation::Mdr1d { elements: run.elements };
-    measure(discretisation, run.lines, run.forces_1d.values(), run, store, progress)
+    with_coarser(discretisation, run.lines, run.forces_1d.values(), run, store, progress)
 }
 
+/// An ensemble with its first surfaces on coarser grids.
+///
+/// # Errors
+/// See [`sweep`].
+pub fn with_coarser(
+    discretisation: Discretisation,
+    surfaces: usize,
+    forces: &[f64],
+    run: &Run,
+    store: &Store,
+    progress: &dyn Progress,
+) -> Result<Measured> {
+    let measured = measure(discretisation, surfaces, forces, run, store, progress)?;
+    let Some([half, quarter]) = discretisation.coarser() else { return Ok(measured) };
+    let on = |grid| measure(grid, surfaces.min(COARSER_SURFACES), forces, run, store, progress);
+    Ok(Measured { coarser: Some(Box::new([on(half)?, on(quarter)?])), ..measured })
+}
+
+/// An ensemble on its own grid alone.
+///
+/// # Errors
+/// See [`sweep`].
 pub fn measure(
     discretisation: Discretisation,
     surfaces: usize,
@@ -88,7 +115,7 @@ pub fn measure(
         .zip(&dimensions)
         .map(|(units, &d)| Series::new(d, units, &forces))
         .collect::<Result<_>>()?;
-    Ok(Measured { discretisation, series })
+    Ok(Measured { discretisation, series, coarser: None })
 }
 
 impl Series {
@@ -157,6 +184,12 @@ impl Measured {
     /// The series of this fractal dimension.
     pub fn at(&self, fractal_dimension: f64) -> Option<&Series> {
         self.series.iter().find(|s| (s.fractal_dimension - fractal_dimension).abs() < 1e-9)
+    }
+
+    /// The series of one fractal dimension on both coarser grids.
+    pub fn coarser_at(&self, fractal_dimension: f64) -> Option<[&Series; 2]> {
+        let [half, quarter] = self.coarser.as_deref()?;
+        Some([half.at(fractal_dimension)?, quarter.at(fractal_dimension)?])
     }
 
     /// The common forces.

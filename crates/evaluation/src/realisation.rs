@@ -55,6 +55,21 @@ impl Discretisation {
         }
     }
 
+    /// The same model on cells (elements) twice and four times as large; `None` where those are too coarse to say anything.
+    pub fn coarser(self) -> Option<[Self; 2]> {
+        let by = |factor: usize| match self {
+            Self::Bem3d { cells, tolerance } => {
+                let cells = cells.div_ceil(factor);
+                (cells >= COARSEST.0).then_some(Self::Bem3d { cells, tolerance })
+            }
+            Self::Mdr1d { elements } => {
+                let elements = elements / factor;
+                (elements >= COARSEST.1).then_some(Self::Mdr1d { elements })
+            }
+        };
+        Some([by(2)?, by(4)?])
+    }
+
     /// The model itself.
     pub fn model(&self) -> Box<dyn ContactModel> {
         match *self {
@@ -63,6 +78,9 @@ impl Discretisation {
         }
     }
 }
+
+/// Coarsest grid and shortest line that say anything about a finer one.
+const COARSEST: (usize, usize) = (17, 1 << 9);
 
 /// Models that units share: what a line's ensemble plans once serves all its lines.
 #[derive(Debug, Default)]
@@ -296,5 +314,15 @@ mod tests {
             assert_ne!(unit.key(), other.key());
             assert!(other.cost() > 0);
         }
+    }
+
+    #[test]
+    fn coarser_grids_are_half_and_a_quarter_as_fine() {
+        let solid = |cells| Discretisation::Bem3d { cells, tolerance: 1e-3 };
+        let line = |elements| Discretisation::Mdr1d { elements };
+        assert_eq!(solid(2049).coarser(), Some([solid(1025), solid(513)]));
+        assert_eq!(solid(64).coarser(), None);
+        assert_eq!(line(1 << 20).coarser(), Some([line(1 << 19), line(1 << 18)]));
+        assert_eq!(line(1024).coarser(), None);
     }
 }

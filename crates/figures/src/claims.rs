@@ -1,22 +1,25 @@
 //! The statements of the paper, one function per group; each compares and none tunes.
 //!
 //! What a fair reading allows is fixed in each group, beforehand: the digits that the paper prints, the width of a line of its plots, or the
-//! distance between its own numbers for one thing. What was found has a 95 % interval, and the verdict follows from both alone
-//! ([`Claim::judge`]). Identities that only test code (Eqs. 7, 19 to 23, full contact of a line) are tests, not claims.
+//! distance between its own numbers for one thing. What was found has a 95 % interval, and the verdict follows from both
+//! ([`Claim::judge`], [`Claim::beside`] for rival laws, [`Claim::in_convention`]). Identities that only test code (Eqs. 7, 19 to 23, full
+//! contact of a line) are tests, not claims. Area over force is judged where waves are resolved: [`crate::two_cases`].
 
-mod area;
 mod common;
 mod curve;
 mod exponent;
 mod factor;
+mod line;
 mod plateau;
+mod regions;
 mod speed;
 
 use evaluation::{Claim, Measured};
 
-pub(crate) use area::{KAPPA, LINEAR};
 pub(crate) use curve::collapse;
+pub(crate) use line::beside_stiffness;
 pub(crate) use plateau::plateaus;
+pub(crate) use regions::regions;
 pub(crate) use speed::speed;
 
 /// What Fig. 2 can judge.
@@ -28,7 +31,7 @@ pub(crate) fn curves_3d(solid: &Measured) -> Vec<Claim> {
     claims.extend(curve::conductance(solid));
     claims.extend(curve::saturation(solid));
     claims.extend(curve::small_area(solid));
-    claims.extend(area::proportionality(solid));
+    claims.extend(exponent::size_effects(solid));
     claims
 }
 
@@ -48,6 +51,7 @@ pub(crate) fn exponents(solid: &Measured, line: &Measured) -> Vec<Claim> {
         claims.extend(exponent::laws_of_each(measured));
     }
     claims.extend(exponent::coefficient(solid));
+    claims.extend(exponent::below_one(solid));
     claims.extend(exponent::line_against_solid(solid, line));
     claims
 }
@@ -64,5 +68,6 @@ pub(crate) fn factors(solid: &Measured, line: &Measured) -> Vec<Claim> {
 pub(crate) fn together(solid: &Measured, line: &Measured) -> Vec<Claim> {
     let mut claims = curve::line_above_solid(solid, line);
     claims.extend(exponent::below_the_crossover(solid, line));
+    claims.extend(exponent::at_every_load(solid, line));
     claims
 }

@@ -27,7 +27,7 @@ impl CurveFigure {
         let session = Session::open(run)?;
         let measured = (self.measure)(run, &session.store, progress)?;
         let mut outcome = Outcome::of(self.name, self.write(run, &measured)?, &[&measured]);
-        outcome.add_budget(write_budget(self.name, self.flags, run, &measured, &session.store, progress)?);
+        outcome.add_budget(write_budget(self.name, self.flags, run, &measured)?);
         outcome.claims = (self.claims)(&measured);
         Ok((session.close(outcome)?, measured))
     }

@@ -3,8 +3,8 @@
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use evaluation::{
-    Claim, FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, dense_dimensions, describe,
-    header, laws, measure_1d, measure_3d,
+    Claim, FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, WindowedLaw, dense_dimensions,
+    describe, header, laws, laws_within, measure_1d, measure_3d, windowed_law,
 };
 use plots::{Axis, Key, Mark, MarkShape, Picture, number};
 use runs::{CsvFile, Error, Progress, Result};
@@ -35,6 +35,10 @@ struct FittedRow {
     fractal_dimension: f64,
     value: Option<f64>,
     error: Option<f64>,
+    /// 95 %: scatter, window and grid.
+    half_width: Option<f64>,
+    /// The parameter over the window that all fractal dimensions of the model resolve, and its standard error.
+    common: Option<(f64, Option<f64>)>,
     fit: Option<FittedPowerLaw>,
     note: Option<String>,
 }
@@ -54,6 +58,8 @@ impl FittedFigure {
     pub fn write(&self, run: &Run, solid: &Measured, line: &Measured) -> Result<Outcome> {
         const VALUE: &str = "of k_bar = zeta F_bar^alpha; empty where there is no fit";
         const ERROR: &str = "standard error over surfaces; empty for formulas and for one surface";
+        const HALF: &str = "95 % half-width: scatter, and in quadrature the largest change with other windows and what the grid leaves; empty for a window below a decade";
+        const COMMON: &str = "the same over the window that every fractal dimension of the model resolves";
         let rows = self.rows(run, solid, line);
         let fit = |pick: fn(&FittedPowerLaw) -> f64| move |r: &FittedRow| r.fit.as_ref().map(pick);
         let count = |pick: fn(&FittedPowerLaw) -> usize| move |r: &FittedRow| r.fit.as_ref().map(pick);
@@ -62,6 +68,9 @@ impl FittedFigure {
             .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
             .column(self.columns[0], "1", VALUE, |r| r.value)
             .column(self.columns[1], "1", ERROR, |r| r.error)
+            .column("half_width", "1", HALF, |r| r.half_width)
+            .column("common", "1", COMMON, |r| r.common.map(|c| c.0))
+            .column("common_se", "1", "its standard error over surfaces", |r| r.common.and_then(|c| c.1))
             .column("force_bar_min", "1", "smallest F_bar of the fit", fit(|l| l.force_bar_min))
             .column("force_bar_max", "1", "largest F_bar of the fit", fit(|l| l.force_bar_max))
             .column("points", "1", "loads in the fit", count(|l| l.points))
@@ -84,15 +93,33 @@ impl FittedFigure {
     }
 
     fn rows(&self, run: &Run, solid: &Measured, line: &Measured) -> Vec<FittedRow> {
-        let fitted = laws(solid).into_iter().chain(laws(line)).map(|law| {
-            let (fit, note) = match law.fit {
-                Ok(fit) => (Some(fit), None),
-                Err(reason) => (None, Some(reason.to_string())),
-            };
-            let (value, error) = fit.as_ref().map(self.value).unzip();
-            let (model, fractal_dimension, error) = (law.model, law.fractal_dimension, error.flatten());
-            FittedRow { model, fractal_dimension, value, error, fit, note }
-        });
+        let of = |measured: &Measured| -> Vec<FittedRow> {
+            let own = laws(measured);
+            let lowest = own.iter().filter_map(|law| law.fit.as_ref().ok());
+            let lowest = lowest.map(|fit| fit.force_bar_min).fold(0.0, f64::max);
+            let window = FitWindow { min_force_bar: lowest * (1.0 - 1e-9), ..FitWindow::PAPER };
+            let common = laws_within(measured, &window);
+            (own.into_iter().zip(common).zip(&measured.series))
+                .map(|((law, common), series)| {
+                    let (fit, note) = match law.fit {
+                        Ok(fit) => (Some(fit), None),
+                        Err(reason) => (None, Some(reason.to_string())),
+                    };
+                    let (value, error) = fit.as_ref().map(self.value).unzip();
+                    FittedRow {
+                        model: law.model,
+                        fractal_dimension: law.fractal_dimension,
+                        value,
+                        error: error.flatten(),
+                        half_width: windowed_law(measured, series).ok().and_then(|law| self.half_width(&law)),
+                        common: common.fit.as_ref().ok().map(self.value),
+                        fit,
+                        note,
+                    }
+                })
+                .collect()
+        };
+        let fitted = of(solid).into_iter().chain(of(line));
         let dimensions = dense_dimensions(&run.dimensions());
         let formulas = self.formulas.iter().flat_map(|&(model, note, of)| {
             dimensions.iter().map(move |&fractal_dimension| FittedRow {
@@ -100,11 +127,25 @@ impl FittedFigure {
                 fractal_dimension,
                 value: Some(of(fractal_dimension)),
                 error: None,
+                half_width: None,
+                common: None,
                 fit: None,
                 note: Some(note.to_owned()),
             })
         });
         fitted.chain(formulas).collect()
+    }
+}
+
+impl FittedFigure {
+    /// Scatter of 95 %, windows and grid in quadrature.
+    fn half_width(&self, law: &WindowedLaw) -> Option<f64> {
+        let scatter = 1.96 * (self.value)(&law.fit).1?;
+        let [windows, grid] = match self.columns[0] {
+            "zeta" => [law.windows.1, law.fit.zeta * law.grid?.1],
+            _ => [law.windows.0, law.grid?.0],
+        };
+        Some(scatter.hypot(windows).hypot(grid))
     }
 }
 
@@ -129,7 +170,7 @@ pub(crate) struct Fitted {
 /// The values of one model in a table.
 pub(crate) fn series(file: &CsvFile, model: &str, value: &str) -> Result<Vec<Fitted>> {
     let (models, d) = (file.texts("model")?, file.numbers("fractal_dimension")?);
-    let (v, e) = (file.numbers(value)?, file.numbers(&format!("{value}_se"))?);
+    let (v, e) = (file.numbers(value)?, file.numbers("half_width")?);
     let (low, high) = (file.numbers("force_bar_min")?, file.numbers("force_bar_max")?);
     let row = |i: usize| {
         let (fractal_dimension, value) = (d[i]?, v[i]?);
@@ -210,7 +251,7 @@ pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>
         let key = if values.iter().any(|p| p.error.is_some()) { Key::Bar(mark) } else { Key::Mark(mark) };
         picture.legend(&format!("{label}{}", window(values)), color, key);
     }
-    let words = "bars: ± 1 standard error over surfaces; points of one $D_{\\rm{f}}$ stand side by side";
+    let words = "bars: 95 %, with scatter, window and grid; points of one $D_{\\rm{f}}$ stand side by side";
     picture.legend(words, "#000000", Key::Words);
     if finer.is_some() {
         picture.legend("open marks: fitted to the means alone, no error is known", "#000000", Key::Words);

@@ -31,6 +31,8 @@ fn all(solid: &Measured, line: &Measured) -> Result<Vec<Claim>> {
     claims.extend(claims::curves_1d(line));
     claims.extend(claims::together(solid, line));
     claims.extend(claims::plateaus()?);
+    claims.extend(claims::regions()?);
+    claims.extend(claims::beside_stiffness()?);
     claims.push(claims::speed(solid, line));
     Ok(claims)
 }

@@ -81,12 +81,24 @@ pub struct TwoCasesArguments {
     /// Surfaces of each case.
     #[arg(long, default_value_t = 16, allow_hyphen_values = true)]
     surfaces: usize,
-    /// Fractal dimension.
-    #[arg(long = "df", value_name = "D_F", default_value_t = 2.2, allow_hyphen_values = true)]
-    fractal_dimension: f64,
-    /// Waves a side at which the spectrum rolls off.
-    #[arg(long, value_name = "WAVES", default_value_t = 8.0, allow_hyphen_values = true)]
-    roll_off: f64,
+    /// Fractal dimensions, separated by commas.
+    #[arg(
+        long = "df",
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "2.2",
+        allow_hyphen_values = true
+    )]
+    fractal_dimensions: Vec<f64>,
+    /// Waves a side at which the spectrum rolls off, separated by commas; each with each fractal dimension.
+    #[arg(
+        long = "roll-off",
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "8",
+        allow_hyphen_values = true
+    )]
+    roll_offs: Vec<f64>,
     /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT.
     #[arg(long, value_name = "LIST", default_value = "1e-3:20:19", allow_hyphen_values = true)]
     forces: String,
@@ -113,8 +125,8 @@ impl TwoCasesArguments {
         Ok(TwoCases {
             cells: self.cells,
             surfaces: self.surfaces,
-            fractal_dimension: self.fractal_dimension,
-            roll_off: self.roll_off,
+            fractal_dimensions: self.fractal_dimensions.clone(),
+            roll_offs: self.roll_offs.clone(),
             forces: Forces::parse(&self.forces)?,
             tolerance: self.tolerance,
             seed: self.seed,

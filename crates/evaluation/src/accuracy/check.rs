@@ -1,7 +1,9 @@
 //! Coverage of the error budgets: random cases against references.
 
-use crate::budget::{COARSER_SURFACES, algebraic, coarser, discretisation_error, relative_differences};
+use crate::budget::algebraic;
+use crate::grid_error::{discretisation_error, relative_differences};
 use crate::header::header;
+use crate::measured::COARSER_SURFACES;
 use crate::outcome::Outcome;
 use crate::realisation::{Discretisation, Realisation};
 use crate::run::FRACTAL_DIMENSIONS;
@@ -258,6 +260,7 @@ fn case(seed: u64, number: u64) -> Result<RandomCase> {
         let u = |stream| uniform(seed, number, 16 * attempt + stream);
         let cells = pick(u(1), &CELLS);
         let (force_bar, tolerance) = (logarithmic(u(2), loads), logarithmic(u(3), TOLERANCES));
+        // The surface of the case, and those that its budget comes from: others for each case, so that the cases are independent.
         let surface = surface_seed(seed ^ 0xca5e, 1 + number);
         let discretisation = Discretisation::Bem3d { cells, tolerance };
         let mine = solve(discretisation, d, surface, force_bar)?;
@@ -265,10 +268,10 @@ fn case(seed: u64, number: u64) -> Result<RandomCase> {
         if mine.below_floor() || !mine.converged() {
             continue;
         }
-        let Some([half, quarter]) = coarser(discretisation) else { continue };
+        let Some([half, quarter]) = discretisation.coarser() else { continue };
         let on = |discretisation| -> Result<Vec<Sample>> {
             (0..COARSER_SURFACES as u64)
-                .map(|i| solve(discretisation, d, surface_seed(seed, i), force_bar))
+                .map(|i| solve(discretisation, d, surface_seed(surface, 1 + i), force_bar))
                 .collect()
         };
         let fine = on(discretisation)?;

@@ -3,7 +3,8 @@
 //! The choice rests on counts and on compiled-in costs, never on a clock: the same target gives the same settings.
 
 use crate::budget::{self, Budgeted};
-use crate::measured::{Measured, Series, measure, measure_1d, measure_3d};
+use crate::grid_error::differences;
+use crate::measured::{COARSER_SURFACES, Measured, Series, measure_1d, measure_3d, with_coarser};
 use crate::realisation::Discretisation;
 use crate::run::{Request, Run};
 use crate::sample::FLOOR_CELLS;
@@ -171,8 +172,7 @@ pub fn settle(
             let run = &plan.run;
             let measured =
                 if solid { measure_3d(run, &store, progress)? } else { measure_1d(run, &store, progress)? };
-            let coarser = budget::measure_coarser(run, &measured, &store, progress)?;
-            let all = budget::budgets(&measured, coarser.as_ref());
+            let all = budget::budgets(&measured);
             let count = if solid { run.surfaces } else { run.lines };
             let wanted = surfaces_wanted(&all, target.accuracy, count);
             let seconds = plan.seconds * (wanted - count as f64) / count as f64;
@@ -289,16 +289,14 @@ impl Pilot {
         store: &Store,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let fine = measure(discretisation, surfaces, forces, run, store, progress)?;
-        let coarser = budget::measure_coarser(run, &fine, store, progress)?;
-        Ok(Self::of(&fine, coarser.as_ref()))
+        Ok(Self::of(&with_coarser(discretisation, surfaces, forces, run, store, progress)?))
     }
 
-    fn of(fine: &Measured, coarser: Option<&[Measured; 2]>) -> Self {
+    fn of(fine: &Measured) -> Self {
         let mut rows = Vec::new();
         let (mut growths, mut falls) = (Vec::new(), Vec::new());
         for series in &fine.series {
-            let coarser = budget::coarser_series(coarser, series.fractal_dimension);
+            let coarser = fine.coarser_at(series.fractal_dimension);
             let (found, growth) = series_rows(series, coarser);
             growths.extend(growth);
             let law: Vec<(f64, f64)> =
@@ -326,7 +324,7 @@ impl Pilot {
             return None;
         }
         let falls = (cells / row.seen_at).powf(-self.fall);
-        let surfaces = count.min(budget::COARSER_SURFACES as f64).sqrt();
+        let surfaces = count.min(COARSER_SURFACES as f64).sqrt();
         let grid = REACH * (falls * row.mean).hypot(falls * row.spread / surfaces);
         let freedom = (count - 1.0).max(1.0);
         Some(2.0 * tolerance + grid.hypot(SAFETY * student(freedom) * row.scatter / count.sqrt()))
@@ -352,11 +350,8 @@ impl Pilot {
                 let middle = f64::floor(f64::midpoint(low, high));
                 if enough(middle) { high = middle } else { low = middle }
             }
-            let coarser = if budget::coarser(self.with(size, tolerance)).is_some() {
-                budget::COARSER_SURFACES as f64
-            } else {
-                0.0
-            };
+            let coarser =
+                if self.with(size, tolerance).coarser().is_some() { COARSER_SURFACES as f64 } else { 0.0 };
             let seconds = (high * self.surface_seconds(size, tolerance)
                 + coarser.min(high)
                     * (self.surface_seconds(size.div_ceil(2), tolerance)
@@ -413,8 +408,7 @@ fn series_rows(series: &Series, coarser: Option<[&Series; 2]>) -> (Vec<PilotRow>
     for (j, point) in series.points.iter().enumerate() {
         let (Some(k), Some(cells)) = (point.stiffness_bar, point.min_contact_cells) else { continue };
         let Some([half, quarter]) = coarser else { continue };
-        let differences: Vec<f64> =
-            budget::differences(series, [half, quarter], j).iter().map(|d| d[0]).collect();
+        let differences: Vec<f64> = differences(series, [half, quarter], j).iter().map(|d| d[0]).collect();
         if cells < FLOOR_CELLS || differences.len() < 2 {
             continue;
         }

@@ -183,7 +183,7 @@ pub fn samples(ladders: &[(&Ladder, &[Rungs])]) -> Result<Table> {
             let blank = if i > 0 { " " } else { "" };
             // Writing to a string does not fail.
             let _ = match sample.stiffness_bar.filter(|_| sample.converged()) {
-                Some(k) => write!(text, "{blank}{k:.6e}"),
+                Some(k) => write!(text, "{blank}{k:.4e}"),
                 None => write!(text, "{blank}-"),
             };
         }

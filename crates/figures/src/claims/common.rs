@@ -25,10 +25,12 @@ pub(super) struct Law {
     pub fractal_dimension: f64,
     /// The fit over the window of Figs. 3 and 7.
     pub fit: FittedPowerLaw,
-    /// alpha: scatter and, in quadrature, the largest change with other windows.
+    /// alpha: scatter and, in quadrature, the largest change with other windows and what the grid leaves.
     pub alpha: Estimate,
     /// The same of zeta.
     pub zeta: Estimate,
+    /// The part of alpha's half-width that the grid leaves.
+    pub grid: f64,
 }
 
 impl Law {
@@ -40,27 +42,35 @@ impl Law {
 }
 
 /// What the intervals of exponents hold.
-pub(super) const INTERVAL: &str =
-    "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03; this grid";
+pub(super) const INTERVAL: &str = "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03, and what the grid leaves";
 
 /// The law of a series, or why there is none to judge.
-fn law(series: &Series) -> Result<Law, String> {
-    let WindowedLaw { fit, windows } = windowed_law(series)?;
-    let estimate = |value: f64, error: Option<f64>, window: f64| {
+fn law(measured: &Measured, series: &Series) -> Result<Law, String> {
+    let WindowedLaw { fit, windows, grid } = windowed_law(measured, series)?;
+    let grid = grid.ok_or("no coarser grid says what this one leaves")?;
+    let estimate = |value: f64, error: Option<f64>, window: f64, grid: f64| {
         let scatter = Estimate::normal(value, error).ok_or("one surface has no scatter")?;
-        Ok::<_, String>(Estimate { value, half_width: scatter.half_width.hypot(window) })
+        Ok::<_, String>(Estimate { value, half_width: scatter.half_width.hypot(window).hypot(grid) })
     };
     Ok(Law {
         fractal_dimension: series.fractal_dimension,
-        alpha: estimate(fit.alpha, fit.alpha_se, windows.0)?,
-        zeta: estimate(fit.zeta, fit.zeta_se, windows.1)?,
+        alpha: estimate(fit.alpha, fit.alpha_se, windows.0, grid.0)?,
+        zeta: estimate(fit.zeta, fit.zeta_se, windows.1, fit.zeta * grid.1)?,
+        grid: grid.0,
         fit,
     })
 }
 
 /// The laws of all series, in their order.
 pub(super) fn laws(measured: &Measured) -> Vec<Result<Law, String>> {
-    measured.series.iter().map(law).collect()
+    measured.series.iter().map(|series| law(measured, series)).collect()
+}
+
+/// Mean of independent surfaces with Student's interval.
+pub(super) fn mean_of(each: &[f64]) -> Option<Estimate> {
+    let (value, deviation) = analysis::mean_and_deviation(each)?;
+    let n = each.len() as f64;
+    Some(Estimate { value, half_width: analysis::student(n - 1.0) * deviation? / n.sqrt() })
 }
 
 /// Independent numbers: `a/b`.

@@ -38,7 +38,7 @@ fn line() -> Result<f64> {
 
 pub(crate) fn plateaus() -> Result<Vec<Claim>> {
     const SQUARE: Statement = Statement {
-        quotation: "the stiffness at complete contact is saturated at k_s = 1.1419 E* sqrt(A_0)",
+        quotation: "the stiffness at complete contact is saturated at k_s = 1.012 × 2E* sqrt(A_0)/pi = 1.1419 E* sqrt(A_0)",
         place: "Sec. II, from Popov's textbook",
         reading: "the value of the continuum, to the digits printed",
     };

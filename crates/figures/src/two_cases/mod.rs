@@ -1,27 +1,32 @@
 //! The two cases of Sec. II side by side: a free fractal square, and a periodic one whose spectrum rolls off.
 
+mod job;
 mod picture;
 mod reading;
 mod study;
 
 pub use study::TwoCases;
 
-use analysis::{Curves, StiffnessSample, ensemble};
+use analysis::{Curves, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
-use contact_model::{Boundary, ContactModel, ContactState, Stop, never};
-use evaluation::{Outcome, header};
+use contact_model::{Boundary, ContactModel, ContactState, never};
+use evaluation::{Discretisation, Outcome, header};
+use job::CaseJob;
 pub(crate) use picture::draw;
-use picture::{pairs_table, table};
+use picture::{names, pairs_table, table};
 use reading::{areas, claims, pairs, summary};
-use runs::{Error, Progress, Result, Threads, collect, files, run_jobs, write_csv};
+use runs::{
+    Error, Progress, Result, Store, Threads, collect, files, run_stored, threads_for_memory, write_csv,
+};
 use std::path::Path;
 use std::time::Instant;
 pub(crate) use study::NAME;
-use study::{CASES, CaseCurve, CasePoint, CaseSolve, SHORTEST, Solves, SurfaceCase};
+use study::{CaseCurve, CasePoint, CaseSolve, SHORTEST, Solves, SurfaceCase};
 
-/// Solves the two cases (and the two mixed ones) with boundary elements, Persson's and Greenwood and Williamson's theories, and
-/// writes `two-cases.csv`, `.svg`, `.png` and `.md` into a directory.
+/// Solves the two cases (and the two mixed ones) of each fractal dimension and roll-off with boundary elements, Persson's and Greenwood and
+/// Williamson's theories, and writes `two-cases.csv`, `two-cases-pairs.csv`, pictures and `two-cases.md` into a directory. What is stored
+/// there is not solved again.
 ///
 /// # Errors
 /// [`Error::Parameter`] for numbers that make no sense, what a model refuses, and files that cannot be written.
@@ -29,23 +34,25 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     let start = Instant::now();
     study.check()?;
     files::create_directory(out)?;
-    let solved = solve(study, progress)?;
+    files::clean(out)?;
+    let store = Store::open(out, false)?;
+    let solved = solve(study, &store, progress)?;
     let mut outcome = Outcome::new(NAME);
     let mut curves = Vec::new();
     let pairs = pairs(study, &solved)?;
-    for (case, surfaces) in CASES.into_iter().zip(solved) {
+    for (case, surfaces) in study.cases().into_iter().zip(solved) {
         let slope = case.slope(study)?;
         outcome.not_converged +=
             surfaces.iter().flatten().filter(|s| matches!(s, CaseSolve::NotConverged)).count();
         let samples = surfaces.iter().map(|s| s.iter().map(|s| s.sample().map(|s| s.0)).collect()).collect();
         let means =
-            Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.name()))?;
+            Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.label()))?;
         let curve = mean_curve(case, slope, &means, &surfaces);
         outcome.claims.extend(claims(study, &curve, &means));
         outcome.claims.extend(areas(&curve, &surfaces));
         curves.push(curve);
     }
-    for case in CASES.into_iter().filter(|c| c.boundary == Boundary::Periodic) {
+    for case in study.cases().into_iter().filter(|c| c.boundary == Boundary::Periodic) {
         for model in [&Persson::default() as &dyn ContactModel, &GreenwoodWilliamson::default()] {
             curves.push(theory(study, case, model)?);
         }
@@ -55,8 +62,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
         .with_sources(Persson::default().sources())
         .with_sources(GreenwoodWilliamson::default().sources())
         .with_note(format!(
-            "spectrum: q^(-2 (H + 1)) from 1 wave a side (fractal) or constant below {:?} waves (roll-off), to {} waves (shortest: {SHORTEST} cells)",
-            study.roll_off,
+            "spectrum: q^(-2 (H + 1)) from 1 wave a side (fractal) or constant below the roll-off, to {} waves (shortest: {SHORTEST} cells)",
             study.shortest()
         ))
         .with_note("stiffness: dF/dd of the approach (free), -dF/d(mean gap) (periodic)");
@@ -68,58 +74,26 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     outcome.files.push(beside);
     outcome.files.extend(draw(&csv, out)?);
     let text = out.join(format!("{NAME}.md"));
-    files::write_whole(&text, summary(study, &curves, &pairs, &outcome.claims).as_bytes())?;
+    files::write_whole(&text, summary(study, &names(&csv)?, &curves, &pairs, &outcome.claims).as_bytes())?;
     outcome.files.push(text);
     outcome.seconds = start.elapsed().as_secs_f64();
     Ok(outcome)
 }
 
 /// All surfaces of all cases, each under increasing loads; in order, whatever the number of threads.
-fn solve(study: &TwoCases, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
-    let units: Vec<(SurfaceCase, u64)> = CASES
-        .into_iter()
-        .flat_map(|c| (0..study.surfaces).map(move |i| (c, i)))
-        .map(|(c, i)| (c, surface_gen::surface_seed(study.seed, i as u64)))
-        .collect();
-    progress.begin(&format!("{} surfaces of {} cells a side", units.len(), study.cells), units.len() as u64);
-    let order: Vec<usize> = (0..units.len()).collect();
-    let done = run_jobs(Threads::all(study.threads), &order, &never, |i, stop| {
-        let solves = one(study, units[i].0, units[i].1, stop)?;
-        progress.advance(1, false);
-        Ok(solves)
-    })?;
-    progress.end();
-    Ok(collect(done)?.chunks(study.surfaces).map(<[_]>::to_vec).collect())
-}
-
-fn one(study: &TwoCases, case: SurfaceCase, seed: u64, stop: Stop<'_>) -> Result<Solves> {
-    let mut scene = case.scene(study)?;
-    scene.outputs.area = true;
-    let model = Bem3d { cells: study.cells, tolerance: study.tolerance, ..Bem3d::default() };
-    let mut solves = Vec::new();
-    let mut solve = || {
-        let mut contact = model.prepare(&scene, seed)?;
-        let normalisation = contact.normalisation();
-        contact.sweep(&normalisation.loads(study.forces.values())?, stop, &mut |_, state| {
-            solves.push(match state {
-                Err(contact_model::Error::NotConverged { .. }) => CaseSolve::NotConverged,
-                Err(error) => return Err(error),
-                Ok(ContactState { stiffness: Some(k), area: Some(area), report, .. }) => {
-                    CaseSolve::StiffnessSample(
-                        StiffnessSample {
-                            stiffness_bar: normalisation.stiffness_bar(k),
-                            contact_cells: report.contact_cells,
-                        },
-                        area,
-                    )
-                }
-                Ok(_) => CaseSolve::FullContact,
-            });
-            Ok(())
-        })
-    };
-    solve().map_err(Error::model(format!("bem3d ({}, seed {seed})", case.name())))?;
-    Ok(solves)
+fn solve(study: &TwoCases, store: &Store, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
+    let seeds: Vec<u64> =
+        (0..study.surfaces).map(|i| surface_gen::surface_seed(study.seed, i as u64)).collect();
+    let cases = study.cases();
+    let jobs: Vec<CaseJob<'_>> =
+        cases.iter().flat_map(|&case| seeds.iter().map(move |&seed| CaseJob { study, case, seed })).collect();
+    // A periodic square takes no more than a free one.
+    let memory = Discretisation::Bem3d { cells: study.cells, tolerance: study.tolerance }.memory();
+    let in_flight = threads_for_memory(study.threads, memory, "cells", study.cells)?;
+    let threads = Threads { total: study.threads, jobs: in_flight };
+    let what = format!("{} surfaces of {} cells a side", jobs.len(), study.cells);
+    let solved = collect(run_stored(&what, &jobs, store, threads, progress, &never)?)?;
+    Ok(solved.chunks(study.surfaces).map(<[_]>::to_vec).collect())
 }
 
 fn mean_curve(case: SurfaceCase, slope: f64, means: &Curves, surfaces: &[Solves]) -> CaseCurve {
@@ -173,7 +147,7 @@ fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Resu
             Ok(())
         })
     };
-    solve().map_err(Error::model(format!("{} ({})", model.name(), case.name())))?;
+    solve().map_err(Error::model(format!("{} ({})", model.name(), case.label())))?;
     Ok(CaseCurve { case, model: model.name(), points })
 }
 
@@ -189,8 +163,8 @@ mod tests {
         TwoCases {
             cells: 64,
             surfaces: 2,
-            fractal_dimension: 2.2,
-            roll_off: 3.0,
+            fractal_dimensions: vec![2.2],
+            roll_offs: vec![3.0],
             forces: Forces::parse("1e-2:10:7").unwrap(),
             tolerance: 1e-3,
             seed: 1,
@@ -205,15 +179,36 @@ mod tests {
         assert!(outcome.files.iter().all(|f| f.exists()));
         let file = CsvFile::read(&dir.path().join("two-cases.csv")).unwrap();
         let (case, model) = (file.texts("case").unwrap(), file.texts("model").unwrap());
-        for of in CASES {
+        for of in small().cases() {
             let rows =
                 |name: &str| (0..case.len()).filter(|&i| case[i] == of.name() && model[i] == name).count();
-            assert_eq!(rows("bem3d"), 7, "{}", of.name());
+            assert_eq!(rows("bem3d"), 7, "{}", of.label());
             assert_eq!(rows("persson") > 0, of.boundary == Boundary::Periodic);
         }
         // The largest loads of a periodic square are far stiffer than a free one can be.
         let k = file.numbers("stiffness_bar").unwrap();
         assert!(k[6].unwrap() < 1.1 && k[4 * 7 - 1].unwrap() > 3.0);
+    }
+
+    #[test]
+    fn more_problems_share_what_is_solved() {
+        let dir = tempfile::tempdir().unwrap();
+        let read = |study: &TwoCases| {
+            two_cases(study, dir.path(), &Silent).unwrap();
+            std::fs::read_to_string(dir.path().join("two-cases.csv")).unwrap()
+        };
+        let units = || Store::count(dir.path());
+        let first = read(&small());
+        assert_eq!(units(), 4 * 2);
+        // One more roll-off: two cases of two surfaces; the others come from the store, and their numbers stay.
+        let study = TwoCases { roll_offs: vec![3.0, 5.0], ..small() };
+        let both = read(&study);
+        assert_eq!(units(), 6 * 2);
+        for row in first.lines().filter(|line| line.contains("bem3d,")) {
+            assert!(both.contains(row), "{row}");
+        }
+        assert!(dir.path().join("two-cases-ratio-Df2.2-rolloff5.svg").exists());
+        assert_eq!(read(&small()), first);
     }
 
     #[test]
@@ -232,7 +227,7 @@ mod tests {
                     min_contact_cells: None,
                 }
             });
-        let curve = CaseCurve { case: CASES[3], model: "bem3d", points: points.into() };
+        let curve = CaseCurve { case: small().cases()[3], model: "bem3d", points: points.into() };
         let slopes = slopes(&curve.points);
         assert!(slopes[0].is_none() && slopes[4].is_none() && (slopes[2].unwrap() - 1.0).abs() < 1e-12);
         approx::assert_relative_eq!(proportional(&curve), 1.0, max_relative = 1e-12);
@@ -249,14 +244,15 @@ mod tests {
             (TwoCases { threads: 0, ..small() }, "threads"),
             (TwoCases { surfaces: 0, ..small() }, "surfaces"),
             (TwoCases { cells: 9, ..small() }, "cells"),
-            (TwoCases { roll_off: f64::NAN, ..small() }, "roll-off"),
-            (TwoCases { roll_off: 9.0, ..small() }, "roll-off"),
+            (TwoCases { roll_offs: vec![3.0, f64::NAN], ..small() }, "roll-off"),
+            (TwoCases { roll_offs: vec![9.0], ..small() }, "roll-off"),
+            (TwoCases { fractal_dimensions: Vec::new(), ..small() }, "df"),
         ] {
             let error = two_cases(&study, out, &Silent).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");
         }
         let error =
-            two_cases(&TwoCases { fractal_dimension: 3.5, ..small() }, &std::env::temp_dir(), &Silent);
+            two_cases(&TwoCases { fractal_dimensions: vec![3.5], ..small() }, &std::env::temp_dir(), &Silent);
         assert!(error.unwrap_err().to_string().contains("3.5"));
     }
 }

@@ -1,17 +1,19 @@
 //! The table of the two cases, and the pictures drawn from it.
 
 use super::reading::slopes;
-use super::study::{CASES, CaseCurve, NAME, PairRow};
+use super::study::{CaseCurve, NAME, NAMES, PairRow};
 use crate::words;
 use analysis::Table;
-use contact_model::{Boundary, PAPER_STIFFNESS_FACTOR};
-use evaluation::{FLOOR_CELLS, TableOf};
+use contact_model::PAPER_STIFFNESS_FACTOR;
+use evaluation::{FLOOR_CELLS, FRACTAL_DIMENSION, TableOf};
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, logarithmic};
 use runs::{CsvFile, Result};
 use std::path::{Path, PathBuf};
 
 /// Stiffness above which the pictures end: towards full contact of a periodic square it has no limit.
 const HIGHEST: f64 = 300.0;
+
+const ROLL_OFF: &str = "waves a side where the spectrum rolls off; empty for one that is fractal to the side";
 
 pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
     const FORCE: &str =
@@ -27,6 +29,8 @@ pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
         &points,
     )
     .column("case", "-", "boundary and spectrum", |(c, ..)| c.case.name())
+    .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(c, ..)| c.case.fractal_dimension)
+    .column("roll_off", "1", ROLL_OFF, |(c, ..)| c.case.roll_off)
     .column("model", "-", "bem3d, or a theory of periodic contact", |(c, ..)| c.model)
     .column("force_bar", "1", FORCE, |(_, p, _)| p.force_bar)
     .column("stiffness_bar", "1", "mean of k/(1.1419 E* L)", |(_, p, _)| p.stiffness_bar)
@@ -49,7 +53,8 @@ pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
 /// Periodic over free stiffness.
 pub(super) fn pairs_table(pairs: &[PairRow]) -> Result<Table> {
     TableOf::new("Periodic over free stiffness of the same surfaces", pairs)
-        .column("spectrum", "-", "fractal to the side, or with a roll-off", |p| p.spectrum)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |p| p.fractal_dimension)
+        .column("roll_off", "1", ROLL_OFF, |p| p.roll_off)
         .column("force_bar", "1", "F/(E* h L), h the measured rms height of each surface", |p| p.force_bar)
         .column(
             "ratio",
@@ -64,21 +69,61 @@ pub(super) fn pairs_table(pairs: &[PairRow]) -> Result<Table> {
         .table()
 }
 
-/// Draws the two pictures from the table.
+/// A fractal dimension and a roll-off: the four curves of a picture.
+type Problem = (f64, f64);
+
+/// The problems of a table, in its order, each with the names of its pictures of k and of k h/F.
+fn problems(file: &CsvFile) -> Result<Vec<(Problem, [String; 2])>> {
+    let mut all: Vec<Problem> = Vec::new();
+    for (d, roll_off) in file.numbers("fractal_dimension")?.into_iter().zip(file.numbers("roll_off")?) {
+        let Some(problem) = d.zip(roll_off) else { continue };
+        if !all.iter().any(|known| same(*known, problem)) {
+            all.push(problem);
+        }
+    }
+    let one = all.len() == 1;
+    let named = |of: Problem| {
+        let suffix = if one { String::new() } else { format!("-Df{:?}-rolloff{}", of.0, of.1) };
+        (of, [format!("{NAME}{suffix}"), format!("{NAME}-ratio{suffix}")])
+    };
+    Ok(all.into_iter().map(named).collect())
+}
+
+fn same(a: Problem, b: Problem) -> bool {
+    (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9
+}
+
+/// Names of the pictures that [`draw`] makes of a table, without their endings.
+pub(super) fn names(csv: &Path) -> Result<Vec<String>> {
+    Ok(problems(&CsvFile::read(csv)?)?.into_iter().flat_map(|(_, names)| names).collect())
+}
+
+/// Draws two pictures of each problem from the table.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let mut files = panel(&file, "stiffness_bar", words::STIFFNESS, out, NAME)?;
-    files.extend(panel(&file, "k_h_over_force", "ratio $k h/F$", out, &format!("{NAME}-ratio"))?);
+    let mut files = Vec::new();
+    for (of, [stiffness, ratio]) in problems(&file)? {
+        files.extend(panel(&file, of, ("stiffness_bar", words::STIFFNESS), out, &stiffness)?);
+        files.extend(panel(&file, of, ("k_h_over_force", "ratio $k h/F$"), out, &ratio)?);
+    }
     Ok(files)
 }
 
-fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
+fn panel(
+    file: &CsvFile,
+    problem: Problem,
+    (quantity, label): (&str, &str),
+    out: &Path,
+    name: &str,
+) -> Result<Vec<PathBuf>> {
     let (case, model) = (file.texts("case")?, file.texts("model")?);
+    let (d, roll_off) = (file.numbers("fractal_dimension")?, file.numbers("roll_off")?);
+    let of_problem = |i: usize| d[i].is_some_and(|d| same((d, roll_off[i].unwrap_or(problem.1)), problem));
     let (force, value, k) =
         (file.numbers("force_bar")?, file.numbers(quantity)?, file.numbers("stiffness_bar")?);
     let (error, floor) = (file.numbers("stiffness_bar_se")?, file.texts("below_floor")?);
     let rows: Vec<Row<'_>> = (0..case.len())
-        .filter(|&i| k[i].is_some_and(|k| k <= HIGHEST))
+        .filter(|&i| of_problem(i) && k[i].is_some_and(|k| k <= HIGHEST))
         .filter_map(|i| {
             let (force, value) = (force[i]?, value[i]?);
             let error = error[i].map(|e| value * e / k[i].unwrap_or(1.0));
@@ -88,14 +133,15 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
     let solved = || rows.iter().filter(|r| r.model == "bem3d");
     let (x, y) = (logarithmic(solved().map(|r| r.force)), logarithmic(solved().map(|r| r.value)));
     let flag = |name| words::flag(file, name).unwrap_or("?");
-    let (n, d) = (flag("--cells"), flag("--df"));
+    let n = flag("--cells");
     let mut picture = Picture::new(x, y, words::FORCE, label)
         .with_size(800.0, 560.0)
         .with_title("Two cases: boundary and roll-off of the spectrum")
         .with_subtitle(&format!(
-            "$D_{{\\rm{{f}}}} = {d}$, {n} × {n} cells, {} surfaces for each case; roll-off at {} waves a side",
+            "$D_{{\\rm{{f}}}} = {:?}$, {n} × {n} cells, {} surfaces for each case; roll-off at {} waves a side",
+            problem.0,
             flag("--surfaces"),
-            flag("--roll-off").trim_end_matches(".0"),
+            problem.1,
         ))
         .with_legend_below();
     // One above the other where two agree: the first is wide and pale, the second thin on top of it.
@@ -105,10 +151,9 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
         (3.4, Mark::Solid(MarkShape::Square), 5.0),
         (1.6, Mark::Hollow(MarkShape::Square), 3.2),
     ];
-    for (of, (width, mark, radius)) in CASES.into_iter().zip(looks) {
-        let color = of.color();
+    for ((of, color), (width, mark, radius)) in NAMES.into_iter().zip(looks) {
         let select = |name: &str, floor: bool| -> Vec<&Row<'_>> {
-            let wanted = |r: &&Row<'_>| r.case == of.name() && r.model == name && r.below_floor == floor;
+            let wanted = |r: &&Row<'_>| r.case == of && r.model == name && r.below_floor == floor;
             rows.iter().filter(wanted).collect()
         };
         let at = |rows: &[&Row<'_>]| rows.iter().map(|r| (r.force, r.value)).collect::<Vec<_>>();
@@ -120,11 +165,12 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
         picture.points(&at(&select("bem3d", true)), color, radius, Mark::Ring(mark_shape(mark)));
         picture.line(&at(&select("persson", false)), color, 1.5, LineStyle::Dashed);
         picture.line(&at(&select("greenwood_williamson", false)), color, 1.5, LineStyle::Dotted);
-        let stiffness = match of.boundary {
-            Boundary::Periodic => "$k = -\\rm{d}F/\\rm{d}\\bar{g}$, $\\bar{g}$ the mean gap",
-            _ => "$k = \\rm{d}F/\\rm{d}d$, $d$ the approach",
+        let stiffness = if of.starts_with("periodic") {
+            "$k = -\\rm{d}F/\\rm{d}\\bar{g}$, $\\bar{g}$ the mean gap"
+        } else {
+            "$k = \\rm{d}F/\\rm{d}d$, $d$ the approach"
         };
-        picture.legend(&format!("{}: {stiffness}", of.name()), color, Key::Curve(mark));
+        picture.legend(&format!("{of}: {stiffness}"), color, Key::Curve(mark));
     }
     picture.legend("Persson", NEUTRAL, Key::Line(LineStyle::Dashed));
     picture.legend("Greenwood and Williamson", NEUTRAL, Key::Line(LineStyle::Dotted));
@@ -133,7 +179,7 @@ fn panel(file: &CsvFile, quantity: &str, label: &str, out: &Path, name: &str) ->
         let label = format!("fewer than {FLOOR_CELLS} contact cells");
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Ring(MarkShape::Circle)));
     }
-    if k.iter().flatten().any(|k| *k > HIGHEST) {
+    if (0..k.len()).any(|i| of_problem(i) && k[i].is_some_and(|k| k > HIGHEST)) {
         picture.legend(&format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"), NEUTRAL, Key::Words);
     }
     picture.save(out, name)

@@ -1,10 +1,9 @@
 //! What the curves say about the paper's belief.
 
-use super::study::{CASES, CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
-use crate::claims::{KAPPA, LINEAR};
+use super::study::{CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
 use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
-use evaluation::{Claim, Estimate, FLOOR_CELLS, Statement, plain};
+use evaluation::{Claim, Estimate, FLOOR_CELLS, Statement, list, plain};
 use runs::{Error, Result};
 
 /// Shares of the square in contact between which the theories of random surfaces are compared: many summits, far from full contact.
@@ -26,7 +25,7 @@ pub(super) fn slopes(points: &[CasePoint]) -> Vec<Option<f64>> {
 const FRACTAL: Statement = Statement {
     quotation: "Whenever the surfaces are truly fractal with no cut-off wavelength, a power law applies",
     place: "Sec. II, Eq. 6",
-    reading: "the exponent below F_bar = 0.086 is 0.266 D_f to 0.05",
+    reading: "the exponent below F_bar = 0.086 is below 0.9: no proportionality",
 };
 
 const PROPORTION: Statement = Statement {
@@ -35,17 +34,40 @@ const PROPORTION: Statement = Statement {
     reading: "the exponent of the periodic surface with a roll-off, where 1 to 20 % of the square touch, is 1 to 0.1",
 };
 
+const ONLY: Statement = Statement {
+    reading: "only: in the three other cases the exponent in the same range of area is below 0.9",
+    ..PROPORTION
+};
+
+const EXACT: Statement = Statement {
+    quotation: "this proportionality must be exact",
+    place: "Sec. II, on Persson's theory",
+    reading: "the same exponent is 1 to 0.02",
+};
+
 const UNITY: Statement = Statement {
-    quotation: "k = xi F/h, where xi is a constant of the order of unity",
+    quotation: "k ≈ ξF/h, where h is the rms roughness and ξ is a constant of the order of unity",
     place: "Sec. II",
     reading: "k h/F of the periodic surface with a roll-off, in the same window, is between a third and three",
 };
 
-/// What Sec. II expects: the exponent of Eq. 6 without a roll-off; 1, and a factor of the order of unity, for the periodic surface with
-/// one. It names none for a free square with a roll-off.
+const LINEAR: Statement = Statement {
+    quotation: "The linear dependence of the contact area on the normal force predicted by Persson's theory was found",
+    place: "Sec. IV",
+    reading: "the exponent of A over F, where at most a tenth of the square touches, is 1 to 0.05",
+};
+
+const KAPPA: Statement = Statement {
+    quotation: "A = kappa F_N/(E* grad h), where kappa is near 2",
+    place: "Sec. I",
+    reading: "between the limits sqrt(8/pi) = 1.6 and sqrt(2 pi) = 2.5 of theory",
+};
+
+/// What Sec. II expects: an exponent below 1 without a roll-off; 1, and a factor of the order of unity, for the periodic surface with
+/// one, and only for that.
 pub(super) fn claims(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Vec<Claim> {
     let case = curve.case;
-    let named = |what: &str| format!("{what}, {}", case.name());
+    let named = |what: &str| format!("{what}, {}", case.label());
     let exponent = |window: &FitWindow, statement: Statement, paper: [f64; 2]| {
         let name = named("exponent of k over F");
         let fit = fit_power_law(means, window, &Bootstrap::default());
@@ -59,14 +81,17 @@ pub(super) fn claims(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Vec
             Err(reason) => Claim::unresolved(name, statement, paper, reason.to_string()),
         }
     };
-    if !case.rolls_off {
-        let expected = analytic::exponent_fit(study.fractal_dimension);
-        return vec![exponent(&FitWindow::PAPER, FRACTAL, [expected - 0.05, expected + 0.05])];
-    }
-    if case.boundary != Boundary::Periodic {
-        return Vec::new();
-    }
     let window = loads_between(curve);
+    let mut all = Vec::new();
+    if case.roll_off.is_none() {
+        let mut claim = exponent(&FitWindow::PAPER, FRACTAL, [0.0, 0.9]);
+        claim.quantity += ", below F_bar = 0.086";
+        all.push(claim);
+    }
+    if case.roll_off.is_none() || case.boundary != Boundary::Periodic {
+        all.push(exponent(&window, ONLY, [0.0, 0.9]));
+        return all;
+    }
     let inside = window.min_force_bar..=window.max_force_bar;
     // k h/F: k_bar counts 1.1419 E* L, F_bar counts E* h L.
     let factors = curve.points.iter().filter(|p| inside.contains(&p.force_bar));
@@ -87,7 +112,8 @@ pub(super) fn claims(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Vec
             format!("the interval is the range over the loads; {window}"),
         )
     };
-    vec![exponent(&window, PROPORTION, [0.9, 1.1]), unity]
+    all.extend([exponent(&window, PROPORTION, [0.9, 1.1]), exponent(&window, EXACT, [0.98, 1.02]), unity]);
+    all
 }
 
 /// Cells in contact from which an area with waves of eight cells counts as resolved, and the largest share of the square.
@@ -103,7 +129,7 @@ pub(super) fn areas(curve: &CaseCurve, surfaces: &[Solves]) -> Vec<Claim> {
     // Every load of the window has all surfaces, so that points and loads of the solves are in step.
     let first = curve.points.iter().position(inside);
     let count = first.map_or(0, |first| curve.points[first..].iter().take_while(|p| inside(p)).count());
-    let names = ["exponent of A over F", "kappa"].map(|what| format!("{what}, {}", curve.case.name()));
+    let names = ["exponent of A over F", "kappa"].map(|what| format!("{what}, {}", curve.case.label()));
     let papers = [(LINEAR, [0.95, 1.05]), (KAPPA, [1.6, 2.51])];
     let found = first.filter(|_| count >= 3).and_then(|first| {
         let points = &curve.points[first..first + count];
@@ -146,9 +172,10 @@ pub(super) fn areas(curve: &CaseCurve, surfaces: &[Solves]) -> Vec<Claim> {
 /// Periodic over free stiffness, surface by surface, for both spectra.
 pub(super) fn pairs(study: &TwoCases, solved: &[Vec<Solves>]) -> Result<Vec<PairRow>> {
     let mut rows = Vec::new();
-    for (free, case) in CASES.iter().enumerate().filter(|(_, c)| c.boundary == Boundary::Free) {
-        let same = |c: &SurfaceCase| c.boundary == Boundary::Periodic && c.rolls_off == case.rolls_off;
-        let Some(periodic) = CASES.iter().position(same) else { continue };
+    let cases = study.cases();
+    for (free, case) in cases.iter().enumerate().filter(|(_, c)| c.boundary == Boundary::Free) {
+        let other = SurfaceCase { boundary: Boundary::Periodic, ..*case };
+        let Some(periodic) = cases.iter().position(|c| *c == other) else { continue };
         for (j, &force_bar) in study.forces.values().iter().enumerate() {
             let stiffness = |solves: &Solves| solves[j].sample().map(|s| s.0.stiffness_bar);
             let pairs: Vec<Vec<f64>> = (solved[free].iter().zip(&solved[periodic]))
@@ -161,9 +188,9 @@ pub(super) fn pairs(study: &TwoCases, solved: &[Vec<Solves>]) -> Result<Vec<Pair
             let means = Multilevel::new(vec![pairs]).map_err(Error::model("pairs of surfaces"))?;
             let [a, b] = [means.means(1)[0], means.means(1)[1]];
             let half_width = means.propagated(b / a, &[-b / (a * a), 1.0 / a]).half_width();
-            let spectrum = if case.rolls_off { "roll-off" } else { "fractal" };
             rows.push(PairRow {
-                spectrum,
+                fractal_dimension: case.fractal_dimension,
+                roll_off: case.roll_off,
                 force_bar,
                 ratio: Estimate { value: b / a, half_width },
                 surfaces,
@@ -221,24 +248,34 @@ pub(super) fn difference(theory: &CaseCurve, solved: &CaseCurve) -> Option<f64> 
     relative.max_by(f64::total_cmp)
 }
 
-pub(super) fn summary(study: &TwoCases, curves: &[CaseCurve], pairs: &[PairRow], claims: &[Claim]) -> String {
+/// What was found, in words and short tables; `pictures` are the names of what is drawn.
+pub(super) fn summary(
+    study: &TwoCases,
+    pictures: &[String],
+    curves: &[CaseCurve],
+    pairs: &[PairRow],
+    claims: &[Claim],
+) -> String {
     let mut text = format!(
         "# Two cases\n\nSec. II of the paper tells two problems apart. A surface that is fractal up to the size of the system has physical \
          edges, an approach, and k ~ F^alpha; a surface whose spectrum ends at a longest wave is stood for by a periodic patch, has a mean gap, \
          and k ~ F. The authors believe that the proportionality appears only in the second problem. Here both are solved exactly, and the two mixed \
-         problems with them, so that boundary and spectrum can be told apart (D_f = {:?}, {} cells a side, {} surfaces, roll-off at {:?} waves a \
-         side).\n\n`{}`\n\n![k over F](two-cases.svg)\n\n![k h/F over F](two-cases-ratio.svg)\n\n",
-        study.fractal_dimension,
+         problems with them, so that boundary and spectrum can be told apart (D_f = {}, {} cells a side, {} surfaces, roll-off at {} waves a \
+         side).\n\n`{}`\n\n",
+        list(&study.fractal_dimensions),
         study.cells,
         study.surfaces,
-        study.roll_off,
+        list(&study.roll_offs),
         study.command()
     );
+    for picture in pictures {
+        text.push_str(&format!("![k and k h/F over F]({picture}.svg)\n\n"));
+    }
     text.push_str(&format!(
         "| case | decades of F with a local slope within {PROPORTIONAL:?} of 1 |\n| --- | ---: |\n"
     ));
     for curve in curves.iter().filter(|c| c.model == "bem3d") {
-        text.push_str(&format!("| {} | {:.2} |\n", curve.case.name(), proportional(curve)));
+        text.push_str(&format!("| {} | {:.2} |\n", curve.case.label(), proportional(curve)));
     }
     let [low, high] = AREAS;
     text.push_str(&format!(
@@ -248,13 +285,17 @@ pub(super) fn summary(study: &TwoCases, curves: &[CaseCurve], pairs: &[PairRow],
     for theory in curves.iter().filter(|c| c.model != "bem3d") {
         let solved = curves.iter().find(|c| c.model == "bem3d" && c.case == theory.case);
         if let Some(difference) = solved.and_then(|solved| difference(theory, solved)) {
-            text.push_str(&format!("| {} | {} | {difference:.3} |\n", theory.case.name(), theory.model));
+            text.push_str(&format!("| {} | {} | {difference:.3} |\n", theory.case.label(), theory.model));
         }
     }
-    text.push_str("\nPeriodic over free stiffness of the same surfaces, with 95 % half-width:\n\n| spectrum | F_bar | ratio |\n| --- | ---: | ---: |\n");
+    text.push_str("\nPeriodic over free stiffness of the same surfaces, with 95 % half-width:\n\n| D_f | roll-off | F_bar | ratio |\n| --- | --- | ---: | ---: |\n");
     for p in pairs.iter().filter(|p| p.force_bar <= 1.0) {
         let Estimate { value, half_width } = p.ratio;
-        text.push_str(&format!("| {} | {:.3e} | {value:.3} +- {half_width:.3} |\n", p.spectrum, p.force_bar));
+        let spectrum = p.roll_off.map_or_else(|| "none".to_owned(), |waves| waves.to_string());
+        text.push_str(&format!(
+            "| {:?} | {spectrum} | {:.3e} | {value:.3} +- {half_width:.3} |\n",
+            p.fractal_dimension, p.force_bar
+        ));
     }
     text.push_str("\n```\n");
     text.push_str(&plain(claims));

@@ -2,7 +2,7 @@
 
 use analysis::StiffnessSample;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
-use evaluation::{Estimate, Forces};
+use evaluation::{Estimate, Forces, list};
 use runs::{Error, Result};
 use std::f64::consts::TAU;
 
@@ -22,9 +22,9 @@ pub struct TwoCases {
     /// Surfaces of each case.
     pub surfaces: usize,
     /// D_f.
-    pub fractal_dimension: f64,
+    pub fractal_dimensions: Vec<f64>,
     /// Waves a side at the roll-off.
-    pub roll_off: f64,
+    pub roll_offs: Vec<f64>,
     /// Loads F_bar.
     pub forces: Forces,
     /// Bound of every certificate.
@@ -36,50 +36,48 @@ pub struct TwoCases {
 }
 
 /// A boundary and a spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SurfaceCase {
     pub(super) boundary: Boundary,
-    pub(super) rolls_off: bool,
+    pub(super) fractal_dimension: f64,
+    /// Waves a side at the roll-off; `None` for a spectrum that is fractal to the side.
+    pub(super) roll_off: Option<f64>,
 }
 
-/// The paper's two cases, and the other two that tell boundary and spectrum apart.
-pub(super) const CASES: [SurfaceCase; 4] = [
-    SurfaceCase { boundary: Boundary::Free, rolls_off: false },
-    SurfaceCase { boundary: Boundary::Free, rolls_off: true },
-    SurfaceCase { boundary: Boundary::Periodic, rolls_off: false },
-    SurfaceCase { boundary: Boundary::Periodic, rolls_off: true },
+/// The paper's two cases, and the other two that tell boundary and spectrum apart: name and colour, as the table and the pictures have them.
+pub(super) const NAMES: [(&str, &str); 4] = [
+    ("free, fractal", "#30126e"),
+    ("free, roll-off", "#8c2d5a"),
+    ("periodic, fractal", "#1a8f89"),
+    ("periodic, roll-off", "#d6731a"),
 ];
 
 impl SurfaceCase {
     pub(super) fn name(self) -> &'static str {
-        match (self.boundary, self.rolls_off) {
-            (Boundary::Periodic, true) => "periodic, roll-off",
-            (Boundary::Periodic, false) => "periodic, fractal",
-            (_, true) => "free, roll-off",
-            (_, false) => "free, fractal",
-        }
+        let row = 2 * usize::from(self.boundary == Boundary::Periodic) + usize::from(self.roll_off.is_some());
+        NAMES[row].0
     }
 
-    pub(super) fn color(self) -> &'static str {
-        match (self.boundary, self.rolls_off) {
-            (Boundary::Periodic, true) => "#d6731a",
-            (Boundary::Periodic, false) => "#1a8f89",
-            (_, true) => "#8c2d5a",
-            (_, false) => "#30126e",
+    /// The name with its numbers.
+    pub(super) fn label(self) -> String {
+        let d = self.fractal_dimension;
+        match self.roll_off {
+            Some(waves) => format!("{} at {waves} waves a side, D_f = {d:?}", self.name()),
+            None => format!("{}, D_f = {d:?}", self.name()),
         }
     }
 
     pub(super) fn scene(self, study: &TwoCases) -> Result<Scene> {
-        let d = study.fractal_dimension;
+        let d = self.fractal_dimension;
         let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model(format!("D_f = {d:?}")))?;
         let surface = SelfAffine {
-            roll_off: self.rolls_off.then_some(TAU * study.roll_off),
+            roll_off: self.roll_off.map(|waves| TAU * waves),
             short_cutoff: Some(TAU * study.shortest()),
             ..surface
         };
         let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
         scene.effects.boundary = self.boundary;
-        scene.validate().map_err(Error::model(format!("the case {}", self.name())))?;
+        scene.validate().map_err(Error::model(format!("the case {}", self.label())))?;
         Ok(scene)
     }
 }
@@ -89,14 +87,16 @@ impl SurfaceCase {
     pub(super) fn slope(self, study: &TwoCases) -> Result<f64> {
         let Surface::SelfAffine(surface) = self.scene(study)?.surface else { return Ok(0.0) };
         let generator =
-            surface_gen::MapGenerator::new(&surface, study.cells).map_err(Error::model(self.name()))?;
+            surface_gen::MapGenerator::new(&surface, study.cells).map_err(Error::model(self.label()))?;
         Ok(generator.rms_slope())
     }
 }
 
 /// Periodic over free stiffness of the same surfaces.
 pub(super) struct PairRow {
-    pub(super) spectrum: &'static str,
+    pub(super) fractal_dimension: f64,
+    /// Waves a side at the roll-off; `None` for a spectrum that is fractal to the side.
+    pub(super) roll_off: Option<f64>,
     pub(super) force_bar: f64,
     /// Mean of one over mean of the other, and the half-width of its 95 % interval.
     pub(super) ratio: Estimate,
@@ -104,6 +104,17 @@ pub(super) struct PairRow {
 }
 
 impl TwoCases {
+    /// The paper's two cases and the two between, of each fractal dimension: first those that are fractal to the side, which all roll-offs share.
+    pub(super) fn cases(&self) -> Vec<SurfaceCase> {
+        let spectra = || std::iter::once(None).chain(self.roll_offs.iter().copied().map(Some));
+        let of = |&fractal_dimension: &f64| {
+            [Boundary::Free, Boundary::Periodic].into_iter().flat_map(move |boundary| {
+                spectra().map(move |roll_off| SurfaceCase { boundary, fractal_dimension, roll_off })
+            })
+        };
+        self.fractal_dimensions.iter().flat_map(of).collect()
+    }
+
     /// Waves a side at the end of the spectrum.
     pub(super) fn shortest(&self) -> f64 {
         (self.cells / SHORTEST) as f64
@@ -111,11 +122,11 @@ impl TwoCases {
 
     pub(super) fn command(&self) -> String {
         format!(
-            "cargo xtask reproduce-two-cases --cells {} --surfaces {} --df {:?} --roll-off {:?} --forces {} --tolerance {:?} --seed {}",
+            "cargo xtask reproduce-two-cases --cells {} --surfaces {} --df {} --roll-off {} --forces {} --tolerance {:?} --seed {}",
             self.cells,
             self.surfaces,
-            self.fractal_dimension,
-            self.roll_off,
+            list(&self.fractal_dimensions),
+            list(&self.roll_offs),
             self.forces.spec(),
             self.tolerance,
             self.seed
@@ -132,9 +143,14 @@ impl TwoCases {
         if self.cells < 4 * SHORTEST {
             return Err(Error::parameter("cells", self.cells, format!("at least {}", 4 * SHORTEST)));
         }
-        if !(self.roll_off > 1.0 && self.roll_off < self.shortest()) {
+        for (name, given) in [("df", &self.fractal_dimensions), ("roll-off", &self.roll_offs)] {
+            if given.is_empty() {
+                return Err(Error::parameter(name, "nothing", "at least one number"));
+            }
+        }
+        if let Some(waves) = self.roll_offs.iter().find(|r| !(**r > 1.0 && **r < self.shortest())) {
             let expected = format!("between 1 and {} waves a side (cells / {SHORTEST})", self.shortest());
-            return Err(Error::parameter("roll-off", self.roll_off, expected));
+            return Err(Error::parameter("roll-off", waves, expected));
         }
         Ok(())
     }
