@@ -193,3 +193,50 @@ fn coverage_of_readme_is_counted_in_the_table() {
         .unwrap_or_else(|| panic!("no row on {sentence}"));
     assert!(row.contains(&format!("{share:.1} % of the true errors inside")), "{share}: {row}");
 }
+
+/// Exponent of surfaces between two loads from the samples of the study: the mean on the coarsest grid and all mean differences added up.
+fn multilevel_exponent(d: f64, from: f64, to: f64) -> f64 {
+    let study = of_dimension(rows("data/exponent/exponent-samples.csv"), d);
+    let study: Vec<Row> = study.into_iter().filter(|row| row["model"] == "bem3d").collect();
+    let mut curve = of_dimension(rows("data/exponent/exponent.csv"), d);
+    curve.retain(|row| row["model"] == "bem3d" && row["convention"] == "measured_rms");
+    let force: Vec<f64> = curve.iter().map(|row| number(row, "force_bar")).collect();
+    let inside = (0..force.len()).filter(|&j| (from * 0.999..=to * 1.001).contains(&force[j]));
+    let points: Vec<(f64, f64)> = inside
+        .map(|j| {
+            let mut sum = 0.0;
+            for level in 0.. {
+                let pairs = study.iter().filter(|row| number(row, "level") as usize == level);
+                let whole = pairs.filter_map(|row| {
+                    let fine: Option<Vec<f64>> = list(row, "stiffness_bar").into_iter().collect();
+                    let coarse: Option<Vec<f64>> = match row["coarse_stiffness_bar"].as_str() {
+                        "" => Some(vec![0.0; fine.as_ref()?.len()]),
+                        _ => list(row, "coarse_stiffness_bar").into_iter().collect(),
+                    };
+                    Some(fine?.get(j)? - coarse?.get(j)?)
+                });
+                let differences: Vec<f64> = whole.collect();
+                if differences.is_empty() {
+                    break;
+                }
+                sum += differences.iter().sum::<f64>() / differences.len() as f64;
+            }
+            (force[j].ln(), sum.ln())
+        })
+        .collect();
+    slope(&points)
+}
+
+#[test]
+fn exponents_of_the_study_are_those_of_its_samples() {
+    let page = text("data/exponent/exponent.md");
+    for d in [2.0, 2.2, 2.4] {
+        let alpha = multilevel_exponent(d, 2e-3, 2e-2);
+        let start = format!("| {d:?} |");
+        let line = page.lines().find(|line| line.starts_with(&start) && line.contains("2e-3..2e-2")).unwrap();
+        let stated = line.split('|').nth(4).unwrap().trim().split(' ').next().unwrap();
+        // Five digits of each stiffness, three of the exponent.
+        assert!((alpha - stated.parse::<f64>().unwrap()).abs() < 6e-4, "D_f {d}: {alpha}, stated {stated}");
+        assert!(text("book/src/exponent.md").contains(stated), "{stated}");
+    }
+}

@@ -94,8 +94,10 @@ pub struct Claim {
     pub here: Option<Estimate>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Conditions of the number, and what would decide where it does not.
+    /// Conditions of the number; where there is none, what would decide.
     pub remark: String,
+    /// Half-width below which an interval about the same number would decide, where this one does not.
+    pub decided_by: Option<f64>,
     /// Whether the numbers depend on the machine (run times): such a claim stays out of files.
     pub timed: bool,
 }
@@ -127,15 +129,17 @@ impl Claim {
         } else {
             Verdict::Unresolved
         };
-        let remark = remark.into();
-        let remark = if verdict == Verdict::Unresolved {
-            let nearest = paper.iter().map(|end| (end - value).abs()).fold(f64::INFINITY, f64::min);
-            joined(&remark, &would_decide(nearest))
-        } else {
-            remark
-        };
-        let quantity = quantity.into();
-        Self { quantity, statement, paper, here: Some(here), verdict, remark, timed: false }
+        let nearest = paper.iter().map(|end| (end - value).abs()).fold(f64::INFINITY, f64::min);
+        Self {
+            quantity: quantity.into(),
+            statement,
+            paper,
+            here: Some(here),
+            verdict,
+            remark: remark.into(),
+            decided_by: (verdict == Verdict::Unresolved).then_some(nearest),
+            timed: false,
+        }
     }
 
     /// One of two laws: contradicted where the interval misses the reading of this law, unresolved where it meets that of the rival as well,
@@ -158,21 +162,11 @@ impl Claim {
             self.verdict = if meets { Verdict::Unresolved } else { Verdict::Confirmed };
             let middle = short(0.5 * (rival[0] + rival[1]));
             let word = if meets { "meets" } else { "misses" };
-            // What would decide is another interval here than for the law alone.
-            if let Some(cut) = self.remark.find(WOULD) {
-                self.remark.truncate(self.remark[..cut].rfind("; ").unwrap_or(0));
-            }
             self.remark = joined(&self.remark, &format!("the interval {word} {law} = {middle}"));
-            if meets {
-                let away = (rival[0] - here.value).max(here.value - rival[1]);
-                self.remark = joined(
-                    &self.remark,
-                    &if away > 0.0 {
-                        would_decide(away)
-                    } else {
-                        "the number lies within both laws' tolerance".to_owned()
-                    },
-                );
+            let away = (rival[0] - here.value).max(here.value - rival[1]);
+            self.decided_by = Some(away).filter(|away| meets && *away > 0.0);
+            if meets && self.decided_by.is_none() {
+                self.remark = joined(&self.remark, "the number lies within both laws' tolerance");
             }
         }
         self
@@ -201,7 +195,7 @@ impl Claim {
     ) -> Self {
         let here = Estimate::exact(0.0);
         let claim = Self::judge(quantity, statement, paper, here, remark);
-        Self { here: None, verdict: Verdict::Unresolved, ..claim }
+        Self { here: None, verdict: Verdict::Unresolved, decided_by: None, ..claim }
     }
 
     /// The same without numbers that depend on the machine.
@@ -224,6 +218,15 @@ impl Claim {
         }
     }
 
+    /// The remark, with what would decide where this interval does not.
+    fn conditions(&self) -> String {
+        let Some(half_width) = self.decided_by else { return self.remark.clone() };
+        let two_digits = format!("{half_width:.1e}").parse().unwrap_or(half_width);
+        let decides =
+            format!("decided by a half-width below {}: more surfaces or finer grids", short(two_digits));
+        joined(&self.remark, &decides)
+    }
+
     /// What was found, with its interval.
     fn found(&self) -> String {
         match self.here {
@@ -232,14 +235,6 @@ impl Claim {
             Some(Estimate { value, half_width }) => format!("{} +- {}", short(value), rounded(half_width)),
         }
     }
-}
-
-/// Begins the remark on what would decide.
-const WOULD: &str = "decided by a half-width below ";
-
-fn would_decide(half_width: f64) -> String {
-    let two_digits = format!("{half_width:.1e}").parse().unwrap_or(half_width);
-    format!("{WOULD}{}: more surfaces or finer grids", short(two_digits))
 }
 
 fn joined(a: &str, b: &str) -> String {
@@ -293,7 +288,7 @@ pub fn claims_table(title: &str, claims: &[Claim]) -> Result<Table> {
             "confirmed, contradicted, not resolved at this size, matter of convention",
             |c| c.verdict.as_str(),
         )
-        .column("remark", "-", "conditions, and what would decide", |c| c.remark.as_str())
+        .column("remark", "-", "conditions, and what would decide", Claim::conditions)
         .table()
 }
 
@@ -311,7 +306,7 @@ pub fn markdown(claims: &[Claim]) -> String {
             c.allowed(),
             c.found(),
             c.verdict.to_string(),
-            c.remark.clone(),
+            c.conditions(),
         ];
         text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
     }
@@ -347,8 +342,9 @@ pub fn plain(claims: &[Claim]) -> String {
     let mut text = format!("{:wide$}  {:>16}  {:>18}  verdict\n", "quantity", "paper", "here, 95 %");
     for c in claims {
         text += &format!("{:wide$}  {:>16}  {:>18}  {}\n", c.quantity, c.allowed(), c.found(), c.verdict);
-        if c.verdict != Verdict::Confirmed && !c.remark.is_empty() {
-            text += &format!("    {}\n", c.remark);
+        let conditions = c.conditions();
+        if c.verdict != Verdict::Confirmed && !conditions.is_empty() {
+            text += &format!("    {conditions}\n");
         }
     }
     text + &format!("{}\n", counts(claims))

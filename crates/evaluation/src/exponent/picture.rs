@@ -60,7 +60,7 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
     let x = logarithmic(shown.iter().map(|r| r.force_bar));
     let mut pictures = Vec::new();
     for d in dimensions(shown.iter().map(|r| r.fractal_dimension)) {
-        let mut picture = Picture::new(x, Axis::Linear(0.3, 1.1), FORCE, "$\\rm{d} \\ln k/\\rm{d} \\ln F$")
+        let mut picture = Picture::new(x, Axis::Linear(0.3, 1.1), FORCE, "$\\rm{d ln} k/\\rm{d ln} F$")
             .with_size(400.0, 280.0)
             .with_subtitle(&format!("$D_{{\\rm{{f}}}} = {d:?}$"));
         let (low, high) = x.ends();
