@@ -184,7 +184,14 @@ impl LineOfText<'_> {
                     i = end;
                     match name.as_str() {
                         "rm" => self.symbols(inner, size, y, true),
-                        accent => self.accent(accent, inner, size, y),
+                        accent @ ("bar" | "tilde") => self.accent(accent, inner, size, y),
+                        // Seen in the picture, not left out.
+                        unknown => {
+                            for c in "\\".chars().chain(unknown.chars()) {
+                                self.push(c, false, size, y);
+                            }
+                            self.symbols(inner, size, y, upright);
+                        }
                     }
                 }
                 ' ' if upright => self.push(' ', false, size, y),
@@ -297,6 +304,12 @@ mod tests {
         for label in ["$x^$", "$x_{1$", "$\\bar$", "$\\bar{", "$", ""] {
             assert!(fonts.typeset(label, 10.0).width >= 0.0, "{label}");
         }
+    }
+
+    #[test]
+    fn unknown_names_are_seen() {
+        let fonts = Fonts::load().unwrap();
+        assert_eq!(fonts.typeset("$\\kappa x$", 20.0).plain, "\\kappa x");
     }
 
     #[test]
