@@ -1,7 +1,7 @@
 //! Error budgets: k = value +- algebraic +- discretisation +- ensemble, for each mean and for alpha and zeta.
 
 use crate::fitted_laws::{WindowedLaw, windowed_law};
-use crate::grid_error::{differences, discretisation_error};
+use crate::grid_error::{EdgePart, differences, discretisation_error};
 use crate::header::{FLAGS_1D, FLAGS_3D, describe, header};
 use crate::measured::{COARSER_SURFACES, Measured, Series, measure_1d, measure_3d};
 use crate::outcome::Outcome;
@@ -106,8 +106,7 @@ pub fn write_budget(
 pub(crate) fn budgets(measured: &Measured) -> Vec<Budgeted> {
     let mut all = Vec::new();
     for series in &measured.series {
-        let coarser = measured.coarser_at(series.fractal_dimension);
-        all.extend((0..series.points.len()).filter_map(|j| row(series, coarser, j)));
+        all.extend((0..series.points.len()).filter_map(|j| row(measured, series, j)));
     }
     for series in &measured.series {
         let d = series.fractal_dimension;
@@ -160,13 +159,15 @@ fn mean_algebraic(series: &Series, j: usize) -> f64 {
     analysis::sum(open.iter().copied()) / open.len().max(1) as f64
 }
 
-fn row(series: &Series, coarser: Option<[&Series; 2]>, j: usize) -> Option<Budgeted> {
+fn row(measured: &Measured, series: &Series, j: usize) -> Option<Budgeted> {
     let point = &series.points[j];
     let k = point.stiffness_bar?;
-    let differences = coarser.map(|coarser| differences(series, coarser, j));
+    let edge = EdgePart::at(k.mean, measured.discretisation);
+    let grid = (measured.coarser_at(series.fractal_dimension))
+        .and_then(|coarser| discretisation_error(&differences(series, coarser, j), edge, k.count));
     let budget = Budget {
         algebraic: k.mean * mean_algebraic(series, j),
-        discretisation: differences.and_then(|d| discretisation_error(&d, k.count)).map(|d| k.mean * d),
+        discretisation: grid.map(|d| k.mean * d),
         ensemble: k.standard_error.map(|se| analysis::student(k.count as f64 - 1.0) * se),
         window: None,
     };

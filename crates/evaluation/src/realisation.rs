@@ -1,8 +1,11 @@
 //! One unit of work: one surface under all its loads.
 
 use crate::sample::Sample;
+use analytic::flat_punch::SQUARE_STIFFNESS;
 use bem3d::Bem3d;
-use contact_model::{ContactModel, Outputs, Scene, SelfAffine, Stop, Surface};
+use contact_model::{
+    ContactModel, Outputs, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Stop, Surface, line_length,
+};
 use mdr1d::{Ensemble, Mdr1d};
 use runs::{Error, Result};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -68,6 +71,27 @@ impl Discretisation {
             }
         };
         Some([by(2)?, by(4)?])
+    }
+
+    /// k_bar of complete contact on this grid (data/paper/VALUES.md for N x N cells; no grid changes that of a line).
+    pub fn complete_contact(self) -> f64 {
+        let edge = match self {
+            Self::Bem3d { cells, .. } => {
+                let n = cells as f64;
+                -0.4025 / n + 0.12 / n.powf(1.59)
+            }
+            Self::Mdr1d { .. } => 0.0,
+        };
+        self.complete_contact_of_fine_grids() + edge / PAPER_STIFFNESS_FACTOR
+    }
+
+    /// The same in the limit of fine grids.
+    pub fn complete_contact_of_fine_grids(self) -> f64 {
+        let stiffness = match self {
+            Self::Bem3d { .. } => SQUARE_STIFFNESS,
+            Self::Mdr1d { .. } => line_length(1.0),
+        };
+        stiffness / PAPER_STIFFNESS_FACTOR
     }
 
     /// The model itself.

@@ -1,12 +1,13 @@
 //! Means over ensembles: how far surfaces scatter, and what lines and closed forms are worth as an answer for the mean.
 
 use super::limit::{Limit, limit, slope};
-use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey, SQUARE};
+use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
 use super::row::{Answer, Parts, StudyRow, Way, measure};
 use super::sizes::{Order, StudySizes};
 use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
+use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Surface, never};
 use runs::{Error, Progress, Result, cpu_seconds, on_one_thread};
 use std::sync::Arc;
@@ -146,7 +147,7 @@ fn formulas(d: f64, force_bar: f64) -> Result<Vec<(&'static str, Answer)>> {
     let mut all: Vec<_> = law.into_iter().map(|answer| ("power_law", answer)).collect();
     if force_bar > 1.0 {
         let status = Status::Converged.as_str().to_owned();
-        all.push(("plateau", Answer { stiffness: Some(SQUARE), status, ..Answer::default() }));
+        all.push(("plateau", Answer { stiffness: Some(SQUARE_STIFFNESS), status, ..Answer::default() }));
     }
     Ok(all)
 }

@@ -1,15 +1,11 @@
 //! What is solved in every way: bodies with an exact answer and rough surfaces under four loads.
 
+use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Amplitude, Line, Load, Scene, SelfAffine, Surface, line_length};
 use runs::{Error, Result};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use surface_gen::MapGenerator;
-
-/// `k = 1.1522985 E* L` of the rigid square punch (data/paper/VALUES.md; the capacitance of the unit square agrees), to 1e-6.
-pub(crate) const SQUARE: f64 = 1.152_298_5;
-/// Its uncertainty.
-pub(crate) const SQUARE_UNCERTAINTY: f64 = 1e-6;
 
 /// Contact radius of the sphere in sides: far from the edges, with 39 cells on 129.
 const RADIUS: f64 = 0.3;
@@ -123,7 +119,7 @@ impl StudyProblem {
     pub fn exact(&self) -> [Option<f64>; 3] {
         match self.key.family {
             Family::Sphere => [2.0 * RADIUS, RADIUS * RADIUS, PI * RADIUS * RADIUS].map(Some),
-            Family::Square => [SQUARE, 1.0 / SQUARE, 1.0].map(Some),
+            Family::Square => [SQUARE_STIFFNESS, 1.0 / SQUARE_STIFFNESS, 1.0].map(Some),
             _ => [None; 3],
         }
     }

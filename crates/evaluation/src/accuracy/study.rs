@@ -1,11 +1,12 @@
 //! Solves every problem in every way and compares.
 
 use super::limit::{Limit, limit, slope};
-use super::problem::{Family, SQUARE_UNCERTAINTY, StudyProblem};
+use super::problem::{Family, StudyProblem};
 use super::row::{Answer, Parts, StudyRow, Way, mark_pareto, measure};
 use super::sizes::{Order, StudySizes};
 use super::{means, pressure};
 use analytic::Hertz;
+use analytic::flat_punch::SQUARE_STIFFNESS_UNCERTAINTY;
 use bem3d::{Bem3d, Method};
 use contact_model::ContactModel;
 use mdr1d::Mdr1d;
@@ -183,7 +184,7 @@ fn others(problem: &StudyProblem, sizes: &StudySizes) -> Result<Vec<StudyRow>> {
 }
 
 fn uncertainty(problem: &StudyProblem) -> f64 {
-    if problem.key.family == Family::Square { SQUARE_UNCERTAINTY } else { 0.0 }
+    if problem.key.family == Family::Square { SQUARE_STIFFNESS_UNCERTAINTY } else { 0.0 }
 }
 
 /// References, errors and parts of the rows of one problem.

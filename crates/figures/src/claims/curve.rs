@@ -220,7 +220,7 @@ pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
     let paper = [0.0, 20.0];
     let each = |s: &Series| {
         let name = named("F_bar at which the mean k has 97 % of its plateau,", measured, s);
-        let at = |draw: &[usize]| force_at(s, SHARE * plateau(measured), draw);
+        let at = |draw: &[usize]| force_at(s, SHARE * measured.discretisation.complete_contact(), draw);
         let error = Bootstrap::default().standard_error(s.units.len(), at);
         match at(&s.curves.all()).and_then(|value| Estimate::normal(value, error)) {
             Some(force) => {
@@ -228,7 +228,7 @@ pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
                 let k = stiffness_at(s, at_most).map_or(0.0, |k| k.value);
                 let remark = format!(
                     "the plateau of this grid is {:.4}, k_bar = {k:.4} at F_bar = {at_most}",
-                    plateau(measured)
+                    measured.discretisation.complete_contact()
                 );
                 Claim::judge(name, SATURATED, paper, force, remark)
             }
@@ -236,13 +236,6 @@ pub(super) fn saturation(measured: &Measured) -> Vec<Claim> {
         }
     };
     measured.series.iter().map(each).collect()
-}
-
-/// k_bar of complete contact on the grid itself: data/paper/VALUES.md for N x N cells, 2/sqrt(pi) for a line.
-fn plateau(measured: &Measured) -> f64 {
-    let n = measured.discretisation.size() as f64;
-    let solid = || 1.152_298_5 - 0.4025 / n + 0.12 / n.powf(1.59);
-    (if label(measured) == "3D" { solid() } else { contact_model::line_length(1.0) }) / PAPER_STIFFNESS_FACTOR
 }
 
 /// F_bar at which a mean curve reaches a stiffness, by straight lines in ln-ln; `None` outside the loads.
@@ -262,7 +255,7 @@ pub(super) fn small_area(measured: &Measured) -> Vec<Claim> {
         let name = named("A/A_0 where k is 90 % of its plateau,", measured, s);
         let fractions: Option<Vec<Option<f64>>> =
             Some((0..s.points.len()).map(|j| s.contact_fraction(j)).collect());
-        let area = force_at(s, 0.9 * plateau(measured), &s.curves.all())
+        let area = force_at(s, 0.9 * measured.discretisation.complete_contact(), &s.curves.all())
             .and_then(|f| interpolate(s.curves.force_bar(), &fractions?, f));
         match area {
             Some(area) => {
@@ -297,7 +290,7 @@ pub(super) fn line_above_solid(solid: &Measured, line: &Measured) -> Vec<Claim> 
     for (a, b) in solid.series.iter().zip(&line.series) {
         let name = format!("F_bar of 90 % of the plateau, 1D over 3D, D_f = {:?}", a.fractal_dimension);
         let force = |measured: &Measured, s: &Series| {
-            let at = |draw: &[usize]| force_at(s, 0.9 * plateau(measured), draw);
+            let at = |draw: &[usize]| force_at(s, 0.9 * measured.discretisation.complete_contact(), draw);
             let error = Bootstrap::default().standard_error(s.units.len(), at);
             Estimate::normal(at(&s.curves.all())?, error)
         };
