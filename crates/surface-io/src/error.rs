@@ -145,13 +145,53 @@ pub enum ContentError {
     },
     /// A byte that does not occur in text.
     #[error(
-        "byte 0x{byte:02x} at offset {offset} does not occur in text: expected numbers as text, or an NPY file"
+        "byte 0x{byte:02x} at offset {offset} does not occur in text: expected numbers as text, or a binary format that is read"
     )]
-    Binary {
+    NoText {
         /// Offset in bytes.
         offset: usize,
         /// The byte.
         byte: u8,
+    },
+    /// Not the binary format that was asked for.
+    #[error("expected {expected}, but the file does not begin like one")]
+    Other {
+        /// The format asked for.
+        expected: Format,
+    },
+    /// What a binary file holds at some place is not what its format has there.
+    #[error("{format}, offset {offset}: expected {expected}")]
+    Binary {
+        /// The format.
+        format: Format,
+        /// Offset in bytes.
+        offset: u64,
+        /// What was expected there.
+        expected: String,
+    },
+    /// No channel, or more than one, is what was asked for.
+    #[error(
+        "{}: the channels are {list}",
+        match (.choice, .matching) {
+            (Some(choice), 0) => format!("channel {choice} is not in the file"),
+            (Some(choice), n) => format!("{n} channels are called {choice}, say channel = NUMBER"),
+            (None, 0) => "no channel of the file has heights".to_owned(),
+            (None, n) => format!("{n} channels of the file have heights, say channel = NUMBER or NAME"),
+        }
+    )]
+    Channel {
+        /// What was asked for.
+        choice: Option<String>,
+        /// Channels that it may mean.
+        matching: usize,
+        /// All of them.
+        list: String,
+    },
+    /// A channel whose values are no heights.
+    #[error("channel {what}: its values are no heights")]
+    NoHeights {
+        /// Number, name and unit.
+        what: String,
     },
     /// The header of an NPY file is not one.
     #[error("header of an NPY file, offset {offset}: expected {expected}")]

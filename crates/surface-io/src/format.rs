@@ -4,6 +4,7 @@ use std::fmt;
 
 /// A format that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Format {
     /// NumPy's array file.
     Npy,
@@ -11,14 +12,31 @@ pub enum Format {
     Text,
     /// Points x, y, z as text, one per line, in any order.
     Xyz,
+    /// Gwyddion's own file.
+    Gwy,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Npy, Self::Text, Self::Xyz, Self::Gwy];
+
+    /// The word that stands for it in scenes and on command lines.
+    pub fn word(self) -> &'static str {
+        self.words().0
+    }
+
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Npy => ("npy", "NPY"),
+            Self::Text => ("text", "a text matrix"),
+            Self::Xyz => ("xyz", "XYZ points"),
+            Self::Gwy => ("gwy", "GWY (Gwyddion)"),
+        }
+    }
 }
 
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Npy => "NPY",
-            Self::Text => "a text matrix",
-            Self::Xyz => "XYZ points",
-        })
+        f.write_str(self.words().1)
     }
 }

@@ -52,15 +52,17 @@ impl std::error::Error for KeywordError {}
 impl FromStr for Format {
     type Err = KeywordError;
 
-    /// Reads `npy`, `text` or `xyz`.
+    /// Reads a [`Format::word`].
     ///
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = [("npy", Self::Npy), ("text", Self::Text), ("xyz", Self::Xyz)];
-        among("format", text, known, "npy, text or xyz")
+        among("format", text, Self::ALL.map(|format| (format.word(), format)), FORMATS)
     }
 }
+
+/// All words of [`Format`].
+const FORMATS: &str = "npy, text, xyz or gwy";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -174,7 +176,7 @@ mod tests {
         assert_eq!("1,2,3,4".parse(), Ok(Crop::Window { row: 1, column: 2, rows: 3, columns: 4 }));
         assert_eq!("no_contact".parse(), Ok(Undefined::NoContact));
         for (text, error) in [
-            ("hdf5".parse::<Format>().unwrap_err(), "format = \"hdf5\": expected npy, text or xyz"),
+            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz or gwy"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
             ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane or quadric"),
             ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, or row"),

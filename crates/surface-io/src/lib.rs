@@ -24,7 +24,8 @@
 //! # Nothing is guessed silently
 //!
 //! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
-//!   a text matrix; three columns without either are points or a matrix by their comments, or an error; two
+//!   a text matrix; three columns without either are points or a matrix by their comments, points where the first two are all
+//!   places of a grid, or else an error; two
 //!   columns, the first of equally spaced numbers, are a profile, which is refused by its name. Other
 //!   files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
@@ -79,27 +80,33 @@
 //! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers,
 //! filters.
 
-mod content;
+mod channel;
 mod describe;
 mod detect;
 mod error;
 mod extent;
 pub mod files;
 mod format;
+mod instruments;
 mod keyword;
 mod lines;
 mod npy;
+mod number_type;
 mod options;
 mod points;
 mod preprocessing;
 mod provenance;
 mod quantity;
+mod reader;
 mod scan;
 mod sides;
+mod source;
+mod surface_file;
 mod text;
 mod vti;
 mod write;
 
+pub use channel::ChannelChoice;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;
@@ -111,5 +118,6 @@ pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
 pub use scan::{Metadata, Scan};
 pub use sides::Sides;
+pub use surface_file::SurfaceFile;
 pub use vti::{DataArray, Encoding, vti};
 pub use write::{Metric, text, write_map, xyz};

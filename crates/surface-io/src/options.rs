@@ -1,5 +1,6 @@
 //! How a file is read.
 
+use crate::channel::ChannelChoice;
 use crate::format::Format;
 use crate::quantity::{Quantity, Unit};
 use crate::sides::Sides;
@@ -9,6 +10,8 @@ use crate::sides::Sides;
 pub struct ReadOptions {
     /// The format, where it is not to be told from the content and the name's ending.
     pub format: Option<Format>,
+    /// The channel, where the file has several that can be heights.
+    pub channel: Option<ChannelChoice>,
     /// Unit of the heights.
     pub unit: Option<Unit>,
     /// Unit of x and y of points.
@@ -35,6 +38,7 @@ impl Default for ReadOptions {
     fn default() -> Self {
         Self {
             format: None,
+            channel: None,
             unit: None,
             lateral_unit: None,
             size: None,

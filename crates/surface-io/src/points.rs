@@ -2,10 +2,9 @@
 
 mod axis;
 
-use crate::content::{FileContent, check_unit};
+use crate::channel::{StoredChannel, StoredHeights, StoredUnit, check_unit};
 use crate::error::ContentError;
 use crate::extent::Extent;
-use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::text::TextTable;
@@ -23,7 +22,7 @@ const ROUNDED: f64 = 1e-9;
 /// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
 ///
 /// Cost O(n log n) for n points.
-pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<FileContent, ContentError> {
+pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {
     if table.columns != 3 {
         return Err(ContentError::NotPoints { line: table.first_line(), found: table.columns });
     }
@@ -71,7 +70,31 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<FileCont
     let off =
         if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
     let details = format!("{points} points, {}{off}", table.delimiter);
-    Ok(FileContent { format: Format::Xyz, details, rows, columns, heights, unit, extent })
+    let (name, unit) = (table.heading.name.clone(), StoredUnit::heights(unit));
+    Ok(StoredChannel { name, details, rows, columns, unit, extent, heights: StoredHeights::Read(heights) })
+}
+
+/// Whether the first two of three columns are all places of a grid of two rows and columns or more, each once and exactly on its place.
+pub(crate) fn is_full_grid(table: &TextTable) -> bool {
+    let axis = |name, at: usize| {
+        let along: Vec<f64> = table.values.iter().skip(at).step_by(3).copied().collect();
+        if along.iter().any(|v| v.is_nan()) {
+            return None;
+        }
+        let axis = GridAxis::find(name, along, None).ok()?;
+        (axis.count >= 2.0 && axis.off <= ROUNDED.sqrt()).then_some(axis)
+    };
+    let (Some(x), Some(y)) = (axis('x', 0), axis('y', 1)) else { return false };
+    let places = x.count * y.count;
+    if (places - table.rows() as f64).abs() > 0.0 {
+        return false;
+    }
+    let mut taken = vec![false; table.rows()];
+    let once = |point: &[f64]| {
+        let (Ok(row), Ok(column)) = (y.index(point[1]), x.index(point[0])) else { return false };
+        !std::mem::replace(&mut taken[row * x.count as usize + column], true)
+    };
+    table.values.chunks_exact(3).all(once)
 }
 
 /// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not

@@ -102,6 +102,11 @@ impl Scan {
             let (first, second) = ("fill is given".into(), "undefined = \"no_contact\" too".into());
             return Err(ContentError::Contradiction { what: "undefined points", first, second });
         }
+        if let Some(unit) = &self.metadata().no_heights {
+            let name = self.metadata().name.as_deref().unwrap_or_default();
+            let what = format!("{} {name} {unit}", self.metadata().number).trim().to_owned();
+            return Err(ContentError::NoHeights { what });
+        }
         let (size, cell) = self.sides()?;
         // Cells that no map may have are refused before anything is fitted to them.
         Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;

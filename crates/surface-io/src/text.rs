@@ -241,7 +241,7 @@ fn check_text(bytes: &[u8]) -> Result<(), ContentError> {
         b => b < b' ' || b == 0x7f,
     };
     match bytes.iter().enumerate().find(bad) {
-        Some((offset, &byte)) => Err(ContentError::Binary { offset, byte }),
+        Some((offset, &byte)) => Err(ContentError::NoText { offset, byte }),
         None => Ok(()),
     }
 }

@@ -1,6 +1,6 @@
 //! Maps as text.
 
-use crate::content::check_unit;
+use crate::channel::check_unit;
 use crate::error::{ContentError, Error, Result};
 use crate::lines::Lines;
 use crate::quantity::{Dimension, Unit};

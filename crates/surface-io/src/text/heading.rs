@@ -16,6 +16,8 @@ pub(crate) struct Heading {
     pub(crate) unit: Option<Unit>,
     /// Unit of x and y.
     pub(crate) lateral_unit: Option<Unit>,
+    /// Name of the channel.
+    pub(crate) name: Option<String>,
 }
 
 /// A side and how far it may be rounded.
@@ -24,6 +26,19 @@ pub(crate) struct Side {
     pub(crate) quantity: Quantity,
     /// Half of the last decimal that is printed, relative; 0 for whole numbers and those with an exponent.
     pub(crate) rounding: f64,
+}
+
+/// Keys in small letters, and those of Gwyddion in German in English.
+fn english(key: &str) -> String {
+    let key = key.to_lowercase();
+    let known = match key.as_str() {
+        "kanal" => "channel",
+        "breite" => "width",
+        "h\u{f6}he" => "height",
+        "werteeinheiten" => "value units",
+        _ => return key,
+    };
+    known.to_owned()
 }
 
 /// Longest comment that is looked at, in bytes.
@@ -41,8 +56,12 @@ impl Heading {
         let latin = || comment.iter().map(|&b| char::from(b)).collect();
         let text: String = std::str::from_utf8(comment).map_or_else(|_| latin(), str::to_owned);
         let Some((key, value)) = text.split_once(':') else { return Ok(()) };
-        let key = key.trim().to_ascii_lowercase();
+        let key = english(key.trim());
         match key.as_str() {
+            "channel" => {
+                let name = value.trim();
+                self.name = self.name.take().or_else(|| (!name.is_empty()).then(|| name.to_owned()));
+            }
             "width" | "height" => {
                 let side = side(value);
                 let negative = |s: &Side| s.quantity.value() <= 0.0;

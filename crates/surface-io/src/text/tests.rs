@@ -180,18 +180,18 @@ fn every_bad_text_says_where_and_what_to_do() {
         ),
         (
             b"1 2\n\x00\x01",
-            "a.txt: byte 0x00 at offset 4 does not occur in text: expected numbers as text, or an NPY file",
+            "a.txt: byte 0x00 at offset 4 does not occur in text: expected numbers as text, or a binary format that is read",
         ),
         (
             b"1 2\r3 4\r",
-            "a.txt: byte 0x0d at offset 3 does not occur in text: expected numbers as text, or an NPY file",
+            "a.txt: byte 0x0d at offset 3 does not occur in text: expected numbers as text, or a binary format that is read",
         ),
         (b"\xc3\xa9 2\n", "a.txt: line 1, value 1: \"\u{e9}\": expected a number (comments"),
         (b"\xff\xfe1\x00", "a.txt: looks like text in UTF-16: save it as UTF-8"),
         (b"\x89HDF\r\n\x1a\n", "a.txt: looks like an HDF5 file: export the data set of heights as NPY"),
         (
             b"PK\x03\x04....",
-            "a.txt: looks like an archive (NPZ, X3P, XLSX): take the array out of it and save it as NPY",
+            "a.txt: looks like an archive (NPZ, XLSX): take the file of heights out of it",
         ),
         (
             b"GWYPGWYO",
