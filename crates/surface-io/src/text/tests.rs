@@ -194,10 +194,6 @@ fn every_bad_text_says_where_and_what_to_do() {
             "a.txt: looks like an archive (NPZ, XLSX): take the file of heights out of it",
         ),
         (
-            b"GWYPGWYO",
-            "a.txt: looks like a Gwyddion file: export the channel as text matrix, with the header",
-        ),
-        (
             b"1 2 3\n1 2 3\n1 2 3\n1 2 3\n",
             "a.txt: 4 lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\"",
         ),
