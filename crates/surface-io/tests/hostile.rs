@@ -4,11 +4,15 @@
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 #![allow(unsafe_code)] // A global allocator that counts is unsafe by its nature; it hands everything to the system's.
 
+mod files;
+
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use surface_io::{Crop, Decimal, Detrend, Fill, Format, Preprocessing, ReadOptions, Scan, Undefined};
+use surface_io::{
+    Crop, Decimal, Detrend, Fill, Format, Preprocessing, ReadOptions, Scan, SurfaceFile, Undefined,
+};
 
 thread_local! {
     /// Bytes that this thread holds, and the most that it held.
@@ -217,6 +221,103 @@ proptest! {
             }
         }
         torture(&bytes)?;
+    }
+}
+
+/// Deflate packs at most so many bytes into one; heights take eight for each.
+const PACKED: usize = 1032 * 8 + MULTIPLE;
+
+/// Reads all channels of the bytes of an instrument's file.
+fn torture_channels(bytes: &[u8], compressed: bool) -> Result<(), TestCaseError> {
+    let (read, held) = most_held(|| {
+        let file = SurfaceFile::from_bytes("a", bytes, &ReadOptions::default())?;
+        file.scans()
+            .map(|scan| scan.map(|scan| scan.metadata().to_string().len()))
+            .collect::<Result<Vec<_>, _>>()
+    });
+    let multiple = if compressed { PACKED } else { MULTIPLE };
+    prop_assert!(held <= multiple * bytes.len() + 10 * CONSTANT, "{held} bytes for {}", bytes.len());
+    if let Err(error) = read {
+        let text = error.to_string();
+        prop_assert!(text.starts_with('a') && text.len() < 4000, "{text}");
+    }
+    Ok(())
+}
+
+/// Changes, loses, doubles bytes, sets them to the ends of their range, or cuts the file short.
+fn mutated(mut bytes: Vec<u8>, changes: &[(prop::sample::Index, u8, u8)]) -> Vec<u8> {
+    for (at, byte, how) in changes {
+        if bytes.is_empty() {
+            break;
+        }
+        let at = at.index(bytes.len());
+        match how {
+            0 => bytes[at] = *byte,
+            1 => drop(bytes.remove(at)),
+            2 => bytes.insert(at, bytes[at]),
+            3 => bytes.iter_mut().skip(at).take(4).for_each(|b| *b = 0xff),
+            4 => bytes.iter_mut().skip(at).take(4).for_each(|b| *b = 0),
+            _ => bytes.truncate(at),
+        }
+    }
+    bytes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 3000,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn files_of_instruments_with_bytes_changed(
+        which in any::<prop::sample::Index>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..6_u8), 1..6),
+    ) {
+        let file = which.get(&files::all()).bytes.clone();
+        let compressed = which.get(&files::all()).compressed;
+        torture_channels(&mutated(file, &changes), compressed)?;
+    }
+}
+
+#[test]
+fn small_files_of_instruments_hold_what_was_written() {
+    for file in files::all() {
+        let opened = SurfaceFile::from_bytes("a", &file.bytes, &ReadOptions::default());
+        let opened = opened.unwrap_or_else(|e| panic!("{}: {e}", file.name));
+        let word = file.name.split(' ').next().unwrap();
+        assert_eq!(opened.format().word(), word, "{}", file.name);
+        let scan = opened.scans().nth(file.number).unwrap().unwrap_or_else(|e| panic!("{}: {e}", file.name));
+        let metadata = scan.metadata();
+        assert_eq!([metadata.columns, metadata.rows], file.shape, "{}", file.name);
+        let size = metadata.size.map(|size| size.map(|side| side.value()));
+        match (size, file.size) {
+            (Some(size), Some(expected)) => {
+                for (side, expected) in size.iter().zip(expected) {
+                    assert!((side / expected - 1.0).abs() < 1e-6, "{}: {side:e}, {expected:e}", file.name);
+                }
+            }
+            (size, expected) => assert_eq!(size, expected, "{}", file.name),
+        }
+        for (i, expected) in file.heights.iter().enumerate() {
+            let (row, column) = (i / metadata.columns, i % metadata.columns);
+            let height = scan.height(row, column).map_or(f64::NAN, |h| match &metadata.unit {
+                Some(unit) => unit.value.to_si(h),
+                None => h,
+            });
+            let same = (height - expected).abs() <= 1e-9 * expected.abs();
+            assert!(
+                same || (height.is_nan() && expected.is_nan()),
+                "{}: {height:e}, {expected:e}",
+                file.name
+            );
+        }
+        // Every file cut short is refused or shorter, and nothing panics.
+        for length in 0..file.bytes.len() {
+            let short = SurfaceFile::from_bytes("a", &file.bytes[..length], &ReadOptions::default());
+            let _ = short.map(|file| file.scans().filter_map(Result::ok).count());
+        }
     }
 }
 
