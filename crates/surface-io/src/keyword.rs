@@ -2,7 +2,7 @@
 
 use crate::format::Format;
 use crate::options::Decimal;
-use crate::preprocessing::{Crop, Detrend, Fill, Undefined};
+use crate::preprocessing::{Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
 use std::str::FromStr;
@@ -80,7 +80,7 @@ impl FromStr for Decimal {
 impl FromStr for Detrend {
     type Err = KeywordError;
 
-    /// Reads `none`, `mean`, `plane` or `quadric`.
+    /// Reads `none`, `mean`, `plane`, `quadric`, `sphere` or `cylinder`.
     ///
     /// # Errors
     /// [`KeywordError`] for other words.
@@ -90,8 +90,10 @@ impl FromStr for Detrend {
             ("mean", Self::Mean),
             ("plane", Self::Plane),
             ("quadric", Self::Quadric),
+            ("sphere", Self::Sphere),
+            ("cylinder", Self::Cylinder),
         ];
-        among("detrend", text, known, "none, mean, plane or quadric")
+        among("detrend", text, known, "none, mean, plane, quadric, sphere or cylinder")
     }
 }
 
@@ -131,14 +133,16 @@ impl FromStr for Undefined {
 impl FromStr for Crop {
     type Err = KeywordError;
 
-    /// Reads `centre`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are
+    /// Reads `centre`, `defined`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are
     /// as many columns as rows.
     ///
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        if text == "centre" {
-            return Ok(Self::Centre);
+        match text {
+            "centre" => return Ok(Self::Centre),
+            "defined" => return Ok(Self::Defined),
+            _ => {}
         }
         let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
         match numbers.as_deref() {
@@ -147,9 +151,33 @@ impl FromStr for Crop {
             _ => Err(KeywordError::new(
                 "crop",
                 text,
-                "centre, or row, column, rows and columns such as \"10,20,256,512\"",
+                "centre, defined, or row, column, rows and columns such as \"10,20,256,512\"",
             )),
         }
+    }
+}
+
+impl FromStr for Mirror {
+    type Err = KeywordError;
+
+    /// Reads `x` or `y`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        among("mirror", text, [("x", Self::X), ("y", Self::Y)], "x or y")
+    }
+}
+
+impl FromStr for Window {
+    type Err = KeywordError;
+
+    /// Reads `hann`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        among("window", text, [("hann", Self::Hann)], "hann")
     }
 }
 
@@ -178,9 +206,9 @@ mod tests {
         for (text, error) in [
             ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz or gwy"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
-            ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane or quadric"),
-            ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, or row"),
-            ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, or row"),
+            ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane, quadric, sphere or cylinder"),
+            ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, defined, or row"),
+            ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, defined, or row"),
             ("skip".parse::<Undefined>().unwrap_err(), "undefined = \"skip\": expected no_contact (fill gives"),
             (
                 "2 Um".parse::<Fill>().unwrap_err(),

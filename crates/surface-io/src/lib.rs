@@ -113,7 +113,7 @@ pub use format::Format;
 pub use keyword::KeywordError;
 pub use npy::npy;
 pub use options::{Decimal, ReadOptions};
-pub use preprocessing::{Crop, Detrend, Fill, Preprocessing, Undefined};
+pub use preprocessing::{Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window};
 pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
 pub use scan::{Metadata, Scan};

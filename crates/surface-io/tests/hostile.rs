@@ -11,7 +11,8 @@ use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use surface_io::{
-    Crop, Decimal, Detrend, Fill, Format, Preprocessing, ReadOptions, Scan, SurfaceFile, Undefined,
+    Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan, SurfaceFile, Undefined,
+    Window,
 };
 
 thread_local! {
@@ -103,17 +104,39 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                 }
             };
             prop_assert!(!scan.metadata().to_string().is_empty());
-            for detrend in [Detrend::Nothing, Detrend::Plane, Detrend::Quadric] {
+            for detrend in
+                [Detrend::Nothing, Detrend::Plane, Detrend::Quadric, Detrend::Sphere, Detrend::Cylinder]
+            {
                 for (fill, undefined) in [
                     (None, None),
                     (Some(Fill::Neighbours), None),
                     (Some(Fill::Plane), None),
                     (None, Some(Undefined::NoContact)),
                 ] {
-                    for (crop, rows) in [(None, None), (Some(Crop::Centre), Some(1)), (Some(WINDOW), None)] {
-                        let preprocessing =
-                            Preprocessing { crop, undefined, fill, detrend, cells: None, rows };
-                        check(&scan, &preprocessing)?;
+                    for (crop, rows) in [
+                        (None, None),
+                        (Some(Crop::Centre), Some(1)),
+                        (Some(WINDOW), None),
+                        (Some(Crop::Defined), None),
+                    ] {
+                        let plain = Preprocessing {
+                            crop,
+                            undefined,
+                            fill,
+                            detrend,
+                            rows,
+                            ..Preprocessing::default()
+                        };
+                        check(&scan, &plain)?;
+                        let all = Preprocessing {
+                            outliers: Some(3.0),
+                            tip_radius: "0.5".parse().ok(),
+                            mirror: Some(Mirror::Y),
+                            quarter_turns: 1,
+                            window: Some(Window::Hann),
+                            ..plain
+                        };
+                        check(&scan, &all)?;
                     }
                 }
             }
