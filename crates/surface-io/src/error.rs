@@ -469,6 +469,17 @@ pub enum ContentError {
         /// The value.
         value: f64,
     },
+    /// Two maps that do not lie over each other.
+    #[error(
+        "two maps {} and {} long, the second moved by {offset}: expected one cell at least that both cover",
+        .sides[0], .sides[1]
+    )]
+    Apart {
+        /// Their sides along one axis.
+        sides: [f64; 2],
+        /// Distance of their middles.
+        offset: f64,
+    },
     /// The map was refused.
     #[error("{0}")]
     Map(#[source] contact_model::Error),

@@ -81,6 +81,7 @@
 //! filters.
 
 mod channel;
+mod composite;
 mod describe;
 mod detect;
 mod error;
@@ -107,6 +108,7 @@ mod vti;
 mod write;
 
 pub use channel::ChannelChoice;
+pub use composite::composite;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;

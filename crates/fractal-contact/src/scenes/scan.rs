@@ -101,6 +101,46 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     Ok(FileMap { map, metadata, notes })
 }
 
+/// Reads the surface of the second body, lays it on the first face to face, and adds both.
+pub(crate) fn read_second(
+    table: &Entries<'_>,
+    first: &HeightMap,
+    system: System,
+    directory: &Path,
+) -> Read<FileMap> {
+    let facing = match table.find("facing") {
+        Some(entry) => entry.choice(&[("x", Some(Mirror::X)), ("y", Some(Mirror::Y)), ("none", None)])?,
+        None => Some(Mirror::X),
+    };
+    let offset = match table.find("offset") {
+        None => [0.0; 2],
+        Some(entry) => match &entry.list()[..] {
+            [x, y] => [x.quantity(Dimension::LENGTH, system)?, y.quantity(Dimension::LENGTH, system)?],
+            _ => {
+                return Err(entry
+                    .diagnostic("`offset` has not two values")
+                    .with_help("of the middle of the second surface from that of the first, along x and y: [\"5 um\", \"0 um\"]"));
+            }
+        },
+    };
+    let FileMap { map, mut metadata, notes } = read_map(table, system, directory)?;
+    let (map, how) = match facing {
+        Some(Mirror::X) => (map.mirrored(), "x reversed"),
+        Some(Mirror::Y) => (map.transposed().mirrored().transposed(), "y reversed"),
+        None => (map, "as it is seen through its body"),
+    };
+    let sum = surface_io::composite(first, &map, offset).map_err(|e| table.diagnostic(e.to_string()))?;
+    metadata += &format!("\nthen       laid on the first: {how}, its middle moved by {offset:?}");
+    metadata += &format!(
+        "\ncomposite  {} rows of {} over {:e} x {:e}",
+        sum.rows(),
+        sum.columns(),
+        sum.size().x,
+        sum.size().y
+    );
+    Ok(FileMap { map: sum, metadata, notes })
+}
+
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points reaches 6.
 fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
     const ALONE: f64 = 8.0;
