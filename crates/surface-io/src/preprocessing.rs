@@ -146,10 +146,24 @@ impl Scan {
     /// # Errors
     /// As [`Scan::map`].
     pub fn preprocessed(&self, preprocessing: &Preprocessing) -> Result<Preprocessed> {
-        self.by_steps(preprocessing).map_err(Error::content(self.path()))
+        self.by_steps(self.heights().to_vec(), preprocessing).map_err(Error::content(self.path()))
     }
 
-    fn by_steps(&self, preprocessing: &Preprocessing) -> Result<Preprocessed, ContentError> {
+    /// [`Scan::preprocessed`] of a scan that is not needed any more: its heights become those of the map, so that memory holds them once.
+    ///
+    /// # Errors
+    /// As [`Scan::map`].
+    pub fn into_preprocessed(mut self, preprocessing: &Preprocessing) -> Result<Preprocessed> {
+        let heights = self.take_heights();
+        self.by_steps(heights, preprocessing).map_err(Error::content(self.path()))
+    }
+
+    /// The steps on the heights of the whole scan.
+    fn by_steps(
+        &self,
+        heights: Vec<f64>,
+        preprocessing: &Preprocessing,
+    ) -> Result<Preprocessed, ContentError> {
         let mut steps = Vec::new();
         if let (Some(_), Some(Undefined::NoContact)) = (preprocessing.fill, preprocessing.undefined) {
             let (first, second) = ("fill is given".into(), "undefined = \"no_contact\" too".into());
@@ -163,7 +177,7 @@ impl Scan {
         let (size, cell) = self.sides()?;
         // Cells that no map may have are refused before anything is fitted to them.
         Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
-        let (cells, mut heights) = self.part(preprocessing.crop, cell, &mut steps)?;
+        let (cells, mut heights) = self.part(heights, preprocessing.crop, cell, &mut steps)?;
         if let Some(times) = preprocessing.outliers {
             if !(times > 0.0 && times.is_finite()) {
                 let expected = "a number > 0 of robust standard deviations, such as 8";
@@ -301,6 +315,7 @@ impl Scan {
     /// The heights that are left by a crop.
     fn part(
         &self,
+        heights: Vec<f64>,
         crop: Option<Crop>,
         cell: [f64; 2],
         steps: &mut Vec<String>,
@@ -309,7 +324,7 @@ impl Scan {
         let (row, column, rows, columns) = match crop {
             None => {
                 let cells = Cells { columns: all_columns, rows: all_rows };
-                return Ok((cells, self.heights().to_vec()));
+                return Ok((cells, heights));
             }
             Some(Crop::Centre) => {
                 let side = (all_columns as f64 * cell[0]).min(all_rows as f64 * cell[1]);
@@ -319,9 +334,9 @@ impl Scan {
             }
             Some(Crop::Defined) => {
                 let cells = Cells { columns: all_columns, rows: all_rows };
-                let (rows, columns) = defects::largest_defined(cells, self.heights());
+                let (rows, columns) = defects::largest_defined(cells, &heights);
                 if rows.is_empty() {
-                    return Err(ContentError::AllUndefined { points: self.heights().len() });
+                    return Err(ContentError::AllUndefined { points: heights.len() });
                 }
                 (rows.start, columns.start, rows.len(), columns.len())
             }
@@ -336,7 +351,7 @@ impl Scan {
         }
         steps.push(format!("cropped to {columns} x {rows} points from row {row}, column {column} (from 0)"));
         let part = |row: &[f64]| row[column..column + columns].to_vec();
-        let rows_taken = self.heights().chunks_exact(all_columns).skip(row).take(rows);
+        let rows_taken = heights.chunks_exact(all_columns).skip(row).take(rows);
         Ok((Cells { columns, rows }, rows_taken.flat_map(part).collect()))
     }
 

@@ -188,6 +188,11 @@ impl Scan {
         (!height.is_nan()).then_some(height)
     }
 
+    /// The heights, which are no longer here.
+    pub(crate) fn take_heights(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.heights)
+    }
+
     pub(crate) fn heights(&self) -> &[f64] {
         &self.heights
     }
