@@ -1,6 +1,7 @@
 //! Small valid files of every binary format, written here byte by byte from the description of the format.
 
 mod gwy;
+mod nanoscope;
 
 /// A small file, and what is in it.
 #[derive(Debug)]
@@ -21,5 +22,5 @@ pub struct Small {
 
 /// All of them, two at least for each format: with undefined points or another type of numbers, where it has such.
 pub fn all() -> Vec<Small> {
-    [gwy::files()].into_iter().flatten().collect()
+    [gwy::files(), nanoscope::files()].into_iter().flatten().collect()
 }
