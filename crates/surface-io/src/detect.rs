@@ -6,8 +6,7 @@ use crate::instruments::READERS;
 use std::path::Path;
 
 /// First bytes of files that people try, with what they are and what to do.
-const FOREIGN: [(&[u8], &str, &str); 9] = [
-    (b"\x89HDF", "an HDF5 file", "export the data set of heights as NPY"),
+const FOREIGN: [(&[u8], &str, &str); 8] = [
     (b"II*\0", "a TIFF picture", "export the heights as text or NPY"),
     (b"MM\0*", "a TIFF picture", "export the heights as text or NPY"),
     (b"PK\x03\x04", "an archive (NPZ, XLSX)", "take the file of heights out of it"),

@@ -454,10 +454,16 @@ pub enum ContentError {
         value: f64,
     },
     /// A name whose ending is none of the formats that are written.
-    #[error("the name ends in {found:?}: expected npy, txt, xyz or vti")]
+    #[error("the name ends in {found:?}: expected npy, h5, txt, xyz or vti")]
     Ending {
         /// The ending, shortened.
         found: String,
+    },
+    /// The library of the format does not write the map.
+    #[error("cannot be written: {reason}")]
+    Unwritten {
+        /// Its reason.
+        reason: String,
     },
     /// A field with a number that is not finite (nor NaN at an undefined point, where those are written).
     #[error("{field}: value {at} (counted from 0) is {value}: expected finite numbers")]

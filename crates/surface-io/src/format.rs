@@ -14,11 +14,13 @@ pub enum Format {
     Xyz,
     /// Gwyddion's own file.
     Gwy,
+    /// HDF5, data sets of any program.
+    Hdf5,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Npy, Self::Text, Self::Xyz, Self::Gwy];
+    pub const ALL: [Self; 5] = [Self::Npy, Self::Text, Self::Xyz, Self::Gwy, Self::Hdf5];
 
     /// The word that stands for it in scenes and on command lines.
     pub fn word(self) -> &'static str {
@@ -31,6 +33,7 @@ impl Format {
             Self::Text => ("text", "a text matrix"),
             Self::Xyz => ("xyz", "XYZ points"),
             Self::Gwy => ("gwy", "GWY (Gwyddion)"),
+            Self::Hdf5 => ("hdf5", "HDF5"),
         }
     }
 }

@@ -110,6 +110,7 @@ pub use channel::ChannelChoice;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;
+pub use instruments::hdf5;
 pub use keyword::KeywordError;
 pub use npy::npy;
 pub use options::{Decimal, ReadOptions};
