@@ -2,6 +2,7 @@
 
 mod gwy;
 mod hdf5;
+mod tiff;
 
 pub use hdf5::hdf5;
 
@@ -9,4 +10,4 @@ use crate::npy;
 use crate::reader::Reader;
 
 /// All readers; no file is recognised by two.
-pub(crate) const READERS: &[Reader] = &[npy::READER, gwy::READER, hdf5::READER];
+pub(crate) const READERS: &[Reader] = &[npy::READER, gwy::READER, hdf5::READER, tiff::READER];

@@ -28,7 +28,9 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
     }
     let unit = table.heading.unit.clone();
     let heights_unit = declared.unit.as_ref().or(unit.as_ref());
-    let lateral = lateral_unit(declared, table, heights_unit)?;
+    let has_length = declared.height_scale.is_some()
+        || heights_unit.is_some_and(|u| u.dimension() == Dimension::LENGTH);
+    let lateral = lateral_unit(declared, table, has_length)?;
     let spacing = match declared.cell {
         Some(cell) => {
             let [x, y] = cell.both();
@@ -102,7 +104,7 @@ pub(crate) fn is_full_grid(table: &TextTable) -> bool {
 fn lateral_unit(
     declared: &ReadOptions,
     table: &TextTable,
-    heights: Option<&Unit>,
+    heights_have_length: bool,
 ) -> Result<Option<Unit>, ContentError> {
     let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
     if let (Some(a), Some(b)) = (file, given)
@@ -113,7 +115,7 @@ fn lateral_unit(
     }
     let unit = given.clone().or_else(|| file.clone());
     check_unit("lateral_unit", unit.as_ref())?;
-    if unit.is_none() && heights.is_some_and(|u| u.dimension() == Dimension::LENGTH) {
+    if unit.is_none() && heights_have_length {
         let remedy = "say lateral_unit = \"um\" or another unit of length";
         return Err(ContentError::Unspecified { what: "the unit of x and y", remedy });
     }

@@ -163,7 +163,7 @@ fn read(
     let own;
     let declared = if let StoredUnit::NoHeights(_) = channel.unit {
         // A unit of heights is not one of phases.
-        own = ReadOptions { unit: None, ..declared.clone() };
+        own = ReadOptions { unit: None, height_scale: None, ..declared.clone() };
         &own
     } else {
         declared
