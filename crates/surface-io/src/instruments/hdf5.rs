@@ -11,8 +11,8 @@
 //! - **Undefined points.** NaN, fill values, chunks that were never written.
 //!
 //! Read are the layouts compact, contiguous and chunked (deflate, shuffle, Fletcher-32, which is not checked); not read are other filters
-//! (LZF, SZIP, scale-offset, ZFP), chunks indexed by a B-tree of version 2, virtual data sets and data in other files, links to which are
-//! passed.
+//! (LZF, SZIP, scale-offset, ZFP), chunks indexed by a B-tree of version 2, data layouts of HDF5 2.0
+//! (version 5), virtual data sets and data in other files, links to which are passed.
 //!
 //! The crate hdf5-pure reads the metadata; its own reading of chunks allocates what a damaged header claims (4 GB for a file of 4 kB), so
 //! numbers are decoded here.
@@ -36,7 +36,7 @@ use hdf5_pure::{
     AttrValue, Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Group, Layout,
     ReadSeekSource,
 };
-use std::collections::{HashMap, HashSet};
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::io::Read as _;
 
 const FORMAT: Format = Format::Hdf5;
@@ -71,8 +71,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let mut channels = Vec::new();
     let mut taken = HashSet::new();
     let mut seen = 0;
-    let mut waiting: Vec<(String, Group, usize)> = vec![(String::new(), file.root(), 0)];
-    while let Some((path, group, depth)) = waiting.pop() {
+    // Level by level, so that what has two names gets its shorter one.
+    let mut waiting: VecDeque<(String, Group, usize)> = [(String::new(), file.root(), 0)].into();
+    while let Some((path, group, depth)) = waiting.pop_front() {
         for (name, dataset) in group.iter_datasets().map_err(|e| unreadable(source, &e))? {
             seen += 1;
             channels.extend(channel(source, &dataset, join(&path, &name), &mut taken)?);
@@ -80,7 +81,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         if depth < DEEPEST {
             for (name, inner) in group.iter_groups().map_err(|e| unreadable(source, &e))? {
                 seen += 1;
-                waiting.push((join(&path, &name), inner, depth + 1));
+                waiting.push_back((join(&path, &name), inner, depth + 1));
             }
         }
         if seen > MOST {
@@ -133,20 +134,25 @@ fn channel(
         AxisOrder::Rows => (lines, along),
         AxisOrder::Columns => (along, lines),
     };
-    let layout = dataset.layout().map_err(|e| unreadable(source, &e))?;
     let raw = |bytes| {
         let mut raw = RawHeights { order, ..RawHeights::new(FORMAT, bytes, number) };
         packed(&attributes, &mut raw);
         raw
     };
-    let (heights, details) = match layout {
-        Layout::Compact { .. } => {
+    let (heights, details) = match dataset.layout() {
+        Err(e) => {
+            // The other channels of the file are read all the same.
+            let said = e.to_string();
+            let heights = StoredHeights::Deferred(Box::new(move |source| Err(unreadable(source, &said))));
+            (heights, raw(Bytes::Held(Vec::new())).details())
+        }
+        Ok(Layout::Compact { .. }) => {
             let raw = raw(Bytes::Held(dataset.read_raw().map_err(|e| unreadable(source, &e))?));
             raw.check(source, rows, columns)?;
             let details = raw.details();
             (StoredHeights::Raw(raw), details)
         }
-        Layout::Contiguous { address: Some(address), .. } => {
+        Ok(Layout::Contiguous { address: Some(address), .. }) => {
             if !taken.insert(address) {
                 return Ok(None);
             }
@@ -155,7 +161,7 @@ fn channel(
             let details = raw.details();
             (StoredHeights::Raw(raw), details)
         }
-        Layout::Chunked { chunk_shape, .. } => {
+        Ok(Layout::Chunked { chunk_shape, .. }) => {
             let chunks = dataset.chunks().map_err(|e| e.to_string().chars().take(200).collect::<String>());
             if let Ok(Some(chunk)) = chunks.as_ref().map(|chunks| chunks.first())
                 && !taken.insert(chunk.address)
@@ -170,7 +176,7 @@ fn channel(
             (StoredHeights::Deferred(Box::new(move |source| pieces.read(source))), details)
         }
         // Never written, in other files, or mapped from other data sets.
-        _ => return Ok(None),
+        Ok(_) => return Ok(None),
     };
     Ok(Some(StoredChannel {
         name: Some(name),
