@@ -114,6 +114,7 @@ pub use instruments::hdf5;
 pub use keyword::KeywordError;
 pub use npy::npy;
 pub use options::{Decimal, ReadOptions};
+pub use points::{profile, profile_from_bytes};
 pub use preprocessing::{Crop, Detrend, Fill, Preprocessing, Undefined};
 pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};

@@ -1,6 +1,9 @@
 //! Points x, y, z on a regular grid, in any order.
 
 mod axis;
+mod profile;
+
+pub use profile::{profile, profile_from_bytes};
 
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit, check_unit};
 use crate::error::ContentError;
@@ -28,8 +31,8 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
     }
     let unit = table.heading.unit.clone();
     let heights_unit = declared.unit.as_ref().or(unit.as_ref());
-    let has_length = declared.height_scale.is_some()
-        || heights_unit.is_some_and(|u| u.dimension() == Dimension::LENGTH);
+    let has_length =
+        declared.height_scale.is_some() || heights_unit.is_some_and(|u| u.dimension() == Dimension::LENGTH);
     let lateral = lateral_unit(declared, table, has_length)?;
     let spacing = match declared.cell {
         Some(cell) => {
@@ -61,7 +64,7 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
             return Err(ContentError::Duplicate { first, second, at: [point[0], point[1]] });
         }
         taken[at] = table.lines[i];
-        heights[at] = point[2];
+        heights[at] = table.scale.unwrap_or(1.0) * point[2];
     }
     let extent = if declared.cell.is_some() {
         [None; 2]
@@ -71,7 +74,7 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
     let off = 100.0 * x.off.max(y.off);
     let off =
         if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
-    let details = format!("{points} points, {}{off}", table.delimiter);
+    let details = format!("{points} points, {}{off}", table.details());
     let (name, unit) = (table.heading.name.clone(), StoredUnit::heights(unit));
     Ok(StoredChannel { name, details, rows, columns, unit, extent, heights: StoredHeights::Read(heights) })
 }

@@ -210,7 +210,11 @@ fn scaled(
         return Err(ContentError::Contradiction { what: "unit of the heights", first, second });
     }
     if metres <= 0.0 {
-        return Err(ContentError::OutOfRange { what: "height_scale", value: metres, expected: "a length > 0" });
+        return Err(ContentError::OutOfRange {
+            what: "height_scale",
+            value: metres,
+            expected: "a length > 0",
+        });
     }
     for h in heights {
         *h *= metres;

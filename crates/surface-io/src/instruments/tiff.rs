@@ -74,9 +74,8 @@ fn check_directories(source: &mut Source<'_>) -> Result<()> {
             };
             let (count, value) = one[4..].split_at(held as usize);
             let length = number(count).checked_mul(size);
-            let end = length.and_then(|length| {
-                if length <= held { Some(0) } else { number(value).checked_add(length) }
-            });
+            let end = length
+                .and_then(|length| if length <= held { Some(0) } else { number(value).checked_add(length) });
             if end.is_none_or(|end| end > source.length()) {
                 let tag = number(&one[..2]);
                 return Err(source.wrong(FORMAT, at, format!("the values of tag {tag} inside the file")));
@@ -278,8 +277,7 @@ fn channel(
         3 => "float",
         _ => "uint",
     };
-    let (unit, scale, shift) =
-        description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
+    let (unit, scale, shift) = description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
     let image = Image { number, size: page.size, bytes: u64::from(bits / 8), reversed, scale, shift };
     Ok(Some(StoredChannel {
         name: (!alone).then(|| format!("image {number}")),
@@ -370,14 +368,19 @@ impl Image {
                 DecodingResult::I16(all) => all.get(k).map(|&n| f64::from(n)),
                 DecodingResult::U32(all) => all.get(k).map(|&n| f64::from(n)),
                 DecodingResult::I32(all) => all.get(k).map(|&n| f64::from(n)),
-                DecodingResult::U64(all) => all.get(k).map(|&n| exact(n.into())).transpose().map_err(inexact)?,
-                DecodingResult::I64(all) => all.get(k).map(|&n| exact(n.into())).transpose().map_err(inexact)?,
+                DecodingResult::U64(all) => {
+                    all.get(k).map(|&n| exact(n.into())).transpose().map_err(inexact)?
+                }
+                DecodingResult::I64(all) => {
+                    all.get(k).map(|&n| exact(n.into())).transpose().map_err(inexact)?
+                }
                 DecodingResult::F16(all) => all.get(k).map(|&n| f64::from(n)),
                 DecodingResult::F32(all) => all.get(k).map(|&n| f64::from(n)),
                 DecodingResult::F64(all) => all.get(k).copied(),
                 DecodingResult::U8(_) | DecodingResult::I8(_) => None,
             };
-            let number = number.ok_or_else(|| unreadable(&format!("{tall} x {wide} numbers in a strip or tile")))?;
+            let number =
+                number.ok_or_else(|| unreadable(&format!("{tall} x {wide} numbers in a strip or tile")))?;
             let scaled = self.scale * number;
             heights[row * columns + column] =
                 if self.shift.abs() > 0.0 { scaled + self.shift } else { scaled };

@@ -14,15 +14,19 @@ pub fn files() -> Vec<Small> {
         heights,
         compressed: true,
     };
-    let floats: Vec<u8> = [0.0_f32, 1.0, 2.0, f32::NAN, 4.0, 5.0].iter().flat_map(|f| f.to_be_bytes()).collect();
+    let floats: Vec<u8> =
+        [0.0_f32, 1.0, 2.0, f32::NAN, 4.0, 5.0].iter().flat_map(|f| f.to_be_bytes()).collect();
     // 3.5 pixels per micrometre along x, 2 along y.
-    let described = "ImageJ=1.54f\nunit=\\u00B5m\nspacing=7.0\ncf=0\nc0=-10.0\nc1=0.5\nvunit=nm\nmin=0.0\nmax=5.0\n";
-    let calibrated = Image { description: described, resolution: Some([[7, 2], [2, 1]]), ..Image::new(16, 1) };
+    let described =
+        "ImageJ=1.54f\nunit=\\u00B5m\nspacing=7.0\ncf=0\nc0=-10.0\nc1=0.5\nvunit=nm\nmin=0.0\nmax=5.0\n";
+    let calibrated =
+        Image { description: described, resolution: Some([[7, 2], [2, 1]]), ..Image::new(16, 1) };
     vec![
         // 72 dpi, two strips, upside down.
         small(
             "tiff",
-            Image { dpi: true, orientation: 4, ..Image::new(16, 2) }.file(false, &[&words(&[3, 4, 5]), &words(&[0, 1, 2])]),
+            Image { dpi: true, orientation: 4, ..Image::new(16, 2) }
+                .file(false, &[&words(&[3, 4, 5]), &words(&[0, 1, 2])]),
             None,
             count,
         ),
