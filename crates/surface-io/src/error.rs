@@ -126,9 +126,9 @@ pub enum ContentError {
         /// The format that it looks like.
         found: Format,
     },
-    /// Two columns, the first of equally spaced numbers: x and z along a line.
+    /// Two columns, the first of ascending numbers: x and z along a line.
     #[error(
-        "{lines} lines of two numbers, the first of them equally spaced: a profile x, z along a line, which is no map: \
+        "{lines} lines of two numbers, the first of them ascending: a profile x, z along a line, which is no map: \
          surface_io::profile reads it (a map of two columns: say format = \"text\")"
     )]
     Profile {
