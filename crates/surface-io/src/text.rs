@@ -133,7 +133,8 @@ impl TextTable {
         let mut heading = Heading::default();
         let numbers = Numbers { decimal };
         // The first and the last line of a header without marks of comments.
-        let (mut first, mut last): (Option<(usize, &[u8])>, Option<(usize, &[u8])>) = (None, None);
+        let mut first: Option<(usize, &[u8])> = None;
+        let mut last = None;
         for (i, line) in bytes.split(|&b| b == end).enumerate().skip(declared.skip_lines) {
             let (data, comment) = without_comment(line);
             if data.trim_ascii().is_empty() {

@@ -299,9 +299,15 @@ impl Pieces {
         let [tall, wide] = self.chunk;
         let most = PACKED.saturating_mul(source.length());
         let bytes = tall.checked_mul(wide).and_then(|n| n.checked_mul(size as u64)).unwrap_or(u64::MAX);
-        if bytes == 0 || bytes > most {
-            let expected = format!("chunks of 1 to {most} bytes in {}", self.name);
+        // All of them together: they may share their bytes, and reach far beyond the data set.
+        let count = |all: usize, of_one: u64| (all as u64).div_ceil(of_one.max(1));
+        let count = u128::from(count(self.lines, tall)) * u128::from(count(self.along, wide));
+        if bytes == 0 || count.checked_mul(bytes.into()).is_none_or(|all| all > most.into()) {
+            let expected = format!("chunks of {tall} x {wide} numbers in {} bytes", source.length());
             return Err(source.wrong(FORMAT, 0, expected));
+        }
+        if chunks.len() as u128 > count {
+            return Err(source.wrong(FORMAT, 0, format!("{count} chunks at most, found {}", chunks.len())));
         }
         let (rows, columns) = match self.raw.order {
             AxisOrder::Rows => (self.lines, self.along),

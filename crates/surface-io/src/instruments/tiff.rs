@@ -123,7 +123,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let alone = pages.len() == 1;
     let mut channels = Vec::new();
     for (number, page) in pages.into_iter().enumerate() {
-        if let Some(channel) = channel(source, number, page, description.as_ref(), alone)? {
+        if let Some(channel) = channel(source, number, &page, description.as_ref(), alone)? {
             channels.push(channel);
         }
     }
@@ -247,7 +247,7 @@ impl ImageJ {
 fn channel(
     source: &Source<'_>,
     number: usize,
-    page: Page,
+    page: &Page,
     description: Option<&ImageJ>,
     alone: bool,
 ) -> Result<Option<StoredChannel>> {
@@ -285,7 +285,7 @@ fn channel(
         rows: rows as usize,
         columns: columns as usize,
         unit,
-        extent: description.map_or([None; 2], |description| description.extent(&page)),
+        extent: description.map_or([None; 2], |description| description.extent(page)),
         heights: StoredHeights::Deferred(Box::new(move |source| image.read(source))),
     }))
 }
@@ -332,8 +332,10 @@ impl Image {
                 decoder.get_tag_unsigned(Tag::TileLength).map_err(failed)?,
             ],
         };
-        let bytes = u64::from(wide).checked_mul(tall.into()).and_then(|n| n.checked_mul(self.bytes));
-        if bytes.is_none_or(|bytes| bytes == 0 || bytes > most) {
+        // All of them together: they may share their bytes, and reach far beyond the image.
+        let across = |size: u32, of_one: u32| u128::from(size.div_ceil(of_one.max(1))) * u128::from(of_one);
+        let all = across(columns, wide) * across(rows, tall);
+        if all == 0 || all.checked_mul(self.bytes.into()).is_none_or(|bytes| bytes > most.into()) {
             return Err(unreadable(&format!("a strip or tile of {wide} x {tall} numbers")));
         }
         for (j, top) in (0..rows).step_by(tall as usize).enumerate() {

@@ -47,6 +47,9 @@ pub(crate) struct Side {
     pub(crate) rounding: f64,
 }
 
+/// What a header says of each axis: the length of the map, and that of a cell.
+type SidesAndCells = ([Option<Side>; 2], [Option<Extent>; 2]);
+
 /// Longest line that is looked at, in bytes.
 const LONGEST: usize = 200;
 
@@ -227,10 +230,7 @@ impl Heading {
     ///
     /// # Errors
     /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two of its lengths differ.
-    pub(super) fn of_matrix(
-        &self,
-        count: [usize; 2],
-    ) -> Result<([Option<Side>; 2], [Option<Extent>; 2]), ContentError> {
+    pub(super) fn of_matrix(&self, count: [usize; 2]) -> Result<SidesAndCells, ContentError> {
         let mut sides = self.sides();
         let mut cells = [None; 2];
         for axis in 0..2 {

@@ -47,8 +47,9 @@ impl Numbers {
             Err(ContentError::Infinite { .. }) => true,
             read => read.is_ok(),
         };
-        !(first.is_ascii_digit() || matches!(first, b'+' | b'-' | b'.' | b',' | b';'))
-            && !line.split(|b| matches!(b, b' ' | b'\t' | b';' | b',' | b'\r')).all(number)
+        let begins = first.is_ascii_digit() || matches!(first, b'+' | b'-' | b'.' | b',' | b';');
+        let mut tokens = line.split(|b| matches!(b, b' ' | b'\t' | b';' | b',' | b'\r'));
+        !begins && tokens.any(|token| !number(token))
     }
 
     fn kind(self, text: Option<&str>) -> NumberKind {

@@ -326,7 +326,7 @@ fn a_profile_is_no_map() {
     let declared = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
     let map = Scan::from_bytes("a.txt", text.as_bytes(), &declared).unwrap();
     assert_eq!((map.metadata().rows, map.metadata().columns), (20, 2));
-    let uneven: String = (0..20).map(|i| format!("{} 1\n", i * i)).collect();
+    let uneven = (0..20).map(|i| format!("{} 1\n", i * i)).collect::<Vec<_>>().concat();
     assert_eq!(problem(uneven.as_bytes()), ContentError::Profile { lines: 20 });
     // Few lines, and a first column that does not ascend.
     for map in [(0..8).map(line).collect(), (0..20).map(|i| line((i * i) % 19)).collect::<String>()] {
