@@ -21,6 +21,8 @@ use hdf5_pure::{AttrValue, FileBuilder};
 /// ```
 pub fn hdf5(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> {
     let text = |text: &str| AttrValue::AsciiString(text.to_owned());
+    // Of any length, as H5DSget_label takes them for granted: it crashes on others.
+    let labels = AttrValue::VarLenAsciiStringArray(vec!["y".to_owned(), "x".to_owned()]);
     let mut file = FileBuilder::new();
     file.create_dataset("heights")
         .with_f64_data(&with_nan(map))
@@ -28,6 +30,6 @@ pub fn hdf5(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> {
         .set_attr(UNIT, text(metric.name()))
         .set_attr(SIZE, AttrValue::F64Array(vec![map.size().x, map.size().y]))
         .set_attr(SIZE_UNIT, text(metric.name()))
-        .set_attr(LABELS, AttrValue::AsciiStringArray(vec!["y".to_owned(), "x".to_owned()]));
+        .set_attr(LABELS, labels);
     file.finish().map_err(|e| ContentError::Unwritten { reason: e.to_string() })
 }
