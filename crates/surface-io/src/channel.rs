@@ -240,10 +240,7 @@ impl RawHeights {
         /// Bytes that are read at a time.
         const CHUNK: usize = 1 << 16;
         self.check(source, rows, columns)?;
-        let mut heights = Vec::new();
-        let refused = |_| ContentError::Memory { bytes: 8 * (rows as u128 * columns as u128) };
-        heights.try_reserve_exact(rows * columns).map_err(refused).map_err(|e| source.content(e))?;
-        heights.resize(rows * columns, 0.0);
+        let mut heights = undefined_heights(source, rows, columns)?;
         let (along, lines) = self.lines(rows, columns);
         let size = self.number.bytes();
         let line_bytes = self.line_bytes.unwrap_or(0).max((along * size) as u64);
@@ -262,21 +259,34 @@ impl RawHeights {
                     Bytes::Held(bytes) => &bytes[from as usize..][..count * size],
                 };
                 for (i, raw) in bytes.chunks_exact(size).enumerate() {
-                    let (row, column) = match self.order {
-                        AxisOrder::Rows => (line, done + i),
-                        AxisOrder::Columns => (done + i, line),
-                    };
-                    let row = if self.reversed[1] { rows - 1 - row } else { row };
-                    let column = if self.reversed[0] { columns - 1 - column } else { column };
-                    let number = self.number.decode(raw).map_err(|value| {
-                        source.content(ContentError::Inexact { place: Place::Cell { row, column }, value })
-                    })?;
-                    heights[row * columns + column] = self.height(number);
+                    self.put(source, &mut heights, [rows, columns], [line, done + i], raw)?;
                 }
                 done += count;
             }
         }
         Ok(heights)
+    }
+
+    /// The height of a number at a place of a line, put where it belongs.
+    pub(crate) fn put(
+        &self,
+        source: &Source<'_>,
+        heights: &mut [f64],
+        [rows, columns]: [usize; 2],
+        [line, at]: [usize; 2],
+        raw: &[u8],
+    ) -> Result<()> {
+        let (row, column) = match self.order {
+            AxisOrder::Rows => (line, at),
+            AxisOrder::Columns => (at, line),
+        };
+        let row = if self.reversed[1] { rows - 1 - row } else { row };
+        let column = if self.reversed[0] { columns - 1 - column } else { column };
+        let number = self.number.decode(raw).map_err(|value| {
+            source.content(ContentError::Inexact { place: Place::Cell { row, column }, value })
+        })?;
+        heights[row * columns + column] = self.height(number);
+        Ok(())
     }
 
     fn height(&self, number: f64) -> f64 {
@@ -287,6 +297,15 @@ impl RawHeights {
         let scaled = self.scale * number;
         if self.shift.abs() > 0.0 { scaled + self.shift } else { scaled }
     }
+}
+
+/// A map of undefined points, where there is memory for it.
+pub(crate) fn undefined_heights(source: &Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
+    let mut heights = Vec::new();
+    let refused = |_| ContentError::Memory { bytes: 8 * (rows as u128 * columns as u128) };
+    heights.try_reserve_exact(rows * columns).map_err(refused).map_err(|e| source.content(e))?;
+    heights.resize(rows * columns, f64::NAN);
+    Ok(heights)
 }
 
 impl StoredChannel {

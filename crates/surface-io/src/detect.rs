@@ -6,10 +6,7 @@ use crate::instruments::READERS;
 use std::path::Path;
 
 /// First bytes of files that people try, with what they are and what to do.
-const FOREIGN: [(&[u8], &str, &str); 9] = [
-    (b"\x89HDF", "an HDF5 file", "export the data set of heights as NPY"),
-    (b"II*\0", "a TIFF picture", "export the heights as text or NPY"),
-    (b"MM\0*", "a TIFF picture", "export the heights as text or NPY"),
+const FOREIGN: [(&[u8], &str, &str); 6] = [
     (b"PK\x03\x04", "an archive (NPZ, XLSX)", "take the file of heights out of it"),
     (b"\x89PNG", "a PNG picture", "grey values are no heights; export the heights as text or NPY"),
     (b"\xff\xd8\xff", "a JPEG picture", "grey values are no heights; export the heights as text or NPY"),

@@ -126,10 +126,10 @@ pub enum ContentError {
         /// The format that it looks like.
         found: Format,
     },
-    /// Two columns, the first of equally spaced numbers: x and z along a line.
+    /// Two columns, the first of ascending numbers: x and z along a line.
     #[error(
-        "{lines} lines of two numbers, the first of them equally spaced: a profile x, z along a line, which is no map \
-         (a map of two columns: say format = \"text\")"
+        "{lines} lines of two numbers, the first of them ascending: a profile x, z along a line, which is no map: \
+         surface_io::profile reads it (a map of two columns: say format = \"text\")"
     )]
     Profile {
         /// Lines.
@@ -284,8 +284,26 @@ pub enum ContentError {
         /// Values found.
         found: usize,
     },
+    /// Lines without two values where a profile is read.
+    #[error("line {line} has {found} values: expected x and z of one point of a profile")]
+    NotProfile {
+        /// Line, from 1.
+        line: usize,
+        /// Values found.
+        found: usize,
+    },
+    /// A profile with points without a height, or with places without a point.
+    #[error(
+        "{undefined} of the {points} places of the profile have no height: expected one at each; cut it where it is whole"
+    )]
+    Gaps {
+        /// Places without a height.
+        undefined: usize,
+        /// All places.
+        points: usize,
+    },
     /// A point without a coordinate.
-    #[error("line {line} has no {axis}: expected x, y and z of a point (z may be missing)")]
+    #[error("line {line} has no {axis}: expected all coordinates of a point (z may be missing)")]
     Coordinate {
         /// `x` or `y`.
         axis: char,
@@ -454,10 +472,16 @@ pub enum ContentError {
         value: f64,
     },
     /// A name whose ending is none of the formats that are written.
-    #[error("the name ends in {found:?}: expected npy, txt, xyz or vti")]
+    #[error("the name ends in {found:?}: expected npy, h5, txt, xyz or vti")]
     Ending {
         /// The ending, shortened.
         found: String,
+    },
+    /// The library of the format does not write the map.
+    #[error("cannot be written: {reason}")]
+    Unwritten {
+        /// Its reason.
+        reason: String,
     },
     /// A field with a number that is not finite (nor NaN at an undefined point, where those are written).
     #[error("{field}: value {at} (counted from 0) is {value}: expected finite numbers")]

@@ -16,11 +16,16 @@ pub enum Format {
     Gwy,
     /// Nanoscope, of Digital Instruments, Veeco and Bruker.
     Nanoscope,
+    /// HDF5, data sets of any program.
+    Hdf5,
+    /// Grey images of numbers.
+    Tiff,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Npy, Self::Text, Self::Xyz, Self::Gwy, Self::Nanoscope];
+    pub const ALL: [Self; 7] =
+        [Self::Npy, Self::Text, Self::Xyz, Self::Gwy, Self::Nanoscope, Self::Hdf5, Self::Tiff];
 
     /// The word that stands for it in scenes and on command lines.
     pub fn word(self) -> &'static str {
@@ -34,6 +39,8 @@ impl Format {
             Self::Xyz => ("xyz", "XYZ points"),
             Self::Gwy => ("gwy", "GWY (Gwyddion)"),
             Self::Nanoscope => ("nanoscope", "Nanoscope"),
+            Self::Hdf5 => ("hdf5", "HDF5"),
+            Self::Tiff => ("tiff", "TIFF"),
         }
     }
 }

@@ -62,7 +62,7 @@ impl FromStr for Format {
 }
 
 /// All words of [`Format`].
-const FORMATS: &str = "npy, text, xyz, gwy or nanoscope";
+const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5 or tiff";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!("1,2,3,4".parse(), Ok(Crop::Window { row: 1, column: 2, rows: 3, columns: 4 }));
         assert_eq!("no_contact".parse(), Ok(Undefined::NoContact));
         for (text, error) in [
-            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz, gwy or nanoscope"),
+            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz, gwy"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
             ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane, quadric, sphere or cylinder"),
             ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, defined, or row"),

@@ -26,11 +26,13 @@
 //! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
 //!   a text matrix; three columns without either are points or a matrix by their comments, points where the first two are all
 //!   places of a grid, or else an error; two
-//!   columns, the first of equally spaced numbers, are a profile, which is refused by its name. Other
-//!   files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
+//!   columns, the first of ascending numbers, are a profile, which is refused by its name ([`profile`] reads it). Other
+//!   files that people try (archives, pictures) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
-//!   Comments begin with `#` or `%`; of them `Width`, `Height`, `Value units` and `Lateral units` count, as
-//!   Gwyddion's exports and this crate write them. Decimal commas are read on request ([`Decimal::Comma`]). An
+//!   Comments begin with `#` or `%`; lines before the numbers that begin with a word are a header like them. Of both count `Width`,
+//!   `Height`, `Value units` and `Lateral units`, as Gwyddion's exports and this crate write them, and the keys of SPIP, Nanoscope and
+//!   profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...); two that differ are an error, and so are other numbers of columns
+//!   or rows than there are. Decimal commas are read on request ([`Decimal::Comma`]), or where every comma can be nothing else. An
 //!   empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined points.
 //! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
 //!   is a header's width or height without the other, and two that are square cells within the decimals that
@@ -44,6 +46,7 @@
 //! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any
 //!   unit both stay as they are. What is given beside what the file says must agree with it within the digits
 //!   of a header (0.5 %).
+//! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`] only.
 //! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both),
 //!   infinite heights always.
 //! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row,
@@ -53,7 +56,7 @@
 //!
 //! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them
 //! ([`Quantity`]); heights of a scan are converted with one rounding. What is written is read again to the
-//! bit ([`text()`], [`xyz`], [`npy`]); so are the sides in text and XYZ. Trends are exact to 1e-13 of the
+//! bit ([`text()`], [`xyz`], [`npy`], [`hdf5`]); so are the sides in text and XYZ. Trends are exact to 1e-13 of the
 //! range of the heights, filled points to 1e-10.
 //!
 //! # Hostile files
@@ -72,7 +75,7 @@
 //!
 //! # Writing
 //!
-//! [`write_map`] by the name's ending; [`npy`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes,
+//! [`write_map`] by the name's ending; [`npy`], [`hdf5`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes,
 //! and [`files::write_whole`] puts them into a file whole or not at all.
 //!
 //! # What it does not do
@@ -112,9 +115,11 @@ pub use composite::composite;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;
+pub use instruments::hdf5;
 pub use keyword::KeywordError;
 pub use npy::npy;
 pub use options::{Decimal, ReadOptions};
+pub use points::{profile, profile_from_bytes};
 pub use preprocessing::{Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window};
 pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};

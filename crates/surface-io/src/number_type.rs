@@ -84,7 +84,8 @@ impl fmt::Display for NumberType {
     }
 }
 
-fn exact(value: i128) -> Result<f64, i128> {
+/// The integer as a double, or the integer that no double holds.
+pub(crate) fn exact(value: i128) -> Result<f64, i128> {
     if value.abs() <= EXACT || (value as f64) as i128 == value { Ok(value as f64) } else { Err(value) }
 }
 

@@ -14,6 +14,8 @@ pub struct ReadOptions {
     pub channel: Option<ChannelChoice>,
     /// Unit of the heights.
     pub unit: Option<Unit>,
+    /// Height of one count: of one grey level or of one unit of a number that has none, such as `0.25 nm`.
+    pub height_scale: Option<Quantity>,
     /// Unit of x and y of points.
     pub lateral_unit: Option<Unit>,
     /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights
@@ -40,6 +42,7 @@ impl Default for ReadOptions {
             format: None,
             channel: None,
             unit: None,
+            height_scale: None,
             lateral_unit: None,
             size: None,
             cell: None,

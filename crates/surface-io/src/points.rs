@@ -1,6 +1,9 @@
 //! Points x, y, z on a regular grid, in any order.
 
 mod axis;
+mod profile;
+
+pub use profile::{profile, profile_from_bytes};
 
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit, check_unit};
 use crate::error::ContentError;
@@ -28,7 +31,9 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
     }
     let unit = table.heading.unit.clone();
     let heights_unit = declared.unit.as_ref().or(unit.as_ref());
-    let lateral = lateral_unit(declared, table, heights_unit)?;
+    let has_length =
+        declared.height_scale.is_some() || heights_unit.is_some_and(|u| u.dimension() == Dimension::LENGTH);
+    let lateral = lateral_unit(declared, table, has_length)?;
     let spacing = match declared.cell {
         Some(cell) => {
             let [x, y] = cell.both();
@@ -59,7 +64,7 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
             return Err(ContentError::Duplicate { first, second, at: [point[0], point[1]] });
         }
         taken[at] = table.lines[i];
-        heights[at] = point[2];
+        heights[at] = table.scale.unwrap_or(1.0) * point[2];
     }
     let extent = if declared.cell.is_some() {
         [None; 2]
@@ -69,7 +74,7 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
     let off = 100.0 * x.off.max(y.off);
     let off =
         if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
-    let details = format!("{points} points, {}{off}", table.delimiter);
+    let details = format!("{points} points, {}{off}", table.details());
     let (name, unit) = (table.heading.name.clone(), StoredUnit::heights(unit));
     Ok(StoredChannel { name, details, rows, columns, unit, extent, heights: StoredHeights::Read(heights) })
 }
@@ -102,7 +107,7 @@ pub(crate) fn is_full_grid(table: &TextTable) -> bool {
 fn lateral_unit(
     declared: &ReadOptions,
     table: &TextTable,
-    heights: Option<&Unit>,
+    heights_have_length: bool,
 ) -> Result<Option<Unit>, ContentError> {
     let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
     if let (Some(a), Some(b)) = (file, given)
@@ -113,7 +118,7 @@ fn lateral_unit(
     }
     let unit = given.clone().or_else(|| file.clone());
     check_unit("lateral_unit", unit.as_ref())?;
-    if unit.is_none() && heights.is_some_and(|u| u.dimension() == Dimension::LENGTH) {
+    if unit.is_none() && heights_have_length {
         let remedy = "say lateral_unit = \"um\" or another unit of length";
         return Err(ContentError::Unspecified { what: "the unit of x and y", remedy });
     }

@@ -6,7 +6,7 @@ use crate::extent;
 use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::provenance::{Origin, Sourced, contradiction, sourced};
-use crate::quantity::{Quantity, Unit};
+use crate::quantity::{Dimension, Quantity, Unit};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -111,6 +111,18 @@ impl Scan {
                 }
             }
         }
+        check_unit("unit", declared.unit.as_ref())?;
+        let (unit, no_heights) = match unit {
+            StoredUnit::Unknown => (None, None),
+            StoredUnit::Heights(unit) => (Some(unit), None),
+            StoredUnit::NoHeights(unit) => (None, Some(unit.unwrap_or_default())),
+        };
+        let mut unit = sourced(unit, declared.unit.clone(), |a, b| {
+            a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
+        })?;
+        if let Some(scale) = declared.height_scale {
+            unit = Some(scaled(scale, unit.as_ref(), &mut heights)?);
+        }
         let (mut undefined, mut range) = (0, None);
         for (i, &h) in heights.iter().enumerate() {
             if h.is_infinite() {
@@ -124,15 +136,6 @@ impl Scan {
                 range = Some([h.min(low), h.max(high)]);
             }
         }
-        check_unit("unit", declared.unit.as_ref())?;
-        let (unit, no_heights) = match unit {
-            StoredUnit::Unknown => (None, None),
-            StoredUnit::Heights(unit) => (Some(unit), None),
-            StoredUnit::NoHeights(unit) => (None, Some(unit.unwrap_or_default())),
-        };
-        let unit = sourced(unit, declared.unit.clone(), |a, b| {
-            a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
-        })?;
         let count = [columns, rows];
         let given = extent::given(declared, count)?;
         let extents = match (given, extent) {
@@ -196,6 +199,33 @@ impl Scan {
     pub(crate) fn heights(&self) -> &[f64] {
         &self.heights
     }
+}
+
+/// Multiplies numbers without a unit by the height of one of them; they are metres then.
+fn scaled(
+    scale: Quantity,
+    unit: Option<&Sourced<Unit>>,
+    heights: &mut [f64],
+) -> Result<Sourced<Unit>, ContentError> {
+    let metres = scale
+        .expect(Dimension::LENGTH)
+        .map_err(|source| ContentError::Quantity { what: "height_scale", source })?;
+    if let Some(unit) = unit {
+        let (first, second) = (format!("{} {}", unit.value, unit.origin), format!("height_scale = {scale}"));
+        return Err(ContentError::Contradiction { what: "unit of the heights", first, second });
+    }
+    if metres <= 0.0 {
+        return Err(ContentError::OutOfRange {
+            what: "height_scale",
+            value: metres,
+            expected: "a length > 0",
+        });
+    }
+    for h in heights {
+        *h *= metres;
+    }
+    let value = "m".parse().map_err(|source| ContentError::Quantity { what: "height_scale", source })?;
+    Ok(Sourced { value, origin: Origin::Caller })
 }
 
 /// Rms height of the defined points about their mean: about the middle of the range and in units of half of

@@ -3,12 +3,52 @@
 use crate::error::{ContentError, Error, Result};
 use crate::format::Format;
 use crate::number_type::NumberType;
-use std::io::{Read, Seek, SeekFrom};
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// What files and byte arrays can both do.
-pub(crate) trait Input: Read + Seek {}
-impl<T: Read + Seek> Input for T {}
+pub(crate) trait Input: Read + Seek {
+    /// The same bytes without a lifetime, for readers of other crates that keep what they read from: a second handle of a file, a copy of
+    /// bytes.
+    fn detached(&self) -> std::io::Result<Detached>;
+}
+
+impl Input for BufReader<File> {
+    fn detached(&self) -> std::io::Result<Detached> {
+        self.get_ref().try_clone().map(|file| Detached::File(BufReader::new(file)))
+    }
+}
+
+impl Input for Cursor<&[u8]> {
+    fn detached(&self) -> std::io::Result<Detached> {
+        Ok(Detached::Bytes(Cursor::new(self.get_ref().to_vec())))
+    }
+}
+
+/// An input of its own; the place in a file is shared with the one that it comes from, so that both go to an offset before they read.
+pub(crate) enum Detached {
+    File(BufReader<File>),
+    Bytes(Cursor<Vec<u8>>),
+}
+
+impl Read for Detached {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(buffer),
+            Self::Bytes(bytes) => bytes.read(buffer),
+        }
+    }
+}
+
+impl Seek for Detached {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        match self {
+            Self::File(file) => file.seek(to),
+            Self::Bytes(bytes) => bytes.seek(to),
+        }
+    }
+}
 
 /// An opened file of a known length.
 pub(crate) struct Source<'a> {
@@ -71,6 +111,11 @@ impl<'a> Source<'a> {
     pub(crate) fn whole(&mut self) -> Result<&mut (dyn Input + 'a)> {
         self.input.seek(SeekFrom::Start(0)).map_err(Error::system("read", &self.path))?;
         Ok(&mut *self.input)
+    }
+
+    /// The input without its lifetime, for readers of other crates that keep it.
+    pub(crate) fn detached(&self) -> Result<Detached> {
+        self.input.detached().map_err(Error::system("read", &self.path))
     }
 
     /// An error about this file.

@@ -47,13 +47,8 @@ impl<'a> SurfaceFile<'a> {
     /// # Errors
     /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the headers.
     pub fn open(path: &Path, declared: &ReadOptions) -> Result<Self> {
-        // Looked at before it is opened: opening a pipe waits for a writer.
-        let about = std::fs::metadata(path).map_err(Error::system("open", path))?;
-        if !about.is_file() {
-            return Err(Error::content(path)(ContentError::NotAFile));
-        }
-        let file = File::open(path).map_err(Error::system("open", path))?;
-        Self::new(path, BufReader::new(file), about.len(), declared)
+        let (input, length) = opened(path)?;
+        Self::new(path, input, length, declared)
     }
 
     /// Opens the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's name.
@@ -65,13 +60,7 @@ impl<'a> SurfaceFile<'a> {
     }
 
     fn new(path: &Path, input: impl Input + 'a, length: u64, declared: &ReadOptions) -> Result<Self> {
-        if length > declared.largest_bytes {
-            let problem = ContentError::TooLarge { bytes: length, largest: declared.largest_bytes };
-            return Err(Error::content(path)(problem));
-        }
-        let mut source = Source::new(path, input, length);
-        let start = source.start(SNIFF)?;
-        let format = detect(declared.format, path, &start, length).map_err(Error::content(path))?;
+        let (mut source, format) = told(path, input, length, declared)?;
         let (format, channels) = match format {
             None | Some(Format::Text | Format::Xyz) => {
                 let (format, channel) = of_text(&mut source, format, declared)?;
@@ -123,6 +112,34 @@ impl<'a> SurfaceFile<'a> {
     }
 }
 
+/// An opened file and its length.
+pub(crate) fn opened(path: &Path) -> Result<(BufReader<File>, u64)> {
+    // Looked at before it is opened: opening a pipe waits for a writer.
+    let about = std::fs::metadata(path).map_err(Error::system("open", path))?;
+    if !about.is_file() {
+        return Err(Error::content(path)(ContentError::NotAFile));
+    }
+    let file = File::open(path).map_err(Error::system("open", path))?;
+    Ok((BufReader::new(file), about.len()))
+}
+
+/// The source of an input that is not too long, and its format; `None` for text that may be a matrix or points.
+pub(crate) fn told<'a>(
+    path: &Path,
+    input: impl Input + 'a,
+    length: u64,
+    declared: &ReadOptions,
+) -> Result<(Source<'a>, Option<Format>)> {
+    if length > declared.largest_bytes {
+        let problem = ContentError::TooLarge { bytes: length, largest: declared.largest_bytes };
+        return Err(Error::content(path)(problem));
+    }
+    let mut source = Source::new(path, input, length);
+    let start = source.start(SNIFF)?;
+    let format = detect(declared.format, path, &start, length).map_err(Error::content(path))?;
+    Ok((source, format))
+}
+
 impl Scan {
     /// Reads a file of one channel, or the channel that [`ReadOptions::channel`] names.
     ///
@@ -163,7 +180,7 @@ fn read(
     let own;
     let declared = if let StoredUnit::NoHeights(_) = channel.unit {
         // A unit of heights is not one of phases.
-        own = ReadOptions { unit: None, ..declared.clone() };
+        own = ReadOptions { unit: None, height_scale: None, ..declared.clone() };
         &own
     } else {
         declared

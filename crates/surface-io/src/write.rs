@@ -1,7 +1,8 @@
-//! Maps as text.
+//! Maps as files: text, and whatever the name's ending asks for.
 
 use crate::channel::check_unit;
 use crate::error::{ContentError, Error, Result};
+use crate::instruments::hdf5;
 use crate::lines::Lines;
 use crate::quantity::{Dimension, Unit};
 use crate::vti::{DataArray, Encoding, vti};
@@ -35,7 +36,7 @@ impl Metric {
         }
     }
 
-    fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Metres => "m",
             Self::Unitless => "none",
@@ -43,10 +44,10 @@ impl Metric {
     }
 }
 
-/// Writes a map whole or not at all, in the format of the name's ending: `npy`, `txt`, `xyz` or `vti`.
+/// Writes a map whole or not at all, in the format of the name's ending: `npy`, `h5`, `txt`, `xyz` or `vti`.
 ///
-/// Text, XYZ and VTI say the size and the unit, NPY (an array `[row, column]`) says neither. Every number is
-/// written so that the same double is read again. Undefined points are `nan` in text and XYZ, NaN in NPY and
+/// Text, XYZ, HDF5 and VTI say the size and the unit, NPY (an array `[row, column]`) says neither. Every number is
+/// written so that the same double is read again. Undefined points are `nan` in text and XYZ, NaN in NPY, HDF5 and
 /// VTI; VTI also hides their cells ([`vti`]).
 ///
 /// # Errors
@@ -62,6 +63,7 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let bytes = match ending {
         "npy" => npy(&[map.rows(), map.columns()], &with_nan(map)).map_err(Error::content(path))?,
+        "h5" => hdf5(map, metric).map_err(Error::content(path))?,
         "txt" => text(map, metric).into_bytes(),
         "xyz" => xyz(map, metric).into_bytes(),
         "vti" => {
@@ -135,7 +137,7 @@ fn sides(map: &HeightMap, metric: Metric) -> String {
 }
 
 /// The heights of a map with NaN at undefined points, as files have them.
-fn with_nan(map: &HeightMap) -> Vec<f64> {
+pub(crate) fn with_nan(map: &HeightMap) -> Vec<f64> {
     map.heights().iter().map(|&h| if h.is_finite() { h } else { f64::NAN }).collect()
 }
 

@@ -93,6 +93,9 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
     ];
     for name in NAMES {
         for declared in &declarations {
+            let (line, held) = most_held(|| surface_io::profile_from_bytes(name, bytes, declared));
+            prop_assert!(held <= MULTIPLE * bytes.len() + CONSTANT, "{held} bytes for {}", bytes.len());
+            prop_assert!(line.is_ok() || line.is_err_and(|e| e.to_string().starts_with(name)));
             let (scan, held) = most_held(|| Scan::from_bytes(name, bytes, declared));
             prop_assert!(held <= MULTIPLE * bytes.len() + CONSTANT, "{held} bytes for {}", bytes.len());
             let scan = match scan {
@@ -183,6 +186,8 @@ fn valid(which: usize) -> Vec<u8> {
         4 => b"\x93NUMPY\x01\x00\x46\x00{'descr': '>i2', 'fortran_order': True, 'shape': (2, 3), }           \n012345678901".to_vec(),
         5 => b"# Width: 6 um\n# Height: 1.0 um\n# Value units: nm\n1 2 nan\n4 bad 6\n".to_vec(),
         6 => b"# Lateral units: mm\n0 0 1\n2 0 2\n0 0.5 nan\n2 0.5 4\n0 1 5\n2 1 6\n".to_vec(),
+        7 => b"\\Scan Size: 3 2 ~m\nx-pixels = 3\nPixel size (um)\t1\ndata unit=rad\nheight conversion factor (-> m)=6e-8\n1,5;2;3\n4;5;6,25\n".to_vec(),
+        8 => b"x [um]\tz [nm]\r\n0,0\t5\r\n0,5\t6\r\n1,0\t4\r\n".to_vec(),
         _ => b"1,2,,4\n5,6,7,8\n9,,,,\n".to_vec(),
     }
 }
@@ -219,6 +224,20 @@ proptest! {
     }
 
     #[test]
+    fn almost_a_header_block(
+        keys in prop::collection::vec(
+            ("(x.length|Width|Scan Size|Pixel size|x-pixels|Lines|z unit|x unit|Bit2nm|data unit|a b|height conversion factor \\(-> m\\)|# File Format = ASCII)",
+             "( ?[:=\t] ?|)", "[-+]?[0-9]{0,2}([.,][0-9]{1,3})?(e-?[0-9]{1,3})?", " ?(um|nm|x 3 um|~m|microns|\u{b5}m|V|)"),
+            0..5,
+        ),
+        heights in "(([0-9]|nan|[0-9],[0-9])[ ;\n]){1,20}",
+        end in "(\n|\r\n|\r)",
+    ) {
+        let header: String = keys.iter().map(|(a, b, c, d)| format!("{a}{b}{c}{d}\n")).collect();
+        torture(format!("{header}{heights}").replace('\n', &end).as_bytes())?;
+    }
+
+    #[test]
     fn almost_a_header(shape in "[0-9,() L]{0,24}", kind in "[<>|=]?[fiuc]?[0-9]{0,2}", order in "(True|False|1)") {
         let text = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': ({shape}), }}");
         let length = (text.len() as u16).to_le_bytes();
@@ -227,7 +246,7 @@ proptest! {
 
     #[test]
     fn valid_files_with_bytes_changed_lost_and_doubled(
-        which in 0..8_usize,
+        which in 0..10_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..6),
     ) {
         let mut bytes = valid(which);
@@ -346,7 +365,7 @@ fn small_files_of_instruments_hold_what_was_written() {
 
 #[test]
 fn the_valid_files_are_valid() {
-    for which in 0..8 {
+    for which in 0..10 {
         let declared = match which {
             3 => ReadOptions { decimal: Decimal::Comma, ..ReadOptions::default() },
             2 | 6 => ReadOptions { format: Some(Format::Xyz), ..ReadOptions::default() },

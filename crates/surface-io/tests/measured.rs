@@ -17,7 +17,7 @@ fn directory() -> Option<PathBuf> {
 }
 
 /// Formats whose readers are still to come.
-const WAITING: [&str; 9] = ["x3p", "sdf", "sur", "opd", "al3d", "plu", "metropro", "h5", "nc"];
+const WAITING: [&str; 8] = ["x3p", "sdf", "sur", "opd", "al3d", "plu", "metropro", "nc"];
 
 /// Factor of a length unit, in metres; `None` for what is none.
 fn metres(unit: &Value) -> Option<f64> {

@@ -29,7 +29,12 @@ const WIDE: u32 = 0x0920_0000;
 pub(crate) const READER: Reader = Reader { format: FORMAT, recognises, channels };
 
 fn recognises(start: &[u8], _: u64) -> bool {
-    BEGINNINGS.iter().any(|b| start.len() >= b.len() && start[..b.len()].eq_ignore_ascii_case(b))
+    let begins = |b: &&[u8]| start.len() >= b.len() && start[..b.len()].eq_ignore_ascii_case(b);
+    // An export as text has the same header and numbers behind it.
+    BEGINNINGS.iter().any(begins)
+        && start
+            .split(|&b| b == b'\n')
+            .all(|line| line.starts_with(b"\\") || line.is_empty() || line[0] < b' ')
 }
 
 /// A section: its name and its lines, keys in small letters, each with its offset.

@@ -38,6 +38,7 @@ proptest! {
             for metric in [Metric::Metres, Metric::Unitless] {
                 check("a.txt", &map, metric, &plain);
                 check("a.xyz", &map, metric, &plain);
+                check("a.h5", &map, metric, &plain);
             }
             let length = |side: f64| crate::Quantity::new(side, Dimension::LENGTH).unwrap();
             let size = Some([length(map.size().x), length(map.size().y)].into());
@@ -52,7 +53,7 @@ fn other_endings_are_named_and_nothing_is_written() {
     let map = HeightMap::new(1, 1.0, vec![0.0]).unwrap();
     for name in ["a.hdf5", "a", "a.TXT"] {
         let error = write_map(&dir.path().join(name), &map, Metric::Metres).unwrap_err().to_string();
-        assert!(error.contains("expected npy, txt, xyz or vti"), "{error}");
+        assert!(error.contains("expected npy, h5, txt, xyz or vti"), "{error}");
     }
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
     write_map(&dir.path().join("a.vti"), &map, Metric::Metres).unwrap();

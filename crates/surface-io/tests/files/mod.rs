@@ -1,7 +1,9 @@
 //! Small valid files of every binary format, written here byte by byte from the description of the format.
 
 mod gwy;
+mod hdf5;
 mod nanoscope;
+mod tiff;
 
 /// A small file, and what is in it.
 #[derive(Debug)]
@@ -22,5 +24,5 @@ pub struct Small {
 
 /// All of them, two at least for each format: with undefined points or another type of numbers, where it has such.
 pub fn all() -> Vec<Small> {
-    [gwy::files(), nanoscope::files()].into_iter().flatten().collect()
+    [gwy::files(), nanoscope::files(), hdf5::files(), tiff::files()].into_iter().flatten().collect()
 }
