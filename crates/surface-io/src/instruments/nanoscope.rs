@@ -29,12 +29,11 @@ const WIDE: u32 = 0x0920_0000;
 pub(crate) const READER: Reader = Reader { format: FORMAT, recognises, channels };
 
 fn recognises(start: &[u8], _: u64) -> bool {
-    let begins = |b: &&[u8]| start.len() >= b.len() && start[..b.len()].eq_ignore_ascii_case(b);
-    // An export as text has the same header and numbers behind it.
-    BEGINNINGS.iter().any(begins)
-        && start
-            .split(|&b| b == b'\n')
-            .all(|line| line.starts_with(b"\\") || line.is_empty() || line[0] < b' ')
+    let mut lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+    let first = lines.next().unwrap_or_default();
+    // An export as text has the same header, and numbers behind it.
+    BEGINNINGS.iter().any(|b| first.eq_ignore_ascii_case(b))
+        && lines.all(|line| line.first().is_none_or(|&b| b == b'\\' || b < b' '))
 }
 
 /// A section: its name and its lines, keys in small letters, each with its offset.
