@@ -156,6 +156,8 @@ pub(crate) enum Undefined {
     None,
     /// One number.
     Equal(f64),
+    /// One of two numbers.
+    Either(f64, f64),
     /// This one and all larger ones.
     AtLeast(f64),
     /// This one and all smaller ones.
@@ -167,6 +169,7 @@ impl Undefined {
         match self {
             Self::None => false,
             Self::Equal(mark) => (number - mark).abs() <= 0.0,
+            Self::Either(a, b) => Self::Equal(a).holds(number) || Self::Equal(b).holds(number),
             Self::AtLeast(mark) => number >= mark,
             Self::AtMost(mark) => number <= mark,
         }
@@ -237,13 +240,26 @@ impl RawHeights {
 
     /// The heights, row-major, NaN where undefined.
     pub(crate) fn read(&self, source: &mut Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
-        /// Bytes that are read at a time.
-        const CHUNK: usize = 1 << 16;
         self.check(source, rows, columns)?;
         let mut heights = Vec::new();
         let refused = |_| ContentError::Memory { bytes: 8 * (rows as u128 * columns as u128) };
         heights.try_reserve_exact(rows * columns).map_err(refused).map_err(|e| source.content(e))?;
         heights.resize(rows * columns, 0.0);
+        self.each(source, rows, columns, &mut |i, height| heights[i] = height)?;
+        Ok(heights)
+    }
+
+    /// Calls for each height with its place row by row, NaN where undefined, in the order of the file.
+    pub(crate) fn each(
+        &self,
+        source: &mut Source<'_>,
+        rows: usize,
+        columns: usize,
+        take: &mut dyn FnMut(usize, f64),
+    ) -> Result<()> {
+        /// Bytes that are read at a time.
+        const CHUNK: usize = 1 << 16;
+        self.check(source, rows, columns)?;
         let (along, lines) = self.lines(rows, columns);
         let size = self.number.bytes();
         let line_bytes = self.line_bytes.unwrap_or(0).max((along * size) as u64);
@@ -271,12 +287,12 @@ impl RawHeights {
                     let number = self.number.decode(raw).map_err(|value| {
                         source.content(ContentError::Inexact { place: Place::Cell { row, column }, value })
                     })?;
-                    heights[row * columns + column] = self.height(number);
+                    take(row * columns + column, self.height(number));
                 }
                 done += count;
             }
         }
-        Ok(heights)
+        Ok(())
     }
 
     fn height(&self, number: f64) -> f64 {

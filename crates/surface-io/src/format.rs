@@ -14,11 +14,20 @@ pub enum Format {
     Xyz,
     /// Gwyddion's own file.
     Gwy,
+    /// Surface data file of ISO 25178-71.
+    Sdf,
+    /// Digital Surf's (MountainsMap) file.
+    Sur,
+    /// The XML container of ISO 25178-72.
+    X3p,
+    /// Classic NetCDF as contact.engineering writes it.
+    NetCdf,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Npy, Self::Text, Self::Xyz, Self::Gwy];
+    pub const ALL: [Self; 8] =
+        [Self::Npy, Self::Text, Self::Xyz, Self::Gwy, Self::Sdf, Self::Sur, Self::X3p, Self::NetCdf];
 
     /// The word that stands for it in scenes and on command lines.
     pub fn word(self) -> &'static str {
@@ -31,6 +40,10 @@ impl Format {
             Self::Text => ("text", "a text matrix"),
             Self::Xyz => ("xyz", "XYZ points"),
             Self::Gwy => ("gwy", "GWY (Gwyddion)"),
+            Self::Sdf => ("sdf", "SDF (ISO 25178-71)"),
+            Self::Sur => ("sur", "SUR (Digital Surf)"),
+            Self::X3p => ("x3p", "X3P (ISO 25178-72)"),
+            Self::NetCdf => ("netcdf", "NetCDF-3"),
         }
     }
 }

@@ -62,7 +62,7 @@ impl FromStr for Format {
 }
 
 /// All words of [`Format`].
-const FORMATS: &str = "npy, text, xyz or gwy";
+const FORMATS: &str = "npy, text, xyz, gwy, sdf, sur, x3p or netcdf";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -162,6 +162,9 @@ mod tests {
         assert_eq!("npy".parse(), Ok(Format::Npy));
         assert_eq!("text".parse(), Ok(Format::Text));
         assert_eq!("xyz".parse(), Ok(Format::Xyz));
+        for format in Format::ALL {
+            assert_eq!(format.word().parse(), Ok(format));
+        }
         assert_eq!("point".parse(), Ok(Decimal::Point));
         assert_eq!("comma".parse(), Ok(Decimal::Comma));
         assert_eq!("none".parse(), Ok(Detrend::Nothing));
@@ -176,7 +179,7 @@ mod tests {
         assert_eq!("1,2,3,4".parse(), Ok(Crop::Window { row: 1, column: 2, rows: 3, columns: 4 }));
         assert_eq!("no_contact".parse(), Ok(Undefined::NoContact));
         for (text, error) in [
-            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz or gwy"),
+            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz, gwy, sdf, sur, x3p or netcdf"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
             ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane or quadric"),
             ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, or row"),

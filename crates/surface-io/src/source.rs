@@ -3,7 +3,7 @@
 use crate::error::{ContentError, Error, Result};
 use crate::format::Format;
 use crate::number_type::NumberType;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
 /// What files and byte arrays can both do.
@@ -71,6 +71,12 @@ impl<'a> Source<'a> {
     pub(crate) fn whole(&mut self) -> Result<&mut (dyn Input + 'a)> {
         self.input.seek(SeekFrom::Start(0)).map_err(Error::system("read", &self.path))?;
         Ok(&mut *self.input)
+    }
+
+    /// A part of the input, for readers of other crates; the caller has compared its end with [`Source::length`].
+    pub(crate) fn part(&mut self, offset: u64, length: u64) -> Result<Take<&mut (dyn Input + 'a)>> {
+        self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", &self.path))?;
+        Ok((&mut *self.input as &mut (dyn Input + 'a)).take(length))
     }
 
     /// An error about this file.

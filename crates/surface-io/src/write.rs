@@ -2,6 +2,7 @@
 
 use crate::channel::check_unit;
 use crate::error::{ContentError, Error, Result};
+use crate::instruments::{gwy, netcdf, x3p};
 use crate::lines::Lines;
 use crate::quantity::{Dimension, Unit};
 use crate::vti::{DataArray, Encoding, vti};
@@ -35,6 +36,11 @@ impl Metric {
         }
     }
 
+    /// The symbol of the unit; nothing for none.
+    pub(crate) fn unit(self) -> &'static str {
+        self.suffix().trim_start()
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Metres => "m",
@@ -43,14 +49,16 @@ impl Metric {
     }
 }
 
-/// Writes a map whole or not at all, in the format of the name's ending: `npy`, `txt`, `xyz` or `vti`.
+/// Writes a map whole or not at all, in the format of the name's ending: `npy`, `txt`, `xyz`, `vti`, `x3p`,
+/// `gwy` or `nc` (NetCDF-3).
 ///
-/// Text, XYZ and VTI say the size and the unit, NPY (an array `[row, column]`) says neither. Every number is
-/// written so that the same double is read again. Undefined points are `nan` in text and XYZ, NaN in NPY and
-/// VTI; VTI also hides their cells ([`vti`]).
+/// All but NPY (an array `[row, column]`) say the size and the unit; X3P is in metres only. Every number is
+/// written so that the same double is read again; X3P says cells, whose multiple may be off a side by its last
+/// bit. Undefined points are `nan` in text and XYZ, NaN in NPY, X3P, NetCDF and VTI, masked in GWY; VTI also hides
+/// their cells ([`vti`]), NetCDF masks them too.
 ///
 /// # Errors
-/// [`Error::System`] where the system refuses, [`Error::Content`] for another ending.
+/// [`Error::System`] where the system refuses, [`Error::Content`] for another ending, and X3P without a unit.
 ///
 /// ```no_run
 /// use surface_io::{Metric, write_map};
@@ -69,6 +77,14 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
             let field = DataArray { name: "height", unit: metric.name(), values: &values };
             vti(map.cells(), map.size(), &[field], Encoding::Base64).map_err(Error::content(path))?
         }
+        "x3p" if metric == Metric::Unitless => {
+            let remedy = "X3P is in metres: read the heights with a unit, or write txt";
+            let problem = ContentError::Unspecified { what: "the unit of the heights", remedy };
+            return Err(Error::content(path)(problem));
+        }
+        "x3p" => x3p(map).map_err(Error::content(path))?,
+        "gwy" => gwy(map, metric).map_err(Error::content(path))?,
+        "nc" => netcdf(map, metric).map_err(Error::content(path))?,
         other => {
             let problem = ContentError::Ending { found: other.chars().take(16).collect() };
             return Err(Error::content(path)(problem));
@@ -135,7 +151,7 @@ fn sides(map: &HeightMap, metric: Metric) -> String {
 }
 
 /// The heights of a map with NaN at undefined points, as files have them.
-fn with_nan(map: &HeightMap) -> Vec<f64> {
+pub(crate) fn with_nan(map: &HeightMap) -> Vec<f64> {
     map.heights().iter().map(|&h| if h.is_finite() { h } else { f64::NAN }).collect()
 }
 

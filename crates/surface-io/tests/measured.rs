@@ -17,7 +17,7 @@ fn directory() -> Option<PathBuf> {
 }
 
 /// Formats whose readers are still to come.
-const WAITING: [&str; 10] = ["x3p", "sdf", "sur", "opd", "al3d", "di", "plu", "metropro", "h5", "nc"];
+const WAITING: [&str; 6] = ["opd", "al3d", "di", "plu", "metropro", "h5"];
 
 /// Factor of a length unit, in metres; `None` for what is none.
 fn metres(unit: &Value) -> Option<f64> {
