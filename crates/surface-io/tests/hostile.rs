@@ -281,6 +281,25 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 3000,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
+        ..ProptestConfig::default()
+    })]
+
+    /// Within archives whose checksums are right: they keep other changes from the description.
+    #[test]
+    fn descriptions_of_x3p_with_bytes_changed(
+        which in 0..2_usize,
+        packed in any::<bool>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..6_u8), 1..6),
+    ) {
+        let description = files::x3p::descriptions()[which].clone().into_bytes();
+        torture_channels(&files::x3p::described(&mutated(description, &changes), packed), true)?;
+    }
+}
+
 #[test]
 fn small_files_of_instruments_hold_what_was_written() {
     for file in files::all() {

@@ -19,7 +19,7 @@ const FORMAT: Format = Format::Sdf;
 const TEXT: [&[u8]; 2] = [b"aISO-1.0", b"aBCR-0.0"];
 const BINARY: [&[u8]; 2] = [b"bISO-1.0", b"bBCR-0.0"];
 /// Bytes of a binary header.
-const HEADER: u64 = 83;
+const HEADER: u64 = 81;
 /// The data of a text begin before this offset.
 const LONGEST: u64 = 1 << 16;
 

@@ -1,9 +1,13 @@
 //! Small valid files of every binary format, written here byte by byte from the description of the format.
 
 mod gwy;
+mod netcdf;
+mod sdf;
+mod sur;
+pub mod x3p;
 
 /// A small file, and what is in it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Small {
     /// Word of the format, and what is special about this file.
     pub name: &'static str,
@@ -21,5 +25,5 @@ pub struct Small {
 
 /// All of them, two at least for each format: with undefined points or another type of numbers, where it has such.
 pub fn all() -> Vec<Small> {
-    [gwy::files()].into_iter().flatten().collect()
+    [gwy::files(), sdf::files(), sur::files(), x3p::files(), netcdf::files()].concat()
 }
