@@ -27,7 +27,7 @@ pub(crate) struct Packed {
     pub(crate) packing: Packing,
     pub(crate) offset: u64,
     /// Bytes in the file.
-    pub(crate) packed: u64,
+    pub(crate) length: u64,
     /// Bytes unpacked, as the file claims.
     pub(crate) unpacked: u64,
 }
@@ -35,18 +35,18 @@ pub(crate) struct Packed {
 impl Packed {
     /// An error where the file ends too early or the bytes cannot unpack to as many as claimed; called before anything is allocated.
     pub(crate) fn check(self, source: &Source<'_>, format: Format) -> Result<()> {
-        let Self { packing, offset, packed, unpacked } = self;
-        if offset.checked_add(packed).is_none_or(|end| end > source.length()) {
+        let Self { packing, offset, length, unpacked } = self;
+        if offset.checked_add(length).is_none_or(|end| end > source.length()) {
             let expected =
-                format!("{packed} packed bytes here, the file ends at {} (cut short?)", source.length());
+                format!("{length} packed bytes here, the file ends at {} (cut short?)", source.length());
             return Err(source.wrong(format, offset, expected));
         }
         let most = match packing {
-            Packing::Stored => packed,
-            Packing::Deflate | Packing::Zlib => packed.saturating_mul(RATIO).saturating_add(END),
+            Packing::Stored => length,
+            Packing::Deflate | Packing::Zlib => length.saturating_mul(RATIO).saturating_add(END),
         };
         if unpacked > most {
-            let expected = format!("{packed} bytes to unpack to at most {most}, not {unpacked}");
+            let expected = format!("{length} bytes to unpack to at most {most}, not {unpacked}");
             return Err(source.wrong(format, offset, expected));
         }
         Ok(())
@@ -55,11 +55,11 @@ impl Packed {
     /// Appends the unpacked bytes.
     pub(crate) fn unpack(self, source: &mut Source<'_>, format: Format, into: &mut Vec<u8>) -> Result<()> {
         self.check(source, format)?;
-        let Self { packing, offset, packed, unpacked } = self;
+        let Self { packing, offset, length, unpacked } = self;
         let before = into.len();
         let refused = |_| ContentError::Memory { bytes: unpacked.into() };
         into.try_reserve_exact(unpacked as usize).map_err(refused).map_err(|e| source.content(e))?;
-        let part = source.part(offset, packed)?;
+        let part = source.part(offset, length)?;
         let read = match packing {
             Packing::Stored => part.take(unpacked).read_to_end(into),
             Packing::Deflate => DeflateDecoder::new(part).take(unpacked).read_to_end(into),

@@ -53,8 +53,8 @@
 //!
 //! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them
 //! ([`Quantity`]); heights of a scan are converted with one rounding. What is written is read again to the
-//! bit ([`text()`], [`xyz`], [`npy`]); so are the sides in text and XYZ. Trends are exact to 1e-13 of the
-//! range of the heights, filled points to 1e-10.
+//! bit ([`text()`], [`xyz`], [`npy`], [`x3p`], [`gwy`], [`netcdf`]); so are the sides in text, XYZ, GWY and NetCDF,
+//! in X3P but for their last bit. Trends are exact to 1e-13 of the range of the heights, filled points to 1e-10.
 //!
 //! # Hostile files
 //!
@@ -72,8 +72,8 @@
 //!
 //! # Writing
 //!
-//! [`write_map`] by the name's ending; [`npy`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes,
-//! and [`files::write_whole`] puts them into a file whole or not at all.
+//! [`write_map`] by the name's ending; [`npy`], [`text()`], [`xyz`], [`x3p`], [`gwy`], [`netcdf`] and [`vti`] (for
+//! ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or not at all.
 //!
 //! # What it does not do
 //!

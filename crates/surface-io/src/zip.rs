@@ -109,7 +109,7 @@ impl Member {
             return Err(source.wrong(format, self.offset, "the header of a member"));
         }
         let offset = self.offset + HEADER + behind;
-        let packed = Packed { packing, offset, packed: self.packed, unpacked: self.unpacked };
+        let packed = Packed { packing, offset, length: self.packed, unpacked: self.unpacked };
         packed.check(source, format)?;
         Ok(packed)
     }

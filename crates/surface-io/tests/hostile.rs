@@ -341,6 +341,22 @@ fn small_files_of_instruments_hold_what_was_written() {
 }
 
 #[test]
+fn archives_are_told_by_their_members() {
+    let npz = files::x3p::zip(&[("b/heights.npy", vec![0]), ("x.npy", vec![1])], true);
+    let other = files::x3p::zip(&[("main.xml", b"<other/>".to_vec())], false);
+    let error = |name: &str, bytes: &[u8]| {
+        SurfaceFile::from_bytes(name, bytes, &ReadOptions::default()).unwrap_err().to_string()
+    };
+    let expected = "a: an archive of b/heights.npy, x.npy: take the file of heights out of it";
+    assert_eq!(error("a", &npz), expected);
+    assert!(error("a", &other).starts_with("a: an archive of main.xml: take"));
+    assert!(error("a.npy", &npz).starts_with("a.npy: looks like an archive (NPZ"));
+    let profile = files::x3p::descriptions()[0].replace("SUR", "PRF");
+    let error = error("a", &files::x3p::described(profile.as_bytes(), true));
+    assert!(error.contains("in main.xml a surface, FeatureType SUR, found \"PRF\""), "{error}");
+}
+
+#[test]
 fn the_valid_files_are_valid() {
     for which in 0..8 {
         let declared = match which {

@@ -58,8 +58,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     let header = binary_header(&start).map_err(|e| e.of(source, FORMAT))?;
     let (number, undefined) = match header.number {
-        0 => (NumberType::new(b'u', 1, true), Undefined::None),
-        1 => (NumberType::new(b'u', 2, true), Undefined::None),
+        0 => (Some(NumberType::U8), Undefined::None),
+        1 => (Some(NumberType::U16), Undefined::None),
         2 => (NumberType::new(b'u', 4, true), Undefined::None),
         3 => (Some(NumberType::F32), Undefined::None),
         4 => (NumberType::new(b'i', 1, true), Undefined::None),

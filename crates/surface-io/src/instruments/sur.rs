@@ -232,7 +232,7 @@ fn streams(source: &mut Source<'_>, data: u64, length: u64) -> Result<(Vec<Packe
     for _ in 0..count {
         let lengths = |f: &mut Fields<'_>| Ok([u64::from(f.u32()?), u64::from(f.u32()?)]);
         let [unpacked, packed] = lengths(&mut fields).map_err(|e: EndOfFields| e.of(source, FORMAT))?;
-        let stream = Packed { packing: Packing::Zlib, offset: end, packed, unpacked };
+        let stream = Packed { packing: Packing::Zlib, offset: end, length: packed, unpacked };
         stream.check(source, FORMAT)?;
         found.push(stream);
         end += packed;

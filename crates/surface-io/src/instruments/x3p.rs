@@ -54,7 +54,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     drop(bytes);
     let ([columns, rows], number) = described(&main).map_err(|e| wrong(source, main_member, &e))?;
     let [x, y, z] = &main.axes;
-    let (scale, shift) = (z.length(&z.increment, 1.0), z.length(&z.offset, 0.0));
+    let (scale, shift) = (length(&z.increment, 1.0), length(&z.offset, 0.0));
     let (Some(scale), Some(shift)) = (scale.filter(|scale| scale.abs() > 0.0), shift) else {
         return Err(wrong(source, main_member, "an increment along z other than 0, and an offset"));
     };
@@ -132,16 +132,16 @@ fn described(main: &Main) -> Result<([usize; 2], NumberType), String> {
     }
 }
 
-impl Axis {
-    /// A number, or what is meant where there is none; `None` where it is no number.
-    fn length(&self, text: &str, absent: f64) -> Option<f64> {
-        let number = if text.is_empty() { Some(absent) } else { text.parse().ok() };
-        number.filter(|number: &f64| number.is_finite())
-    }
+/// A number, or what is meant where there is none; `None` where it is no number.
+fn length(text: &str, absent: f64) -> Option<f64> {
+    let number = if text.is_empty() { Some(absent) } else { text.parse().ok() };
+    number.filter(|number: &f64| number.is_finite())
+}
 
+impl Axis {
     /// The side of a cell, where the increment is one.
     fn cell(&self) -> Option<Extent> {
-        let increment = self.length(&self.increment, 0.0).filter(|increment| *increment > 0.0)?;
+        let increment = length(&self.increment, 0.0).filter(|increment| *increment > 0.0)?;
         Quantity::new(increment, Dimension::LENGTH).ok().map(Extent::Cell)
     }
 }

@@ -117,9 +117,9 @@ fn header(version: u8, variables: &[Variable], mut data: usize) -> Vec<u8> {
     let word = |header: &mut Vec<u8>, n: u32| header.extend(n.to_be_bytes());
     let count = |header: &mut Vec<u8>, n: usize| {
         if version == 5 {
-            header.extend((n as u64).to_be_bytes())
+            header.extend((n as u64).to_be_bytes());
         } else {
-            header.extend((n as u32).to_be_bytes())
+            header.extend((n as u32).to_be_bytes());
         }
     };
     let padded = |header: &mut Vec<u8>, bytes: &[u8]| {
@@ -158,9 +158,9 @@ fn header(version: u8, variables: &[Variable], mut data: usize) -> Vec<u8> {
         let length = variable.values.len().next_multiple_of(4);
         count(&mut header, length);
         if version == 1 {
-            word(&mut header, data as u32)
+            word(&mut header, data as u32);
         } else {
-            header.extend((data as u64).to_be_bytes())
+            header.extend((data as u64).to_be_bytes());
         }
         data += length;
     }

@@ -103,7 +103,8 @@ fn main(kind: &str, z: &str, data: &str) -> String {
     )
 }
 
-fn zip(members: &[(&str, Vec<u8>)], packed: bool) -> Vec<u8> {
+/// An archive of these members.
+pub fn zip(members: &[(&str, Vec<u8>)], packed: bool) -> Vec<u8> {
     let (mut archive, mut directory) = (Vec::new(), Vec::new());
     for (name, bytes) in members {
         let mut sum = Crc::new();

@@ -61,7 +61,7 @@ fn field(map: &HeightMap, values: &[f64], [lateral, of_values]: [&str; 2]) -> Ve
     let mut data = Vec::with_capacity(5 + 8 * values.len());
     data.push(b'D');
     data.extend((values.len() as u32).to_le_bytes());
-    values.iter().for_each(|value| data.extend(value.to_le_bytes()));
+    data.extend(values.iter().flat_map(|value| value.to_le_bytes()));
     let components = [
         component("xres", &int(map.columns())),
         component("yres", &int(map.rows())),

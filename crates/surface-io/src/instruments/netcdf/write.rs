@@ -9,8 +9,9 @@ const BYTE: u32 = 1;
 const TEXT: u32 = 2;
 const DOUBLE: u32 = 6;
 
-/// The bytes of a NetCDF-3 file (with offsets of 64 bits, CDF-2) as `SurfaceTopography` writes it: float64 `heights(x, y)`, the variables `x` and
-/// `y` with the attributes `length` and `unit`; at undefined points heights are NaN, which is their fill value, and `mask` is 1.
+/// The bytes of a NetCDF-3 file (with offsets of 64 bits, CDF-2) as `SurfaceTopography` writes it: float64 `heights(x, y)`, the
+/// variables `x` and `y` with the attributes `length` and `unit`; at undefined points heights are NaN, which is their fill value, and
+/// `mask` is 1.
 ///
 /// # Errors
 /// [`ContentError::OutOfRange`] for a map of 4 GB or more.
@@ -64,13 +65,13 @@ pub fn netcdf(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> 
     file.reserve_exact(variables.iter().map(|v| v.bytes + 3).sum());
     let heights = with_nan(map);
     let by_columns = || (0..count).map(|i| heights[i % rows * columns + i / rows]);
-    by_columns().for_each(|height| file.extend(height.to_be_bytes()));
+    file.extend(by_columns().flat_map(f64::to_be_bytes));
     if undefined {
         file.extend(by_columns().map(|height| u8::from(height.is_nan())));
         file.resize(file.len().next_multiple_of(4), 0);
     }
     for (count, side) in [(columns, map.size().x), (rows, map.size().y)] {
-        (0..count).for_each(|i| file.extend((i as f64 / count as f64 * side).to_be_bytes()));
+        file.extend((0..count).flat_map(|i| (i as f64 / count as f64 * side).to_be_bytes()));
     }
     Ok(file)
 }
@@ -88,7 +89,7 @@ struct Variable {
 fn header(variables: &[Variable], [columns, rows]: [usize; 2], data: usize) -> Vec<u8> {
     let mut header = b"CDF\x02".to_vec();
     let words = |header: &mut Vec<u8>, numbers: &[usize]| {
-        numbers.iter().for_each(|&number| header.extend((number as u32).to_be_bytes()));
+        header.extend(numbers.iter().flat_map(|&number| (number as u32).to_be_bytes()));
     };
     let text = |header: &mut Vec<u8>, text: &str| {
         words(header, &[text.len()]);
