@@ -165,7 +165,8 @@ pub(crate) enum Undefined {
 }
 
 impl Undefined {
-    fn holds(self, number: f64) -> bool {
+    /// Whether this number stands for an undefined point.
+    pub(crate) fn holds(self, number: f64) -> bool {
         match self {
             Self::None => false,
             Self::Equal(mark) => (number - mark).abs() <= 0.0,

@@ -357,6 +357,17 @@ fn archives_are_told_by_their_members() {
 }
 
 #[test]
+fn heights_that_may_be_upside_down_are_refused() {
+    let mut sur = files::all().into_iter().find(|file| file.name == "sur").unwrap().bytes;
+    sur[290] = 1;
+    let error = SurfaceFile::from_bytes("a", &sur, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(
+        error.starts_with("a: SUR (Digital Surf), offset 290: expected no mark of an inversion"),
+        "{error}"
+    );
+}
+
+#[test]
 fn the_valid_files_are_valid() {
     for which in 0..8 {
         let declared = match which {

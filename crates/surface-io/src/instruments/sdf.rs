@@ -1,8 +1,9 @@
 //! SDF, the surface data file of ISO 25178-71, as text and binary, and its forerunner BCR.
 //!
-//! After the readers of SurfaceTopography (`IO/SDF.py`) and surfalize (`file/sdf.py`), both from the standard, and Gwyddion's `sdfile.c`.
-//! The scales along x, y and z are metres. Profiles follow one another, their points along x: row j is profile j. Undefined points are
-//! `BAD` in text, the smallest integer in integers of 16 and 32 bits, NaN in floats. Binary files are little-endian.
+//! After the readers of SurfaceTopography 1.27 (`IO/SDF.py`) and surfalize (`file/sdf.py`), both from the standard, and Gwyddion's
+//! `sdfile.c`. The scales along x, y and z are metres. Profiles follow one another, their points along x: row j is profile j. Binary
+//! files are little-endian. Undefined points are `BAD` in text, NaN, and the smallest number of a type (surfalize from the standard), of
+//! unsigned integers of 16 and 32 bits the largest (SurfaceTopography from Gwyddion).
 //!
 //! Not read: compressed data, the trailer. `Micromap` states its scales in the trailer: the size of its maps is unknown here.
 
@@ -16,10 +17,10 @@ use crate::reader::Reader;
 use crate::source::{EndOfFields, Fields, Source};
 
 const FORMAT: Format = Format::Sdf;
-const TEXT: [&[u8]; 2] = [b"aISO-1.0", b"aBCR-0.0"];
-const BINARY: [&[u8]; 2] = [b"bISO-1.0", b"bBCR-0.0"];
-/// Bytes of a binary header.
-const HEADER: u64 = 81;
+const TEXT: [&[u8]; 3] = [b"aISO-1.0", b"aISO-2.0", b"aBCR-0.0"];
+/// Numbers of points and profiles have 16 bits, in [`WIDE`] 32.
+const BINARY: [&[u8]; 3] = [b"bISO-1.0", WIDE, b"bBCR-0.0"];
+const WIDE: &[u8] = b"bISO-2.0";
 /// The data of a text begin before this offset.
 const LONGEST: u64 = 1 << 16;
 
@@ -53,31 +54,37 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             let expected = format!("{columns} x {rows} numbers, there are {left} bytes (cut short?)");
             return Err(source.wrong(FORMAT, offset, expected));
         }
-        let read = move |source: &mut Source<'_>| numbers(source, offset, columns * rows, scale);
+        let undefined = number(header.number).map_or(Undefined::None, |(_, undefined)| undefined);
+        let read = move |source: &mut Source<'_>| numbers(source, offset, columns * rows, (scale, undefined));
         return channel(source, &header, StoredHeights::Deferred(Box::new(read)), "text, row by row".into());
     }
-    let header = binary_header(&start).map_err(|e| e.of(source, FORMAT))?;
-    let (number, undefined) = match header.number {
-        0 => (Some(NumberType::U8), Undefined::None),
-        1 => (Some(NumberType::U16), Undefined::None),
-        2 => (NumberType::new(b'u', 4, true), Undefined::None),
-        3 => (Some(NumberType::F32), Undefined::None),
-        4 => (NumberType::new(b'i', 1, true), Undefined::None),
-        5 => (Some(NumberType::I16), Undefined::Equal(i16::MIN.into())),
-        6 => (Some(NumberType::I32), Undefined::Equal(i32::MIN.into())),
-        7 => (Some(NumberType::F64), Undefined::None),
-        _ => (None, Undefined::None),
-    };
-    let Some(number) = number else {
+    let (header, offset) = binary_header(&start).map_err(|e| e.of(source, FORMAT))?;
+    let Some((number, undefined)) = number(header.number) else {
         let expected = format!("a type of numbers from 0 to 7, found {}", header.number);
-        return Err(source.wrong(FORMAT, HEADER - 2, expected));
+        return Err(source.wrong(FORMAT, offset - 2, expected));
     };
     let scale = header.scale[2];
-    let raw = RawHeights { scale, undefined, ..RawHeights::new(FORMAT, Bytes::File(HEADER), number) };
+    let raw = RawHeights { scale, undefined, ..RawHeights::new(FORMAT, Bytes::File(offset), number) };
     let [columns, rows] = header.count;
     raw.check(source, rows, columns)?;
     let details = raw.details();
     channel(source, &header, StoredHeights::Raw(raw), details)
+}
+
+/// A type of numbers, and which of them stands for undefined points.
+fn number(kind: i64) -> Option<(NumberType, Undefined)> {
+    let (letter, size, mark) = match kind {
+        0 => return Some((NumberType::U8, Undefined::None)),
+        1 => (b'u', 2, u16::MAX.into()),
+        2 => (b'u', 4, u32::MAX.into()),
+        3 => (b'f', 4, f32::MIN.into()),
+        4 => (b'i', 1, i8::MIN.into()),
+        5 => (b'i', 2, i16::MIN.into()),
+        6 => (b'i', 4, i32::MIN.into()),
+        7 => (b'f', 8, f64::MIN),
+        _ => return None,
+    };
+    Some((NumberType::new(letter, size, true)?, Undefined::Equal(mark)))
 }
 
 fn channel(
@@ -112,17 +119,22 @@ fn channel(
     }])
 }
 
-fn binary_header(start: &[u8]) -> Result<Header, EndOfFields> {
+/// The header, and the offset of its end.
+fn binary_header(start: &[u8]) -> Result<(Header, u64), EndOfFields> {
     let mut fields = Fields::little(start, 0);
     fields.go(8);
     let manufacturer = fields.text(10)?;
     fields.take(24)?;
-    let count = [fields.u16()?, fields.u16()?].map(usize::from);
+    let count = if start.starts_with(WIDE) {
+        [fields.u32()?, fields.u32()?].map(|count| count as usize)
+    } else {
+        [fields.u16()?, fields.u16()?].map(usize::from)
+    };
     let scale = [fields.f64()?, fields.f64()?, fields.f64()?];
     fields.f64()?;
     let (compression, number) = (fields.u8()?.into(), fields.u8()?.into());
     fields.u8()?;
-    Ok(Header { manufacturer, count, scale, compression, number })
+    Ok((Header { manufacturer, count, scale, compression, number }, fields.offset()))
 }
 
 /// The header of a text, and the offset behind the line with the asterisk that ends it.
@@ -155,6 +167,7 @@ fn text_header(source: &Source<'_>, start: &[u8]) -> Result<(Header, u64)> {
             "Yscale" => header.scale[1] = number()?,
             "Zscale" => header.scale[2] = number()?,
             "Compression" => header.compression = value.parse().map_err(|_| wrong())?,
+            "DataType" => header.number = value.parse().map_err(|_| wrong())?,
             _ => {}
         }
     }
@@ -170,7 +183,12 @@ fn short(text: &str) -> String {
 }
 
 /// Numbers as text from an offset on, up to an asterisk or the end.
-fn numbers(source: &mut Source<'_>, offset: u64, count: usize, scale: f64) -> Result<Vec<f64>> {
+fn numbers(
+    source: &mut Source<'_>,
+    offset: u64,
+    count: usize,
+    (scale, undefined): (f64, Undefined),
+) -> Result<Vec<f64>> {
     /// Bytes that are read at a time, and the longest number.
     const CHUNK: u64 = 1 << 16;
     const DIGITS: usize = 64;
@@ -205,7 +223,7 @@ fn numbers(source: &mut Source<'_>, offset: u64, count: usize, scale: f64) -> Re
                     let found: String = String::from_utf8_lossy(&token).chars().take(32).collect();
                     source.wrong(FORMAT, begins, format!("a number or BAD, found {found:?}"))
                 })?;
-                heights.push(scale * number);
+                heights.push(if undefined.holds(number) { f64::NAN } else { scale * number });
                 token.clear();
             }
             if byte == b'*' {

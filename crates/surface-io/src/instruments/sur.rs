@@ -8,8 +8,8 @@
 //! an undefined point.
 //!
 //! Several objects (a surface and its intensity, series) are several channels; images are no heights. Not read: profiles, force curves,
-//! spectra, files of a Macintosh. Inversion and levelling that the header mentions were done before, and are not done again (Gwyddion
-//! inverts).
+//! spectra, files of a Macintosh, and surfaces that the header calls inverted: SurfaceTopography 1.27 and Gwyddion invert the numbers then,
+//! surfalize and RosettaSciIO do not, and hills would be taken for valleys.
 
 use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
 use crate::error::{ContentError, Result};
@@ -169,6 +169,10 @@ fn object(
     if !(z.is_finite() && z.abs() > 0.0 && header.z_offset.is_finite()) {
         return wrong(source, 128, format!("a step along z other than 0 and an offset, found {z}"));
     }
+    if header.inverted && !image {
+        let expected = "no mark of an inversion: readers disagree whether the numbers are inverted already; export X3P or text";
+        return wrong(source, 290, expected.to_owned());
+    }
     let mark = f64::from(header.lowest) - 2.0;
     let undefined = if header.special { Undefined::Equal(mark) } else { Undefined::None };
     let data = at + header.behind;
@@ -193,9 +197,6 @@ fn object(
         plain.check(source, rows, columns)?;
         (StoredHeights::Raw(plain), data + length)
     };
-    if header.inverted {
-        details += ", inverted as the file says";
-    }
     let side = |step: f64, unit: &str| {
         let unit = unit.parse::<Unit>().ok().filter(|unit| unit.dimension() == Dimension::LENGTH)?;
         let cell = Quantity::new(unit.to_si(step), Dimension::LENGTH).ok().filter(|cell| cell.value() > 0.0);
