@@ -156,6 +156,8 @@ pub(crate) enum Undefined {
     None,
     /// One number.
     Equal(f64),
+    /// One of two numbers.
+    Either(f64, f64),
     /// This one and all larger ones.
     AtLeast(f64),
     /// This one and all smaller ones.
@@ -163,10 +165,12 @@ pub(crate) enum Undefined {
 }
 
 impl Undefined {
-    fn holds(self, number: f64) -> bool {
+    /// Whether this number stands for an undefined point.
+    pub(crate) fn holds(self, number: f64) -> bool {
         match self {
             Self::None => false,
             Self::Equal(mark) => (number - mark).abs() <= 0.0,
+            Self::Either(a, b) => Self::Equal(a).holds(number) || Self::Equal(b).holds(number),
             Self::AtLeast(mark) => number >= mark,
             Self::AtMost(mark) => number <= mark,
         }
@@ -237,10 +241,23 @@ impl RawHeights {
 
     /// The heights, row-major, NaN where undefined.
     pub(crate) fn read(&self, source: &mut Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
+        self.check(source, rows, columns)?;
+        let mut heights = undefined_heights(source, rows, columns)?;
+        self.each(source, rows, columns, &mut |i, height| heights[i] = height)?;
+        Ok(heights)
+    }
+
+    /// Calls for each height with its place row by row, NaN where undefined, in the order of the file.
+    pub(crate) fn each(
+        &self,
+        source: &mut Source<'_>,
+        rows: usize,
+        columns: usize,
+        take: &mut dyn FnMut(usize, f64),
+    ) -> Result<()> {
         /// Bytes that are read at a time.
         const CHUNK: usize = 1 << 16;
         self.check(source, rows, columns)?;
-        let mut heights = undefined_heights(source, rows, columns)?;
         let (along, lines) = self.lines(rows, columns);
         let size = self.number.bytes();
         let line_bytes = self.line_bytes.unwrap_or(0).max((along * size) as u64);
@@ -259,12 +276,13 @@ impl RawHeights {
                     Bytes::Held(bytes) => &bytes[from as usize..][..count * size],
                 };
                 for (i, raw) in bytes.chunks_exact(size).enumerate() {
-                    self.put(source, &mut heights, [rows, columns], [line, done + i], raw)?;
+                    let (i, height) = self.placed(source, [rows, columns], [line, done + i], raw)?;
+                    take(i, height);
                 }
                 done += count;
             }
         }
-        Ok(heights)
+        Ok(())
     }
 
     /// The height of a number at a place of a line, put where it belongs.
@@ -272,10 +290,23 @@ impl RawHeights {
         &self,
         source: &Source<'_>,
         heights: &mut [f64],
+        shape: [usize; 2],
+        place: [usize; 2],
+        raw: &[u8],
+    ) -> Result<()> {
+        let (i, height) = self.placed(source, shape, place, raw)?;
+        heights[i] = height;
+        Ok(())
+    }
+
+    /// Where the number at a place of a line belongs, row by row, and its height.
+    fn placed(
+        &self,
+        source: &Source<'_>,
         [rows, columns]: [usize; 2],
         [line, at]: [usize; 2],
         raw: &[u8],
-    ) -> Result<()> {
+    ) -> Result<(usize, f64)> {
         let (row, column) = match self.order {
             AxisOrder::Rows => (line, at),
             AxisOrder::Columns => (at, line),
@@ -285,8 +316,7 @@ impl RawHeights {
         let number = self.number.decode(raw).map_err(|value| {
             source.content(ContentError::Inexact { place: Place::Cell { row, column }, value })
         })?;
-        heights[row * columns + column] = self.height(number);
-        Ok(())
+        Ok((row * columns + column, self.height(number)))
     }
 
     fn height(&self, number: f64) -> f64 {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// First bytes of files that people try, with what they are and what to do.
 const FOREIGN: [(&[u8], &str, &str); 6] = [
-    (b"PK\x03\x04", "an archive (NPZ, XLSX)", "take the file of heights out of it"),
+    (b"PK\x03\x04", "an archive (NPZ, XLSX, X3P)", "take the file of heights out of it"),
     (b"\x89PNG", "a PNG picture", "grey values are no heights; export the heights as text or NPY"),
     (b"\xff\xd8\xff", "a JPEG picture", "grey values are no heights; export the heights as text or NPY"),
     (b"\x1f\x8b", "a gzip archive", "unpack it first"),
@@ -35,17 +35,19 @@ pub(crate) fn detect(
     let found = READERS.iter().find(|reader| (reader.recognises)(start, length)).map(|reader| reader.format);
     match (expected, found) {
         (Some(expected), Some(found)) if expected != found => {
-            Err(ContentError::NotOfFormat { expected, found })
+            Err(foreign(start).unwrap_or(ContentError::NotOfFormat { expected, found }))
         }
         (_, Some(found)) => Ok(Some(found)),
-        (expected, None) => {
-            if let Some((_, what, remedy)) = FOREIGN.iter().find(|(magic, ..)| start.starts_with(magic)) {
-                return Err(ContentError::Foreign { what, remedy });
-            }
-            match expected {
-                None | Some(Format::Text | Format::Xyz) => Ok(expected),
-                Some(expected) => Err(ContentError::Other { expected }),
-            }
-        }
+        (expected, None) => match (foreign(start), expected) {
+            (Some(error), _) => Err(error),
+            (None, None | Some(Format::Text | Format::Xyz)) => Ok(expected),
+            (None, Some(expected)) => Err(ContentError::Other { expected }),
+        },
     }
+}
+
+/// An archive may be an X3P file or another one: only its members tell.
+fn foreign(start: &[u8]) -> Option<ContentError> {
+    let found = FOREIGN.iter().find(|(magic, ..)| start.starts_with(magic));
+    found.map(|(_, what, remedy)| ContentError::Foreign { what, remedy })
 }

@@ -118,6 +118,12 @@ pub enum ContentError {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// An archive that is no X3P file.
+    #[error("an archive of {members}: take the file of heights out of it")]
+    Archive {
+        /// Names of its members; of many the first.
+        members: String,
+    },
     /// Not the format expected.
     #[error("expected {expected}, but the content is {found}: correct the name or the format")]
     NotOfFormat {
@@ -472,7 +478,7 @@ pub enum ContentError {
         value: f64,
     },
     /// A name whose ending is none of the formats that are written.
-    #[error("the name ends in {found:?}: expected npy, h5, txt, xyz or vti")]
+    #[error("the name ends in {found:?}: expected npy, h5, txt, xyz, vti, x3p, gwy or nc")]
     Ending {
         /// The ending, shortened.
         found: String,

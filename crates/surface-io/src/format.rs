@@ -20,12 +20,31 @@ pub enum Format {
     Hdf5,
     /// Grey images of numbers.
     Tiff,
+    /// Surface data file of ISO 25178-71.
+    Sdf,
+    /// Digital Surf's (MountainsMap) file.
+    Sur,
+    /// The XML container of ISO 25178-72.
+    X3p,
+    /// Classic NetCDF as contact.engineering writes it.
+    NetCdf,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::Npy, Self::Text, Self::Xyz, Self::Gwy, Self::Nanoscope, Self::Hdf5, Self::Tiff];
+    pub const ALL: [Self; 11] = [
+        Self::Npy,
+        Self::Text,
+        Self::Xyz,
+        Self::Gwy,
+        Self::Nanoscope,
+        Self::Hdf5,
+        Self::Tiff,
+        Self::Sdf,
+        Self::Sur,
+        Self::X3p,
+        Self::NetCdf,
+    ];
 
     /// The word that stands for it in scenes and on command lines.
     pub fn word(self) -> &'static str {
@@ -41,6 +60,10 @@ impl Format {
             Self::Nanoscope => ("nanoscope", "Nanoscope"),
             Self::Hdf5 => ("hdf5", "HDF5"),
             Self::Tiff => ("tiff", "TIFF"),
+            Self::Sdf => ("sdf", "SDF (ISO 25178-71)"),
+            Self::Sur => ("sur", "SUR (Digital Surf)"),
+            Self::X3p => ("x3p", "X3P (ISO 25178-72)"),
+            Self::NetCdf => ("netcdf", "NetCDF-3"),
         }
     }
 }

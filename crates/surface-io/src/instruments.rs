@@ -3,13 +3,29 @@
 mod gwy;
 mod hdf5;
 mod nanoscope;
+mod netcdf;
+mod sdf;
+mod sur;
 mod tiff;
+mod x3p;
 
+pub use gwy::gwy;
 pub use hdf5::hdf5;
+pub use netcdf::netcdf;
+pub use x3p::x3p;
 
 use crate::npy;
 use crate::reader::Reader;
 
 /// All readers; no file is recognised by two.
-pub(crate) const READERS: &[Reader] =
-    &[npy::READER, gwy::READER, nanoscope::READER, hdf5::READER, tiff::READER];
+pub(crate) const READERS: &[Reader] = &[
+    npy::READER,
+    gwy::READER,
+    hdf5::READER,
+    nanoscope::READER,
+    netcdf::READER,
+    sdf::READER,
+    sur::READER,
+    tiff::READER,
+    x3p::READER,
+];

@@ -62,7 +62,7 @@ impl FromStr for Format {
 }
 
 /// All words of [`Format`].
-const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5 or tiff";
+const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p or netcdf";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -190,6 +190,9 @@ mod tests {
         assert_eq!("npy".parse(), Ok(Format::Npy));
         assert_eq!("text".parse(), Ok(Format::Text));
         assert_eq!("xyz".parse(), Ok(Format::Xyz));
+        for format in Format::ALL {
+            assert_eq!(format.word().parse(), Ok(format));
+        }
         assert_eq!("point".parse(), Ok(Decimal::Point));
         assert_eq!("comma".parse(), Ok(Decimal::Comma));
         assert_eq!("none".parse(), Ok(Detrend::Nothing));

@@ -56,8 +56,8 @@
 //!
 //! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them
 //! ([`Quantity`]); heights of a scan are converted with one rounding. What is written is read again to the
-//! bit ([`text()`], [`xyz`], [`npy`], [`hdf5`]); so are the sides in text and XYZ. Trends are exact to 1e-13 of the
-//! range of the heights, filled points to 1e-10.
+//! bit ([`text()`], [`xyz`], [`npy`], [`hdf5`], [`x3p`], [`gwy`], [`netcdf`]); so are the sides in all but NPY,
+//! in X3P but for their last bit. Trends are exact to 1e-13 of the range of the heights, filled points to 1e-10.
 //!
 //! # Hostile files
 //!
@@ -75,8 +75,8 @@
 //!
 //! # Writing
 //!
-//! [`write_map`] by the name's ending; [`npy`], [`hdf5`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes,
-//! and [`files::write_whole`] puts them into a file whole or not at all.
+//! [`write_map`] by the name's ending; [`npy`], [`hdf5`], [`text()`], [`xyz`], [`x3p`], [`gwy`], [`netcdf`] and
+//! [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or not at all.
 //!
 //! # What it does not do
 //!
@@ -91,6 +91,7 @@ mod error;
 mod extent;
 pub mod files;
 mod format;
+mod inflate;
 mod instruments;
 mod keyword;
 mod lines;
@@ -109,13 +110,14 @@ mod surface_file;
 mod text;
 mod vti;
 mod write;
+mod zip;
 
 pub use channel::ChannelChoice;
 pub use composite::composite;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;
-pub use instruments::hdf5;
+pub use instruments::{gwy, hdf5, netcdf, x3p};
 pub use keyword::KeywordError;
 pub use npy::npy;
 pub use options::{Decimal, ReadOptions};

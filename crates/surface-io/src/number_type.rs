@@ -44,6 +44,11 @@ impl NumberType {
         Self { little: false, ..self }
     }
 
+    /// Whether it is a float, which NaN is one of.
+    pub(crate) fn is_float(self) -> bool {
+        self.kind == Kind::Float
+    }
+
     /// Bytes of one number.
     pub(crate) fn bytes(self) -> usize {
         usize::from(self.size)

@@ -4,7 +4,7 @@ use crate::error::{ContentError, Error, Result};
 use crate::format::Format;
 use crate::number_type::NumberType;
 use std::fs::File;
-use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
+use std::io::{BufReader, Cursor, Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
 /// What files and byte arrays can both do.
@@ -116,6 +116,12 @@ impl<'a> Source<'a> {
     /// The input without its lifetime, for readers of other crates that keep it.
     pub(crate) fn detached(&self) -> Result<Detached> {
         self.input.detached().map_err(Error::system("read", &self.path))
+    }
+
+    /// A part of the input, for readers of other crates; the caller has compared its end with [`Source::length`].
+    pub(crate) fn part(&mut self, offset: u64, length: u64) -> Result<Take<&mut (dyn Input + 'a)>> {
+        self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", &self.path))?;
+        Ok((&mut *self.input as &mut (dyn Input + 'a)).take(length))
     }
 
     /// An error about this file.

@@ -323,6 +323,25 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 3000,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
+        ..ProptestConfig::default()
+    })]
+
+    /// Within archives whose checksums are right: they keep other changes from the description.
+    #[test]
+    fn descriptions_of_x3p_with_bytes_changed(
+        which in 0..2_usize,
+        packed in any::<bool>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..6_u8), 1..6),
+    ) {
+        let description = files::x3p::descriptions()[which].clone().into_bytes();
+        torture_channels(&files::x3p::described(&mutated(description, &changes), packed), true)?;
+    }
+}
+
 #[test]
 fn small_files_of_instruments_hold_what_was_written() {
     for file in files::all() {
@@ -361,6 +380,33 @@ fn small_files_of_instruments_hold_what_was_written() {
             let _ = short.map(|file| file.scans().filter_map(Result::ok).count());
         }
     }
+}
+
+#[test]
+fn archives_are_told_by_their_members() {
+    let npz = files::x3p::zip(&[("b/heights.npy", vec![0]), ("x.npy", vec![1])], true);
+    let other = files::x3p::zip(&[("main.xml", b"<other/>".to_vec())], false);
+    let error = |name: &str, bytes: &[u8]| {
+        SurfaceFile::from_bytes(name, bytes, &ReadOptions::default()).unwrap_err().to_string()
+    };
+    let expected = "a: an archive of b/heights.npy, x.npy: take the file of heights out of it";
+    assert_eq!(error("a", &npz), expected);
+    assert!(error("a", &other).starts_with("a: an archive of main.xml: take"));
+    assert!(error("a.npy", &npz).starts_with("a.npy: looks like an archive (NPZ"));
+    let profile = files::x3p::descriptions()[0].replace("SUR", "PRF");
+    let error = error("a", &files::x3p::described(profile.as_bytes(), true));
+    assert!(error.contains("in main.xml a surface, FeatureType SUR, found \"PRF\""), "{error}");
+}
+
+#[test]
+fn heights_that_may_be_upside_down_are_refused() {
+    let mut sur = files::all().into_iter().find(|file| file.name == "sur").unwrap().bytes;
+    sur[290] = 1;
+    let error = SurfaceFile::from_bytes("a", &sur, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(
+        error.starts_with("a: SUR (Digital Surf), offset 290: expected no mark of an inversion"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn directory() -> Option<PathBuf> {
 }
 
 /// Formats whose readers are still to come.
-const WAITING: [&str; 8] = ["x3p", "sdf", "sur", "opd", "al3d", "plu", "metropro", "nc"];
+const WAITING: [&str; 4] = ["opd", "al3d", "plu", "metropro"];
 
 /// Factor of a length unit, in metres; `None` for what is none.
 fn metres(unit: &Value) -> Option<f64> {

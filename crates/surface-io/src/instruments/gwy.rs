@@ -3,6 +3,10 @@
 //! Channel N is the object `/N/data`, its name `/N/data/title`. Rows go from the top to the bottom of the picture. The points of a mask
 //! (`/N/mask`) are undefined, and so are those that are no numbers.
 
+mod write;
+
+pub use write::gwy;
+
 use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
 use crate::error::Result;
 use crate::extent::Extent;

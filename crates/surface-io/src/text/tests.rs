@@ -189,7 +189,10 @@ fn every_bad_text_says_where_and_what_to_do() {
         (b"\xc3\xa9 2\n", "a.txt: line 1, value 1: \"\u{e9}\": expected a number (comments"),
         (b"\xff\xfe1\x00", "a.txt: looks like text in UTF-16: save it as UTF-8"),
         (b"\x89HDF\r\n\x1a\n", "a.txt: HDF5, offset 0: expected a file as its specification has it"),
-        (b"PK\x03\x04....", "a.txt: looks like an archive (NPZ, XLSX): take the file of heights out of it"),
+        (
+            b"PK\x03\x04....",
+            "a.txt: X3P (ISO 25178-72), offset 8: expected the directory of the archive before this",
+        ),
         (
             b"1 2 3\n1 2 3\n1 2 3\n1 2 3\n",
             "a.txt: 4 lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\"",

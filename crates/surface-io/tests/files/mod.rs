@@ -3,10 +3,14 @@
 mod gwy;
 mod hdf5;
 mod nanoscope;
+mod netcdf;
+mod sdf;
+mod sur;
 mod tiff;
+pub mod x3p;
 
 /// A small file, and what is in it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Small {
     /// Word of the format, and what is special about this file.
     pub name: &'static str,
@@ -24,5 +28,15 @@ pub struct Small {
 
 /// All of them, two at least for each format: with undefined points or another type of numbers, where it has such.
 pub fn all() -> Vec<Small> {
-    [gwy::files(), nanoscope::files(), hdf5::files(), tiff::files()].into_iter().flatten().collect()
+    let of_all = [
+        gwy::files(),
+        hdf5::files(),
+        nanoscope::files(),
+        netcdf::files(),
+        sdf::files(),
+        sur::files(),
+        tiff::files(),
+        x3p::files(),
+    ];
+    of_all.into_iter().flatten().collect()
 }
