@@ -158,6 +158,8 @@ pub(crate) enum Undefined {
     Equal(f64),
     /// One of two numbers.
     Either(f64, f64),
+    /// One number within the digits that a header prints of a float32.
+    Near(f64),
     /// This one and all larger ones.
     AtLeast(f64),
     /// This one and all smaller ones.
@@ -171,6 +173,7 @@ impl Undefined {
             Self::None => false,
             Self::Equal(mark) => (number - mark).abs() <= 0.0,
             Self::Either(a, b) => Self::Equal(a).holds(number) || Self::Equal(b).holds(number),
+            Self::Near(mark) => (number - mark).abs() <= 1.5e-7 * mark.abs(),
             Self::AtLeast(mark) => number >= mark,
             Self::AtMost(mark) => number <= mark,
         }

@@ -28,11 +28,19 @@ pub enum Format {
     X3p,
     /// Classic NetCDF as contact.engineering writes it.
     NetCdf,
+    /// AL3D, of Alicona.
+    Al3d,
+    /// MetroPro .dat, of Zygo.
+    MetroPro,
+    /// OPD, of Wyko, Veeco and Bruker.
+    Opd,
+    /// PLu, of Sensofar.
+    Plu,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 15] = [
         Self::Npy,
         Self::Text,
         Self::Xyz,
@@ -44,6 +52,10 @@ impl Format {
         Self::Sur,
         Self::X3p,
         Self::NetCdf,
+        Self::Al3d,
+        Self::MetroPro,
+        Self::Opd,
+        Self::Plu,
     ];
 
     /// The word that stands for it in scenes and on command lines.
@@ -64,6 +76,10 @@ impl Format {
             Self::Sur => ("sur", "SUR (Digital Surf)"),
             Self::X3p => ("x3p", "X3P (ISO 25178-72)"),
             Self::NetCdf => ("netcdf", "NetCDF-3"),
+            Self::Al3d => ("al3d", "AL3D (Alicona)"),
+            Self::MetroPro => ("metropro", "MetroPro (Zygo)"),
+            Self::Opd => ("opd", "OPD (Wyko)"),
+            Self::Plu => ("plu", "PLu (Sensofar)"),
         }
     }
 }

@@ -62,7 +62,8 @@ impl FromStr for Format {
 }
 
 /// All words of [`Format`].
-const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p or netcdf";
+const FORMATS: &str =
+    "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd or plu";
 
 impl FromStr for Decimal {
     type Err = KeywordError;

@@ -16,9 +16,6 @@ fn directory() -> Option<PathBuf> {
     found.join("expected.json").exists().then_some(found)
 }
 
-/// Formats whose readers are still to come.
-const WAITING: [&str; 4] = ["opd", "al3d", "plu", "metropro"];
-
 /// Factor of a length unit, in metres; `None` for what is none.
 fn metres(unit: &Value) -> Option<f64> {
     match unit.as_str()? {
@@ -88,9 +85,6 @@ fn real_files_are_read_as_an_independent_reader_does() {
     let mut wrong = Vec::new();
     for entry in &expected {
         let name = entry["file"].as_str().unwrap();
-        if entry["format"].as_str().is_some_and(|format| WAITING.contains(&format)) {
-            continue;
-        }
         let file = SurfaceFile::open(&directory.join(name), &ReadOptions::default());
         let found = match (file, entry.get("refused")) {
             (Err(error), Some(_)) => {
