@@ -162,8 +162,6 @@ pub(crate) enum Undefined {
     Near(f64),
     /// This one and all larger ones.
     AtLeast(f64),
-    /// This one and all smaller ones.
-    AtMost(f64),
 }
 
 impl Undefined {
@@ -175,7 +173,6 @@ impl Undefined {
             Self::Either(a, b) => Self::Equal(a).holds(number) || Self::Equal(b).holds(number),
             Self::Near(mark) => (number - mark).abs() <= 1.5e-7 * mark.abs(),
             Self::AtLeast(mark) => number >= mark,
-            Self::AtMost(mark) => number <= mark,
         }
     }
 }

@@ -65,7 +65,7 @@ impl Axis {
         let from = begins[0].max(begins[1]);
         let to = (begins[0] + sides[0]).min(begins[1] + sides[1]);
         let count = ((to - from) / cell + ROUNDED).floor();
-        if !(count >= 1.0) {
+        if count.is_nan() || count < 1.0 {
             return Err(ContentError::Apart { sides, offset });
         }
         let count = count as usize;

@@ -22,7 +22,6 @@ const EXACT: i128 = 1 << 53;
 
 impl NumberType {
     pub(crate) const U8: Self = Self { kind: Kind::Unsigned, size: 1, little: true };
-    pub(crate) const U16: Self = Self { kind: Kind::Unsigned, size: 2, little: true };
     pub(crate) const I16: Self = Self { kind: Kind::Signed, size: 2, little: true };
     pub(crate) const I32: Self = Self { kind: Kind::Signed, size: 4, little: true };
     pub(crate) const F32: Self = Self { kind: Kind::Float, size: 4, little: true };

@@ -169,11 +169,6 @@ impl<'a> Fields<'a> {
         self.base + self.at as u64
     }
 
-    /// Bytes that are left.
-    pub(crate) fn left(&self) -> usize {
-        self.bytes.len() - self.at
-    }
-
     /// Goes to an offset of this part.
     pub(crate) fn go(&mut self, at: usize) -> &mut Self {
         self.at = at.min(self.bytes.len());

@@ -233,7 +233,8 @@ proptest! {
         heights in "(([0-9]|nan|[0-9],[0-9])[ ;\n]){1,20}",
         end in "(\n|\r\n|\r)",
     ) {
-        let header: String = keys.iter().map(|(a, b, c, d)| format!("{a}{b}{c}{d}\n")).collect();
+        let header: Vec<String> = keys.iter().map(|(a, b, c, d)| format!("{a}{b}{c}{d}\n")).collect();
+        let header = header.concat();
         torture(format!("{header}{heights}").replace('\n', &end).as_bytes())?;
     }
 
@@ -352,7 +353,7 @@ fn small_files_of_instruments_hold_what_was_written() {
         let scan = opened.scans().nth(file.number).unwrap().unwrap_or_else(|e| panic!("{}: {e}", file.name));
         let metadata = scan.metadata();
         assert_eq!([metadata.columns, metadata.rows], file.shape, "{}", file.name);
-        let size = metadata.size.map(|size| size.map(|side| side.value()));
+        let size = metadata.size.map(|size| size.map(surface_io::Quantity::value));
         match (size, file.size) {
             (Some(size), Some(expected)) => {
                 for (side, expected) in size.iter().zip(expected) {

@@ -140,7 +140,7 @@ fn channel<'s>(
     };
     let mut details = raw.details();
     if let Some(line) = image.find("scan line") {
-        details += &format!(", {} scan", line.to_lowercase());
+        details = format!("{details}, {} scan", line.to_lowercase());
     }
     Ok(StoredChannel {
         name: name(image),

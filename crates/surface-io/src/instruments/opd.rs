@@ -73,7 +73,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         let [columns, rows, size] = three().map_err(|end: EndOfFields| end.of(source, FORMAT))?;
         let (kind, undefined) = match size {
             2 => (NumberType::I16, Undefined::AtLeast(32766.0)),
-            4 => (NumberType::F32, Undefined::AtLeast(1e38)),
+            4 => (NumberType::F32, Undefined::AtLeast(1e38_f32.into())),
             _ => return Err(source.wrong(FORMAT, block.offset + 4, "numbers of 2 or 4 bytes")),
         };
         let points = u64::from(columns) * u64::from(rows);

@@ -54,8 +54,8 @@ fn recognises(start: &[u8], length: u64) -> bool {
     let Ok(header) = Header::read(start) else { return false };
     // The date, in letters, and zeros behind it.
     let date = start[..128].split(|&b| b == 0).next().unwrap_or_default();
-    let [rows, columns] = header.shape;
-    let bytes = 4 * u64::from(rows) * u64::from(columns);
+    let [rows, columns] = header.shape.map(|n| u64::from(n.min(MOST)));
+    let bytes = 4 * rows * columns;
     (8..128).contains(&date.len())
         && date.iter().all(|b| b.is_ascii_graphic() || *b == b' ' || *b >= 0x80)
         && header.kind == TOPOGRAPHY

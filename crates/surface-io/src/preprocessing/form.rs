@@ -113,7 +113,7 @@ impl Form {
         let undetermined = || ContentError::Trend { present, unknowns };
         let z = |h: f64| (h - middle) / unit;
         let mut parameters =
-            kind.start(places, measured().map(|(i, &h)| (i, z(h)))).ok_or_else(undetermined)?;
+            kind.start(places, &measured().map(|(i, &h)| (i, z(h)))).ok_or_else(undetermined)?;
         let range = ((high - low) / unit).max(f64::MIN_POSITIVE);
         let squares = |p: &[f64; MOST]| -> Option<f64> {
             let mut sum = 0.0;
@@ -186,7 +186,7 @@ impl FormKind {
     fn start(
         self,
         places: Places,
-        points: impl Iterator<Item = (usize, f64)> + Clone,
+        points: &(impl Iterator<Item = (usize, f64)> + Clone),
     ) -> Option<[f64; MOST]> {
         let fit = |basis: &dyn Fn([f64; 2]) -> [f64; MOST], unknowns: usize| {
             let mut equations = NormalEquations::new(unknowns);

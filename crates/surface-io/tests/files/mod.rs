@@ -1,9 +1,13 @@
 //! Small valid files of every binary format, written here byte by byte from the description of the format.
 
+mod al3d;
 mod gwy;
 mod hdf5;
+mod metropro;
 mod nanoscope;
 mod netcdf;
+mod opd;
+mod plu;
 mod sdf;
 mod sur;
 mod tiff;
@@ -29,6 +33,10 @@ pub struct Small {
 /// All of them, two at least for each format: with undefined points or another type of numbers, where it has such.
 pub fn all() -> Vec<Small> {
     let of_all = [
+        al3d::files(),
+        metropro::files(),
+        opd::files(),
+        plu::files(),
         gwy::files(),
         hdf5::files(),
         nanoscope::files(),

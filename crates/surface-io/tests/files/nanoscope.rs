@@ -43,7 +43,7 @@ fn file(version: &str, images: &[&str], data: &[u8]) -> Vec<u8> {
          \\*Ciao scan list\r\n\\@Sens. Phase: V 1.0 \r\n"
     );
     for image in images {
-        text += &format!("\\*Ciao image list\r\n{image}");
+        text = [&text, "\\*Ciao image list\r\n", image].concat();
     }
     text += "\\*File list end\r\n\u{1a}";
     let mut bytes: Vec<u8> = text.chars().map(|c| c as u8).collect();
