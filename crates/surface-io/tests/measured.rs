@@ -42,8 +42,8 @@ fn check(expected: &Value, scan: &Scan) -> Result<(), String> {
         let near = (found - wanted).abs() <= CLOSE * scale.max(wanted.abs());
         near.then_some(()).ok_or_else(|| format!("{what}: {found:e}, expected {wanted:e}"))
     };
-    let pixels = numbers(&expected["pixels"]);
-    if [metadata.columns as f64, metadata.rows as f64] != pixels[..] {
+    let pixels: Vec<usize> = numbers(&expected["pixels"]).iter().map(|n| *n as usize).collect();
+    if [metadata.columns, metadata.rows] != pixels[..] {
         return Err(format!("{} x {}, expected {pixels:?}", metadata.columns, metadata.rows));
     }
     let sizes = numbers(&expected["sizes"]);
