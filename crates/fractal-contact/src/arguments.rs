@@ -74,9 +74,15 @@ pub enum Command {
     },
     /// What a scene, a surface or a table of results holds.
     Info {
-        /// A scene (.toml), results (.csv) or a surface (NPY, text matrix, XYZ).
+        /// A scene (.toml), results (.csv) or a surface (files of instruments and programs, NPY, text).
         file: PathBuf,
-        /// Format of a surface, where its name and content do not tell: npy, text or xyz.
+        /// All channels of a surface's file as JSON, lengths in metres.
+        #[arg(long)]
+        json: bool,
+        /// Number, from 0, or name of the channel of a file with several.
+        #[arg(long, conflicts_with = "json")]
+        channel: Option<surface_io::ChannelChoice>,
+        /// Format of a surface, where its name and content do not tell: text or xyz, for instance.
         #[arg(long)]
         format: Option<surface_io::Format>,
         /// Unit of its heights, such as nm.
@@ -143,23 +149,50 @@ pub struct MapArguments {
     /// Lines of text to leave out at the beginning.
     #[arg(long, default_value_t = 0)]
     skip_lines: usize,
-    /// Part of the map: centre.
+    /// Part of the map: centre, defined (the largest rectangle without undefined points), or "row,column,rows,columns".
     #[arg(long)]
     crop: Option<surface_io::Crop>,
+    /// Heights farther from their neighbours than so many robust standard deviations become undefined.
+    #[arg(long, value_name = "TIMES")]
+    outliers: Option<f64>,
+    /// Radius of the instrument's tip, such as "10 nm": says from which distance on heights are reliable.
+    #[arg(long, value_name = "LENGTH")]
+    tip_radius: Option<surface_io::Quantity>,
     /// Heights for undefined points: neighbours, plane or one height [default: they stay undefined].
     #[arg(long)]
     fill: Option<surface_io::Fill>,
-    /// What is subtracted: none, mean, plane or quadric.
+    /// What is subtracted: none, mean, plane, quadric, sphere or cylinder.
     #[arg(long, default_value = "none")]
     detrend: surface_io::Detrend,
+    /// Which axis is reversed: x or y.
+    #[arg(long)]
+    mirror: Option<surface_io::Mirror>,
+    /// Degrees by which the map is turned: 0, 90, 180 or 270.
+    #[arg(long, default_value = "0", value_parser = ["0", "90", "180", "270"])]
+    rotate: String,
+    /// Taper towards the edges: hann.
+    #[arg(long)]
+    window: Option<surface_io::Window>,
 }
 
 impl MapArguments {
     /// How the file is read, apart from what `rest` says, and what is done to its map.
     pub fn options(self, rest: ReadOptions) -> (ReadOptions, Preprocessing) {
-        let Self { lateral_unit, decimal, missing, skip_lines, crop, fill, detrend } = self;
+        let Self { lateral_unit, decimal, missing, skip_lines, crop, fill, detrend, .. } = self;
         let undefined = fill.is_none().then_some(surface_io::Undefined::NoContact);
-        let preprocessing = Preprocessing { crop, undefined, fill, detrend, ..Preprocessing::default() };
+        let preprocessing = Preprocessing {
+            crop,
+            outliers: self.outliers,
+            tip_radius: self.tip_radius,
+            undefined,
+            fill,
+            detrend,
+            mirror: self.mirror,
+            // One of four words.
+            quarter_turns: self.rotate.parse::<u16>().map_or(0, |degrees| (degrees / 90) as u8),
+            window: self.window,
+            ..Preprocessing::default()
+        };
         (ReadOptions { lateral_unit, decimal, missing, skip_lines, ..rest }, preprocessing)
     }
 }

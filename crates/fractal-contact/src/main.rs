@@ -5,7 +5,7 @@ mod arguments;
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, run,
+    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json, run,
 };
 use std::path::Path;
 use std::process::ExitCode;
@@ -34,11 +34,13 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
             run_scene(&scene, &Options { out, threads, fresh })
         }
-        Command::Info { file, format, unit, size, cell, more } => {
-            let declared =
-                surface_io::ReadOptions { format, unit, size, cell, ..surface_io::ReadOptions::default() };
-            let (declared, preprocessing) = more.options(declared);
-            runs::print(format_args!("{}", info(&file, &declared, &preprocessing)?));
+        Command::Info { file, json, channel, format, unit, size, cell, more } => {
+            let rest = surface_io::ReadOptions::default();
+            let (declared, preprocessing) =
+                more.options(surface_io::ReadOptions { channel, format, unit, size, cell, ..rest });
+            let text =
+                if json { info_json(&file, &declared)? } else { info(&file, &declared, &preprocessing)? };
+            runs::print(format_args!("{text}"));
             Ok(ExitCode::SUCCESS)
         }
         Command::Surface {

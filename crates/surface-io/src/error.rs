@@ -118,6 +118,12 @@ pub enum ContentError {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// An archive that is no X3P file.
+    #[error("an archive of {members}: take the file of heights out of it")]
+    Archive {
+        /// Names of its members; of many the first.
+        members: String,
+    },
     /// Not the format expected.
     #[error("expected {expected}, but the content is {found}: correct the name or the format")]
     NotOfFormat {
@@ -126,10 +132,10 @@ pub enum ContentError {
         /// The format that it looks like.
         found: Format,
     },
-    /// Two columns, the first of equally spaced numbers: x and z along a line.
+    /// Two columns, the first of ascending numbers: x and z along a line.
     #[error(
-        "{lines} lines of two numbers, the first of them equally spaced: a profile x, z along a line, which is no map \
-         (a map of two columns: say format = \"text\")"
+        "{lines} lines of two numbers, the first of them ascending: a profile x, z along a line, which is no map: \
+         surface_io::profile reads it (a map of two columns: say format = \"text\")"
     )]
     Profile {
         /// Lines.
@@ -145,13 +151,53 @@ pub enum ContentError {
     },
     /// A byte that does not occur in text.
     #[error(
-        "byte 0x{byte:02x} at offset {offset} does not occur in text: expected numbers as text, or an NPY file"
+        "byte 0x{byte:02x} at offset {offset} does not occur in text: expected numbers as text, or a binary format that is read"
     )]
-    Binary {
+    NoText {
         /// Offset in bytes.
         offset: usize,
         /// The byte.
         byte: u8,
+    },
+    /// Not the binary format that was asked for.
+    #[error("expected {expected}, but the file does not begin like one")]
+    Other {
+        /// The format asked for.
+        expected: Format,
+    },
+    /// What a binary file holds at some place is not what its format has there.
+    #[error("{format}, offset {offset}: expected {expected}")]
+    Binary {
+        /// The format.
+        format: Format,
+        /// Offset in bytes.
+        offset: u64,
+        /// What was expected there.
+        expected: String,
+    },
+    /// No channel, or more than one, is what was asked for.
+    #[error(
+        "{}: the channels are {list}",
+        match (.choice, .matching) {
+            (Some(choice), 0) => format!("channel {choice} is not in the file"),
+            (Some(choice), n) => format!("{n} channels are called {choice}, say channel = NUMBER"),
+            (None, 0) => "no channel of the file has heights".to_owned(),
+            (None, n) => format!("{n} channels of the file have heights, say channel = NUMBER or NAME"),
+        }
+    )]
+    Channel {
+        /// What was asked for.
+        choice: Option<String>,
+        /// Channels that it may mean.
+        matching: usize,
+        /// All of them.
+        list: String,
+    },
+    /// A channel whose values are no heights.
+    #[error("channel {what}: its values are no heights")]
+    NoHeights {
+        /// Number, name and unit.
+        what: String,
     },
     /// The header of an NPY file is not one.
     #[error("header of an NPY file, offset {offset}: expected {expected}")]
@@ -244,8 +290,26 @@ pub enum ContentError {
         /// Values found.
         found: usize,
     },
+    /// Lines without two values where a profile is read.
+    #[error("line {line} has {found} values: expected x and z of one point of a profile")]
+    NotProfile {
+        /// Line, from 1.
+        line: usize,
+        /// Values found.
+        found: usize,
+    },
+    /// A profile with points without a height, or with places without a point.
+    #[error(
+        "{undefined} of the {points} places of the profile have no height: expected one at each; cut it where it is whole"
+    )]
+    Gaps {
+        /// Places without a height.
+        undefined: usize,
+        /// All places.
+        points: usize,
+    },
     /// A point without a coordinate.
-    #[error("line {line} has no {axis}: expected x, y and z of a point (z may be missing)")]
+    #[error("line {line} has no {axis}: expected all coordinates of a point (z may be missing)")]
     Coordinate {
         /// `x` or `y`.
         axis: char,
@@ -414,10 +478,16 @@ pub enum ContentError {
         value: f64,
     },
     /// A name whose ending is none of the formats that are written.
-    #[error("the name ends in {found:?}: expected npy, txt, xyz or vti")]
+    #[error("the name ends in {found:?}: expected npy, h5, txt, xyz, vti, x3p, gwy or nc")]
     Ending {
         /// The ending, shortened.
         found: String,
+    },
+    /// The library of the format does not write the map.
+    #[error("cannot be written: {reason}")]
+    Unwritten {
+        /// Its reason.
+        reason: String,
     },
     /// A field with a number that is not finite (nor NaN at an undefined point, where those are written).
     #[error("{field}: value {at} (counted from 0) is {value}: expected finite numbers")]
@@ -428,6 +498,17 @@ pub enum ContentError {
         at: usize,
         /// The value.
         value: f64,
+    },
+    /// Two maps that do not lie over each other.
+    #[error(
+        "two maps {} and {} long, the second moved by {offset}: expected one cell at least that both cover",
+        .sides[0], .sides[1]
+    )]
+    Apart {
+        /// Their sides along one axis.
+        sides: [f64; 2],
+        /// Distance of their middles.
+        offset: f64,
     },
     /// The map was refused.
     #[error("{0}")]

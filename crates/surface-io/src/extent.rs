@@ -54,7 +54,7 @@ fn scaled(what: &'static str, from: Quantity, by: f64, value: f64) -> Result<Qua
 }
 
 /// Whether two lengths are one within the digits that headers print.
-fn agree(a: Quantity, b: Quantity) -> bool {
+pub(crate) fn agree(a: Quantity, b: Quantity) -> bool {
     a.dimension() == b.dimension() && (a.value() / b.value() - 1.0).abs() <= PRINTED
 }
 

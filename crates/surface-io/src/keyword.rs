@@ -2,7 +2,7 @@
 
 use crate::format::Format;
 use crate::options::Decimal;
-use crate::preprocessing::{Crop, Detrend, Fill, Undefined};
+use crate::preprocessing::{Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
 use std::str::FromStr;
@@ -52,15 +52,18 @@ impl std::error::Error for KeywordError {}
 impl FromStr for Format {
     type Err = KeywordError;
 
-    /// Reads `npy`, `text` or `xyz`.
+    /// Reads a [`Format::word`].
     ///
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = [("npy", Self::Npy), ("text", Self::Text), ("xyz", Self::Xyz)];
-        among("format", text, known, "npy, text or xyz")
+        among("format", text, Self::ALL.map(|format| (format.word(), format)), FORMATS)
     }
 }
+
+/// All words of [`Format`].
+const FORMATS: &str =
+    "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd or plu";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -78,7 +81,7 @@ impl FromStr for Decimal {
 impl FromStr for Detrend {
     type Err = KeywordError;
 
-    /// Reads `none`, `mean`, `plane` or `quadric`.
+    /// Reads `none`, `mean`, `plane`, `quadric`, `sphere` or `cylinder`.
     ///
     /// # Errors
     /// [`KeywordError`] for other words.
@@ -88,8 +91,10 @@ impl FromStr for Detrend {
             ("mean", Self::Mean),
             ("plane", Self::Plane),
             ("quadric", Self::Quadric),
+            ("sphere", Self::Sphere),
+            ("cylinder", Self::Cylinder),
         ];
-        among("detrend", text, known, "none, mean, plane or quadric")
+        among("detrend", text, known, "none, mean, plane, quadric, sphere or cylinder")
     }
 }
 
@@ -129,14 +134,16 @@ impl FromStr for Undefined {
 impl FromStr for Crop {
     type Err = KeywordError;
 
-    /// Reads `centre`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are
+    /// Reads `centre`, `defined`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are
     /// as many columns as rows.
     ///
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        if text == "centre" {
-            return Ok(Self::Centre);
+        match text {
+            "centre" => return Ok(Self::Centre),
+            "defined" => return Ok(Self::Defined),
+            _ => {}
         }
         let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
         match numbers.as_deref() {
@@ -145,9 +152,33 @@ impl FromStr for Crop {
             _ => Err(KeywordError::new(
                 "crop",
                 text,
-                "centre, or row, column, rows and columns such as \"10,20,256,512\"",
+                "centre, defined, or row, column, rows and columns such as \"10,20,256,512\"",
             )),
         }
+    }
+}
+
+impl FromStr for Mirror {
+    type Err = KeywordError;
+
+    /// Reads `x` or `y`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        among("mirror", text, [("x", Self::X), ("y", Self::Y)], "x or y")
+    }
+}
+
+impl FromStr for Window {
+    type Err = KeywordError;
+
+    /// Reads `hann`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        among("window", text, [("hann", Self::Hann)], "hann")
     }
 }
 
@@ -160,6 +191,9 @@ mod tests {
         assert_eq!("npy".parse(), Ok(Format::Npy));
         assert_eq!("text".parse(), Ok(Format::Text));
         assert_eq!("xyz".parse(), Ok(Format::Xyz));
+        for format in Format::ALL {
+            assert_eq!(format.word().parse(), Ok(format));
+        }
         assert_eq!("point".parse(), Ok(Decimal::Point));
         assert_eq!("comma".parse(), Ok(Decimal::Comma));
         assert_eq!("none".parse(), Ok(Detrend::Nothing));
@@ -174,11 +208,11 @@ mod tests {
         assert_eq!("1,2,3,4".parse(), Ok(Crop::Window { row: 1, column: 2, rows: 3, columns: 4 }));
         assert_eq!("no_contact".parse(), Ok(Undefined::NoContact));
         for (text, error) in [
-            ("hdf5".parse::<Format>().unwrap_err(), "format = \"hdf5\": expected npy, text or xyz"),
+            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz, gwy"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
-            ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane or quadric"),
-            ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, or row"),
-            ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, or row"),
+            ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane, quadric, sphere or cylinder"),
+            ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, defined, or row"),
+            ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, defined, or row"),
             ("skip".parse::<Undefined>().unwrap_err(), "undefined = \"skip\": expected no_contact (fill gives"),
             (
                 "2 Um".parse::<Fill>().unwrap_err(),

@@ -24,12 +24,15 @@
 //! # Nothing is guessed silently
 //!
 //! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
-//!   a text matrix; three columns without either are points or a matrix by their comments, or an error; two
-//!   columns, the first of equally spaced numbers, are a profile, which is refused by its name. Other
-//!   files that people try (HDF5, archives, pictures, Gwyddion's own) are named.
+//!   a text matrix; three columns without either are points or a matrix by their comments, points where the first two are all
+//!   places of a grid, or else an error; two
+//!   columns, the first of ascending numbers, are a profile, which is refused by its name ([`profile`] reads it). Other
+//!   files that people try (archives, pictures) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
-//!   Comments begin with `#` or `%`; of them `Width`, `Height`, `Value units` and `Lateral units` count, as
-//!   Gwyddion's exports and this crate write them. Decimal commas are read on request ([`Decimal::Comma`]). An
+//!   Comments begin with `#` or `%`; lines before the numbers that begin with a word are a header like them. Of both count `Width`,
+//!   `Height`, `Value units` and `Lateral units`, as Gwyddion's exports and this crate write them, and the keys of SPIP, Nanoscope and
+//!   profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...); two that differ are an error, and so are other numbers of columns
+//!   or rows than there are. Decimal commas are read on request ([`Decimal::Comma`]), or where every comma can be nothing else. An
 //!   empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined points.
 //! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
 //!   is a header's width or height without the other, and two that are square cells within the decimals that
@@ -43,6 +46,7 @@
 //! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any
 //!   unit both stay as they are. What is given beside what the file says must agree with it within the digits
 //!   of a header (0.5 %).
+//! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`] only.
 //! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both),
 //!   infinite heights always.
 //! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row,
@@ -52,8 +56,8 @@
 //!
 //! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them
 //! ([`Quantity`]); heights of a scan are converted with one rounding. What is written is read again to the
-//! bit ([`text()`], [`xyz`], [`npy`]); so are the sides in text and XYZ. Trends are exact to 1e-13 of the
-//! range of the heights, filled points to 1e-10.
+//! bit ([`text()`], [`xyz`], [`npy`], [`hdf5`], [`x3p`], [`gwy`], [`netcdf`]); so are the sides in all but NPY,
+//! in X3P but for their last bit. Trends are exact to 1e-13 of the range of the heights, filled points to 1e-10.
 //!
 //! # Hostile files
 //!
@@ -71,45 +75,57 @@
 //!
 //! # Writing
 //!
-//! [`write_map`] by the name's ending; [`npy`], [`text()`], [`xyz`] and [`vti`] (for ParaView) give bytes,
-//! and [`files::write_whole`] puts them into a file whole or not at all.
+//! [`write_map`] by the name's ending; [`npy`], [`hdf5`], [`text()`], [`xyz`], [`x3p`], [`gwy`], [`netcdf`] and
+//! [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or not at all.
 //!
 //! # What it does not do
 //!
-//! Native formats of instruments (export text or NPY), surfaces in finer cells than measured, outliers,
-//! filters.
+//! Surfaces in finer cells than measured, filters, formats that are not in [`Format`].
 
-mod content;
+mod channel;
+mod composite;
 mod describe;
 mod detect;
 mod error;
 mod extent;
 pub mod files;
 mod format;
+mod inflate;
+mod instruments;
 mod keyword;
 mod lines;
 mod npy;
+mod number_type;
 mod options;
 mod points;
 mod preprocessing;
 mod provenance;
 mod quantity;
+mod reader;
 mod scan;
 mod sides;
+mod source;
+mod surface_file;
 mod text;
 mod vti;
 mod write;
+mod zip;
 
+pub use channel::ChannelChoice;
+pub use composite::composite;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};
 pub use format::Format;
+pub use instruments::{gwy, hdf5, netcdf, x3p};
 pub use keyword::KeywordError;
 pub use npy::npy;
 pub use options::{Decimal, ReadOptions};
-pub use preprocessing::{Crop, Detrend, Fill, Preprocessing, Undefined};
+pub use points::{profile, profile_from_bytes};
+pub use preprocessing::{Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window};
 pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
 pub use scan::{Metadata, Scan};
 pub use sides::Sides;
+pub use surface_file::SurfaceFile;
 pub use vti::{DataArray, Encoding, vti};
 pub use write::{Metric, text, write_map, xyz};

@@ -1,5 +1,6 @@
 //! How a file is read.
 
+use crate::channel::ChannelChoice;
 use crate::format::Format;
 use crate::quantity::{Quantity, Unit};
 use crate::sides::Sides;
@@ -9,8 +10,12 @@ use crate::sides::Sides;
 pub struct ReadOptions {
     /// The format, where it is not to be told from the content and the name's ending.
     pub format: Option<Format>,
+    /// The channel, where the file has several that can be heights.
+    pub channel: Option<ChannelChoice>,
     /// Unit of the heights.
     pub unit: Option<Unit>,
+    /// Height of one count: of one grey level or of one unit of a number that has none, such as `0.25 nm`.
+    pub height_scale: Option<Quantity>,
     /// Unit of x and y of points.
     pub lateral_unit: Option<Unit>,
     /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights
@@ -35,7 +40,9 @@ impl Default for ReadOptions {
     fn default() -> Self {
         Self {
             format: None,
+            channel: None,
             unit: None,
+            height_scale: None,
             lateral_unit: None,
             size: None,
             cell: None,

@@ -1,11 +1,13 @@
 //! Points x, y, z on a regular grid, in any order.
 
 mod axis;
+mod profile;
 
-use crate::content::{FileContent, check_unit};
+pub use profile::{profile, profile_from_bytes};
+
+use crate::channel::{StoredChannel, StoredHeights, StoredUnit, check_unit};
 use crate::error::ContentError;
 use crate::extent::Extent;
-use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::text::TextTable;
@@ -23,13 +25,15 @@ const ROUNDED: f64 = 1e-9;
 /// The points of a table as a map: column i at `x_min + i * spacing`, row j at `y_min + j * spacing`.
 ///
 /// Cost O(n log n) for n points.
-pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<FileContent, ContentError> {
+pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {
     if table.columns != 3 {
         return Err(ContentError::NotPoints { line: table.first_line(), found: table.columns });
     }
     let unit = table.heading.unit.clone();
     let heights_unit = declared.unit.as_ref().or(unit.as_ref());
-    let lateral = lateral_unit(declared, table, heights_unit)?;
+    let has_length =
+        declared.height_scale.is_some() || heights_unit.is_some_and(|u| u.dimension() == Dimension::LENGTH);
+    let lateral = lateral_unit(declared, table, has_length)?;
     let spacing = match declared.cell {
         Some(cell) => {
             let [x, y] = cell.both();
@@ -60,7 +64,7 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<FileCont
             return Err(ContentError::Duplicate { first, second, at: [point[0], point[1]] });
         }
         taken[at] = table.lines[i];
-        heights[at] = point[2];
+        heights[at] = table.scale.unwrap_or(1.0) * point[2];
     }
     let extent = if declared.cell.is_some() {
         [None; 2]
@@ -70,8 +74,32 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<FileCont
     let off = 100.0 * x.off.max(y.off);
     let off =
         if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
-    let details = format!("{points} points, {}{off}", table.delimiter);
-    Ok(FileContent { format: Format::Xyz, details, rows, columns, heights, unit, extent })
+    let details = format!("{points} points, {}{off}", table.details());
+    let (name, unit) = (table.heading.name.clone(), StoredUnit::heights(unit));
+    Ok(StoredChannel { name, details, rows, columns, unit, extent, heights: StoredHeights::Read(heights) })
+}
+
+/// Whether the first two of three columns are all places of a grid of two rows and columns or more, each once and exactly on its place.
+pub(crate) fn is_full_grid(table: &TextTable) -> bool {
+    let axis = |name, at: usize| {
+        let along: Vec<f64> = table.values.iter().skip(at).step_by(3).copied().collect();
+        if along.iter().any(|v| v.is_nan()) {
+            return None;
+        }
+        let axis = GridAxis::find(name, along, None).ok()?;
+        (axis.count >= 2.0 && axis.off <= ROUNDED.sqrt()).then_some(axis)
+    };
+    let (Some(x), Some(y)) = (axis('x', 0), axis('y', 1)) else { return false };
+    let places = x.count * y.count;
+    if (places - table.rows() as f64).abs() > 0.0 {
+        return false;
+    }
+    let mut taken = vec![false; table.rows()];
+    let once = |point: &[f64]| {
+        let (Ok(row), Ok(column)) = (y.index(point[1]), x.index(point[0])) else { return false };
+        !std::mem::replace(&mut taken[row * x.count as usize + column], true)
+    };
+    table.values.chunks_exact(3).all(once)
 }
 
 /// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not
@@ -79,7 +107,7 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<FileCont
 fn lateral_unit(
     declared: &ReadOptions,
     table: &TextTable,
-    heights: Option<&Unit>,
+    heights_have_length: bool,
 ) -> Result<Option<Unit>, ContentError> {
     let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
     if let (Some(a), Some(b)) = (file, given)
@@ -90,7 +118,7 @@ fn lateral_unit(
     }
     let unit = given.clone().or_else(|| file.clone());
     check_unit("lateral_unit", unit.as_ref())?;
-    if unit.is_none() && heights.is_some_and(|u| u.dimension() == Dimension::LENGTH) {
+    if unit.is_none() && heights_have_length {
         let remedy = "say lateral_unit = \"um\" or another unit of length";
         return Err(ContentError::Unspecified { what: "the unit of x and y", remedy });
     }

@@ -1,7 +1,11 @@
 //! From a scan to a map: crop, trend, undefined points, resampling, units.
 
+mod defects;
 mod fill;
+mod form;
+mod normal_equations;
 mod resample;
+mod tip;
 mod trend;
 
 pub use trend::Detrend;
@@ -16,6 +20,10 @@ use contact_model::{Cells, HeightMap, Size};
 pub struct Preprocessing {
     /// Which part is taken.
     pub crop: Option<Crop>,
+    /// Heights farther from the median of their neighbours than so many robust standard deviations of all such distances become undefined.
+    pub outliers: Option<f64>,
+    /// Radius of the tip that measured the heights: says from which distance on they are reliable, and changes nothing.
+    pub tip_radius: Option<Quantity>,
     /// What becomes of undefined points. Without it and without [`Preprocessing::fill`] they are an error.
     pub undefined: Option<Undefined>,
     /// Which heights undefined points get; it contradicts [`Preprocessing::undefined`].
@@ -26,6 +34,40 @@ pub struct Preprocessing {
     pub cells: Option<usize>,
     /// Rows after averaging over larger cells; as much fewer as the columns where only `cells` is given.
     pub rows: Option<usize>,
+    /// Whether x or y is reversed.
+    pub mirror: Option<Mirror>,
+    /// Quarter turns: x to y, y to -x.
+    pub quarter_turns: u8,
+    /// What the deviations from the mean height are multiplied by.
+    pub window: Option<Window>,
+}
+
+/// Which axis is reversed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mirror {
+    /// x: the last column becomes the first, as a body is seen that is laid on its face.
+    X,
+    /// y: the last row becomes the first.
+    Y,
+}
+
+/// A taper towards the edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Window {
+    /// `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the middles of the cells: a map without a step at its edges, for periodic boundaries. The rms
+    /// height becomes 3/8 of what it was.
+    Hann,
+}
+
+/// A map, and what was done to make it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Preprocessed {
+    /// The map.
+    pub map: HeightMap,
+    /// One line for each step, with what it found; empty where nothing was done.
+    pub steps: Vec<String>,
 }
 
 /// A part of a scan.
@@ -34,6 +76,8 @@ pub enum Crop {
     /// The largest square in the middle, as nearly as oblong cells make one; where the margins are odd, the
     /// upper and the left one are the smaller.
     Centre,
+    /// The largest rectangle without undefined points, by its number of cells.
+    Defined,
     /// The rectangle of `rows` x `columns` cells whose first cell is (row, column), counted from 0.
     Window {
         /// First row.
@@ -70,8 +114,8 @@ pub enum Fill {
 }
 
 impl Scan {
-    /// A map: crop, fill, subtract the trend, average over larger cells; in metres where the scan has units,
-    /// else in its own numbers.
+    /// A map: crop, take out outliers, fill, subtract the trend, average over larger cells, mirror, turn, taper; in metres where the scan
+    /// has units, else in its own numbers.
     ///
     /// The trend is fitted to measured heights only and subtracted from all. Where undefined points are kept,
     /// the mean over a larger cell is that of its defined part, and the cell is undefined where this is less
@@ -94,18 +138,54 @@ impl Scan {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn map(&self, preprocessing: &Preprocessing) -> Result<HeightMap> {
-        self.preprocessed(preprocessing).map_err(Error::content(self.path()))
+        self.preprocessed(preprocessing).map(|preprocessed| preprocessed.map)
     }
 
-    fn preprocessed(&self, preprocessing: &Preprocessing) -> Result<HeightMap, ContentError> {
+    /// The map of [`Scan::map`] with a line on each step, for records.
+    ///
+    /// # Errors
+    /// As [`Scan::map`].
+    pub fn preprocessed(&self, preprocessing: &Preprocessing) -> Result<Preprocessed> {
+        self.by_steps(self.heights().to_vec(), preprocessing).map_err(Error::content(self.path()))
+    }
+
+    /// [`Scan::preprocessed`] of a scan that is not needed any more: its heights become those of the map, so that memory holds them once.
+    ///
+    /// # Errors
+    /// As [`Scan::map`].
+    pub fn into_preprocessed(mut self, preprocessing: &Preprocessing) -> Result<Preprocessed> {
+        let heights = self.take_heights();
+        self.by_steps(heights, preprocessing).map_err(Error::content(self.path()))
+    }
+
+    /// The steps on the heights of the whole scan.
+    fn by_steps(
+        &self,
+        heights: Vec<f64>,
+        preprocessing: &Preprocessing,
+    ) -> Result<Preprocessed, ContentError> {
+        let mut steps = Vec::new();
         if let (Some(_), Some(Undefined::NoContact)) = (preprocessing.fill, preprocessing.undefined) {
             let (first, second) = ("fill is given".into(), "undefined = \"no_contact\" too".into());
             return Err(ContentError::Contradiction { what: "undefined points", first, second });
         }
+        if let Some(unit) = &self.metadata().no_heights {
+            let name = self.metadata().name.as_deref().unwrap_or_default();
+            let what = format!("{} {name} {unit}", self.metadata().number).trim().to_owned();
+            return Err(ContentError::NoHeights { what });
+        }
         let (size, cell) = self.sides()?;
         // Cells that no map may have are refused before anything is fitted to them.
         Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
-        let (cells, mut heights) = self.part(preprocessing.crop, cell)?;
+        let (cells, mut heights) = self.part(heights, preprocessing.crop, cell, &mut steps)?;
+        if let Some(times) = preprocessing.outliers {
+            if !(times > 0.0 && times.is_finite()) {
+                let expected = "a number > 0 of robust standard deviations, such as 8";
+                return Err(ContentError::OutOfRange { what: "outliers", value: times, expected });
+            }
+            let found = defects::remove_outliers(cells, times, &mut heights);
+            steps.push(format!("{found} outliers beyond {times} robust standard deviations made undefined"));
+        }
         let undefined = heights.iter().filter(|h| h.is_nan()).count();
         if undefined == heights.len() {
             return Err(ContentError::AllUndefined { points: heights.len() });
@@ -118,12 +198,24 @@ impl Scan {
         if let Some(value) = heights.iter().copied().find(|h| h.is_infinite()) {
             return Err(ContentError::Overflow { value });
         }
+        if let Some(radius) = preprocessing.tip_radius {
+            steps.push(self.tip(radius, cells, cell, &heights)?);
+        }
+        let form = |kind| form::Form::fit(kind, cells, cell, &heights).map(Some);
+        let form = match preprocessing.detrend {
+            Detrend::Sphere => form(form::FormKind::Sphere)?,
+            Detrend::Cylinder => form(form::FormKind::Cylinder)?,
+            _ => None,
+        };
         let trend = preprocessing.detrend.fit(cells, &heights)?;
         if undefined > 0 {
             let first = heights.iter().position(|h| h.is_nan()).unwrap_or(0);
             let first = Place::Cell { row: first / cells.columns, column: first % cells.columns };
             match (preprocessing.fill, preprocessing.undefined) {
-                (Some(fill), _) => self.fill(fill, cells, cell, &mut heights)?,
+                (Some(fill), _) => {
+                    self.fill(fill, cells, cell, &mut heights)?;
+                    steps.push(format!("{undefined} undefined points filled"));
+                }
                 (None, Some(Undefined::NoContact)) => {}
                 (None, None) => {
                     return Err(ContentError::Undefined { undefined, points: heights.len(), first });
@@ -132,19 +224,64 @@ impl Scan {
         }
         if let Some(trend) = trend {
             trend.subtract(cells, &mut heights);
+            steps.push(format!("the {} of least squares subtracted", preprocessing.detrend));
+        }
+        if let Some(form) = form {
+            form.subtract(cells, cell, &mut heights);
+            let radius = form.radius();
+            steps.push(format!(
+                "the {} of least squares subtracted: radius {:e} ({})",
+                preprocessing.detrend,
+                radius.abs(),
+                if radius > 0.0 { "a hill" } else { "a hollow" }
+            ));
         }
         let whole = cells == Cells { columns: self.metadata().columns, rows: self.metadata().rows };
         let part = [cell[0] * cells.columns as f64, cell[1] * cells.rows as f64];
         let size = if whole { size } else { part };
         let coarse = coarse(preprocessing, cells)?;
         let heights = resample::coarsen(heights, cells, coarse);
+        if coarse != cells {
+            steps.push(format!("averaged over {} x {} cells", coarse.columns, coarse.rows));
+        }
         let kept = undefined > 0 && preprocessing.fill.is_none();
         let map = if kept {
             HeightMap::with_undefined(coarse, size, heights)
         } else {
             HeightMap::new(coarse, size, heights)
         };
-        map.map_err(ContentError::Map)
+        let map = turned(map.map_err(ContentError::Map)?, preprocessing, &mut steps);
+        let map = match preprocessing.window {
+            None => map,
+            Some(Window::Hann) => {
+                steps.push("deviations from the mean tapered by Hann's window".to_owned());
+                hann(&map).map_err(ContentError::Map)?
+            }
+        };
+        Ok(Preprocessed { map, steps })
+    }
+
+    /// From which distance on a tip lets the surface be seen.
+    fn tip(
+        &self,
+        radius: Quantity,
+        cells: Cells,
+        cell: [f64; 2],
+        heights: &[f64],
+    ) -> Result<String, ContentError> {
+        let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
+        let what = "tip_radius";
+        let value = radius.expect(unit).map_err(|source| ContentError::Quantity { what, source })?;
+        if value <= 0.0 {
+            return Err(ContentError::OutOfRange { what, value, expected: "a length > 0" });
+        }
+        Ok(match tip::reliable_from(cells, cell, heights, value) {
+            Some(distance) if distance > 0.0 => {
+                format!("with a tip of radius {radius}, heights are reliable from {distance:e} on")
+            }
+            Some(_) => format!("with a tip of radius {radius}, heights are reliable at all distances"),
+            None => format!("with a tip of radius {radius}, heights are reliable at no distance"),
+        })
     }
 
     /// Sides of the map and of a cell in metres, or in the numbers of the file.
@@ -176,18 +313,32 @@ impl Scan {
     }
 
     /// The heights that are left by a crop.
-    fn part(&self, crop: Option<Crop>, cell: [f64; 2]) -> Result<(Cells, Vec<f64>), ContentError> {
+    fn part(
+        &self,
+        heights: Vec<f64>,
+        crop: Option<Crop>,
+        cell: [f64; 2],
+        steps: &mut Vec<String>,
+    ) -> Result<(Cells, Vec<f64>), ContentError> {
         let (all_rows, all_columns) = (self.metadata().rows, self.metadata().columns);
         let (row, column, rows, columns) = match crop {
             None => {
                 let cells = Cells { columns: all_columns, rows: all_rows };
-                return Ok((cells, self.heights().to_vec()));
+                return Ok((cells, heights));
             }
             Some(Crop::Centre) => {
                 let side = (all_columns as f64 * cell[0]).min(all_rows as f64 * cell[1]);
                 let across = |cell: f64, all: usize| ((side / cell).round() as usize).clamp(1, all);
                 let (rows, columns) = (across(cell[1], all_rows), across(cell[0], all_columns));
                 ((all_rows - rows) / 2, (all_columns - columns) / 2, rows, columns)
+            }
+            Some(Crop::Defined) => {
+                let cells = Cells { columns: all_columns, rows: all_rows };
+                let (rows, columns) = defects::largest_defined(cells, &heights);
+                if rows.is_empty() {
+                    return Err(ContentError::AllUndefined { points: heights.len() });
+                }
+                (rows.start, columns.start, rows.len(), columns.len())
             }
             Some(Crop::Window { row, column, rows, columns }) => (row, column, rows, columns),
         };
@@ -198,8 +349,9 @@ impl Scan {
             let (cells, shape) = ([rows, columns], [all_rows, all_columns]);
             return Err(ContentError::Crop { from: [row, column], cells, shape });
         }
+        steps.push(format!("cropped to {columns} x {rows} points from row {row}, column {column} (from 0)"));
         let part = |row: &[f64]| row[column..column + columns].to_vec();
-        let rows_taken = self.heights().chunks_exact(all_columns).skip(row).take(rows);
+        let rows_taken = heights.chunks_exact(all_columns).skip(row).take(rows);
         Ok((Cells { columns, rows }, rows_taken.flat_map(part).collect()))
     }
 
@@ -226,6 +378,44 @@ impl Scan {
         }
         Ok(())
     }
+}
+
+/// The map mirrored and turned.
+fn turned(mut map: HeightMap, preprocessing: &Preprocessing, steps: &mut Vec<String>) -> HeightMap {
+    match preprocessing.mirror {
+        None => {}
+        Some(Mirror::X) => {
+            map = map.mirrored();
+            steps.push("x reversed".to_owned());
+        }
+        Some(Mirror::Y) => {
+            map = map.transposed().mirrored().transposed();
+            steps.push("y reversed".to_owned());
+        }
+    }
+    let turns = preprocessing.quarter_turns % 4;
+    if turns > 0 {
+        map = (0..turns).fold(map, |map, _| map.rotated());
+        steps.push(format!("turned by {} degrees", 90 * u32::from(turns)));
+    }
+    map
+}
+
+/// Deviations from the mean height tapered to the edges.
+fn hann(map: &HeightMap) -> contact_model::Result<HeightMap> {
+    let weights = |count: usize| -> Vec<f64> {
+        let place = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / count as f64;
+        (0..count).map(|i| place(i).sin().powi(2)).collect()
+    };
+    let (across, down) = (weights(map.columns()), weights(map.rows()));
+    let defined = (map.columns() * map.rows() - map.undefined()) as f64;
+    let mean = map.defined().sum::<f64>() / defined;
+    let tapered = |(i, &h): (usize, &f64)| {
+        let weight = across[i % map.columns()] * down[i / map.columns()];
+        if h.is_finite() { mean + weight * (h - mean) } else { f64::NAN }
+    };
+    let heights = map.heights().iter().enumerate().map(tapered).collect();
+    HeightMap::with_undefined(map.cells(), map.size(), heights)
 }
 
 /// Columns and rows after averaging.

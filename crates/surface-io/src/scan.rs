@@ -1,15 +1,13 @@
 //! What a file holds before anything is done to it.
 
-use crate::content::{FileContent, check_unit};
-use crate::error::{ContentError, Error, Place, Result};
+use crate::channel::{StoredChannel, StoredUnit, check_unit};
+use crate::error::{ContentError, Place};
+use crate::extent;
 use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::provenance::{Origin, Sourced, contradiction, sourced};
-use crate::quantity::{Quantity, Unit};
-use crate::{extent, npy, points, text};
+use crate::quantity::{Dimension, Quantity, Unit};
 use std::fmt;
-use std::fs::File;
-use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 /// Metadata of a file, for the user to check; shown line by line.
@@ -17,6 +15,10 @@ use std::path::{Path, PathBuf};
 pub struct Metadata {
     /// The format.
     pub format: Format,
+    /// Number of the channel in its file, from 0.
+    pub number: usize,
+    /// Name of the channel, where the file gives one.
+    pub name: Option<String>,
     /// Details of it: type of the numbers, order, delimiter.
     pub details: String,
     /// Rows.
@@ -29,6 +31,9 @@ pub struct Metadata {
     pub cell: Option<Sourced<[Quantity; 2]>>,
     /// Unit of the heights; `None` where it is unknown.
     pub unit: Option<Sourced<Unit>>,
+    /// The values are no heights but a phase, a voltage or counts, and make no map: their unit as the file writes it, empty where it does
+    /// not.
+    pub no_heights: Option<String>,
     /// Number of undefined points: cells without a height.
     pub undefined: usize,
     /// Lowest and highest height in the file's unit; `None` where no point is defined.
@@ -47,6 +52,9 @@ impl Metadata {
 impl fmt::Display for Metadata {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "format     {} ({})", self.format, self.details)?;
+        if let Some(name) = &self.name {
+            writeln!(f, "channel    {} {name}", self.number)?;
+        }
         writeln!(f, "shape      {} rows of {}", self.rows, self.columns)?;
         match (&self.size, &self.cell) {
             (Some([x, y]), Some(Sourced { value: [dx, dy], origin })) => {
@@ -58,9 +66,11 @@ cell       {dx} x {dy}"
             }
             _ => writeln!(f, "size       unknown")?,
         }
-        match &self.unit {
-            Some(unit) => writeln!(f, "heights    in {} ({})", unit.value, unit.origin)?,
-            None => writeln!(f, "heights    unit unknown")?,
+        match (&self.no_heights, &self.unit) {
+            (Some(unit), _) if unit.is_empty() => writeln!(f, "heights    none: values without a unit")?,
+            (Some(unit), _) => writeln!(f, "heights    none: values in {unit}")?,
+            (None, Some(unit)) => writeln!(f, "heights    in {} ({})", unit.value, unit.origin)?,
+            (None, None) => writeln!(f, "heights    unit unknown")?,
         }
         match (self.range, self.rms_height) {
             (Some([low, high]), Some(rms)) => {
@@ -85,98 +95,33 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Reads a file.
-    ///
-    /// Memory: the heights for NPY; for text the file and at most four times its length on top.
-    ///
-    /// # Errors
-    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the
-    /// file or contradicts what is declared.
-    pub fn read(path: &Path, declared: &ReadOptions) -> Result<Self> {
-        // Looked at before it is opened: opening a pipe waits for a writer.
-        let about = std::fs::metadata(path).map_err(Error::system("open", path))?;
-        if !about.is_file() {
-            return Err(Error::content(path)(ContentError::NotAFile));
-        }
-        let file = File::open(path).map_err(Error::system("open", path))?;
-        Self::from_reader(path, BufReader::new(file), about.len(), declared)
-    }
-
-    /// Reads the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's
-    /// name.
-    ///
-    /// # Errors
-    /// As [`Scan::read`].
-    ///
-    /// ```
-    /// use surface_io::{ReadOptions, Scan};
-    /// let scan = Scan::from_bytes("a.txt", b"# Width: 3 um\n1 2 3\n4 nan 6\n", &ReadOptions::default())?;
-    /// assert_eq!((scan.metadata().rows, scan.metadata().columns), (2, 3));
-    /// assert_eq!(scan.height(0, 2), Some(3.0));
-    /// assert_eq!(scan.height(1, 1), None);
-    /// # Ok::<(), surface_io::Error>(())
-    /// ```
-    pub fn from_bytes(name: impl AsRef<Path>, bytes: &[u8], declared: &ReadOptions) -> Result<Self> {
-        Self::from_reader(name.as_ref(), Cursor::new(bytes), bytes.len() as u64, declared)
-    }
-
-    fn from_reader(path: &Path, mut reader: impl Read, length: u64, declared: &ReadOptions) -> Result<Self> {
-        let content = Error::content;
-        if length > declared.largest_bytes {
-            let problem = ContentError::TooLarge { bytes: length, largest: declared.largest_bytes };
-            return Err(content(path)(problem));
-        }
-        let mut start = Vec::with_capacity(crate::detect::SNIFF);
-        reader
-            .by_ref()
-            .take(crate::detect::SNIFF as u64)
-            .read_to_end(&mut start)
-            .map_err(Error::system("read", path))?;
-        let format = Format::detect(declared.format, path, &start).map_err(content(path))?;
-        let mut reader = Cursor::new(start).chain(reader);
-        let found = if format == Some(Format::Npy) {
-            npy::read(path, &mut reader, length, declared)?
-        } else {
-            let mut bytes = Vec::new();
-            let refused = |_| content(path)(ContentError::Memory { bytes: length.into() });
-            bytes.try_reserve_exact(length as usize).map_err(refused)?;
-            // A file that grows while it is read is cut at its length.
-            reader.take(length).read_to_end(&mut bytes).map_err(Error::system("read", path))?;
-            if bytes.len() as u64 != length {
-                let found = bytes.len() as u64;
-                return Err(content(path)(ContentError::Changed { expected: length, found }));
-            }
-            let table = text::TextTable::read(&bytes, declared).map_err(content(path))?;
-            let format = match format {
-                Some(format) => format,
-                None if table.columns == 3 && table.rows() > 3 => {
-                    let ambiguous = ContentError::Ambiguous { lines: table.rows() };
-                    table.heading.format().ok_or(ambiguous).map_err(content(path))?
-                }
-                None if table.is_profile() => {
-                    return Err(content(path)(ContentError::Profile { lines: table.rows() }));
-                }
-                None => Format::Text,
-            };
-            drop(bytes);
-            let found = if format == Format::Xyz {
-                points::grid(&table, declared)
-            } else {
-                text::matrix(table, declared)
-            };
-            found.map_err(content(path))?
-        };
-        Self::new(path, found, declared).map_err(content(path))
-    }
-
-    fn new(path: &Path, found: FileContent, declared: &ReadOptions) -> Result<Self, ContentError> {
-        let FileContent { format, details, rows, columns, mut heights, unit, extent } = found;
+    /// A channel with its heights, checked against what is declared.
+    pub(crate) fn new(
+        path: &Path,
+        format: Format,
+        (number, channel): (usize, StoredChannel),
+        mut heights: Vec<f64>,
+        declared: &ReadOptions,
+    ) -> Result<Self, ContentError> {
+        let StoredChannel { name, details, rows, columns, unit, extent, .. } = channel;
         if let Some(undefined) = declared.missing {
             for h in &mut heights {
                 if h.to_bits() == undefined.to_bits() || (*h - undefined).abs() <= 0.0 {
                     *h = f64::NAN;
                 }
             }
+        }
+        check_unit("unit", declared.unit.as_ref())?;
+        let (unit, no_heights) = match unit {
+            StoredUnit::Unknown => (None, None),
+            StoredUnit::Heights(unit) => (Some(unit), None),
+            StoredUnit::NoHeights(unit) => (None, Some(unit.unwrap_or_default())),
+        };
+        let mut unit = sourced(unit, declared.unit.clone(), |a, b| {
+            a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
+        })?;
+        if let Some(scale) = declared.height_scale {
+            unit = Some(scaled(scale, unit.as_ref(), &mut heights)?);
         }
         let (mut undefined, mut range) = (0, None);
         for (i, &h) in heights.iter().enumerate() {
@@ -191,10 +136,6 @@ impl Scan {
                 range = Some([h.min(low), h.max(high)]);
             }
         }
-        check_unit("unit", declared.unit.as_ref())?;
-        let unit = sourced(unit, declared.unit.clone(), |a, b| {
-            a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
-        })?;
         let count = [columns, rows];
         let given = extent::given(declared, count)?;
         let extents = match (given, extent) {
@@ -215,8 +156,21 @@ impl Scan {
             cell = Some(Sourced { value: [x.cell(columns)?, y.cell(rows)?], origin });
         }
         let rms_height = range.map(|range| rms(&heights, columns, undefined, range));
-        let metadata =
-            Metadata { format, details, rows, columns, size, cell, unit, undefined, range, rms_height };
+        let metadata = Metadata {
+            format,
+            number,
+            name,
+            details,
+            rows,
+            columns,
+            size,
+            cell,
+            unit,
+            no_heights,
+            undefined,
+            range,
+            rms_height,
+        };
         Ok(Self { path: path.to_owned(), metadata, heights })
     }
 
@@ -237,9 +191,41 @@ impl Scan {
         (!height.is_nan()).then_some(height)
     }
 
+    /// The heights, which are no longer here.
+    pub(crate) fn take_heights(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.heights)
+    }
+
     pub(crate) fn heights(&self) -> &[f64] {
         &self.heights
     }
+}
+
+/// Multiplies numbers without a unit by the height of one of them; they are metres then.
+fn scaled(
+    scale: Quantity,
+    unit: Option<&Sourced<Unit>>,
+    heights: &mut [f64],
+) -> Result<Sourced<Unit>, ContentError> {
+    let metres = scale
+        .expect(Dimension::LENGTH)
+        .map_err(|source| ContentError::Quantity { what: "height_scale", source })?;
+    if let Some(unit) = unit {
+        let (first, second) = (format!("{} {}", unit.value, unit.origin), format!("height_scale = {scale}"));
+        return Err(ContentError::Contradiction { what: "unit of the heights", first, second });
+    }
+    if metres <= 0.0 {
+        return Err(ContentError::OutOfRange {
+            what: "height_scale",
+            value: metres,
+            expected: "a length > 0",
+        });
+    }
+    for h in heights {
+        *h *= metres;
+    }
+    let value = "m".parse().map_err(|source| ContentError::Quantity { what: "height_scale", source })?;
+    Ok(Sourced { value, origin: Origin::Caller })
 }
 
 /// Rms height of the defined points about their mean: about the middle of the range and in units of half of

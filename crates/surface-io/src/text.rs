@@ -3,11 +3,12 @@
 mod heading;
 mod matrix;
 mod number;
+mod statement;
 
 pub(crate) use heading::Heading;
 pub(crate) use matrix::matrix;
 
-use crate::error::{ContentError, Place};
+use crate::error::{ContentError, NumberKind, Place};
 use crate::options::{Decimal, ReadOptions};
 use number::Numbers;
 use std::fmt;
@@ -66,6 +67,12 @@ pub(crate) struct TextTable {
     pub(crate) heading: Heading,
     /// Numbers of the lines of data, from 1.
     pub(crate) lines: Vec<u32>,
+    /// Height of one unit of a number, where the header says it.
+    pub(crate) scale: Option<f64>,
+    /// Whether decimal commas were found, not asked for.
+    found_commas: bool,
+    /// What ends a line: a line feed, or a carriage return alone.
+    end: u8,
     /// Whether every line so far ended with a delimiter: the habit of some programs, or an empty last place.
     open: bool,
 }
@@ -81,15 +88,13 @@ impl TextTable {
         self.values.len() / self.columns
     }
 
-    /// Whether these are two columns, the first of which goes up in equal steps, as x does along a profile.
+    /// Whether these are two columns, the first of which only goes up, as x does along a profile.
     pub(crate) fn is_profile(&self) -> bool {
         let (rows, x) = (self.rows(), |row: usize| self.values[2 * row]);
         if self.columns != 2 || rows <= PROFILE {
             return false;
         }
-        let step = (x(rows - 1) - x(0)) / (rows - 1) as f64;
-        // Within what rounding to a few digits leaves.
-        step > 0.0 && (1..rows).all(|row| (x(row) - x(row - 1) - step).abs() <= 0.1 * step)
+        (1..rows).all(|row| x(row) > x(row - 1))
     }
 
     /// Number of the first line of data, from 1.
@@ -97,16 +102,40 @@ impl TextTable {
         self.lines.first().map_or(1, |&line| line as usize)
     }
 
-    /// Reads all lines.
+    /// Reads all lines; with decimal commas where they are found to be nothing else.
     ///
     /// Memory: at most 8 bytes for each byte of the text (nothing between two commas), and 4 for each line.
     pub(crate) fn read(bytes: &[u8], declared: &ReadOptions) -> Result<Self, ContentError> {
-        check_text(bytes)?;
+        let end = line_end(bytes);
+        check_text(bytes, end)?;
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
+        let error = match Self::read_as(bytes, end, declared.decimal, declared) {
+            Err(error) if declared.decimal == Decimal::Point => error,
+            read => return read,
+        };
+        let kind = NumberKind::DecimalComma;
+        if matches!(&error, ContentError::Number { kind: found, .. } if *found == kind || *found == NumberKind::Two)
+            && has_decimal_commas(bytes, end, declared.skip_lines)
+            && let Ok(table) = Self::read_as(bytes, end, Decimal::Comma, declared)
+        {
+            return Ok(Self { found_commas: true, ..table });
+        }
+        Err(error)
+    }
+
+    fn read_as(
+        bytes: &[u8],
+        end: u8,
+        decimal: Decimal,
+        declared: &ReadOptions,
+    ) -> Result<Self, ContentError> {
         let mut table: Option<Self> = None;
         let mut heading = Heading::default();
-        let numbers = Numbers { decimal: declared.decimal };
-        for (i, line) in bytes.split(|&b| b == b'\n').enumerate().skip(declared.skip_lines) {
+        let numbers = Numbers { decimal };
+        // The first and the last line of a header without marks of comments.
+        let mut first: Option<(usize, &[u8])> = None;
+        let mut last = None;
+        for (i, line) in bytes.split(|&b| b == end).enumerate().skip(declared.skip_lines) {
             let (data, comment) = without_comment(line);
             if data.trim_ascii().is_empty() {
                 if let Some(comment) = comment {
@@ -114,24 +143,68 @@ impl TextTable {
                 }
                 continue;
             }
-            if table.is_none() {
-                let delimiter = Delimiter::of(data.trim_ascii(), declared.decimal);
-                table = Some(Self {
-                    columns: 0,
-                    values: Vec::new(),
-                    delimiter,
-                    heading: Heading::default(),
-                    lines: Vec::new(),
-                    open: true,
-                });
+            if table.is_none() && numbers.is_header(data) {
+                heading.read(line.trim_ascii(), i + 1)?;
+                (first, last) = (first.or(Some((i + 1, data))), Some((i + 1, data)));
+                continue;
             }
-            if let Some(table) = &mut table {
-                table.line(numbers, data, i + 1, bytes).map_err(|error| table.odd_one_out(error, bytes))?;
+            let new = table.is_none();
+            let begun = table.get_or_insert_with(|| Self::new(data, decimal, end));
+            begun.line(numbers, data, i + 1, bytes).map_err(|error| begun.odd_one_out(error, bytes))?;
+            if let (true, Some((number, header))) = (new, last) {
+                begun.check_header(numbers, header, number)?;
             }
         }
-        let mut table = table.ok_or(ContentError::Empty)?;
+        let Some(mut table) = table else {
+            // A header without numbers: what was expected instead of its first line.
+            let Some((number, line)) = first else { return Err(ContentError::Empty) };
+            let mut none = Self::new(line, decimal, end);
+            return none.line(numbers, line, number, line).and(Err(ContentError::Empty));
+        };
+        heading.finish()?;
+        table.scale = heading.scale;
         table.heading = heading;
         Ok(table)
+    }
+
+    fn new(first: &[u8], decimal: Decimal, end: u8) -> Self {
+        Self {
+            columns: 0,
+            values: Vec::new(),
+            delimiter: Delimiter::of(first.trim_ascii(), decimal),
+            heading: Heading::default(),
+            lines: Vec::new(),
+            scale: None,
+            found_commas: false,
+            end,
+            open: true,
+        }
+    }
+
+    /// Delimiter and what else was found, for people.
+    pub(crate) fn details(&self) -> String {
+        let commas = if self.found_commas { ", decimal commas" } else { "" };
+        let scale = self.scale.map(|scale| format!(", times {scale:e}")).unwrap_or_default();
+        format!("{}{commas}{scale}", self.delimiter)
+    }
+
+    /// A line before the numbers that is half of numbers, as many as there are columns, is a line of data with a slip.
+    fn check_header(&self, numbers: Numbers, header: &[u8], line: usize) -> Result<(), ContentError> {
+        let byte = self.delimiter.byte();
+        let tokens: Vec<&[u8]> = match self.delimiter {
+            Delimiter::Whitespace => {
+                header.split(u8::is_ascii_whitespace).filter(|t| !t.is_empty()).collect()
+            }
+            _ => header.split(|&b| b == byte).map(<[u8]>::trim_ascii).collect(),
+        };
+        let place = |value| Place::Line { line, value };
+        let read = tokens.iter().filter(|t| !t.is_empty() && numbers.read(t, place(1)).is_ok()).count();
+        if self.columns > 1 && tokens.len() == self.columns && 2 * read >= self.columns {
+            for (i, token) in tokens.iter().enumerate() {
+                numbers.read(token, place(i + 1))?;
+            }
+        }
+        Ok(())
     }
 
     fn line(&mut self, numbers: Numbers, data: &[u8], line: usize, all: &[u8]) -> Result<(), ContentError> {
@@ -197,7 +270,7 @@ impl TextTable {
                 _ => data.strip_suffix(&[byte]).unwrap_or(data).split(|&b| b == byte).count(),
             }
         };
-        let third = all.split(|&b| b == b'\n').skip(*line).map(count).find(|&count| count > 0);
+        let third = all.split(|&b| b == self.end).skip(*line).map(count).find(|&count| count > 0);
         if third == Some(*found) {
             return ContentError::Ragged { line: *first, found: *expected, expected: *found, first: *line };
         }
@@ -212,7 +285,7 @@ impl TextTable {
         if self.columns == 0 {
             self.columns = found;
             // All lines at once, and never more than there can be values in these bytes.
-            let lines = all.split(|&b| b == b'\n').count();
+            let lines = all.split(|&b| b == self.end).count();
             let most = (all.len() + 1).min(found.saturating_mul(lines));
             let refused = |_| ContentError::Memory { bytes: 8 * most as u128 };
             self.values.try_reserve_exact(most - before.min(most)).map_err(refused)?;
@@ -233,17 +306,51 @@ fn without_comment(line: &[u8]) -> (&[u8], Option<&[u8]>) {
     }
 }
 
-/// Refuses bytes that text does not have: control characters, and line ends of one carriage return.
-fn check_text(bytes: &[u8]) -> Result<(), ContentError> {
+/// What ends the lines: a carriage return where there is no line feed at all, as on old Macintoshes.
+fn line_end(bytes: &[u8]) -> u8 {
+    if !bytes.contains(&b'\n') && bytes.contains(&b'\r') { b'\r' } else { b'\n' }
+}
+
+/// Refuses bytes that text does not have: control characters, and carriage returns alone where lines end otherwise.
+fn check_text(bytes: &[u8], end: u8) -> Result<(), ContentError> {
     let bad = |&(i, b): &(usize, &u8)| match *b {
         b'\t' | b'\n' | 0x0c => false,
-        b'\r' => !matches!(bytes.get(i + 1), None | Some(b'\n')),
+        b'\r' => end == b'\n' && !matches!(bytes.get(i + 1), None | Some(b'\n')),
         b => b < b' ' || b == 0x7f,
     };
     match bytes.iter().enumerate().find(bad) {
-        Some((offset, &byte)) => Err(ContentError::Binary { offset, byte }),
+        Some((offset, &byte)) => Err(ContentError::NoText { offset, byte }),
         None => Ok(()),
     }
+}
+
+/// Whether every comma in the numbers is one of decimals, and one of them at least can be nothing else: no point anywhere, another
+/// delimiter between numbers, at most one comma in each.
+fn has_decimal_commas(bytes: &[u8], end: u8, skip: usize) -> bool {
+    let numbers = Numbers { decimal: Decimal::Comma };
+    let mut certain = false;
+    let mut begun = false;
+    for line in bytes.split(|&b| b == end).skip(skip) {
+        let data = without_comment(line).0.trim_ascii();
+        if data.is_empty() || (!begun && numbers.is_header(data)) {
+            continue;
+        }
+        begun = true;
+        for token in data.split(|b| matches!(b, b' ' | b'\t' | b';' | b'\r')).filter(|t| t.contains(&b',')) {
+            let Ok(text) = std::str::from_utf8(token) else { return false };
+            certain |= statement::is_decimal_comma(text);
+            let grouped = text.split_once(',').is_some_and(|(_, rest)| {
+                !rest.contains(',') && rest.starts_with(|c: char| c.is_ascii_digit())
+            });
+            if !grouped {
+                return false;
+            }
+        }
+        if data.contains(&b'.') {
+            return false;
+        }
+    }
+    certain
 }
 
 #[cfg(test)]

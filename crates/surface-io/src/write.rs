@@ -1,7 +1,8 @@
-//! Maps as text.
+//! Maps as files: text, and whatever the name's ending asks for.
 
-use crate::content::check_unit;
+use crate::channel::check_unit;
 use crate::error::{ContentError, Error, Result};
+use crate::instruments::{gwy, hdf5, netcdf, x3p};
 use crate::lines::Lines;
 use crate::quantity::{Dimension, Unit};
 use crate::vti::{DataArray, Encoding, vti};
@@ -35,7 +36,12 @@ impl Metric {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// The symbol of the unit; nothing for none.
+    pub(crate) fn unit(self) -> &'static str {
+        self.suffix().trim_start()
+    }
+
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Metres => "m",
             Self::Unitless => "none",
@@ -43,14 +49,16 @@ impl Metric {
     }
 }
 
-/// Writes a map whole or not at all, in the format of the name's ending: `npy`, `txt`, `xyz` or `vti`.
+/// Writes a map whole or not at all, in the format of the name's ending: `npy`, `h5`, `txt`, `xyz`, `vti`,
+/// `x3p`, `gwy` or `nc` (NetCDF-3).
 ///
-/// Text, XYZ and VTI say the size and the unit, NPY (an array `[row, column]`) says neither. Every number is
-/// written so that the same double is read again. Undefined points are `nan` in text and XYZ, NaN in NPY and
-/// VTI; VTI also hides their cells ([`vti`]).
+/// All but NPY (an array `[row, column]`) say the size and the unit; X3P is in metres only. Every number is
+/// written so that the same double is read again; X3P says cells, whose multiple may be off a side by its last
+/// bit. Undefined points are `nan` in text and XYZ, NaN in NPY, HDF5, X3P, NetCDF and VTI, masked in GWY; VTI also hides
+/// their cells ([`vti`]), NetCDF masks them too.
 ///
 /// # Errors
-/// [`Error::System`] where the system refuses, [`Error::Content`] for another ending.
+/// [`Error::System`] where the system refuses, [`Error::Content`] for another ending, and X3P without a unit.
 ///
 /// ```no_run
 /// use surface_io::{Metric, write_map};
@@ -62,6 +70,7 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let bytes = match ending {
         "npy" => npy(&[map.rows(), map.columns()], &with_nan(map)).map_err(Error::content(path))?,
+        "h5" => hdf5(map, metric).map_err(Error::content(path))?,
         "txt" => text(map, metric).into_bytes(),
         "xyz" => xyz(map, metric).into_bytes(),
         "vti" => {
@@ -69,6 +78,14 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
             let field = DataArray { name: "height", unit: metric.name(), values: &values };
             vti(map.cells(), map.size(), &[field], Encoding::Base64).map_err(Error::content(path))?
         }
+        "x3p" if metric == Metric::Unitless => {
+            let remedy = "X3P is in metres: read the heights with a unit, or write txt";
+            let problem = ContentError::Unspecified { what: "the unit of the heights", remedy };
+            return Err(Error::content(path)(problem));
+        }
+        "x3p" => x3p(map).map_err(Error::content(path))?,
+        "gwy" => gwy(map, metric).map_err(Error::content(path))?,
+        "nc" => netcdf(map, metric).map_err(Error::content(path))?,
         other => {
             let problem = ContentError::Ending { found: other.chars().take(16).collect() };
             return Err(Error::content(path)(problem));
@@ -135,7 +152,7 @@ fn sides(map: &HeightMap, metric: Metric) -> String {
 }
 
 /// The heights of a map with NaN at undefined points, as files have them.
-fn with_nan(map: &HeightMap) -> Vec<f64> {
+pub(crate) fn with_nan(map: &HeightMap) -> Vec<f64> {
     map.heights().iter().map(|&h| if h.is_finite() { h } else { f64::NAN }).collect()
 }
 

@@ -4,11 +4,16 @@
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 #![allow(unsafe_code)] // A global allocator that counts is unsafe by its nature; it hands everything to the system's.
 
+mod files;
+
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use surface_io::{Crop, Decimal, Detrend, Fill, Format, Preprocessing, ReadOptions, Scan, Undefined};
+use surface_io::{
+    Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan, SurfaceFile, Undefined,
+    Window,
+};
 
 thread_local! {
     /// Bytes that this thread holds, and the most that it held.
@@ -88,6 +93,9 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
     ];
     for name in NAMES {
         for declared in &declarations {
+            let (line, held) = most_held(|| surface_io::profile_from_bytes(name, bytes, declared));
+            prop_assert!(held <= MULTIPLE * bytes.len() + CONSTANT, "{held} bytes for {}", bytes.len());
+            prop_assert!(line.is_ok() || line.is_err_and(|e| e.to_string().starts_with(name)));
             let (scan, held) = most_held(|| Scan::from_bytes(name, bytes, declared));
             prop_assert!(held <= MULTIPLE * bytes.len() + CONSTANT, "{held} bytes for {}", bytes.len());
             let scan = match scan {
@@ -99,17 +107,39 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                 }
             };
             prop_assert!(!scan.metadata().to_string().is_empty());
-            for detrend in [Detrend::Nothing, Detrend::Plane, Detrend::Quadric] {
+            for detrend in
+                [Detrend::Nothing, Detrend::Plane, Detrend::Quadric, Detrend::Sphere, Detrend::Cylinder]
+            {
                 for (fill, undefined) in [
                     (None, None),
                     (Some(Fill::Neighbours), None),
                     (Some(Fill::Plane), None),
                     (None, Some(Undefined::NoContact)),
                 ] {
-                    for (crop, rows) in [(None, None), (Some(Crop::Centre), Some(1)), (Some(WINDOW), None)] {
-                        let preprocessing =
-                            Preprocessing { crop, undefined, fill, detrend, cells: None, rows };
-                        check(&scan, &preprocessing)?;
+                    for (crop, rows) in [
+                        (None, None),
+                        (Some(Crop::Centre), Some(1)),
+                        (Some(WINDOW), None),
+                        (Some(Crop::Defined), None),
+                    ] {
+                        let plain = Preprocessing {
+                            crop,
+                            undefined,
+                            fill,
+                            detrend,
+                            rows,
+                            ..Preprocessing::default()
+                        };
+                        check(&scan, &plain)?;
+                        let all = Preprocessing {
+                            outliers: Some(3.0),
+                            tip_radius: "0.5".parse().ok(),
+                            mirror: Some(Mirror::Y),
+                            quarter_turns: 1,
+                            window: Some(Window::Hann),
+                            ..plain
+                        };
+                        check(&scan, &all)?;
                     }
                 }
             }
@@ -156,6 +186,8 @@ fn valid(which: usize) -> Vec<u8> {
         4 => b"\x93NUMPY\x01\x00\x46\x00{'descr': '>i2', 'fortran_order': True, 'shape': (2, 3), }           \n012345678901".to_vec(),
         5 => b"# Width: 6 um\n# Height: 1.0 um\n# Value units: nm\n1 2 nan\n4 bad 6\n".to_vec(),
         6 => b"# Lateral units: mm\n0 0 1\n2 0 2\n0 0.5 nan\n2 0.5 4\n0 1 5\n2 1 6\n".to_vec(),
+        7 => b"\\Scan Size: 3 2 ~m\nx-pixels = 3\nPixel size (um)\t1\ndata unit=rad\nheight conversion factor (-> m)=6e-8\n1,5;2;3\n4;5;6,25\n".to_vec(),
+        8 => b"x [um]\tz [nm]\r\n0,0\t5\r\n0,5\t6\r\n1,0\t4\r\n".to_vec(),
         _ => b"1,2,,4\n5,6,7,8\n9,,,,\n".to_vec(),
     }
 }
@@ -192,6 +224,21 @@ proptest! {
     }
 
     #[test]
+    fn almost_a_header_block(
+        keys in prop::collection::vec(
+            ("(x.length|Width|Scan Size|Pixel size|x-pixels|Lines|z unit|x unit|Bit2nm|data unit|a b|height conversion factor \\(-> m\\)|# File Format = ASCII)",
+             "( ?[:=\t] ?|)", "[-+]?[0-9]{0,2}([.,][0-9]{1,3})?(e-?[0-9]{1,3})?", " ?(um|nm|x 3 um|~m|microns|\u{b5}m|V|)"),
+            0..5,
+        ),
+        heights in "(([0-9]|nan|[0-9],[0-9])[ ;\n]){1,20}",
+        end in "(\n|\r\n|\r)",
+    ) {
+        let header: Vec<String> = keys.iter().map(|(a, b, c, d)| format!("{a}{b}{c}{d}\n")).collect();
+        let header = header.concat();
+        torture(format!("{header}{heights}").replace('\n', &end).as_bytes())?;
+    }
+
+    #[test]
     fn almost_a_header(shape in "[0-9,() L]{0,24}", kind in "[<>|=]?[fiuc]?[0-9]{0,2}", order in "(True|False|1)") {
         let text = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': ({shape}), }}");
         let length = (text.len() as u16).to_le_bytes();
@@ -200,7 +247,7 @@ proptest! {
 
     #[test]
     fn valid_files_with_bytes_changed_lost_and_doubled(
-        which in 0..8_usize,
+        which in 0..10_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..6),
     ) {
         let mut bytes = valid(which);
@@ -220,9 +267,152 @@ proptest! {
     }
 }
 
+/// Deflate packs at most so many bytes into one; heights take eight for each.
+const PACKED: usize = 1032 * 8 + MULTIPLE;
+
+/// Reads all channels of the bytes of an instrument's file.
+fn torture_channels(bytes: &[u8], compressed: bool) -> Result<(), TestCaseError> {
+    let (read, held) = most_held(|| {
+        let file = SurfaceFile::from_bytes("a", bytes, &ReadOptions::default())?;
+        file.scans()
+            .map(|scan| scan.map(|scan| scan.metadata().to_string().len()))
+            .collect::<Result<Vec<_>, _>>()
+    });
+    let multiple = if compressed { PACKED } else { MULTIPLE };
+    prop_assert!(held <= multiple * bytes.len() + 10 * CONSTANT, "{held} bytes for {}", bytes.len());
+    if let Err(error) = read {
+        let text = error.to_string();
+        prop_assert!(text.starts_with('a') && text.len() < 4000, "{text}");
+    }
+    Ok(())
+}
+
+/// Changes, loses, doubles bytes, sets them to the ends of their range, or cuts the file short.
+fn mutated(mut bytes: Vec<u8>, changes: &[(prop::sample::Index, u8, u8)]) -> Vec<u8> {
+    for (at, byte, how) in changes {
+        if bytes.is_empty() {
+            break;
+        }
+        let at = at.index(bytes.len());
+        match how {
+            0 => bytes[at] = *byte,
+            1 => drop(bytes.remove(at)),
+            2 => bytes.insert(at, bytes[at]),
+            3 => bytes.iter_mut().skip(at).take(4).for_each(|b| *b = 0xff),
+            4 => bytes.iter_mut().skip(at).take(4).for_each(|b| *b = 0),
+            _ => bytes.truncate(at),
+        }
+    }
+    bytes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 3000,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn files_of_instruments_with_bytes_changed(
+        which in any::<prop::sample::Index>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..6_u8), 1..6),
+    ) {
+        let file = which.get(&files::all()).bytes.clone();
+        let compressed = which.get(&files::all()).compressed;
+        torture_channels(&mutated(file, &changes), compressed)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 3000,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
+        ..ProptestConfig::default()
+    })]
+
+    /// Within archives whose checksums are right: they keep other changes from the description.
+    #[test]
+    fn descriptions_of_x3p_with_bytes_changed(
+        which in 0..2_usize,
+        packed in any::<bool>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..6_u8), 1..6),
+    ) {
+        let description = files::x3p::descriptions()[which].clone().into_bytes();
+        torture_channels(&files::x3p::described(&mutated(description, &changes), packed), true)?;
+    }
+}
+
+#[test]
+fn small_files_of_instruments_hold_what_was_written() {
+    for file in files::all() {
+        let opened = SurfaceFile::from_bytes("a", &file.bytes, &ReadOptions::default());
+        let opened = opened.unwrap_or_else(|e| panic!("{}: {e}", file.name));
+        let word = file.name.split(' ').next().unwrap();
+        assert_eq!(opened.format().word(), word, "{}", file.name);
+        let scan = opened.scans().nth(file.number).unwrap().unwrap_or_else(|e| panic!("{}: {e}", file.name));
+        let metadata = scan.metadata();
+        assert_eq!([metadata.columns, metadata.rows], file.shape, "{}", file.name);
+        let size = metadata.size.map(|size| size.map(surface_io::Quantity::value));
+        match (size, file.size) {
+            (Some(size), Some(expected)) => {
+                for (side, expected) in size.iter().zip(expected) {
+                    assert!((side / expected - 1.0).abs() < 1e-6, "{}: {side:e}, {expected:e}", file.name);
+                }
+            }
+            (size, expected) => assert_eq!(size, expected, "{}", file.name),
+        }
+        for (i, expected) in file.heights.iter().enumerate() {
+            let (row, column) = (i / metadata.columns, i % metadata.columns);
+            let height = scan.height(row, column).map_or(f64::NAN, |h| match &metadata.unit {
+                Some(unit) => unit.value.to_si(h),
+                None => h,
+            });
+            let same = (height - expected).abs() <= 1e-9 * expected.abs();
+            assert!(
+                same || (height.is_nan() && expected.is_nan()),
+                "{}: {height:e}, {expected:e}",
+                file.name
+            );
+        }
+        // Every file cut short is refused or shorter, and nothing panics.
+        for length in 0..file.bytes.len() {
+            let short = SurfaceFile::from_bytes("a", &file.bytes[..length], &ReadOptions::default());
+            let _ = short.map(|file| file.scans().filter_map(Result::ok).count());
+        }
+    }
+}
+
+#[test]
+fn archives_are_told_by_their_members() {
+    let npz = files::x3p::zip(&[("b/heights.npy", vec![0]), ("x.npy", vec![1])], true);
+    let other = files::x3p::zip(&[("main.xml", b"<other/>".to_vec())], false);
+    let error = |name: &str, bytes: &[u8]| {
+        SurfaceFile::from_bytes(name, bytes, &ReadOptions::default()).unwrap_err().to_string()
+    };
+    let expected = "a: an archive of b/heights.npy, x.npy: take the file of heights out of it";
+    assert_eq!(error("a", &npz), expected);
+    assert!(error("a", &other).starts_with("a: an archive of main.xml: take"));
+    assert!(error("a.npy", &npz).starts_with("a.npy: looks like an archive (NPZ"));
+    let profile = files::x3p::descriptions()[0].replace("SUR", "PRF");
+    let error = error("a", &files::x3p::described(profile.as_bytes(), true));
+    assert!(error.contains("in main.xml a surface, FeatureType SUR, found \"PRF\""), "{error}");
+}
+
+#[test]
+fn heights_that_may_be_upside_down_are_refused() {
+    let mut sur = files::all().into_iter().find(|file| file.name == "sur").unwrap().bytes;
+    sur[290] = 1;
+    let error = SurfaceFile::from_bytes("a", &sur, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(
+        error.starts_with("a: SUR (Digital Surf), offset 290: expected no mark of an inversion"),
+        "{error}"
+    );
+}
+
 #[test]
 fn the_valid_files_are_valid() {
-    for which in 0..8 {
+    for which in 0..10 {
         let declared = match which {
             3 => ReadOptions { decimal: Decimal::Comma, ..ReadOptions::default() },
             2 | 6 => ReadOptions { format: Some(Format::Xyz), ..ReadOptions::default() },

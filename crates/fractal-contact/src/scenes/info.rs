@@ -4,7 +4,7 @@ use crate::scenes::error::{Error, Result};
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
 use std::path::Path;
-use surface_io::{Preprocessing, ReadOptions, Scan, describe};
+use surface_io::{Dimension, Metadata, Preprocessing, Quantity, ReadOptions, SurfaceFile, describe};
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
 /// (anything else).
@@ -59,12 +59,70 @@ fn table(path: &Path) -> Result<String> {
 }
 
 fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
-    let scan = Scan::read(path, declared).map_err(Error::Surface)?;
+    let file = SurfaceFile::open(path, declared).map_err(Error::Surface)?;
+    if file.len() > 1 && declared.channel.is_none() {
+        return each(file);
+    }
+    let scan = file.scan().map_err(Error::Surface)?;
     let mut text = format!("{}\n", scan.metadata());
-    match scan.map(preprocessing) {
-        Ok(map) => text += &format!("\n{}\n", describe(&map)),
+    match scan.preprocessed(preprocessing) {
+        Ok(found) => {
+            for step in &found.steps {
+                text += &format!("then       {step}\n");
+            }
+            text += &format!("\n{}\n", describe(&found.map));
+        }
         // What stands in the way of a map is part of the answer.
         Err(error) => text += &format!("\nno map as it is: {error}\n"),
     }
     Ok(text)
+}
+
+/// What is known of each channel of a file of several.
+fn each(file: SurfaceFile<'_>) -> Result<String> {
+    let mut text = format!("{} channels; --channel NUMBER or NAME describes one\n", file.len());
+    for scan in file.scans() {
+        text += &format!("\n{}\n", scan.map_err(Error::Surface)?.metadata());
+    }
+    Ok(text)
+}
+
+/// All channels of a surface's file as JSON: `{"channels": [{"name", "columns", "rows", "size": [x, y], "unit", "undefined", "minimum",
+/// "maximum", "rms"}]}`.
+///
+/// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is "m"; values of another or no unit
+/// stand as they are in the file. `rms` is about the mean, `undefined` a share of the points; what the file does not say and `declared` does
+/// not either is null.
+///
+/// # Errors
+/// [`Error::Surface`] with what is wrong with the file.
+pub fn info_json(path: &Path, declared: &ReadOptions) -> Result<String> {
+    let file = SurfaceFile::open(path, declared).map_err(Error::Surface)?;
+    let mut channels = Vec::with_capacity(file.len());
+    for scan in file.scans() {
+        channels.push(channel(scan.map_err(Error::Surface)?.metadata()));
+    }
+    Ok(format!("{:#}\n", serde_json::json!({ "channels": channels })))
+}
+
+fn channel(metadata: &Metadata) -> serde_json::Value {
+    let unit = metadata.unit.as_ref().map(|unit| &unit.value);
+    let metric = unit.filter(|unit| unit.dimension() == Dimension::LENGTH);
+    let height = |value: f64| metric.map_or(value, |unit| unit.to_si(value));
+    let unit = match (metric, &metadata.no_heights) {
+        (Some(_), _) => Some("m"),
+        (None, Some(unit)) if !unit.is_empty() => Some(unit.as_str()),
+        _ => None,
+    };
+    serde_json::json!({
+        "name": metadata.name,
+        "columns": metadata.columns,
+        "rows": metadata.rows,
+        "size": metadata.size.map(|size| size.map(Quantity::value)),
+        "unit": unit,
+        "undefined": metadata.undefined_share(),
+        "minimum": metadata.range.map(|[low, _]| height(low)),
+        "maximum": metadata.range.map(|[_, high]| height(high)),
+        "rms": metadata.rms_height.map(height),
+    })
 }

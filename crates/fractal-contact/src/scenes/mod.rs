@@ -115,7 +115,7 @@ pub use effects::{EffectLine, effect_lines};
 pub use entries::System;
 pub use error::{Error, Result};
 pub use generated_surface::GeneratedSurface;
-pub use info::info;
+pub use info::{info, info_json};
 pub use loads::{Loading, Loads, Prescribed};
 pub use numerics::Numerics;
 pub use outcome::{Options, SceneOutcome, SharedStop};

@@ -5,8 +5,8 @@ use crate::scenes::entries::{Entries, Entry, LengthOrPair, Read, System};
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    Crop, Decimal, Detrend, Dimension, Fill, Format, Preprocessing, Quantity, ReadOptions, Scan, Sides,
-    Undefined, Unit,
+    ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Preprocessing, Quantity, ReadOptions,
+    Scan, Sides, Undefined, Unit, Window,
 };
 
 /// A map from a file.
@@ -25,8 +25,11 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     let path = directory.join(file.text()?);
     let mut declared = ReadOptions::default();
     if let Some(entry) = table.find("format") {
-        declared.format =
-            Some(entry.choice(&[("npy", Format::Npy), ("text", Format::Text), ("xyz", Format::Xyz)])?);
+        declared.format = Some(entry.choice(&Format::ALL.map(|format| (format.word(), format)))?);
+    }
+    if let Some(entry) = table.find("channel") {
+        let number = |_| entry.count(0).map(|number| ChannelChoice::Number(number as usize));
+        declared.channel = Some(entry.text().map(|name| ChannelChoice::Name(name.into())).or_else(number)?);
     }
     let unit = |key: &'static str| -> Read<Option<Unit>> {
         let Some(entry) = table.find(key) else { return Ok(None) };
@@ -68,7 +71,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     let scan = Scan::read(&path, &declared).map_err(wrong)?;
     let metadata = scan.metadata();
     let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
-    let map = scan.map(&preprocessing).map_err(wrong)?;
+    let Preprocessed { map, steps, .. } = scan.preprocessed(&preprocessing).map_err(wrong)?;
     if metric != (system == System::Si) {
         let (found, scene) = if metric { ("a unit", "none") } else { ("no unit", "units") };
         return Err(file
@@ -91,7 +94,51 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
                     `fill` or `undefined = \"no_contact\"` says what stands there instead";
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
     }
-    Ok(FileMap { map, metadata: metadata.to_string(), notes })
+    let mut metadata = metadata.to_string();
+    for step in steps {
+        metadata += &format!("\nthen       {step}");
+    }
+    Ok(FileMap { map, metadata, notes })
+}
+
+/// Reads the surface of the second body, lays it on the first face to face, and adds both.
+pub(crate) fn read_second(
+    table: &Entries<'_>,
+    first: &HeightMap,
+    system: System,
+    directory: &Path,
+) -> Read<FileMap> {
+    let facing = match table.find("facing") {
+        Some(entry) => entry.choice(&[("x", Some(Mirror::X)), ("y", Some(Mirror::Y)), ("none", None)])?,
+        None => Some(Mirror::X),
+    };
+    let offset = match table.find("offset") {
+        None => [0.0; 2],
+        Some(entry) => match &entry.list()[..] {
+            [x, y] => [x.quantity(Dimension::LENGTH, system)?, y.quantity(Dimension::LENGTH, system)?],
+            _ => {
+                return Err(entry
+                    .diagnostic("`offset` has not two values")
+                    .with_help("of the middle of the second surface from that of the first, along x and y: [\"5 um\", \"0 um\"]"));
+            }
+        },
+    };
+    let FileMap { map, mut metadata, notes } = read_map(table, system, directory)?;
+    let (map, how) = match facing {
+        Some(Mirror::X) => (map.mirrored(), "x reversed"),
+        Some(Mirror::Y) => (map.transposed().mirrored().transposed(), "y reversed"),
+        None => (map, "as it is seen through its body"),
+    };
+    let sum = surface_io::composite(first, &map, offset).map_err(|e| table.diagnostic(e.to_string()))?;
+    metadata += &format!("\nthen       laid on the first: {how}, its middle moved by {offset:?}");
+    metadata += &format!(
+        "\ncomposite  {} rows of {} over {:e} x {:e}",
+        sum.rows(),
+        sum.columns(),
+        sum.size().x,
+        sum.size().y
+    );
+    Ok(FileMap { map: sum, metadata, notes })
 }
 
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points reaches 6.
@@ -149,8 +196,15 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
             window.finish()?;
             crop
         } else {
-            entry.choice(&[("centre", Crop::Centre)])?
+            entry.choice(&[("centre", Crop::Centre), ("defined", Crop::Defined)])?
         });
+    }
+    if let Some(entry) = table.find("outliers") {
+        preprocessing.outliers = Some(entry.number()?);
+    }
+    if let Some(entry) = table.find("tip_radius") {
+        let radius = entry.positive(Dimension::LENGTH, system)?;
+        preprocessing.tip_radius = Some(length(&entry, radius, system)?);
     }
     match table.one_of(&["fill", "undefined"])? {
         Some(("fill", entry)) => {
@@ -178,7 +232,24 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
             ("mean", Detrend::Mean),
             ("plane", Detrend::Plane),
             ("quadric", Detrend::Quadric),
+            ("sphere", Detrend::Sphere),
+            ("cylinder", Detrend::Cylinder),
         ])?;
+    }
+    if let Some(entry) = table.find("mirror") {
+        preprocessing.mirror = Some(entry.choice(&[("x", Mirror::X), ("y", Mirror::Y)])?);
+    }
+    if let Some(entry) = table.find("rotate") {
+        let degrees = entry.count(0)?;
+        if degrees % 90 != 0 || degrees > 270 {
+            return Err(entry
+                .diagnostic(format!("`rotate` is {degrees}"))
+                .with_help("degrees from x to y: 0, 90, 180 or 270"));
+        }
+        preprocessing.quarter_turns = (degrees / 90) as u8;
+    }
+    if let Some(entry) = table.find("window") {
+        preprocessing.window = Some(entry.choice(&[("hann", Window::Hann)])?);
     }
     if let Some(entry) = table.find("cells") {
         preprocessing.cells = Some(entry.count(1)? as usize);

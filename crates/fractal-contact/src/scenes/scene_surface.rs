@@ -146,10 +146,21 @@ impl From<SceneSurface> for SurfaceEntry {
     }
 }
 
-/// Reads `[scene.surface]` and `[scene.body]`.
+/// Reads `[scene.surface]`, `[scene.second_surface]` and `[scene.body]`.
 pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path) -> Read<SurfaceEntry> {
     let surface = scene.table("surface")?;
+    let second = scene.table("second_surface")?;
     let body = scene.table("body")?;
+    let of_file = |table: &Entries<'_>| -> Read<bool> {
+        Ok(table.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == RoughKind::File)
+    };
+    if let Some(second) = &second
+        && !(of_file(second)? && surface.as_ref().map_or(Ok(false), &of_file)?)
+    {
+        return Err(second.diagnostic("[scene.second_surface] is added to a measured [scene.surface]").with_help(
+            "say `kind = \"file\"` in both; two independent random surfaces are one of the rms height sqrt(h1^2 + h2^2)",
+        ));
+    }
     let Some(surface) = surface else {
         let Some(body) = body else {
             return Err(scene
@@ -160,8 +171,14 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
         };
         return Ok(SceneSurface::Plain(read_body(&body, None, system)?).into());
     };
-    if surface.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == RoughKind::File {
-        let scan::FileMap { map, metadata, notes } = scan::read_map(&surface, system, directory)?;
+    if of_file(&surface)? {
+        let scan::FileMap { mut map, mut metadata, mut notes } = scan::read_map(&surface, system, directory)?;
+        if let Some(second) = second {
+            let other = scan::read_second(&second, &map, system, directory)?;
+            map = other.map;
+            metadata += &format!("\nsecond surface\n{}", other.metadata);
+            notes.extend(other.notes);
+        }
         let map = match body {
             None => map,
             Some(body) => {

@@ -1,10 +1,13 @@
 //! The header of an NPY file: magic, version, length, a Python dictionary of three entries.
 
-use crate::detect::NPY;
-use crate::error::{ContentError, Error, Result};
-use std::fmt;
-use std::io::Read;
-use std::path::Path;
+use crate::channel::AxisOrder;
+use crate::error::{ContentError, Result};
+use crate::format::Format;
+use crate::number_type::NumberType;
+use crate::source::Source;
+
+/// First bytes of the file.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// Longest dictionary that is read, in bytes; NumPy itself refuses more than 10000 of an unknown file.
 const LONGEST: u64 = 10_000;
@@ -12,52 +15,12 @@ const LONGEST: u64 = 10_000;
 /// Most axes that are listed; NumPy has 64.
 const MOST_AXES: usize = 64;
 
-/// Type of the numbers, one that this crate reads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct NumberType {
-    /// `f`, `i` or `u`.
-    pub(super) letter: u8,
-    size: u8,
-    pub(super) little: bool,
-}
-
-impl NumberType {
-    pub(super) fn bytes(self) -> usize {
-        usize::from(self.size)
-    }
-
-    fn of(descr: &str) -> Option<Self> {
-        let [order, letter, size] = *descr.as_bytes() else { return None };
-        let size = size.wrapping_sub(b'0');
-        let known = match letter {
-            b'f' => matches!(size, 2 | 4 | 8),
-            b'i' | b'u' => matches!(size, 1 | 2 | 4 | 8),
-            _ => false,
-        };
-        let ordered = matches!(order, b'<' | b'>') || (order == b'|' && size == 1);
-        (known && ordered).then_some(Self { letter, size, little: order != b'>' })
-    }
-}
-
-impl fmt::Display for NumberType {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = match self.letter {
-            b'f' => "float",
-            b'i' => "int",
-            _ => "uint",
-        };
-        let order = if self.little { "little" } else { "big" };
-        write!(f, "{name}{}, {order}-endian", 8 * self.size)
-    }
-}
-
-/// Which index runs fastest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum AxisOrder {
-    /// The last one.
-    C,
-    /// The first one.
-    Fortran,
+/// Type of numbers as numpy writes it, such as `<f8`.
+fn number_type(descr: &str) -> Option<NumberType> {
+    let [order, letter, size] = *descr.as_bytes() else { return None };
+    let size = size.wrapping_sub(b'0');
+    let ordered = matches!(order, b'<' | b'>') || (order == b'|' && size == 1);
+    NumberType::new(letter, size, order != b'>').filter(|_| ordered)
 }
 
 #[derive(Debug)]
@@ -68,42 +31,26 @@ pub(super) struct NpyHeader {
 }
 
 impl NpyHeader {
-    /// Reads the header of a file of the given length; returns its own length too.
-    pub(super) fn read(path: &Path, reader: &mut impl Read, length: u64) -> Result<(Self, u64)> {
-        let wrong = |offset, expected| Error::content(path)(ContentError::Header { offset, expected });
-        let mut exact = |bytes: &mut [u8], offset, expected| match reader.read_exact(bytes) {
-            Ok(()) => Ok(()),
-            Err(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => Err(wrong(offset, expected)),
-            Err(e) => Err(Error::system("read", path)(e)),
-        };
-        let mut start = [0; 8];
-        exact(&mut start, 0, "an NPY file, not an empty one")?;
-        if !start.starts_with(NPY) {
-            return Err(wrong(0, "the bytes 93 4e 55 4d 50 59 of an NPY file"));
-        }
-        let (size, before) = match start[6] {
-            1 => {
-                let mut size = [0; 2];
-                exact(&mut size, 8, "the length of the header")?;
-                (u64::from(u16::from_le_bytes(size)), 10)
-            }
-            2 | 3 => {
-                let mut size = [0; 4];
-                exact(&mut size, 8, "the length of the header")?;
-                (u64::from(u32::from_le_bytes(size)), 12)
-            }
+    /// Reads the header; returns its own length too.
+    pub(super) fn read(source: &mut Source<'_>) -> Result<(Self, u64)> {
+        let start = source.start(12)?;
+        let wrong = |offset, expected| source.content(ContentError::Header { offset, expected });
+        let byte = |i: usize| start.get(i).copied().ok_or_else(|| wrong(i, "the length of the header"));
+        let (size, before) = match byte(6)? {
+            1 => (u64::from(u16::from_le_bytes([byte(8)?, byte(9)?])), 10),
+            2 | 3 => (u64::from(u32::from_le_bytes([byte(8)?, byte(9)?, byte(10)?, byte(11)?])), 12),
             _ => return Err(wrong(6, "version 1, 2 or 3")),
         };
-        if before + size > length {
+        if before + size > source.length() {
             return Err(wrong(8, "a header that ends inside the file (cut short?)"));
         }
         if size > LONGEST {
             return Err(wrong(8, "a header of at most 10000 bytes"));
         }
-        let mut text = vec![0; size as usize];
-        exact(&mut text, before as usize, "the dictionary")?;
+        let text = source.bytes(Format::Npy, before, size)?;
         let mut parser = Parser { text: &text, at: 0, before: before as usize };
-        Ok((parser.dictionary().map_err(Error::content(path))?, before + size))
+        let header = parser.dictionary().map_err(|e| source.content(e))?;
+        Ok((header, before + size))
     }
 }
 
@@ -180,7 +127,7 @@ impl Parser<'_> {
             return Err(ContentError::Type { found: "a structure".into() });
         }
         let descr = self.string()?;
-        NumberType::of(&descr).ok_or_else(|| ContentError::Type {
+        number_type(&descr).ok_or_else(|| ContentError::Type {
             found: format!("'{}'", descr.chars().take(32).collect::<String>()),
         })
     }
@@ -189,9 +136,9 @@ impl Parser<'_> {
         self.peek();
         let rest = &self.text[self.at..];
         let (length, order) = if rest.starts_with(b"True") {
-            (4, AxisOrder::Fortran)
+            (4, AxisOrder::Columns)
         } else if rest.starts_with(b"False") {
-            (5, AxisOrder::C)
+            (5, AxisOrder::Rows)
         } else {
             return self.wrong("True or False");
         };

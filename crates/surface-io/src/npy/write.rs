@@ -35,7 +35,7 @@ pub fn npy(shape: &[usize], values: &[f64]) -> Result<Vec<u8>, ContentError> {
     text.extend(std::iter::repeat_n(' ', padding));
     text.push('\n');
     let mut bytes = Vec::with_capacity(10 + text.len() + 8 * values.len());
-    bytes.extend(crate::detect::NPY);
+    bytes.extend(super::header::MAGIC);
     bytes.extend([1, 0]);
     let length = u16::try_from(text.len()).map_err(|_| ContentError::OutOfRange {
         what: "number of axes",

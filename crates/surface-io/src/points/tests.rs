@@ -156,3 +156,36 @@ proptest! {
         prop_assert!((dy - spacing.1).abs() <= 1e-12 * (origin.abs() + spacing.1));
     }
 }
+
+#[test]
+fn profiles_are_lines() {
+    let declared =
+        ReadOptions { unit: "nm".parse().ok(), lateral_unit: "um".parse().ok(), ..ReadOptions::default() };
+    let line = crate::profile_from_bytes("a.txt", b"1.0\t5\n0.0\t4\n0.5\t6\n", &declared).unwrap();
+    assert_eq!((line.length().to_bits(), line.heights()), (1.5e-6_f64.to_bits(), &[4e-9, 6e-9, 5e-9][..]));
+    let headed = b"x [um]\tz [nm]\r\n0,0\t5\r\n0,5\t6\r\n1,0\t4\r\n";
+    let line = crate::profile_from_bytes("a.txt", headed, &ReadOptions::default()).unwrap();
+    assert_eq!((line.elements(), line.heights()[1].to_bits()), (3, 6e-9_f64.to_bits()));
+    let counts = ReadOptions { unit: None, height_scale: "2 nm".parse().ok(), ..declared.clone() };
+    let line = crate::profile_from_bytes("a.txt", b"0 1\n1 2\n", &counts).unwrap();
+    assert_eq!(line.heights(), [2e-9, 4e-9]);
+    for (text, change, expected) in [
+        ("0 1\n1 2\n3 4\n", None, "1 of the 4 places of the profile have no height"),
+        ("0 1\n1 nan\n2 3\n", None, "1 of the 3 places"),
+        ("0 1\n1 2\n2.4 3\n", None, "off the grid"),
+        ("0 1\n0 2\n1 3\n", None, "lines 1 and 2"),
+        ("nan 1\n1 2\n", None, "line 1 has no x"),
+        ("0 1 2\n1 2 3\n", None, "line 1 has 3 values: expected x and z"),
+        ("0 1\n1 2\n", Some(ReadOptions { lateral_unit: None, ..declared.clone() }), "the unit of x and y"),
+        ("0 1\n1 2\n", Some(ReadOptions { unit: None, ..declared.clone() }), "the unit of the heights"),
+        ("0 1\n1 2\n", Some(ReadOptions { size: "1 um".parse().ok(), ..declared.clone() }), "size was given"),
+        ("3 1\n", None, "the step of the profile"),
+        ("\u{93}NUMPY", None, "expected a number"),
+    ] {
+        let declared = change.as_ref().unwrap_or(&declared);
+        let error = crate::profile_from_bytes("a.txt", text.as_bytes(), declared).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}\n{expected}");
+    }
+    let npy = crate::npy(&[1, 2], &[1.0, 2.0]).unwrap();
+    assert!(crate::profile_from_bytes("a.npy", &npy, &declared).unwrap_err().to_string().contains("NPY"));
+}

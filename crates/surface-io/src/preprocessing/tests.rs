@@ -1,4 +1,4 @@
-use crate::{Crop, Detrend, Fill, Preprocessing, ReadOptions, Scan, Undefined};
+use crate::{Crop, Detrend, Fill, Mirror, Preprocessing, ReadOptions, Scan, Undefined, Window};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use contact_model::HeightMap;
 use proptest::prelude::*;
@@ -314,5 +314,101 @@ proptest! {
                 prop_assert!((a - b).abs() <= 32768.0 * ROUNDING);
             }
         }
+    }
+}
+
+#[test]
+fn spheres_and_cylinders_are_found_and_nothing_is_left() {
+    let subtract = |scan: &Scan, detrend| {
+        let preprocessing = Preprocessing { detrend, ..Preprocessing::default() };
+        let found = scan.preprocessed(&preprocessing).unwrap();
+        let range = found.map.defined().fold([0.0_f64; 2], |[a, b], h| [a.min(h), b.max(h)]);
+        (range[1] - range[0], found.steps.concat())
+    };
+    // Half of a ball from its side, a hollow, and nearly a plane: radii over the half diagonal of 25 x 18 cells.
+    for (radius, x0, y0) in [(25.0, 3.0, 9.0), (-40.0, 10.0, 0.0), (2e4, -300.0, 700.0)] {
+        let sphere = |x: f64, y: f64| {
+            let square: f64 = radius * radius - (x - x0).powi(2) - (y - y0).powi(2);
+            3.0 + radius.signum() * square.sqrt()
+        };
+        let (left, step) = subtract(&scan_of("1 x 1", 18, 25, sphere), Detrend::Sphere);
+        assert!(left < 1e-8 * radius.abs(), "{radius}: {left:e}");
+        let found: f64 = step.split("radius ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        assert_relative_eq!(found, radius.abs(), max_relative = 1e-6);
+        assert!(step.contains(if radius > 0.0 { "a hill" } else { "a hollow" }), "{step}");
+    }
+    // A roller across the map, tilted along its axis.
+    for (radius, angle, slope) in [(30.0_f64, 0.4_f64, 0.1_f64), (200.0, 1.3, -0.3), (-60.0, -0.7, 0.0)] {
+        let cylinder = |x: f64, y: f64| {
+            let (sin, cos) = angle.sin_cos();
+            let (along, across) = (x * cos + y * sin, y * cos - x * sin);
+            slope * along
+                + radius.signum() * (radius * radius - (across - 2.0).powi(2)).sqrt() * slope.hypot(1.0)
+        };
+        let (left, step) = subtract(&scan_of("1 x 1", 18, 25, cylinder), Detrend::Cylinder);
+        assert!(left < 1e-7 * radius.abs(), "{radius}: {left:e} {step}");
+        let found: f64 = step.split("radius ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        assert_relative_eq!(found, radius.abs(), max_relative = 1e-6);
+    }
+    // A rough ball keeps its roughness; three points are no sphere.
+    let rough = scan_of("1 x 1", 30, 30, |x, y| {
+        (1e4 - (x - 12.0).powi(2) - (y - 20.0).powi(2)).sqrt() + 0.01 * (3.0 * x + 2.0 * y).sin()
+    });
+    let (left, _) = subtract(&rough, Detrend::Sphere);
+    assert!((0.0199..0.021).contains(&left), "{left}");
+    let small = scan_of("1 x 1", 1, 3, |x, _| x);
+    assert!(small.map(&Preprocessing { detrend: Detrend::Sphere, ..Preprocessing::default() }).is_err());
+}
+
+#[test]
+fn mirrors_turns_and_tapers() {
+    let scan = scan_of("1 x 2", 2, 3, |x, y| x + 10.0 * y);
+    let heights = |change: &dyn Fn(&mut Preprocessing)| preprocessed(&scan, change).unwrap();
+    assert_eq!(heights(&|p| p.mirror = Some(Mirror::X)).heights(), [2.0, 1.0, 0.0, 12.0, 11.0, 10.0]);
+    assert_eq!(heights(&|p| p.mirror = Some(Mirror::Y)).heights(), [10.0, 11.0, 12.0, 0.0, 1.0, 2.0]);
+    let turned = heights(&|p| p.quarter_turns = 1);
+    assert_eq!((turned.columns(), turned.dx(), turned.dy()), (2, 2.0, 1.0));
+    assert_eq!(turned.heights(), [10.0, 0.0, 11.0, 1.0, 12.0, 2.0]);
+    assert_eq!(heights(&|p| p.quarter_turns = 4).heights(), heights(&|_| ()).heights());
+    let even = scan_of("1 x 1", 64, 64, |x, y| if (x as i64 + y as i64) % 2 == 0 { 1.0 } else { -1.0 });
+    let tapered = preprocessed(&even, |p| p.window = Some(Window::Hann)).unwrap();
+    let square = tapered.heights().iter().map(|h| h * h).sum::<f64>() / 4096.0;
+    assert_relative_eq!(square.sqrt(), 0.375, max_relative = 1e-9);
+    let steps = scan.preprocessed(&Preprocessing {
+        crop: Some(Crop::Window { row: 0, column: 1, rows: 2, columns: 2 }),
+        outliers: Some(1e9),
+        tip_radius: "0.1".parse().ok(),
+        mirror: Some(Mirror::X),
+        quarter_turns: 2,
+        ..Preprocessing::default()
+    });
+    let steps = steps.unwrap().steps;
+    assert_eq!(
+        steps,
+        [
+            "cropped to 2 x 2 points from row 0, column 1 (from 0)",
+            "0 outliers beyond 1000000000 robust standard deviations made undefined",
+            "with a tip of radius 0.1, heights are reliable at all distances",
+            "x reversed",
+            "turned by 180 degrees",
+        ]
+    );
+}
+
+#[test]
+fn undefined_points_are_cropped_away() {
+    let holes = scan_of("1 x 1", 5, 6, |x, y| if x < 2.0 && y < 1.0 { f64::NAN } else { x + y });
+    let map = preprocessed(&holes, |p| p.crop = Some(Crop::Defined)).unwrap();
+    assert_eq!((map.columns(), map.rows(), map.undefined()), (6, 4, 0));
+    for (change, expected) in [
+        (
+            Preprocessing { outliers: Some(0.0), ..Preprocessing::default() },
+            "outliers = 0: expected a number > 0",
+        ),
+        (Preprocessing { tip_radius: "-1".parse().ok(), ..Preprocessing::default() }, "tip_radius = -1"),
+        (Preprocessing { tip_radius: "1 um".parse().ok(), ..Preprocessing::default() }, "tip_radius: "),
+    ] {
+        let error = holes.map(&change).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
     }
 }

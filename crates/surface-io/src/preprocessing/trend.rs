@@ -1,5 +1,6 @@
-//! Least-squares polynomials in x and y.
+//! Least-squares polynomials in x and y, and which trend is subtracted.
 
+use super::normal_equations::{MOST, NormalEquations};
 use crate::error::ContentError;
 use contact_model::Cells;
 
@@ -15,14 +16,24 @@ pub enum Detrend {
     Plane,
     /// `a + b x + c y + d x^2 + e x y + f y^2` of least squares: a curved one.
     Quadric,
+    /// The sphere of least squares: a ball, a lens.
+    Sphere,
+    /// The circular cylinder of least squares, its axis in any direction, tilted or not: a roller, a wire.
+    Cylinder,
 }
 
-/// Most unknowns.
-const MOST: usize = 6;
-
-/// A pivot of the scaled normal matrix below this is 0: the squares of coordinates that are one line to 1e-5
-/// of their range.
-const SINGULAR: f64 = 1e-10;
+impl std::fmt::Display for Detrend {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Nothing => "none",
+            Self::Mean => "mean",
+            Self::Plane => "plane",
+            Self::Quadric => "quadric",
+            Self::Sphere => "sphere",
+            Self::Cylinder => "cylinder",
+        })
+    }
+}
 
 /// Coefficients of Legendre's polynomials in coordinates that run from -1 to 1 along each side.
 #[derive(Debug)]
@@ -35,9 +46,10 @@ pub(super) struct Trend {
 }
 
 impl Detrend {
+    /// Unknowns of a polynomial; none where it is no polynomial.
     fn unknowns(self) -> usize {
         match self {
-            Self::Nothing => 0,
+            Self::Nothing | Self::Sphere | Self::Cylinder => 0,
             Self::Mean => 1,
             Self::Plane => 3,
             Self::Quadric => 6,
@@ -57,35 +69,20 @@ impl Detrend {
         // its own rounding only.
         let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
         let unit = if half > 0.0 { half } else { 1.0 };
-        let mut matrix = [[0.0; MOST]; MOST];
-        let mut right = [0.0; MOST];
+        let mut equations = NormalEquations::new(unknowns);
         let mut present = 0;
         for (row, heights) in heights.chunks_exact(cells.columns).enumerate() {
             // Row by row: sums of sums lose fewer digits than one long sum.
-            let mut row_matrix = [[0.0; MOST]; MOST];
-            let mut row_right = [0.0; MOST];
+            let mut of_row = NormalEquations::new(unknowns);
             for (column, &h) in heights.iter().enumerate() {
-                if h.is_nan() {
-                    continue;
-                }
-                present += 1;
-                let basis = basis(row, column, cells);
-                for i in 0..unknowns {
-                    row_right[i] += basis[i] * ((h - middle) / unit);
-                    for j in 0..=i {
-                        row_matrix[i][j] += basis[i] * basis[j];
-                    }
+                if !h.is_nan() {
+                    present += 1;
+                    of_row.add(&basis(row, column, cells), (h - middle) / unit);
                 }
             }
-            for i in 0..unknowns {
-                right[i] += row_right[i];
-                for j in 0..=i {
-                    matrix[i][j] += row_matrix[i][j];
-                }
-            }
+            equations.add_all(&of_row);
         }
-        let coefficients =
-            solve(&mut matrix, right, unknowns).ok_or(ContentError::Trend { present, unknowns })?;
+        let coefficients = equations.solve().ok_or(ContentError::Trend { present, unknowns })?;
         Ok(Some(Trend { unknowns, coefficients, unit, middle }))
     }
 }
@@ -115,46 +112,4 @@ fn basis(row: usize, column: usize, cells: Cells) -> [f64; MOST] {
     let to_unit = |i: usize, count: usize| (2.0 * i as f64 + 1.0) / count as f64 - 1.0;
     let (x, y) = (to_unit(column, cells.columns), to_unit(row, cells.rows));
     [1.0, x, y, 1.5 * x * x - 0.5, x * y, 1.5 * y * y - 0.5]
-}
-
-/// Cholesky's factorisation of the scaled matrix, of which the lower triangle is given; `None` where it is
-/// singular.
-fn solve(matrix: &mut [[f64; MOST]; MOST], mut right: [f64; MOST], n: usize) -> Option<[f64; MOST]> {
-    let mut scale = [0.0; MOST];
-    for i in 0..n {
-        if matrix[i][i] <= 0.0 {
-            return None;
-        }
-        scale[i] = matrix[i][i].sqrt().recip();
-    }
-    for i in 0..n {
-        right[i] *= scale[i];
-        for j in 0..=i {
-            let known: f64 = matrix[i][..j].iter().zip(&matrix[j][..j]).map(|(a, b)| a * b).sum();
-            let sum = matrix[i][j] * scale[i] * scale[j] - known;
-            if i > j {
-                matrix[i][j] = sum / matrix[j][j];
-            } else if sum > SINGULAR {
-                matrix[i][i] = sum.sqrt();
-            } else {
-                return None;
-            }
-        }
-    }
-    for i in 0..n {
-        for k in 0..i {
-            right[i] -= matrix[i][k] * right[k];
-        }
-        right[i] /= matrix[i][i];
-    }
-    for i in (0..n).rev() {
-        for k in i + 1..n {
-            right[i] -= matrix[k][i] * right[k];
-        }
-        right[i] /= matrix[i][i];
-    }
-    for i in 0..n {
-        right[i] *= scale[i];
-    }
-    Some(right)
 }

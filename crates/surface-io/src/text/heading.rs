@@ -1,21 +1,42 @@
-//! What comments say: `# Width: 10 um`, `# Height: 10 um`, `# Value units: m`, as Gwyddion exports them and
-//! this crate writes them.
+//! What headers say: `# Width: 10 um` of Gwyddion and this crate, `x-length = 5000` of SPIP, `\Scan Size: 10 um` of Nanoscope, `Pixel
+//! size = 0.1 um` of profilers, in comments or in lines before the numbers.
+//!
+//! The words are those of the readers in <https://github.com/ContactEngineering/SurfaceTopography> (`IO/Text.py`) and Gwyddion
+//! (`spip-asc.c`), and their usual variants. A length counts where it has a unit; a number of pixels has none and is compared with the lines.
 
+use super::statement::{Axes, Statement, key_and_value, lengths};
 use crate::error::ContentError;
+use crate::extent::{Extent, agree};
 use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, QuantityError, Unit};
 
 /// The statements that count; everything else is a comment.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Heading {
-    /// Length of a row, Lx.
-    width: Option<Side>,
-    /// Length of a column, Ly.
-    height: Option<Side>,
+    /// Lengths of a row and a column, Lx and Ly.
+    sides: [Option<Side>; 2],
+    /// The same without a unit, in that of x and y, which may be said later.
+    plain: [Option<Side>; 2],
+    /// Sides of one cell.
+    cells: [Option<Side>; 2],
+    /// One length for a square map.
+    square: Option<Side>,
+    /// Numbers of columns and rows.
+    counts: [Option<u64>; 2],
     /// Unit of the heights.
     pub(crate) unit: Option<Unit>,
     /// Unit of x and y.
     pub(crate) lateral_unit: Option<Unit>,
+    /// Height of one unit of a number, in `unit`.
+    pub(crate) scale: Option<f64>,
+    /// Nanometres of one count, where the unit of the heights is not said.
+    bit_to_nm: Option<f64>,
+    /// A unit of the numbers that is none of heights, and what is wrong with it.
+    other_unit: Option<ContentError>,
+    /// The file of SPIP says lengths in nanometres without saying so.
+    spip: bool,
+    /// Name of the channel.
+    pub(crate) name: Option<String>,
 }
 
 /// A side and how far it may be rounded.
@@ -26,63 +47,174 @@ pub(crate) struct Side {
     pub(crate) rounding: f64,
 }
 
-/// Longest comment that is looked at, in bytes.
+/// What a header says of each axis: the length of the map, and that of a cell.
+type SidesAndCells = ([Option<Side>; 2], [Option<Extent>; 2]);
+
+/// Longest line that is looked at, in bytes.
 const LONGEST: usize = 200;
 
 impl Heading {
-    /// Takes what a comment says; the first statement of a kind counts, and another side of the same name is an error.
+    /// Takes what a line of a header says; another statement of the same kind is an error.
     ///
     /// Width and height are words of everyday and count where they are lengths; units count or are an error.
-    pub(super) fn read(&mut self, comment: &[u8], line: usize) -> Result<(), ContentError> {
-        if comment.len() > LONGEST {
+    pub(super) fn read(&mut self, line: &[u8], number: usize) -> Result<(), ContentError> {
+        if line.len() > LONGEST {
             return Ok(());
         }
         // Files of older programs write the micro sign in Latin-1, whose bytes are the first 256 characters.
-        let latin = || comment.iter().map(|&b| char::from(b)).collect();
-        let text: String = std::str::from_utf8(comment).map_or_else(|_| latin(), str::to_owned);
-        let Some((key, value)) = text.split_once(':') else { return Ok(()) };
-        let key = key.trim().to_ascii_lowercase();
-        match key.as_str() {
-            "width" | "height" => {
-                let side = side(value);
-                let negative = |s: &Side| s.quantity.value() <= 0.0;
-                if let Some(Side { quantity, .. }) = side.filter(negative)
-                    && quantity.dimension() == Dimension::LENGTH
-                {
-                    return Err(ContentError::Side { line, key, value: quantity });
-                }
-                let field = if key == "width" { &mut self.width } else { &mut self.height };
-                let side = side.filter(|s| !negative(s));
-                if let (Some(first), Some(second)) = (&field, &side)
-                    && first.quantity.dimension() == second.quantity.dimension()
-                    && first.quantity.value().to_bits() != second.quantity.value().to_bits()
-                {
-                    let said = |quantity: &Quantity| format!("{key}: {quantity}");
-                    let (first, second) = (said(&first.quantity), said(&second.quantity));
-                    return Err(ContentError::Contradiction {
-                        what: "two lines of the header",
-                        first,
-                        second,
-                    });
-                }
-                *field = field.or(side);
+        let latin = || line.iter().map(|&b| char::from(b)).collect();
+        let text: String = std::str::from_utf8(line).map_or_else(|_| latin(), str::to_owned);
+        self.spip |= text.trim() == "File Format = ASCII";
+        let several: Vec<&str> = text.split_whitespace().collect();
+        if several.len() > 1
+            && several.iter().all(|part| part.split_once('=').is_some_and(|(_, v)| !v.is_empty()))
+        {
+            // h=305 w=75
+            return several.into_iter().try_for_each(|part| self.statement(part, number));
+        }
+        if self.columns(&text) { Ok(()) } else { self.statement(&text, number) }
+    }
+
+    /// The units of two or three headed columns, `x [um]` and `z [nm]`; whether the line is such a one.
+    fn columns(&mut self, text: &str) -> bool {
+        let Some(delimiter) = ['\t', ';', ','].into_iter().find(|&d| text.contains(d)) else { return false };
+        let unit = |name: &str| -> Option<(char, Unit)> {
+            let name = name.trim().trim_matches('"');
+            let (word, unit) = name.strip_suffix([']', ')'])?.rsplit_once(['[', '('])?;
+            let unit: Unit = unit.parse().ok().filter(|u: &Unit| u.dimension() == Dimension::LENGTH)?;
+            let word = word.trim().trim_end_matches('_').to_lowercase();
+            matches!(word.as_str(), "x" | "y" | "z").then(|| (word.chars().next().unwrap_or('x'), unit))
+        };
+        let units: Option<Vec<(char, Unit)>> = text.trim_end().split(delimiter).map(unit).collect();
+        match units.as_deref() {
+            Some([('x', x), ('z', z)]) => (self.lateral_unit, self.unit) = (Some(x.clone()), Some(z.clone())),
+            Some([('x', x), ('y', y), ('z', z)]) if x.same(y) => {
+                (self.lateral_unit, self.unit) = (Some(x.clone()), Some(z.clone()));
             }
-            "value units" | "lateral units" if !value.trim().is_empty() => {
-                let unit =
-                    unit(value).map_err(|source| ContentError::Heading { line, key: key.clone(), source })?;
-                let field = if key == "value units" { &mut self.unit } else { &mut self.lateral_unit };
+            _ => return false,
+        }
+        true
+    }
+
+    fn statement(&mut self, text: &str, line: usize) -> Result<(), ContentError> {
+        let Some((statement, key, value)) = key_and_value(text) else { return Ok(()) };
+        match statement {
+            Statement::Channel => {
+                self.name = self.name.take().or_else(|| (!value.is_empty()).then(|| value.clone()));
+            }
+            Statement::Side(axis, of_scan) => self.side(&key, &value, axis, of_scan, line)?,
+            Statement::Size => match lengths(&value).as_deref() {
+                Some([one]) => once(&mut self.square, Some(*one), &key)?,
+                Some([x, y]) => {
+                    once(&mut self.sides[0], Some(*x), &key)?;
+                    once(&mut self.sides[1], Some(*y), &key)?;
+                }
+                _ => {}
+            },
+            Statement::Cell(axes) => {
+                let said = lengths(&value).unwrap_or_default();
+                let one = said.first().copied();
+                let of_length = |side: &Side| side.quantity.dimension() == Dimension::LENGTH;
+                match (axes, said.as_slice()) {
+                    (_, []) => {}
+                    (Axes::One(axis), [plain]) if !of_length(plain) => self.count(axis, &value, &key)?,
+                    (Axes::One(axis), _) => once(&mut self.cells[axis], one, &key)?,
+                    (Axes::Both, [x, y]) => {
+                        once(&mut self.cells[0], Some(*x), &key)?;
+                        once(&mut self.cells[1], Some(*y), &key)?;
+                    }
+                    (Axes::Both, _) => {
+                        once(&mut self.cells[0], one, &key)?;
+                        once(&mut self.cells[1], one, &key)?;
+                    }
+                }
+            }
+            Statement::Count(axis) => self.count(axis, &value, &key)?,
+            Statement::HeightUnit | Statement::LateralUnit if !value.is_empty() => {
+                let unit = unit(&value).map_err(|source| ContentError::Heading {
+                    line,
+                    key: key.clone(),
+                    source,
+                })?;
+                let field =
+                    if statement == Statement::HeightUnit { &mut self.unit } else { &mut self.lateral_unit };
+                if let Some(first) = field.as_ref().filter(|first| !first.same(&unit)) {
+                    return Err(two_lines(&key, first, &unit));
+                }
                 field.get_or_insert(unit);
             }
-            _ => {}
+            Statement::DataUnit => match unit(&value) {
+                Ok(unit) => self.unit = self.unit.take().or(Some(unit)),
+                Err(source) => self.other_unit = Some(ContentError::Heading { line, key, source }),
+            },
+            Statement::Factor(of) => {
+                if let (Some(factor), Ok(unit)) = (positive(&value), unit(&of)) {
+                    (self.scale, self.unit) = (Some(factor), Some(unit));
+                }
+            }
+            Statement::BitToNm => self.bit_to_nm = self.bit_to_nm.or(positive(&value)),
+            Statement::HeightUnit | Statement::LateralUnit => {}
         }
         Ok(())
     }
 
-    /// The format that the comments are those of: points have a unit of x and y, a matrix has a width and a
+    fn side(
+        &mut self,
+        key: &str,
+        value: &str,
+        axis: usize,
+        of_scan: bool,
+        line: usize,
+    ) -> Result<(), ContentError> {
+        let mut side = lengths(value).and_then(|all| (all.len() == 1).then(|| all[0]));
+        let negative = |s: &Side| s.quantity.value() <= 0.0;
+        if let Some(Side { quantity, .. }) = side.filter(negative)
+            && quantity.dimension() == Dimension::LENGTH
+        {
+            return Err(ContentError::Side { line, key: key.to_owned(), value: quantity });
+        }
+        side = side.filter(|s| !negative(s));
+        if of_scan && side.is_some_and(|s| s.quantity.dimension() == Dimension::NONE) {
+            return once(&mut self.plain[axis], side, key);
+        }
+        once(&mut self.sides[axis], side, key)
+    }
+
+    fn count(&mut self, axis: usize, value: &str, key: &str) -> Result<(), ContentError> {
+        let Ok(count) = value.parse::<u64>() else { return Ok(()) };
+        if let Some(first) = self.counts[axis].filter(|&first| first != count) {
+            return Err(two_lines(key, &first, &count));
+        }
+        self.counts[axis] = Some(count);
+        Ok(())
+    }
+
+    /// What follows from all lines together.
+    pub(super) fn finish(&mut self) -> Result<(), ContentError> {
+        if let (None, None, Some(scale), true) = (&self.unit, self.scale, self.bit_to_nm, self.spip) {
+            (self.scale, self.unit) = (Some(scale), "nm".parse().ok());
+        }
+        // A length in the unit of x and y, or of SPIP; without either it may be a number of pixels.
+        let nanometres = self.spip.then(|| "nm".parse().ok()).flatten();
+        let unit = self.lateral_unit.clone().or(nanometres);
+        for axis in 0..2 {
+            if let (Some(side), Some(unit)) = (self.plain[axis], &unit)
+                && let Ok(quantity) = Quantity::of(side.quantity.value(), unit)
+            {
+                once(&mut self.sides[axis], Some(Side { quantity, ..side }), ["x length", "y length"][axis])?;
+            }
+        }
+        match self.other_unit.take() {
+            Some(error) if self.unit.is_none() => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    /// The format that the header is that of: points have a unit of x and y, a matrix has a width and a
     /// height.
     pub(crate) fn format(&self) -> Option<Format> {
-        let matrix = self.width.is_some() && self.height.is_some();
-        let points = self.lateral_unit.is_some();
+        let matrix = (self.sides[0].is_some() && self.sides[1].is_some()) || self.counts[0] == Some(3);
+        let points = self.lateral_unit.is_some() && self.counts[0].is_none();
         if points { Some(Format::Xyz) } else { matrix.then_some(Format::Text) }
     }
 
@@ -91,23 +223,66 @@ impl Heading {
     pub(crate) fn sides(&self) -> [Option<Side>; 2] {
         let plain = self.unit.as_ref().is_some_and(|u| u.dimension() == Dimension::NONE);
         let counts = |side: &Side| plain || side.quantity.dimension() == Dimension::LENGTH;
-        [self.width.filter(counts), self.height.filter(counts)]
+        self.sides.map(|side| side.filter(counts))
+    }
+
+    /// Width and height of a matrix of so many columns and rows, and the sides of its cells where the header says those.
+    ///
+    /// # Errors
+    /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two of its lengths differ.
+    pub(super) fn of_matrix(&self, count: [usize; 2]) -> Result<SidesAndCells, ContentError> {
+        let mut sides = self.sides();
+        let mut cells = [None; 2];
+        for axis in 0..2 {
+            if let Some(stated) = self.counts[axis].filter(|&stated| stated != count[axis] as u64) {
+                let what = ["number of columns", "number of rows"][axis];
+                let (first, second) =
+                    (format!("{stated} in the header"), format!("{} in the lines", count[axis]));
+                return Err(ContentError::Contradiction { what, first, second });
+            }
+            let of_length =
+                |side: &Side| side.quantity.dimension() == Dimension::LENGTH && side.quantity.value() > 0.0;
+            let square = self.square.filter(of_length).filter(|_| count[0] == count[1]);
+            let cell = self.cells[axis].filter(of_length);
+            if let (Some(side), Some(square)) = (sides[axis], square)
+                && !agree(side.quantity, square.quantity)
+            {
+                return Err(two_lines("size", &side.quantity, &square.quantity));
+            }
+            sides[axis] = sides[axis].or(square);
+            if let Some(cell) = cell {
+                let cell = Extent::Cell(cell.quantity);
+                if let Some(side) = sides[axis]
+                    && !agree(side.quantity, cell.side(count[axis])?)
+                {
+                    return Err(two_lines("size", &side.quantity, &cell.side(count[axis])?));
+                }
+                cells[axis] = Some(cell);
+            }
+        }
+        Ok((sides, cells))
     }
 }
 
-/// A length or a plain number; `None` for other words.
-fn side(text: &str) -> Option<Side> {
-    let quantity: Quantity = text.parse().ok()?;
-    let known = quantity.dimension() == Dimension::LENGTH || quantity.dimension() == Dimension::NONE;
-    let number = text.trim().split(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '+' | '-'))).next()?;
-    let exponent = text.trim()[number.len()..].starts_with(['e', 'E']);
-    let rounding = match (number.split_once('.'), number.parse::<f64>()) {
-        (Some((_, decimals)), Ok(number)) if !exponent => {
-            0.5 * 0.1_f64.powf(decimals.len() as f64) / number.abs()
-        }
-        _ => 0.0,
-    };
-    known.then_some(Side { quantity, rounding })
+/// Takes a statement, or finds it to be another one than before.
+fn once(field: &mut Option<Side>, side: Option<Side>, key: &str) -> Result<(), ContentError> {
+    if let (Some(first), Some(second)) = (&field, &side)
+        && first.quantity.dimension() == second.quantity.dimension()
+        && first.quantity.value().to_bits() != second.quantity.value().to_bits()
+    {
+        return Err(two_lines(key, &first.quantity, &second.quantity));
+    }
+    *field = field.or(side);
+    Ok(())
+}
+
+fn two_lines(key: &str, first: &dyn std::fmt::Display, second: &dyn std::fmt::Display) -> ContentError {
+    let (first, second) = (format!("{key}: {first}"), format!("{key}: {second}"));
+    ContentError::Contradiction { what: "two lines of the header", first, second }
+}
+
+fn positive(value: &str) -> Option<f64> {
+    value.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0)
 }
 
 fn unit(text: &str) -> Result<Unit, QuantityError> {

@@ -1,31 +1,44 @@
 //! A text matrix: one row per line.
 
 use super::TextTable;
-use crate::content::FileContent;
+use crate::channel::{StoredChannel, StoredHeights, StoredUnit};
 use crate::error::ContentError;
 use crate::extent::Extent;
-use crate::format::Format;
 use crate::options::ReadOptions;
 
 /// Rounding of a quotient of two lengths.
 const EXACT: f64 = 4.0 * f64::EPSILON;
 
 /// The rows of a table as a map; the first line is row 0.
-pub(crate) fn matrix(table: TextTable, declared: &ReadOptions) -> Result<FileContent, ContentError> {
+pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {
     if declared.lateral_unit.is_some() {
         let reason = "a matrix has no coordinates; give size or cell with a unit";
         return Err(ContentError::Useless { what: "lateral_unit", reason });
     }
     let (rows, columns) = (table.rows(), table.columns);
     let extent = extents(&table, columns, rows)?;
-    let (details, unit) = (table.delimiter.to_string(), table.heading.unit.clone());
-    Ok(FileContent { format: Format::Text, details, rows, columns, heights: table.values, unit, extent })
+    let details = table.details();
+    if let Some(scale) = table.scale {
+        table.values.iter_mut().for_each(|h| *h *= scale);
+    }
+    Ok(StoredChannel {
+        name: table.heading.name,
+        details,
+        rows,
+        columns,
+        unit: StoredUnit::heights(table.heading.unit),
+        extent,
+        heights: StoredHeights::Read(table.values),
+    })
 }
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells
 /// are square within the digits that it prints.
 fn extents(table: &TextTable, columns: usize, rows: usize) -> Result<[Option<Extent>; 2], ContentError> {
-    let [width, height] = table.heading.sides();
+    let ([width, height], cells) = table.heading.of_matrix([columns, rows])?;
+    if let [Some(_), Some(_)] = cells {
+        return Ok(cells);
+    }
     let cell = |side: Extent, count: usize| side.cell(count).map(Extent::Cell);
     let (Some(across), Some(down)) = (width, height) else {
         return Ok([

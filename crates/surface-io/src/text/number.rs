@@ -38,6 +38,20 @@ impl Numbers {
         }
     }
 
+    /// Whether a line is one of a header: it begins with none of the characters of numbers, and has a word that is none.
+    pub(super) fn is_header(self, line: &[u8]) -> bool {
+        let line = line.trim_ascii();
+        let first = line.first().copied().unwrap_or_default();
+        let place = Place::Line { line: 0, value: 0 };
+        let number = |token: &[u8]| match self.read(token, place) {
+            Err(ContentError::Infinite { .. }) => true,
+            read => read.is_ok(),
+        };
+        let begins = first.is_ascii_digit() || matches!(first, b'+' | b'-' | b'.' | b',' | b';');
+        let mut tokens = line.split(|b| matches!(b, b' ' | b'\t' | b';' | b',' | b'\r'));
+        !begins && tokens.any(|token| !number(token))
+    }
+
     fn kind(self, text: Option<&str>) -> NumberKind {
         let Some(text) = text else { return NumberKind::None };
         let number = |t: &str| t.parse::<f64>().is_ok();

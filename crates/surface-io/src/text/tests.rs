@@ -167,11 +167,11 @@ fn every_bad_text_says_where_and_what_to_do() {
         ),
         (b"1 2\n3\n", "a.txt: line 2 has 1 values: expected 2 as in line 1"),
         (b"# c\n\n1 2\n3 4 5\n", "a.txt: line 4 has 3 values: expected 2 as in line 3"),
-        (b"1,5\t2,5\n", "a.txt: line 1, value 1: \"1,5\": a decimal comma? say decimal = \"comma\""),
-        (b"1,5;2,5\n", "a.txt: line 1, value 1: \"1,5\": a decimal comma? say decimal = \"comma\""),
+        (b"1,500\t2,500\n", "a.txt: line 1, value 1: \"1,500\": a decimal comma? say decimal = \"comma\""),
+        (b"1,5;2.5\n", "a.txt: line 1, value 1: \"1,5\": a decimal comma? say decimal = \"comma\""),
         (
-            b"1,5 2,5\n",
-            "a.txt: line 1, value 2: \"5 2\": two numbers between two delimiters: one delimiter per file, and decimal commas need decimal = \"comma\"",
+            b"1,500 2,500\n",
+            "a.txt: line 1, value 2: \"500 2\": two numbers between two delimiters: one delimiter per file, and decimal commas need decimal = \"comma\"",
         ),
         (b"1e999 1\n", "a.txt: line 1, value 1: \"1e999\": beyond the range of double precision"),
         (
@@ -180,22 +180,18 @@ fn every_bad_text_says_where_and_what_to_do() {
         ),
         (
             b"1 2\n\x00\x01",
-            "a.txt: byte 0x00 at offset 4 does not occur in text: expected numbers as text, or an NPY file",
+            "a.txt: byte 0x00 at offset 4 does not occur in text: expected numbers as text, or a binary format that is read",
         ),
         (
-            b"1 2\r3 4\r",
-            "a.txt: byte 0x0d at offset 3 does not occur in text: expected numbers as text, or an NPY file",
+            b"1 2\r3 4\n",
+            "a.txt: byte 0x0d at offset 3 does not occur in text: expected numbers as text, or a binary format that is read",
         ),
         (b"\xc3\xa9 2\n", "a.txt: line 1, value 1: \"\u{e9}\": expected a number (comments"),
         (b"\xff\xfe1\x00", "a.txt: looks like text in UTF-16: save it as UTF-8"),
-        (b"\x89HDF\r\n\x1a\n", "a.txt: looks like an HDF5 file: export the data set of heights as NPY"),
+        (b"\x89HDF\r\n\x1a\n", "a.txt: HDF5, offset 0: expected a file as its specification has it"),
         (
             b"PK\x03\x04....",
-            "a.txt: looks like an archive (NPZ, X3P, XLSX): take the array out of it and save it as NPY",
-        ),
-        (
-            b"GWYPGWYO",
-            "a.txt: looks like a Gwyddion file: export the channel as text matrix, with the header",
+            "a.txt: X3P (ISO 25178-72), offset 8: expected the directory of the archive before this",
         ),
         (
             b"1 2 3\n1 2 3\n1 2 3\n1 2 3\n",
@@ -211,6 +207,121 @@ fn every_bad_text_says_where_and_what_to_do() {
 }
 
 #[test]
+fn headers_of_the_usual_programs_are_read() {
+    type Found = (Option<[f64; 2]>, Option<String>);
+    let found = |text: &[u8]| -> Found {
+        let scan = read(text).unwrap_or_else(|e| panic!("{e}\n{}", String::from_utf8_lossy(text)));
+        assert_eq!(scan.metadata().rows, 2);
+        let rounded = |q: Quantity| format!("{:.6e}", q.value()).parse().unwrap();
+        let size = scan.metadata().size.map(|size| size.map(rounded));
+        (size, scan.metadata().unit.clone().map(|u| u.value.to_string()))
+    };
+    let both = Some([3e-6, 1e-6]);
+    let nm = || Some("nm".to_owned());
+    let rows = "1 2 3\n4 5 6\n";
+    for (header, size, unit) in [
+        (
+            "# File Format = ASCII\n# x-pixels = 3\n# y-pixels = 2\n# x-length = 3000\n# y-length = 1000\n# z-unit = nm\n# Start of Data:\n",
+            both,
+            nm(),
+        ),
+        ("# File Format = ASCII\n# x-length = 3000\n# y-length = 1000\n# Bit2nm = 0.5\n", both, nm()),
+        ("\\*File list\n\\Scan Size: 3 1 ~m\n\\Samps/line: 3\n\\Number of lines: 2\n", both, None),
+        ("Scan Size: 3 um x 1 um\n", both, None),
+        ("Scan range = 3 x 1 \u{b5}m\n", both, None),
+        ("X Amplitude = 3 um\nY Amplitude = 1 um\nZ unit: nm\n", both, nm()),
+        ("x length: 3\ny length: 1\nx unit: um\ny unit: um\n", both, None),
+        ("Operator,somebody\nPixel size (um), 1\nPixel size (um)\t1\n", Some([3e-6, 2e-6]), None),
+        ("X-Resolution: 1 um\nY-Resolution: 500 nm\n", both, None),
+        ("X-Resolution: 3\nY-Resolution: 2\nWidth: 3 microns\nHeight: 1,0 microns\n", both, None),
+        (
+            "pixel size=1e-006 m\ndata unit=rad\nheight conversion factor (-> m)=6.25e-08\n",
+            Some([3e-6, 2e-6]),
+            Some("m".into()),
+        ),
+        ("h=2 w=3\nBreite: 3,00 \u{b5}m\nH\u{f6}he: 1,00 \u{b5}m\n", both, None),
+        // One length is that of a square map, a number may be one of pixels.
+        ("Scan Size: 3 um\n", None, None),
+        ("X Size: 3\nY Size: 2\n", None, None),
+        ("a b c\nMeasured on a Friday, 12:30\n", None, None),
+    ] {
+        for text in [format!("{header}{rows}"), format!("{header}{rows}").replace('\n', "\r\n")] {
+            assert_eq!(found(text.as_bytes()), (size, unit.clone()), "{text}");
+        }
+        let old = format!("{header}{rows}").replace('\n', "\r");
+        assert_eq!(found(old.as_bytes()), (size, unit.clone()), "{old}");
+        let latin: Vec<u8> = format!("{header}{rows}").chars().map(|c| c as u8).collect();
+        assert_eq!(found(&latin), (size, unit), "{header}");
+    }
+    let scan = read(b"pixel size=1 m\nheight conversion factor (-> m)=0.25\n1 2\n3 4\n").unwrap();
+    assert_eq!(heights(&scan), [0.25, 0.5, 0.75, 1.0]);
+    assert!(scan.metadata().details.contains("times 2.5e-1"));
+    let square = read(b"Scan Size: 4 um\n1 2\n3 4\n").unwrap();
+    assert_eq!(Size::from(square.metadata().size.unwrap().map(Quantity::value)), [4e-6, 4e-6].into());
+}
+
+#[test]
+fn headers_that_contradict_themselves_or_the_lines_are_errors() {
+    for (text, expected) in [
+        ("Columns: 4\n1 2 3\n4 5 6\n", "number of columns: 4 in the header, but 3 in the lines"),
+        ("Lines = 3\n1 2 3\n4 5 6\n", "number of rows: 3 in the header, but 2 in the lines"),
+        (
+            "Width: 3 um\nHeight: 1 um\nPixel size: 2 um\n1 2 3\n4 5 6\n",
+            "two lines of the header: size: 3e-6 m",
+        ),
+        ("x length = 3 um\nWidth = 4 um\n1 2 3\n4 5 6\n", "two lines of the header: width: 3e-6 m"),
+        ("z unit: nm\nvalue units: um\n1 2 3\n4 5 6\n", "two lines of the header: value units: nm"),
+        ("z unit: V\n1 2 3\n4 5 6\n", "line 1, z unit: V is a quantity in"),
+        ("data unit: rad\n1 2 3\n4 5 6\n", "line 1, data unit: unknown unit"),
+        ("Width: -3 um\n1 2 3\n4 5 6\n", "line 1, width = -3e-6 m"),
+        // A slip in the first line of numbers is no header.
+        ("l 2 3\n4 5 6\n", "line 1, value 1: \"l\": expected a number"),
+        ("1 2 x\n4 5 6\n", "line 1, value 3: \"x\": expected a number"),
+        ("This is no map.\n", "line 1, value 1: \"This\": expected a number"),
+    ] {
+        let error = read(text.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}\n{expected}");
+    }
+}
+
+#[test]
+fn decimal_commas_are_found_where_they_can_be_nothing_else() {
+    for text in ["1,5\t2\n-3,25\t4\n", "1,5;2;\n-3,25;4;\n", "1,5 2\n-3,25 4\n", "note\n1,5;2\n-0,325E1;4"] {
+        let scan = read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}: {text}"));
+        assert_eq!(heights(&scan), [1.5, 2.0, -3.25, 4.0], "{text}");
+        assert!(scan.metadata().details.ends_with(", decimal commas"), "{}", scan.metadata().details);
+    }
+    // Commas between numbers, thousands, points beside commas.
+    assert_eq!(read(b"1,5\n3,4\n").unwrap().metadata().details, "commas between numbers");
+    for text in ["1,500;2,250\n", "1,5;2.5\n", "1,5;1,2,3\n"] {
+        assert!(read(text.as_bytes()).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn a_count_has_a_height() {
+    let declared = ReadOptions { height_scale: "0.25 nm".parse().ok(), ..ReadOptions::default() };
+    let scan = Scan::from_bytes("a.txt", b"1 2\n4 nan\n", &declared).unwrap();
+    assert_eq!(
+        (scan.height(1, 0), scan.metadata().unit.clone().unwrap().origin),
+        (Some(1e-9), Origin::Caller)
+    );
+    for (text, scale, expected) in [
+        (
+            &b"# Value units: nm\n1 2\n"[..],
+            "1 nm",
+            "unit of the heights: nm from the file, but height_scale = 1e-9 m",
+        ),
+        (b"1 2\n", "1 V", "height_scale: 1 m^2 kg s^-3 A^-1 is a quantity"),
+        (b"1 2\n", "-1 nm", "height_scale = -0.000000001: expected a length > 0"),
+    ] {
+        let declared = ReadOptions { height_scale: scale.parse().ok(), ..ReadOptions::default() };
+        let error = Scan::from_bytes("a.txt", text, &declared).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn a_profile_is_no_map() {
     let line = |i: i32| format!("{:.3} {}\n", 0.1 * f64::from(i), (i * i) % 7);
     let text: String = (0..20).map(line).collect();
@@ -218,7 +329,9 @@ fn a_profile_is_no_map() {
     let declared = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
     let map = Scan::from_bytes("a.txt", text.as_bytes(), &declared).unwrap();
     assert_eq!((map.metadata().rows, map.metadata().columns), (20, 2));
-    // Few lines, and a first column that is none of equal steps.
+    let uneven = (0..20).map(|i| format!("{} 1\n", i * i)).collect::<Vec<_>>().concat();
+    assert_eq!(problem(uneven.as_bytes()), ContentError::Profile { lines: 20 });
+    // Few lines, and a first column that does not ascend.
     for map in [(0..8).map(line).collect(), (0..20).map(|i| line((i * i) % 19)).collect::<String>()] {
         assert_eq!(read(map.as_bytes()).unwrap().metadata().columns, 2);
     }

@@ -9,8 +9,11 @@ fn check(name: &str, map: &HeightMap, metric: Metric, declared: &ReadOptions) {
     let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
     let read = Scan::read(&path, declared).unwrap().map(&keep).unwrap();
     assert_eq!((read.cells(), read.undefined()), (map.cells(), map.undefined()));
-    let bits = |map: &HeightMap| [map.size().x.to_bits(), map.size().y.to_bits()];
-    assert_eq!(bits(&read), bits(map), "{name}");
+    let bits = |map: &HeightMap| [map.size().x, map.size().y].map(f64::to_bits);
+    for (read, side) in bits(&read).into_iter().zip(bits(map)) {
+        // X3P says the side of a cell only.
+        assert!(read.abs_diff(side) <= u64::from(name.ends_with("x3p")), "{name}");
+    }
     for (a, b) in read.heights().iter().zip(map.heights()) {
         assert_eq!(a.to_bits(), b.to_bits(), "{name}");
     }
@@ -38,10 +41,18 @@ proptest! {
             for metric in [Metric::Metres, Metric::Unitless] {
                 check("a.txt", &map, metric, &plain);
                 check("a.xyz", &map, metric, &plain);
+                check("a.h5", &map, metric, &plain);
             }
             let length = |side: f64| crate::Quantity::new(side, Dimension::LENGTH).unwrap();
             let size = Some([length(map.size().x), length(map.size().y)].into());
+            check("a.x3p", &map, Metric::Metres, &plain);
+            check("a.gwy", &map, Metric::Metres, &plain);
+            check("a.nc", &map, Metric::Metres, &plain);
             check("a.npy", &map, Metric::Metres, &ReadOptions { size, unit: metres, ..plain });
+            // Without a unit, binary files say no size.
+            let size = Some([map.size().x, map.size().y].map(|s| crate::Quantity::new(s, Dimension::NONE).unwrap()).into());
+            check("a.gwy", &map, Metric::Unitless, &ReadOptions { size, ..ReadOptions::default() });
+            check("a.nc", &map, Metric::Unitless, &ReadOptions { size, ..ReadOptions::default() });
         }
     }
 }
@@ -52,8 +63,10 @@ fn other_endings_are_named_and_nothing_is_written() {
     let map = HeightMap::new(1, 1.0, vec![0.0]).unwrap();
     for name in ["a.hdf5", "a", "a.TXT"] {
         let error = write_map(&dir.path().join(name), &map, Metric::Metres).unwrap_err().to_string();
-        assert!(error.contains("expected npy, txt, xyz or vti"), "{error}");
+        assert!(error.contains("expected npy, h5, txt, xyz, vti, x3p, gwy or nc"), "{error}");
     }
+    let error = write_map(&dir.path().join("a.x3p"), &map, Metric::Unitless).unwrap_err().to_string();
+    assert!(error.contains("X3P is in metres"), "{error}");
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
     write_map(&dir.path().join("a.vti"), &map, Metric::Metres).unwrap();
     assert!(std::fs::read_to_string(dir.path().join("a.vti")).unwrap().contains("Name=\"height [m]\""));

@@ -1,0 +1,411 @@
+//! Channels: the maps in one file, and the heights of each where the file holds them.
+
+use crate::error::{ContentError, Place, Result};
+use crate::extent::Extent;
+use crate::format::Format;
+use crate::number_type::NumberType;
+use crate::quantity::{Dimension, QuantityError, Unit};
+use crate::source::Source;
+use std::fmt;
+use std::str::FromStr;
+
+/// Which channel of a file is meant.
+///
+/// ```
+/// use surface_io::ChannelChoice;
+/// assert_eq!("2".parse(), Ok(ChannelChoice::Number(2)));
+/// assert_eq!("ZSensor".parse(), Ok(ChannelChoice::Name("ZSensor".into())));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ChannelChoice {
+    /// By its number, counted from 0.
+    Number(usize),
+    /// By its name, which no other channel may have.
+    Name(String),
+}
+
+impl FromStr for ChannelChoice {
+    type Err = std::convert::Infallible;
+
+    /// A whole number, or else a name.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(text.trim().parse().map_or_else(|_| Self::Name(text.trim().to_owned()), Self::Number))
+    }
+}
+
+impl fmt::Display for ChannelChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => write!(f, "{name:?}"),
+        }
+    }
+}
+
+/// Unit of a channel's values as the file says it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum StoredUnit {
+    /// Nothing.
+    Unknown,
+    /// A length, or that heights are plain numbers.
+    Heights(Unit),
+    /// The values are no heights: a phase, a voltage, counts; the unit as written, where there is one.
+    NoHeights(Option<String>),
+}
+
+impl StoredUnit {
+    /// What a text says of its heights.
+    pub(crate) fn heights(unit: Option<Unit>) -> Self {
+        unit.map_or(Self::Unknown, Self::Heights)
+    }
+
+    /// The unit as a file writes it: a length makes heights, nothing is unknown, all else no heights.
+    pub(crate) fn written(text: &str) -> Self {
+        let text = text.trim();
+        if text.is_empty() {
+            return Self::Unknown;
+        }
+        match text.parse::<Unit>() {
+            Ok(unit) if unit.dimension() == Dimension::LENGTH => Self::Heights(unit),
+            _ => Self::NoHeights(Some(text.chars().take(32).collect())),
+        }
+    }
+}
+
+/// One channel as the header of its file describes it.
+pub(crate) struct StoredChannel {
+    /// Name, where the file gives one.
+    pub(crate) name: Option<String>,
+    /// Type of the numbers, order, compression.
+    pub(crate) details: String,
+    pub(crate) rows: usize,
+    pub(crate) columns: usize,
+    pub(crate) unit: StoredUnit,
+    /// Along x and y, where the file says it.
+    pub(crate) extent: [Option<Extent>; 2],
+    pub(crate) heights: StoredHeights,
+}
+
+/// Where the heights are.
+pub(crate) enum StoredHeights {
+    /// In memory: text is read as a whole.
+    Read(Vec<f64>),
+    /// Numbers in the file or in memory, decoded when they are asked for.
+    Raw(RawHeights),
+    /// Whatever another reader makes of the file.
+    Deferred(Box<Deferred>),
+}
+
+/// Reads the heights row by row, NaN where undefined.
+type Deferred = dyn Fn(&mut Source<'_>) -> Result<Vec<f64>> + Send + Sync;
+
+impl fmt::Debug for StoredHeights {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(heights) => write!(f, "{} heights", heights.len()),
+            Self::Raw(raw) => raw.fmt(f),
+            Self::Deferred(_) => write!(f, "heights to be read"),
+        }
+    }
+}
+
+/// Numbers one after another: `height = scale * number + shift`.
+pub(crate) struct RawHeights {
+    pub(crate) format: Format,
+    pub(crate) bytes: Bytes,
+    pub(crate) number: NumberType,
+    /// Which index runs fastest.
+    pub(crate) order: AxisOrder,
+    /// Bytes from the beginning of one line of numbers to the next, where lines are padded.
+    pub(crate) line_bytes: Option<u64>,
+    /// Whether the first number along x, along y is that of the last column, the last row.
+    pub(crate) reversed: [bool; 2],
+    pub(crate) scale: f64,
+    pub(crate) shift: f64,
+    /// Which numbers stand for undefined points, besides NaN.
+    pub(crate) undefined: Undefined,
+}
+
+impl fmt::Debug for RawHeights {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} of {}, {:?}", self.number, self.format, self.order)
+    }
+}
+
+/// Where numbers are.
+pub(crate) enum Bytes {
+    /// In the file, from an offset on.
+    File(u64),
+    /// Here, unpacked.
+    Held(Vec<u8>),
+}
+
+/// Which index runs fastest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AxisOrder {
+    /// x: row by row.
+    Rows,
+    /// y: column by column.
+    Columns,
+}
+
+/// Numbers that stand for undefined points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Undefined {
+    /// None.
+    None,
+    /// One number.
+    Equal(f64),
+    /// One of two numbers.
+    Either(f64, f64),
+    /// One number within the digits that a header prints of a float32.
+    Near(f64),
+    /// This one and all larger ones.
+    AtLeast(f64),
+}
+
+impl Undefined {
+    /// Whether this number stands for an undefined point.
+    pub(crate) fn holds(self, number: f64) -> bool {
+        match self {
+            Self::None => false,
+            Self::Equal(mark) => (number - mark).abs() <= 0.0,
+            Self::Either(a, b) => Self::Equal(a).holds(number) || Self::Equal(b).holds(number),
+            Self::Near(mark) => (number - mark).abs() <= 1.5e-7 * mark.abs(),
+            Self::AtLeast(mark) => number >= mark,
+        }
+    }
+}
+
+impl RawHeights {
+    /// Numbers of a type row by row from the first row on, heights as they are.
+    pub(crate) fn new(format: Format, bytes: Bytes, number: NumberType) -> Self {
+        Self {
+            format,
+            bytes,
+            number,
+            order: AxisOrder::Rows,
+            line_bytes: None,
+            reversed: [false; 2],
+            scale: 1.0,
+            shift: 0.0,
+            undefined: Undefined::None,
+        }
+    }
+
+    /// The type of the numbers and their order, for people.
+    pub(crate) fn details(&self) -> String {
+        let order = match self.order {
+            AxisOrder::Rows => "row by row",
+            AxisOrder::Columns => "column by column",
+        };
+        format!("{}, {order}", self.number)
+    }
+
+    /// Bytes that so many rows and columns take; `None` beyond 2^64.
+    fn length(&self, rows: usize, columns: usize) -> Option<u64> {
+        let (along, lines) = self.lines(rows, columns);
+        let own = (along as u64).checked_mul(self.number.bytes() as u64)?;
+        let line = self.line_bytes.unwrap_or(own).max(own);
+        line.checked_mul(lines as u64 - 1)?.checked_add(own)
+    }
+
+    /// Numbers of a line, and lines.
+    fn lines(&self, rows: usize, columns: usize) -> (usize, usize) {
+        match self.order {
+            AxisOrder::Rows => (columns, rows),
+            AxisOrder::Columns => (rows, columns),
+        }
+    }
+
+    /// An error where the numbers are not all there; called before the channel is listed.
+    pub(crate) fn check(&self, source: &Source<'_>, rows: usize, columns: usize) -> Result<()> {
+        if rows == 0 || columns == 0 {
+            let (rows, columns) = (rows as u64, columns as u64);
+            return Err(source.content(ContentError::NoCells { rows, columns }));
+        }
+        let (offset, found) = match &self.bytes {
+            Bytes::File(offset) => (*offset, source.length().saturating_sub(*offset)),
+            Bytes::Held(bytes) => (0, bytes.len() as u64),
+        };
+        if self.length(rows, columns).is_none_or(|length| length > found) {
+            let (what, size) = (self.number, self.number.bytes());
+            let held = if matches!(self.bytes, Bytes::Held(_)) { "unpacked " } else { "" };
+            let expected = format!(
+                "{rows} x {columns} numbers of {size} bytes ({what}), there are {found} {held}bytes (cut short?)"
+            );
+            return Err(source.wrong(self.format, offset, expected));
+        }
+        Ok(())
+    }
+
+    /// The heights, row-major, NaN where undefined.
+    pub(crate) fn read(&self, source: &mut Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
+        self.check(source, rows, columns)?;
+        let mut heights = undefined_heights(source, rows, columns)?;
+        self.each(source, rows, columns, &mut |i, height| heights[i] = height)?;
+        Ok(heights)
+    }
+
+    /// Calls for each height with its place row by row, NaN where undefined, in the order of the file.
+    pub(crate) fn each(
+        &self,
+        source: &mut Source<'_>,
+        rows: usize,
+        columns: usize,
+        take: &mut dyn FnMut(usize, f64),
+    ) -> Result<()> {
+        /// Bytes that are read at a time.
+        const CHUNK: usize = 1 << 16;
+        self.check(source, rows, columns)?;
+        let (along, lines) = self.lines(rows, columns);
+        let size = self.number.bytes();
+        let line_bytes = self.line_bytes.unwrap_or(0).max((along * size) as u64);
+        let at_once = (CHUNK / size).min(along);
+        let mut buffer = vec![0; if matches!(self.bytes, Bytes::File(_)) { at_once * size } else { 0 }];
+        for line in 0..lines {
+            let mut done = 0;
+            while done < along {
+                let count = at_once.min(along - done);
+                let from = line as u64 * line_bytes + (done * size) as u64;
+                let bytes = match &self.bytes {
+                    Bytes::File(offset) => {
+                        source.fill(offset + from, &mut buffer[..count * size])?;
+                        &buffer[..count * size]
+                    }
+                    Bytes::Held(bytes) => &bytes[from as usize..][..count * size],
+                };
+                for (i, raw) in bytes.chunks_exact(size).enumerate() {
+                    let (i, height) = self.placed(source, [rows, columns], [line, done + i], raw)?;
+                    take(i, height);
+                }
+                done += count;
+            }
+        }
+        Ok(())
+    }
+
+    /// The height of a number at a place of a line, put where it belongs.
+    pub(crate) fn put(
+        &self,
+        source: &Source<'_>,
+        heights: &mut [f64],
+        shape: [usize; 2],
+        place: [usize; 2],
+        raw: &[u8],
+    ) -> Result<()> {
+        let (i, height) = self.placed(source, shape, place, raw)?;
+        heights[i] = height;
+        Ok(())
+    }
+
+    /// Where the number at a place of a line belongs, row by row, and its height.
+    fn placed(
+        &self,
+        source: &Source<'_>,
+        [rows, columns]: [usize; 2],
+        [line, at]: [usize; 2],
+        raw: &[u8],
+    ) -> Result<(usize, f64)> {
+        let (row, column) = match self.order {
+            AxisOrder::Rows => (line, at),
+            AxisOrder::Columns => (at, line),
+        };
+        let row = if self.reversed[1] { rows - 1 - row } else { row };
+        let column = if self.reversed[0] { columns - 1 - column } else { column };
+        let number = self.number.decode(raw).map_err(|value| {
+            source.content(ContentError::Inexact { place: Place::Cell { row, column }, value })
+        })?;
+        Ok((row * columns + column, self.height(number)))
+    }
+
+    fn height(&self, number: f64) -> f64 {
+        if self.undefined.holds(number) {
+            return f64::NAN;
+        }
+        // Adding nothing would still lose the sign of -0.
+        let scaled = self.scale * number;
+        if self.shift.abs() > 0.0 { scaled + self.shift } else { scaled }
+    }
+}
+
+/// A map of undefined points, where there is memory for it.
+pub(crate) fn undefined_heights(source: &Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
+    let mut heights = Vec::new();
+    let refused = |_| ContentError::Memory { bytes: 8 * (rows as u128 * columns as u128) };
+    heights.try_reserve_exact(rows * columns).map_err(refused).map_err(|e| source.content(e))?;
+    heights.resize(rows * columns, f64::NAN);
+    Ok(heights)
+}
+
+impl StoredChannel {
+    /// The heights, row-major, NaN where undefined.
+    pub(crate) fn read(&mut self, source: &mut Source<'_>) -> Result<Vec<f64>> {
+        let heights = match &mut self.heights {
+            StoredHeights::Read(heights) => std::mem::take(heights),
+            StoredHeights::Raw(raw) => raw.read(source, self.rows, self.columns)?,
+            StoredHeights::Deferred(read) => read(source)?,
+        };
+        if heights.len() != self.rows * self.columns {
+            let (rows, columns) = (self.rows as u64, self.columns as u64);
+            let expected = 8 * u128::from(rows) * u128::from(columns);
+            let problem = ContentError::Length { rows, columns, expected, found: 8 * heights.len() as u64 };
+            return Err(source.content(problem));
+        }
+        Ok(heights)
+    }
+
+    /// Name and size in one line, for lists.
+    pub(crate) fn line(&self, number: usize) -> String {
+        let name = self.name.as_deref().unwrap_or("without a name");
+        let unit = match &self.unit {
+            StoredUnit::Unknown => "unit unknown".to_owned(),
+            StoredUnit::Heights(unit) => format!("heights in {unit}"),
+            StoredUnit::NoHeights(Some(unit)) => format!("no heights: {unit}"),
+            StoredUnit::NoHeights(None) => "no heights".to_owned(),
+        };
+        format!("{number} {name} ({} x {}, {unit})", self.columns, self.rows)
+    }
+}
+
+/// The channel that is meant: the one asked for, or the only one that can be heights.
+///
+/// # Errors
+/// [`ContentError::Channel`] with all channels.
+pub(crate) fn chosen(
+    channels: &[StoredChannel],
+    choice: Option<&ChannelChoice>,
+) -> Result<usize, ContentError> {
+    let matching: Vec<usize> = (0..channels.len())
+        .filter(|&i| match choice {
+            Some(ChannelChoice::Number(number)) => i == *number,
+            Some(ChannelChoice::Name(name)) => channels[i].name.as_ref() == Some(name),
+            None => !matches!(channels[i].unit, StoredUnit::NoHeights(_)),
+        })
+        .collect();
+    if let [one] = matching[..] {
+        return Ok(one);
+    }
+    if let (None, [one], []) = (choice, channels, &matching[..]) {
+        return Err(ContentError::NoHeights { what: one.line(0) });
+    }
+    let list: Vec<String> = channels.iter().enumerate().map(|(i, c)| c.line(i)).collect();
+    Err(ContentError::Channel {
+        choice: choice.map(ToString::to_string),
+        matching: matching.len(),
+        list: list.join(", "),
+    })
+}
+
+/// Heights have a length or no unit at all.
+pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), ContentError> {
+    match unit.map(|u| (u, u.dimension())) {
+        None | Some((_, Dimension::LENGTH)) => Ok(()),
+        // "%" would be a factor without a meaning here.
+        Some((u, Dimension::NONE)) if *u == Unit::none() => Ok(()),
+        Some((u, found)) => {
+            let source = QuantityError::Dimension { text: u.to_string(), found, expected: Dimension::LENGTH };
+            Err(ContentError::Quantity { what, source })
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Binary formats of instruments and programs, each told by its first bytes.
+
+mod al3d;
+mod gwy;
+mod hdf5;
+mod metropro;
+mod nanoscope;
+mod netcdf;
+mod opd;
+mod plu;
+mod sdf;
+mod sur;
+mod tiff;
+mod x3p;
+
+pub use gwy::gwy;
+pub use hdf5::hdf5;
+pub use netcdf::netcdf;
+pub use x3p::x3p;
+
+use crate::npy;
+use crate::reader::Reader;
+
+/// All readers; no file is recognised by two.
+pub(crate) const READERS: &[Reader] = &[
+    npy::READER,
+    al3d::READER,
+    gwy::READER,
+    hdf5::READER,
+    metropro::READER,
+    nanoscope::READER,
+    netcdf::READER,
+    opd::READER,
+    plu::READER,
+    sdf::READER,
+    sur::READER,
+    tiff::READER,
+    x3p::READER,
+];

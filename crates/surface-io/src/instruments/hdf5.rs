@@ -1,0 +1,376 @@
+//! HDF5: every data set of two dimensions of numbers is a channel, named by its path.
+//!
+//! Sources: the HDF5 File Format Specification 3.0 (<https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>), for the order
+//! of the axes the HDF5 Dimension Scales and the Image and Palette specifications, for packed values the NetCDF attribute conventions.
+//!
+//! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides (`y`, `x` or `x`, `y`), or `CLASS = "IMAGE"` (rows first). A data set
+//!   without either has x first, as SurfaceTopography and MATLAB write it. The first row is y = 0.
+//! - **Unit.** The attribute `unit` or `units` of the data set, nothing else. `none` are plain numbers.
+//! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`; this crate writes them. HDF5 itself has no size.
+//! - **Values.** `scale_factor`, `add_offset`, `_FillValue` and `missing_value` count as NetCDF defines them.
+//! - **Undefined points.** NaN, fill values, chunks that were never written.
+//!
+//! Read are the layouts compact, contiguous and chunked (deflate, shuffle, Fletcher-32, which is not checked); not read are other filters
+//! (LZF, SZIP, scale-offset, ZFP), chunks indexed by a B-tree of version 2, data layouts of HDF5 2.0
+//! (version 5), virtual data sets and data in other files, links to which are passed.
+//!
+//! The crate hdf5-pure reads the metadata; its own reading of chunks allocates what a damaged header claims (4 GB for a file of 4 kB), so
+//! numbers are decoded here.
+
+mod write;
+
+pub use write::hdf5;
+
+use crate::channel::{
+    AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights,
+};
+use crate::error::Result;
+use crate::extent::Extent;
+use crate::format::Format;
+use crate::number_type::NumberType;
+use crate::quantity::{Dimension, Quantity, Unit};
+use crate::reader::Reader;
+use crate::source::Source;
+use flate2::read::ZlibDecoder;
+use hdf5_pure::{
+    AttrValue, Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Group, Layout,
+    ReadSeekSource,
+};
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::io::Read as _;
+
+const FORMAT: Format = Format::Hdf5;
+const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// Groups inside groups, and objects, that are looked at: links may form loops.
+const DEEPEST: usize = 8;
+const MOST: usize = 1000;
+/// Deflate packs at most so many bytes into one.
+const PACKED: u64 = 1032;
+const DEFLATE: u16 = 1;
+const SHUFFLE: u16 = 2;
+const FLETCHER32: u16 = 3;
+
+/// Attributes that this crate writes and reads.
+const UNIT: &str = "unit";
+const SIZE: &str = "size";
+const SIZE_UNIT: &str = "size_unit";
+const LABELS: &str = "DIMENSION_LABELS";
+
+/// Other programs put up to 512 bytes of their own before the file (MATLAB).
+pub(crate) const READER: Reader = Reader {
+    format: FORMAT,
+    recognises: |start, _| start.starts_with(MAGIC) || start.get(512..).is_some_and(|s| s.starts_with(MAGIC)),
+    channels,
+};
+
+type Attributes = HashMap<String, AttrValue>;
+
+fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+    let input = ReadSeekSource::new(source.detached()?).map_err(|e| unreadable(source, &e))?;
+    let file = File::from_source(input).map_err(|e| unreadable(source, &e))?;
+    let mut channels = Vec::new();
+    let mut taken = HashSet::new();
+    let mut seen = 0;
+    // Level by level, so that what has two names gets its shorter one.
+    let mut waiting: VecDeque<(String, Group, usize)> = [(String::new(), file.root(), 0)].into();
+    while let Some((path, group, depth)) = waiting.pop_front() {
+        for (name, dataset) in group.iter_datasets().map_err(|e| unreadable(source, &e))? {
+            seen += 1;
+            channels.extend(channel(source, &dataset, join(&path, &name), &mut taken)?);
+        }
+        if depth < DEEPEST {
+            for (name, inner) in group.iter_groups().map_err(|e| unreadable(source, &e))? {
+                seen += 1;
+                waiting.push_back((join(&path, &name), inner, depth + 1));
+            }
+        }
+        if seen > MOST {
+            return Err(source.wrong(FORMAT, 0, format!("{MOST} groups and data sets at most")));
+        }
+    }
+    channels.sort_by(|a, b| a.name.cmp(&b.name));
+    if channels.is_empty() {
+        return Err(source.wrong(FORMAT, 0, "a data set of numbers of two dimensions"));
+    }
+    Ok(channels)
+}
+
+fn join(path: &str, name: &str) -> String {
+    let joined = if path.is_empty() { name.to_owned() } else { format!("{path}/{name}") };
+    joined.chars().take(200).collect()
+}
+
+/// What the other crate says about the file.
+fn unreadable(source: &Source<'_>, error: &dyn std::fmt::Display) -> crate::error::Error {
+    let said: String = error.to_string().chars().take(200).collect();
+    source.wrong(FORMAT, 0, format!("a file as its specification has it ({said})"))
+}
+
+/// The channel of a data set; `None` for those that are no map.
+fn channel(
+    source: &Source<'_>,
+    dataset: &Dataset,
+    name: String,
+    taken: &mut HashSet<u64>,
+) -> Result<Option<StoredChannel>> {
+    let shape = dataset.shape().map_err(|e| unreadable(source, &e))?;
+    let [first, second] = shape[..] else { return Ok(None) };
+    let datatype = dataset.datatype().map_err(|e| unreadable(source, &e))?;
+    let Some(number) = number_type(&datatype) else { return Ok(None) };
+    if first == 0 || second == 0 {
+        return Ok(None);
+    }
+    let attributes = dataset.attrs().map_err(|e| unreadable(source, &e))?;
+    let order = order(&attributes);
+    let (lines, along) = (first, second);
+    let claimed = lines.checked_mul(along).and_then(|n| n.checked_mul(number.bytes() as u64));
+    let most = PACKED.saturating_mul(source.length());
+    if claimed.is_none_or(|claimed| claimed > most) {
+        let expected = format!("{name} of {first} x {second} numbers in at most {most} bytes");
+        return Err(source.wrong(FORMAT, 0, expected));
+    }
+    let (lines, along) = (lines as usize, along as usize);
+    let (rows, columns) = match order {
+        AxisOrder::Rows => (lines, along),
+        AxisOrder::Columns => (along, lines),
+    };
+    let raw = |bytes| {
+        let mut raw = RawHeights { order, ..RawHeights::new(FORMAT, bytes, number) };
+        packed(&attributes, &mut raw);
+        raw
+    };
+    let (heights, details) = match dataset.layout() {
+        Err(e) => {
+            // The other channels of the file are read all the same.
+            let said = e.to_string();
+            let heights = StoredHeights::Deferred(Box::new(move |source| Err(unreadable(source, &said))));
+            (heights, raw(Bytes::Held(Vec::new())).details())
+        }
+        Ok(Layout::Compact { .. }) => {
+            let raw = raw(Bytes::Held(dataset.read_raw().map_err(|e| unreadable(source, &e))?));
+            raw.check(source, rows, columns)?;
+            let details = raw.details();
+            (StoredHeights::Raw(raw), details)
+        }
+        Ok(Layout::Contiguous { address: Some(address), .. }) => {
+            if !taken.insert(address) {
+                return Ok(None);
+            }
+            let raw = raw(Bytes::File(address));
+            raw.check(source, rows, columns)?;
+            let details = raw.details();
+            (StoredHeights::Raw(raw), details)
+        }
+        Ok(Layout::Chunked { chunk_shape, .. }) => {
+            let chunks = dataset.chunks().map_err(|e| e.to_string().chars().take(200).collect::<String>());
+            if let Ok(Some(chunk)) = chunks.as_ref().map(|chunks| chunks.first())
+                && !taken.insert(chunk.address)
+            {
+                return Ok(None);
+            }
+            let raw = raw(Bytes::Held(Vec::new()));
+            let details = format!("{}, in chunks", raw.details());
+            let filters = dataset.filters();
+            let [a, b] = chunk_shape[..] else { return Ok(None) };
+            let pieces = Pieces { name: name.clone(), raw, chunk: [a, b], filters, chunks, lines, along };
+            (StoredHeights::Deferred(Box::new(move |source| pieces.read(source))), details)
+        }
+        // Never written, in other files, or mapped from other data sets.
+        Ok(_) => return Ok(None),
+    };
+    Ok(Some(StoredChannel {
+        name: Some(name),
+        details,
+        rows,
+        columns,
+        unit: unit(&attributes),
+        extent: extent(&attributes),
+        heights,
+    }))
+}
+
+/// Whole IEEE floats and integers; `None` for all else.
+fn number_type(datatype: &Datatype) -> Option<NumberType> {
+    let little = |order: DatatypeByteOrder| match order {
+        DatatypeByteOrder::LittleEndian => Some(true),
+        DatatypeByteOrder::BigEndian => Some(false),
+        DatatypeByteOrder::Vax => None,
+    };
+    match datatype {
+        Datatype::FixedPoint { size, byte_order, layout } => {
+            let whole = layout.bit_offset == 0 && u32::from(layout.bit_precision) == size.checked_mul(8)?;
+            let letter = if layout.signed { b'i' } else { b'u' };
+            whole.then(|| NumberType::new(letter, u8::try_from(*size).ok()?, little(*byte_order)?))?
+        }
+        Datatype::FloatingPoint { size, byte_order, layout } => {
+            let half = FloatingPointLayout {
+                bit_offset: 0,
+                bit_precision: 16,
+                exponent_location: 10,
+                exponent_size: 5,
+                mantissa_location: 0,
+                mantissa_size: 10,
+                exponent_bias: 15,
+            };
+            let of_size = match size {
+                2 => half,
+                4 => FloatingPointLayout::IEEE754_BINARY32,
+                8 => FloatingPointLayout::IEEE754_BINARY64,
+                _ => return None,
+            };
+            (*layout == of_size).then(|| NumberType::new(b'f', *size as u8, little(*byte_order)?))?
+        }
+        _ => None,
+    }
+}
+
+fn order(attributes: &Attributes) -> AxisOrder {
+    let text = |key: &str| attributes.get(key).and_then(AttrValue::as_str);
+    if let Some([first, second]) = attributes.get(LABELS).and_then(AttrValue::as_strings) {
+        match (first.as_str(), second.as_str()) {
+            ("x", "y") => return AxisOrder::Columns,
+            ("y", "x") => return AxisOrder::Rows,
+            _ => {}
+        }
+    }
+    if text("CLASS") == Some("IMAGE") { AxisOrder::Rows } else { AxisOrder::Columns }
+}
+
+fn unit(attributes: &Attributes) -> StoredUnit {
+    let text = |key: &str| attributes.get(key).and_then(AttrValue::as_str);
+    match text(UNIT).or_else(|| text("units")).map(str::trim) {
+        None => StoredUnit::Unknown,
+        Some("none") => StoredUnit::Heights(Unit::none()),
+        Some(text) => StoredUnit::written(text),
+    }
+}
+
+/// What is written as numbers of any type.
+fn numbers(attributes: &Attributes, key: &str) -> Option<Vec<f64>> {
+    let value = attributes.get(key)?;
+    let integers = || value.to_i64s().map(|all| all.into_iter().map(|n| n as f64).collect());
+    value.to_f64s().or_else(integers)
+}
+
+fn number(attributes: &Attributes, key: &str) -> Option<f64> {
+    numbers(attributes, key).filter(|all| all.len() == 1).map(|all| all[0])
+}
+
+fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
+    let sides = || {
+        let unit = attributes.get(SIZE_UNIT)?.as_str()?.parse::<Unit>().ok()?;
+        let [x, y] = numbers(attributes, SIZE)?[..] else { return None };
+        let known = unit.dimension() == Dimension::LENGTH || unit == Unit::none();
+        let side = |side: f64| Quantity::of(side, &unit).ok().filter(|q| known && q.value() > 0.0);
+        Some([Extent::Side(side(x)?), Extent::Side(side(y)?)])
+    };
+    sides().map_or([None; 2], |[x, y]| [Some(x), Some(y)])
+}
+
+/// Values that are packed or marked as NetCDF defines it.
+fn packed(attributes: &Attributes, raw: &mut RawHeights) {
+    raw.scale = number(attributes, "scale_factor").unwrap_or(1.0);
+    raw.shift = number(attributes, "add_offset").unwrap_or(0.0);
+    let mark = number(attributes, "_FillValue").or_else(|| number(attributes, "missing_value"));
+    raw.undefined = mark.map_or(Undefined::None, Undefined::Equal);
+}
+
+/// A data set in chunks.
+struct Pieces {
+    name: String,
+    raw: RawHeights,
+    /// Lines and numbers along them of one chunk.
+    chunk: [u64; 2],
+    /// In the order in which they were applied.
+    filters: Vec<u16>,
+    chunks: std::result::Result<Vec<Chunk>, String>,
+    lines: usize,
+    along: usize,
+}
+
+impl Pieces {
+    fn read(&self, source: &mut Source<'_>) -> Result<Vec<f64>> {
+        let chunks = self.chunks.as_ref().map_err(|e| unreadable(source, e))?;
+        if let Some(filter) = self.filters.iter().find(|f| !matches!(**f, DEFLATE | SHUFFLE | FLETCHER32)) {
+            let expected = format!("{} packed by deflate or not at all, it has filter {filter}", self.name);
+            return Err(source.wrong(FORMAT, 0, expected));
+        }
+        let size = self.raw.number.bytes();
+        let [tall, wide] = self.chunk;
+        let most = PACKED.saturating_mul(source.length());
+        let bytes = tall.checked_mul(wide).and_then(|n| n.checked_mul(size as u64)).unwrap_or(u64::MAX);
+        // All of them together: they may share their bytes, and reach far beyond the data set.
+        let count = |all: usize, of_one: u64| (all as u64).div_ceil(of_one.max(1));
+        let count = u128::from(count(self.lines, tall)) * u128::from(count(self.along, wide));
+        if bytes == 0 || count.checked_mul(bytes.into()).is_none_or(|all| all > most.into()) {
+            let expected = format!("chunks of {tall} x {wide} numbers in {} bytes", source.length());
+            return Err(source.wrong(FORMAT, 0, expected));
+        }
+        if chunks.len() as u128 > count {
+            return Err(source.wrong(FORMAT, 0, format!("{count} chunks at most, found {}", chunks.len())));
+        }
+        let (rows, columns) = match self.raw.order {
+            AxisOrder::Rows => (self.lines, self.along),
+            AxisOrder::Columns => (self.along, self.lines),
+        };
+        let mut heights = undefined_heights(source, rows, columns)?;
+        let wide = wide as usize;
+        for chunk in chunks {
+            let (Some(&line), Some(&at)) = (chunk.offset.first(), chunk.offset.get(1)) else {
+                return Err(source.wrong(FORMAT, chunk.address, "two coordinates of a chunk"));
+            };
+            if line >= self.lines as u64 || at >= self.along as u64 {
+                // Left over from before the data set was made smaller.
+                continue;
+            }
+            let (line, at) = (line as usize, at as usize);
+            let unpacked = self.unpacked(source, chunk, bytes)?;
+            let taken = wide.min(self.along - at);
+            for (i, row) in unpacked.chunks_exact(wide * size).take(self.lines - line).enumerate() {
+                for (k, raw) in row.chunks_exact(size).take(taken).enumerate() {
+                    self.raw.put(source, &mut heights, [rows, columns], [line + i, at + k], raw)?;
+                }
+            }
+        }
+        Ok(heights)
+    }
+
+    /// The numbers of a chunk.
+    fn unpacked(&self, source: &mut Source<'_>, chunk: &Chunk, bytes: u64) -> Result<Vec<u8>> {
+        let mut data = source.bytes(FORMAT, chunk.address, chunk.storage_size)?;
+        for (i, filter) in self.filters.iter().enumerate().rev() {
+            if i < 32 && chunk.filter_mask >> i & 1 == 1 {
+                continue;
+            }
+            match *filter {
+                FLETCHER32 => data.truncate(data.len().saturating_sub(4)),
+                SHUFFLE => data = unshuffled(&data, self.raw.number.bytes()),
+                _ => {
+                    let mut plain = Vec::new();
+                    // A checksum may stand behind the numbers.
+                    let read = ZlibDecoder::new(&data[..]).take(bytes + 4).read_to_end(&mut plain);
+                    read.map_err(|_| source.wrong(FORMAT, chunk.address, "a chunk packed by deflate"))?;
+                    data = plain;
+                }
+            }
+        }
+        if data.len() as u64 != bytes {
+            let expected = format!("a chunk of {bytes} bytes, it has {}", data.len());
+            return Err(source.wrong(FORMAT, chunk.address, expected));
+        }
+        Ok(data)
+    }
+}
+
+/// The bytes of each number together again: first come the first bytes of all, then the second ones.
+fn unshuffled(data: &[u8], size: usize) -> Vec<u8> {
+    let count = data.len() / size;
+    let mut plain = vec![0; data.len()];
+    for (i, &byte) in data.iter().enumerate() {
+        let (of, which) = (i / count.max(1), i % count.max(1));
+        // What does not fill a number stays at the end.
+        let to = if of < size { which * size + of } else { i };
+        plain[to] = byte;
+    }
+    plain
+}

@@ -1,0 +1,314 @@
+//! NetCDF-3 (CDF-1, CDF-2, CDF-5) as contact.engineering and `SurfaceTopography` write it: a variable `heights(x, y)`.
+//!
+//! After "The NetCDF Classic Format Specification" (<https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>) and
+//! `IO/NC.py` of SurfaceTopography. The last index runs fastest: of `heights(x, y)` that is y, so the file goes column by column; row j is
+//! y = j * cell; `heights(y, x)` is read too. The attribute `length` of the variables `x` and `y` is the side, their attribute `unit`
+//! (or `units`) its unit, that of `heights` the unit of the heights. Undefined are NaN, the attributes `_FillValue` and `missing_value`,
+//! in floats without the former also the library's own fill value, and points where a variable `mask` is not 0. `scale_factor` and
+//! `add_offset` are applied after that, as the conventions say.
+//!
+//! Own code: `netcdf3` 0.6 reserves memory for as many dimensions as a file claims, reads whole variables and no CDF-5. Not read: line
+//! scans, a dimension without a limit, NetCDF-4 (an HDF5 file).
+
+mod write;
+
+pub use write::netcdf;
+
+use crate::channel::{AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
+use crate::error::{ContentError, Result};
+use crate::extent::Extent;
+use crate::format::Format;
+use crate::number_type::NumberType;
+use crate::quantity::{Dimension, Quantity, Unit};
+use crate::reader::Reader;
+use crate::source::{Fields, Source};
+
+const FORMAT: Format = Format::NetCdf;
+const MAGIC: &[u8] = b"CDF";
+/// Longest name or text that is read, in bytes.
+const LONGEST: u64 = 1 << 16;
+/// What the library writes where nothing was written, as double and as float.
+const FILL: f64 = f64::from_bits(0x479e_0000_0000_0000);
+
+pub(crate) const READER: Reader = Reader {
+    format: FORMAT,
+    recognises: |start, _| start.starts_with(MAGIC) && matches!(start.get(3), Some(1 | 2 | 5)),
+    channels,
+};
+
+/// What is kept of a variable.
+#[derive(Debug, Default)]
+struct Variable {
+    /// Numbers of its dimensions; of more than two, two.
+    dimensions: Vec<u64>,
+    rank: u64,
+    number: Option<NumberType>,
+    offset: u64,
+    attributes: Attributes,
+}
+
+/// What is kept of its attributes.
+#[derive(Debug, Default)]
+struct Attributes {
+    unit: Option<String>,
+    length: Option<f64>,
+    fill: Option<f64>,
+    missing: Option<f64>,
+    scale: Option<f64>,
+    shift: Option<f64>,
+}
+
+/// The variables that are looked for.
+const NAMES: [&str; 4] = ["heights", "mask", "x", "y"];
+
+fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+    let mut header = Header::new(source)?;
+    let dimensions = header.dimensions()?;
+    header.attributes(&mut Attributes::default())?;
+    let [heights, mask, x, y] = header.variables()?;
+    let Some(heights) = heights else {
+        return Err(source.wrong(FORMAT, 0, "a variable called heights"));
+    };
+    let wrong = |source: &Source<'_>, expected: &str| Err(source.wrong(FORMAT, heights.offset, expected));
+    let named = |number: &u64| {
+        let at = usize::try_from(*number).ok()?;
+        dimensions.get(at).map(|(name, length)| (name.as_str(), *length))
+    };
+    let of: Vec<_> = heights.dimensions.iter().filter_map(named).collect();
+    let (order, [columns, rows]) = match (of.as_slice(), heights.rank) {
+        ([("x", columns), ("y", rows)], 2) => (AxisOrder::Columns, [*columns, *rows]),
+        ([("y", rows), ("x", columns)], 2) => (AxisOrder::Rows, [*columns, *rows]),
+        _ => return wrong(source, "heights over the dimensions x and y"),
+    };
+    let (Ok(columns), Ok(rows)) = (usize::try_from(columns), usize::try_from(rows)) else {
+        return Err(source.content(ContentError::NoCells { rows, columns }));
+    };
+    let Some(number) = heights.number else {
+        return wrong(source, "heights that are numbers");
+    };
+    let attributes = &heights.attributes;
+    let (scale, shift) = (attributes.scale.unwrap_or(1.0), attributes.shift.unwrap_or(0.0));
+    if !(scale.is_finite() && scale.abs() > 0.0 && shift.is_finite()) {
+        return wrong(source, "scale_factor other than 0, and a finite add_offset");
+    }
+    let of_number =
+        |mark: f64| if number.is_float() && number.bytes() == 4 { f64::from(mark as f32) } else { mark };
+    let own = if number.is_float() { Some(FILL) } else { None };
+    let marks = [attributes.fill.or(own), attributes.missing].map(|mark| mark.map(of_number));
+    let undefined = match marks {
+        [Some(fill), Some(missing)] => Undefined::Either(fill, missing),
+        [Some(mark), None] | [None, Some(mark)] => Undefined::Equal(mark),
+        [None, None] => Undefined::None,
+    };
+    let bytes = Bytes::File(heights.offset);
+    let raw = RawHeights { order, scale, shift, undefined, ..RawHeights::new(FORMAT, bytes, number) };
+    raw.check(source, rows, columns)?;
+    let mut details = raw.details();
+    let stored = match mask {
+        None => StoredHeights::Raw(raw),
+        Some(Variable { dimensions, rank: 2, number: Some(number), offset, .. })
+            if dimensions == heights.dimensions =>
+        {
+            details += ", masked points undefined";
+            let mask = RawHeights { order, ..RawHeights::new(FORMAT, Bytes::File(offset), number) };
+            mask.check(source, rows, columns)?;
+            StoredHeights::Deferred(Box::new(move |source| {
+                let mut heights = raw.read(source, rows, columns)?;
+                mask.each(source, rows, columns, &mut |i, masked| {
+                    if masked.abs() > 0.0 {
+                        heights[i] = f64::NAN;
+                    }
+                })?;
+                Ok(heights)
+            }))
+        }
+        Some(_) => return wrong(source, "a mask over the same dimensions as heights"),
+    };
+    let side = |variable: Option<Variable>| {
+        let Attributes { unit, length, .. } = variable?.attributes;
+        let unit = unit?.parse::<Unit>().ok().filter(|unit| unit.dimension() == Dimension::LENGTH)?;
+        let side = Quantity::new(unit.to_si(length?), Dimension::LENGTH).ok();
+        side.filter(|side| side.value() > 0.0).map(Extent::Side)
+    };
+    let unit = StoredUnit::written(heights.attributes.unit.as_deref().unwrap_or_default());
+    let (name, extent) = (Some("heights".to_owned()), [side(x), side(y)]);
+    Ok(vec![StoredChannel { name, details, rows, columns, unit, extent, heights: stored }])
+}
+
+/// The header, read from its beginning to its end.
+struct Header<'s, 'a> {
+    source: &'s mut Source<'a>,
+    version: u8,
+    /// Offset of what is read next.
+    at: u64,
+    /// Some bytes from an offset on.
+    window: (u64, Vec<u8>),
+}
+
+impl<'s, 'a> Header<'s, 'a> {
+    fn new(source: &'s mut Source<'a>) -> Result<Self> {
+        let version = source.bytes(FORMAT, 0, 4)?[3];
+        let mut header = Self { source, version, at: 4, window: (0, Vec::new()) };
+        // The number of records.
+        header.count()?;
+        Ok(header)
+    }
+
+    /// The next bytes, at most [`LONGEST`].
+    fn take(&mut self, length: u64) -> Result<Fields<'_>> {
+        let (from, held) = (self.window.0, self.window.1.len() as u64);
+        if length > LONGEST {
+            return Err(self.wrong("a shorter name or text"));
+        }
+        if self.at < from || self.at + length > from + held {
+            let rest = self.source.length().saturating_sub(self.at);
+            let bytes = self.source.bytes(FORMAT, self.at, LONGEST.min(rest).max(length))?;
+            self.window = (self.at, bytes);
+        }
+        let inside = (self.at - self.window.0) as usize;
+        let base = self.at;
+        self.at += length;
+        Ok(Fields::big(&self.window.1[inside..inside + length as usize], base))
+    }
+
+    fn wrong(&self, expected: &str) -> crate::error::Error {
+        self.source.wrong(FORMAT, self.at, expected)
+    }
+
+    fn u32(&mut self) -> Result<u64> {
+        let at = self.at;
+        let read = self.take(4)?.u32().map(u64::from);
+        read.map_err(|_| self.source.wrong(FORMAT, at, "a number of four bytes"))
+    }
+
+    fn u64(&mut self) -> Result<u64> {
+        let at = self.at;
+        let read = self.take(8)?.u64();
+        read.map_err(|_| self.source.wrong(FORMAT, at, "a number of eight bytes"))
+    }
+
+    /// How many there are of something.
+    fn count(&mut self) -> Result<u64> {
+        if self.version == 5 { self.u64() } else { self.u32() }
+    }
+
+    /// The length of a list that begins with this mark, 0 where there is no list.
+    fn list(&mut self, mark: u64) -> Result<u64> {
+        let at = self.at;
+        let (found, count) = (self.u32()?, self.count()?);
+        if found == mark || (found, count) == (0, 0) {
+            return Ok(count);
+        }
+        Err(self.source.wrong(FORMAT, at, format!("a list with the mark {mark}, found {found}")))
+    }
+
+    /// Passes bytes that are filled up to a multiple of four.
+    fn pass(&mut self, length: u64) -> Result<()> {
+        let end = length.checked_next_multiple_of(4).and_then(|length| self.at.checked_add(length));
+        let end = end.filter(|end| *end <= self.source.length());
+        self.at =
+            end.ok_or_else(|| self.wrong("a value that ends before the end of the file (cut short?)"))?;
+        Ok(())
+    }
+
+    fn text(&mut self, length: u64) -> Result<String> {
+        let at = self.at;
+        let text = self.take(length)?.text(length as usize).unwrap_or_default();
+        self.at = at;
+        self.pass(length)?;
+        Ok(text)
+    }
+
+    fn name(&mut self) -> Result<String> {
+        let length = self.count()?;
+        self.text(length)
+    }
+
+    fn dimensions(&mut self) -> Result<Vec<(String, u64)>> {
+        let mut found = Vec::new();
+        for _ in 0..self.list(10)? {
+            found.push((self.name()?, self.count()?));
+        }
+        Ok(found)
+    }
+
+    fn attributes(&mut self, keep: &mut Attributes) -> Result<()> {
+        for _ in 0..self.list(12)? {
+            let name = self.name()?;
+            let (kind, count) = (self.u32()?, self.count()?);
+            let size = self.size(kind)?;
+            let length = size.checked_mul(count).ok_or_else(|| self.wrong("fewer values"))?;
+            if kind == 2 && matches!(name.as_str(), "unit" | "units") {
+                keep.unit = Some(self.text(length)?);
+                continue;
+            }
+            let at = self.at;
+            let target = match name.as_str() {
+                "length" => Some(&mut keep.length),
+                "_FillValue" => Some(&mut keep.fill),
+                "missing_value" => Some(&mut keep.missing),
+                "scale_factor" => Some(&mut keep.scale),
+                "add_offset" => Some(&mut keep.shift),
+                _ => None,
+            };
+            if let (Some(target), Some(number), 1..) = (target, number(kind), count) {
+                *target = self.take(size)?.number(number).ok();
+                self.at = at;
+            }
+            self.pass(length)?;
+        }
+        Ok(())
+    }
+
+    /// The variables of [`NAMES`].
+    fn variables(&mut self) -> Result<[Option<Variable>; 4]> {
+        let mut found = [const { None }; 4];
+        for _ in 0..self.list(11)? {
+            let name = self.name()?;
+            let mut variable = Variable { rank: self.count()?, ..Variable::default() };
+            for i in 0..variable.rank {
+                let dimension = self.count()?;
+                if i < 2 {
+                    variable.dimensions.push(dimension);
+                }
+            }
+            self.attributes(&mut variable.attributes)?;
+            let kind = self.u32()?;
+            self.size(kind)?;
+            variable.number = number(kind);
+            self.count()?;
+            variable.offset = if self.version == 1 { self.u32()? } else { self.u64()? };
+            if let Some(at) = NAMES.iter().position(|known| *known == name) {
+                found[at] = Some(variable);
+            }
+        }
+        Ok(found)
+    }
+
+    /// Bytes of one value.
+    fn size(&self, kind: u64) -> Result<u64> {
+        match (kind, number(kind)) {
+            (2, _) => Ok(1),
+            (_, Some(number)) => Ok(number.bytes() as u64),
+            _ => Err(self.wrong(&format!("a type of values from 1 to 11 before this, found {kind}"))),
+        }
+    }
+}
+
+/// The type of numbers; `None` for characters and what does not exist.
+fn number(kind: u64) -> Option<NumberType> {
+    let (letter, size) = match kind {
+        1 => (b'i', 1),
+        3 => (b'i', 2),
+        4 => (b'i', 4),
+        5 => (b'f', 4),
+        6 => (b'f', 8),
+        7 => (b'u', 1),
+        8 => (b'u', 2),
+        9 => (b'u', 4),
+        10 => (b'i', 8),
+        11 => (b'u', 8),
+        _ => return None,
+    };
+    NumberType::new(letter, size, false)
+}

@@ -1,0 +1,392 @@
+//! TIFF with one number per pixel: each grey image of 16 bits or more, integers or floats, is a channel.
+//!
+//! Sources: TIFF 6.0 with its supplements (tags), for the description and the resolution `ij/io/FileOpener.java` and `FileSaver.java` of
+//! <https://github.com/imagej/ImageJ>.
+//!
+//! - **Unit and scale.** TIFF says neither; [`crate::ReadOptions::height_scale`] or a unit is asked for. Only ImageJ's description counts:
+//!   `cf=0` with `c0` and `c1` makes values `c0 + c1 * number`, `vunit` is their unit; another `cf` makes them no heights.
+//! - **Size.** By ImageJ's `unit` (and `yunit`), pixels per unit in the tags of the resolution. Resolutions per inch, and those without that
+//!   description, are those of print or screens.
+//! - **Order.** The first row is the top one and y = 0; the orientations 2, 3 and 4 are turned, 5 to 8 are refused.
+//! - **Undefined points.** NaN.
+//!
+//! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data, LZW, Deflate and `PackBits` in
+//! strips and tiles; not read is the XML of OME-TIFF.
+
+use crate::channel::{StoredChannel, StoredHeights, StoredUnit, undefined_heights};
+use crate::error::{ContentError, Error, Place, Result};
+use crate::extent::Extent;
+use crate::format::Format;
+use crate::number_type::exact;
+use crate::quantity::{Dimension, Quantity, Unit};
+use crate::reader::Reader;
+use crate::source::Source;
+use std::collections::HashMap;
+use std::io::{Read, Seek};
+use tiff::decoder::ifd::Value;
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError, TiffResult};
+
+const FORMAT: Format = Format::Tiff;
+/// The beginning of TIFF and of its kind for more than 4 GB, in either byte order.
+const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
+/// Images in one file that are looked at.
+const MOST: usize = 1000;
+/// Longest text or list in a directory, in bytes.
+const LONGEST: usize = 1 << 20;
+/// The compressions that are read pack at most so many bytes into one, in maps that are measured.
+const PACKED: u64 = 1032;
+
+pub(crate) const READER: Reader = Reader {
+    format: FORMAT,
+    recognises: |start, _| MAGIC.iter().any(|magic| start.starts_with(magic)),
+    channels,
+};
+
+/// Refuses lists and texts that reach beyond the end of the file, for which the other crate reserves up to 4 MB unasked.
+fn check_directories(source: &mut Source<'_>) -> Result<()> {
+    let start = source.bytes(FORMAT, 0, 8)?;
+    let (big, large) = (start.starts_with(b"MM"), start[2] == 43 || start[3] == 43);
+    // Bytes of an entry, of the value in it, of a count of entries, and where the first offset stands.
+    let (entry, held, counted, first) = if large { (20, 8, 8, 8) } else { (12, 4, 2, 4) };
+    let fields = |source: &mut Source<'_>, at, count| -> Result<Vec<u8>> { source.bytes(FORMAT, at, count) };
+    let number = |bytes: &[u8]| {
+        let digit = |n: u64, &byte: &u8| n << 8 | u64::from(byte);
+        if big { bytes.iter().fold(0, digit) } else { bytes.iter().rev().fold(0, digit) }
+    };
+    let mut at = number(&fields(source, first, held)?);
+    for _ in 0..MOST {
+        if at == 0 {
+            break;
+        }
+        let entries = number(&fields(source, at, counted)?);
+        let expected = || format!("{entries} entries of {entry} bytes here (cut short?)");
+        let length = entries.checked_mul(entry).filter(|length| *length <= source.length());
+        let length = length.ok_or_else(|| source.wrong(FORMAT, at, expected()))?;
+        let directory = fields(source, at + counted, length)?;
+        for one in directory.chunks_exact(entry as usize) {
+            let size = match number(&one[2..4]) {
+                3 | 8 => 2,
+                4 | 9 | 11 | 13 => 4,
+                5 | 10 | 12 | 16..=18 => 8,
+                _ => 1,
+            };
+            let (count, value) = one[4..].split_at(held as usize);
+            let length = number(count).checked_mul(size);
+            let end = length
+                .and_then(|length| if length <= held { Some(0) } else { number(value).checked_add(length) });
+            if end.is_none_or(|end| end > source.length()) {
+                let tag = number(&one[..2]);
+                return Err(source.wrong(FORMAT, at, format!("the values of tag {tag} inside the file")));
+            }
+        }
+        at = number(&fields(source, at + counted + length, held)?);
+    }
+    Ok(())
+}
+
+/// A decoder that stands at the first image.
+fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {
+    let length = source.length();
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = usize::try_from(PACKED.saturating_mul(length)).unwrap_or(usize::MAX);
+    limits.intermediate_buffer_size = length as usize;
+    limits.ifd_value_size = LONGEST.min(length as usize);
+    let path = source.path().to_owned();
+    let decoder = Decoder::new(source.whole()?).map_err(|e| Error::content(&path)(unreadable(&e)))?;
+    Ok(decoder.with_limits(limits))
+}
+
+/// What the other crate says about the file.
+fn unreadable(said: &dyn std::fmt::Display) -> ContentError {
+    let said: String = said.to_string().chars().take(200).collect();
+    let expected = format!("a file as its specification has it ({said})");
+    ContentError::Binary { format: FORMAT, offset: 0, expected }
+}
+
+fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+    check_directories(source)?;
+    let path = source.path().to_owned();
+    let mut pages = Vec::new();
+    let mut decoder = open(source)?;
+    loop {
+        pages.push(Page::of(&mut decoder).map_err(|e| Error::content(&path)(unreadable(&e)))?);
+        if !decoder.more_images() || pages.len() == MOST {
+            break;
+        }
+        decoder.next_image().map_err(|e| Error::content(&path)(unreadable(&e)))?;
+    }
+    drop(decoder);
+    // ImageJ describes a stack in its first image.
+    let description = ImageJ::of(pages.first().and_then(|page| page.description.as_deref()));
+    let alone = pages.len() == 1;
+    let mut channels = Vec::new();
+    for (number, page) in pages.into_iter().enumerate() {
+        if let Some(channel) = channel(source, number, &page, description.as_ref(), alone)? {
+            channels.push(channel);
+        }
+    }
+    if channels.is_empty() {
+        let what = "a TIFF picture of 8 bits, in colours or with white as zero";
+        let remedy = "grey values are no heights; export the heights as TIFF of floats, as text or as NPY";
+        return Err(source.content(ContentError::Foreign { what, remedy }));
+    }
+    Ok(channels)
+}
+
+/// What the directory of one image says.
+struct Page {
+    size: (u32, u32),
+    /// Bits of a grey number; `None` for pictures.
+    bits: Option<u8>,
+    sample_format: u16,
+    orientation: u16,
+    /// Pixels per unit along x and y, and the unit: 1 none, 2 inch, 3 cm.
+    resolution: [Option<f64>; 2],
+    resolution_unit: u16,
+    description: Option<String>,
+}
+
+impl Page {
+    fn of<R: Read + Seek>(decoder: &mut Decoder<R>) -> TiffResult<Self> {
+        let size = decoder.dimensions()?;
+        let short = |decoder: &mut Decoder<R>, tag, absent| {
+            decoder.find_tag_unsigned(tag).map(|found| found.unwrap_or(absent))
+        };
+        let black_is_zero = short(decoder, Tag::PhotometricInterpretation, 1)? == 1;
+        let bits = match decoder.colortype() {
+            Ok(ColorType::Gray(bits @ (16 | 32 | 64))) if black_is_zero => Some(bits),
+            _ => None,
+        };
+        let ratio = |decoder: &mut Decoder<R>, tag| {
+            decoder.find_tag(tag).map(|found| match found {
+                Some(Value::Rational(a, b)) if a > 0 && b > 0 => Some(f64::from(a) / f64::from(b)),
+                _ => None,
+            })
+        };
+        let sample_format = match decoder.find_tag_unsigned_vec(Tag::SampleFormat)? {
+            Some(formats) => formats.first().copied().unwrap_or(1),
+            None => 1,
+        };
+        let description = match decoder.find_tag(Tag::ImageDescription)? {
+            Some(Value::Ascii(text)) => Some(text),
+            _ => None,
+        };
+        Ok(Self {
+            size,
+            bits,
+            sample_format,
+            orientation: short(decoder, Tag::Orientation, 1)?,
+            resolution: [ratio(decoder, Tag::XResolution)?, ratio(decoder, Tag::YResolution)?],
+            resolution_unit: short(decoder, Tag::ResolutionUnit, 2)?,
+            description,
+        })
+    }
+}
+
+/// The lines `key=value` of ImageJ's description.
+struct ImageJ(HashMap<String, String>);
+
+impl ImageJ {
+    fn of(description: Option<&str>) -> Option<Self> {
+        let text = description?.strip_prefix("ImageJ=")?;
+        let line = |line: &str| line.split_once('=').map(|(k, v)| (k.trim().to_owned(), v.trim().to_owned()));
+        Some(Self(text.lines().skip(1).filter_map(line).collect()))
+    }
+
+    /// The length unit of a key; ImageJ escapes the micro sign and calls the micrometre micron.
+    fn length(&self, key: &str) -> Option<Unit> {
+        let text = self.0.get(key)?.replace("\\u00B5", "u");
+        let text = if matches!(text.as_str(), "micron" | "microns") { "um" } else { &text };
+        text.parse().ok().filter(|unit: &Unit| unit.dimension() == Dimension::LENGTH)
+    }
+
+    fn number(&self, key: &str) -> Option<f64> {
+        self.0.get(key)?.parse().ok().filter(|number: &f64| number.is_finite())
+    }
+
+    /// Unit, scale and shift of the heights.
+    fn heights(&self) -> (StoredUnit, f64, f64) {
+        /// Numbers of ImageJ's calibrations.
+        const STRAIGHT_LINE: f64 = 0.0;
+        const NONE: f64 = 20.0;
+        let is = |function: f64, known: f64| (function - known).abs() < 0.5;
+        match (self.number("cf"), self.number("c0"), self.number("c1")) {
+            (None, ..) => (StoredUnit::Unknown, 1.0, 0.0),
+            (Some(function), ..) if is(function, NONE) => (StoredUnit::Unknown, 1.0, 0.0),
+            (Some(function), Some(shift), Some(scale)) if is(function, STRAIGHT_LINE) => {
+                let unit = match (self.length("vunit"), self.0.get("vunit").map(String::as_str)) {
+                    (Some(unit), _) => StoredUnit::Heights(unit),
+                    // Signed numbers, which ImageJ holds as unsigned ones.
+                    (None, None | Some("" | "Gray Value")) => StoredUnit::Unknown,
+                    (None, Some(other)) => StoredUnit::NoHeights(Some(other.chars().take(32).collect())),
+                };
+                (unit, scale, shift)
+            }
+            _ => (StoredUnit::NoHeights(Some("a calibration that is no straight line".into())), 1.0, 0.0),
+        }
+    }
+
+    fn extent(&self, page: &Page) -> [Option<Extent>; 2] {
+        let x = self.length("unit");
+        let y = if self.0.contains_key("yunit") { self.length("yunit") } else { x.clone() };
+        let cell = |unit: Option<Unit>, per_unit: Option<f64>| {
+            let (unit, per_unit) = (unit?, per_unit?);
+            let unit = match page.resolution_unit {
+                1 => unit,
+                3 => "cm".parse().ok()?,
+                _ => return None,
+            };
+            Quantity::of(1.0 / per_unit, &unit).ok().filter(|q| q.value() > 0.0).map(Extent::Cell)
+        };
+        [cell(x, page.resolution[0]), cell(y, page.resolution[1])]
+    }
+}
+
+fn channel(
+    source: &Source<'_>,
+    number: usize,
+    page: &Page,
+    description: Option<&ImageJ>,
+    alone: bool,
+) -> Result<Option<StoredChannel>> {
+    let (columns, rows) = page.size;
+    let Some(bits) = page.bits else { return Ok(None) };
+    let reversed = match page.orientation {
+        1 => [false, false],
+        2 => [true, false],
+        3 => [true, true],
+        4 => [false, true],
+        other => {
+            let expected = format!("an orientation of 1 to 4 in image {number}, found {other}");
+            return Err(source.wrong(FORMAT, 0, expected));
+        }
+    };
+    if rows == 0 || columns == 0 {
+        let (rows, columns) = (rows.into(), columns.into());
+        return Err(source.content(ContentError::NoCells { rows, columns }));
+    }
+    let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
+    if claimed > u128::from(PACKED.saturating_mul(source.length())) {
+        let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
+        return Err(source.wrong(FORMAT, 0, expected));
+    }
+    let kind = match page.sample_format {
+        2 => "int",
+        3 => "float",
+        _ => "uint",
+    };
+    let (unit, scale, shift) = description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
+    let image = Image { number, size: page.size, bytes: u64::from(bits / 8), reversed, scale, shift };
+    Ok(Some(StoredChannel {
+        name: (!alone).then(|| format!("image {number}")),
+        details: format!("{kind}{bits}, row by row"),
+        rows: rows as usize,
+        columns: columns as usize,
+        unit,
+        extent: description.map_or([None; 2], |description| description.extent(page)),
+        heights: StoredHeights::Deferred(Box::new(move |source| image.read(source))),
+    }))
+}
+
+/// What is needed to read one image.
+struct Image {
+    number: usize,
+    size: (u32, u32),
+    /// Bytes of a number.
+    bytes: u64,
+    reversed: [bool; 2],
+    scale: f64,
+    shift: f64,
+}
+
+impl Image {
+    fn read(&self, source: &mut Source<'_>) -> Result<Vec<f64>> {
+        let (columns, rows) = (self.size.0 as usize, self.size.1 as usize);
+        let mut heights = undefined_heights(source, rows, columns)?;
+        let path = source.path().to_owned();
+        let most = PACKED.saturating_mul(source.length());
+        let mut decoder = open(source)?;
+        let read = self.chunks(&mut decoder, most, &mut heights);
+        read.map_err(Error::content(&path))?;
+        Ok(heights)
+    }
+
+    fn chunks<R: Read + Seek>(
+        &self,
+        decoder: &mut Decoder<R>,
+        most: u64,
+        heights: &mut [f64],
+    ) -> Result<(), ContentError> {
+        let failed = |e: TiffError| unreadable(&e);
+        decoder.seek_to_image(self.number).map_err(failed)?;
+        let (columns, rows) = self.size;
+        let [wide, tall]: [u32; 2] = match decoder.get_chunk_type() {
+            ChunkType::Strip => {
+                let rows_of_one = decoder.find_tag_unsigned::<u32>(Tag::RowsPerStrip).map_err(failed)?;
+                [columns, rows_of_one.unwrap_or(rows).clamp(1, rows)]
+            }
+            ChunkType::Tile => [
+                decoder.get_tag_unsigned(Tag::TileWidth).map_err(failed)?,
+                decoder.get_tag_unsigned(Tag::TileLength).map_err(failed)?,
+            ],
+        };
+        // All of them together: they may share their bytes, and reach far beyond the image.
+        let across = |size: u32, of_one: u32| u128::from(size.div_ceil(of_one.max(1))) * u128::from(of_one);
+        let all = across(columns, wide) * across(rows, tall);
+        if all == 0 || all.checked_mul(self.bytes.into()).is_none_or(|bytes| bytes > most.into()) {
+            return Err(unreadable(&format!("a strip or tile of {wide} x {tall} numbers")));
+        }
+        for (j, top) in (0..rows).step_by(tall as usize).enumerate() {
+            for (i, left) in (0..columns).step_by(wide as usize).enumerate() {
+                let number = j as u64 * u64::from(columns.div_ceil(wide)) + i as u64;
+                let number = u32::try_from(number).map_err(|e| unreadable(&e))?;
+                let decoded = decoder.read_chunk(number).map_err(failed)?;
+                let (wide, tall) = (wide.min(columns - left) as usize, tall.min(rows - top) as usize);
+                let to = [top as usize, left as usize];
+                self.put(&decoded, [tall, wide], to, heights)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts the numbers of a strip or tile of so many rows and columns in their places.
+    fn put(
+        &self,
+        decoded: &DecodingResult,
+        [tall, wide]: [usize; 2],
+        [top, left]: [usize; 2],
+        heights: &mut [f64],
+    ) -> Result<(), ContentError> {
+        let (columns, rows) = (self.size.0 as usize, self.size.1 as usize);
+        for k in 0..tall * wide {
+            let (row, column) = (top + k / wide, left + k % wide);
+            let row = if self.reversed[1] { rows - 1 - row } else { row };
+            let column = if self.reversed[0] { columns - 1 - column } else { column };
+            let inexact = |value| ContentError::Inexact { place: Place::Cell { row, column }, value };
+            let number = match decoded {
+                DecodingResult::U16(all) => all.get(k).map(|&n| f64::from(n)),
+                DecodingResult::I16(all) => all.get(k).map(|&n| f64::from(n)),
+                DecodingResult::U32(all) => all.get(k).map(|&n| f64::from(n)),
+                DecodingResult::I32(all) => all.get(k).map(|&n| f64::from(n)),
+                DecodingResult::U64(all) => {
+                    all.get(k).map(|&n| exact(n.into())).transpose().map_err(inexact)?
+                }
+                DecodingResult::I64(all) => {
+                    all.get(k).map(|&n| exact(n.into())).transpose().map_err(inexact)?
+                }
+                DecodingResult::F16(all) => all.get(k).map(|&n| f64::from(n)),
+                DecodingResult::F32(all) => all.get(k).map(|&n| f64::from(n)),
+                DecodingResult::F64(all) => all.get(k).copied(),
+                DecodingResult::U8(_) | DecodingResult::I8(_) => None,
+            };
+            let number =
+                number.ok_or_else(|| unreadable(&format!("{tall} x {wide} numbers in a strip or tile")))?;
+            let scaled = self.scale * number;
+            heights[row * columns + column] =
+                if self.shift.abs() > 0.0 { scaled + self.shift } else { scaled };
+        }
+        Ok(())
+    }
+}

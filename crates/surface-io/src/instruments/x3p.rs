@@ -1,0 +1,200 @@
+//! X3P, the XML container of ISO 25178-72 (before: ISO 5436-2): an archive of `main.xml`, the numbers and a checksum.
+//!
+//! After the openGPS library (<https://github.com/aschet/x3p>: `iso5436_2_container.cxx`, `valid_buffer.cxx`), Gwyddion's `opengps.c` and
+//! the notes of x3pio on the standard (<https://github.com/aschet/x3pio>, `docs/format.md`). All lengths are metres. Numbers run along x
+//! first, then along y: row j is y = j * increment, upwards, as in this crate. A height is increment * number + offset; the increment is 1
+//! where none is given. I and L are signed integers of 16 and 32 bits, F and D floats.
+//!
+//! Undefined points are NaN, empty in a list of numbers in `main.xml`, or zero bits of the member that `ValidPointsLink` names (lowest bit
+//! first). Read: surfaces (`SUR`) on a regular grid in one layer. Not read: profiles, clouds of points, irregular grids, several layers,
+//! the rotation. Damage shows in the checksums of the archive; MD5 is not compared, as `SurfaceTopography` gives that of another member.
+
+mod main_xml;
+mod write;
+
+pub use write::x3p;
+
+use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
+use crate::error::{ContentError, Error, Result};
+use crate::extent::Extent;
+use crate::format::Format;
+use crate::number_type::NumberType;
+use crate::quantity::{Dimension, Quantity};
+use crate::reader::Reader;
+use crate::source::Source;
+use crate::zip::{self, Member};
+use main_xml::{Axis, Main};
+
+const FORMAT: Format = Format::X3p;
+/// The member that describes the others.
+const MAIN: &str = "main.xml";
+
+/// Every archive: its members tell whether it is an X3P file.
+pub(crate) const READER: Reader =
+    Reader { format: FORMAT, recognises: |start, _| start.starts_with(zip::MAGIC), channels };
+
+/// Where the numbers are.
+enum Numbers {
+    /// In a member, with another one for the points that are defined.
+    Linked { data: Member, valid: Option<Member>, number: NumberType },
+    /// In `main.xml`.
+    Listed(Member),
+}
+
+fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+    let members = zip::members(source, FORMAT)?;
+    // Archives that were packed by hand have everything in one folder.
+    let in_folder = |m: &&Member| m.name.split_once('/').is_some_and(|(_, name)| name == MAIN);
+    let found = members.iter().find(|m| m.name == MAIN).or_else(|| members.iter().find(in_folder));
+    let Some(main_member) = found else { return Err(source.content(zip::refused(&members))) };
+    let bytes = main_member.unpack(source, FORMAT)?;
+    let Some(main) = Main::read(&String::from_utf8_lossy(&bytes)) else {
+        return Err(source.content(zip::refused(&members)));
+    };
+    drop(bytes);
+    let ([columns, rows], number) = described(&main).map_err(|e| wrong(source, main_member, &e))?;
+    let [x, y, z] = &main.axes;
+    let (scale, shift) = (length(&z.increment, 1.0), length(&z.offset, 0.0));
+    let (Some(scale), Some(shift)) = (scale.filter(|scale| scale.abs() > 0.0), shift) else {
+        return Err(wrong(source, main_member, "an increment along z other than 0, and an offset"));
+    };
+    let folder = &main_member.name[..main_member.name.len() - MAIN.len()];
+    let member = |link: &str| {
+        let name = format!("{folder}{}", link.replace('\\', "/").trim_start_matches("./"));
+        members.iter().find(|m| m.name == name).cloned()
+    };
+    let count = rows as u64 * columns as u64;
+    let mut details = RawHeights::new(FORMAT, Bytes::Held(Vec::new()), number).details();
+    let numbers = if main.data.is_empty() {
+        if main.listed != count {
+            let expected = format!("{columns} x {rows} numbers or a link to them, found {}", main.listed);
+            return Err(wrong(source, main_member, &expected));
+        }
+        details += ", as text";
+        Numbers::Listed(main_member.clone())
+    } else {
+        let Some(data) = member(&main.data) else {
+            return Err(wrong(source, main_member, "PointDataLink with the name of a member"));
+        };
+        sized(source, &data, count.checked_mul(number.bytes() as u64))?;
+        let mut valid = None;
+        if !main.valid.is_empty() {
+            let Some(bits) = member(&main.valid) else {
+                return Err(wrong(source, main_member, "ValidPointsLink with the name of a member"));
+            };
+            sized(source, &bits, Some(count.div_ceil(8)))?;
+            details += ", with a mask";
+            valid = Some(bits);
+        }
+        Numbers::Linked { data, valid, number }
+    };
+    let (x, y) = (x.cell(), y.cell());
+    let read = move |source: &mut Source<'_>| numbers.read(source, [columns, rows], (scale, shift));
+    Ok(vec![StoredChannel {
+        name: None,
+        details,
+        rows,
+        columns,
+        unit: StoredUnit::heights("m".parse().ok()),
+        extent: [x, y],
+        heights: StoredHeights::Deferred(Box::new(read)),
+    }])
+}
+
+fn wrong(source: &Source<'_>, main: &Member, expected: &str) -> Error {
+    source.wrong(FORMAT, main.offset, format!("in main.xml {expected}"))
+}
+
+/// Columns, rows and the type of numbers of a surface that is read.
+fn described(main: &Main) -> Result<([usize; 2], NumberType), String> {
+    let is = |what: &str, found: &str, expected: &str| {
+        let same = found.eq_ignore_ascii_case(expected);
+        same.then_some(()).ok_or_else(|| format!("{what} {expected}, found {found:?}"))
+    };
+    is("a surface, FeatureType", &main.feature, "SUR")?;
+    let [x, y, z] = &main.axes;
+    is("a regular grid, AxisType of x", &x.kind, "I")?;
+    is("a regular grid, AxisType of y", &y.kind, "I")?;
+    is("AxisType of z", &z.kind, "A")?;
+    let number = match z.number.as_str() {
+        "I" => NumberType::I16,
+        "L" => NumberType::I32,
+        "F" => NumberType::F32,
+        "D" => NumberType::F64,
+        other => return Err(format!("DataType of z I, L, F or D, found {other:?}")),
+    };
+    is("one layer, SizeZ", &main.sizes[2], "1")?;
+    let size = |text: &String| text.parse::<usize>().map_err(|_| format!("SizeX and SizeY, found {text:?}"));
+    let [columns, rows] = [size(&main.sizes[0])?, size(&main.sizes[1])?];
+    match columns.checked_mul(rows) {
+        None | Some(0) => Err(format!("a surface of at least one point, found {columns} x {rows}")),
+        Some(_) => Ok(([columns, rows], number)),
+    }
+}
+
+/// A number, or what is meant where there is none; `None` where it is no number.
+fn length(text: &str, absent: f64) -> Option<f64> {
+    let number = if text.is_empty() { Some(absent) } else { text.parse().ok() };
+    number.filter(|number: &f64| number.is_finite())
+}
+
+impl Axis {
+    /// The side of a cell, where the increment is one.
+    fn cell(&self) -> Option<Extent> {
+        let increment = length(&self.increment, 0.0).filter(|increment| *increment > 0.0)?;
+        Quantity::new(increment, Dimension::LENGTH).ok().map(Extent::Cell)
+    }
+}
+
+/// An error where a member has another length, or cannot have it.
+fn sized(source: &mut Source<'_>, member: &Member, bytes: Option<u64>) -> Result<()> {
+    if bytes != Some(member.unpacked) {
+        let bytes = bytes.map_or("more".to_owned(), |bytes| bytes.to_string());
+        let expected =
+            format!("a member of {bytes} bytes for these rows and columns, found {}", member.unpacked);
+        return Err(source.wrong(FORMAT, member.offset, expected));
+    }
+    member.packed(source, FORMAT).map(drop)
+}
+
+impl Numbers {
+    /// `height = scale * number + shift`, row by row.
+    fn read(
+        &self,
+        source: &mut Source<'_>,
+        [columns, rows]: [usize; 2],
+        (scale, shift): (f64, f64),
+    ) -> Result<Vec<f64>> {
+        match self {
+            Self::Linked { data, valid, number } => {
+                let bytes = Bytes::Held(data.unpack(source, FORMAT)?);
+                let raw = RawHeights { scale, shift, ..RawHeights::new(FORMAT, bytes, *number) };
+                let mut heights = raw.read(source, rows, columns)?;
+                drop(raw);
+                let Some(valid) = valid else { return Ok(heights) };
+                let bits = valid.unpack(source, FORMAT)?;
+                for (i, height) in heights.iter_mut().enumerate() {
+                    if bits.get(i / 8).is_none_or(|byte| byte >> (i % 8) & 1 == 0) {
+                        *height = f64::NAN;
+                    }
+                }
+                Ok(heights)
+            }
+            Self::Listed(main) => {
+                let bytes = main.unpack(source, FORMAT)?;
+                let (mut heights, mut others) = (Vec::new(), 0);
+                let count = rows * columns;
+                let refused = |_| ContentError::Memory { bytes: 8 * count as u128 };
+                heights.try_reserve_exact(count).map_err(refused).map_err(|e| source.content(e))?;
+                main_xml::listed(&String::from_utf8_lossy(&bytes), &mut |number| match number {
+                    Some(number) => heights.push(scale * number + shift),
+                    None => others += 1,
+                });
+                if others > 0 {
+                    return Err(wrong(source, main, &format!("numbers only, {others} are none")));
+                }
+                Ok(heights)
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Numbers as bytes: types and byte orders.
+
+use std::fmt;
+
+/// Type and byte order of a number in a binary file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct NumberType {
+    kind: Kind,
+    size: u8,
+    little: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Float,
+    Signed,
+    Unsigned,
+}
+
+/// Doubles hold every integer up to this size.
+const EXACT: i128 = 1 << 53;
+
+impl NumberType {
+    pub(crate) const U8: Self = Self { kind: Kind::Unsigned, size: 1, little: true };
+    pub(crate) const I16: Self = Self { kind: Kind::Signed, size: 2, little: true };
+    pub(crate) const I32: Self = Self { kind: Kind::Signed, size: 4, little: true };
+    pub(crate) const F32: Self = Self { kind: Kind::Float, size: 4, little: true };
+    pub(crate) const F64: Self = Self { kind: Kind::Float, size: 8, little: true };
+
+    /// By the letter of numpy (`f`, `i`, `u`) and the number of bytes; `None` for what is not read.
+    pub(crate) fn new(letter: u8, size: u8, little: bool) -> Option<Self> {
+        let (kind, sizes): (Kind, &[u8]) = match letter {
+            b'f' => (Kind::Float, &[2, 4, 8]),
+            b'i' => (Kind::Signed, &[1, 2, 4, 8]),
+            b'u' => (Kind::Unsigned, &[1, 2, 4, 8]),
+            _ => return None,
+        };
+        sizes.contains(&size).then_some(Self { kind, size, little })
+    }
+
+    /// The same number with its first byte the highest.
+    pub(crate) const fn big_endian(self) -> Self {
+        Self { little: false, ..self }
+    }
+
+    /// Whether it is a float, which NaN is one of.
+    pub(crate) fn is_float(self) -> bool {
+        self.kind == Kind::Float
+    }
+
+    /// Bytes of one number.
+    pub(crate) fn bytes(self) -> usize {
+        usize::from(self.size)
+    }
+
+    /// The number in the first of these bytes, or the integer that no double holds.
+    pub(crate) fn decode(self, raw: &[u8]) -> Result<f64, i128> {
+        let raw = &raw[..self.bytes()];
+        let mut word = [0; 8];
+        for (i, byte) in raw.iter().enumerate() {
+            word[if self.little { i } else { raw.len() - 1 - i }] = *byte;
+        }
+        let bits = u64::from_le_bytes(word);
+        match self.kind {
+            Kind::Float => Ok(match raw.len() {
+                2 => half(bits as u16),
+                4 => f64::from(f32::from_bits(bits as u32)),
+                _ => f64::from_bits(bits),
+            }),
+            Kind::Unsigned => exact(i128::from(bits)),
+            Kind::Signed => {
+                let unused = 64 - 8 * raw.len() as u32;
+                exact(i128::from((bits << unused).cast_signed() >> unused))
+            }
+        }
+    }
+}
+
+impl fmt::Display for NumberType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = match self.kind {
+            Kind::Float => "float",
+            Kind::Signed => "int",
+            Kind::Unsigned => "uint",
+        };
+        let order = if self.little { "little" } else { "big" };
+        write!(f, "{name}{}, {order}-endian", 8 * self.size)
+    }
+}
+
+/// The integer as a double, or the integer that no double holds.
+pub(crate) fn exact(value: i128) -> Result<f64, i128> {
+    if value.abs() <= EXACT || (value as f64) as i128 == value { Ok(value as f64) } else { Err(value) }
+}
+
+/// IEEE 754 binary16.
+pub(crate) fn half(bits: u16) -> f64 {
+    let (exponent, fraction) = (i32::from((bits >> 10) & 31), f64::from(bits & 1023));
+    let size = match exponent {
+        0 => fraction * 2_f64.powi(-24),
+        31 if fraction <= 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2_f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 1 { -size } else { size }
+}

@@ -1,0 +1,232 @@
+//! A file of surfaces: its channels, and the scan of each.
+
+use crate::channel::{StoredChannel, StoredUnit, chosen};
+use crate::detect::detect;
+use crate::error::{ContentError, Error, Result};
+use crate::format::Format;
+use crate::instruments::READERS;
+use crate::options::ReadOptions;
+use crate::reader::SNIFF;
+use crate::scan::Scan;
+use crate::source::{Input, Source};
+use crate::{points, text};
+use std::fs::File;
+use std::io::{BufReader, Cursor};
+use std::path::Path;
+
+/// An opened file whose headers are read: one channel or more, whose heights are not read yet.
+///
+/// ```
+/// use surface_io::{ReadOptions, SurfaceFile};
+/// let options = ReadOptions::default();
+/// let file = SurfaceFile::from_bytes("a.txt", b"# Channel: Topography\n# Width: 3 um\n1 2 3\n4 nan 6\n", &options)?;
+/// assert_eq!(file.len(), 1);
+/// let scans: Vec<_> = file.scans().collect::<Result<_, _>>()?;
+/// assert_eq!(scans[0].metadata().name.as_deref(), Some("Topography"));
+/// # Ok::<(), surface_io::Error>(())
+/// ```
+pub struct SurfaceFile<'a> {
+    source: Source<'a>,
+    format: Format,
+    channels: Vec<StoredChannel>,
+    declared: ReadOptions,
+}
+
+impl std::fmt::Debug for SurfaceFile<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SurfaceFile")
+            .field("path", &self.source.path())
+            .field("format", &self.format)
+            .finish()
+    }
+}
+
+impl<'a> SurfaceFile<'a> {
+    /// Opens a file and reads its headers; of text the whole.
+    ///
+    /// # Errors
+    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the headers.
+    pub fn open(path: &Path, declared: &ReadOptions) -> Result<Self> {
+        let (input, length) = opened(path)?;
+        Self::new(path, input, length, declared)
+    }
+
+    /// Opens the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's name.
+    ///
+    /// # Errors
+    /// As [`SurfaceFile::open`].
+    pub fn from_bytes(name: impl AsRef<Path>, bytes: &'a [u8], declared: &ReadOptions) -> Result<Self> {
+        Self::new(name.as_ref(), Cursor::new(bytes), bytes.len() as u64, declared)
+    }
+
+    fn new(path: &Path, input: impl Input + 'a, length: u64, declared: &ReadOptions) -> Result<Self> {
+        let (mut source, format) = told(path, input, length, declared)?;
+        let (format, channels) = match format {
+            None | Some(Format::Text | Format::Xyz) => {
+                let (format, channel) = of_text(&mut source, format, declared)?;
+                (format, vec![channel])
+            }
+            Some(format) => {
+                no_lines(declared).map_err(Error::content(path))?;
+                let reader = READERS.iter().find(|reader| reader.format == format);
+                let other = || Error::content(path)(ContentError::Other { expected: format });
+                (format, (reader.ok_or_else(other)?.channels)(&mut source)?)
+            }
+        };
+        if channels.is_empty() {
+            return Err(source.wrong(format, 0, "one map at least"));
+        }
+        Ok(Self { source, format, channels, declared: declared.clone() })
+    }
+
+    /// The format.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Number of channels.
+    #[allow(clippy::len_without_is_empty)] // A file without a channel is an error.
+    pub fn len(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// The scan of the channel that was chosen ([`ReadOptions::channel`]), or of the only one that can be heights.
+    ///
+    /// # Errors
+    /// [`ContentError::Channel`] where none or several are; otherwise as [`SurfaceFile::scans`].
+    pub fn scan(mut self) -> Result<Scan> {
+        let number = chosen(&self.channels, self.declared.channel.as_ref());
+        let number = number.map_err(|e| self.source.content(e))?;
+        let channel = self.channels.swap_remove(number);
+        read(&mut self.source, self.format, (number, channel), &self.declared)
+    }
+
+    /// The scans of all channels, one after another.
+    ///
+    /// # Errors
+    /// Of each: [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
+    /// that no double holds, and for contradictions to what is declared.
+    pub fn scans(self) -> impl Iterator<Item = Result<Scan>> {
+        let Self { mut source, format, channels, declared } = self;
+        channels.into_iter().enumerate().map(move |channel| read(&mut source, format, channel, &declared))
+    }
+}
+
+/// An opened file and its length.
+pub(crate) fn opened(path: &Path) -> Result<(BufReader<File>, u64)> {
+    // Looked at before it is opened: opening a pipe waits for a writer.
+    let about = std::fs::metadata(path).map_err(Error::system("open", path))?;
+    if !about.is_file() {
+        return Err(Error::content(path)(ContentError::NotAFile));
+    }
+    let file = File::open(path).map_err(Error::system("open", path))?;
+    Ok((BufReader::new(file), about.len()))
+}
+
+/// The source of an input that is not too long, and its format; `None` for text that may be a matrix or points.
+pub(crate) fn told<'a>(
+    path: &Path,
+    input: impl Input + 'a,
+    length: u64,
+    declared: &ReadOptions,
+) -> Result<(Source<'a>, Option<Format>)> {
+    if length > declared.largest_bytes {
+        let problem = ContentError::TooLarge { bytes: length, largest: declared.largest_bytes };
+        return Err(Error::content(path)(problem));
+    }
+    let mut source = Source::new(path, input, length);
+    let start = source.start(SNIFF)?;
+    let format = detect(declared.format, path, &start, length).map_err(Error::content(path))?;
+    Ok((source, format))
+}
+
+impl Scan {
+    /// Reads a file of one channel, or the channel that [`ReadOptions::channel`] names.
+    ///
+    /// Memory: the heights for binary files that are not compressed; for text the file and at most four times its length on top.
+    ///
+    /// # Errors
+    /// As [`SurfaceFile::open`] and [`SurfaceFile::scan`].
+    pub fn read(path: &Path, declared: &ReadOptions) -> Result<Self> {
+        SurfaceFile::open(path, declared)?.scan()
+    }
+
+    /// Reads the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's
+    /// name.
+    ///
+    /// # Errors
+    /// As [`Scan::read`].
+    ///
+    /// ```
+    /// use surface_io::{ReadOptions, Scan};
+    /// let scan = Scan::from_bytes("a.txt", b"# Width: 3 um\n1 2 3\n4 nan 6\n", &ReadOptions::default())?;
+    /// assert_eq!((scan.metadata().rows, scan.metadata().columns), (2, 3));
+    /// assert_eq!(scan.height(0, 2), Some(3.0));
+    /// assert_eq!(scan.height(1, 1), None);
+    /// # Ok::<(), surface_io::Error>(())
+    /// ```
+    pub fn from_bytes(name: impl AsRef<Path>, bytes: &[u8], declared: &ReadOptions) -> Result<Self> {
+        SurfaceFile::from_bytes(name, bytes, declared)?.scan()
+    }
+}
+
+fn read(
+    source: &mut Source<'_>,
+    format: Format,
+    (number, mut channel): (usize, StoredChannel),
+    declared: &ReadOptions,
+) -> Result<Scan> {
+    let heights = channel.read(source)?;
+    let own;
+    let declared = if let StoredUnit::NoHeights(_) = channel.unit {
+        // A unit of heights is not one of phases.
+        own = ReadOptions { unit: None, height_scale: None, ..declared.clone() };
+        &own
+    } else {
+        declared
+    };
+    Scan::new(source.path(), format, (number, channel), heights, declared).map_err(|e| source.content(e))
+}
+
+/// A matrix or points.
+fn of_text(
+    source: &mut Source<'_>,
+    format: Option<Format>,
+    declared: &ReadOptions,
+) -> Result<(Format, StoredChannel)> {
+    let length = source.length();
+    let bytes = source.start(length)?;
+    let table = text::TextTable::read(&bytes, declared).map_err(|e| source.content(e))?;
+    let format = match format {
+        Some(format) => format,
+        None if table.columns == 3 && table.rows() > 3 => {
+            let ambiguous = ContentError::Ambiguous { lines: table.rows() };
+            // Numbers whose first two columns are all places of a grid, each once, are no heights.
+            let places = || points::is_full_grid(&table).then_some(Format::Xyz);
+            table.heading.format().or_else(places).ok_or(ambiguous).map_err(|e| source.content(e))?
+        }
+        None if table.is_profile() => {
+            return Err(source.content(ContentError::Profile { lines: table.rows() }));
+        }
+        None => Format::Text,
+    };
+    drop(bytes);
+    let channel = match format {
+        Format::Xyz => points::grid(&table, declared),
+        _ => text::matrix(table, declared),
+    };
+    Ok((format, channel.map_err(|e| source.content(e))?))
+}
+
+/// Fails for options that only text has a use for.
+fn no_lines(declared: &ReadOptions) -> Result<(), ContentError> {
+    if declared.lateral_unit.is_some() {
+        let reason = "a map has no coordinates; give size or cell with a unit";
+        return Err(ContentError::Useless { what: "lateral_unit", reason });
+    }
+    if declared.skip_lines > 0 {
+        let reason = "a binary file has no lines";
+        return Err(ContentError::Useless { what: "skip_lines", reason });
+    }
+    Ok(())
+}

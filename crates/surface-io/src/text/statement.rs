@@ -1,0 +1,165 @@
+//! One line of a header: its key, and lengths as programs write them.
+
+use super::heading::Side;
+use crate::quantity::{Dimension, Quantity};
+
+/// What a key is about.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Statement {
+    /// Name of the channel.
+    Channel,
+    /// Side of the map along an axis; whether the key is one of scans, not a word of everyday.
+    Side(usize, bool),
+    /// Both sides, or the one of a square map.
+    Size,
+    /// Side of a cell.
+    Cell(Axes),
+    /// Number of columns (axis 0) or rows (axis 1).
+    Count(usize),
+    HeightUnit,
+    LateralUnit,
+    /// Unit of the numbers, perhaps before they are converted to heights.
+    DataUnit,
+    /// Height of one unit of a number, in this unit.
+    Factor(String),
+    /// Nanometres of one count.
+    BitToNm,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Axes {
+    One(usize),
+    Both,
+}
+
+/// Kind, key and value of a line `key: value` or `key = value`, or with a tab between; `None` for what means nothing here.
+pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
+    let text = text.trim().trim_start_matches(['\\', '@', '*']);
+    let between = text.find([':', '=']).or_else(|| text.find('\t'))?;
+    let (key, value) = text.split_at(between);
+    let value = unquoted(value.get(1..)?);
+    let key = unquoted(key);
+    let lower = key.to_lowercase();
+    if let Some(of) = lower.strip_prefix("height conversion factor") {
+        // Cut out of the text as written: upper and lower case differ in units.
+        let of = key.get(key.len() - of.len()..)?.trim().strip_prefix("(->")?.strip_suffix(')')?;
+        return Some((Statement::Factor(of.trim().to_owned()), lower, value.to_owned()));
+    }
+    // A unit behind the key is that of the value.
+    let (name, unit) = match key.strip_suffix([')', ']']).and_then(|k| k.rsplit_once(['(', '['])) {
+        Some((name, unit)) => (name.trim(), unit.trim()),
+        None => (key, ""),
+    };
+    let words = name.to_lowercase().replace(['_', '-'], " ");
+    let words: Vec<&str> = words.split_whitespace().collect();
+    let words = words.join(" ");
+    let statement = known(&words)?;
+    let value = if unit.is_empty() { value.to_owned() } else { format!("{value} {unit}") };
+    Some((statement, words, value))
+}
+
+fn unquoted(text: &str) -> &str {
+    text.trim().trim_matches('"').trim()
+}
+
+fn known(words: &str) -> Option<Statement> {
+    Some(match words {
+        "channel" | "channel name" | "kanal" => Statement::Channel,
+        "width" | "breite" => Statement::Side(0, false),
+        "height" | "h\u{f6}he" => Statement::Side(1, false),
+        "x length" | "xlength" | "x size" | "size x" | "x range" | "x amplitude" | "scan size x"
+        | "x scan size" | "scan range x" | "x scan range" | "length x" => Statement::Side(0, true),
+        "y length" | "ylength" | "y size" | "size y" | "y range" | "y amplitude" | "scan size y"
+        | "y scan size" | "scan range y" | "y scan range" | "length y" => Statement::Side(1, true),
+        "scan size" | "scan range" | "scan area" | "image size" | "field of view" => Statement::Size,
+        "pixel size" | "cell size" | "point spacing" | "sample spacing" => Statement::Cell(Axes::Both),
+        "x pixel size" | "pixel size x" | "x spacing" | "spacing x" | "x step" | "step x" | "x increment"
+        | "dx" | "x resolution" => Statement::Cell(Axes::One(0)),
+        "y pixel size" | "pixel size y" | "y spacing" | "spacing y" | "y step" | "step y" | "y increment"
+        | "dy" | "y resolution" => Statement::Cell(Axes::One(1)),
+        "x pixels" | "pixels x" | "columns" | "number of columns" | "samps/line" | "samples/line" | "nx"
+        | "w" => Statement::Count(0),
+        "y pixels" | "pixels y" | "rows" | "number of rows" | "number of lines" | "lines" | "ny" | "h" => {
+            Statement::Count(1)
+        }
+        "value units" | "value unit" | "werteeinheiten" | "z unit" | "z units" | "height unit"
+        | "height units" | "unit z" => Statement::HeightUnit,
+        "lateral units" | "lateral unit" | "xy unit" | "xy units" | "x unit" | "x units" | "y unit"
+        | "y units" => Statement::LateralUnit,
+        "data unit" => Statement::DataUnit,
+        "bit2nm" => Statement::BitToNm,
+        _ => return None,
+    })
+}
+
+/// Words of units that programs print.
+const WORDS: [(&str, &str); 12] = [
+    ("microns", "um"),
+    ("micron", "um"),
+    ("micrometers", "um"),
+    ("micrometer", "um"),
+    ("micrometres", "um"),
+    ("micrometre", "um"),
+    ("nanometers", "nm"),
+    ("nanometer", "nm"),
+    ("millimeters", "mm"),
+    ("millimeter", "mm"),
+    // The micro sign of Nanoscope's headers.
+    ("~m", "um"),
+    ("Angstrom", "angstrom"),
+];
+
+/// One or two lengths or plain numbers: `10 um`, `10 um x 5 um`, `10 x 5 um`, `10 5 um`; `None` for other words.
+pub(super) fn lengths(text: &str) -> Option<Vec<Side>> {
+    let text = text.trim();
+    let one = |text: &str| quantity(text).map(|side| vec![side]);
+    if let Some(side) = one(text) {
+        return Some(side);
+    }
+    let parts: Vec<&str> = text.split([' ', '\t', 'x', '\u{d7}']).filter(|part| !part.is_empty()).collect();
+    let joined = match parts[..] {
+        [x, y, unit] if number(x) && number(y) => [format!("{x} {unit}"), format!("{y} {unit}")],
+        [x, unit, y, also] if number(x) && number(y) => [format!("{x} {unit}"), format!("{y} {also}")],
+        _ => return None,
+    };
+    Some(vec![quantity(&joined[0])?, quantity(&joined[1])?])
+}
+
+fn number(text: &str) -> bool {
+    text.replacen(',', ".", 1).parse::<f64>().is_ok()
+}
+
+/// A length or a plain number; `None` for other words.
+fn quantity(text: &str) -> Option<Side> {
+    let mut text = text.trim().to_owned();
+    if let Some((word, symbol)) = WORDS.iter().find(|(word, _)| text.ends_with(word)) {
+        text.truncate(text.len() - word.len());
+        text += symbol;
+    }
+    if is_decimal_comma(text.split_whitespace().next()?) {
+        text = text.replacen(',', ".", 1);
+    }
+    let quantity: Quantity = text.parse().ok()?;
+    let known = quantity.dimension() == Dimension::LENGTH || quantity.dimension() == Dimension::NONE;
+    let number = text.trim().split(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '+' | '-'))).next()?;
+    let exponent = text.trim()[number.len()..].starts_with(['e', 'E']);
+    let rounding = match (number.split_once('.'), number.parse::<f64>()) {
+        (Some((_, decimals)), Ok(number)) if !exponent => {
+            0.5 * 0.1_f64.powf(decimals.len() as f64) / number.abs()
+        }
+        _ => 0.0,
+    };
+    known.then_some(Side { quantity, rounding })
+}
+
+/// Whether a comma between digits can be no other than that of decimals: one of thousands has three digits behind it.
+pub(super) fn is_decimal_comma(text: &str) -> bool {
+    let Some((whole, rest)) = text.split_once(',') else { return false };
+    let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
+    let whole = whole.trim_start_matches(['+', '-']);
+    digits > 0
+        && whole.bytes().all(|b| b.is_ascii_digit())
+        && !text.contains('.')
+        && !rest.contains(',')
+        && (digits != 3 || whole.is_empty() || whole == "0")
+}

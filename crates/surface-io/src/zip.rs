@@ -1,0 +1,173 @@
+//! Zip archives, as far as X3P needs them: members that are stored or deflated, below 4 GB
+//! (APPNOTE.TXT of PKWARE, <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>).
+//!
+//! Own code: `zip` 9.8 reserves memory for as many members as a file claims before it reads one of them, bounded by the claimed size of
+//! the directory and not by the file.
+
+use crate::error::{ContentError, Result};
+use crate::format::Format;
+use crate::inflate::{Packed, Packing};
+use crate::source::{Fields, Source};
+use flate2::Crc;
+
+pub(crate) const MAGIC: &[u8] = b"PK\x03\x04";
+const DIRECTORY: &[u8] = b"PK\x01\x02";
+const END: &[u8] = b"PK\x05\x06";
+/// Bytes of a member's own header, of its entry in the directory and of the end, without names.
+const HEADER: u64 = 30;
+const ENTRY: u64 = 46;
+const TAIL: u64 = 22;
+/// The end has a comment of at most 65535 bytes behind it.
+const LONGEST_COMMENT: u64 = 0xffff;
+
+/// One file in an archive.
+#[derive(Debug, Clone)]
+pub(crate) struct Member {
+    pub(crate) name: String,
+    /// Bytes unpacked, as the directory claims.
+    pub(crate) unpacked: u64,
+    packed: u64,
+    method: u16,
+    encrypted: bool,
+    checksum: u32,
+    /// Offset of its own header.
+    pub(crate) offset: u64,
+}
+
+/// The members by the directory at the end of the file.
+pub(crate) fn members(source: &mut Source<'_>, format: Format) -> Result<Vec<Member>> {
+    let length = source.length();
+    let tail = length.min(TAIL + LONGEST_COMMENT);
+    let bytes = source.bytes(format, length - tail, tail)?;
+    let end = bytes.windows(END.len()).rposition(|window| window == END);
+    let cut =
+        |s: &Source<'_>| s.wrong(format, length, "the directory of the archive before this (cut short?)");
+    let Some(end) = end else { return Err(cut(source)) };
+    let at = length - tail + end as u64;
+    let mut fields = Fields::little(&bytes, length - tail);
+    fields.go(end + 10);
+    let read = |f: &mut Fields<'_>| Ok((f.u16()?, f.u32()?, f.u32()?));
+    let (count, size, offset) =
+        read(&mut fields).map_err(|e: crate::source::EndOfFields| e.of(source, format))?;
+    let (size, offset) = (u64::from(size), u64::from(offset));
+    if offset + size > at {
+        let expected =
+            format!("a directory before this, not to {} (or an archive beyond 4 GB)", offset + size);
+        return Err(source.wrong(format, at, expected));
+    }
+    let bytes = source.bytes(format, offset, size)?;
+    let mut fields = Fields::little(&bytes, offset);
+    let mut found = Vec::new();
+    for _ in 0..count {
+        let at = fields.offset();
+        found.push(
+            entry(&mut fields)
+                .map_err(|e| e.of(source, format))?
+                .ok_or_else(|| source.wrong(format, at, "an entry of the directory of the archive"))?,
+        );
+    }
+    Ok(found)
+}
+
+/// One entry of the directory; `None` where there is none.
+fn entry(fields: &mut Fields<'_>) -> Result<Option<Member>, crate::source::EndOfFields> {
+    let mut entry = Fields::little(fields.take(ENTRY as usize)?, 0);
+    if entry.take(DIRECTORY.len())? != DIRECTORY {
+        return Ok(None);
+    }
+    entry.go(8);
+    let (flags, method) = (entry.u16()?, entry.u16()?);
+    entry.go(16);
+    let (checksum, packed, unpacked) = (entry.u32()?, entry.u32()?, entry.u32()?);
+    let [name, extra, comment] = [entry.u16()?, entry.u16()?, entry.u16()?].map(usize::from);
+    entry.go(42);
+    let offset = entry.u32()?.into();
+    let name = String::from_utf8_lossy(fields.take(name)?).replace('\\', "/");
+    fields.take(extra + comment)?;
+    let (packed, unpacked) = (packed.into(), unpacked.into());
+    let encrypted = flags & 1 == 1;
+    Ok(Some(Member { name, unpacked, packed, method, encrypted, checksum, offset }))
+}
+
+impl Member {
+    /// Where its bytes are; an error where they cannot be all there.
+    pub(crate) fn packed(&self, source: &mut Source<'_>, format: Format) -> Result<Packed> {
+        let packing = match (self.method, self.encrypted) {
+            (0, false) => Packing::Stored,
+            (8, false) => Packing::Deflate,
+            _ => {
+                let expected = "a member that is stored or deflated, without a password";
+                return Err(source.wrong(format, self.offset, expected));
+            }
+        };
+        let header = source.bytes(format, self.offset, HEADER)?;
+        let mut fields = Fields::little(&header, self.offset);
+        fields.go(26);
+        let behind = |f: &mut Fields<'_>| Ok(u64::from(f.u16()?) + u64::from(f.u16()?));
+        let behind = behind(&mut fields).map_err(|e: crate::source::EndOfFields| e.of(source, format))?;
+        if !header.starts_with(MAGIC) {
+            return Err(source.wrong(format, self.offset, "the header of a member"));
+        }
+        let offset = self.offset + HEADER + behind;
+        let packed = Packed { packing, offset, length: self.packed, unpacked: self.unpacked };
+        packed.check(source, format)?;
+        Ok(packed)
+    }
+
+    /// Its bytes, whose checksum is right.
+    pub(crate) fn unpack(&self, source: &mut Source<'_>, format: Format) -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.packed(source, format)?.unpack(source, format, &mut bytes)?;
+        let mut sum = Crc::new();
+        sum.update(&bytes);
+        if sum.sum() != self.checksum {
+            let expected = format!("{} with the checksum of the directory (damaged)", self.name);
+            return Err(source.wrong(format, self.offset, shortened(&expected, 120)));
+        }
+        Ok(bytes)
+    }
+}
+
+/// The error for an archive without a file of heights that is known.
+pub(crate) fn refused(members: &[Member]) -> ContentError {
+    const SHOWN: usize = 8;
+    let mut names: Vec<String> = members.iter().take(SHOWN).map(|m| shortened(&m.name, 64)).collect();
+    if members.len() > SHOWN {
+        names.push(format!("{} more", members.len() - SHOWN));
+    }
+    let members = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+    ContentError::Archive { members }
+}
+
+fn shortened(text: &str, most: usize) -> String {
+    text.chars().filter(|c| !c.is_control()).take(most).collect()
+}
+
+/// An archive of stored members; `None` where it would be 4 GB or longer.
+pub(crate) fn archive(members: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
+    // 1 January 1980, the first day that archives know: the same map gives the same bytes.
+    const DAY: u32 = 0x21 << 16;
+    let total: usize = members.iter().map(|(name, bytes)| bytes.len() + 2 * name.len() + 76).sum();
+    u32::try_from(total + TAIL as usize).ok()?;
+    let (mut archive, mut directory) = (Vec::with_capacity(total + TAIL as usize), Vec::new());
+    for (name, bytes) in members {
+        let mut sum = Crc::new();
+        sum.update(bytes);
+        // Version 2.0 reads it; no flags, stored.
+        let mut about = [20_u16, 0, 0].map(u16::to_le_bytes).concat();
+        let length = bytes.len() as u32;
+        about.extend([DAY, sum.sum(), length, length].map(u32::to_le_bytes).concat());
+        about.extend([name.len() as u16, 0].map(u16::to_le_bytes).concat());
+        directory.extend([DIRECTORY, &20_u16.to_le_bytes(), &about, &[0; 10]].concat());
+        directory.extend((archive.len() as u32).to_le_bytes());
+        directory.extend(name.bytes());
+        archive.extend([MAGIC, &about, name.as_bytes()].concat());
+        archive.extend(bytes);
+    }
+    let (offset, size, count) = (archive.len() as u32, directory.len() as u32, members.len() as u16);
+    archive.extend(directory);
+    archive.extend([END, &[0; 4], &[count; 2].map(u16::to_le_bytes).concat()].concat());
+    archive.extend([size, offset].map(u32::to_le_bytes).concat());
+    archive.extend([0; 2]);
+    Some(archive)
+}

@@ -1,0 +1,72 @@
+//! HDF5 files: of h5py 3.16 (`chunks.h5`, `packed.h5`), and of this crate.
+//!
+//! ```python
+//! with h5py.File("chunks.h5", "w") as f:
+//!     g = f.create_group("scan"); f["words"] = [b"a", b"bc"]
+//!     d = g.create_dataset("z", data=np.arange(12.0).reshape(3, 4).astype(">f4"), chunks=(2, 3),
+//!                          compression="gzip", shuffle=True, fletcher32=True)
+//!     d.dims[0].label = "y"; d.dims[1].label = "x"; d.attrs["units"] = "nm"
+//!     d.attrs["size"] = [4.0, 1.5]; d.attrs["size_unit"] = "um"
+//!     g["phase"] = np.ones((3, 4)); g["phase"].attrs["unit"] = "deg"
+//!     f["again"] = g
+//! with h5py.File("packed.h5", "w", libver="latest") as f:
+//!     d = f.create_dataset("heights", data=np.array([[1, 2, -9], [4, 5, 6]], "i2"), chunks=(1, 3))
+//!     d.attrs["scale_factor"] = 0.5; d.attrs["add_offset"] = 10.0
+//!     d.attrs["_FillValue"] = np.int16(-9); d.attrs["units"] = "mm"
+//!     f.create_dataset("hole", shape=(4, 4), dtype="f8")
+//!     n = f.create_dataset("part", shape=(2, 4), dtype="f8", chunks=(1, 4)); n[1, :] = [1, 2, 3, 4]
+//! ```
+
+use super::Small;
+
+pub fn files() -> Vec<Small> {
+    let small = |name, bytes: &[u8], number, shape, size, heights| Small {
+        name,
+        bytes: bytes.to_vec(),
+        number,
+        shape,
+        size,
+        heights,
+        compressed: true,
+    };
+    let chunks = include_bytes!("hdf5/chunks.h5");
+    let packed = include_bytes!("hdf5/packed.h5");
+    let nm = |heights: &[f64]| heights.iter().map(|h| h * 1e-9).collect();
+    let count: Vec<f64> = (0..12).map(f64::from).collect();
+    let undefined = f64::NAN;
+    let map = contact_model::HeightMap::with_undefined(
+        [3, 2],
+        [3e-6, 1e-6],
+        vec![1e-9, -2e-9, undefined, 0.0, 5e-9, 1.0],
+    );
+    let own = surface_io::hdf5(&map.unwrap(), surface_io::Metric::Metres).unwrap();
+    vec![
+        // Channel 0 is again/phase.
+        small("hdf5 in chunks", chunks, 1, [4, 3], Some([4e-6, 1.5e-6]), nm(&count)),
+        // The first index is x.
+        small(
+            "hdf5 packed",
+            packed,
+            0,
+            [2, 3],
+            None,
+            [10.5, 12.0, 11.0, 12.5, undefined, 13.0].map(|mm: f64| mm * 1e-3).to_vec(),
+        ),
+        small(
+            "hdf5 half written",
+            packed,
+            1,
+            [2, 4],
+            None,
+            vec![undefined, 1.0, undefined, 2.0, undefined, 3.0, undefined, 4.0],
+        ),
+        small(
+            "hdf5 of this crate",
+            &own,
+            0,
+            [3, 2],
+            Some([3e-6, 1e-6]),
+            vec![1e-9, -2e-9, undefined, 0.0, 5e-9, 1.0],
+        ),
+    ]
+}

@@ -1,0 +1,123 @@
+//! TIFF files.
+
+use super::Small;
+
+pub fn files() -> Vec<Small> {
+    let count: Vec<f64> = (0..6).map(f64::from).collect();
+    let words = |words: &[i16]| words.iter().flat_map(|w| w.to_le_bytes()).collect::<Vec<u8>>();
+    let small = |name, bytes, size, heights| Small {
+        name,
+        bytes,
+        number: 0,
+        shape: [3, 2],
+        size,
+        heights,
+        compressed: true,
+    };
+    let floats: Vec<u8> =
+        [0.0_f32, 1.0, 2.0, f32::NAN, 4.0, 5.0].iter().flat_map(|f| f.to_be_bytes()).collect();
+    // 3.5 pixels per micrometre along x, 2 along y.
+    let described =
+        "ImageJ=1.54f\nunit=\\u00B5m\nspacing=7.0\ncf=0\nc0=-10.0\nc1=0.5\nvunit=nm\nmin=0.0\nmax=5.0\n";
+    let calibrated =
+        Image { description: described, resolution: Some([[7, 2], [2, 1]]), ..Image::new(16, 1) };
+    vec![
+        // 72 dpi, two strips, upside down.
+        small(
+            "tiff",
+            Image { dpi: true, orientation: 4, ..Image::new(16, 2) }
+                .file(false, &[&words(&[3, 4, 5]), &words(&[0, 1, 2])]),
+            None,
+            count,
+        ),
+        small(
+            "tiff big-endian floats",
+            Image::new(32, 3).file(true, &[&floats[..12], &floats[12..]]),
+            None,
+            vec![0.0, 1.0, 2.0, f64::NAN, 4.0, 5.0],
+        ),
+        small(
+            "tiff of ImageJ",
+            calibrated.file(false, &[&words(&[0, 20, 40]), &words(&[1, 2, 3])]),
+            Some([3e-6 / 3.5, 2e-6 / 2.0]),
+            [-10.0, 0.0, 10.0, -9.5, -9.0, -8.5].map(|nm: f64| nm * 1e-9).to_vec(),
+        ),
+        // Runs of PackBits: a literal of 1 + 2 bytes, 3 + 1 equal ones.
+        small(
+            "tiff packed",
+            Image { compression: 32773, ..Image::new(16, 1) }
+                .file(false, &[&[2, 1, 0, 7, 0xff, 0, 0, 9], &[0xfd, 2, 1, 2, 2]]),
+            None,
+            vec![1.0, 7.0, 9.0 * 256.0, 514.0, 514.0, 514.0],
+        ),
+    ]
+}
+
+/// An image of three columns and two rows, one strip each.
+struct Image {
+    bits: u16,
+    sample_format: u16,
+    compression: u16,
+    orientation: u16,
+    dpi: bool,
+    description: &'static str,
+    resolution: Option<[[u32; 2]; 2]>,
+}
+
+impl Image {
+    fn new(bits: u16, sample_format: u16) -> Self {
+        let (compression, orientation) = (1, 1);
+        Self { bits, sample_format, compression, orientation, dpi: false, description: "", resolution: None }
+    }
+
+    fn file(&self, big: bool, strips: &[&[u8]; 2]) -> Vec<u8> {
+        let short = |n: u16| if big { n.to_be_bytes() } else { n.to_le_bytes() };
+        let long = |n: u32| if big { n.to_be_bytes() } else { n.to_le_bytes() };
+        let mut bytes = [if big { &b"MM"[..] } else { b"II" }, &short(42), &[0; 4]].concat();
+        let mut put = |data: &[u8]| {
+            let at = bytes.len() as u32;
+            bytes.extend(data);
+            bytes.resize(bytes.len().next_multiple_of(4), 0);
+            at
+        };
+        let at = strips.map(&mut put);
+        let lengths = strips.map(|strip| strip.len() as u32);
+        let longs = |all: [u32; 2]| all.map(long).concat();
+        let (offsets, counts) = (put(&longs(at)), put(&longs(lengths)));
+        let text = [self.description.as_bytes(), &[0]].concat();
+        let description = put(&text);
+        let resolution = self.resolution.or(self.dpi.then_some([[72, 1]; 2])).unwrap_or_default();
+        let resolution = resolution.map(|[a, b]| put(&longs([a, b])));
+        let directory = put(&[]);
+        // Tag, type (2 text, 3 short, 4 long, 5 ratio), count, value or offset.
+        let mut entries: Vec<(u16, u16, u32, u32)> = vec![
+            (256, 4, 1, 3),
+            (257, 4, 1, 2),
+            (258, 3, 1, self.bits.into()),
+            (259, 3, 1, self.compression.into()),
+            (262, 3, 1, 1),
+            (270, 2, text.len() as u32, description),
+            (273, 4, 2, offsets),
+            (274, 3, 1, self.orientation.into()),
+            (277, 3, 1, 1),
+            (278, 4, 1, 1),
+            (279, 4, 2, counts),
+            (282, 5, 1, resolution[0]),
+            (283, 5, 1, resolution[1]),
+            (296, 3, 1, if self.dpi { 2 } else { 1 }),
+            (339, 3, 1, self.sample_format.into()),
+        ];
+        entries.retain(|entry| self.resolution.is_some() || self.dpi || !matches!(entry.0, 282 | 283));
+        if self.description.is_empty() {
+            entries.retain(|entry| entry.0 != 270);
+        }
+        bytes.extend(short(entries.len() as u16));
+        for (tag, kind, count, value) in entries {
+            let value = if kind == 3 { [short(value as u16), [0; 2]].concat() } else { long(value).to_vec() };
+            bytes.extend([&short(tag)[..], &short(kind), &long(count), &value].concat());
+        }
+        bytes.extend([0; 4]);
+        bytes[4..8].copy_from_slice(&long(directory));
+        bytes
+    }
+}

@@ -1,0 +1,116 @@
+//! Real files of instruments against what an independent reader (SurfaceTopography 1.27.1) finds in them.
+//!
+//! The files are no part of the repository: where they are absent, the test says that it skipped.
+
+#![allow(clippy::unwrap_used)] // Tests, as a whole.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use surface_io::{ReadOptions, Scan, SurfaceFile};
+
+/// Relative differences of sizes, extrema and rms.
+const CLOSE: f64 = 1e-6;
+
+fn directory() -> Option<PathBuf> {
+    let found = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/measured");
+    found.join("expected.json").exists().then_some(found)
+}
+
+/// Factor of a length unit, in metres; `None` for what is none.
+fn metres(unit: &Value) -> Option<f64> {
+    match unit.as_str()? {
+        "m" => Some(1.0),
+        "mm" => Some(1e-3),
+        "\u{b5}m" => Some(1e-6),
+        "nm" => Some(1e-9),
+        _ => None,
+    }
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().map(|all| all.iter().filter_map(Value::as_f64).collect()).unwrap_or_default()
+}
+
+fn check(expected: &Value, scan: &Scan) -> Result<(), String> {
+    let metadata = scan.metadata();
+    let factor = metres(&expected["unit"]);
+    // Without a length unit, values are compared as they stand.
+    let lateral = factor.unwrap_or(1.0);
+    let own = metadata.unit.as_ref().map_or(1.0, |u| u.value.to_si(1.0));
+    let to = if factor.is_some() { own / lateral } else { 1.0 };
+    let close = |what: &str, found: f64, wanted: f64, scale: f64| {
+        let near = (found - wanted).abs() <= CLOSE * scale.max(wanted.abs());
+        near.then_some(()).ok_or_else(|| format!("{what}: {found:e}, expected {wanted:e}"))
+    };
+    let pixels: Vec<usize> = numbers(&expected["pixels"]).iter().map(|n| *n as usize).collect();
+    if [metadata.columns, metadata.rows] != pixels[..] {
+        return Err(format!("{} x {}, expected {pixels:?}", metadata.columns, metadata.rows));
+    }
+    let sizes = numbers(&expected["sizes"]);
+    if factor.is_some() {
+        let size = metadata.size.ok_or("no size")?;
+        for (found, wanted) in size.iter().zip(sizes) {
+            close("size", found.value(), wanted * lateral, 0.0)?;
+        }
+        if metadata.unit.is_none() {
+            return Err("no unit".into());
+        }
+    }
+    let rms = expected["rms"].as_f64().unwrap();
+    close("undefined", metadata.undefined_share(), expected["undefined"].as_f64().unwrap(), 0.0)?;
+    let [low, high] = metadata.range.ok_or("no height")?;
+    close("minimum", low * to, expected["minimum"].as_f64().unwrap(), rms)?;
+    close("maximum", high * to, expected["maximum"].as_f64().unwrap(), rms)?;
+    close("rms", metadata.rms_height.ok_or("no rms")? * to, rms, rms)?;
+    for sample in expected["samples"].as_array().into_iter().flatten() {
+        let at = numbers(sample);
+        let found = scan.height(at[1] as usize, at[0] as usize);
+        match (found, sample[2].as_f64()) {
+            (Some(found), Some(wanted)) => close(&format!("height at {sample}"), found * to, wanted, rms)?,
+            (None, None) => {}
+            (found, _) => return Err(format!("height at {sample}: {found:?}")),
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn real_files_are_read_as_an_independent_reader_does() {
+    let Some(directory) = directory() else {
+        println!("skipped: no ../shared/measured beside the repository");
+        return;
+    };
+    let text = std::fs::read_to_string(directory.join("expected.json")).unwrap();
+    let expected: Vec<Value> = serde_json::from_str(&text.replace("NaN", "null")).unwrap();
+    let mut wrong = Vec::new();
+    for entry in &expected {
+        let name = entry["file"].as_str().unwrap();
+        let file = SurfaceFile::open(&directory.join(name), &ReadOptions::default());
+        let found = match (file, entry.get("refused")) {
+            (Err(error), Some(_)) => {
+                println!("refused: {error}");
+                Ok(())
+            }
+            (Ok(file), Some(_)) => match file.scan() {
+                Ok(_) => Err("read".into()),
+                Err(error) => {
+                    println!("refused: {error}");
+                    Ok(())
+                }
+            },
+            (Err(error), None) => Err(error.to_string()),
+            (Ok(file), None) => {
+                let channel = entry["channel"].as_u64().unwrap() as usize;
+                match file.scans().nth(channel) {
+                    None => Err("no such channel".into()),
+                    Some(Err(error)) => Err(error.to_string()),
+                    Some(Ok(scan)) => check(entry, &scan),
+                }
+            }
+        };
+        if let Err(problem) = found {
+            wrong.push(format!("{name}, channel {}: {problem}", entry["channel"]));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), expected.len(), wrong.join("\n"));
+}
