@@ -1,5 +1,6 @@
 //! Channels: the maps in one file, and the heights of each where the file holds them.
 
+use crate::choice::ChannelChoice;
 use crate::error::{ContentError, Place, Result};
 use crate::extent::Extent;
 use crate::format::Format;
@@ -7,40 +8,6 @@ use crate::number_type::NumberType;
 use crate::quantity::{Dimension, QuantityError, Unit};
 use crate::source::Source;
 use std::fmt;
-use std::str::FromStr;
-
-/// Which channel of a file is meant.
-///
-/// ```
-/// use surface_io::ChannelChoice;
-/// assert_eq!("2".parse(), Ok(ChannelChoice::Number(2)));
-/// assert_eq!("ZSensor".parse(), Ok(ChannelChoice::Name("ZSensor".into())));
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ChannelChoice {
-    /// By its number, counted from 0.
-    Number(usize),
-    /// By its name, which no other channel may have.
-    Name(String),
-}
-
-impl FromStr for ChannelChoice {
-    type Err = std::convert::Infallible;
-
-    /// A whole number, or else a name.
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(text.trim().parse().map_or_else(|_| Self::Name(text.trim().to_owned()), Self::Number))
-    }
-}
-
-impl fmt::Display for ChannelChoice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Name(name) => write!(f, "{name:?}"),
-        }
-    }
-}
 
 /// Unit of a channel's values as the file says it.
 #[derive(Debug, Clone, PartialEq)]

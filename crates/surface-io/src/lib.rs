@@ -23,7 +23,7 @@
 //!
 //! # Nothing is guessed silently
 //!
-//! * **Format.** NPY by its first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
+//! * **Format.** Binary ones by their first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
 //!   a text matrix; three columns without either are points or a matrix by their comments, points where the first two are all
 //!   places of a grid, or else an error; two
 //!   columns, the first of ascending numbers, are a profile, which is refused by its name ([`profile`] reads it). Other
@@ -83,6 +83,7 @@
 //! Surfaces in finer cells than measured, filters, formats that are not in [`Format`].
 
 mod channel;
+mod choice;
 mod composite;
 mod describe;
 mod detect;
@@ -111,7 +112,7 @@ mod vti;
 mod write;
 mod zip;
 
-pub use channel::ChannelChoice;
+pub use choice::ChannelChoice;
 pub use composite::composite;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};

@@ -1,6 +1,6 @@
 //! How a file is read.
 
-use crate::channel::ChannelChoice;
+use crate::choice::ChannelChoice;
 use crate::format::Format;
 use crate::quantity::{Quantity, Unit};
 use crate::sides::Sides;

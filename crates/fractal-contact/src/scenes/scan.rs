@@ -5,8 +5,8 @@ use crate::scenes::entries::{Entries, Entry, LengthOrPair, Read, System};
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Preprocessing, Quantity, ReadOptions,
-    Scan, Sides, Undefined, Unit, Window,
+    ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed, Preprocessing,
+    Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
 };
 
 /// A map from a file.

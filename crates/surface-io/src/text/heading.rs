@@ -4,7 +4,7 @@
 //! The words are those of the readers in <https://github.com/ContactEngineering/SurfaceTopography> (`IO/Text.py`) and Gwyddion
 //! (`spip-asc.c`), and their usual variants. A length counts where it has a unit; a number of pixels has none and is compared with the lines.
 
-use super::statement::{Axes, Statement, key_and_value, lengths};
+use super::statement::{Axes, Side, Statement, key_and_value, lengths};
 use crate::error::ContentError;
 use crate::extent::{Extent, agree};
 use crate::format::Format;
@@ -37,14 +37,6 @@ pub(crate) struct Heading {
     spip: bool,
     /// Name of the channel.
     pub(crate) name: Option<String>,
-}
-
-/// A side and how far it may be rounded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Side {
-    pub(crate) quantity: Quantity,
-    /// Half of the last decimal that is printed, relative; 0 for whole numbers and those with an exponent.
-    pub(crate) rounding: f64,
 }
 
 /// What a header says of each axis: the length of the map, and that of a cell.

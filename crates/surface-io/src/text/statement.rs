@@ -1,7 +1,14 @@
 //! One line of a header: its key, and lengths as programs write them.
 
-use super::heading::Side;
 use crate::quantity::{Dimension, Quantity};
+
+/// A side and how far it may be rounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Side {
+    pub(crate) quantity: Quantity,
+    /// Half of the last decimal that is printed, relative; 0 for whole numbers and those with an exponent.
+    pub(crate) rounding: f64,
+}
 
 /// What a key is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
