@@ -95,7 +95,7 @@ pub enum Command {
         #[arg(long)]
         cell: Option<surface_io::Sides>,
         #[command(flatten)]
-        more: MapArguments,
+        more: Box<MapArguments>,
     },
     /// Draws a self-affine surface into a file: .npy, .txt (text matrix), .xyz or .vti by its ending.
     #[command(after_help = SURFACE)]
