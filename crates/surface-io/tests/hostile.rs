@@ -399,15 +399,55 @@ fn archives_are_told_by_their_members() {
     assert!(error.contains("in main.xml a surface, FeatureType SUR, found \"PRF\""), "{error}");
 }
 
+/// One byte makes heights that are upside down, of another scale, or not heights at all: what is refused, and the message.
 #[test]
-fn heights_that_may_be_upside_down_are_refused() {
-    let mut sur = files::all().into_iter().find(|file| file.name == "sur").unwrap().bytes;
-    sur[290] = 1;
-    let error = SurfaceFile::from_bytes("a", &sur, &ReadOptions::default()).unwrap_err().to_string();
-    assert!(
-        error.starts_with("a: SUR (Digital Surf), offset 290: expected no mark of an inversion"),
-        "{error}"
-    );
+fn heights_that_may_be_others_are_refused() {
+    let small = |name: &str| files::all().into_iter().find(|file| file.name == name).unwrap().bytes;
+    let error =
+        |bytes: &[u8]| SurfaceFile::from_bytes("a", bytes, &ReadOptions::default()).unwrap_err().to_string();
+    let changed = |name: &str, at: usize, to: &[u8]| {
+        let mut bytes = small(name);
+        bytes[at..at + to.len()].copy_from_slice(to);
+        error(&bytes)
+    };
+    // Text whose bytes are Latin-1.
+    let replaced = |name: &str, from: &str, to: &str| {
+        let text: String = small(name).iter().map(|&b| char::from(b)).collect();
+        assert!(text.contains(from), "{name}: {from}");
+        error(&text.replace(from, to).chars().map(|c| c as u8).collect::<Vec<_>>())
+    };
+    let nanoscope = "nanoscope with two channels";
+    for (found, expected) in [
+        (changed("sur", 290, &[1]), "SUR (Digital Surf), offset 290: expected no mark of an inversion"),
+        (changed("metropro", 233, &[1]), "MetroPro (Zygo), offset 232: expected no mark of another sign"),
+        (
+            changed("metropro", 5, &[2]),
+            "MetroPro (Zygo), offset 4: expected the format 1 and 834 bytes of header",
+        ),
+        (
+            changed("metropro", 219, &[2]),
+            "MetroPro (Zygo), offset 218: expected a phase resolution of 0 or 1",
+        ),
+        (changed("metropro", 63, &[0]), "MetroPro (Zygo), offset 60: expected 4 bytes, as width and height"),
+        (changed("metropro", 168, &[0xb5]), "MetroPro (Zygo), offset 164: expected a scale"),
+        (
+            changed("opd of int16 without a size", 66, &[5]),
+            "OPD (Wyko), offset 126: expected a number as Mult",
+        ),
+        (replaced("al3d", "800\0", "000\0"), "AL3D (Alicona), offset 17: expected heights behind the tags"),
+        (replaced(nanoscope, "\r\n", "\n"), "Nanoscope, offset 0: expected lines that end in CR LF"),
+        (replaced(nanoscope, "\n", "\r\n"), "Nanoscope, offset 0: expected lines that end in CR LF"),
+        (
+            replaced(nanoscope, "\\*File list\r", "\\*Force file list\r"),
+            "Nanoscope, offset 0: expected a map",
+        ),
+        (
+            replaced(nanoscope, "offset: 4096", "offset: 0096"),
+            "Nanoscope, offset 159: expected a data offset behind",
+        ),
+    ] {
+        assert!(found.starts_with(&format!("a: {expected}")), "{found}");
+    }
 }
 
 #[test]

@@ -37,6 +37,12 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         found.ok_or_else(|| source.wrong(FORMAT, begin, format!("a tag {key} with a whole number")))
     };
     let (columns, rows) = (count("Cols")? as usize, count("Rows")? as usize);
+    let (offset, end) = (u64::from(count("DepthImageOffset")?), begin + (tags.len() as u64 + 2) * TAG);
+    // 0 stands for none.
+    if offset < end {
+        let expected = format!("heights behind the tags, DepthImageOffset >= {end}");
+        return Err(source.wrong(FORMAT, begin, expected));
+    }
     let number = |key: &str| find(key).and_then(|text| text.parse::<f64>().ok());
     let side = |key: &str| {
         let cell = number(key).filter(|cell| *cell > 0.0)?;
@@ -46,7 +52,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let raw = RawHeights {
         line_bytes: Some((4 * columns as u64).div_ceil(8) * 8),
         undefined: undefined.map_or(Undefined::None, Undefined::Near),
-        ..RawHeights::new(FORMAT, Bytes::File(count("DepthImageOffset")?.into()), NumberType::F32)
+        ..RawHeights::new(FORMAT, Bytes::File(offset), NumberType::F32)
     };
     raw.check(source, rows, columns)?;
     Ok(vec![StoredChannel {

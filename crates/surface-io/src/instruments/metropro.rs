@@ -1,8 +1,11 @@
 //! MetroPro .dat, of Zygo's interferometers: a header of 834 or 4096 bytes, the intensities, and the phase as big-endian int32 row by row.
 //!
-//! Height of a count in metres: interference scale x obliquity x wavelength over 4096, 32768 or 131072 by the phase resolution, its sign as
-//! the header says (MetroPro Reference Guide, OMP-0347; the readers of Gwyddion and `SurfaceTopography` agree). Numbers from 2147483640 on
+//! Height of a count in metres: interference scale x obliquity x wavelength over 4096, 32768 or 131072 by the phase resolution
+//! (MetroPro Reference Guide, OMP-0347; the readers of Gwyddion and `SurfaceTopography` agree). Numbers from 2147483640 on
 //! are undefined; a lateral resolution of 0 is no size. The first row of the file is y = 0. Intensities are not read.
+//!
+//! Not read: files with the mark of another sign. Gwyddion, `SurfaceTopography` and itom turn their heights over; the formula of the
+//! guide has no sign, and other readers follow it.
 
 use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
 use crate::error::Result;
@@ -27,29 +30,61 @@ pub(crate) const READER: Reader = Reader {
 
 /// What the header says of the phase.
 struct Phase {
-    offset: u64,
+    /// Format, 1 to 3, and length of the header.
+    header: (u16, u32),
+    /// Bytes of the intensities and of the phase by their shapes.
+    by_shape: [u64; 2],
+    /// The same as the header states them.
+    stated: [u64; 2],
     columns: usize,
     rows: usize,
-    scale: f64,
+    /// Height of a fringe.
+    fringe: f64,
     cell: f64,
+    resolution: i16,
+    sign: i16,
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let bytes = source.bytes(FORMAT, 0, HEADER)?;
-    let header = if bytes[3] == 0x71 { LONG_HEADER } else { HEADER };
-    let phase = phase(&bytes, header).map_err(|end: EndOfFields| end.of(source, FORMAT))?;
-    let Some(Phase { offset, columns, rows, scale, cell }) = phase else {
-        let expected = format!("a header of {header} bytes and a phase resolution of 0, 1 or 2");
-        return Err(source.wrong(FORMAT, 6, expected));
+    let phase = Phase::read(&bytes).map_err(|end: EndOfFields| end.of(source, FORMAT))?;
+    let format = u16::from(bytes[3] - 0x6e);
+    let header = if format == 3 { LONG_HEADER } else { HEADER };
+    let wrong = |offset: u64, expected: String| Err(source.wrong(FORMAT, offset, expected));
+    if (phase.header.0, u64::from(phase.header.1)) != (format, header) {
+        let (found, length) = phase.header;
+        return wrong(
+            4,
+            format!("the format {format} and {header} bytes of header, found {found} and {length}"),
+        );
+    }
+    for (i, at) in [(0, 60), (1, 72)] {
+        let [own, stated] = [phase.by_shape, phase.stated].map(|n| n[i]);
+        if own != stated {
+            return wrong(at, format!("{own} bytes, as width and height before say, found {stated}"));
+        }
+    }
+    let counts = match (phase.resolution, format) {
+        (0, _) => 4096.0,
+        (1, _) => 32768.0,
+        (2, 2..) => 131_072.0,
+        _ => return wrong(218, "a phase resolution of 0 or 1, or 2 from the second format on".into()),
     };
-    if !(scale.is_finite() && scale.abs() > 0.0) {
-        return Err(source.wrong(FORMAT, 164, "a scale, a wavelength and an obliquity other than 0"));
+    let scale = phase.fringe / counts;
+    if !(scale.is_finite() && scale > 0.0) {
+        return wrong(164, "a scale, a wavelength and an obliquity above 0".into());
+    }
+    if phase.sign != 0 {
+        let expected =
+            "no mark of another sign: readers disagree whether heights are turned over; export text";
+        return wrong(232, expected.into());
     }
     let raw = RawHeights {
         scale,
         undefined: Undefined::AtLeast(2_147_483_640.0),
-        ..RawHeights::new(FORMAT, Bytes::File(offset), NumberType::I32.big_endian())
+        ..RawHeights::new(FORMAT, Bytes::File(header + phase.stated[0]), NumberType::I32.big_endian())
     };
+    let Phase { rows, columns, cell, .. } = phase;
     raw.check(source, rows, columns)?;
     let side = (cell > 0.0).then(|| Quantity::new(cell, Dimension::LENGTH).ok().map(Extent::Cell)).flatten();
     Ok(vec![StoredChannel {
@@ -63,28 +98,27 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }])
 }
 
-/// `None` for a header of another length or resolution.
-fn phase(bytes: &[u8], header: u64) -> Result<Option<Phase>, EndOfFields> {
-    let mut fields = Fields::big(bytes, 0);
-    let length = fields.go(6).u32()?;
-    let intensities: [u16; 3] = [fields.go(52).u16()?, fields.u16()?, fields.u16()?];
-    let [columns, rows] = [fields.go(68).u16()?, fields.u16()?];
-    let [interference, wavelength] = [fields.go(164).f32()?, fields.f32()?];
-    let obliquity = fields.go(176).f32()?;
-    let cell = fields.go(184).f32()?;
-    let counts = match fields.go(218).i16()? {
-        0 => 4096.0,
-        1 => 32768.0,
-        2 => 131_072.0,
-        _ => return Ok(None),
-    };
-    let sign = if fields.go(232).i16()? == 0 { 1.0 } else { -1.0 };
-    let before = 2 * intensities.iter().map(|&n| u64::from(n)).product::<u64>();
-    Ok((u64::from(length) == header).then(|| Phase {
-        offset: header + before,
-        columns: columns.into(),
-        rows: rows.into(),
-        scale: sign * interference * obliquity * wavelength / counts,
-        cell,
-    }))
+impl Phase {
+    fn read(bytes: &[u8]) -> Result<Self, EndOfFields> {
+        let mut fields = Fields::big(bytes, 0);
+        let header = (fields.go(4).u16()?, fields.u32()?);
+        let intensities: [u16; 3] = [fields.go(52).u16()?, fields.u16()?, fields.u16()?];
+        let of_intensities = fields.go(60).u32()?;
+        let [columns, rows] = [fields.go(68).u16()?, fields.u16()?];
+        let of_phase = fields.u32()?;
+        let [interference, wavelength] = [fields.go(164).f32()?, fields.f32()?];
+        let obliquity = fields.go(176).f32()?;
+        let before = 2 * intensities.iter().map(|&n| u64::from(n)).product::<u64>();
+        Ok(Self {
+            header,
+            by_shape: [before, 4 * u64::from(columns) * u64::from(rows)],
+            stated: [of_intensities, of_phase].map(u64::from),
+            columns: columns.into(),
+            rows: rows.into(),
+            fringe: interference * obliquity * wavelength,
+            cell: fields.go(184).f32()?,
+            resolution: fields.go(218).i16()?,
+            sign: fields.go(232).i16()?,
+        })
+    }
 }

@@ -4,9 +4,13 @@
 //! The height of a count is that of the whole range over the counts: the hard value of `@2:Z scale` (volts) times the soft scale that it
 //! names (`[Sens. Zsens]`, nm/V) over 256^(bytes a pixel); from version 9.2 on integers have four bytes whatever that entry says
 //! (<http://www.physics.arizona.edu/~smanne/DI/software/fileformats.html>; the readers of Gwyddion and `SurfaceTopography` agree). A channel
-//! whose soft scale is no length per volt (phase, amplitude) holds counts. The first line in the file is the last row: y goes upwards.
+//! whose soft scale is no length per volt (phase, amplitude) holds counts. The first line in the file is the last row: y goes upwards,
+//! whatever the direction of the frame.
 //!
-//! Not read: versions before 4.3 (no `@2:Z scale`), data as text, force curves.
+//! `Scan Size` has the side along y where both sides have the ratio of `Aspect Ratio`; readers disagree on the side of other images,
+//! which is left open. All lines are read, also those beyond `Valid data len`: the details tell how many are valid.
+//!
+//! Not read: versions before 4.3 (no `@2:Z scale`), data as text, force curves, files whose line ends were changed.
 
 use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
 use crate::error::Result;
@@ -19,7 +23,7 @@ use crate::source::Source;
 
 const FORMAT: Format = Format::Nanoscope;
 /// First bytes, in small letters.
-const BEGINNINGS: [&[u8]; 2] = [b"\\*file list", b"\\*ec file list"];
+const BEGINNINGS: [&[u8]; 3] = [b"\\*file list", b"\\*ec file list", b"\\*force file list"];
 const END: &str = "\\*file list end";
 /// Longest header that is read: those of files have 8 to 80 kB.
 const LONGEST: u64 = 1 << 20;
@@ -49,13 +53,14 @@ impl Section {
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let sections = sections(source)?;
+    let (sections, end) = sections(source)?;
     let lists = |ending: &'static str| sections.iter().filter(move |s| s.name.ends_with(ending));
     let find = |ending: &'static str, key: &str| lists(ending).find_map(|s| s.find(key));
     let version = find("file list", "version").unwrap_or_default().trim_start_matches("0x");
     let version = u32::from_str_radix(version, 16).unwrap_or(0);
     let context = find("file list", "start context").unwrap_or_default();
-    if sections.iter().any(|s| s.find("operating mode") == Some("Force")) || context == "FOL" {
+    let curves = sections.first().is_some_and(|s| s.name == "force file list");
+    if curves || sections.iter().any(|s| s.find("operating mode") == Some("Force")) || context == "FOL" {
         return Err(source.wrong(FORMAT, 0, "a map; this file holds force curves"));
     }
     let scales = |key: &str| {
@@ -63,21 +68,26 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             .iter()
             .find_map(|list| find(list, key))
     };
-    lists("image list").map(|image| channel(source, image, version, &scales)).collect()
+    lists("image list").map(|image| channel(source, image, (version, end), &scales)).collect()
 }
 
-/// Reads the header up to its end.
-fn sections(source: &mut Source<'_>) -> Result<Vec<Section>> {
+/// Reads the header up to its end, whose offset comes with it.
+fn sections(source: &mut Source<'_>) -> Result<(Vec<Section>, u64)> {
     let bytes = source.start(LONGEST)?;
     let mut sections: Vec<Section> = Vec::new();
     let mut at = 0;
     for line in bytes.split_inclusive(|&b| b == b'\n') {
         let offset = at;
         at += line.len() as u64;
+        if offset == 0 && (!line.ends_with(b"\r\n") || line.ends_with(b"\r\r\n")) {
+            // Numbers that look like line ends were changed too, and those behind them moved.
+            let expected = "lines that end in CR LF; this file was copied as text, which damages its numbers";
+            return Err(source.wrong(FORMAT, offset, expected));
+        }
         // Latin-1: degrees, and a tilde or the micro sign for micro.
         let line: String = line.trim_ascii().iter().map(|&b| char::from(b)).collect();
         if line.to_ascii_lowercase() == END {
-            return Ok(sections);
+            return Ok((sections, at));
         }
         let Some(entry) = line.strip_prefix('\\') else {
             return Err(source.wrong(FORMAT, offset, "a line of the header that begins with a backslash"));
@@ -96,7 +106,7 @@ fn sections(source: &mut Source<'_>) -> Result<Vec<Section>> {
 fn channel<'s>(
     source: &Source<'_>,
     image: &Section,
-    version: u32,
+    (version, end): (u32, u64),
     scales: &impl Fn(&str) -> Option<&'s str>,
 ) -> Result<StoredChannel> {
     let at = |key: &str| image.entries.iter().find(|e| e.0 == key).map_or(0, |e| e.2);
@@ -119,6 +129,10 @@ fn channel<'s>(
         let expected = format!("a data length of {columns} x {rows} numbers of {size} bytes, found {length}");
         return Err(source.wrong(FORMAT, at("data length"), expected));
     }
+    if offset < end {
+        let expected = format!("a data offset behind the header, which ends at {end}, found {offset}");
+        return Err(source.wrong(FORMAT, at("data offset"), expected));
+    }
     let (columns, rows) = (columns as usize, rows as usize);
     let mut raw =
         RawHeights { reversed: [false, true], ..RawHeights::new(FORMAT, Bytes::File(offset), kind) };
@@ -139,8 +153,18 @@ fn channel<'s>(
         None => StoredUnit::NoHeights(None),
     };
     let mut details = raw.details();
-    if let Some(line) = image.find("scan line") {
-        details = format!("{details}, {} scan", line.to_lowercase());
+    // Images of one name differ by these.
+    for (key, behind) in [("scan line", " scan"), ("line direction", "")] {
+        if let Some(word) = image.find(key) {
+            let word: String = word.to_lowercase().chars().take(32).collect();
+            details = format!("{details}, {word}{behind}");
+        }
+    }
+    let valid = ["valid data len x", "valid data len y"].map(|key| image.find(key)?.parse::<usize>().ok());
+    if let [Some(x), Some(y)] = valid
+        && [x, y] != [columns, rows]
+    {
+        details = format!("{details}, of them {x} x {y} valid");
     }
     Ok(StoredChannel {
         name: name(image),
@@ -148,7 +172,7 @@ fn channel<'s>(
         rows,
         columns,
         unit,
-        extent: extents(image.find("scan size").unwrap_or_default()),
+        extent: extents(image.find("scan size").unwrap_or_default(), image.find("aspect ratio")),
         heights: StoredHeights::Raw(raw),
     })
 }
@@ -205,7 +229,7 @@ impl<'a> Scale<'a> {
             return None;
         }
         let height = self.value * (hard.to_si(1.0) / per.to_si(1.0)) * soft.value;
-        height.is_finite().then_some((height, unit))
+        (height.is_finite() && height.abs() > 0.0).then_some((height, unit))
     }
 }
 
@@ -215,8 +239,10 @@ fn length_unit(text: &str) -> Option<Unit> {
     (unit.dimension() == Dimension::LENGTH).then_some(unit)
 }
 
-/// `10 10 ~m`, or one number for a square.
-fn extents(text: &str) -> [Option<Extent>; 2] {
+/// `10 10 ~m`, or one number for a square; without the second side where the aspect ratio, x to y, is another one.
+fn extents(text: &str, aspect: Option<&str>) -> [Option<Extent>; 2] {
+    /// Digits that are printed of a side.
+    const PRINTED: f64 = 5e-3;
     let words: Vec<&str> = text.split_whitespace().collect();
     let (x, y, unit) = match words[..] {
         [x, y, unit] => (x, y, unit),
@@ -224,8 +250,18 @@ fn extents(text: &str) -> [Option<Extent>; 2] {
         _ => return [None; 2],
     };
     let Some(unit) = length_unit(unit) else { return [None; 2] };
-    [x, y].map(|side| {
+    let [x, y] = [x, y].map(|side| {
         let length = Quantity::of(side.parse().ok()?, &unit).ok()?;
-        (length.value() > 0.0).then_some(Extent::Side(length))
-    })
+        (length.value() > 0.0).then_some(length)
+    });
+    let (Some(x), Some(y)) = (x, y) else { return [None; 2] };
+    let ratio = aspect.map_or(Some(x.value() / y.value()), ratio);
+    let agree = ratio.is_some_and(|ratio| (x.value() / y.value() / ratio - 1.0).abs() <= PRINTED);
+    [Some(Extent::Side(x)), agree.then_some(Extent::Side(y))]
+}
+
+/// `2:1`.
+fn ratio(text: &str) -> Option<f64> {
+    let (x, y) = text.split_once(':')?;
+    Some(x.trim().parse::<f64>().ok()? / y.trim().parse::<f64>().ok()?)
 }

@@ -41,14 +41,18 @@ struct Block {
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let blocks = blocks(source)?;
     let mut number = |name: &str| -> Result<Option<f64>> {
-        let Some(block) = blocks.iter().find(|b| b.name == name) else { return Ok(None) };
-        // By the length: some files say another type.
+        let block = blocks.iter().find(|b| b.name == name && b.length > 0);
+        let Some(block) = block else { return Ok(None) };
         let kind = match (block.kind, block.length) {
             (8, 8..) => NumberType::F64,
             (6, 2) => NumberType::I16,
             (6 | 12, 4) => NumberType::I32,
             (7, 4..) => NumberType::F32,
-            _ => return Ok(None),
+            _ => {
+                let expected =
+                    format!("a number as {name}, found {} bytes of type {}", block.length, block.kind);
+                return Err(source.wrong(FORMAT, block.offset, expected));
+            }
         };
         let bytes = source.bytes(FORMAT, block.offset, kind.bytes() as u64)?;
         let mut fields = Fields::little(&bytes, block.offset);
@@ -56,9 +60,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let (wavelength, mult) = (number("Wavelength")?, number("Mult")?.unwrap_or(1.0));
     let (aspect, pixel) = (number("Aspect")?.unwrap_or(1.0), number("Pixel_size")?);
-    let scale = wavelength.map(|w| w / mult).filter(|s| s.is_finite() && s.abs() > 0.0);
+    let scale = wavelength.map(|w| w / mult).filter(|s| s.is_finite() && *s > 0.0);
     let Some(scale) = scale else {
-        return Err(source.wrong(FORMAT, DIRECTORY, "blocks Wavelength and Mult other than 0"));
+        return Err(source.wrong(FORMAT, DIRECTORY, "blocks Wavelength and Mult above 0"));
     };
     let side = |millimetres: Option<f64>| {
         let length = millimetres.filter(|l| *l > 0.0)? * 1e-3;

@@ -1,8 +1,10 @@
 //! PLu, of Sensofar's confocal microscopes: a header of 500 bytes, then layers of heights in micrometres, float32 row by row.
 //!
 //! The file has no first bytes of its own: it is told by its type (3, a topography), two shapes that agree, cells of positive sides and its
-//! length (Gwyddion's and `SurfaceTopography`'s descriptions agree). 1000001 is undefined; the first row of the file is y = 0. Profiles
-//! and the pictures behind each layer are not read.
+//! length (Gwyddion's and `SurfaceTopography`'s descriptions agree). 1000001 is undefined; the first row of the file is y = 0.
+//!
+//! Further layers are read where no pictures are (`SurfaceTopography` has them one behind another); where they stand beside pictures no
+//! description says, and only the first layer is read. Profiles and the pictures are not read.
 
 use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
 use crate::error::Result;
@@ -72,13 +74,15 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let side = |micrometres: f64| Quantity::new(micrometres * 1e-6, Dimension::LENGTH).ok().map(Extent::Cell);
     let mut at = HEADER;
     let mut channels = Vec::new();
-    for layer in 0..header.layers {
+    let layers = if header.pictures == 0 { header.layers } else { 1 };
+    for layer in 0..layers {
         let shape = source.bytes(FORMAT, at, SHAPE)?;
         let mut fields = Fields::little(&shape, at);
         let mut sides = || Ok([fields.u32()?, fields.u32()?]);
         let [rows, columns] = sides().map_err(|end: EndOfFields| end.of(source, FORMAT))?;
-        if rows.max(columns) > MOST {
-            return Err(source.wrong(FORMAT, at, format!("at most {MOST} points along a side")));
+        if [rows, columns] != header.shape {
+            let [rows, columns] = header.shape;
+            return Err(source.wrong(FORMAT, at, format!("a layer of {rows} rows of {columns} points")));
         }
         let raw = RawHeights {
             undefined: Undefined::Equal(UNDEFINED),
@@ -87,7 +91,11 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         raw.check(source, rows as usize, columns as usize)?;
         channels.push(StoredChannel {
             name: Some(format!("layer{layer}")),
-            details: raw.details(),
+            details: if header.layers > layers {
+                format!("{}, the first of {} layers", raw.details(), header.layers)
+            } else {
+                raw.details()
+            },
             rows: rows as usize,
             columns: columns as usize,
             unit: StoredUnit::written("um"),
@@ -95,8 +103,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             heights: StoredHeights::Raw(raw),
         });
         let points = u64::from(rows) * u64::from(columns);
-        // Pictures of three bytes a point behind each layer.
-        at += SHAPE + 4 * points + RANGE + 3 * points * u64::from(header.pictures);
+        at += SHAPE + 4 * points + RANGE;
     }
     Ok(channels)
 }

@@ -34,7 +34,16 @@ pub fn files() -> Vec<Small> {
         heights: [0.0, 7.0, 1.0, 100_000.0, -2.0, 3.0].map(|n| n * count).to_vec(),
         compressed: false,
     };
-    vec![two, new]
+    // Sides of another ratio than the header says of them are left open.
+    let oblong =
+        image.replace("3 1 ~m\r\n", "3 3 ~m\r\n\\Aspect Ratio: 3:1\r\n\\Line Direction: Retrace\r\n");
+    let oblong = Small {
+        name: "nanoscope of an oblong map",
+        bytes: file("0x05300001", &[&oblong], &counts),
+        size: None,
+        ..two.clone()
+    };
+    vec![two, new, oblong]
 }
 
 fn file(version: &str, images: &[&str], data: &[u8]) -> Vec<u8> {

@@ -15,7 +15,11 @@ pub fn files() -> Vec<Small> {
         heights: heights(1.0),
         compressed: false,
     };
-    vec![small("plu", 0, 1, 0), small("plu of two layers with pictures", 1, 2, 1)]
+    vec![
+        small("plu", 0, 1, 1),
+        small("plu of two layers", 1, 2, 0),
+        small("plu of two layers and a picture", 0, 2, 1),
+    ]
 }
 
 fn file(heights: &[f32], layers: u8, pictures: u8) -> Vec<u8> {
