@@ -185,7 +185,20 @@ impl RawHeights {
         }
     }
 
-    /// An error where the numbers are not all there; called before the channel is listed.
+    /// An error where every height would be the same or none; called before the channel is listed.
+    pub(crate) fn check_scale(&self, source: &Source<'_>) -> Result<()> {
+        if self.scale.is_finite() && self.scale.abs() > 0.0 && self.shift.is_finite() {
+            return Ok(());
+        }
+        let offset = if let Bytes::File(offset) = self.bytes { offset } else { 0 };
+        let expected = format!(
+            "a factor other than 0 and a finite shift of the heights, found {} and {}",
+            self.scale, self.shift
+        );
+        Err(source.wrong(self.format, offset, expected))
+    }
+
+    /// An error where the numbers are not all there, or their scale makes no heights; called before the channel is listed.
     pub(crate) fn check(&self, source: &Source<'_>, rows: usize, columns: usize) -> Result<()> {
         if rows == 0 || columns == 0 {
             let (rows, columns) = (rows as u64, columns as u64);
@@ -203,7 +216,7 @@ impl RawHeights {
             );
             return Err(source.wrong(self.format, offset, expected));
         }
-        Ok(())
+        self.check_scale(source)
     }
 
     /// The heights, row-major, NaN where undefined.
@@ -266,24 +279,37 @@ impl RawHeights {
         Ok(())
     }
 
+    /// The same for a number that another reader decoded.
+    pub(crate) fn put_number(&self, heights: &mut [f64], shape: [usize; 2], place: [usize; 2], number: f64) {
+        let [row, column] = self.place(shape, place);
+        heights[row * shape[1] + column] = self.height(number);
+    }
+
+    /// Row and column of a place of a line.
+    pub(crate) fn place(&self, [rows, columns]: [usize; 2], [line, at]: [usize; 2]) -> [usize; 2] {
+        let [row, column] = match self.order {
+            AxisOrder::Rows => [line, at],
+            AxisOrder::Columns => [at, line],
+        };
+        [
+            if self.reversed[1] { rows - 1 - row } else { row },
+            if self.reversed[0] { columns - 1 - column } else { column },
+        ]
+    }
+
     /// Where the number at a place of a line belongs, row by row, and its height.
     fn placed(
         &self,
         source: &Source<'_>,
-        [rows, columns]: [usize; 2],
-        [line, at]: [usize; 2],
+        shape: [usize; 2],
+        place: [usize; 2],
         raw: &[u8],
     ) -> Result<(usize, f64)> {
-        let (row, column) = match self.order {
-            AxisOrder::Rows => (line, at),
-            AxisOrder::Columns => (at, line),
-        };
-        let row = if self.reversed[1] { rows - 1 - row } else { row };
-        let column = if self.reversed[0] { columns - 1 - column } else { column };
+        let [row, column] = self.place(shape, place);
         let number = self.number.decode(raw).map_err(|value| {
             source.content(ContentError::Inexact { place: Place::Cell { row, column }, value })
         })?;
-        Ok((row * columns + column, self.height(number)))
+        Ok((row * shape[1] + column, self.height(number)))
     }
 
     fn height(&self, number: f64) -> f64 {
@@ -305,7 +331,33 @@ pub(crate) fn undefined_heights(source: &Source<'_>, rows: usize, columns: usize
     Ok(heights)
 }
 
+/// Heights that are undefined where the numbers of a mask are not 0; both are checked.
+pub(crate) fn masked(raw: RawHeights, mask: RawHeights, rows: usize, columns: usize) -> StoredHeights {
+    StoredHeights::Deferred(Box::new(move |source| {
+        let mut heights = raw.read(source, rows, columns)?;
+        mask.each(source, rows, columns, &mut |i, masked| {
+            if masked.abs() > 0.0 {
+                heights[i] = f64::NAN;
+            }
+        })?;
+        Ok(heights)
+    }))
+}
+
 impl StoredChannel {
+    /// A channel without a name of numbers that are all there; of so many rows and columns.
+    pub(crate) fn new(
+        source: &Source<'_>,
+        raw: RawHeights,
+        [rows, columns]: [usize; 2],
+        unit: StoredUnit,
+        extent: [Option<Extent>; 2],
+    ) -> Result<Self> {
+        raw.check(source, rows, columns)?;
+        let details = raw.details();
+        Ok(Self { name: None, details, rows, columns, unit, extent, heights: StoredHeights::Raw(raw) })
+    }
+
     /// The heights, row-major, NaN where undefined.
     pub(crate) fn read(&mut self, source: &mut Source<'_>) -> Result<Vec<f64>> {
         let heights = match &mut self.heights {

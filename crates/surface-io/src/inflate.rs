@@ -6,8 +6,9 @@ use crate::source::Source;
 use flate2::read::{DeflateDecoder, ZlibDecoder};
 use std::io::Read;
 
-/// Deflate packs at most so many bytes into one; a few more end its stream.
-const RATIO: u64 = 1032;
+/// Deflate packs at most so many bytes into one, and so do the other compressions that are read, in maps that are measured; a few more end
+/// its stream.
+pub(crate) const RATIO: u64 = 1032;
 const END: u64 = 64;
 
 /// How bytes are packed.

@@ -9,7 +9,7 @@ mod write;
 
 pub use write::npy;
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
+use crate::channel::{Bytes, RawHeights, StoredChannel, StoredUnit};
 use crate::error::{ContentError, Result};
 use crate::format::Format;
 use crate::reader::Reader;
@@ -37,15 +37,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         order: header.order,
         ..RawHeights::new(Format::Npy, Bytes::File(header_bytes), header.kind)
     };
-    Ok(vec![StoredChannel {
-        name: None,
-        details: raw.details(),
-        rows: rows as usize,
-        columns: columns as usize,
-        unit: StoredUnit::Unknown,
-        extent: [None; 2],
-        heights: StoredHeights::Raw(raw),
-    }])
+    let shape = [rows as usize, columns as usize];
+    Ok(vec![StoredChannel::new(source, raw, shape, StoredUnit::Unknown, [None; 2])?])
 }
 
 #[cfg(test)]

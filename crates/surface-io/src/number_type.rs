@@ -48,6 +48,16 @@ impl NumberType {
         self.kind == Kind::Float
     }
 
+    /// Type and bits, such as float32.
+    pub(crate) fn name(self) -> String {
+        let name = match self.kind {
+            Kind::Float => "float",
+            Kind::Signed => "int",
+            Kind::Unsigned => "uint",
+        };
+        format!("{name}{}", 8 * self.size)
+    }
+
     /// Bytes of one number.
     pub(crate) fn bytes(self) -> usize {
         usize::from(self.size)
@@ -78,13 +88,7 @@ impl NumberType {
 
 impl fmt::Display for NumberType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = match self.kind {
-            Kind::Float => "float",
-            Kind::Signed => "int",
-            Kind::Unsigned => "uint",
-        };
-        let order = if self.little { "little" } else { "big" };
-        write!(f, "{name}{}, {order}-endian", 8 * self.size)
+        write!(f, "{}, {}-endian", self.name(), if self.little { "little" } else { "big" })
     }
 }
 

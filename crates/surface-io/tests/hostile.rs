@@ -318,18 +318,10 @@ proptest! {
         which in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..6_u8), 1..6),
     ) {
-        let file = which.get(&files::all()).bytes.clone();
-        let compressed = which.get(&files::all()).compressed;
-        torture_channels(&mutated(file, &changes), compressed)?;
+        let mut all = files::all();
+        let file = all.swap_remove(which.index(all.len()));
+        torture_channels(&mutated(file.bytes, &changes), file.compressed)?;
     }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 3000,
-        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
-        ..ProptestConfig::default()
-    })]
 
     /// Within archives whose checksums are right: they keep other changes from the description.
     #[test]
@@ -417,6 +409,13 @@ fn heights_that_may_be_others_are_refused() {
         error(&text.replace(from, to).chars().map(|c| c as u8).collect::<Vec<_>>())
     };
     let nanoscope = "nanoscope with two channels";
+    // As many points, in six columns of one.
+    let mut other_mask = small("gwy with a mask");
+    let mask = other_mask.windows(7).position(|part| part == b"/3/mask").unwrap();
+    for (key, count) in [(b"xres\0i", 6), (b"yres\0i", 1)] {
+        let at = mask + other_mask[mask..].windows(6).position(|part| part == key).unwrap();
+        other_mask[at + 6] = count;
+    }
     for (found, expected) in [
         (changed("sur", 290, &[1]), "SUR (Digital Surf), offset 290: expected no mark of an inversion"),
         (changed("metropro", 233, &[1]), "MetroPro (Zygo), offset 232: expected no mark of another sign"),
@@ -445,6 +444,22 @@ fn heights_that_may_be_others_are_refused() {
             replaced(nanoscope, "offset: 4096", "offset: 0096"),
             "Nanoscope, offset 159: expected a data offset behind",
         ),
+        (replaced("tiff of ImageJ", "c1=0.5", "c1=0.0"), "TIFF, offset 0: expected a factor other than 0"),
+        (
+            // The double 2 of scale_factor.
+            replaced("netcdf of version 1", "@\0\0\0\0\0\0\0", "\0\0\0\0\0\0\0\0"),
+            "NetCDF-3, offset 572: expected a factor other than 0",
+        ),
+        (
+            // Characters are no scale_factor.
+            replaced(
+                "netcdf of version 1",
+                "scale_factor\0\0\0\x06\0\0\0\x01",
+                "scale_factor\0\0\0\x02\0\0\0\x08",
+            ),
+            "NetCDF-3, offset 416: expected one number as scale_factor",
+        ),
+        (error(&other_mask), "GWY (Gwyddion), offset 655: expected a mask of as many columns and rows"),
     ] {
         assert!(found.starts_with(&format!("a: {expected}")), "{found}");
     }

@@ -17,8 +17,8 @@ fn directory() -> Option<PathBuf> {
 }
 
 /// Factor of a length unit, in metres; `None` for what is none.
-fn metres(unit: &Value) -> Option<f64> {
-    match unit.as_str()? {
+fn metres(unit: &str) -> Option<f64> {
+    match unit {
         "m" => Some(1.0),
         "mm" => Some(1e-3),
         "\u{b5}m" => Some(1e-6),
@@ -33,11 +33,13 @@ fn numbers(value: &Value) -> Vec<f64> {
 
 fn check(expected: &Value, scan: &Scan) -> Result<(), String> {
     let metadata = scan.metadata();
-    let factor = metres(&expected["unit"]);
-    // Without a length unit, values are compared as they stand.
-    let lateral = factor.unwrap_or(1.0);
+    let unit = expected["unit"].as_str().unwrap_or_default();
+    let factor = metres(unit);
+    // Without a length unit, values are compared as they stand; a pair is the unit of the sides and that of the values.
+    let of_pair = unit.strip_prefix("('").and_then(|pair| metres(pair.split('\'').next()?));
+    let lateral = factor.or(of_pair).unwrap_or(1.0);
     let own = metadata.unit.as_ref().map_or(1.0, |u| u.value.to_si(1.0));
-    let to = if factor.is_some() { own / lateral } else { 1.0 };
+    let to = factor.map_or(1.0, |factor| own / factor);
     let close = |what: &str, found: f64, wanted: f64, scale: f64| {
         let near = (found - wanted).abs() <= CLOSE * scale.max(wanted.abs());
         near.then_some(()).ok_or_else(|| format!("{what}: {found:e}, expected {wanted:e}"))
@@ -47,14 +49,17 @@ fn check(expected: &Value, scan: &Scan) -> Result<(), String> {
         return Err(format!("{} x {}, expected {pixels:?}", metadata.columns, metadata.rows));
     }
     let sizes = numbers(&expected["sizes"]);
-    if factor.is_some() {
-        let size = metadata.size.ok_or("no size")?;
-        for (found, wanted) in size.iter().zip(sizes) {
-            close("size", found.value(), wanted * lateral, 0.0)?;
+    match (metadata.size, &sizes[..]) {
+        (Some(size), [_, _]) => {
+            for (found, wanted) in size.iter().zip(sizes) {
+                close("size", found.value(), wanted * lateral, 0.0)?;
+            }
         }
-        if metadata.unit.is_none() {
-            return Err("no unit".into());
-        }
+        (None, []) => {}
+        (found, _) => return Err(format!("size {found:?}, expected {sizes:?}")),
+    }
+    if metadata.unit.is_some() != factor.is_some() {
+        return Err(format!("unit {:?}, expected {unit:?}", metadata.unit));
     }
     let rms = expected["rms"].as_f64().unwrap();
     close("undefined", metadata.undefined_share(), expected["undefined"].as_f64().unwrap(), 0.0)?;

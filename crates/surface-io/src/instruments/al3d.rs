@@ -3,7 +3,7 @@
 //!
 //! The first row of the file is y = 0. Undefined are NaN and what `InvalidPixelValue` says. The picture and the quality map are not read.
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
+use crate::channel::{Bytes, RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
@@ -54,16 +54,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         undefined: undefined.map_or(Undefined::None, Undefined::Near),
         ..RawHeights::new(FORMAT, Bytes::File(offset), NumberType::F32)
     };
-    raw.check(source, rows, columns)?;
-    Ok(vec![StoredChannel {
-        name: None,
-        details: raw.details(),
-        rows,
-        columns,
-        unit: StoredUnit::written("m"),
-        extent: [side("PixelSizeXMeter"), side("PixelSizeYMeter")],
-        heights: StoredHeights::Raw(raw),
-    }])
+    let extent = [side("PixelSizeXMeter"), side("PixelSizeYMeter")];
+    Ok(vec![StoredChannel::new(source, raw, [rows, columns], StoredUnit::written("m"), extent)?])
 }
 
 /// Name and value of the tag at an offset.

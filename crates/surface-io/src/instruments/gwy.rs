@@ -7,7 +7,7 @@ mod write;
 
 pub use write::gwy;
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
+use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, masked};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
@@ -152,22 +152,16 @@ fn channel(
     raw.check(source, rows, columns)?;
     let mut details = raw.details();
     let heights = match mask {
-        Some(DataField { values: Some((at, of_mask)), .. }) if of_mask == count => {
+        None => StoredHeights::Raw(raw),
+        Some(DataField { shape, values: Some((at, _)), .. }) if shape == field.shape => {
             details += ", masked points undefined";
             let mask = RawHeights::new(FORMAT, Bytes::File(at), NumberType::F64);
             mask.check(source, rows, columns)?;
-            StoredHeights::Deferred(Box::new(move |source| {
-                let mut heights = raw.read(source, rows, columns)?;
-                // A mask is 1 inside, 0 outside; drawn ones have values between.
-                for (height, masked) in heights.iter_mut().zip(mask.read(source, rows, columns)?) {
-                    if masked > 0.0 {
-                        *height = f64::NAN;
-                    }
-                }
-                Ok(heights)
-            }))
+            masked(raw, mask, rows, columns)
         }
-        _ => StoredHeights::Raw(raw),
+        Some(_) => {
+            return Err(source.wrong(FORMAT, at, "a mask of as many columns and rows as its data field"));
+        }
     };
     let lateral: Option<Unit> =
         field.lateral_unit.parse().ok().filter(|u: &Unit| u.dimension() == Dimension::LENGTH);

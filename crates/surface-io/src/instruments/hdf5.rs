@@ -27,6 +27,7 @@ use crate::channel::{
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
+use crate::inflate::RATIO;
 use crate::number_type::NumberType;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
@@ -44,8 +45,6 @@ const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
 const MOST: usize = 1000;
-/// Deflate packs at most so many bytes into one.
-const PACKED: u64 = 1032;
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
@@ -124,7 +123,7 @@ fn channel(
     let order = order(&attributes);
     let (lines, along) = (first, second);
     let claimed = lines.checked_mul(along).and_then(|n| n.checked_mul(number.bytes() as u64));
-    let most = PACKED.saturating_mul(source.length());
+    let most = RATIO.saturating_mul(source.length());
     if claimed.is_none_or(|claimed| claimed > most) {
         let expected = format!("{name} of {first} x {second} numbers in at most {most} bytes");
         return Err(source.wrong(FORMAT, 0, expected));
@@ -134,11 +133,10 @@ fn channel(
         AxisOrder::Rows => (lines, along),
         AxisOrder::Columns => (along, lines),
     };
-    let raw = |bytes| {
-        let mut raw = RawHeights { order, ..RawHeights::new(FORMAT, bytes, number) };
-        packed(&attributes, &mut raw);
-        raw
-    };
+    let (scale, shift, undefined) =
+        packed(&attributes).map_err(|expected| source.wrong(FORMAT, 0, expected))?;
+    let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(FORMAT, bytes, number) };
+    raw(Bytes::Held(Vec::new())).check_scale(source)?;
     let (heights, details) = match dataset.layout() {
         Err(e) => {
             // The other channels of the file are read all the same.
@@ -252,8 +250,16 @@ fn numbers(attributes: &Attributes, key: &str) -> Option<Vec<f64>> {
     value.to_f64s().or_else(integers)
 }
 
-fn number(attributes: &Attributes, key: &str) -> Option<f64> {
-    numbers(attributes, key).filter(|all| all.len() == 1).map(|all| all[0])
+/// A number, where there is one; an error says what was expected.
+fn number(attributes: &Attributes, key: &str) -> std::result::Result<Option<f64>, String> {
+    if !attributes.contains_key(key) {
+        return Ok(None);
+    }
+    // Left out, heights would be others than those that are meant.
+    match numbers(attributes, key).as_deref() {
+        Some(&[number]) => Ok(Some(number)),
+        _ => Err(format!("one number as the attribute {key}")),
+    }
 }
 
 fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
@@ -267,12 +273,12 @@ fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
     sides().map_or([None; 2], |[x, y]| [Some(x), Some(y)])
 }
 
-/// Values that are packed or marked as NetCDF defines it.
-fn packed(attributes: &Attributes, raw: &mut RawHeights) {
-    raw.scale = number(attributes, "scale_factor").unwrap_or(1.0);
-    raw.shift = number(attributes, "add_offset").unwrap_or(0.0);
-    let mark = number(attributes, "_FillValue").or_else(|| number(attributes, "missing_value"));
-    raw.undefined = mark.map_or(Undefined::None, Undefined::Equal);
+/// Factor, shift and undefined value of what is packed or marked as NetCDF defines it.
+fn packed(attributes: &Attributes) -> std::result::Result<(f64, f64, Undefined), String> {
+    let of = |key: &str| number(attributes, key);
+    let mark = of("_FillValue")?.or(of("missing_value")?);
+    let undefined = mark.map_or(Undefined::None, Undefined::Equal);
+    Ok((of("scale_factor")?.unwrap_or(1.0), of("add_offset")?.unwrap_or(0.0), undefined))
 }
 
 /// A data set in chunks.
@@ -297,7 +303,7 @@ impl Pieces {
         }
         let size = self.raw.number.bytes();
         let [tall, wide] = self.chunk;
-        let most = PACKED.saturating_mul(source.length());
+        let most = RATIO.saturating_mul(source.length());
         let bytes = tall.checked_mul(wide).and_then(|n| n.checked_mul(size as u64)).unwrap_or(u64::MAX);
         // All of them together: they may share their bytes, and reach far beyond the data set.
         let count = |all: usize, of_one: u64| (all as u64).div_ceil(of_one.max(1));

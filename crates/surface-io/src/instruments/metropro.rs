@@ -7,7 +7,7 @@
 //! Not read: files with the mark of another sign. Gwyddion, `SurfaceTopography` and itom turn their heights over; the formula of the
 //! guide has no sign, and other readers follow it.
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
+use crate::channel::{Bytes, RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
@@ -85,17 +85,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         ..RawHeights::new(FORMAT, Bytes::File(header + phase.stated[0]), NumberType::I32.big_endian())
     };
     let Phase { rows, columns, cell, .. } = phase;
-    raw.check(source, rows, columns)?;
     let side = (cell > 0.0).then(|| Quantity::new(cell, Dimension::LENGTH).ok().map(Extent::Cell)).flatten();
-    Ok(vec![StoredChannel {
-        name: None,
-        details: raw.details(),
-        rows,
-        columns,
-        unit: StoredUnit::written("m"),
-        extent: [side; 2],
-        heights: StoredHeights::Raw(raw),
-    }])
+    Ok(vec![StoredChannel::new(source, raw, [rows, columns], StoredUnit::written("m"), [side; 2])?])
 }
 
 impl Phase {

@@ -14,7 +14,9 @@ mod write;
 
 pub use write::netcdf;
 
-use crate::channel::{AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
+use crate::channel::{
+    AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, masked,
+};
 use crate::error::{ContentError, Result};
 use crate::extent::Extent;
 use crate::format::Format;
@@ -88,9 +90,6 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let attributes = &heights.attributes;
     let (scale, shift) = (attributes.scale.unwrap_or(1.0), attributes.shift.unwrap_or(0.0));
-    if !(scale.is_finite() && scale.abs() > 0.0 && shift.is_finite()) {
-        return wrong(source, "scale_factor other than 0, and a finite add_offset");
-    }
     let of_number =
         |mark: f64| if number.is_float() && number.bytes() == 4 { f64::from(mark as f32) } else { mark };
     let own = if number.is_float() { Some(FILL) } else { None };
@@ -112,15 +111,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             details += ", masked points undefined";
             let mask = RawHeights { order, ..RawHeights::new(FORMAT, Bytes::File(offset), number) };
             mask.check(source, rows, columns)?;
-            StoredHeights::Deferred(Box::new(move |source| {
-                let mut heights = raw.read(source, rows, columns)?;
-                mask.each(source, rows, columns, &mut |i, masked| {
-                    if masked.abs() > 0.0 {
-                        heights[i] = f64::NAN;
-                    }
-                })?;
-                Ok(heights)
-            }))
+            masked(raw, mask, rows, columns)
         }
         Some(_) => return wrong(source, "a mask over the same dimensions as heights"),
     };
@@ -251,8 +242,13 @@ impl<'s, 'a> Header<'s, 'a> {
                 "add_offset" => Some(&mut keep.shift),
                 _ => None,
             };
-            if let (Some(target), Some(number), 1..) = (target, number(kind), count) {
-                *target = self.take(size)?.number(number).ok();
+            if let Some(target) = target {
+                // Left out, heights would be others than those that are meant.
+                let (Some(number), 1) = (number(kind), count) else {
+                    return Err(self.wrong(&format!("one number as {name}")));
+                };
+                let read = self.take(size)?.number(number);
+                *target = Some(read.map_err(|e| e.of(self.source, FORMAT))?);
                 self.at = at;
             }
             self.pass(length)?;

@@ -4,7 +4,7 @@
 //! (the readers of Gwyddion and `SurfaceTopography` agree). Heights stand column by column, the last row first. Undefined are float32 from
 //! 1e38 on and int16 from 32766 on. Intensities are not read.
 
-use crate::channel::{AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
+use crate::channel::{AxisOrder, Bytes, RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
@@ -92,17 +92,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             undefined,
             ..RawHeights::new(FORMAT, Bytes::File(block.offset + 6), kind)
         };
-        let (columns, rows) = (usize::from(columns), usize::from(rows));
-        raw.check(source, rows, columns)?;
-        channels.push(StoredChannel {
-            name: Some(block.name.clone()),
-            details: raw.details(),
-            rows,
-            columns,
-            unit: StoredUnit::written("nm"),
-            extent,
-            heights: StoredHeights::Raw(raw),
-        });
+        let shape = [usize::from(rows), usize::from(columns)];
+        let channel = StoredChannel::new(source, raw, shape, StoredUnit::written("nm"), extent)?;
+        channels.push(StoredChannel { name: Some(block.name.clone()), ..channel });
     }
     Ok(channels)
 }

@@ -6,7 +6,7 @@
 //! Further layers are read where no pictures are (`SurfaceTopography` has them one behind another); where they stand beside pictures no
 //! description says, and only the first layer is read. Profiles and the pictures are not read.
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
+use crate::channel::{Bytes, RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
@@ -88,20 +88,14 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             undefined: Undefined::Equal(UNDEFINED),
             ..RawHeights::new(FORMAT, Bytes::File(at + SHAPE), NumberType::F32)
         };
-        raw.check(source, rows as usize, columns as usize)?;
-        channels.push(StoredChannel {
-            name: Some(format!("layer{layer}")),
-            details: if header.layers > layers {
-                format!("{}, the first of {} layers", raw.details(), header.layers)
-            } else {
-                raw.details()
-            },
-            rows: rows as usize,
-            columns: columns as usize,
-            unit: StoredUnit::written("um"),
-            extent: header.cell.map(side),
-            heights: StoredHeights::Raw(raw),
-        });
+        let shape = [rows as usize, columns as usize];
+        let mut channel =
+            StoredChannel::new(source, raw, shape, StoredUnit::written("um"), header.cell.map(side))?;
+        channel.name = Some(format!("layer{layer}"));
+        if header.layers > layers {
+            channel.details = format!("{}, the first of {} layers", channel.details, header.layers);
+        }
+        channels.push(channel);
         let points = u64::from(rows) * u64::from(columns);
         at += SHAPE + 4 * points + RANGE;
     }

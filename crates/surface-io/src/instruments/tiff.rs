@@ -13,11 +13,12 @@
 //! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data, LZW, Deflate and `PackBits` in
 //! strips and tiles; not read is the XML of OME-TIFF.
 
-use crate::channel::{StoredChannel, StoredHeights, StoredUnit, undefined_heights};
+use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, undefined_heights};
 use crate::error::{ContentError, Error, Place, Result};
 use crate::extent::Extent;
 use crate::format::Format;
-use crate::number_type::exact;
+use crate::inflate::RATIO;
+use crate::number_type::{NumberType, exact};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::Source;
@@ -35,8 +36,6 @@ const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 const MOST: usize = 1000;
 /// Longest text or list in a directory, in bytes.
 const LONGEST: usize = 1 << 20;
-/// The compressions that are read pack at most so many bytes into one, in maps that are measured.
-const PACKED: u64 = 1032;
 
 pub(crate) const READER: Reader = Reader {
     format: FORMAT,
@@ -90,7 +89,7 @@ fn check_directories(source: &mut Source<'_>) -> Result<()> {
 fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {
     let length = source.length();
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = usize::try_from(PACKED.saturating_mul(length)).unwrap_or(usize::MAX);
+    limits.decoding_buffer_size = usize::try_from(RATIO.saturating_mul(length)).unwrap_or(usize::MAX);
     limits.intermediate_buffer_size = length as usize;
     limits.ifd_value_size = LONGEST.min(length as usize);
     let path = source.path().to_owned();
@@ -268,20 +267,25 @@ fn channel(
         return Err(source.content(ContentError::NoCells { rows, columns }));
     }
     let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
-    if claimed > u128::from(PACKED.saturating_mul(source.length())) {
+    if claimed > u128::from(RATIO.saturating_mul(source.length())) {
         let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
         return Err(source.wrong(FORMAT, 0, expected));
     }
-    let kind = match page.sample_format {
-        2 => "int",
-        3 => "float",
-        _ => "uint",
+    let letter = match page.sample_format {
+        2 => b'i',
+        3 => b'f',
+        _ => b'u',
     };
+    // Byte order and packing are the other crate's; what it decodes has this type.
+    let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
     let (unit, scale, shift) = description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
-    let image = Image { number, size: page.size, bytes: u64::from(bits / 8), reversed, scale, shift };
+    let held = Bytes::Held(Vec::new());
+    let raw = RawHeights { reversed, scale, shift, ..RawHeights::new(FORMAT, held, kind) };
+    raw.check_scale(source)?;
+    let image = Image { number, size: page.size, bytes: u64::from(bits / 8), raw };
     Ok(Some(StoredChannel {
         name: (!alone).then(|| format!("image {number}")),
-        details: format!("{kind}{bits}, row by row"),
+        details: format!("{}, row by row", kind.name()),
         rows: rows as usize,
         columns: columns as usize,
         unit,
@@ -296,9 +300,8 @@ struct Image {
     size: (u32, u32),
     /// Bytes of a number.
     bytes: u64,
-    reversed: [bool; 2],
-    scale: f64,
-    shift: f64,
+    /// What becomes of its numbers.
+    raw: RawHeights,
 }
 
 impl Image {
@@ -306,7 +309,7 @@ impl Image {
         let (columns, rows) = (self.size.0 as usize, self.size.1 as usize);
         let mut heights = undefined_heights(source, rows, columns)?;
         let path = source.path().to_owned();
-        let most = PACKED.saturating_mul(source.length());
+        let most = RATIO.saturating_mul(source.length());
         let mut decoder = open(source)?;
         let read = self.chunks(&mut decoder, most, &mut heights);
         read.map_err(Error::content(&path))?;
@@ -359,11 +362,10 @@ impl Image {
         [top, left]: [usize; 2],
         heights: &mut [f64],
     ) -> Result<(), ContentError> {
-        let (columns, rows) = (self.size.0 as usize, self.size.1 as usize);
+        let shape = [self.size.1 as usize, self.size.0 as usize];
         for k in 0..tall * wide {
-            let (row, column) = (top + k / wide, left + k % wide);
-            let row = if self.reversed[1] { rows - 1 - row } else { row };
-            let column = if self.reversed[0] { columns - 1 - column } else { column };
+            let place = [top + k / wide, left + k % wide];
+            let [row, column] = self.raw.place(shape, place);
             let inexact = |value| ContentError::Inexact { place: Place::Cell { row, column }, value };
             let number = match decoded {
                 DecodingResult::U16(all) => all.get(k).map(|&n| f64::from(n)),
@@ -383,9 +385,7 @@ impl Image {
             };
             let number =
                 number.ok_or_else(|| unreadable(&format!("{tall} x {wide} numbers in a strip or tile")))?;
-            let scaled = self.scale * number;
-            heights[row * columns + column] =
-                if self.shift.abs() > 0.0 { scaled + self.shift } else { scaled };
+            self.raw.put_number(heights, shape, place, number);
         }
         Ok(())
     }
