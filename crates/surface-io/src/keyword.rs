@@ -86,14 +86,7 @@ impl FromStr for Detrend {
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = [
-            ("none", Self::Nothing),
-            ("mean", Self::Mean),
-            ("plane", Self::Plane),
-            ("quadric", Self::Quadric),
-            ("sphere", Self::Sphere),
-            ("cylinder", Self::Cylinder),
-        ];
+        let known = Self::ALL.map(|detrend| (detrend.word(), detrend));
         among("detrend", text, known, "none, mean, plane, quadric, sphere or cylinder")
     }
 }

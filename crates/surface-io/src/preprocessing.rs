@@ -51,6 +51,25 @@ pub enum Mirror {
     Y,
 }
 
+impl Mirror {
+    /// The map with this axis reversed.
+    pub fn of(self, map: &HeightMap) -> HeightMap {
+        match self {
+            Self::X => map.mirrored(),
+            Self::Y => map.transposed().mirrored().transposed(),
+        }
+    }
+}
+
+impl std::fmt::Display for Mirror {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::X => "x reversed",
+            Self::Y => "y reversed",
+        })
+    }
+}
+
 /// A taper towards the edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -224,14 +243,14 @@ impl Scan {
         }
         if let Some(trend) = trend {
             trend.subtract(cells, &mut heights);
-            steps.push(format!("the {} of least squares subtracted", preprocessing.detrend));
+            steps.push(format!("the {} of least squares subtracted", preprocessing.detrend.word()));
         }
         if let Some(form) = form {
             form.subtract(cells, cell, &mut heights);
             let radius = form.radius();
             steps.push(format!(
                 "the {} of least squares subtracted: radius {:e} ({})",
-                preprocessing.detrend,
+                preprocessing.detrend.word(),
                 radius.abs(),
                 if radius > 0.0 { "a hill" } else { "a hollow" }
             ));
@@ -382,16 +401,9 @@ impl Scan {
 
 /// The map mirrored and turned.
 fn turned(mut map: HeightMap, preprocessing: &Preprocessing, steps: &mut Vec<String>) -> HeightMap {
-    match preprocessing.mirror {
-        None => {}
-        Some(Mirror::X) => {
-            map = map.mirrored();
-            steps.push("x reversed".to_owned());
-        }
-        Some(Mirror::Y) => {
-            map = map.transposed().mirrored().transposed();
-            steps.push("y reversed".to_owned());
-        }
+    if let Some(mirror) = preprocessing.mirror {
+        map = mirror.of(&map);
+        steps.push(mirror.to_string());
     }
     let turns = preprocessing.quarter_turns % 4;
     if turns > 0 {

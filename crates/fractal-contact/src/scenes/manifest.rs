@@ -65,6 +65,8 @@ pub(crate) fn write(
         "surfaces": scene.sampling.surfaces,
         "effects": effects,
         "outputs": outputs,
+        // What was understood of its file, and what was done to it, line by line.
+        "surface_file": scene.metadata.as_ref().map(|told| told.lines().collect::<Vec<_>>()),
         "map": plan.prepared.as_ref().map(map),
         "models": models,
         "cite": cite,

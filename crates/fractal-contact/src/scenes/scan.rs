@@ -125,9 +125,8 @@ pub(crate) fn read_second(
     };
     let FileMap { map, mut metadata, notes } = read_map(table, system, directory)?;
     let (map, how) = match facing {
-        Some(Mirror::X) => (map.mirrored(), "x reversed"),
-        Some(Mirror::Y) => (map.transposed().mirrored().transposed(), "y reversed"),
-        None => (map, "as it is seen through its body"),
+        Some(mirror) => (mirror.of(&map), mirror.to_string()),
+        None => (map, "as it is seen through its body".to_owned()),
     };
     let sum = surface_io::composite(first, &map, offset).map_err(|e| table.diagnostic(e.to_string()))?;
     metadata += &format!("\nthen       laid on the first: {how}, its middle moved by {offset:?}");
@@ -227,14 +226,7 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
         None => {}
     }
     if let Some(entry) = table.find("detrend") {
-        preprocessing.detrend = entry.choice(&[
-            ("none", Detrend::Nothing),
-            ("mean", Detrend::Mean),
-            ("plane", Detrend::Plane),
-            ("quadric", Detrend::Quadric),
-            ("sphere", Detrend::Sphere),
-            ("cylinder", Detrend::Cylinder),
-        ])?;
+        preprocessing.detrend = entry.choice(&Detrend::ALL.map(|detrend| (detrend.word(), detrend)))?;
     }
     if let Some(entry) = table.find("mirror") {
         preprocessing.mirror = Some(entry.choice(&[("x", Mirror::X), ("y", Mirror::Y)])?);

@@ -22,16 +22,21 @@ pub enum Detrend {
     Cylinder,
 }
 
-impl std::fmt::Display for Detrend {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
+impl Detrend {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Nothing, Self::Mean, Self::Plane, Self::Quadric, Self::Sphere, Self::Cylinder];
+
+    /// The word that stands for it in scenes and on command lines.
+    pub fn word(self) -> &'static str {
+        match self {
             Self::Nothing => "none",
             Self::Mean => "mean",
             Self::Plane => "plane",
             Self::Quadric => "quadric",
             Self::Sphere => "sphere",
             Self::Cylinder => "cylinder",
-        })
+        }
     }
 }
 

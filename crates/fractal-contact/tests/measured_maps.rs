@@ -1,0 +1,136 @@
+//! Measured maps in scenes and on the command line: channels, preprocessing, two bodies.
+
+use contact_model::{HeightMap, Surface};
+use fractal_contact::scenes::{Options, Plan, SceneFile, SceneSurface, run};
+use runs::Silent;
+use serde_json::Value;
+use std::process::Command;
+
+/// Heights in micrometres of three rows of four points.
+fn heights(row: usize, column: usize) -> f64 {
+    [[0.0, 3.0, 1.0, 2.0], [5.0, 4.0, 0.5, 1.5], [2.5, 0.0, 6.0, 3.5]][row][column]
+}
+
+/// A folder with that map as `lower.npy` and `upper.x3p`, its cells 1 mm, and a scene of these keys.
+fn folder(keys: &str) -> (tempfile::TempDir, fractal_contact::scenes::Result<SceneFile>) {
+    let dir = tempfile::tempdir().unwrap();
+    let all: Vec<f64> = (0..12).map(|i| heights(i / 4, i % 4)).collect();
+    std::fs::write(dir.path().join("lower.npy"), surface_io::npy(&[3, 4], &all).unwrap()).unwrap();
+    let metres = all.iter().map(|h| h * 1e-6).collect();
+    let map = HeightMap::new([4, 3], [4e-3, 3e-3], metres).unwrap();
+    surface_io::write_map(&dir.path().join("upper.x3p"), &map, surface_io::Metric::Metres).unwrap();
+    let text = format!(
+        "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
+         kind = \"file\"\npath = \"lower.npy\"\nunit = \"um\"\ncell = \"1 mm\"\ndetrend = \"none\"\n{keys}\n"
+    );
+    let scene = SceneFile::parse(&dir.path().join("a.toml"), text);
+    (dir, scene)
+}
+
+fn map(scene: &SceneFile) -> &HeightMap {
+    match &scene.surface {
+        SceneSurface::Plain(Surface::Heights(map)) => map,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn two_bodies_lie_face_to_face() {
+    const SECOND: &str =
+        "[scene.second_surface]\nkind = \"file\"\npath = \"upper.x3p\"\ndetrend = \"none\"\n";
+    // Where the point of the second body lies that is over [row, column] of the first.
+    type Over = fn(usize, usize) -> [usize; 2];
+    let cases: [(&str, [usize; 2], Over); 5] = [
+        ("", [3, 4], |row, column| [row, 3 - column]),
+        ("facing = \"y\"", [3, 4], |row, column| [2 - row, column]),
+        ("facing = \"none\"", [3, 4], |row, column| [row, column]),
+        // Its middle one cell farther along x: the first column has none over it.
+        ("offset = [\"1 mm\", \"0 mm\"]", [3, 3], |row, column| [row, 3 - column]),
+        ("facing = \"none\"\nmirror = \"x\"\nrotate = 180", [3, 4], |row, column| [2 - row, column]),
+    ];
+    for (keys, [rows, columns], over) in cases {
+        let (_dir, scene) = folder(&format!("{SECOND}{keys}"));
+        let scene = scene.unwrap_or_else(|e| panic!("{keys}: {e}"));
+        let found = map(&scene);
+        assert_eq!((found.rows(), found.columns()), (rows, columns), "{keys}");
+        for (i, h) in found.heights().iter().enumerate() {
+            let (row, column) = (i / columns, i % columns);
+            let [second_row, second_column] = over(row, column);
+            let expected = heights(row, column + 4 - columns) + heights(second_row, second_column);
+            approx::assert_relative_eq!(*h, expected * 1e-6, max_relative = 1e-12);
+        }
+    }
+    for (keys, expected) in [
+        ("facing = \"up\"", "`scene.second_surface.facing` is \"up\""),
+        ("offset = \"1 mm\"", "`offset` has not two values"),
+        ("offset = [\"9 mm\", \"0 mm\"]", "expected one cell at least that both cover"),
+    ] {
+        let error = folder(&format!("{SECOND}{keys}")).1.unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    let alone = "[scene.body]\nkind = \"sphere\"\nradius = \"1 m\"\nside = \"4 mm\"";
+    let random = SceneFile::parse(
+        "a.toml".as_ref(),
+        format!("[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nforce = \"1 N\"\n{alone}\n{SECOND}"),
+    );
+    assert!(random.unwrap_err().to_string().contains("is added to a measured [scene.surface]"));
+}
+
+#[test]
+fn what_is_done_to_a_map_is_in_its_manifest() {
+    let keys = "crop = \"centre\"\noutliers = 1e6\ntip_radius = \"1 mm\"\nmirror = \"y\"\nrotate = 90\nwindow = \"hann\"\n\
+                [outputs]\nstiffness = true\n[models.bem3d]\ntolerance = 1e-6";
+    let (dir, scene) = folder(keys);
+    let scene = scene.unwrap_or_else(|e| panic!("{e}"));
+    let plan = Plan::new(&scene).unwrap();
+    let out = dir.path().join("out");
+    let options = Options { out: out.clone(), threads: 1, fresh: false };
+    run(&scene, &plan, &options, &Silent, &|| false).unwrap();
+    let manifest = std::fs::read_to_string(out.join("manifest.json")).unwrap();
+    for step in [
+        "cropped to 3 x 3 points from row 0, column 0 (from 0)",
+        "0 outliers beyond 1000000 robust standard deviations made undefined",
+        "with a tip of radius 0.001 m, heights are reliable",
+        "y reversed",
+        "turned by 90 degrees",
+        "deviations from the mean tapered by Hann's window",
+    ] {
+        assert!(manifest.contains(step), "{step}\n{manifest}");
+        assert!(plan.to_string().contains(step), "{step}\n{plan}");
+    }
+    let error = folder("rotate = 45").1.unwrap_err().to_string();
+    assert!(error.contains("`rotate` is 45") && error.contains("0, 90, 180 or 270"), "{error}");
+}
+
+#[test]
+fn channels_are_told_and_chosen() {
+    let (dir, _) = folder("");
+    let info = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_fractal-contact"));
+        let output = command.arg("info").args(arguments).current_dir(dir.path()).output().unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (output.status.code(), text(&output.stdout), text(&output.stderr))
+    };
+    let (code, text, _) = info(&["upper.x3p", "--json"]);
+    let found: Value = serde_json::from_str(&text).unwrap();
+    let channel = &found["channels"][0];
+    assert_eq!((code, found["channels"].as_array().unwrap().len()), (Some(0), 1));
+    assert_eq!(
+        (&channel["columns"], &channel["rows"], &channel["unit"]),
+        (&4.into(), &3.into(), &"m".into())
+    );
+    let number = |value: &Value| value.as_f64().unwrap();
+    approx::assert_relative_eq!(number(&channel["size"][0]), 4e-3, max_relative = 1e-12);
+    approx::assert_relative_eq!(number(&channel["maximum"]), 6e-6, max_relative = 1e-12);
+    assert!(number(&channel["minimum"]).abs() < 1e-18 && number(&channel["undefined"]).abs() < 1e-18);
+    // What the file does not say is null.
+    let (_, text, _) = info(&["lower.npy", "--json"]);
+    let found: Value = serde_json::from_str(&text).unwrap();
+    assert!(found["channels"][0]["size"].is_null() && found["channels"][0]["unit"].is_null(), "{text}");
+    let (code, _, said) = info(&["upper.x3p", "--channel", "3"]);
+    assert!(code == Some(1) && said.contains("channel 3 is not in the file: the channels are 0"), "{said}");
+    let (code, text, _) = info(&["upper.x3p", "--channel", "0", "--rotate", "90"]);
+    assert!(code == Some(0) && text.contains("then       turned by 90 degrees"), "{text}");
+    assert!(info(&["upper.x3p", "--rotate", "45"]).2.contains("possible values: 0, 90, 180, 270"));
+    assert!(info(&["nowhere.x3p", "--json"]).2.contains("nowhere.x3p"));
+}
