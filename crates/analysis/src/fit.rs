@@ -23,11 +23,12 @@ impl FitWindow {
 
 impl fmt::Display for FitWindow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = |x: f64| format!("{x:.3e}").parse().unwrap_or(x);
         if self.min_force_bar > 0.0 {
-            write!(f, "{:?} <= ", self.min_force_bar)?;
+            write!(f, "{:?} <= ", digits(self.min_force_bar))?;
         }
         let Self { max_force_bar, min_contact_cells, .. } = self;
-        write!(f, "F_bar <= {max_force_bar:?}, all surfaces >= {min_contact_cells} contact cells")
+        write!(f, "F_bar <= {:?}, all surfaces >= {min_contact_cells} contact cells", digits(*max_force_bar))
     }
 }
 

@@ -78,6 +78,9 @@ pub struct TwoCasesArguments {
     /// Cells a side.
     #[arg(long, default_value_t = 512, allow_hyphen_values = true)]
     cells: usize,
+    /// Cells of the shortest wave.
+    #[arg(long, default_value_t = 8, allow_hyphen_values = true)]
+    cells_per_wave: usize,
     /// Surfaces of each case.
     #[arg(long, default_value_t = 16, allow_hyphen_values = true)]
     surfaces: usize,
@@ -124,6 +127,7 @@ impl TwoCasesArguments {
     pub fn study(&self) -> runs::Result<TwoCases> {
         Ok(TwoCases {
             cells: self.cells,
+            cells_per_wave: self.cells_per_wave,
             surfaces: self.surfaces,
             fractal_dimensions: self.fractal_dimensions.clone(),
             roll_offs: self.roll_offs.clone(),

@@ -22,7 +22,7 @@ use runs::{
 use std::path::Path;
 use std::time::Instant;
 pub(crate) use study::NAME;
-use study::{CaseCurve, CasePoint, CaseSolve, SHORTEST, Solves, SurfaceCase};
+use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 
 /// Solves the two cases (and the two mixed ones) of each fractal dimension and roll-off with boundary elements, Persson's and Greenwood and
 /// Williamson's theories, and writes `two-cases.csv`, `two-cases-pairs.csv`, pictures and `two-cases.md` into a directory. What is stored
@@ -49,7 +49,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
             Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.label()))?;
         let curve = mean_curve(case, slope, &means, &surfaces);
         outcome.claims.extend(claims(study, &curve, &means));
-        outcome.claims.extend(areas(&curve, &surfaces));
+        outcome.claims.extend(areas(study, &curve, &surfaces));
         curves.push(curve);
     }
     for case in study.cases().into_iter().filter(|c| c.boundary == Boundary::Periodic) {
@@ -62,8 +62,9 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
         .with_sources(Persson::default().sources())
         .with_sources(GreenwoodWilliamson::default().sources())
         .with_note(format!(
-            "spectrum: q^(-2 (H + 1)) from 1 wave a side (fractal) or constant below the roll-off, to {} waves (shortest: {SHORTEST} cells)",
-            study.shortest()
+            "spectrum: q^(-2 (H + 1)) from 1 wave a side (fractal) or constant below the roll-off, to {} waves (shortest: {} cells)",
+            study.shortest(),
+            study.cells_per_wave
         ))
         .with_note("stiffness: dF/dd of the approach (free), -dF/d(mean gap) (periodic)");
     let csv = out.join(format!("{NAME}.csv"));
@@ -162,6 +163,7 @@ mod tests {
     fn small() -> TwoCases {
         TwoCases {
             cells: 64,
+            cells_per_wave: 8,
             surfaces: 2,
             fractal_dimensions: vec![2.2],
             roll_offs: vec![3.0],
@@ -244,6 +246,8 @@ mod tests {
             (TwoCases { threads: 0, ..small() }, "threads"),
             (TwoCases { surfaces: 0, ..small() }, "surfaces"),
             (TwoCases { cells: 9, ..small() }, "cells"),
+            (TwoCases { cells_per_wave: 1, ..small() }, "cells per wave"),
+            (TwoCases { cells_per_wave: usize::MAX, ..small() }, "cells"),
             (TwoCases { roll_offs: vec![3.0, f64::NAN], ..small() }, "roll-off"),
             (TwoCases { roll_offs: vec![9.0], ..small() }, "roll-off"),
             (TwoCases { fractal_dimensions: Vec::new(), ..small() }, "df"),

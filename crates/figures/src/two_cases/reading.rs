@@ -116,11 +116,11 @@ pub(super) fn claims(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Vec
     all
 }
 
-/// Cells in contact from which an area with waves of eight cells counts as resolved, and the largest share of the square.
+/// Cells in contact from which an area counts as resolved, and the largest share of the square.
 const RESOLVED: (usize, f64) = (100, 0.1);
 
-/// Area over force, where the shortest wave has eight cells: its exponent, and kappa.
-pub(super) fn areas(curve: &CaseCurve, surfaces: &[Solves]) -> Vec<Claim> {
+/// Area over force: its exponent, and kappa.
+pub(super) fn areas(study: &TwoCases, curve: &CaseCurve, surfaces: &[Solves]) -> Vec<Claim> {
     let inside = |p: &CasePoint| {
         p.left_out == 0
             && p.min_contact_cells.is_some_and(|n| n >= RESOLVED.0)
@@ -157,8 +157,8 @@ pub(super) fn areas(curve: &CaseCurve, surfaces: &[Solves]) -> Vec<Claim> {
     for (i, (name, (statement, paper))) in names.into_iter().zip(papers).enumerate() {
         claims.push(if let Some((found, [low, high])) = &found {
                 let remark = format!(
-                    "F_bar {low:.1e} to {high:.1e}, at most {} of the square; shortest waves of eight cells; the interval holds the scatter",
-                    RESOLVED.1
+                    "F_bar {low:.1e} to {high:.1e}, at most {} of the square; shortest waves of {} cells; the interval holds the scatter, not what the grid leaves",
+                    RESOLVED.1, study.cells_per_wave
                 );
                 Claim::judge(name, statement, paper, found[i], remark)
             } else {

@@ -8,9 +8,6 @@ use std::f64::consts::TAU;
 
 pub(crate) const NAME: &str = "two-cases";
 
-/// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it.
-pub(super) const SHORTEST: usize = 8;
-
 /// What is solved.
 ///
 /// Sec. II of the paper tells two problems apart: fractal up to the size of the system with free edges, where it expects `k ~ F^alpha`, and
@@ -19,6 +16,9 @@ pub(super) const SHORTEST: usize = 8;
 pub struct TwoCases {
     /// Cells a side.
     pub cells: usize,
+    /// Cells of the shortest wave, a power of two for surfaces that other grids have too: the theories want a spectrum with an end, and the
+    /// grid resolves it.
+    pub cells_per_wave: usize,
     /// Surfaces of each case.
     pub surfaces: usize,
     /// D_f.
@@ -117,13 +117,14 @@ impl TwoCases {
 
     /// Waves a side at the end of the spectrum.
     pub(super) fn shortest(&self) -> f64 {
-        (self.cells / SHORTEST) as f64
+        (self.cells / self.cells_per_wave) as f64
     }
 
     pub(super) fn command(&self) -> String {
         format!(
-            "cargo xtask reproduce-two-cases --cells {} --surfaces {} --df {} --roll-off {} --forces {} --tolerance {:?} --seed {}",
+            "cargo xtask reproduce-two-cases --cells {} --cells-per-wave {} --surfaces {} --df {} --roll-off {} --forces {} --tolerance {:?} --seed {}",
             self.cells,
+            self.cells_per_wave,
             self.surfaces,
             list(&self.fractal_dimensions),
             list(&self.roll_offs),
@@ -140,8 +141,12 @@ impl TwoCases {
         if self.surfaces == 0 {
             return Err(Error::parameter("surfaces", 0, "at least one surface"));
         }
-        if self.cells < 4 * SHORTEST {
-            return Err(Error::parameter("cells", self.cells, format!("at least {}", 4 * SHORTEST)));
+        let per_wave = self.cells_per_wave;
+        if per_wave < 2 {
+            return Err(Error::parameter("cells per wave", per_wave, "at least 2"));
+        }
+        if self.cells / 4 < per_wave {
+            return Err(Error::parameter("cells", self.cells, "at least four of the shortest waves a side"));
         }
         for (name, given) in [("df", &self.fractal_dimensions), ("roll-off", &self.roll_offs)] {
             if given.is_empty() {
@@ -149,7 +154,7 @@ impl TwoCases {
             }
         }
         if let Some(waves) = self.roll_offs.iter().find(|r| !(**r > 1.0 && **r < self.shortest())) {
-            let expected = format!("between 1 and {} waves a side (cells / {SHORTEST})", self.shortest());
+            let expected = format!("between 1 and {} waves a side (cells / {per_wave})", self.shortest());
             return Err(Error::parameter("roll-off", waves, expected));
         }
         Ok(())
