@@ -286,3 +286,35 @@ fn exponents_of_the_study_are_those_of_its_samples() {
         assert!(page.contains(stated), "{stated}");
     }
 }
+
+#[test]
+fn exponents_of_the_two_problems_are_those_of_their_table() {
+    let page = text("book/src/results.md");
+    let solved: Vec<Row> = rows("data/figures/two-cases/2048/two-cases.csv")
+        .into_iter()
+        .filter(|r| r["model"] == "bem3d")
+        .collect();
+    for d in ["2.0", "2.4", "2.8"] {
+        let line = page.lines().find(|line| line.starts_with(&format!("| {d} | 1.0"))).unwrap();
+        let columns: Vec<&str> = line.split('|').map(str::trim).collect();
+        for (column, case, roll_off) in [
+            (2, "periodic, roll-off", "4.0"),
+            (3, "periodic, roll-off", "16.0"),
+            (4, "periodic, fractal", ""),
+            (5, "free, fractal", ""),
+        ] {
+            let of = |row: &&Row| {
+                let share = row["area"].parse().unwrap_or(0.0);
+                row["case"] == case
+                    && row["fractal_dimension"] == d
+                    && row["roll_off"] == roll_off
+                    && (0.01..=0.2).contains(&share)
+            };
+            let point = |row: &Row| (number(row, "force_bar").ln(), number(row, "stiffness_bar").ln());
+            let points: Vec<(f64, f64)> = solved.iter().filter(of).map(point).collect();
+            let alpha = slope(&points);
+            let stated: f64 = columns[column].split(' ').next().unwrap().parse().unwrap();
+            assert!((alpha - stated).abs() < 6e-3, "{case} {roll_off}, D_f {d}: {alpha}, stated {stated}");
+        }
+    }
+}

@@ -37,19 +37,24 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     files::clean(out)?;
     let store = Store::open(out, false)?;
     let solved = solve(study, &store, progress)?;
+    let coarser = solve(&study.coarser(), &store, progress)?;
     let mut outcome = Outcome::new(NAME);
     let mut curves = Vec::new();
     let pairs = pairs(study, &solved)?;
-    for (case, surfaces) in study.cases().into_iter().zip(solved) {
+    for ((case, surfaces), coarser) in study.cases().into_iter().zip(solved).zip(coarser) {
         let slope = case.slope(study)?;
-        outcome.not_converged +=
-            surfaces.iter().flatten().filter(|s| matches!(s, CaseSolve::NotConverged)).count();
+        outcome.not_converged += surfaces
+            .iter()
+            .chain(&coarser)
+            .flatten()
+            .filter(|s| matches!(s, CaseSolve::NotConverged))
+            .count();
         let samples = surfaces.iter().map(|s| s.iter().map(|s| s.sample().map(|s| s.0)).collect()).collect();
         let means =
             Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.label()))?;
-        let curve = mean_curve(case, slope, &means, &surfaces);
+        let curve = mean_curve(case, slope, &means, [&surfaces, &coarser]);
         outcome.claims.extend(claims(study, &curve, &means));
-        outcome.claims.extend(areas(study, &curve, &surfaces));
+        outcome.claims.extend(areas(study, &curve, [&surfaces, &coarser]));
         curves.push(curve);
     }
     for case in study.cases().into_iter().filter(|c| c.boundary == Boundary::Periodic) {
@@ -97,22 +102,32 @@ fn solve(study: &TwoCases, store: &Store, progress: &dyn Progress) -> Result<Vec
     Ok(solved.chunks(study.surfaces).map(<[_]>::to_vec).collect())
 }
 
-fn mean_curve(case: SurfaceCase, slope: f64, means: &Curves, surfaces: &[Solves]) -> CaseCurve {
+/// Means over the surfaces on the grid and on the coarser one.
+fn mean_curve(
+    case: SurfaceCase,
+    slope: f64,
+    means: &Curves,
+    [surfaces, coarser]: [&[Solves]; 2],
+) -> CaseCurve {
+    let area = |surfaces: &[Solves], j: usize| {
+        let areas: Vec<f64> = surfaces.iter().filter_map(|s| s[j].sample().map(|s| s.1)).collect();
+        (analysis::sum(areas.iter().copied()) / areas.len() as f64, areas.len())
+    };
     let points = ensemble(means)
         .into_iter()
         .enumerate()
         .filter_map(|(j, p)| {
             let k = p.stiffness_bar?;
-            let area: Vec<f64> = surfaces.iter().filter_map(|s| s[j].sample().map(|s| s.1)).collect();
-            let mean_area = analysis::sum(area.iter().copied()) / area.len() as f64;
+            let (mean_area, count) = area(surfaces, j);
             Some(CasePoint {
                 force_bar: p.force_bar,
                 kappa: analysis::kappa(mean_area, p.force_bar, 1.0, slope).ok(),
                 stiffness_bar: k.mean,
                 standard_error: k.standard_error,
-                surfaces: area.len(),
+                surfaces: count,
                 left_out: p.missing,
                 area: Some(mean_area),
+                area_coarser: Some(area(coarser, j).0).filter(|area| area.is_finite()),
                 min_contact_cells: p.min_contact_cells,
             })
         })
@@ -139,6 +154,7 @@ fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Resu
                     surfaces: 0,
                     left_out: 0,
                     area,
+                    area_coarser: None,
                     kappa: area.and_then(|area| analysis::kappa(area, forces[i], 1.0, slope).ok()),
                     min_contact_cells: None,
                 }),
@@ -201,11 +217,11 @@ mod tests {
         };
         let units = || Store::count(dir.path());
         let first = read(&small());
-        assert_eq!(units(), 4 * 2);
-        // One more roll-off: two cases of two surfaces; the others come from the store, and their numbers stay.
+        assert_eq!(units(), 2 * 4 * 2);
+        // One more roll-off: two cases of two surfaces on two grids; the others come from the store, and their numbers stay.
         let study = TwoCases { roll_offs: vec![3.0, 5.0], ..small() };
         let both = read(&study);
-        assert_eq!(units(), 6 * 2);
+        assert_eq!(units(), 2 * 6 * 2);
         for row in first.lines().filter(|line| line.contains("bem3d,")) {
             assert!(both.contains(row), "{row}");
         }
@@ -225,6 +241,7 @@ mod tests {
                     surfaces: 1,
                     left_out: 0,
                     area: Some(f / 1e4),
+                    area_coarser: None,
                     kappa: None,
                     min_contact_cells: None,
                 }
@@ -246,7 +263,8 @@ mod tests {
             (TwoCases { threads: 0, ..small() }, "threads"),
             (TwoCases { surfaces: 0, ..small() }, "surfaces"),
             (TwoCases { cells: 9, ..small() }, "cells"),
-            (TwoCases { cells_per_wave: 1, ..small() }, "cells per wave"),
+            (TwoCases { cells_per_wave: 7, ..small() }, "cells per wave"),
+            (TwoCases { cells: 66, ..small() }, "cells"),
             (TwoCases { cells_per_wave: usize::MAX, ..small() }, "cells"),
             (TwoCases { roll_offs: vec![3.0, f64::NAN], ..small() }, "roll-off"),
             (TwoCases { roll_offs: vec![9.0], ..small() }, "roll-off"),

@@ -40,6 +40,7 @@ pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
         PAPER_STIFFNESS_FACTOR * p.stiffness_bar / p.force_bar
     })
     .column("area", "1", "mean share of the square in contact", |(_, p, _)| p.area)
+    .column("area_coarser", "1", "the same with cells twice as large", |(_, p, _)| p.area_coarser)
     .column("kappa", "1", "A E* |grad h|/F, |grad h| of the spectrum", |(_, p, _)| p.kappa)
     .column("surfaces", "1", "surfaces in the mean (0: a theory)", |(_, p, _)| p.surfaces)
     .column("left_out", "1", LEFT_OUT, |(_, p, _)| p.left_out)

@@ -16,8 +16,8 @@ pub(crate) const NAME: &str = "two-cases";
 pub struct TwoCases {
     /// Cells a side.
     pub cells: usize,
-    /// Cells of the shortest wave, a power of two for surfaces that other grids have too: the theories want a spectrum with an end, and the
-    /// grid resolves it.
+    /// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it. The same surfaces are solved with
+    /// half as many as well.
     pub cells_per_wave: usize,
     /// Surfaces of each case.
     pub surfaces: usize,
@@ -115,6 +115,11 @@ impl TwoCases {
         self.fractal_dimensions.iter().flat_map(of).collect()
     }
 
+    /// The same surfaces with cells twice as large.
+    pub(super) fn coarser(&self) -> Self {
+        Self { cells: self.cells / 2, cells_per_wave: self.cells_per_wave / 2, ..self.clone() }
+    }
+
     /// Waves a side at the end of the spectrum.
     pub(super) fn shortest(&self) -> f64 {
         (self.cells / self.cells_per_wave) as f64
@@ -142,8 +147,12 @@ impl TwoCases {
             return Err(Error::parameter("surfaces", 0, "at least one surface"));
         }
         let per_wave = self.cells_per_wave;
-        if per_wave < 2 {
-            return Err(Error::parameter("cells per wave", per_wave, "at least 2"));
+        if per_wave < 4 || per_wave % 2 == 1 {
+            return Err(Error::parameter("cells per wave", per_wave, "an even number of at least 4"));
+        }
+        if self.cells % per_wave != 0 {
+            let expected = format!("a multiple of the {per_wave} cells of the shortest wave");
+            return Err(Error::parameter("cells", self.cells, expected));
         }
         if self.cells / 4 < per_wave {
             return Err(Error::parameter("cells", self.cells, "at least four of the shortest waves a side"));
@@ -197,6 +206,8 @@ pub(super) struct CasePoint {
     pub(super) surfaces: usize,
     pub(super) left_out: usize,
     pub(super) area: Option<f64>,
+    /// The area with cells twice as large.
+    pub(super) area_coarser: Option<f64>,
     /// A E* |grad h|/F.
     pub(super) kappa: Option<f64>,
     pub(super) min_contact_cells: Option<usize>,
