@@ -97,7 +97,7 @@ pub enum Command {
         #[command(flatten)]
         more: Box<MapArguments>,
     },
-    /// Draws a self-affine surface into a file: .npy, .txt (text matrix), .xyz or .vti by its ending.
+    /// Draws a self-affine surface into a file, by its ending: .npy, .txt (text matrix), .xyz, .vti, .h5, .x3p, .gwy or .nc.
     #[command(after_help = SURFACE)]
     Surface {
         /// The file.
@@ -140,6 +140,9 @@ pub struct MapArguments {
     /// Unit of x and y of points, such as um.
     #[arg(long)]
     lateral_unit: Option<surface_io::Unit>,
+    /// Height of one count of a file of counts, such as "0.25 nm".
+    #[arg(long, value_name = "LENGTH")]
+    height_scale: Option<surface_io::Quantity>,
     /// How decimals are written: point or comma.
     #[arg(long, default_value = "point")]
     decimal: surface_io::Decimal,
@@ -178,7 +181,7 @@ pub struct MapArguments {
 impl MapArguments {
     /// How the file is read, apart from what `rest` says, and what is done to its map.
     pub fn options(self, rest: ReadOptions) -> (ReadOptions, Preprocessing) {
-        let Self { lateral_unit, decimal, missing, skip_lines, crop, fill, detrend, .. } = self;
+        let Self { lateral_unit, height_scale, decimal, missing, skip_lines, crop, fill, detrend, .. } = self;
         let undefined = fill.is_none().then_some(surface_io::Undefined::NoContact);
         let preprocessing = Preprocessing {
             crop,
@@ -193,6 +196,6 @@ impl MapArguments {
             window: self.window,
             ..Preprocessing::default()
         };
-        (ReadOptions { lateral_unit, decimal, missing, skip_lines, ..rest }, preprocessing)
+        (ReadOptions { lateral_unit, height_scale, decimal, missing, skip_lines, ..rest }, preprocessing)
     }
 }

@@ -226,3 +226,49 @@ fn an_accuracy_is_what_the_run_finds() {
     }
     assert!(outcome.notes.iter().all(|note| !note.contains("accuracy")), "{:?}", outcome.notes);
 }
+
+/// The table of the book's page on measured surfaces, and what it says of single heights.
+#[test]
+fn diamond_scenes_give_the_numbers_of_their_page() {
+    let page = std::fs::read_to_string(folder().join("../../book/src/measured.md")).unwrap();
+    let runs = ["diamond-on-flat.toml", "diamond-two-bodies.toml"].map(|name| solved(name).1);
+    for (state, pressure) in [(0, "10 MPa"), (2, "100 MPa"), (4, "1 GPa"), (6, "10 GPa")] {
+        let start = format!("| {pressure} | ");
+        let line = page.lines().find(|line| line.starts_with(&start) && line.contains('±')).unwrap();
+        let numbers: Vec<&str> = line
+            .split(['|', '±', ',', '%'])
+            .map(str::trim)
+            .filter(|word| word.parse::<f64>().is_ok())
+            .collect();
+        let of = |run: usize, name: &str| column(&runs[run], "bem3d", name)[state];
+        let area = |run: usize| [1e18 * of(run, "area"), 1.0 + of(run, "area_grid_error")];
+        let stiffness = |run: usize| [of(run, "stiffness"), 100.0 * of(run, "stiffness_grid_error")];
+        let conductance = [0, 1].map(|run| 1e9 * of(run, "conductance"));
+        let found = [stiffness(0), stiffness(1), conductance, area(0), area(1)].concat();
+        assert_eq!(numbers.len(), found.len(), "{line}");
+        for (stated, found) in numbers.iter().zip(found) {
+            let decimals = stated.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+            assert_eq!(**stated, format!("{found:.decimals$}"), "{pressure}");
+        }
+    }
+    let scan = surface_io::Scan::read(
+        &folder().join("../measured/uncd-afm.001"),
+        &surface_io::ReadOptions {
+            channel: Some(surface_io::ChannelChoice::Number(0)),
+            ..Default::default()
+        },
+    );
+    let preprocessing = surface_io::Preprocessing {
+        detrend: surface_io::Detrend::Plane,
+        ..surface_io::Preprocessing::default()
+    };
+    let map = scan.unwrap().map(&preprocessing).unwrap();
+    let (n, h) = (map.columns(), map.heights());
+    let rms = |differences: Vec<f64>| format!("{:.2}", 1e9 * surface_gen::rms_height(&differences));
+    let lines = rms((n..h.len()).map(|i| h[i] - h[i - n]).collect());
+    let points = rms((1..h.len()).filter(|i| i % n > 0).map(|i| h[i] - h[i - 1]).collect());
+    assert!(
+        page.contains(&format!("differ by {lines} nm rms"))
+            && page.contains(&format!("\n   {points}: noise"))
+    );
+}

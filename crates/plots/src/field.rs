@@ -4,6 +4,7 @@ use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polyline, rectangle};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
+use crate::unit_prefix::prefixed;
 use contact_model::{Cells, Size};
 use runs::{Result, files};
 use std::ops::Range;
@@ -27,9 +28,11 @@ pub struct FieldPicture<'a> {
     pub title: String,
     /// Below the title.
     pub subtitle: String,
-    /// Beside the colour bar, with the unit.
+    /// Beside the colour bar.
     pub quantity: String,
-    /// Unit of x and y; empty for none.
+    /// Unit of the values, as they are given; the picture chooses a prefix. Empty for none.
+    pub unit: &'a str,
+    /// Unit of x and y, likewise.
     pub length_unit: &'a str,
     /// Columns and rows.
     pub cells: Cells,
@@ -100,24 +103,45 @@ impl FieldPicture<'_> {
         let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
         let image = self.image(columns, rows, color).into_flattened();
         drawing.image(frame, image, columns);
-        ticks(&fonts, &mut drawing, frame, Side::Below, (0.0, size.x));
-        ticks(&fonts, &mut drawing, frame, Side::Left, (0.0, size.y));
+        let (length_unit, per_length) = prefixed(self.length_unit, longer);
+        ticks(&fonts, &mut drawing, frame, Side::Below, (0.0, per_length * size.x));
+        ticks(&fonts, &mut drawing, frame, Side::Left, (0.0, per_length * size.y));
         drawing.path(rectangle(frame), Paint::stroked(INK, 1.2), None);
-        let unit =
-            if self.length_unit.is_empty() { String::new() } else { format!(" ({})", self.length_unit) };
+        let with = |words: &str, unit: &str| {
+            if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
+        };
         let below = (LEFT + 0.5 * w, TOP + h + 3.2 * TICK);
-        drawing.label(fonts.typeset(&format!("$x${unit}"), 1.2 * TICK), below, Anchor::Middle, false, INK);
+        drawing.label(
+            fonts.typeset(&with("$x$", &length_unit), 1.2 * TICK),
+            below,
+            Anchor::Middle,
+            false,
+            INK,
+        );
         let beside = (1.4 * TICK, TOP + 0.5 * h);
-        drawing.label(fonts.typeset(&format!("$y${unit}"), 1.2 * TICK), beside, Anchor::Middle, true, INK);
+        drawing.label(
+            fonts.typeset(&with("$y$", &length_unit), 1.2 * TICK),
+            beside,
+            Anchor::Middle,
+            true,
+            INK,
+        );
         // The bar is at least as high as its labels need.
         let bar = [LEFT + w + 24.0, TOP, BAR, h.max(160.0)];
         let steps = (bar[3] * PIXELS) as usize;
         let ramp = |i: usize| color(low + (high - low) * (1.0 - (i as f64 + 0.5) / steps as f64));
         drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
-        ticks(&fonts, &mut drawing, bar, Side::Right, (low, high));
+        let (unit, per_unit) = prefixed(self.unit, low.abs().max(high.abs()));
+        ticks(&fonts, &mut drawing, bar, Side::Right, (per_unit * low, per_unit * high));
         drawing.path(rectangle(bar), Paint::stroked(INK, 1.2), None);
         let words = (LEFT + w + RIGHT - 0.6 * TICK, TOP + 0.5 * bar[3]);
-        drawing.label(fonts.typeset(&self.quantity, 1.2 * TICK), words, Anchor::Middle, true, INK);
+        drawing.label(
+            fonts.typeset(&with(&self.quantity, &unit), 1.2 * TICK),
+            words,
+            Anchor::Middle,
+            true,
+            INK,
+        );
         drawing.label(fonts.typeset(&self.title, 19.0), (LEFT, 27.0), Anchor::Start, false, INK);
         drawing.label(fonts.typeset(&self.subtitle, 15.0), (LEFT, 49.0), Anchor::Start, false, NEUTRAL);
         files::write_whole(path, &drawing.png(&fonts, path)?)
@@ -219,13 +243,14 @@ mod tests {
     use contact_model::Field;
 
     fn picture(field: &Field, shown: Shown) -> FieldPicture<'_> {
-        let (title, subtitle, quantity) = ("t".into(), "s".into(), "p (Pa)".into());
+        let (title, subtitle, quantity) = ("t".into(), "s".into(), "p".into());
         let (cells, size, values) = (field.cells(), field.size(), field.values());
         let contact = &[];
         FieldPicture {
             title,
             subtitle,
             quantity,
+            unit: "Pa",
             length_unit: "m",
             cells,
             size,

@@ -26,6 +26,7 @@ mod panels;
 mod plot;
 mod style;
 mod text;
+mod unit_prefix;
 
 pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
@@ -38,3 +39,4 @@ pub use plot::Picture;
 pub use runs::{Error, Result};
 pub use style::{COLORS, Key, LineStyle, Mark, MarkShape, NEUTRAL, REFERENCE, SHAPES, color, shape};
 pub use text::number;
+pub use unit_prefix::prefixed;

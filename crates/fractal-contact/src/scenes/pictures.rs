@@ -69,24 +69,24 @@ pub(crate) fn field<'a>(
     values: &'a [f64],
 ) -> FieldPicture<'a> {
     let si = scene.system == System::Si;
-    let with = |unit: &str| if si { format!(" ({unit})") } else { String::new() };
-    let (quantity, shown) = match name {
-        "pressure" => (format!("pressure $p${}", with("Pa")), Shown::Largest),
-        "displacement" => (format!("displacement $u${}", with("m")), Shown::Middle),
-        "gap" => (format!("gap $g${}", with("m")), Shown::Smallest),
-        _ => (format!("height{}", with("m")), Shown::Middle),
+    let (quantity, unit, shown) = match name {
+        "pressure" => ("pressure $p$", "Pa", Shown::Largest),
+        "displacement" => ("displacement $u$", "m", Shown::Middle),
+        "gap" => ("gap $g$", "m", Shown::Smallest),
+        _ => ("height", "m", Shown::Middle),
     };
     let load = if name == "heights" { "as solved".to_owned() } else { load(scene, state) };
     let mut title = format!("{name}, {}", model_name(model));
     title[..1].make_ascii_uppercase();
     let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
     let subtitle = format!("{}{number}: {load}", scene_name(scene));
-    let length_unit = if si { "m" } else { "" };
+    let [unit, length_unit] = if si { [unit, "m"] } else { [""; 2] };
     let size = scene.surface.size();
     FieldPicture {
         title,
         subtitle,
-        quantity,
+        quantity: quantity.to_owned(),
+        unit,
         length_unit,
         cells,
         size,
@@ -111,12 +111,14 @@ pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
             let unit = match loads.prescribed {
                 Prescribed::ForceBar => "",
                 _ if !si => "",
-                Prescribed::Force => " N",
-                Prescribed::MeanPressure => " Pa",
-                Prescribed::Approach | Prescribed::MeanGap => " m",
+                Prescribed::Force => "N",
+                Prescribed::MeanPressure => "Pa",
+                Prescribed::Approach | Prescribed::MeanGap => "m",
             };
             let words = loads.prescribed.key().replace('_', " ");
-            format!("{words} {}{unit}", short(loads.values[state]))
+            let (unit, factor) = plots::prefixed(unit, loads.values[state]);
+            let value = short(factor * loads.values[state]);
+            format!("{words} {value} {unit}").trim_end().to_owned()
         }
         Loading::Path(_) => format!("step {state}"),
     }
@@ -145,13 +147,21 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
         _ => None,
     };
     let shown = |(x, y): &(f64, f64)| scene.is_history() || (*x != 0.0 && *y != 0.0);
+    // The conductance is the stiffness in other units.
+    let grid_error = format!("{}_grid_error", if y == "conductance" { "stiffness" } else { y });
     let curve = |model: &'static str| {
         let label = model_name(model).to_owned();
         let of = || means.iter().filter(move |mean| mean.model == model && mean.surfaces > 0);
         if means.is_empty() {
             let rows = table.rows().iter().filter(|row| row.first() == Some(&Value::from(model)));
-            let points = rows.filter_map(|row| Some((number(row, x)?, number(row, y)?)));
-            return Curve { label, points: points.filter(shown).collect(), band: Vec::new() };
+            let row = |row: &Vec<Value>| Some(((number(row, x)?, number(row, y)?), number(row, &grid_error)));
+            let states: Vec<_> = rows.filter_map(row).filter(|(point, _)| shown(point)).collect();
+            // By a factor, because an error of more than the number itself has no lower end on these axes.
+            let end = |((x, y), error): &((f64, f64), Option<f64>)| {
+                error.map(|error| (*x, y / (1.0 + error), y * (1.0 + error)))
+            };
+            let band = states.iter().filter_map(end).collect();
+            return Curve { label, points: states.iter().map(|(point, _)| *point).collect(), band };
         }
         let points = of().filter_map(|mean| Some((mean.of(x)?.0, mean.of(y)?.0)));
         let band = of().filter_map(|mean| {
@@ -165,6 +175,7 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
     let mut title = format!("{} over {}", quantity(scene, y).0, quantity(scene, x).0);
     title[..1].make_ascii_uppercase();
     let surfaces = match scene.sampling.surfaces {
+        1 if place(&grid_error).is_some() => ", shaded: the factor 1 + grid error".to_owned(),
         1 => String::new(),
         asked => {
             // A run that was interrupted has fewer.

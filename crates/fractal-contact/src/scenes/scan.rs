@@ -40,6 +40,9 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     };
     declared.unit = unit("unit")?;
     declared.lateral_unit = unit("lateral_unit")?;
+    if let Some(entry) = table.find("height_scale") {
+        declared.height_scale = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
+    }
     match table.one_of(&["size", "cell", "width"])? {
         Some(("size", entry)) => declared.size = Some(sides(&entry, system)?),
         Some(("cell", entry)) => declared.cell = Some(sides(&entry, system)?),
