@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // 512 um a side; a roll-off at an eighth of it.
     let surface = SelfAffine::new(2.2, 512e-6, 1e-6)?;
     let surface = SelfAffine { roll_off: Some(std::f64::consts::TAU / 64e-6), ..surface };
-    let draw = |seed| height_map(&Surface::SelfAffine(surface.clone()), 256, seed);
+    let draw = |seed| height_map(&Surface::SelfAffine(surface), 256, seed);
     let (first, other) = (draw(1)?, draw(2)?);
     // An instrument would measure the imprint from its own side: mirrored. Laid on the first face to face it is mirrored again.
     let imprint = first.scaled(1.0, -1.0)?.mirrored();

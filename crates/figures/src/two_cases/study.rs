@@ -147,10 +147,10 @@ impl TwoCases {
             return Err(Error::parameter("surfaces", 0, "at least one surface"));
         }
         let per_wave = self.cells_per_wave;
-        if per_wave < 4 || per_wave % 2 == 1 {
+        if per_wave < 4 || !per_wave.is_multiple_of(2) {
             return Err(Error::parameter("cells per wave", per_wave, "an even number of at least 4"));
         }
-        if self.cells % per_wave != 0 {
+        if !self.cells.is_multiple_of(per_wave) {
             let expected = format!("a multiple of the {per_wave} cells of the shortest wave");
             return Err(Error::parameter("cells", self.cells, expected));
         }
