@@ -8,6 +8,7 @@ mod measured_maps;
 mod own_models;
 mod program;
 mod rectangles;
+mod report;
 mod resume;
 mod scenes;
 mod theories_on_maps;

@@ -1,6 +1,7 @@
 //! One picture of a few curves, for whoever has them.
 
 use crate::axis::{Axis, linear, logarithmic};
+use crate::panels::Panels;
 use crate::plot::Picture;
 use crate::style::{COLORS, Key, LineStyle, Mark, SHAPES};
 use runs::Result;
@@ -40,6 +41,18 @@ impl Chart {
     /// # Errors
     /// [`crate::Error::File`] when they cannot be written.
     pub fn save(&self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
+        self.picture().save(directory, name)
+    }
+
+    /// The SVG as text.
+    ///
+    /// # Errors
+    /// [`crate::Error::Content`] where the fonts cannot be read.
+    pub fn svg(&self) -> Result<String> {
+        Panels { columns: 1, pictures: vec![self.picture()], ..Panels::default() }.svg()
+    }
+
+    fn picture(&self) -> Picture {
         let ends =
             |c: &Curve| c.band.iter().flat_map(|&(x, low, high)| [(x, low), (x, high)]).collect::<Vec<_>>();
         // The lower end of a wide band may be negative, where a logarithmic axis has no place for it.
@@ -72,7 +85,7 @@ impl Chart {
             let key = if marked { Key::Curve(mark) } else { Key::Line(LineStyle::Solid) };
             picture.legend(&curve.label, color, key);
         }
-        picture.save(directory, name)
+        picture
     }
 }
 

@@ -96,7 +96,7 @@ impl Drawing {
         Ok(vec![svg, png])
     }
 
-    fn svg(&self, fonts: &Fonts, path: &Path) -> Result<String> {
+    pub fn svg(&self, fonts: &Fonts, path: &Path) -> Result<String> {
         let mut clips: Vec<Rectangle> = Vec::new();
         let mut glyphs: BTreeSet<(bool, u16)> = BTreeSet::new();
         let mut body = String::new();

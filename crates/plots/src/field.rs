@@ -1,6 +1,7 @@
 //! A field over a rectangle: axes, colour bar and title.
 
 use crate::axis::Axis;
+use crate::colours::UNDEFINED;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polyline, rectangle};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
@@ -58,8 +59,6 @@ const RIGHT: f64 = 124.0;
 const BELOW: f64 = 60.0;
 const BAR: f64 = 18.0;
 const TICK: f64 = 14.0;
-/// Undefined points.
-const UNDEFINED: [u8; 3] = [205, 205, 205];
 /// Outline of the contact: far from all of viridis.
 const OUTLINE: [u8; 3] = [228, 26, 28];
 /// Where less than this share of the pixels is under pressure, each of these is drawn three pixels wide.

@@ -16,6 +16,7 @@
 
 mod axis;
 mod chart;
+mod colours;
 mod drawing;
 mod field;
 mod legend;
@@ -30,6 +31,7 @@ mod unit_prefix;
 
 pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
+pub use colours::{encode_viridis, viridis};
 pub use field::{FieldPicture, Shown};
 pub use legend::Legend;
 pub use map::{encode_grey, grey, write_grey};

@@ -26,8 +26,21 @@ impl Panels {
     ///
     /// # Errors
     /// [`crate::Error::File`] when they cannot be written.
-    pub fn save(mut self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
+    pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
         let fonts = Fonts::load()?;
+        self.drawing(&fonts).save(&fonts, directory, name)
+    }
+
+    /// The SVG as text.
+    ///
+    /// # Errors
+    /// [`crate::Error::Content`] where an image in it cannot be encoded.
+    pub fn svg(self) -> Result<String> {
+        let fonts = Fonts::load()?;
+        self.drawing(&fonts).svg(&fonts, Path::new("a picture"))
+    }
+
+    fn drawing(mut self, fonts: &Fonts) -> Drawing {
         let (width, height) = self.pictures.first().map_or(SIZE, |p| p.size);
         let columns = self.columns.max(1);
         let rows = self.pictures.len().div_ceil(columns);
@@ -35,13 +48,13 @@ impl Panels {
         let (all_width, all_height) = (columns as f64 * width, top + rows as f64 * height);
         let mut left = 40.0;
         if let [only] = self.pictures.as_mut_slice() {
-            left = only.frame(&fonts, (0.0, 0.0))[0];
-            if let Some(below) = only.legend_below(&fonts) {
+            left = only.frame(fonts, (0.0, 0.0))[0];
+            if let Some(below) = only.legend_below(fonts) {
                 self.legend = below.clone();
                 only.legend_below = true;
             }
         }
-        let set = self.legend.set(&fonts, WORDS, all_width - left - 18.0);
+        let set = self.legend.set(fonts, WORDS, all_width - left - 18.0);
         let legend_height = if self.legend.is_empty() { 0.0 } else { set.height() + 20.0 };
         let mut drawing = Drawing::new(all_width, all_height + legend_height);
         if !self.title.is_empty() {
@@ -53,9 +66,9 @@ impl Panels {
         }
         for (i, picture) in self.pictures.into_iter().enumerate() {
             let corner = ((i % columns) as f64 * width, top + (i / columns) as f64 * height);
-            picture.draw(&fonts, &mut drawing, corner);
+            picture.draw(fonts, &mut drawing, corner);
         }
-        drawing.save(&fonts, directory, name)
+        drawing
     }
 }
 

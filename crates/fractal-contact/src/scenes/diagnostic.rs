@@ -73,6 +73,11 @@ impl Diagnostic {
         &self.message
     }
 
+    /// What to do about it.
+    pub fn help(&self) -> Option<&str> {
+        self.help.as_deref()
+    }
+
     /// Line of the text, from 1, where the mistake has a place.
     pub fn line(&self) -> Option<usize> {
         self.place.as_ref()?.line.as_ref().map(|(number, ..)| *number)

@@ -1,6 +1,7 @@
 //! Pictures of fields. They are drawn last, when the range of all loads is known: one surface has one scale.
 
 use crate::scenes::error::Result;
+use crate::scenes::field_view::FieldView;
 
 use crate::scenes::outputs::FieldFormat;
 use crate::scenes::pictures;
@@ -14,6 +15,8 @@ use std::path::Path;
 /// Where values wait for being drawn, beside the stored results.
 const WAITING: &str = ".units/";
 const EXTENSION: &str = "f64";
+/// Of what the report shows.
+const VIEW: &str = "view";
 
 impl StoredFile {
     /// Whether it is of the program's own use only.
@@ -31,15 +34,30 @@ pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
     drawn(name) || name == "pressure" && (drawn("gap") || drawn("displacement"))
 }
 
-/// Keeps the values of a field, little-endian, row-major.
+/// Keeps the values of a field, little-endian, row-major, until it is drawn.
 pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<StoredFile> {
-    let name = format!("{WAITING}{}", FieldFile { extension: EXTENSION, ..file });
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    keep_bytes(out, FieldFile { extension: EXTENSION, ..file }, &bytes)
+}
+
+/// Keeps what the report shows of a field.
+pub(crate) fn keep_view(out: &Path, file: FieldFile<'_>, view: &FieldView) -> Result<StoredFile> {
+    keep_bytes(out, FieldFile { extension: VIEW, ..file }, &view.encode())
+}
+
+/// What [`keep_view`] kept of a state.
+pub(crate) fn view(out: &Path, file: FieldFile<'_>) -> Option<FieldView> {
+    let name = format!("{WAITING}{}", FieldFile { extension: VIEW, ..file });
+    FieldView::decode(&runs::files::read(&out.join(name), u64::MAX).ok()?)
+}
+
+fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFile> {
+    let name = format!("{WAITING}{file}");
     let path = out.join(&name);
     // A new file, not what a link of this name leads to.
     let _ = std::fs::remove_file(&path);
     let file = std::fs::File::options().write(true).create_new(true).open(&path);
-    let written = file.and_then(|mut file| file.write_all(&bytes));
+    let written = file.and_then(|mut file| file.write_all(bytes));
     written.map_err(runs::Error::file("write", &path))?;
     StoredFile::of(out, name)
 }
@@ -85,7 +103,7 @@ pub(crate) fn draw(
     }
     if result.complete {
         for state in &mut result.states {
-            for file in state.files.extract_if(.., |file| file.is_hidden()) {
+            for file in state.files.extract_if(.., |file| file.name.ends_with(EXTENSION)) {
                 // It may be gone since it was read: nobody needs it any more.
                 let _ = std::fs::remove_file(out.join(file.name));
             }

@@ -5,6 +5,7 @@ use crate::scenes::columns::{self, State};
 use crate::scenes::distributed;
 use crate::scenes::error::{Error, Result};
 use crate::scenes::field_pictures;
+use crate::scenes::field_view::FieldView;
 use crate::scenes::grid_comparison::{GridComparison, solved_map};
 use crate::scenes::loads::Loading;
 use crate::scenes::numerics::Numerics;
@@ -21,7 +22,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Number of the format of stored units; it changes with anything that changes a row.
-pub(crate) const FORMAT: u32 = 5;
+pub(crate) const FORMAT: u32 = 6;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -276,6 +277,11 @@ impl ModelOnSurface {
             let file = |extension| FieldFile { field: name, model, surface, state, extension };
             if field_pictures::is_needed(scene, name) {
                 kept.files.push(field_pictures::keep(out, file(""), values)?);
+            }
+            // One surface is shown, and only fields that files are asked of.
+            if surface == 0 && !formats.is_empty() {
+                let view = FieldView::new(name, field.cells(), values);
+                kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
             }
             for &format in formats {
                 let file = file(format.extension()).to_string();

@@ -19,16 +19,20 @@ const OVER_TIME: [&str; 2] = ["force", "approach"];
 /// `curve-Y.svg` and `.png` for every column that the scene asked for.
 pub(crate) fn curves(scene: &SceneFile, table: &Table, means: &[Mean], out: &Path) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    let has = |name: &str| table.columns().iter().any(|c| c.name == name);
-    for (x, y) in pairs(scene) {
-        if has(x) && has(y) {
-            let chart = chart(scene, table, means, x, y);
-            if chart.curves.iter().any(|c| varies(&c.points)) {
-                files.extend(chart.save(out, &format!("curve-{y}"))?);
-            }
-        }
+    for (y, chart) in charts(scene, table, means) {
+        files.extend(chart.save(out, &format!("curve-{y}"))?);
     }
     Ok(files)
+}
+
+/// A chart for every column that the scene asked for and that varies, by the column's name.
+pub(crate) fn charts(scene: &SceneFile, table: &Table, means: &[Mean]) -> Vec<(&'static str, Chart)> {
+    let has = |name: &str| table.columns().iter().any(|c| c.name == name);
+    let drawn = pairs(scene).into_iter().filter(|(x, y)| has(x) && has(y));
+    drawn
+        .map(|(x, y)| (y, chart(scene, table, means, x, y)))
+        .filter(|(_, chart)| chart.curves.iter().any(|c| varies(&c.points)))
+        .collect()
 }
 
 /// The names of all files that [`curves`] may write.

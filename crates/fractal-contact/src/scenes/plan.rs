@@ -12,6 +12,7 @@ use crate::scenes::model_on_surface::{ModelOnSurface, probe};
 use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::{SceneFile, cells};
 use crate::scenes::scene_surface::SceneSurface;
+use crate::scenes::summary::short;
 use contact_model::{Cells, Surface};
 use std::fmt;
 
@@ -181,7 +182,7 @@ const SMALL_SLOPE: f64 = 0.3;
 fn steep(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
     let slope = map?.rms_slope;
     let message =
-        format!("the rms slope of the map is {}, and every model here assumes small slopes", number(slope));
+        format!("the rms slope of the map is {}, and every model here assumes small slopes", short(slope));
     let help = "is the unit of the heights right? beyond 0.3 take the results as those of a linear theory";
     (scene.system == System::Si && slope > SMALL_SLOPE).then(|| Diagnostic::note(message).with_help(help))
 }

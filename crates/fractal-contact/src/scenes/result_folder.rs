@@ -47,7 +47,9 @@ impl ResultFolder {
     /// The files that earlier runs wrote and those, but for fields, that a run of this scene may write.
     pub fn files(&self, scene: &SceneFile) -> BTreeSet<String> {
         let mut files = self.owned.clone();
-        files.extend(["results.csv", "ensemble.csv", "patches.csv", "manifest.json"].map(str::to_owned));
+        files.extend(
+            ["results.csv", "ensemble.csv", "patches.csv", "report.html", "manifest.json"].map(str::to_owned),
+        );
         files.extend(pictures::curve_files(scene));
         files.extend(distributions::files(scene));
         files.retain(|name| self.owned.contains(name) || may_write(scene, name));
@@ -103,7 +105,7 @@ impl Manifest {
 fn may_write(scene: &SceneFile, name: &str) -> bool {
     let requested = &scene.requested;
     match name {
-        "results.csv" | "manifest.json" => true,
+        "results.csv" | "report.html" | "manifest.json" => true,
         "patches.csv" => requested.outputs.contact_patches,
         "ensemble.csv" => scene.sampling.surfaces > 1,
         _ if distributions::files(scene).iter().any(|file| file == name) => true,

@@ -13,6 +13,7 @@ use crate::scenes::model_on_surface::ModelOnSurface;
 use crate::scenes::outcome::{Options, SceneOutcome, SharedStop};
 use crate::scenes::pictures;
 use crate::scenes::plan::{ModelPlan, Plan};
+use crate::scenes::report::Report;
 use crate::scenes::result_folder::ResultFolder;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_job::SceneJob;
@@ -105,6 +106,9 @@ pub fn run(
     outcome.actual = actual(scene, &units, &results, &table);
     outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
+    let report = Report { scene, plan, outcome: &outcome, table: &table, means: &means, solved: &solved }
+        .write(&options.out)?;
+    outcome.files.push(report);
     outcome.files.push(options.out.join("manifest.json"));
     if !outcome.stopped {
         field_pictures::sweep(&options.out);

@@ -24,10 +24,41 @@ const SHOWN: [&str; 14] = [
 /// More states of a model than these are left to the files.
 const MOST: usize = 24;
 
-/// A few columns of the states of each model; of several surfaces their means with the standard errors in brackets.
+/// A few columns of the states of a model.
+pub(crate) struct ModelStates {
+    pub name: &'static str,
+    /// Cells of the table, its head first.
+    pub lines: Vec<Vec<String>>,
+    /// States that are left to the files.
+    pub left_out: usize,
+}
+
+/// The states of each model as aligned text.
 pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> String {
-    let place = |name: &str| table.columns().iter().position(|c| c.name == name);
     let mut text = String::new();
+    for ModelStates { name, lines, left_out } in of_models(scene, table, means) {
+        let brackets = if means.is_empty() { "" } else { ": means over surfaces (standard error)" };
+        text += &format!("{name}{brackets}\n");
+        let columns = lines.first().map_or(0, Vec::len);
+        let width = |i: usize| lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        for line in &lines {
+            for (cell, width) in line.iter().zip(&widths) {
+                text += &format!("  {cell:>width$}");
+            }
+            text.push('\n');
+        }
+        if left_out > 0 {
+            text += &format!("  ... {left_out} more states\n");
+        }
+    }
+    text
+}
+
+/// A few columns of the states of each model; of several surfaces their means with the standard errors in brackets.
+pub(crate) fn of_models(scene: &SceneFile, table: &Table, means: &[Mean]) -> Vec<ModelStates> {
+    let place = |name: &str| table.columns().iter().position(|c| c.name == name);
+    let mut of_models = Vec::new();
     for model in scene.models.iter().map(crate::scenes::Numerics::name) {
         let rows: Vec<&Vec<Value>> =
             table.rows().iter().filter(|row| row.first() == Some(&Value::from(model))).collect();
@@ -66,20 +97,10 @@ pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> Strin
             vec![shown.iter().map(|&(name, at)| format!("{name}{}", unit(at))).collect()];
         let states = lines.len();
         all.extend(lines.into_iter().take(MOST));
-        let brackets = if means.is_empty() { "" } else { ": means over surfaces (standard error)" };
-        text += &format!("{model}{brackets}\n");
-        for line in &all {
-            for &i in &kept {
-                let width = all.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
-                text += &format!("  {:>width$}", line[i]);
-            }
-            text.push('\n');
-        }
-        if states > MOST {
-            text += &format!("  ... {} more states\n", states - MOST);
-        }
+        let lines = all.iter().map(|line| kept.iter().map(|&i| line[i].clone()).collect()).collect();
+        of_models.push(ModelStates { name: model, lines, left_out: states.saturating_sub(MOST) });
     }
-    text
+    of_models
 }
 
 /// Four digits.

@@ -1,0 +1,385 @@
+//! `report.html`: a run in one page, which needs no network and no other file.
+
+use crate::scenes::cost::Cost;
+use crate::scenes::distributions::{self, Solved};
+use crate::scenes::ensemble::Mean;
+use crate::scenes::entries::System;
+use crate::scenes::error::Result;
+use crate::scenes::field_pictures;
+use crate::scenes::field_view::{FieldView, Picked};
+use crate::scenes::human_readable::{memory, number, time};
+use crate::scenes::outcome::SceneOutcome;
+use crate::scenes::pictures;
+use crate::scenes::plan::Plan;
+use crate::scenes::scene_file::SceneFile;
+use crate::scenes::scene_surface::SceneSurface;
+use crate::scenes::state_result::FieldFile;
+use crate::scenes::summary;
+use analysis::{Table, Value};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use contact_model::Surface;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use plots::{Chart, Curve, prefixed};
+use std::path::{Path, PathBuf};
+
+const STYLE: &str = include_str!("report/page.css");
+const SCRIPT: &str = include_str!("report/page.js");
+
+/// Bytes that the fields of a page may take: it stays below 5 MB.
+const MOST_BYTES: usize = 4_000_000;
+
+/// What a page is made of.
+pub(crate) struct Report<'a> {
+    pub scene: &'a SceneFile,
+    pub plan: &'a Plan,
+    pub outcome: &'a SceneOutcome,
+    pub table: &'a Table,
+    pub means: &'a [Mean],
+    pub solved: &'a [Solved<'a>],
+}
+
+impl Report<'_> {
+    /// Writes the page.
+    ///
+    /// # Errors
+    /// Pictures that cannot be encoded, and a file that cannot be written.
+    pub fn write(&self, out: &Path) -> Result<PathBuf> {
+        let path = out.join("report.html");
+        runs::files::write_whole(&path, self.page(out)?.into_string().as_bytes())?;
+        Ok(path)
+    }
+
+    fn page(&self, out: &Path) -> Result<Markup> {
+        let name = pictures::scene_name(self.scene);
+        let (curves, fields, distributions) = (self.curves()?, self.fields(out)?, self.distributions()?);
+        let spectrum = self.spectrum()?;
+        Ok(html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="generator" content=(concat!("fractal-contact ", env!("CARGO_PKG_VERSION")));
+                    title { (name) }
+                    style { (PreEscaped(STYLE)) }
+                }
+                body {
+                    header {
+                        h1 { (name) }
+                        @if !self.plan.shows.is_empty() { p.lead { (self.plan.shows) } }
+                        (self.verdict())
+                    }
+                    nav aria-label="Sections" { ul {
+                        @for (id, words) in SECTIONS { li { a href={ "#" (id) } { (words) } } }
+                    } }
+                    main {
+                        section id="results" { h2 { "Results" } (self.states()) div.charts { (curves) } (distributions) }
+                        section id="fields" { h2 { "Map, pressure and gap" } (fields) }
+                        section id="surface" { h2 { "The surface, as it was understood" } (self.surface()) (spectrum) }
+                        section id="certificates" { h2 { "How sure the solutions are" } (self.certificates()) }
+                        section id="effects" { h2 { "Effects and outputs" } (self.effects()) }
+                        section id="work" { h2 { "Work and time" } (self.work()) }
+                        section id="cite" { h2 { "Sources to cite" } (self.sources()) }
+                        section id="scene" { h2 { "The scene" } pre { (self.scene.text) } }
+                    }
+                    footer { p { "fractal-contact " (env!("CARGO_PKG_VERSION")) }  }
+                    script id="palette" type="application/octet-stream" { (PreEscaped(STANDARD.encode(plots::viridis().as_flattened()))) }
+                    script { (PreEscaped(SCRIPT)) }
+                }
+            }
+        })
+    }
+
+    fn verdict(&self) -> Markup {
+        let SceneOutcome { requested, states, failed, stopped, .. } = *self.outcome;
+        let rest = requested - states;
+        let fine = failed == 0 && rest == 0;
+        html! {
+            p.verdict.warned[!fine] {
+                @if fine { "All " (states) " states asked for were answered and are certified." }
+                @else { (states) " of " (requested) " states were attempted; " (failed) " of them were refused or missed their tolerance." }
+                @if stopped { " The run was stopped before its end." }
+            }
+            @if !self.outcome.notes.is_empty() || !self.plan.notes.is_empty() {
+                div.verdict.warned {
+                    strong { "To beware of" }
+                    ul {
+                        @for note in &self.plan.notes { li { (note.message()) @if let Some(help) = note.help() { ": " (help) } } }
+                        @for note in &self.outcome.notes { li { (note) } }
+                    }
+                }
+            }
+        }
+    }
+
+    fn states(&self) -> Markup {
+        html! {
+            @for model in summary::of_models(self.scene, self.table, self.means) {
+                div.scroll tabindex="0" role="region" aria-label={ "States of " (pictures::model_name(model.name)) } {
+                    table {
+                        caption {
+                            (pictures::model_name(model.name))
+                            @if !self.means.is_empty() { ": means over surfaces (standard error)" }
+                            @if model.left_out > 0 { ": " (model.left_out) " more states are in results.csv" }
+                        }
+                        @for (i, line) in model.lines.iter().enumerate() {
+                            tr { @for cell in line { @if i == 0 { th scope="col" { (cell) } } @else { td { (cell) } } } }
+                        }
+                    }
+                }
+            }
+            p { "All columns, with their meaning and unit, are in results.csv." }
+        }
+    }
+
+    fn curves(&self) -> Result<Markup> {
+        let charts = pictures::charts(self.scene, self.table, self.means);
+        let drawn = charts.iter().map(|(_, c)| chart(c, &c.title)).collect::<Result<Vec<_>>>()?;
+        Ok(html! { @for figure in drawn { (figure) } })
+    }
+
+    fn distributions(&self) -> Result<Markup> {
+        let asked = &self.scene.requested.distributions;
+        let charts = asked.iter().filter_map(|&of| distributions::chart(self.scene, of, self.solved));
+        let drawn = charts.map(|c| chart(&c, &c.title)).collect::<Result<Vec<_>>>()?;
+        Ok(
+            html! { @if !drawn.is_empty() { h3 { "Distributions" } div.charts { @for figure in drawn { (figure) } } } },
+        )
+    }
+
+    fn spectrum(&self) -> Result<Markup> {
+        let Some(map) = self.plan.prepared.as_ref().filter(|map| map.spectrum.len() > 1) else {
+            return Ok(html! {});
+        };
+        let [m, m4] = if self.scene.system == System::Si { [" (1/m)", " ($\\rm{m^4}$)"] } else { [""; 2] };
+        let spectrum = Chart {
+            title: "Power spectral density".into(),
+            subtitle: "averaged over rings of the wavenumber, two-sided".into(),
+            x_label: format!("wavenumber $q$ {m}").trim_end().to_owned(),
+            y_label: format!("$C$ {m4}").trim_end().to_owned(),
+            curves: vec![Curve { label: "as solved".into(), points: map.spectrum.clone(), band: Vec::new() }],
+            logarithmic: true,
+        };
+        Ok(html! { div.charts { (chart(&spectrum, "Power spectral density over wavenumber")?) } })
+    }
+
+    fn surface(&self) -> Markup {
+        html! {
+            p { (self.plan.surface) }
+            @if let Some(told) = &self.plan.metadata { h3 { "What the file says, and what was done to it" } pre { (told) } }
+            @if let Some(map) = &self.plan.prepared { h3 { "As solved" } pre { (map) } }
+            p { "Modulus E*: " (number(self.plan.modulus)) "; units: " (self.plan.units) "." }
+        }
+    }
+
+    /// The largest of each residual over all states, with what it means.
+    fn certificates(&self) -> Markup {
+        let place = |name: &str| self.table.columns().iter().position(|c| c.name == name);
+        let largest = |name: &str| {
+            let values = self.table.rows().iter().filter_map(|row| match row.get(place(name)?)? {
+                Value::Number(v) => Some(*v),
+                _ => None,
+            });
+            values.reduce(f64::max)
+        };
+        let found: Vec<(&str, &str, f64)> = CERTIFICATES
+            .into_iter()
+            .filter_map(|(name, words)| Some((name, words, largest(name)?)))
+            .collect();
+        html! {
+            @if found.is_empty() {
+                p { "No model here has a residual: the formulas are exact for what they assume." }
+            } @else {
+                p { "A certificate proves that the equations on the cells were solved. It says nothing of the cells themselves, of the \
+                     heights, or of the assumptions: a linear elastic half-space, small slopes." }
+                div.scroll { table.words {
+                    caption { "The largest over all states" }
+                    tr { th scope="col" { "residual" } th scope="col" { "largest" } th scope="col" { "what it proves" } }
+                    @for (name, words, value) in found { tr { td { (name.replace('_', " ")) } td { (summary::short(value)) } td { (words) } } }
+                } }
+            }
+            @for model in &self.plan.models {
+                p { strong { (pictures::model_name(model.name)) } ", " (model.grid) ": " (model.accuracy) "." }
+            }
+        }
+    }
+
+    fn effects(&self) -> Markup {
+        let names = |requested: bool| {
+            let of: Vec<&str> =
+                self.plan.outputs.iter().filter(|(_, r)| *r == requested).map(|(n, _)| *n).collect();
+            if of.is_empty() { "none".to_owned() } else { of.join(", ").replace('_', " ") }
+        };
+        html! {
+            div.scroll { table.words {
+                tr { th scope="col" { "effect" } th scope="col" { "" } th scope="col" { "why" } }
+                @for e in &self.plan.effects { tr { td { (e.name) } td { @if e.on { "on" } @else { "off" } } td { (e.reason) } } }
+            } }
+            p { "Computed: " (names(true)) ". Not asked for, so neither computed nor stored: " (names(false)) "." }
+        }
+    }
+
+    fn work(&self) -> Markup {
+        let row = |name: &str, what: &str, cost: &Cost| {
+            html! { tr {
+                td { (name) } td { (what) } td { (time(cost.seconds)) } td { (number(cost.applications.round())) }
+                td { (number(cost.linear_solves.round())) }
+                td { (number(cost.fields.round())) @if cost.field_bytes > 0.0 { " (" (memory(cost.field_bytes)) ")" } }
+            } }
+        };
+        html! {
+            div.scroll { table {
+                caption { "Time of one thread; earlier runs included" }
+                tr { @for h in ["model", "", "time", "operator applications", "linear solves", "fields"] { th scope="col" { (h) } } }
+                @for (planned, (name, actual, _)) in self.plan.models.iter().zip(&self.outcome.actual) {
+                    @if let Some(cost) = &planned.predicted { (row(pictures::model_name(name), "planned", cost)) }
+                    (row(pictures::model_name(name), "actual", actual))
+                }
+            } }
+            p {
+                "The run took " (time(self.outcome.seconds)) @if self.outcome.kept > 0 { "; " (self.outcome.kept) " states were kept from an earlier one" }
+                @if let Some(bytes) = self.outcome.peak_memory { "; " (memory(bytes as f64)) " of memory at the peak" } "."
+            }
+        }
+    }
+
+    fn sources(&self) -> Markup {
+        html! { ul {
+            @for model in &self.scene.models { @for source in model.model().sources() {
+                li { (source.citation) ": " (source.what) " (" (pictures::model_name(model.name())) ")" }
+            } }
+        } }
+    }
+
+    /// The map and the fields of the first surface, of the largest loads first as long as there is room.
+    fn fields(&self, out: &Path) -> Result<Markup> {
+        let mut views: Vec<(FieldView, &str, &str, usize)> = Vec::new();
+        for &(model, surface, states) in self.solved.iter().filter(|of| of.1 == 0) {
+            for state in states.iter().rev() {
+                let named = ["heights", "pressure", "gap", "displacement"];
+                views.extend(named.into_iter().filter_map(|field| {
+                    let file = FieldFile { field, model, surface, state: state.index, extension: "" };
+                    Some((field_pictures::view(out, file)?, field, model, state.index))
+                }));
+            }
+        }
+        let given = match &self.scene.surface {
+            SceneSurface::Plain(Surface::Heights(map)) => Some(map),
+            _ => None,
+        };
+        if let (Some(map), false) = (given, views.iter().any(|v| v.1 == "heights")) {
+            let model = self.scene.models.first().map_or("", |model| model.name());
+            views.insert(0, (FieldView::new("heights", map.cells(), map.heights()), "heights", model, 0));
+        }
+        // The map first.
+        views.sort_by_key(|v| v.1 != "heights");
+        let count = views.len();
+        let mut drawn = Vec::new();
+        let mut bytes = 0;
+        for view in &views {
+            let figure = self.field(view)?.into_string();
+            bytes += figure.len();
+            if bytes > MOST_BYTES {
+                break;
+            }
+            drawn.push(figure);
+        }
+        Ok(html! {
+            @if drawn.is_empty() {
+                p { "No field was asked for: name `pressure`, `gap` or `heights` in [outputs]." }
+            } @else {
+                p { "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or \
+                     control." @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, those of the largest loads; the others \
+                     are files beside this page." } }
+                div.fields { @for figure in &drawn { (PreEscaped(figure)) } }
+            }
+        })
+    }
+
+    fn field(&self, (view, field, model, state): &(FieldView, &str, &str, usize)) -> Result<Markup> {
+        let none = pictures::field(self.scene, field, model, (0, *state), view.cells, &[]);
+        let [low, high] = view.ends().unwrap_or_default();
+        let zero = *field == "pressure";
+        let low_end = if zero { low.min(0.0) } else { low };
+        let png = plots::encode_viridis(view.columns, &view.values, [low_end, high], zero)?;
+        let size = self.scene.surface.size();
+        let (length, scale) = prefixed(none.length_unit, size.x.max(size.y));
+        let (unit, per_unit) = prefixed(none.unit, f64::from(high.abs().max(low.abs())));
+        let end =
+            |v: f32| format!("{} {unit}", summary::short(per_unit * f64::from(v))).trim_end().to_owned();
+        let words = field.strip_suffix('s').unwrap_or(field);
+        let data = serde_json::json!({
+            "across": view.columns, "down": view.rows, "block": view.block, "picked": Picked::of(field).words(),
+            "dx": size.x / view.cells.columns as f64, "dy": size.y / view.cells.rows as f64,
+            "low": low_end, "high": high, "zero": zero,
+            "quantity": if *field == "pressure" { "pressure" } else { words }, "unit": none.unit, "length": length, "scale": scale,
+        });
+        let alt = format!(
+            "{}, {}: {} columns and {} rows, from {} to {}.",
+            none.title,
+            none.subtitle,
+            view.cells.columns,
+            view.cells.rows,
+            end(low),
+            end(high)
+        );
+        let mut ramp = "linear-gradient(to right".to_owned();
+        for [r, g, b] in plots::viridis().into_iter().step_by(17) {
+            ramp += &format!(",rgb({r},{g},{b})");
+        }
+        Ok(html! {
+            figure.field data-field=(data.to_string()) {
+                img src={ "data:image/png;base64," (STANDARD.encode(png)) } alt=(alt);
+                div.bar aria-hidden="true" { span { (end(low_end)) } i style={ "background:" (ramp) ")" } {} span { (end(high)) } }
+                div.tools {
+                    button type="button" aria-label={ "Enlarge: " (words) } { "+" }
+                    button type="button" aria-label={ "Reduce: " (words) } { "-" }
+                    button type="button" { "whole map" }
+                }
+                figcaption {
+                    strong { (none.title) } ", " (none.subtitle)
+                    @if view.block > 1 { "; each pixel is " (Picked::of(field).words()) " of " (view.block) " x " (view.block) " cells" }
+                }
+                output aria-live="polite" {}
+                script.values type="application/octet-stream" {
+                    (PreEscaped(STANDARD.encode(view.values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())))
+                }
+                script.places type="application/octet-stream" {
+                    (PreEscaped(STANDARD.encode(view.places.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())))
+                }
+            }
+        })
+    }
+}
+
+const SECTIONS: [(&str, &str); 8] = [
+    ("results", "Results"),
+    ("fields", "Map, pressure and gap"),
+    ("surface", "Surface"),
+    ("certificates", "How sure"),
+    ("effects", "Effects"),
+    ("work", "Work and time"),
+    ("cite", "Sources"),
+    ("scene", "Scene"),
+];
+
+const CERTIFICATES: [(&str, &str); 5] = [
+    (
+        "duality_gap",
+        "the pressure minimises the elastic energy: by how much it could still fall, over force times rms height",
+    ),
+    ("penetration", "no cell penetrates the other body: the deepest, over the rms height"),
+    ("complementarity", "where there is pressure there is no gap"),
+    ("load_error", "the force is the one that was asked for"),
+    ("stiffness_error", "an estimate: the stiffness belongs to the contact set of the exact solution"),
+];
+
+/// A chart as a picture that keeps its names to itself.
+fn chart(chart: &Chart, alt: &str) -> Result<Markup> {
+    let svg = STANDARD.encode(chart.svg()?);
+    let plain = alt.replace("$", "").replace("\\", "");
+    Ok(
+        html! { figure { img src={ "data:image/svg+xml;base64," (svg) } alt=(plain) width="800" height="600"; } },
+    )
+}

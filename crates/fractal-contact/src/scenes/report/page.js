@@ -1,0 +1,116 @@
+"use strict";
+// Every field becomes a canvas: a click or the arrow keys read a value, the wheel and + and - zoom. Without scripts its picture stays.
+const bytes = (text) => Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0)).buffer;
+const palette = new Uint8Array(bytes(document.getElementById("palette").textContent));
+
+document.querySelectorAll("figure.field").forEach((figure) => {
+  const f = JSON.parse(figure.dataset.field);
+  const values = new Float32Array(bytes(figure.querySelector(".values").textContent));
+  const places = new Uint16Array(bytes(figure.querySelector(".places").textContent));
+  const output = figure.querySelector("output");
+  const picture = figure.querySelector("img");
+
+  // One pixel for each value, the last row on top.
+  const source = document.createElement("canvas");
+  source.width = f.across;
+  source.height = f.down;
+  const image = source.getContext("2d").createImageData(f.across, f.down);
+  values.forEach((v, i) => {
+    const at = 4 * ((f.down - 1 - Math.floor(i / f.across)) * f.across + (i % f.across));
+    const shade = f.high > f.low ? Math.min(255, Math.floor((256 * (v - f.low)) / (f.high - f.low))) : 128;
+    const colour = !Number.isFinite(v) ? [205, 205, 205] : f.zero && v <= 0 ? [255, 255, 255] : palette.subarray(3 * shade, 3 * shade + 3);
+    image.data.set(colour, at);
+    image.data[at + 3] = 255;
+  });
+  source.getContext("2d").putImageData(image, 0, 0);
+
+  const canvas = document.createElement("canvas");
+  const ratio = Math.min(20, Math.max(0.05, (f.down * f.dy) / (f.across * f.dx)));
+  canvas.width = 1024;
+  canvas.height = Math.max(32, Math.round(1024 * ratio));
+  canvas.tabIndex = 0;
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", picture.alt + " Arrow keys move a cursor, whose value is read below the map; plus and minus zoom.");
+  picture.replaceWith(canvas);
+  figure.classList.add("live");
+
+  // What is seen, in values from the upper left corner.
+  let zoom = 1, left = 0, top = 0, chosen = null;
+  const draw = () => {
+    const [w, h] = [f.across / zoom, f.down / zoom];
+    left = Math.min(Math.max(0, left), f.across - w);
+    top = Math.min(Math.max(0, top), f.down - h);
+    const to = canvas.getContext("2d");
+    to.imageSmoothingEnabled = false;
+    to.fillStyle = "#fff";
+    to.fillRect(0, 0, canvas.width, canvas.height);
+    to.drawImage(source, left, top, w, h, 0, 0, canvas.width, canvas.height);
+    if (!chosen) return;
+    const [x, y] = [((chosen[0] + 0.5 - left) / w) * canvas.width, ((f.down - chosen[1] - 0.5 - top) / h) * canvas.height];
+    for (const [colour, width] of [["#fff", 7], ["#d01c1c", 3]]) {
+      to.strokeStyle = colour;
+      to.lineWidth = width;
+      to.beginPath();
+      to.arc(x, y, 14, 0, 2 * Math.PI);
+      to.stroke();
+    }
+  };
+  const digits = (v, n) => Number(v.toPrecision(n)).toString();
+  const choose = (i, j) => {
+    chosen = [Math.min(Math.max(0, i), f.across - 1), Math.min(Math.max(0, j), f.down - 1)];
+    const at = chosen[1] * f.across + chosen[0];
+    const column = chosen[0] * f.block + (places[at] % f.block);
+    const row = chosen[1] * f.block + Math.floor(places[at] / f.block);
+    const value = Number.isFinite(values[at]) ? `${values[at].toPrecision(7)} ${f.unit}` : "undefined";
+    const of = f.block > 1 ? ` (${f.picked} of ${f.block} x ${f.block} cells)` : "";
+    output.textContent = `${f.quantity} ${value}${of} at column ${column}, row ${row}: x = ${digits((column + 0.5) * f.dx * f.scale, 4)}, ` +
+      `y = ${digits((row + 0.5) * f.dy * f.scale, 4)} ${f.length}`;
+    const [w, h] = [f.across / zoom, f.down / zoom];
+    if (chosen[0] < left || chosen[0] >= left + w) left = chosen[0] - w / 2;
+    if (f.down - 1 - chosen[1] < top || f.down - 1 - chosen[1] >= top + h) top = f.down - chosen[1] - h / 2;
+    draw();
+  };
+  // The value under a point of the page, from the upper left corner.
+  const under = (event) => {
+    const box = canvas.getBoundingClientRect();
+    return [left + ((event.clientX - box.left) / box.width) * (f.across / zoom), top + ((event.clientY - box.top) / box.height) * (f.down / zoom)];
+  };
+  const magnify = (factor, about) => {
+    const next = Math.min(Math.max(1, zoom * factor), Math.max(1, Math.max(f.across, f.down) / 8));
+    const [x, y] = about;
+    left = x - (x - left) * (zoom / next);
+    top = y - (y - top) * (zoom / next);
+    zoom = next;
+    draw();
+  };
+  const middle = () => chosen ? [chosen[0] + 0.5, f.down - chosen[1] - 0.5] : [left + f.across / zoom / 2, top + f.down / zoom / 2];
+  const whole = () => { zoom = 1; draw(); };
+
+  canvas.addEventListener("click", (event) => {
+    const [x, y] = under(event);
+    choose(Math.floor(x), f.down - 1 - Math.floor(y));
+  });
+  // With a key, so that the page can be scrolled over a map.
+  canvas.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.shiftKey) return;
+    event.preventDefault();
+    magnify(event.deltaY + event.deltaX < 0 ? 1.25 : 0.8, under(event));
+  }, { passive: false });
+  canvas.addEventListener("dblclick", (event) => magnify(2, under(event)));
+  canvas.addEventListener("keydown", (event) => {
+    const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    if (moves[event.key]) {
+      const [i, j] = chosen || [Math.floor(f.across / 2), Math.floor(f.down / 2)];
+      choose(i + moves[event.key][0], j + moves[event.key][1]);
+    } else if (event.key === "+" || event.key === "=") magnify(1.5, middle());
+    else if (event.key === "-") magnify(1 / 1.5, middle());
+    else if (event.key === "Home") whole();
+    else return;
+    event.preventDefault();
+  });
+  const [more, less, all] = figure.querySelectorAll("button");
+  more.addEventListener("click", () => magnify(1.5, middle()));
+  less.addEventListener("click", () => magnify(1 / 1.5, middle()));
+  all.addEventListener("click", whole);
+  draw();
+});

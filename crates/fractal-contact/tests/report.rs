@@ -1,0 +1,159 @@
+//! `report.html` in a browser: no error, maps that draw, values that are those of the files, nothing that a name could do.
+
+use fractal_contact::scenes::{Options, Plan, SceneFile, run};
+use std::path::Path;
+use std::process::Command;
+
+/// Records errors of the page, from its beginning.
+const WATCH: &str = "<script>window.errors = []; addEventListener('error', (e) => errors.push(e.message)); \
+    for (const name of ['error', 'warn']) console[name] = (...words) => errors.push(words.join(' '));</script>";
+
+/// Clicks in the middle of every map, moves by keys, zooms, and writes down what is read and what is seen.
+const PROBE: &str = r#"<script>
+const found = [];
+document.querySelectorAll("figure.field").forEach((figure) => {
+  const canvas = figure.querySelector("canvas"), box = canvas.getBoundingClientRect(), output = figure.querySelector("output");
+  const at = { clientX: box.left + 0.3 * box.width, clientY: box.top + 0.6 * box.height, bubbles: true };
+  canvas.dispatchEvent(new MouseEvent("click", at));
+  found.push(output.textContent);
+  canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowUp" }));
+  found.push(output.textContent);
+  for (const key of ["+", "+", "-", "Home"]) canvas.dispatchEvent(new KeyboardEvent("keydown", { key }));
+  const image = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+  found.push(String(new Set(new Uint32Array(image.buffer)).size));
+});
+const probe = document.createElement("pre");
+probe.id = "probe";
+probe.textContent = JSON.stringify({ found, errors, images: document.querySelectorAll("body > img").length, scripted: String(window.scripted) });
+document.body.append(probe);
+</script>"#;
+
+fn browser() -> Option<&'static str> {
+    let found = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
+    ["chromium", "chromium-browser", "google-chrome", "chrome"].into_iter().find(found)
+}
+
+/// Runs a scene and gives its report.
+fn report(dir: &Path, name: &str, scene: &str) -> String {
+    std::fs::write(dir.join(name), scene).unwrap();
+    let scene = SceneFile::read(&dir.join(name)).unwrap_or_else(|e| panic!("{e}"));
+    let plan = Plan::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options { out: dir.join("out"), threads: 2, fresh: false };
+    run(&scene, &plan, &options, &runs::Silent, &contact_model::never).unwrap_or_else(|e| panic!("{e}"));
+    std::fs::read_to_string(dir.join("out/report.html")).unwrap()
+}
+
+const HOSTILE: &str = "<img src=x onerror=\"scripted=1\"> & '\"";
+const SCENE: &str = r#"# </script><script>scripted = 1</script> How stiff? "Quoted" & <b>bold</b>
+[scene]
+models = ["bem3d"]
+force_bar = [0.01, 0.1]
+modulus = "100 GPa"
+
+[scene.surface]
+kind = "self_affine"
+size = ["2 mm", "1 mm"]
+fractal_dimension = 2.2
+rms_height = "1 um"
+
+[outputs]
+stiffness = true
+heights = ["npy"]
+pressure = ["npy"]
+gap = ["png"]
+distributions = ["pressure", "patches"]
+grid_error = true
+
+[models.bem3d]
+cells = CELLS
+
+[sampling]
+seed = 3
+"#;
+
+#[test]
+fn a_report_stands_alone_and_escapes_what_it_is_given() {
+    let dir = tempfile::tempdir().unwrap();
+    let page = report(dir.path(), &format!("{HOSTILE}.toml").replace('/', ""), &SCENE.replace("CELLS", "64"));
+    assert!(page.contains("&lt;/script&gt;&lt;script&gt;scripted = 1&lt;/script&gt;"));
+    assert!(
+        page.contains("&lt;img src=x onerror=&quot;scripted=1&quot;&gt;") && !page.contains("<img src=x")
+    );
+    // Nothing comes from elsewhere; namespaces of pictures are in base64.
+    for (i, _) in page.match_indices("src=\"") {
+        assert!(page[i + 5..].starts_with("data:image/"), "{}", &page[i..i + 60]);
+    }
+    assert!(!page.contains("http://") && !page.contains("https://") && !page.contains("@import"));
+    for section in ["results", "fields", "surface", "certificates", "effects", "work", "cite", "scene"] {
+        assert!(page.contains(&format!("<section id=\"{section}\">")), "{section}");
+    }
+    // Every picture has words in its place.
+    assert_eq!(page.matches("<img ").count(), page.matches(" alt=\"").count());
+}
+
+#[test]
+fn a_click_reads_the_value_of_the_file() {
+    let Some(browser) = browser() else {
+        println!("skipped: no Chromium");
+        return;
+    };
+    // Each cell is seen, and blocks of cells are.
+    for cells in [64, 600] {
+        let dir = tempfile::tempdir().unwrap();
+        let page = report(
+            dir.path(),
+            &format!("{HOSTILE}.toml").replace('/', ""),
+            &SCENE.replace("CELLS", &cells.to_string()),
+        );
+        assert!(page.len() < 5_000_000, "{}", page.len());
+        let page =
+            page.replace("<head>", &format!("<head>{WATCH}")).replace("</body>", &format!("{PROBE}</body>"));
+        let path = dir.path().join("probe.html");
+        std::fs::write(&path, page).unwrap();
+        let seen = Command::new(browser)
+            .args(["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1000,800", "--dump-dom"])
+            .arg(format!("file://{}", path.display()))
+            .output()
+            .unwrap();
+        let dom = String::from_utf8_lossy(&seen.stdout);
+        let probe = dom.rsplit_once("<pre id=\"probe\">").expect("the page's scripts ran to their end").1;
+        let probe: serde_json::Value = serde_json::from_str(
+            &probe[..probe.find("</pre>").unwrap()]
+                .replace("&gt;", ">")
+                .replace("&lt;", "<")
+                .replace("&amp;", "&"),
+        )
+        .unwrap();
+        assert_eq!(probe["errors"], serde_json::json!([]));
+        assert_eq!(
+            (&probe["images"], &probe["scripted"]),
+            (&serde_json::json!(0), &serde_json::json!("undefined"))
+        );
+        let found: Vec<&str> = probe["found"].as_array().unwrap().iter().filter_map(|v| v.as_str()).collect();
+        let mut compared = 0;
+        for figure in found.chunks(3) {
+            assert!(figure[2].parse::<usize>().unwrap() > 3, "{figure:?}: the map is not drawn");
+            for text in &figure[..2] {
+                let word = |before: &str| {
+                    let rest = &text[text.find(before).unwrap() + before.len()..];
+                    rest.split([' ', ',', ':']).next().unwrap().to_owned()
+                };
+                let file = match text.split(' ').next().unwrap() {
+                    "height" => "heights-bem3d-0-000.npy",
+                    "pressure" if compared < 4 => "pressure-bem3d-0-001.npy",
+                    "pressure" => "pressure-bem3d-0-000.npy",
+                    _ => continue,
+                };
+                let bytes = std::fs::read(dir.path().join("out").join(file)).unwrap();
+                let (_, values) = bytes.split_at(bytes.len() - 8 * cells * (cells / 2));
+                let (column, row): (usize, usize) =
+                    (word("column ").parse().unwrap(), word("row ").parse().unwrap());
+                let value = f64::from_le_bytes(values[8 * (row * cells + column)..][..8].try_into().unwrap());
+                let read: f64 = text.split(' ').nth(1).unwrap().parse().unwrap();
+                assert!((read - value).abs() <= 2e-7 * value.abs(), "{text}: {value} in {file}");
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 6, "{found:?}");
+    }
+}
