@@ -111,9 +111,12 @@ pub enum Command {
         /// Side of a square, such as "1 mm" or a plain number, or both of a rectangle, "2 mm x 1 mm".
         #[arg(long, visible_alias = "side", default_value = "1")]
         size: String,
-        /// Fractal dimension in [2, 3]; the Hurst exponent is 3 minus it.
-        #[arg(long, default_value_t = 2.4)]
-        fractal_dimension: f64,
+        /// Fractal dimension in [2, 3] [default: 2.4].
+        #[arg(long)]
+        fractal_dimension: Option<f64>,
+        /// Hurst exponent in [0, 1], instead of the fractal dimension: 3 minus it.
+        #[arg(long, conflicts_with = "fractal_dimension")]
+        hurst: Option<f64>,
         /// Rms height of the samples, such as "1 um", or a plain number.
         #[arg(long, default_value = "0.01")]
         rms_height: String,

@@ -49,11 +49,13 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             rows,
             size,
             fractal_dimension,
+            hurst,
             rms_height,
             roll_off_wavelength,
             shortest_wavelength,
             seed,
         } => {
+            let fractal_dimension = fractal_dimension.or_else(|| Some(3.0 - hurst?)).unwrap_or(2.4);
             let make = GeneratedSurface {
                 cells,
                 rows,

@@ -124,7 +124,7 @@ impl Report<'_> {
                             @if model.left_out > 0 { ": " (model.left_out) " more states are in results.csv" }
                         }
                         @for (i, line) in model.lines.iter().enumerate() {
-                            tr { @for cell in line { @if i == 0 { th scope="col" { (cell) } } @else { td { (cell) } } } }
+                            tr { @for cell in line { @if i == 0 { th scope="col" { (cell.replace('_', " ")) } } @else { td { (cell) } } } }
                         }
                     }
                 }
