@@ -1,0 +1,16 @@
+//! Statistics of rough surfaces.
+
+mod bins;
+mod derivatives;
+mod difference;
+mod fourier;
+mod normal;
+mod relative;
+mod spectrum;
+mod taper;
+
+pub use bins::Bins;
+pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};
+pub use difference::{DifferenceMap, HeightDifference};
+pub use spectrum::PowerSpectrum;
+pub use taper::Taper;
