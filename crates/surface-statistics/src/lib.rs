@@ -3,6 +3,7 @@
 mod bins;
 mod derivatives;
 mod difference;
+mod fit;
 mod fourier;
 mod normal;
 mod relative;
@@ -12,5 +13,6 @@ mod taper;
 pub use bins::Bins;
 pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};
 pub use difference::{DifferenceMap, HeightDifference};
+pub use fit::{FitOptions, Interval, SpectrumFit, Wavelength};
 pub use spectrum::PowerSpectrum;
 pub use taper::Taper;
