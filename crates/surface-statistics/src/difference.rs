@@ -42,8 +42,8 @@ pub struct DifferenceMap {
     unit: f64,
     /// Length of the transforms.
     lengths: [usize; 2],
-    /// Mean halves of squares in `unit^2` and numbers of pairs, with the lags of a transform.
-    values: Vec<[f64; 2]>,
+    /// Mean halves of squares and mean products in `unit^2` and numbers of pairs, with the lags of a transform.
+    values: Vec<[f64; 3]>,
 }
 
 impl DifferenceMap {
@@ -51,7 +51,7 @@ impl DifferenceMap {
     /// those across its edges.
     ///
     /// By transforms of heights, their squares and the pattern of defined points, with zeros behind free maps. Cost O(N log N),
-    /// memory 64 bytes for each point, 250 for free maps. Values below about 1e-14 of the mean square height are rounding.
+    /// memory 100 bytes for each point, 400 for free maps. Values below about 1e-14 of the mean square height are rounding.
     pub fn new(map: &HeightMap, boundary: Boundary) -> Self {
         let periodic = boundary == Boundary::Periodic;
         let Relative { heights, unit } = Relative::new(map);
@@ -72,6 +72,7 @@ impl DifferenceMap {
             field
         };
         let (pattern, plain, squares) = (transform(&|_| 1.0), transform(&|h| h), transform(&|h| h * h));
+        let mut products: Vec<Complex64> = plain.iter().map(|g| Complex64::new(g.norm_sqr(), 0.0)).collect();
         // Sums of halves of squares in the real part and numbers of pairs in the imaginary one: both sequences are even
         // and real, so that one transform takes both back.
         let mut sums: Vec<Complex64> = pattern
@@ -82,12 +83,17 @@ impl DifferenceMap {
             .collect();
         drop((pattern, plain, squares));
         plane.inverse(&mut sums);
+        plane.inverse(&mut products);
         let scale = (sums.len() as f64).recip();
-        let value = |sum: Complex64| {
-            let pairs = (sum.im * scale).round().max(0.0);
-            [if pairs > 0.0 { (sum.re * scale / pairs).max(0.0) } else { 0.0 }, pairs]
+        let value = |(sum, product): (Complex64, Complex64)| {
+            let pairs = (sum.im * scale).round();
+            if pairs > 0.0 {
+                [(sum.re * scale / pairs).max(0.0), product.re * scale / pairs, pairs]
+            } else {
+                [0.0; 3]
+            }
         };
-        let mut values: Vec<[f64; 2]> = sums.into_iter().map(value).collect();
+        let mut values: Vec<[f64; 3]> = sums.into_iter().zip(products).map(value).collect();
         // A point and itself differ by nothing, not by rounding.
         values[0][0] = 0.0;
         Self { periodic, cells, sides: [map.dx(), map.dy()], unit, lengths, values }
@@ -96,17 +102,32 @@ impl DifferenceMap {
     /// A and the number of pairs for the vector of so many cells along x and y; `None` for one that leaves the map or has no
     /// pair of defined points.
     pub fn at(&self, lag: [isize; 2]) -> Option<[f64; 2]> {
+        let [value, _, pairs] = self.found(lag)?;
+        let root = value.sqrt() * self.unit;
+        Some([root * root, pairs])
+    }
+
+    /// The autocorrelation `<h(x) h(x + r)>/<h^2>` of the heights about the mean of the map, over the pairs of defined points at this vector
+    /// of so many cells; `None` as in [`DifferenceMap::at`], and where all heights are one. 1 for the vector 0.
+    ///
+    /// Each vector has the mean over its own pairs (the unbiased estimate), that of far ones from few. Cost O(1).
+    pub fn autocorrelation(&self, lag: [isize; 2]) -> Option<f64> {
+        let [_, product, _] = self.found(lag)?;
+        let [_, square, _] = self.found([0, 0])?;
+        if square > 0.0 { Some(product / square) } else { None }
+    }
+
+    fn found(&self, lag: [isize; 2]) -> Option<[f64; 3]> {
         let mut index = [0; 2];
         for axis in 0..2 {
             let cells = [self.cells.columns, self.cells.rows][axis].cast_signed();
             if lag[axis].abs() >= cells {
                 return None;
             }
-            index[axis] = lag[axis].rem_euclid(self.lengths[axis].cast_signed()) as usize;
+            index[axis] = lag[axis].rem_euclid(self.lengths[axis].cast_signed()).cast_unsigned();
         }
-        let [value, pairs] = self.values[index[1] * self.lengths[0] + index[0]];
-        let value = value.sqrt() * self.unit;
-        if pairs > 0.0 { Some([value * value, pairs]) } else { None }
+        let value = self.values[index[1] * self.lengths[0] + index[0]];
+        if value[2] > 0.0 { Some(value) } else { None }
     }
 
     /// A for distances along x of 1, 2, ... cells: up to half of the side of a periodic map, all of a free one.

@@ -1,5 +1,6 @@
 //! Statistics of rough surfaces.
 
+mod areal;
 mod bins;
 mod derivatives;
 mod difference;
@@ -10,6 +11,9 @@ mod relative;
 mod spectrum;
 mod taper;
 
+pub use areal::{
+    FeatureParameters, HeightParameters, HybridParameters, SpatialParameters, texture_direction,
+};
 pub use bins::Bins;
 pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};
 pub use difference::{DifferenceMap, HeightDifference};
