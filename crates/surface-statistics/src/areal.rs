@@ -1,7 +1,8 @@
 //! Areal parameters of ISO 25178-2:2021.
 //!
-//! Of the map as it is: levelling and the filters of ISO 25178-3 (S, L, F) are the caller's. Heights z count from the mean of the
-//! defined points, each cell weighs the same. Symbols are those of the standard, in lower case; ratios are not in per cent.
+//! Of the map as it is: levelling and the filters of ISO 25178-3 (S, L, F) are the caller's. Heights z count
+//! from the mean of the defined points, each cell weighs the same. Symbols are those of the standard, in
+//! lower case; ratios are not in per cent.
 
 mod hills;
 
@@ -51,7 +52,8 @@ impl HeightParameters {
     /// Measures a map. Cost O(N).
     ///
     /// # Errors
-    /// [`Error::Domain`] for heights that are all one (which have no skewness), and numbers beyond the range of f64.
+    /// [`Error::Domain`] for heights that are all one (which have no skewness), and numbers beyond the range
+    /// of f64.
     pub fn new(map: &HeightMap) -> Result<Self> {
         let Relative { heights, unit } = Relative::new(map);
         let defined = || heights.iter().filter(|h| !h.is_nan());
@@ -79,12 +81,12 @@ impl HeightParameters {
 /// Hybrid parameters (ISO 25178-2, 4.3), of maps with undefined points too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HybridParameters {
-    /// Root mean square gradient, dimensionless, from differences of neighbours, each direction over all of its own pairs:
-    /// [`surface_gen::rms_slope_differences`].
+    /// Root mean square gradient, dimensionless, from differences of neighbours, each direction over all of
+    /// its own pairs: [`surface_gen::rms_slope_differences`].
     pub sdq: f64,
-    /// Developed interfacial area ratio, dimensionless: area of the surface over its projection, less 1. Between the centres of
-    /// four cells the area is the mean of those of both pairs of triangles (ISO 25178-2:2021, Eq. D.15); only where all
-    /// four are defined.
+    /// Developed interfacial area ratio, dimensionless: area of the surface over its projection, less 1.
+    /// Between the centres of four cells the area is the mean of those of both pairs of triangles (ISO
+    /// 25178-2:2021, Eq. D.15); only where all four are defined.
     pub sdr: f64,
 }
 
@@ -92,7 +94,8 @@ impl HybridParameters {
     /// Measures a map. Cost O(N).
     ///
     /// # Errors
-    /// [`Error::Domain`] where no four neighbouring points are defined, and for numbers beyond the range of f64.
+    /// [`Error::Domain`] where no four neighbouring points are defined, and for numbers beyond the range of
+    /// f64.
     ///
     /// ```
     /// use contact_model::HeightMap;
@@ -136,16 +139,19 @@ impl HybridParameters {
 
 /// Spatial parameters (ISO 25178-2, 4.2), of maps with undefined points too.
 ///
-/// Of the unbiased autocorrelation of the map as a free one ([`DifferenceMap::autocorrelation`]): its part above s = 0.2 that contains the
-/// vector 0, whose outline is interpolated linearly between neighbouring vectors.
+/// Of the unbiased autocorrelation of the map as a free one ([`DifferenceMap::autocorrelation`]): its part
+/// above s = 0.2 that contains the vector 0, whose outline is interpolated linearly between neighbouring
+/// vectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpatialParameters {
-    /// Autocorrelation length, a length: distance of the fastest decay to s. `None` where it decays nowhere inside the map.
+    /// Autocorrelation length, a length: distance of the fastest decay to s. `None` where it decays nowhere
+    /// inside the map.
     pub sal: Option<f64>,
-    /// Distance of the slowest decay to s, a length. `None` where it does not decay in all directions inside the map.
+    /// Distance of the slowest decay to s, a length. `None` where it does not decay in all directions inside
+    /// the map.
     pub slowest: Option<f64>,
-    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`; it then is at most
-    /// Sal over half of the longer side.
+    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`;
+    /// it then is at most Sal over half of the longer side.
     pub str: Option<f64>,
 }
 
@@ -215,15 +221,17 @@ impl SpatialParameters {
 /// Steps to the neighbours of a point.
 const NEIGHBOURS: [[isize; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]];
 
-/// Texture direction Std (ISO 25178-2, 4.4): angle in degrees from x towards y, 0 to 180, of the wave vectors in which most of
-/// the variance is. The lay, along which heights change least, is across it.
+/// Texture direction Std (ISO 25178-2, 4.4): angle in degrees from x towards y, 0 to 180, of the wave vectors
+/// in which most of the variance is. The lay, along which heights change least, is across it.
 ///
-/// Middle of the largest of 90 sectors of 2 degrees of the angular power spectrum `int C q dq` under Hann's window. Waves shorter than
-/// twice the longer cell side, which not all directions have, and longer than half of the shorter side, which the window
-/// spreads over all directions, are left out. Rows count upwards with y: where the picture of a map has its first row on top, the angle is clockwise in it. Cost O(N log N).
+/// Middle of the largest of 90 sectors of 2 degrees of the angular power spectrum `int C q dq` under Hann's
+/// window. Waves shorter than twice the longer cell side, which not all directions have, and longer than half
+/// of the shorter side, which the window spreads over all directions, are left out. Rows count upwards with
+/// y: where the picture of a map has its first row on top, the angle is clockwise in it. Cost O(N log N).
 ///
 /// # Errors
-/// [`Error::Domain`] for undefined points, heights that are all one and maps of fewer than about 8 cells along a side.
+/// [`Error::Domain`] for undefined points, heights that are all one and maps of fewer than about 8 cells
+/// along a side.
 ///
 /// ```
 /// use contact_model::HeightMap;
@@ -260,17 +268,18 @@ pub fn texture_direction(map: &HeightMap) -> Result<f64> {
 
 /// Feature parameters of hills (ISO 25178-2, 4.8), of maps with undefined points too.
 ///
-/// Hills are the parts of the map that lead upwards to one peak, by the steepest of eight neighbours. The hill whose peak rises
-/// least above the highest saddle to a neighbour is united with that, as long as that is less than 5 % of Sz (pruning after
-/// Wolf). Hills that touch the edge of the map or an undefined point are incomplete: they do not count.
+/// Hills are the parts of the map that lead upwards to one peak, by the steepest of eight neighbours. The
+/// hill whose peak rises least above the highest saddle to a neighbour is united with that, as long as that
+/// is less than 5 % of Sz (pruning after Wolf). Hills that touch the edge of the map or an undefined point
+/// are incomplete: they do not count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FeatureParameters {
     /// Number of hills that count.
     pub hills: usize,
     /// Density of peaks, hills that count over `Lx Ly`, in 1/length^2.
     pub spd: f64,
-    /// Arithmetic mean peak curvature, mean of half the Laplacian of -z at the peaks by second differences, in 1/length; `None` without a
-    /// hill.
+    /// Arithmetic mean peak curvature, mean of half the Laplacian of -z at the peaks by second differences,
+    /// in 1/length; `None` without a hill.
     pub spc: Option<f64>,
 }
 

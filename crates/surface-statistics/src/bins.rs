@@ -16,7 +16,8 @@ impl Bins {
     /// Bins between these edges.
     ///
     /// # Errors
-    /// [`Error::Shape`] for fewer than two edges, [`Error::Domain`] for edges that are not finite or do not rise.
+    /// [`Error::Shape`] for fewer than two edges, [`Error::Domain`] for edges that are not finite or do not
+    /// rise.
     ///
     /// ```
     /// use surface_statistics::Bins;
@@ -79,8 +80,8 @@ impl Bins {
         Self::new(edges)
     }
 
-    /// Bins of the wavenumbers of a map: from half of the longest wave's to `pi / max(dx, dy)`, about `per_decade` in a
-    /// decade.
+    /// Bins of the wavenumbers of a map: from half of the longest wave's to `pi / max(dx, dy)`, about
+    /// `per_decade` in a decade.
     ///
     /// # Errors
     /// As [`Bins::logarithmic`].
@@ -90,8 +91,8 @@ impl Bins {
         Self::logarithmic(0.5 * longest, PI / map.dx().max(map.dy()) * (1.0 + 1e-12), per_decade)
     }
 
-    /// Bins of the distances of a map: from half of the shorter cell side to half of the shorter side of the map, about
-    /// `per_decade` in a decade.
+    /// Bins of the distances of a map: from half of the shorter cell side to half of the shorter side of the
+    /// map, about `per_decade` in a decade.
     ///
     /// # Errors
     /// As [`Bins::logarithmic`].

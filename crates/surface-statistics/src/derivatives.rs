@@ -6,17 +6,19 @@ use surface_gen::MapStatistics;
 
 /// Root mean squares of derivatives by differences of neighbouring points.
 ///
-/// Only points with all of the heights in question count; with [`Boundary::Periodic`] neighbours lie across the edges too.
-/// Differences damp the shortest waves: a wave q along x by `sin(q dx/2)/(q dx/2)`, its curvature by the square of that.
+/// Only points with all of the heights in question count; with [`Boundary::Periodic`] neighbours lie across
+/// the edges too. Differences damp the shortest waves: a wave q along x by `sin(q dx/2)/(q dx/2)`, its
+/// curvature by the square of that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derivatives {
-    /// `sqrt(mean (dh/dx)^2 + (dh/dy)^2)` from forward differences, over the points that have a neighbour along x and
-    /// one along y; dimensionless. [`surface_gen::rms_slope_differences`] averages each direction over all of its own pairs.
+    /// `sqrt(mean (dh/dx)^2 + (dh/dy)^2)` from forward differences, over the points that have a neighbour
+    /// along x and one along y; dimensionless. [`surface_gen::rms_slope_differences`] averages each direction
+    /// over all of its own pairs.
     pub rms_gradient: f64,
     /// Root mean square of the forward differences along x and along y over the same points; dimensionless.
     pub rms_slope: [f64; 2],
-    /// Root mean square of half the Laplacian, the mean curvature of a flat surface, from second differences along both
-    /// axes, in 1/length.
+    /// Root mean square of half the Laplacian, the mean curvature of a flat surface, from second differences
+    /// along both axes, in 1/length.
     pub rms_curvature: f64,
     /// Root mean square of the second differences along x and along y over the same points, in 1/length.
     pub rms_second_derivative: [f64; 2],
@@ -26,8 +28,8 @@ impl Derivatives {
     /// Measures a map. Cost O(N).
     ///
     /// # Errors
-    /// [`Error::Domain`] where no point has the neighbours (3 columns and 3 rows are needed), and for numbers beyond the range
-    /// of f64.
+    /// [`Error::Domain`] where no point has the neighbours (3 columns and 3 rows are needed), and for numbers
+    /// beyond the range of f64.
     ///
     /// ```
     /// use contact_model::{Boundary, HeightMap};
@@ -92,11 +94,12 @@ fn add<const N: usize>(sums: &mut [f64; N], terms: [f64; N]) {
     }
 }
 
-/// Nayak's parameter `alpha = m0 m4/m2^2` of the profile moments of the spectrum; at least 3/2 for a random isotropic surface.
+/// Nayak's parameter `alpha = m0 m4/m2^2` of the profile moments of the spectrum; at least 3/2 for a random
+/// isotropic surface.
 ///
 /// Source: Nayak, J. Lubr. Technol. 93, 398 (1971). Dimensionless; the moments are those of
-/// [`MapStatistics::profile_moments`], under Hann's window where the map is not periodic. It depends on the shortest and longest
-/// waves of the map.
+/// [`MapStatistics::profile_moments`], under Hann's window where the map is not periodic. It depends on the
+/// shortest and longest waves of the map.
 ///
 /// ```
 /// use contact_model::SelfAffine;
@@ -121,11 +124,12 @@ pub struct ScaleDependence {
 }
 
 impl ScaleDependence {
-    /// Slope along x over the distance r, `rms [h(x + r) - h(x)]/r`, dimensionless, for r of 1, 2, 3, 4, 6, 8, ... cells.
+    /// Slope along x over the distance r, `rms [h(x + r) - h(x)]/r`, dimensionless, for r of 1, 2, 3, 4, 6,
+    /// 8, ... cells.
     ///
-    /// Points with undefined neighbours are left out; a free map ends the list where no two points are so far apart, a
-    /// periodic one at half of its side. Cost O(N) for each distance. Source: Sanner, Noehring, Thimons, Jacobs, Pastewka,
-    /// Appl. Surf. Sci. Adv. 7, 100190 (2022), Eqs. 7 and 14.
+    /// Points with undefined neighbours are left out; a free map ends the list where no two points are so far
+    /// apart, a periodic one at half of its side. Cost O(N) for each distance. Source: Sanner, Noehring,
+    /// Thimons, Jacobs, Pastewka, Appl. Surf. Sci. Adv. 7, 100190 (2022), Eqs. 7 and 14.
     ///
     /// # Errors
     /// [`Error::Domain`] for fewer than 2 columns and numbers beyond the range of f64.
@@ -133,8 +137,8 @@ impl ScaleDependence {
         Self::of_order(map, boundary, 1)
     }
 
-    /// Curvature along x over the distance r, `rms [h(x + r/2) - 2 h(x) + h(x - r/2)]/(r/2)^2` in 1/length, for r of 2, 4,
-    /// 6, 8, 12, ... cells: r is the length of all of the stencil, as in the source.
+    /// Curvature along x over the distance r, `rms [h(x + r/2) - 2 h(x) + h(x - r/2)]/(r/2)^2` in 1/length,
+    /// for r of 2, 4, 6, 8, 12, ... cells: r is the length of all of the stencil, as in the source.
     ///
     /// Otherwise as [`ScaleDependence::slope_along_x`]; source Eqs. 7 and 16.
     ///

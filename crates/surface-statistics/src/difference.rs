@@ -6,10 +6,11 @@ use crate::relative::{Relative, finite};
 use contact_model::{Boundary, Cells, HeightMap, Result};
 use rustfft::num_complex::Complex64;
 
-/// Half the mean square height difference over the distances of a curve; the values of each index belong together.
+/// Half the mean square height difference over the distances of a curve; the values of each index belong
+/// together.
 ///
-/// `A(r) = <[h(x + r) - h(x)]^2>/2`; the structure function is `2 A`, the autocorrelation of a homogeneous surface
-/// `R(r) = h_rms^2 - A(r)`, its rms slope over the distance r `sqrt(2 A)/r`.
+/// `A(r) = <[h(x + r) - h(x)]^2>/2`; the structure function is `2 A`, the autocorrelation of a homogeneous
+/// surface `R(r) = h_rms^2 - A(r)`, its rms slope over the distance r `sqrt(2 A)/r`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightDifference {
     /// Mean distance of the pairs, a length.
@@ -21,7 +22,8 @@ pub struct HeightDifference {
 }
 
 impl HeightDifference {
-    /// The slope over each distance, `sqrt(2 A(r))/r`, dimensionless: rms over the pairs and their directions.
+    /// The slope over each distance, `sqrt(2 A(r))/r`, dimensionless: rms over the pairs and their
+    /// directions.
     ///
     /// Source: Sanner, Noehring, Thimons, Jacobs, Pastewka, Appl. Surf. Sci. Adv. 7, 100190 (2022), Eq. 14.
     pub fn slope(&self) -> Vec<f64> {
@@ -42,16 +44,18 @@ pub struct DifferenceMap {
     unit: f64,
     /// Length of the transforms.
     lengths: [usize; 2],
-    /// Mean halves of squares and mean products in `unit^2` and numbers of pairs, with the lags of a transform.
+    /// Mean halves of squares and mean products in `unit^2` and numbers of pairs, with the lags of a
+    /// transform.
     values: Vec<[f64; 3]>,
 }
 
 impl DifferenceMap {
-    /// Takes all pairs of defined points: with [`Boundary::Free`] those inside the map, with [`Boundary::Periodic`] also
-    /// those across its edges.
+    /// Takes all pairs of defined points: with [`Boundary::Free`] those inside the map, with
+    /// [`Boundary::Periodic`] also those across its edges.
     ///
-    /// By transforms of heights, their squares and the pattern of defined points, with zeros behind free maps. Cost O(N log N),
-    /// memory 100 bytes for each point, 400 for free maps. Values below about 1e-14 of the mean square height are rounding.
+    /// By transforms of heights, their squares and the pattern of defined points, with zeros behind free
+    /// maps. Cost O(N log N), memory 100 bytes for each point, 400 for free maps. Values below about 1e-14 of
+    /// the mean square height are rounding.
     pub fn new(map: &HeightMap, boundary: Boundary) -> Self {
         let periodic = boundary == Boundary::Periodic;
         let Relative { heights, unit } = Relative::new(map);
@@ -73,8 +77,8 @@ impl DifferenceMap {
         };
         let (pattern, plain, squares) = (transform(&|_| 1.0), transform(&|h| h), transform(&|h| h * h));
         let mut products: Vec<Complex64> = plain.iter().map(|g| Complex64::new(g.norm_sqr(), 0.0)).collect();
-        // Sums of halves of squares in the real part and numbers of pairs in the imaginary one: both sequences are even
-        // and real, so that one transform takes both back.
+        // Sums of halves of squares in the real part and numbers of pairs in the imaginary one: both
+        // sequences are even and real, so that one transform takes both back.
         let mut sums: Vec<Complex64> = pattern
             .iter()
             .zip(&plain)
@@ -99,18 +103,20 @@ impl DifferenceMap {
         Self { periodic, cells, sides: [map.dx(), map.dy()], unit, lengths, values }
     }
 
-    /// A and the number of pairs for the vector of so many cells along x and y; `None` for one that leaves the map or has no
-    /// pair of defined points.
+    /// A and the number of pairs for the vector of so many cells along x and y; `None` for one that leaves
+    /// the map or has no pair of defined points.
     pub fn at(&self, lag: [isize; 2]) -> Option<[f64; 2]> {
         let [value, _, pairs] = self.found(lag)?;
         let root = value.sqrt() * self.unit;
         Some([root * root, pairs])
     }
 
-    /// The autocorrelation `<h(x) h(x + r)>/<h^2>` of the heights about the mean of the map, over the pairs of defined points at this vector
-    /// of so many cells; `None` as in [`DifferenceMap::at`], and where all heights are one. 1 for the vector 0.
+    /// The autocorrelation `<h(x) h(x + r)>/<h^2>` of the heights about the mean of the map, over the pairs
+    /// of defined points at this vector of so many cells; `None` as in [`DifferenceMap::at`], and where all
+    /// heights are one. 1 for the vector 0.
     ///
-    /// Each vector has the mean over its own pairs (the unbiased estimate), that of far ones from few. Cost O(1).
+    /// Each vector has the mean over its own pairs (the unbiased estimate), that of far ones from few. Cost
+    /// O(1).
     pub fn autocorrelation(&self, lag: [isize; 2]) -> Option<f64> {
         let [_, product, _] = self.found(lag)?;
         let [_, square, _] = self.found([0, 0])?;
@@ -130,7 +136,8 @@ impl DifferenceMap {
         if value[2] > 0.0 { Some(value) } else { None }
     }
 
-    /// A for distances along x of 1, 2, ... cells: up to half of the side of a periodic map, all of a free one.
+    /// A for distances along x of 1, 2, ... cells: up to half of the side of a periodic map, all of a free
+    /// one.
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] for values beyond the range of f64.
@@ -161,8 +168,8 @@ impl DifferenceMap {
         Ok(found)
     }
 
-    /// A over all vectors with lengths in the bins, each with the weight of its pairs; bins without pairs are left out. Of
-    /// periodic maps the shortest of the vectors between two points counts.
+    /// A over all vectors with lengths in the bins, each with the weight of its pairs; bins without pairs are
+    /// left out. Of periodic maps the shortest of the vectors between two points counts.
     ///
     /// Cost: one pass over the vectors.
     ///
@@ -196,7 +203,8 @@ impl DifferenceMap {
                 let (Some(bin), Some([value, mut pairs])) = (bins.index(r), self.at([x, y])) else {
                     continue;
                 };
-                // Half of a period in both directions, or along an axis, reaches each pair from both of its points.
+                // Half of a period in both directions, or along an axis, reaches each pair from both of its
+                // points.
                 if (half(0, x) || x == 0) && (half(1, y) || y == 0) {
                     pairs *= 0.5;
                 }

@@ -16,12 +16,13 @@ use std::f64::consts::TAU;
 
 /// Fewest rings of a fit.
 const FEWEST: usize = 8;
-/// Half the 95 % quantile of chi-square with one degree of freedom: rise of the profile at the ends of an interval.
+/// Half the 95 % quantile of chi-square with one degree of freedom: rise of the profile at the ends of an
+/// interval.
 const INTERVAL: f64 = 0.5 * 3.841_458_820_694_124;
 /// Half the 90 % quantile: rise at a bound, which leaves 5 % on its one side.
 const BOUND: f64 = 0.5 * 2.705_543_454_095_404;
-/// Gain of the logarithm of the likelihood from which on a cut-off is one: it may be anywhere among the rings, and with a noise it is
-/// any step in a spectrum. That of a true one inside the fit is hundreds.
+/// Gain of the logarithm of the likelihood from which on a cut-off is one: it may be anywhere among the
+/// rings, and with a noise it is any step in a spectrum. That of a true one inside the fit is hundreds.
 const EDGE: f64 = 6.0;
 /// A cut-off is known to half of a wave of the map at best, in rings.
 const RESOLUTION: f64 = 0.5;
@@ -74,30 +75,34 @@ impl Wavelength {
 /// Which part of a map is fitted, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitOptions {
-    /// [`Boundary::Periodic`] takes the map as it is; [`Boundary::Free`] removes its plane and lays Hann's window over it.
+    /// [`Boundary::Periodic`] takes the map as it is; [`Boundary::Free`] removes its plane and lays Hann's
+    /// window over it.
     pub boundary: Boundary,
-    /// Shortest wavelength of the fit, such as that down to which the instrument is reliable; `None`: that of the cells.
+    /// Shortest wavelength of the fit, such as that down to which the instrument is reliable; `None`: that of
+    /// the cells.
     pub shortest: Option<f64>,
     /// Longest wavelength of the fit; `None`: that of the map.
     pub longest: Option<f64>,
 }
 
-/// A self-affine spectrum fitted to a map: `C_2D(q)` is constant below the roll-off, falls as `q^(-2 (H + 1))` from
-/// there to the cut-off and is 0 beyond it, besides a white noise of the instrument everywhere.
+/// A self-affine spectrum fitted to a map: `C_2D(q)` is constant below the roll-off, falls as `q^(-2 (H +
+/// 1))` from there to the cut-off and is 0 beyond it, besides a white noise of the instrument everywhere.
 ///
-/// Largest likelihood of the periodogram averaged over rings one wave wide (Whittle): the squares of the waves of Gaussian
-/// heights are independent and exponentially distributed about the spectrum, so that the mean of n of them has a gamma law.
-/// Under Hann's window the expectation of each ring is that of the spectrum smeared by the window's transform (the leakage
-/// of long waves into short ones is part of it; Sykulski et al., Biometrika 106, 251 (2019)), and its neighbours are correlated: the logarithm of
-/// the likelihood is divided by (35/18)^2, the number of waves that count as one. The rings then begin at four waves along
-/// the shorter side, because the plane is taken from longer ones, and end two waves before the limit of the grid. Intervals are those
-/// of the profile likelihood (twice its logarithm has fallen by 3.84); a bound is one-sided (2.71). The interval of a cut-off
-/// is no narrower than one wave of the map.
+/// Largest likelihood of the periodogram averaged over rings one wave wide (Whittle): the squares of the
+/// waves of Gaussian heights are independent and exponentially distributed about the spectrum, so that the
+/// mean of n of them has a gamma law. Under Hann's window the expectation of each ring is that of the
+/// spectrum smeared by the window's transform (the leakage of long waves into short ones is part of it;
+/// Sykulski et al., Biometrika 106, 251 (2019)), and its neighbours are correlated: the logarithm of the
+/// likelihood is divided by (35/18)^2, the number of waves that count as one. The rings then begin at four
+/// waves along the shorter side, because the plane is taken from longer ones, and end two waves before the
+/// limit of the grid. Intervals are those of the profile likelihood (twice its logarithm has fallen by 3.84);
+/// a bound is one-sided (2.71). The interval of a cut-off is no narrower than one wave of the map.
 ///
-/// Assumes an isotropic Gaussian surface; waves beyond the limit of the grid are taken as absent (not folded back by the
-/// sampling). Surfaces with prescribed amplitudes, as those of [`surface_gen::self_affine_map`], scatter less
-/// on their own period than the law says, and their intervals are too wide; a part cut out of one is as good as Gaussian.
-/// [`surface_gen::SelfAffineFit`] is the quick fit of a straight line without intervals.
+/// Assumes an isotropic Gaussian surface; waves beyond the limit of the grid are taken as absent (not folded
+/// back by the sampling). Surfaces with prescribed amplitudes, as those of [`surface_gen::self_affine_map`],
+/// scatter less on their own period than the law says, and their intervals are too wide; a part cut out of
+/// one is as good as Gaussian. [`surface_gen::SelfAffineFit`] is the quick fit of a straight line without
+/// intervals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumFit {
     /// Hurst exponent H; outside of 0 to 1 the surface is not self-affine.
@@ -106,26 +111,29 @@ pub struct SpectrumFit {
     pub roll_off: Wavelength,
     /// Cut-off, a length.
     pub cut_off: Wavelength,
-    /// Density `C_2D` of the power law at the wavenumber `sqrt(q_1 q_2)` of `fitted`, noise left out, in length^4.
+    /// Density `C_2D` of the power law at the wavenumber `sqrt(q_1 q_2)` of `fitted`, noise left out, in
+    /// length^4.
     pub density: f64,
     /// Density of the white noise where the likelihood tells it from none (95 %), in length^4.
     pub noise: Option<f64>,
     /// Wavenumbers from and to which there are rings, in 1/length.
     pub fitted: [f64; 2],
-    /// Probability that a Gaussian surface of the fitted spectrum deviates at least as much from it: below 0.01 or so, the surface is
-    /// none, and the intervals say nothing. From the deviance in bins of a quarter of an octave up to the cut-off.
+    /// Probability that a Gaussian surface of the fitted spectrum deviates at least as much from it: below
+    /// 0.01 or so, the surface is none, and the intervals say nothing. From the deviance in bins of a quarter
+    /// of an octave up to the cut-off.
     pub goodness: f64,
 }
 
 impl SpectrumFit {
     /// Fits a map.
     ///
-    /// Cost: O(N log N), under a window 600 N more, and some 1e4 evaluations of the rings: about 0.2 s for 128 cells a side.
+    /// Cost: O(N log N), under a window 600 N more, and some 1e4 evaluations of the rings: about 0.2 s for
+    /// 128 cells a side.
     ///
     /// # Errors
-    /// [`Error::Domain`] for undefined points, heights that are all one (or one plane), limits that are no positive numbers,
-    /// fewer than 8 rings between the limits, and a spectrum without a power law: no exponent between -0.95 and 4 that the
-    /// likelihood tells from others.
+    /// [`Error::Domain`] for undefined points, heights that are all one (or one plane), limits that are no
+    /// positive numbers, fewer than 8 rings between the limits, and a spectrum without a power law: no
+    /// exponent between -0.95 and 4 that the likelihood tells from others.
     ///
     /// ```
     /// use contact_model::{Boundary, SelfAffine};
@@ -274,8 +282,8 @@ impl Ends {
         Ok((Self { hurst, roll_off, cut_off, noisy }, best))
     }
 
-    /// The minimum without what the likelihood does not tell from none, and the ends of the exponent there; `None` where
-    /// there is nothing to leave out.
+    /// The minimum without what the likelihood does not tell from none, and the ends of the exponent there;
+    /// `None` where there is nothing to leave out.
     fn simpler(
         &self,
         likelihood: &mut Likelihood,

@@ -24,11 +24,12 @@ pub struct PowerSpectrum {
 impl PowerSpectrum {
     /// Limits between which the density of the surface lies with the probability `level`, bin by bin.
     ///
-    /// `[n C/chi^2_high, n C/chi^2_low]` with the quantiles of the chi-square law for n degrees of freedom. Assumes
-    /// Gaussian heights, whose waves are independent with exponentially distributed squares (two degrees of freedom for
-    /// a wave and its conjugate), and a density that is the same in all of a bin; a window makes neighbouring waves
-    /// correlated, and the degrees of freedom fewer by the mean fourth power of its factors ((35/18)^2 = 3.8 for
-    /// [`Taper::Hann`]). Surfaces with prescribed amplitudes, as those of [`surface_gen::self_affine_map`], scatter less.
+    /// `[n C/chi^2_high, n C/chi^2_low]` with the quantiles of the chi-square law for n degrees of freedom.
+    /// Assumes Gaussian heights, whose waves are independent with exponentially distributed squares (two
+    /// degrees of freedom for a wave and its conjugate), and a density that is the same in all of a bin; a
+    /// window makes neighbouring waves correlated, and the degrees of freedom fewer by the mean fourth power
+    /// of its factors ((35/18)^2 = 3.8 for [`Taper::Hann`]). Surfaces with prescribed amplitudes, as those of
+    /// [`surface_gen::self_affine_map`], scatter less.
     ///
     /// # Errors
     /// [`Error::Domain`] for a level outside (0, 1).
@@ -52,10 +53,11 @@ impl PowerSpectrum {
 
     /// The spectrum along x of the mean over all rows; of a periodic map, or under Hann's window along x.
     ///
-    /// `C_1D(q) = Lx/(2 pi) mean |H(q)|^2`, `H = 1/columns sum h exp(-i q x)`, two-sided: the integral over q of both
-    /// signs is the mean variance of the rows about their means, `C_1D = pi q C_2D` for a power law of an isotropic surface. One
-    /// value for each of the waves 1, 2, ..., columns/2. Rows are correlated: their number of degrees of freedom is that of
-    /// the waves (qx, qy) that make up the sum over qy, `2 (2 (sum I)^2/sum I^2 - 1)` (Satterthwaite). Cost O(N log N).
+    /// `C_1D(q) = Lx/(2 pi) mean |H(q)|^2`, `H = 1/columns sum h exp(-i q x)`, two-sided: the integral over q
+    /// of both signs is the mean variance of the rows about their means, `C_1D = pi q C_2D` for a power law
+    /// of an isotropic surface. One value for each of the waves 1, 2, ..., columns/2. Rows are correlated:
+    /// their number of degrees of freedom is that of the waves (qx, qy) that make up the sum over qy, `2 (2
+    /// (sum I)^2/sum I^2 - 1)` (Satterthwaite). Cost O(N log N).
     ///
     /// # Errors
     /// [`Error::Domain`] for undefined points, fewer than 3 columns, and numbers beyond the range of f64.
@@ -99,10 +101,11 @@ impl PowerSpectrum {
 
     /// The spectrum of the map averaged over rings of wave vectors; bins without waves are left out.
     ///
-    /// `C_2D(q) = Lx Ly/(2 pi)^2 |H(q)|^2`, `H = 1/N sum h exp(-i q x)`, two-sided: the integral over the plane of q is the
-    /// variance ([`surface_gen::radial_spectrum`] has the same convention). The program SurfaceTopography and Jacobs, Junge,
-    /// Pastewka (Surf. Topogr. Metrol. Prop. 5, 013001 (2017)) have `(2 pi)^2` times as much. Each wave of a bin counts
-    /// the same. Cost O(N log N), memory about three times that of the map.
+    /// `C_2D(q) = Lx Ly/(2 pi)^2 |H(q)|^2`, `H = 1/N sum h exp(-i q x)`, two-sided: the integral over the
+    /// plane of q is the variance ([`surface_gen::radial_spectrum`] has the same convention). The program
+    /// SurfaceTopography and Jacobs, Junge, Pastewka (Surf. Topogr. Metrol. Prop. 5, 013001 (2017)) have `(2
+    /// pi)^2` times as much. Each wave of a bin counts the same. Cost O(N log N), memory about three times
+    /// that of the map.
     ///
     /// # Errors
     /// [`Error::Domain`] for undefined points, bins without any wave, and numbers beyond the range of f64.

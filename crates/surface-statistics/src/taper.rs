@@ -7,19 +7,20 @@ use surface_gen::hann_window;
 /// Mean square of Hann's window along one axis.
 const MEAN_SQUARE: f64 = 0.375;
 
-/// What is laid over a map before its spectrum is taken, scaled so that the mean of the squares is 1 and a homogeneous
-/// surface keeps its spectrum.
+/// What is laid over a map before its spectrum is taken, scaled so that the mean of the squares is 1 and a
+/// homogeneous surface keeps its spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Taper {
     /// Nothing: for periodic maps.
     None,
-    /// Hann's window along x times that along y, `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the cells' centres: that of
-    /// [`surface_gen::windowed`].
+    /// Hann's window along x times that along y, `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the cells' centres: that
+    /// of [`surface_gen::windowed`].
     #[default]
     Hann,
-    /// `(1 + cos(pi r/R))/2` for `r < R = min(Lx, Ly)/2` about the corner `(columns/2, rows/2)` (integer division), 0
-    /// beyond: the window of the program SurfaceTopography. It uses less of the map than [`Taper::Hann`].
+    /// `(1 + cos(pi r/R))/2` for `r < R = min(Lx, Ly)/2` about the corner `(columns/2, rows/2)` (integer
+    /// division), 0 beyond: the window of the program SurfaceTopography. It uses less of the map than
+    /// [`Taper::Hann`].
     RadialHann,
 }
 
@@ -43,8 +44,8 @@ impl Taper {
         factors
     }
 
-    /// Of how many neighbouring waves one is as good as independent, where the spectrum is smooth: the mean fourth power of
-    /// the factors; 1 without a window, (35/18)^2 = 3.8 for [`Taper::Hann`].
+    /// Of how many neighbouring waves one is as good as independent, where the spectrum is smooth: the mean
+    /// fourth power of the factors; 1 without a window, (35/18)^2 = 3.8 for [`Taper::Hann`].
     pub(crate) fn correlated_waves(self, cells: Cells, size: Size) -> f64 {
         let factors = self.factors(cells, size);
         factors.iter().map(|f| f.powi(4)).sum::<f64>() / factors.len() as f64

@@ -14,7 +14,8 @@ use surface_statistics::{FitOptions, SpectrumFit, Wavelength};
 enum Part {
     /// All of a period, amplitudes prescribed.
     Period,
-    /// All of a period, the sum of 16 independent surfaces: each wave has a Gaussian amplitude, all but exactly.
+    /// All of a period, the sum of 16 independent surfaces: each wave has a Gaussian amplitude, all but
+    /// exactly.
     Gaussian,
     /// Cut out of a map four times as large along each side.
     Cut,

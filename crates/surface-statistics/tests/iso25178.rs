@@ -1,4 +1,5 @@
-//! Parameters of ISO 25178-2 against the program surfalize: `data/iso25178/surfalize.csv`, made as its README.md says.
+//! Parameters of ISO 25178-2 against the program surfalize: `data/iso25178/surfalize.csv`, made as its
+//! README.md says.
 //!
 //! Where the two differ, the difference is stated as a factor or a tolerance with its reason.
 
@@ -14,11 +15,11 @@ use surface_statistics::{
 
 /// Rounding, of sums in another order and of numbers printed with 12 digits.
 const SAME: f64 = 1e-9;
-/// surfalize interpolates the outline of the autocorrelation by cubic splines along rays to the centres of cells, this crate linearly between
-/// neighbouring cells: part of a cell.
+/// surfalize interpolates the outline of the autocorrelation by cubic splines along rays to the centres of
+/// cells, this crate linearly between neighbouring cells: part of a cell.
 const PART_OF_A_CELL: f64 = 0.1;
-/// Std in degrees: surfalize takes the largest of 0.5 degree sums of amplitudes of all waves without a window, this crate the largest of 2 degree
-/// sums of variances.
+/// Std in degrees: surfalize takes the largest of 0.5 degree sums of amplitudes of all waves without a
+/// window, this crate the largest of 2 degree sums of variances.
 const SECTORS: f64 = 2.0;
 
 /// Sides in micrometres.
@@ -83,7 +84,8 @@ fn parameters_are_those_of_surfalize() {
         // surfalize has per cent.
         same("Sdr", hybrid.sdr, 100.0);
         let features = FeatureParameters::new(&map).unwrap();
-        // surfalize divides by the area between the centres of the outermost cells, this crate by that of all cells.
+        // surfalize divides by the area between the centres of the outermost cells, this crate by that of all
+        // cells.
         let inner = (map.columns() - 1) as f64 * map.dx() * (map.rows() - 1) as f64 * map.dy();
         same("Spd", features.spd, map.size().area() / inner);
         same("Spc", features.spc.unwrap(), 1.0);

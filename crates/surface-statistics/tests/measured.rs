@@ -23,7 +23,8 @@ fn directory() -> Option<PathBuf> {
     found.join("expected.json").exists().then_some(found)
 }
 
-/// The logarithmic bins of that program: so many edges per decade and as many again, a hundredth of a decade wider.
+/// The logarithmic bins of that program: so many edges per decade and as many again, a hundredth of a decade
+/// wider.
 fn bins(from: f64, to: f64, per_decade: f64) -> Bins {
     let (low, high) = (from.log10(), to.log10());
     let count = ((high - low + 1.0) * per_decade).ceil() as usize;
@@ -51,8 +52,8 @@ fn compare(what: &str, curve: &[[f64; 2]], expected: &[[f64; 2]]) -> Result<f64,
     Ok(worst)
 }
 
-/// The autocorrelation of that program: of vectors with both components >= 0 alone, each with the same weight, whatever its number
-/// of pairs.
+/// The autocorrelation of that program: of vectors with both components >= 0 alone, each with the same
+/// weight, whatever its number of pairs.
 fn quadrant(map: &HeightMap, bins: &Bins) -> Vec<[f64; 2]> {
     let differences = DifferenceMap::new(map, Boundary::Free);
     let mut sums = vec![[0.0; 3]; bins.edges().len() - 1];

@@ -13,6 +13,6 @@ pub use moments::{rms_height, rms_slope_differences};
 pub use patches::{boundary_edges, patches};
 pub use self_affine_fit::SelfAffineFit;
 pub use spectra::{Wave, line_spectrum, periodogram, radial_spectrum, rms_slope};
-pub(crate) use statistics::rms_by_wave;
 pub use statistics::{Band, MapStatistics};
+pub(crate) use statistics::{homogeneous, rms_by_wave};
 pub use window::{fit_range, hann_window, windowed};

@@ -4,17 +4,18 @@ use contact_model::Cells;
 
 /// Peaks of the hills that remain and are complete, by index, lowest index first.
 ///
-/// Points are added from the highest down; where two parts meet, the one with the lower peak ends in a saddle. Its hill is united with
-/// the one on the other side if its peak is less than `pruning` above the saddle: that is the order of Wolf's pruning, because the
-/// neighbour across the highest saddle of the least hill has a higher peak.
+/// Points are added from the highest down; where two parts meet, the one with the lower peak ends in a
+/// saddle. Its hill is united with the one on the other side if its peak is less than `pruning` above the
+/// saddle: that is the order of Wolf's pruning, because the neighbour across the highest saddle of the least
+/// hill has a higher peak.
 pub(super) fn peaks(heights: &[f64], cells: Cells, pruning: f64) -> Vec<usize> {
     let Cells { columns, rows } = cells;
     let mut order: Vec<usize> = (0..heights.len()).filter(|&i| !heights[i].is_nan()).collect();
     // Of equal heights the first is the higher one.
     order.sort_by(|&a, &b| heights[b].total_cmp(&heights[a]).then(a.cmp(&b)));
     let none = heights.len();
-    // Hill (its peak) of each point, the part of points joined so far (its highest peak, through a chain), and what each hill was
-    // united with.
+    // Hill (its peak) of each point, the part of points joined so far (its highest peak, through a chain),
+    // and what each hill was united with.
     let mut hill = vec![none; heights.len()];
     let mut part: Vec<usize> = (0..heights.len()).collect();
     let mut united: Vec<usize> = (0..heights.len()).collect();
@@ -44,7 +45,8 @@ pub(super) fn peaks(heights: &[f64], cells: Cells, pruning: f64) -> Vec<usize> {
             if mine == other {
                 continue;
             }
-            // The part with the lower peak ends here; a point that has just been added has no peak of its own.
+            // The part with the lower peak ends here; a point that has just been added has no peak of its
+            // own.
             let (lower, upper) = if higher(heights, other, mine) { (mine, other) } else { (other, mine) };
             if lower != i && heights[lower] - heights[i] < pruning {
                 let mut across = upper;

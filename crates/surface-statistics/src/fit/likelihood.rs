@@ -93,7 +93,8 @@ impl Likelihood {
         for (value, ring) in self.counts.iter_mut().zip(&self.rings.all) {
             *value = ring.independent;
             if self.rings.windowed {
-                // Distance to the rings from one and a half below the edge to one and a half beyond the window's reach.
+                // Distance to the rings from one and a half below the edge to one and a half beyond the
+                // window's reach.
                 let middle = cut_off + 0.5 * REACH as f64;
                 let outside = (ring.wavenumber - middle).abs() - 0.5 * REACH as f64 - 0.5;
                 *value *= AT_THE_EDGE + (1.0 - AT_THE_EDGE) * outside.clamp(0.0, 1.0);

@@ -3,8 +3,9 @@
 /// Evaluations after which a search ends in any case, for each variable.
 const MOST: usize = 400;
 
-/// Minimises by the simplex method of Nelder and Mead (Comput. J. 7, 308 (1965)) from a start with one step for each
-/// variable, until the values at the corners differ by less than `tolerance`; returns place and value.
+/// Minimises by the simplex method of Nelder and Mead (Comput. J. 7, 308 (1965)) from a start with one step
+/// for each variable, until the values at the corners differ by less than `tolerance`; returns place and
+/// value.
 pub(super) fn minimise(
     f: &mut dyn FnMut(&[f64]) -> f64,
     start: &[f64],

@@ -18,7 +18,8 @@ pub(super) enum End {
     Better(Parameters),
 }
 
-/// Walks from the minimum to where the profile of parameter `index` has risen by `rise`, upwards or downwards.
+/// Walks from the minimum to where the profile of parameter `index` has risen by `rise`, upwards or
+/// downwards.
 pub(super) fn end(
     likelihood: &mut Likelihood,
     best: (Parameters, f64),

@@ -11,11 +11,14 @@ pub(super) const REACH: usize = 6;
 const FINE: usize = 2;
 /// Nodes of the spectrum for each ring.
 const NODES: f64 = 4.0;
-/// Under a window the rings begin with so many waves along the shorter side: longer ones are trends, of which some are removed.
+/// Under a window the rings begin with so many waves along the shorter side: longer ones are trends, of which
+/// some are removed.
 const FIRST: f64 = 4.0;
-/// Under a window the rings end so many waves before the limit of the grid: half of the width of the window's transform.
+/// Under a window the rings end so many waves before the limit of the grid: half of the width of the window's
+/// transform.
 const BEFORE_LIMIT: f64 = 2.0;
-/// What a plane of least squares leaves of the variance of a wave of nu << 1 periods over the map: `2.16 nu^4`.
+/// What a plane of least squares leaves of the variance of a wave of nu << 1 periods over the map: `2.16
+/// nu^4`.
 const WITHOUT_PLANE: f64 = 2.16;
 /// Of how many waves under Hann's window one is as good as independent: (35/18)^2.
 const HANN_CORRELATION: f64 = 3.780_864_197_530_864;
@@ -33,7 +36,8 @@ pub(super) struct Ring {
     pub(super) power: f64,
     /// Number of its independent waves, conjugate pairs counted once.
     pub(super) independent: f64,
-    /// First node and weights of the nodes from there on: the expected power of the ring is the sum of weights times densities.
+    /// First node and weights of the nodes from there on: the expected power of the ring is the sum of
+    /// weights times densities.
     pub(super) first: usize,
     pub(super) weights: Vec<f64>,
 }
@@ -67,7 +71,8 @@ fn hann_power(nu: f64) -> f64 {
 }
 
 impl Rings {
-    /// Rings of a periodic map, or (`windowed`) of one under Hann's window; wavenumbers between the limits only.
+    /// Rings of a periodic map, or (`windowed`) of one under Hann's window; wavenumbers between the limits
+    /// only.
     ///
     /// # Errors
     /// Those of [`periodogram`].
