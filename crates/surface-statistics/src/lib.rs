@@ -8,6 +8,7 @@ mod fit;
 mod fourier;
 mod normal;
 mod relative;
+mod reliable;
 mod spectrum;
 mod taper;
 
@@ -18,5 +19,6 @@ pub use bins::Bins;
 pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};
 pub use difference::{DifferenceMap, HeightDifference};
 pub use fit::{FitOptions, Interval, SpectrumFit, Wavelength};
+pub use reliable::ReliableWavelengths;
 pub use spectrum::PowerSpectrum;
 pub use taper::Taper;

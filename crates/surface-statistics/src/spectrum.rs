@@ -2,7 +2,7 @@
 
 use crate::bins::Bins;
 use crate::taper::Taper;
-use contact_model::{Error, HeightMap, Result};
+use contact_model::{Cells, Error, HeightMap, Result};
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 use std::f64::consts::TAU;
 use surface_gen::{hann_window, periodogram};
@@ -27,9 +27,9 @@ impl PowerSpectrum {
     /// `[n C/chi^2_high, n C/chi^2_low]` with the quantiles of the chi-square law for n degrees of freedom.
     /// Assumes Gaussian heights, whose waves are independent with exponentially distributed squares (two
     /// degrees of freedom for a wave and its conjugate), and a density that is the same in all of a bin; a
-    /// window makes neighbouring waves correlated, and the degrees of freedom fewer by the mean fourth power
-    /// of its factors ((35/18)^2 = 3.8 for [`Taper::Hann`]). Surfaces with prescribed amplitudes, as those of
-    /// [`surface_gen::self_affine_map`], scatter less.
+    /// window makes neighbouring waves correlated, and the degrees of freedom those of a sum of correlated
+    /// squares, fewer by up to (35/18)^2 = 3.8 for [`Taper::Hann`]. Surfaces with prescribed amplitudes, as
+    /// those of [`surface_gen::self_affine_map`], scatter less.
     ///
     /// # Errors
     /// [`Error::Domain`] for a level outside (0, 1).
@@ -136,13 +136,11 @@ impl PowerSpectrum {
                 sum[2] += wave.copies * wave.variance;
             }
         })?;
-        let correlated = taper.correlated_waves(map.cells(), size);
+        let pairs = correlated_pairs(map, taper, bins);
         let mut spectrum = Self::empty();
-        for [count, q, variance] in sums.into_iter().filter(|[count, ..]| *count > 0.0) {
+        for ([count, q, variance], pairs) in sums.into_iter().zip(pairs).filter(|(sum, _)| sum[0] > 0.0) {
             let density = ((variance / count).sqrt() * unit * (length / TAU)).powi(2);
-            // Of few waves, each is its own.
-            let freedom = (count / correlated).max(count.min(2.0));
-            spectrum.push(q / count, density, freedom)?;
+            spectrum.push(q / count, density, count * (count / pairs))?;
         }
         if spectrum.wavenumber.is_empty() {
             let last = bins.edges().last().copied().unwrap_or_default();
@@ -161,6 +159,39 @@ impl PowerSpectrum {
         self.degrees_of_freedom.push(degrees_of_freedom);
         Ok(())
     }
+}
+
+/// Sum of the squared correlations of all pairs of waves of each bin, each wave with itself among them.
+fn correlated_pairs(map: &HeightMap, taper: Taper, bins: &Bins) -> Vec<f64> {
+    let (Cells { columns, rows }, size) = (map.cells(), map.size());
+    let [reach_x, reach_y] = [columns / 2, rows / 2];
+    let width = reach_x + 1;
+    // Bins of one quadrant; those of the others are the same.
+    let mut quadrant = vec![None; width * (reach_y + 1)];
+    for my in 0..=reach_y {
+        for mx in 0..=reach_x {
+            let q = TAU * (mx as f64 / size.x).hypot(my as f64 / size.y);
+            quadrant[my * width + mx] = bins.index(q).filter(|_| (mx, my) != (0, 0));
+        }
+    }
+    let bin = |mx: isize, my: isize| {
+        let [x, y] = [mx.unsigned_abs(), my.unsigned_abs()];
+        if x > reach_x || y > reach_y { None } else { quadrant[y * width + x] }
+    };
+    let correlations = taper.correlations(map.cells(), size);
+    let mut sums = vec![0.0; bins.edges().len() - 1];
+    for my in 0..=reach_y {
+        for mx in 0..=reach_x {
+            let Some(own) = quadrant[my * width + mx] else { continue };
+            let copies = |m: usize, n: usize| if m == 0 || 2 * m == n { 1.0 } else { 2.0 };
+            let weight = copies(mx, columns) * copies(my, rows);
+            let near = correlations
+                .iter()
+                .filter(|([x, y], _)| bin(mx.cast_signed() + x, my.cast_signed() + y) == Some(own));
+            sums[own] += weight * near.map(|(_, square)| square).sum::<f64>();
+        }
+    }
+    sums
 }
 
 /// Rows about their means under Hann's window along x, scaled to keep their spectrum.

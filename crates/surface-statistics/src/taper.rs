@@ -1,11 +1,16 @@
 //! Windows over maps that are not periodic.
 
 use contact_model::{Cells, HeightMap, Result, Size};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use surface_gen::hann_window;
 
 /// Mean square of Hann's window along one axis.
 const MEAN_SQUARE: f64 = 0.375;
+
+/// Differences of indices between which waves are correlated: those of Hann's window reach 2.
+const NEAR: isize = 3;
+/// Squared correlations below this are none.
+const NEGLIGIBLE: f64 = 1e-4;
 
 /// What is laid over a map before its spectrum is taken, scaled so that the mean of the squares is 1 and a
 /// homogeneous surface keeps its spectrum.
@@ -44,11 +49,43 @@ impl Taper {
         factors
     }
 
-    /// Of how many neighbouring waves one is as good as independent, where the spectrum is smooth: the mean
-    /// fourth power of the factors; 1 without a window, (35/18)^2 = 3.8 for [`Taper::Hann`].
-    pub(crate) fn correlated_waves(self, cells: Cells, size: Size) -> f64 {
+    /// Squared correlations of the amplitudes of two waves whose indices differ by a vector, where the
+    /// spectrum is smooth: of the vectors of up to 3 along each axis those that count, among them the vector
+    /// 0 with 1.
+    ///
+    /// `|sum w^2 exp(-2 pi i (dx ix/columns + dy iy/rows))|^2/(sum w^2)^2`. Cost O(N).
+    pub(crate) fn correlations(self, cells: Cells, size: Size) -> Vec<([isize; 2], f64)> {
+        if self == Self::None {
+            return vec![([0, 0], 1.0)];
+        }
+        let Cells { columns, rows } = cells;
         let factors = self.factors(cells, size);
-        factors.iter().map(|f| f.powi(4)).sum::<f64>() / factors.len() as f64
+        let count = factors.len() as f64;
+        // Sums over rows first: the transform along x of each for 7 differences, then along y.
+        let turns = |d: isize, n: usize| -> Vec<[f64; 2]> {
+            (0..n).map(|i| TAU * d as f64 * (i as f64 / n as f64)).map(|a| [a.cos(), a.sin()]).collect()
+        };
+        let mut found = Vec::new();
+        for dx in -NEAR..=NEAR {
+            let along_x = turns(dx, columns);
+            let sums: Vec<[f64; 2]> = factors
+                .chunks_exact(columns)
+                .map(|row| {
+                    let terms = row.iter().zip(&along_x).map(|(f, [c, s])| [f * f * c, f * f * s]);
+                    terms.fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]])
+                })
+                .collect();
+            for dy in -NEAR..=NEAR {
+                let terms = sums.iter().zip(turns(dy, rows));
+                let [re, im] = terms
+                    .fold([0.0; 2], |sum, ([a, b], [c, s])| [sum[0] + a * c - b * s, sum[1] + a * s + b * c]);
+                let square = (re / count).powi(2) + (im / count).powi(2);
+                if square > NEGLIGIBLE {
+                    found.push(([dx, dy], square));
+                }
+            }
+        }
+        found
     }
 
     /// The map about its mean under the window.
@@ -95,10 +132,12 @@ mod tests {
         for (a, b) in mine.heights().iter().zip(theirs.heights()) {
             assert!((a - b).abs() < 1e-13);
         }
-        assert_relative_eq!(
-            Taper::Hann.correlated_waves(map.cells(), map.size()),
-            (35.0_f64 / 18.0).powi(2),
-            max_relative = 1e-12
-        );
+        let correlations = Taper::Hann.correlations(map.cells(), map.size());
+        let at = |lag: [isize; 2]| correlations.iter().find(|c| c.0 == lag).unwrap().1;
+        assert_relative_eq!(at([0, 0]), 1.0, max_relative = 1e-12);
+        assert_relative_eq!(at([-1, 0]), 4.0 / 9.0, max_relative = 1e-12);
+        assert_relative_eq!(at([2, 1]), 4.0 / 9.0 / 36.0, max_relative = 1e-12);
+        let sum: f64 = correlations.iter().map(|c| c.1).sum();
+        assert_relative_eq!(sum, (35.0_f64 / 18.0).powi(2), max_relative = 1e-3);
     }
 }
