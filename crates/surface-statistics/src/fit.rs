@@ -13,6 +13,7 @@ use profile::End;
 use rings::Rings;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 use std::f64::consts::TAU;
+use surface_gen::rms_height;
 
 /// Fewest rings of a fit.
 const FEWEST: usize = 8;
@@ -28,6 +29,8 @@ const EDGE: f64 = 6.0;
 const RESOLUTION: f64 = 0.5;
 /// Better minima that are met on the way along a profile.
 const RESTARTS: usize = 8;
+/// What a plane leaves of heights within 1 is rounding up to this.
+const ROUNDING: f64 = 1e-13;
 /// Ratio of wavenumbers of the bins in which the fit is tested.
 const TEST_BIN: f64 = 1.25;
 
@@ -162,6 +165,10 @@ impl SpectrumFit {
         if rings.all.iter().all(|ring| ring.power <= 0.0) {
             return Err(Error::domain("rms height of the map", 0.0, "a rough surface: a finite number > 0"));
         }
+        if !rings.density.is_normal() {
+            let expected = "a number within the range of f64 (choose other units)";
+            return Err(Error::domain("power spectral density", rings.density, expected));
+        }
         let mut likelihood = Likelihood::new(rings);
         let mut best = likelihood.best();
         for _ in 0..RESTARTS {
@@ -206,11 +213,16 @@ fn without_plane(map: &HeightMap) -> Result<HeightMap> {
         if count > 1 { sum / (square(count) * others as f64) } else { 0.0 }
     };
     let (mean, x, y) = (mean / heights.len() as f64, slope(x, columns, rows), slope(y, rows, columns));
-    let flat = heights
-        .iter()
-        .enumerate()
-        .map(|(i, h)| (h - mean - x * about(i % columns, columns) - y * about(i / columns, rows)) * unit);
-    HeightMap::new(map.cells(), map.size(), flat.collect())
+    let rest =
+        |(i, h): (usize, &f64)| h - mean - x * about(i % columns, columns) - y * about(i / columns, rows);
+    let flat: Vec<f64> = heights.iter().enumerate().map(rest).collect();
+    let rms = rms_height(&flat);
+    // Half of the range of the heights is 1.
+    if rms < ROUNDING {
+        let expected = "a rough surface: a number > 0, its plane removed";
+        return Err(Error::domain("rms height of the map", rms * unit, expected));
+    }
+    HeightMap::new(map.cells(), map.size(), flat.into_iter().map(|h| h * unit).collect())
 }
 
 /// The end of a profile.

@@ -1,6 +1,5 @@
 //! The periodogram in rings, and what a spectrum makes of it under a window.
 
-use crate::relative::finite;
 use contact_model::{Cells, HeightMap, Result};
 use std::f64::consts::{PI, TAU};
 use surface_gen::periodogram;
@@ -124,7 +123,6 @@ impl Rings {
             })
             .collect();
         let density = (scale * unit * unit) * (size.x / TAU) * (size.y / TAU);
-        let density = finite("power spectral density", density)?;
         Ok(Self { all, nodes: responses.nodes, width, range: [from, to], windowed, density })
     }
 }
