@@ -40,6 +40,8 @@
 //! * **Given maps.** [`MapStatistics`] is what theories of rough contact take from a map and how far it is what they
 //!   assume; [`SelfAffineFit`] is its Hurst exponent, or why it has none; [`LineGenerator::of_map`] draws the line that
 //!   stands for it. A map whose opposite edges differ is measured under Hann's window ([`windowed`]).
+//! * **Other maps.** [`WaveGenerator`] draws maps with the amplitudes of any spectrum: artificial twins of a given
+//!   map and anisotropic self-affine surfaces; [`PrescribedMap`] gives them a distribution of heights too.
 //! * **Chance.** The phase of a wave is a function of (seed, i, j) alone; the stream is written down in the
 //!   source of [`map_phase`] and pinned by tests. The fractal dimension does not enter: surfaces of one seed
 //!   and different D_f share their phases.
@@ -58,8 +60,11 @@
 //!
 //! # What it does not do
 //!
-//! Gaussian amplitudes, anisotropic spectra, resampling of given maps, reading files; no contact mechanics.
+//! Gaussian amplitudes, resampling of given maps, reading files; no contact mechanics. Parameters of standards,
+//! correlations and fits with intervals are in the crate `surface-statistics`.
 
+mod distribution;
+mod fourier;
 mod hash;
 mod indenter;
 mod lattice;
@@ -72,14 +77,17 @@ mod phases;
 mod spectrum;
 mod surface;
 mod turn;
+mod waves;
 
+pub use distribution::{Exact, HeightDistribution, PrescribedMap};
 pub use hash::surface_seed;
 pub use line::{LineGenerator, self_affine_line};
 pub use map::{MapGenerator, self_affine_map};
 pub use measure::{
-    Band, MapStatistics, SelfAffineFit, boundary_edges, fit_range, hurst_from_line_spectrum,
-    hurst_from_spectrum, line_spectrum, patches, radial_spectrum, rms_height, rms_slope,
-    rms_slope_differences, windowed,
+    Band, MapStatistics, SelfAffineFit, Wave, boundary_edges, fit_range, hann_window,
+    hurst_from_line_spectrum, hurst_from_spectrum, line_spectrum, patches, periodogram, radial_spectrum,
+    rms_height, rms_slope, rms_slope_differences, windowed,
 };
 pub use phases::{line_phase, map_phase};
 pub use surface::{height_map, line};
+pub use waves::{Anisotropy, TwinSpectrum, WaveGenerator};

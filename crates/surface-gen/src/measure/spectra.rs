@@ -1,10 +1,11 @@
 //! Spectra of samples, as periodic fields.
 
+use crate::fourier::MapTransform;
 use crate::lattice::Lattice;
 use crate::spectrum::CUTOFF_SLACK;
 use contact_model::{Cells, Error, HeightMap, Line, Result};
 use realfft::RealFftPlanner;
-use rustfft::{FftPlanner, num_complex::Complex};
+use rustfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
 /// Middle and half width of the range of the heights; the width is 1 where there is none.
@@ -43,8 +44,70 @@ impl RowTransform {
     }
 }
 
-/// Calls `visit(|q|^2, |H|^2, copies, [q_x^2, q_x q_y])` for every wave but the mean, in a fixed order; returns the
-/// unit of H. Wavenumbers are in units of `2 pi / L`, `L = sqrt(Lx Ly)`; `copies` counts the conjugate wave.
+/// One wave of the transform of a map, `H = 1/N sum h exp(-2 pi i (mx ix / columns + my iy / rows))`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wave {
+    /// Periods `[mx, my]` over the sides: wave vector `2 pi (mx/Lx, my/Ly)`, `0 <= mx <= columns/2`,
+    /// `-rows/2 < my <= rows/2`.
+    pub index: [isize; 2],
+    /// Variance `|H|^2` of the heights in this wave, in the square of the unit that [`periodogram`] returns.
+    pub variance: f64,
+    /// Of how many waves this is one: 2 where the conjugate wave is not visited by itself (`0 < mx <
+    /// columns/2`), else 1.
+    pub copies: f64,
+}
+
+/// Visits every wave of the map but the mean, in a fixed order, and returns the unit of their amplitudes
+/// (half the range of the heights, so that no square leaves the range of f64).
+///
+/// The map is taken as periodic: lay a window over it where it is not. Summed with their copies, the
+/// variances are the square of [`crate::rms_height`]; `C_2D = Lx Ly / (2 pi)^2 |H|^2`. Cost O(N log N),
+/// memory about that of the map.
+///
+/// # Errors
+/// [`Error::Domain`] for a map with undefined points.
+///
+/// ```
+/// use contact_model::Surface;
+/// // h = 0.2 cos(2 pi x): |H| = 0.1 for one wave and its conjugate.
+/// let sine = Surface::Sine { amplitude: 0.2, wavelength: 1.0, size: 1.0.into() };
+/// let map = surface_gen::height_map(&sine, 16, 0)?;
+/// let mut found = 0.0;
+/// let unit = surface_gen::periodogram(&map, &mut |wave| {
+///     if wave.index == [1, 0] {
+///         found = wave.copies * wave.variance;
+///     }
+/// })?;
+/// assert!((found * unit * unit - 0.02).abs() < 1e-15);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn periodogram(map: &HeightMap, visit: &mut dyn FnMut(Wave)) -> Result<f64> {
+    all_waves(map, visit)
+}
+
+fn all_waves(map: &HeightMap, mut visit: impl FnMut(Wave)) -> Result<f64> {
+    if map.undefined() > 0 {
+        let expected = "0: a spectrum needs every height (fill the undefined points or crop the map)";
+        return Err(Error::domain("undefined points", map.undefined() as f64, expected));
+    }
+    let Cells { columns: nx, rows: ny } = map.cells();
+    let (middle, unit) = range(map.heights());
+    let transformed = MapTransform::new(map.cells()).forward(map.heights(), middle, unit);
+    for (mx, column) in transformed.chunks_exact(ny).enumerate() {
+        let copies = if mx == 0 || 2 * mx == nx { 1.0 } else { 2.0 };
+        for (iy, value) in column.iter().enumerate() {
+            let my = iy.cast_signed() - if 2 * iy > ny { ny.cast_signed() } else { 0 };
+            if (mx, my) != (0, 0) {
+                visit(Wave { index: [mx.cast_signed(), my], variance: value.norm_sqr(), copies });
+            }
+        }
+    }
+    Ok(unit)
+}
+
+/// Calls `visit(|q|^2, |H|^2, copies, [q_x^2, q_x q_y])` for every wave but the mean, in a fixed order;
+/// returns the unit of H. Wavenumbers are in units of `2 pi / L`, `L = sqrt(Lx Ly)`; `copies` counts the
+/// conjugate wave.
 ///
 /// # Errors
 /// [`Error::Domain`] for a map with undefined points.
@@ -53,37 +116,12 @@ pub(super) fn waves(
     lattice: &Lattice,
     mut visit: impl FnMut(f64, f64, f64, [f64; 2]),
 ) -> Result<f64> {
-    if map.undefined() > 0 {
-        let expected = "0: a spectrum needs every height (fill the undefined points or crop the map)";
-        return Err(Error::domain("undefined points", map.undefined() as f64, expected));
-    }
-    let Cells { columns: nx, rows: ny } = map.cells();
-    let (middle, unit) = range(map.heights());
-    let width = nx / 2 + 1;
-    let mut columns = vec![Complex::new(0.0, 0.0); width * ny];
-    let mut along_x = RowTransform::new(nx);
-    for (iy, row) in map.heights().chunks_exact(nx).enumerate() {
-        for (mx, &value) in along_x.of(row, middle, unit).iter().enumerate() {
-            columns[mx * ny + iy] = value;
-        }
-    }
-    let along_y = FftPlanner::new().plan_fft_forward(ny);
-    let mut scratch = vec![Complex::new(0.0, 0.0); along_y.get_inplace_scratch_len()];
-    for (mx, column) in columns.chunks_exact_mut(ny).enumerate() {
-        along_y.process_with_scratch(column, &mut scratch);
-        let copies = if mx == 0 || 2 * mx == nx { 1.0 } else { 2.0 };
-        for (iy, value) in column.iter().enumerate() {
-            let my = iy.min(ny - iy);
-            if (mx, my) != (0, 0) {
-                let (square, power) =
-                    (lattice.square(mx as u64, my as u64), value.norm_sqr() / (ny as f64).powi(2));
-                // (L/Lx) (L/Ly) = 1.
-                let product = if iy == my { (mx * my) as f64 } else { -((mx * my) as f64) };
-                visit(square, power, copies, [lattice.square(mx as u64, 0), product]);
-            }
-        }
-    }
-    Ok(unit)
+    all_waves(map, |wave| {
+        let [mx, my] = wave.index.map(|m| m.unsigned_abs() as u64);
+        // (L/Lx) (L/Ly) = 1.
+        let product = (wave.index[0] * wave.index[1]) as f64;
+        visit(lattice.square(mx, my), wave.variance, wave.copies, [lattice.square(mx, 0), product]);
+    })
 }
 
 /// Root mean square slope of a map as a periodic field, `sqrt(sum |q|^2 |H(q)|^2)`, dimensionless.

@@ -182,14 +182,18 @@ pub(crate) fn rms_by_wave(map: &HeightMap, step: f64) -> Result<Vec<f64>> {
 }
 
 /// A map as a sample of a homogeneous surface.
-struct Homogeneous<'a> {
+pub(crate) struct Homogeneous<'a> {
     /// The map where it is periodic, else under a window.
-    map: Cow<'a, HeightMap>,
+    pub(crate) map: Cow<'a, HeightMap>,
     edge_step: f64,
     tilt: f64,
 }
 
-fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
+/// The map as a sample of a homogeneous surface.
+///
+/// # Errors
+/// As [`MapStatistics::new`].
+pub(crate) fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
     if map.undefined() > 0 {
         let expected = "0: statistics of a surface need every height (`fill` or `crop` the map)";
         return Err(Error::domain("undefined points", map.undefined() as f64, expected));

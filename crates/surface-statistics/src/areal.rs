@@ -1,0 +1,324 @@
+//! Areal parameters of ISO 25178-2:2021.
+//!
+//! Of the map as it is: levelling and the filters of ISO 25178-3 (S, L, F) are the caller's. Heights z count
+//! from the mean of the defined points, each cell weighs the same. Symbols are those of the standard, in
+//! lower case; ratios are not in per cent.
+
+mod hills;
+
+use crate::difference::DifferenceMap;
+use crate::relative::{Relative, defined_everywhere, finite};
+use contact_model::{Boundary, Cells, Error, HeightMap, Result};
+use std::f64::consts::PI;
+use surface_gen::{periodogram, rms_slope_differences};
+
+/// Autocorrelation at which a surface counts as decorrelated (ISO 25178-3:2012, 4.4).
+const DECAYED: f64 = 0.2;
+/// Pruning of hills in shares of Sz (ISO 25178-3).
+const PRUNING: f64 = 0.05;
+/// Sectors of directions over half a turn.
+const SECTORS: usize = 90;
+
+/// Height parameters (ISO 25178-2, 4.1), of maps with undefined points too.
+///
+/// ```
+/// use contact_model::HeightMap;
+/// use surface_statistics::HeightParameters;
+/// let map = HeightMap::new(2, 1.0, vec![0.0, 0.0, 0.0, 4.0])?;
+/// let found = HeightParameters::new(&map)?;
+/// assert!((found.sa - 1.5).abs() < 1e-15 && (found.sq - 3.0_f64.sqrt()).abs() < 1e-15);
+/// assert!((found.sp - 3.0).abs() < 1e-15 && (found.sz - 4.0).abs() < 1e-15);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeightParameters {
+    /// Arithmetic mean height `mean |z|`, a length.
+    pub sa: f64,
+    /// Root mean square height `sqrt(mean z^2)`, a length: [`surface_gen::rms_height`].
+    pub sq: f64,
+    /// Skewness `mean z^3/Sq^3`.
+    pub ssk: f64,
+    /// Kurtosis `mean z^4/Sq^4`.
+    pub sku: f64,
+    /// Maximum peak height `max z`, a length.
+    pub sp: f64,
+    /// Maximum pit depth `-min z`, a length.
+    pub sv: f64,
+    /// Maximum height `Sp + Sv`, a length.
+    pub sz: f64,
+}
+
+impl HeightParameters {
+    /// Measures a map. Cost O(N).
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for heights that are all one (which have no skewness), and numbers beyond the range
+    /// of f64.
+    pub fn new(map: &HeightMap) -> Result<Self> {
+        let Relative { heights, unit } = Relative::new(map);
+        let defined = || heights.iter().filter(|h| !h.is_nan());
+        let count = defined().count() as f64;
+        let middle = defined().sum::<f64>() / count;
+        let mean = |term: &dyn Fn(f64) -> f64| defined().map(|h| term(h - middle)).sum::<f64>() / count;
+        let (low, high) =
+            defined().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
+        let rms = mean(&|z| z * z).sqrt();
+        if high <= low {
+            return Err(Error::domain("rms height of the map", 0.0, "a rough surface: a finite number > 0"));
+        }
+        Ok(Self {
+            sa: mean(&f64::abs) * unit,
+            sq: rms * unit,
+            ssk: mean(&|z| z.powi(3)) / rms.powi(3),
+            sku: mean(&|z| z.powi(4)) / rms.powi(4),
+            sp: (high - middle) * unit,
+            sv: (middle - low) * unit,
+            sz: finite("Sz", (high - low) * unit)?,
+        })
+    }
+}
+
+/// Hybrid parameters (ISO 25178-2, 4.3), of maps with undefined points too.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HybridParameters {
+    /// Root mean square gradient, dimensionless, from differences of neighbours, each direction over all of
+    /// its own pairs: [`surface_gen::rms_slope_differences`].
+    pub sdq: f64,
+    /// Developed interfacial area ratio, dimensionless: area of the surface over its projection, less 1.
+    /// Between the centres of four cells the area is the mean of those of both pairs of triangles (ISO
+    /// 25178-2:2021, Eq. D.15); only where all four are defined.
+    pub sdr: f64,
+}
+
+impl HybridParameters {
+    /// Measures a map. Cost O(N).
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where no four neighbouring points are defined, and for numbers beyond the range of
+    /// f64.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// // A plane of slope 3/4 along x: 5/4 of its projection.
+    /// let map = HeightMap::from_fn(3, 3.0, |ix, _| 0.75 * ix as f64)?;
+    /// let found = surface_statistics::HybridParameters::new(&map)?;
+    /// assert!((found.sdr - 0.25).abs() < 1e-15 && (found.sdq - 0.75).abs() < 1e-15);
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn new(map: &HeightMap) -> Result<Self> {
+        let Cells { columns, rows } = map.cells();
+        let heights = map.heights();
+        let (mut sum, mut count) = (0.0, 0_usize);
+        for iy in 1..rows {
+            for ix in 1..columns {
+                let i = iy * columns + ix;
+                let [a, b, c, d] =
+                    [heights[i - columns - 1], heights[i - columns], heights[i - 1], heights[i]];
+                let x = [(b - a) / map.dx(), (d - c) / map.dx()];
+                let y = [(c - a) / map.dy(), (d - b) / map.dy()];
+                // The area of a triangle over its projection less 1, without cancellation for small slopes.
+                let excess = |sx: f64, sy: f64| {
+                    let square = sx * sx + sy * sy;
+                    square / (1.0 + (1.0 + square).sqrt())
+                };
+                let mean = 0.25
+                    * (excess(x[0], y[0]) + excess(x[0], y[1]) + excess(x[1], y[0]) + excess(x[1], y[1]));
+                if mean.is_finite() {
+                    sum += mean;
+                    count += 1;
+                }
+            }
+        }
+        if count == 0 {
+            let expected = "at least 1: an area needs two columns and two rows of defined points";
+            return Err(Error::domain("four defined neighbours", 0.0, expected));
+        }
+        Ok(Self { sdq: finite("Sdq", rms_slope_differences(map))?, sdr: finite("Sdr", sum / count as f64)? })
+    }
+}
+
+/// Spatial parameters (ISO 25178-2, 4.2), of maps with undefined points too.
+///
+/// Of the unbiased autocorrelation of the map as a free one ([`DifferenceMap::autocorrelation`]): its part
+/// above s = 0.2 that contains the vector 0, whose outline is interpolated linearly between neighbouring
+/// vectors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpatialParameters {
+    /// Autocorrelation length, a length: distance of the fastest decay to s. `None` where it decays nowhere
+    /// inside the map.
+    pub sal: Option<f64>,
+    /// Distance of the slowest decay to s, a length. `None` where it does not decay in all directions inside
+    /// the map.
+    pub slowest: Option<f64>,
+    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`;
+    /// it then is at most Sal over half of the longer side.
+    pub str: Option<f64>,
+}
+
+impl SpatialParameters {
+    /// Measures a map. Cost and memory those of [`DifferenceMap::new`].
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for heights that are all one.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// // Grooves of the period 32: cos(2 pi r/32) = 0.2 at r = 6.97; no decay along them.
+    /// let map = HeightMap::from_fn([512, 16], [512.0, 16.0], |ix, _| (ix as f64 * std::f64::consts::PI / 16.0).sin())?;
+    /// let found = surface_statistics::SpatialParameters::new(&map)?;
+    /// assert!((found.sal.unwrap() - 6.97).abs() < 0.1 && found.str.is_none());
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn new(map: &HeightMap) -> Result<Self> {
+        let correlation = DifferenceMap::new(map, Boundary::Free);
+        if correlation.autocorrelation([0, 0]).is_none() {
+            return Err(Error::domain("rms height of the map", 0.0, "a rough surface: a finite number > 0"));
+        }
+        let Cells { columns, rows } = map.cells();
+        let [reach_x, reach_y] = [columns, rows].map(|n| n.cast_signed() - 1);
+        let width = 2 * columns - 1;
+        let mut seen = vec![false; width * (2 * rows - 1)];
+        let mut queue = vec![[0_isize, 0]];
+        let (mut nearest, mut farthest, mut leaves) = (f64::INFINITY, 0.0_f64, false);
+        while let Some([x, y]) = queue.pop() {
+            let Some(here) = correlation.autocorrelation([x, y]) else {
+                leaves = true;
+                continue;
+            };
+            for [step_x, step_y] in NEIGHBOURS {
+                let next = [x + step_x, y + step_y];
+                if next[0].abs() > reach_x || next[1].abs() > reach_y {
+                    leaves = true;
+                    continue;
+                }
+                let Some(there) = correlation.autocorrelation(next) else {
+                    leaves = true;
+                    continue;
+                };
+                if there > DECAYED {
+                    let index =
+                        (next[1] + reach_y).cast_unsigned() * width + (next[0] + reach_x).cast_unsigned();
+                    // The part is joined along the axes.
+                    if step_x * step_y == 0 && !seen[index] {
+                        seen[index] = true;
+                        queue.push(next);
+                    }
+                } else {
+                    let share = (here - DECAYED) / (here - there);
+                    let distance = ((x as f64 + share * step_x as f64) * map.dx())
+                        .hypot((y as f64 + share * step_y as f64) * map.dy());
+                    nearest = nearest.min(distance);
+                    farthest = farthest.max(distance);
+                }
+            }
+        }
+        let sal = nearest.is_finite().then_some(nearest);
+        let slowest = sal.map(|_| farthest).filter(|_| !leaves);
+        Ok(Self { sal, slowest, str: slowest.map(|farthest| nearest / farthest) })
+    }
+}
+
+/// Steps to the neighbours of a point.
+const NEIGHBOURS: [[isize; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]];
+
+/// Texture direction Std (ISO 25178-2, 4.4): angle in degrees from x towards y, 0 to 180, of the wave vectors
+/// in which most of the variance is. The lay, along which heights change least, is across it.
+///
+/// Middle of the largest of 90 sectors of 2 degrees of the angular power spectrum `int C q dq` under Hann's
+/// window. Waves shorter than twice the longer cell side, which not all directions have, and longer than half
+/// of the shorter side, which the window spreads over all directions, are left out. Rows count upwards with
+/// y: where the picture of a map has its first row on top, the angle is clockwise in it. Cost O(N log N).
+///
+/// # Errors
+/// [`Error::Domain`] for undefined points, heights that are all one and maps of fewer than about 8 cells
+/// along a side.
+///
+/// ```
+/// use contact_model::HeightMap;
+/// // Wave vector (3, 4): atan(4/3) = 53.1 degrees.
+/// let wave = |ix: usize, iy: usize| ((0.6 * ix as f64 + 0.8 * iy as f64) * 0.9).sin();
+/// let direction = surface_statistics::texture_direction(&HeightMap::from_fn(128, 128.0, wave)?)?;
+/// assert!((direction - 53.1).abs() <= 1.0);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn texture_direction(map: &HeightMap) -> Result<f64> {
+    defined_everywhere(map, "a texture direction")?;
+    let windowed = crate::taper::Taper::Hann.over(map)?;
+    let size = map.size();
+    let limits = [2.0 / size.shorter(), 0.5 / map.dx().max(map.dy())];
+    let mut sectors = vec![0.0; SECTORS];
+    periodogram(&windowed, &mut |wave| {
+        let [x, y] = [wave.index[0] as f64 / size.x, wave.index[1] as f64 / size.y];
+        if (limits[0]..=limits[1]).contains(&x.hypot(y)) {
+            let turn = (y.atan2(x) / PI).rem_euclid(1.0);
+            let sector = ((turn * SECTORS as f64) as usize).min(SECTORS - 1);
+            sectors[sector] += wave.copies * wave.variance;
+        }
+    })?;
+    let (sector, largest) = sectors
+        .iter()
+        .enumerate()
+        .fold((0, 0.0), |best, (k, sum)| if *sum > best.1 { (k, *sum) } else { best });
+    if largest <= 0.0 {
+        let name = "variance of waves with a direction";
+        return Err(Error::domain(name, largest, "a number > 0: a rough surface of about 8 cells a side"));
+    }
+    Ok((sector as f64 + 0.5) * 180.0 / SECTORS as f64)
+}
+
+/// Feature parameters of hills (ISO 25178-2, 4.8), of maps with undefined points too.
+///
+/// Hills are the parts of the map that lead upwards to one peak, by the steepest of eight neighbours. The
+/// hill whose peak rises least above the highest saddle to a neighbour is united with that, as long as that
+/// is less than 5 % of Sz (pruning after Wolf). Hills that touch the edge of the map or an undefined point
+/// are incomplete: they do not count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FeatureParameters {
+    /// Number of hills that count.
+    pub hills: usize,
+    /// Density of peaks, hills that count over `Lx Ly`, in 1/length^2.
+    pub spd: f64,
+    /// Arithmetic mean peak curvature, mean of half the Laplacian of -z at the peaks by second differences,
+    /// in 1/length; `None` without a hill.
+    pub spc: Option<f64>,
+}
+
+impl FeatureParameters {
+    /// Measures a map. Cost O(N log N).
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for curvatures beyond the range of f64.
+    ///
+    /// ```
+    /// use contact_model::HeightMap;
+    /// // Egg box of period 8: the hill in the middle is complete, the eight around it touch the edge.
+    /// let wave = |i: usize| (i as f64 * std::f64::consts::PI / 4.0).cos();
+    /// let map = HeightMap::from_fn(25, 25.0, |ix, iy| -wave(ix) - wave(iy))?;
+    /// let found = surface_statistics::FeatureParameters::new(&map)?;
+    /// assert_eq!(found.hills, 1);
+    /// // Second differences of a cosine of this period: 2 - 2 cos(pi/4).
+    /// assert!((found.spc.unwrap() - 0.585786).abs() < 1e-6);
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn new(map: &HeightMap) -> Result<Self> {
+        let Relative { heights, unit } = Relative::new(map);
+        let cells = map.cells();
+        // Sz is 2 of these units.
+        let peaks = hills::peaks(&heights, cells, 2.0 * PRUNING);
+        let columns = cells.columns;
+        let mut sum = 0.0;
+        for &i in &peaks {
+            // A complete hill has all neighbours of its peak.
+            let x = (2.0 * heights[i] - heights[i - 1] - heights[i + 1]) * (map.dy() / map.dx());
+            let y = (2.0 * heights[i] - heights[i - columns] - heights[i + columns]) * (map.dx() / map.dy());
+            sum += 0.5 * (x + y);
+        }
+        let count = peaks.len() as f64;
+        let spc = if peaks.is_empty() {
+            None
+        } else {
+            Some(finite("Spc", sum / count * unit / map.dx() / map.dy())?)
+        };
+        Ok(Self { hills: peaks.len(), spd: count / map.size().x / map.size().y, spc })
+    }
+}

@@ -1,0 +1,117 @@
+//! Hills of a map and their pruning.
+
+use contact_model::Cells;
+
+/// Peaks of the hills that remain and are complete, by index, lowest index first.
+///
+/// Points are added from the highest down; where two parts meet, the one with the lower peak ends in a
+/// saddle. Its hill is united with the one on the other side if its peak is less than `pruning` above the
+/// saddle: that is the order of Wolf's pruning, because the neighbour across the highest saddle of the least
+/// hill has a higher peak.
+pub(super) fn peaks(heights: &[f64], cells: Cells, pruning: f64) -> Vec<usize> {
+    let Cells { columns, rows } = cells;
+    let mut order: Vec<usize> = (0..heights.len()).filter(|&i| !heights[i].is_nan()).collect();
+    // Of equal heights the first is the higher one.
+    order.sort_by(|&a, &b| heights[b].total_cmp(&heights[a]).then(a.cmp(&b)));
+    let none = heights.len();
+    // Hill (its peak) of each point, the part of points joined so far (its highest peak, through a chain),
+    // and what each hill was united with.
+    let mut hill = vec![none; heights.len()];
+    let mut part: Vec<usize> = (0..heights.len()).collect();
+    let mut united: Vec<usize> = (0..heights.len()).collect();
+    let mut incomplete = vec![false; heights.len()];
+    for &i in &order {
+        let (x, y) = (i % columns, i / columns);
+        let at_edge = x == 0 || y == 0 || x + 1 == columns || y + 1 == rows;
+        let mut open = at_edge;
+        let mut steepest = none;
+        let mut around = Vec::with_capacity(8);
+        for ny in y.saturating_sub(1)..(y + 2).min(rows) {
+            for nx in x.saturating_sub(1)..(x + 2).min(columns) {
+                let j = ny * columns + nx;
+                open |= heights[j].is_nan();
+                if j != i && hill[j] != none {
+                    around.push(j);
+                    if steepest == none || heights[j] > heights[steepest] {
+                        steepest = j;
+                    }
+                }
+            }
+        }
+        hill[i] = if steepest == none { i } else { hill[steepest] };
+        incomplete[hill[i]] |= open;
+        for &j in &around {
+            let (mine, other) = (root(&mut part, i), root(&mut part, j));
+            if mine == other {
+                continue;
+            }
+            // The part with the lower peak ends here; a point that has just been added has no peak of its
+            // own.
+            let (lower, upper) = if higher(heights, other, mine) { (mine, other) } else { (other, mine) };
+            if lower != i && heights[lower] - heights[i] < pruning {
+                let mut across = upper;
+                let mut highest = f64::NEG_INFINITY;
+                for &k in &around {
+                    if heights[k] > highest && root(&mut part, k) == upper {
+                        (across, highest) = (hill[k], heights[k]);
+                    }
+                }
+                united[lower] = across;
+            }
+            part[lower] = upper;
+        }
+    }
+    let all: Vec<usize> = order.iter().copied().filter(|&i| hill[i] == i).collect();
+    for &peak in &all {
+        let kept = root(&mut united, peak);
+        if incomplete[peak] {
+            incomplete[kept] = true;
+        }
+    }
+    let mut found: Vec<usize> =
+        all.into_iter().filter(|&peak| united[peak] == peak && !incomplete[peak]).collect();
+    found.sort_unstable();
+    found
+}
+
+/// Whether point a is higher than point b; of equal heights the first is.
+fn higher(heights: &[f64], a: usize, b: usize) -> bool {
+    heights[a] > heights[b] || (heights[a].total_cmp(&heights[b]).is_eq() && a < b)
+}
+
+/// The end of a chain, which is shortened.
+fn root(next: &mut [usize], mut i: usize) -> usize {
+    while next[i] != i {
+        next[i] = next[next[i]];
+        i = next[i];
+    }
+    i
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn low_hills_join_their_neighbours() {
+        // A ridge with the heights 3, 2.5, 2.8, 1, 2 in a ditch inside a rim, all of whose heights differ.
+        let row = [3.0, 2.5, 2.8, 1.0, 2.0];
+        let field: Vec<f64> = (0..77)
+            .map(|i| {
+                let (x, y) = (i % 11, i / 11);
+                let rim = x == 0 || y == 0 || x == 10 || y == 6;
+                let height = if rim { 10.0 } else { -5.0 };
+                if y == 3 && (3..8).contains(&x) { row[x - 3] } else { height - 0.01 * i as f64 }
+            })
+            .collect();
+        let found = |pruning: f64| peaks(&field, Cells { columns: 11, rows: 7 }, pruning);
+        let at = |x: usize| 33 + x;
+        assert_eq!(found(0.1), [at(3), at(5), at(7)]);
+        assert_eq!(found(0.5), [at(3), at(7)]);
+        assert_eq!(found(1.5), [at(3)]);
+        // The rim's hills touch the edge; with a hole, so does the ridge.
+        let mut hole = field.clone();
+        hole[at(4) + 11] = f64::NAN;
+        assert_eq!(peaks(&hole, Cells { columns: 11, rows: 7 }, 0.5), [at(7)]);
+    }
+}

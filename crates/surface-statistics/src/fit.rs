@@ -1,0 +1,404 @@
+//! Hurst exponent, roll-off and cut-off of a map, with intervals.
+
+mod likelihood;
+mod minimise;
+mod profile;
+mod rings;
+
+use crate::relative::{Relative, defined_everywhere};
+use crate::taper::Taper;
+use contact_model::{Boundary, Cells, Error, HeightMap, Result};
+use likelihood::{CUT_OFF, HURST, Likelihood, NOISE, Parameters, ROLL_OFF};
+use profile::End;
+use rings::Rings;
+use statrs::distribution::{ChiSquared, ContinuousCDF as _};
+use std::f64::consts::TAU;
+use surface_gen::rms_height;
+
+/// Fewest rings of a fit.
+const FEWEST: usize = 8;
+/// Half the 95 % quantile of chi-square with one degree of freedom: rise of the profile at the ends of an
+/// interval.
+const INTERVAL: f64 = 0.5 * 3.841_458_820_694_124;
+/// Half the 90 % quantile: rise at a bound, which leaves 5 % on its one side.
+const BOUND: f64 = 0.5 * 2.705_543_454_095_404;
+/// Gain of the logarithm of the likelihood from which on a cut-off is one: it may be anywhere among the
+/// rings, and with a noise it is any step in a spectrum. That of a true one inside the fit is hundreds.
+const EDGE: f64 = 6.0;
+/// A cut-off is known to half of a wave of the map at best, in rings.
+const RESOLUTION: f64 = 0.5;
+/// Better minima that are met on the way along a profile.
+const RESTARTS: usize = 8;
+/// What a plane leaves of heights within 1 is rounding up to this.
+const ROUNDING: f64 = 1e-13;
+/// Ratio of wavenumbers of the bins in which the fit is tested.
+const TEST_BIN: f64 = 1.25;
+
+/// A number and its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Of the largest likelihood.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Whether x lies inside.
+    pub fn contains(&self, x: f64) -> bool {
+        self.low <= x && x <= self.high
+    }
+}
+
+/// A wavelength where the map has it, else what the map says about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Wavelength {
+    /// With a 95 % interval.
+    Interval(Interval),
+    /// At least this, with 95 % confidence: the map ends before it (or there is none).
+    AtLeast(f64),
+    /// At most this, with 95 % confidence: the cells are too coarse for it (or there is none).
+    AtMost(f64),
+}
+
+impl Wavelength {
+    /// Whether x lies in the interval or on the side of the bound.
+    pub fn contains(&self, x: f64) -> bool {
+        match self {
+            Self::Interval(interval) => interval.contains(x),
+            Self::AtLeast(bound) => x >= *bound,
+            Self::AtMost(bound) => x <= *bound,
+        }
+    }
+}
+
+/// Which part of a map is fitted, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FitOptions {
+    /// [`Boundary::Periodic`] takes the map as it is; [`Boundary::Free`] removes its plane and lays Hann's
+    /// window over it.
+    pub boundary: Boundary,
+    /// Shortest wavelength of the fit, such as that down to which the instrument is reliable; `None`: that of
+    /// the cells.
+    pub shortest: Option<f64>,
+    /// Longest wavelength of the fit; `None`: that of the map.
+    pub longest: Option<f64>,
+}
+
+/// A self-affine spectrum fitted to a map: `C_2D(q)` is constant below the roll-off, falls as `q^(-2 (H +
+/// 1))` from there to the cut-off and is 0 beyond it, besides a white noise of the instrument everywhere.
+///
+/// Largest likelihood of the periodogram averaged over rings one wave wide (Whittle): the squares of the
+/// waves of Gaussian heights are independent and exponentially distributed about the spectrum, so that the
+/// mean of n of them has a gamma law. Under Hann's window the expectation of each ring is that of the
+/// spectrum smeared by the window's transform (the leakage of long waves into short ones is part of it;
+/// Sykulski et al., Biometrika 106, 251 (2019)), and its neighbours are correlated: the logarithm of the
+/// likelihood is divided by (35/18)^2, the number of waves that count as one. The rings then begin at four
+/// waves along the shorter side, because the plane is taken from longer ones, and end two waves before the
+/// limit of the grid. Intervals are those of the profile likelihood (twice its logarithm has fallen by 3.84);
+/// a bound is one-sided (2.71). The interval of a cut-off is no narrower than one wave of the map.
+///
+/// Assumes an isotropic Gaussian surface; waves beyond the limit of the grid are taken as absent (not folded
+/// back by the sampling). Surfaces with prescribed amplitudes, as those of [`surface_gen::self_affine_map`],
+/// scatter less on their own period than the law says, and their intervals are too wide; a part cut out of
+/// one is as good as Gaussian. [`surface_gen::SelfAffineFit`] is the quick fit of a straight line without
+/// intervals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectrumFit {
+    /// Hurst exponent H; outside of 0 to 1 the surface is not self-affine.
+    pub hurst: Interval,
+    /// Roll-off, a length.
+    pub roll_off: Wavelength,
+    /// Cut-off, a length.
+    pub cut_off: Wavelength,
+    /// Density `C_2D` of the power law at the wavenumber `sqrt(q_1 q_2)` of `fitted`, noise left out, in
+    /// length^4.
+    pub density: f64,
+    /// Density of the white noise where the likelihood tells it from none (95 %), in length^4.
+    pub noise: Option<f64>,
+    /// Wavenumbers from and to which there are rings, in 1/length.
+    pub fitted: [f64; 2],
+    /// Probability that a Gaussian surface of the fitted spectrum deviates at least as much from it: below
+    /// 0.01 or so, the surface is none, and the intervals say nothing. From the deviance in bins of a quarter
+    /// of an octave up to the cut-off.
+    pub goodness: f64,
+}
+
+impl SpectrumFit {
+    /// Fits a map.
+    ///
+    /// Cost: O(N log N), under a window 600 N more, and some 1e4 evaluations of the rings: about 0.2 s for
+    /// 128 cells a side.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for undefined points, heights that are all one (or one plane), limits that are no
+    /// positive numbers, fewer than 8 rings between the limits, and a spectrum without a power law: no
+    /// exponent between -0.95 and 4 that the likelihood tells from others.
+    ///
+    /// ```
+    /// use contact_model::{Boundary, SelfAffine};
+    /// use surface_statistics::{FitOptions, SpectrumFit};
+    /// // Roll-off at an eighth of the side.
+    /// let roll_off = Some(8.0 * std::f64::consts::TAU);
+    /// let surface = SelfAffine { roll_off, ..SelfAffine::new(2.2, 1.0, 0.01)? };
+    /// let map = surface_gen::self_affine_map(&surface, 128, 1)?;
+    /// let periodic = FitOptions { boundary: Boundary::Periodic, ..FitOptions::default() };
+    /// let fit = SpectrumFit::new(&map, &periodic)?;
+    /// assert!((fit.hurst.value - 0.8).abs() < 0.02 && fit.roll_off.contains(1.0 / 8.0));
+    /// // The spectrum goes on to the limit of the grid.
+    /// assert!(matches!(fit.cut_off, surface_statistics::Wavelength::AtMost(_)));
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn new(map: &HeightMap, options: &FitOptions) -> Result<Self> {
+        defined_everywhere(map, "a fit of the spectrum")?;
+        let limits = limits(options)?;
+        let windowed = options.boundary != Boundary::Periodic;
+        let prepared = if windowed { Taper::Hann.over(&without_plane(map)?)? } else { map.clone() };
+        let rings = Rings::new(&prepared, windowed, limits)?;
+        if rings.all.len() < FEWEST {
+            let expected = format!("at least {FEWEST} between the longest and the shortest wave of the fit");
+            return Err(Error::domain("rings of the spectrum", rings.all.len() as f64, expected));
+        }
+        if rings.all.iter().all(|ring| ring.power <= 0.0) {
+            return Err(Error::domain("rms height of the map", 0.0, "a rough surface: a finite number > 0"));
+        }
+        if !rings.density.is_normal() {
+            let expected = "a number within the range of f64 (choose other units)";
+            return Err(Error::domain("power spectral density", rings.density, expected));
+        }
+        let mut likelihood = Likelihood::new(rings);
+        let mut best = likelihood.best();
+        for _ in 0..RESTARTS {
+            match Ends::new(&mut likelihood, best) {
+                Ok((ends, best)) => {
+                    let simple = ends.simpler(&mut likelihood, best);
+                    return ends.fit(&mut likelihood, best, simple);
+                }
+                Err(better) => best = likelihood.minimum(better, &[]),
+            }
+        }
+        Err(Error::domain("better minima of the likelihood", RESTARTS as f64, "a spectrum with one minimum"))
+    }
+}
+
+fn limits(options: &FitOptions) -> Result<[f64; 2]> {
+    for (name, length) in [
+        ("shortest wavelength of the fit", options.shortest),
+        ("longest wavelength of the fit", options.longest),
+    ] {
+        if let Some(length) = length.filter(|length| !(length.is_finite() && *length > 0.0)) {
+            return Err(Error::domain(name, length, "a finite number > 0"));
+        }
+    }
+    Ok([options.longest.map_or(0.0, |l| TAU / l), options.shortest.map_or(f64::INFINITY, |l| TAU / l)])
+}
+
+/// The map without the plane of least squares.
+fn without_plane(map: &HeightMap) -> Result<HeightMap> {
+    let Cells { columns, rows } = map.cells();
+    let Relative { heights, unit } = Relative::new(map);
+    // On a full rectangle, coordinates about their means are orthogonal.
+    let about = |i: usize, count: usize| i as f64 - 0.5 * (count as f64 - 1.0);
+    let square = |count: usize| (0..count).map(|i| about(i, count).powi(2)).sum::<f64>();
+    let (mut mean, mut x, mut y) = (0.0, 0.0, 0.0);
+    for (i, h) in heights.iter().enumerate() {
+        mean += h;
+        x += h * about(i % columns, columns);
+        y += h * about(i / columns, rows);
+    }
+    let slope = |sum: f64, count: usize, others: usize| {
+        if count > 1 { sum / (square(count) * others as f64) } else { 0.0 }
+    };
+    let (mean, x, y) = (mean / heights.len() as f64, slope(x, columns, rows), slope(y, rows, columns));
+    let rest =
+        |(i, h): (usize, &f64)| h - mean - x * about(i % columns, columns) - y * about(i / columns, rows);
+    let flat: Vec<f64> = heights.iter().enumerate().map(rest).collect();
+    let rms = rms_height(&flat);
+    // Half of the range of the heights is 1.
+    if rms < ROUNDING {
+        let expected = "a rough surface: a number > 0, its plane removed";
+        return Err(Error::domain("rms height of the map", rms * unit, expected));
+    }
+    HeightMap::new(map.cells(), map.size(), flat.into_iter().map(|h| h * unit).collect())
+}
+
+/// The end of a profile.
+///
+/// # Errors
+/// A better minimum than `best`.
+fn walk(
+    likelihood: &mut Likelihood,
+    best: (Parameters, f64),
+    index: usize,
+    upwards: bool,
+    rise: f64,
+    step: f64,
+) -> Result<End, Parameters> {
+    match profile::end(likelihood, best, index, &[], upwards, rise, step) {
+        End::Better(parameters) => Err(parameters),
+        end => Ok(end),
+    }
+}
+
+/// Ends of the profiles.
+struct Ends {
+    hurst: [End; 2],
+    /// Lower end, unless there may be no roll-off, and upper end or bound.
+    roll_off: (Option<f64>, End),
+    cut_off: CutOff,
+    noisy: bool,
+}
+
+/// What the likelihood says about the cut-off, wavenumbers in rings.
+enum CutOff {
+    At {
+        value: f64,
+        low: End,
+        high: End,
+    },
+    /// It may be missing; the lower end of where it may be.
+    Above(End),
+}
+
+impl Ends {
+    /// # Errors
+    /// A better minimum than `best`.
+    fn new(
+        likelihood: &mut Likelihood,
+        mut best: (Parameters, f64),
+    ) -> Result<(Self, (Parameters, f64)), Parameters> {
+        likelihood.count_all();
+        let mut without = best.0;
+        without.values[CUT_OFF] = likelihood.limits[CUT_OFF][1];
+        let without = likelihood.minimum(without, &[CUT_OFF]).1;
+        let cut_off = if without - best.1 > EDGE {
+            let ends = [false, true].map(|upwards| walk(likelihood, best, CUT_OFF, upwards, INTERVAL, 0.25));
+            let [low, high] = ends;
+            let edge = best.0.values[CUT_OFF];
+            likelihood.share_edge(edge);
+            best = likelihood.minimum(best.0, &[]);
+            CutOff::At { value: edge, low: low?, high: high? }
+        } else {
+            CutOff::Above(walk(likelihood, best, CUT_OFF, false, BOUND, 0.25)?)
+        };
+        let mut walk = |index, upwards, rise, step| walk(likelihood, best, index, upwards, rise, step);
+        let hurst = [walk(HURST, false, INTERVAL, 0.02)?, walk(HURST, true, INTERVAL, 0.02)?];
+        let roll_off = match walk(ROLL_OFF, false, INTERVAL, 0.05)? {
+            End::At(low) => (Some(low), walk(ROLL_OFF, true, INTERVAL, 0.05)?),
+            _ => (None, walk(ROLL_OFF, true, BOUND, 0.05)?),
+        };
+        let noisy = matches!(walk(NOISE, false, INTERVAL, 2.0)?, End::At(_));
+        Ok((Self { hurst, roll_off, cut_off, noisy }, best))
+    }
+
+    /// The minimum without what the likelihood does not tell from none, and the ends of the exponent there;
+    /// `None` where there is nothing to leave out.
+    fn simpler(
+        &self,
+        likelihood: &mut Likelihood,
+        best: (Parameters, f64),
+    ) -> Option<(Parameters, [End; 2])> {
+        let left_out = [
+            (ROLL_OFF, self.roll_off.0.is_none(), 0),
+            (CUT_OFF, matches!(self.cut_off, CutOff::Above(_)), 1),
+            (NOISE, !self.noisy, 0),
+        ];
+        let fixed: Vec<usize> =
+            left_out.iter().filter(|(_, out, _)| *out).map(|(index, ..)| *index).collect();
+        if fixed.is_empty() {
+            return None;
+        }
+        let mut start = best.0;
+        for (index, _, end) in left_out.iter().filter(|(_, out, _)| *out) {
+            start.values[*index] = likelihood.limits[*index][*end];
+        }
+        let minimum = likelihood.minimum(start, &fixed);
+        let ends = [false, true]
+            .map(|upwards| profile::end(likelihood, minimum, HURST, &fixed, upwards, INTERVAL, 0.02));
+        Some((minimum.0, ends))
+    }
+
+    fn fit(
+        self,
+        likelihood: &mut Likelihood,
+        best: (Parameters, f64),
+        simple: Option<(Parameters, [End; 2])>,
+    ) -> Result<SpectrumFit> {
+        let [hurst, roll_off, ..] = best.0.values;
+        let [End::At(low), End::At(high)] = self.hurst else {
+            let expected = "an exponent that the likelihood tells from others: a power law over more waves";
+            return Err(Error::domain("Hurst exponent of the spectrum", hurst, expected));
+        };
+        let (hurst, low, high) = match &simple {
+            Some((parameters, [End::At(l), End::At(h)])) => {
+                (parameters.values[HURST], low.min(*l), high.max(*h))
+            }
+            _ => (hurst, low, high),
+        };
+        let chosen = simple.map_or(best.0, |(parameters, _)| parameters);
+        let rings = likelihood.rings();
+        let (width, density, range) = (rings.width, rings.density, rings.range);
+        let wavelength = |q: f64| TAU / (q * width);
+        let at = |end: &End, limit: f64| if let End::At(q) = end { *q } else { limit };
+        let shortest_roll_off = wavelength(at(&self.roll_off.1, likelihood.limits[ROLL_OFF][1]).exp());
+        let roll_off = match self.roll_off.0 {
+            Some(q) => Wavelength::Interval(Interval {
+                value: wavelength(roll_off.exp()),
+                low: shortest_roll_off,
+                high: wavelength(q.exp()),
+            }),
+            None => Wavelength::AtLeast(shortest_roll_off),
+        };
+        let [first_cut_off, last_cut_off] = likelihood.limits[CUT_OFF];
+        let cut_off = match &self.cut_off {
+            CutOff::At { value, low, high } => Wavelength::Interval(Interval {
+                value: wavelength(*value),
+                low: wavelength(at(high, last_cut_off).max(value + RESOLUTION)),
+                high: wavelength(at(low, first_cut_off).min(value - RESOLUTION)),
+            }),
+            CutOff::Above(low) => Wavelength::AtMost(wavelength(at(low, first_cut_off).min(range[1]))),
+        };
+        let factor = likelihood.factor(chosen);
+        Ok(SpectrumFit {
+            hurst: Interval { value: hurst, low, high },
+            roll_off,
+            cut_off,
+            density: density * factor,
+            noise: self.noisy.then_some(density * factor * chosen.values[NOISE].exp()),
+            fitted: range.map(|q| q * width),
+            goodness: goodness(likelihood, chosen, chosen.values[CUT_OFF]),
+        })
+    }
+}
+
+/// Tail probability of the deviance in wide bins.
+fn goodness(likelihood: &mut Likelihood, best: Parameters, cut_off: f64) -> f64 {
+    let factor = likelihood.factor(best);
+    let expected = likelihood.expect(best).to_vec();
+    let (mut deviance, mut bins) = (0.0, 0);
+    let (mut start, mut sums) = (0.0, [0.0; 3]);
+    let last = cut_off - 2.0;
+    let rings: Vec<_> =
+        likelihood.rings().all.iter().zip(&expected).filter(|(r, _)| r.wavenumber < last).collect();
+    for (k, (ring, m)) in rings.iter().enumerate() {
+        if sums[0] <= 0.0 {
+            start = ring.wavenumber;
+        }
+        let n = ring.independent;
+        sums = [sums[0] + n, sums[1] + n * (ring.power / (*m * factor)), sums[2] + 1.0];
+        // Four waves, so that those at both sides of an edge are few.
+        if (ring.wavenumber >= start * TEST_BIN && sums[2] >= 4.0) || k + 1 == rings.len() {
+            let ratio = sums[1] / sums[0];
+            if ratio > 0.0 {
+                deviance += 2.0 * sums[0] * (ratio - 1.0 - ratio.ln());
+                bins += 1;
+            }
+            sums = [0.0; 3];
+        }
+    }
+    let freedom = (f64::from(bins) - 4.0).max(1.0);
+    ChiSquared::new(freedom).map_or(0.0, |law| law.sf(deviance).clamp(0.0, 1.0))
+}

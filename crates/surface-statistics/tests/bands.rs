@@ -1,0 +1,72 @@
+//! Whether confidence bands of spectra cover the truth as often as they say.
+
+#![allow(clippy::unwrap_used)] // Tests, as a whole.
+
+use contact_model::{HeightMap, SelfAffine};
+use std::f64::consts::TAU;
+use surface_gen::{self_affine_map, surface_seed};
+use surface_statistics::{Bins, PowerSpectrum, Taper};
+
+/// Bins of a spectrum are as good as independent; of all of them, so much may be more or less than 95 % outside.
+const TOLERANCE: f64 = 0.02;
+/// Surfaces.
+const COUNT: u64 = 60;
+
+fn surface(size: f64) -> SelfAffine {
+    SelfAffine { roll_off: Some(8.0 * TAU), ..SelfAffine::new(2.2, size, 1.0).unwrap() }
+}
+
+/// Share of values of the true spectrum inside of the bands.
+fn inside(truth: &PowerSpectrum, spectra: &[PowerSpectrum]) -> f64 {
+    let (mut inside, mut all) = (0_usize, 0_usize);
+    for spectrum in spectra {
+        for (k, [low, high]) in spectrum.band(0.95).unwrap().into_iter().enumerate() {
+            all += 1;
+            inside += usize::from((low..=high).contains(&truth.density[k]));
+        }
+    }
+    inside as f64 / all as f64
+}
+
+#[test]
+fn bands_of_gaussian_surfaces_cover_their_spectrum() {
+    let draw = |seed| self_affine_map(&surface(1.0), 96, seed).unwrap();
+    // Sums of independent surfaces are all but Gaussian; one surface has the amplitudes themselves.
+    let gaussian = |index| {
+        let seed = surface_seed(3, index);
+        let sum = (1..16).fold(draw(seed), |sum, k| sum.plus(&draw(surface_seed(seed, k))).unwrap());
+        sum.scaled(1.0, 0.25).unwrap()
+    };
+    let maps: Vec<HeightMap> = (0..COUNT).map(gaussian).collect();
+    let bins = Bins::of_wavenumbers(&maps[0], 12.0).unwrap();
+    let radial = |map: &HeightMap| PowerSpectrum::radial(map, Taper::None, &bins).unwrap();
+    let share = inside(&radial(&draw(1)), &maps.iter().map(radial).collect::<Vec<_>>());
+    println!("radial: {share}");
+    assert!((share - 0.95).abs() < TOLERANCE, "{share}");
+    let along = |map: &HeightMap| PowerSpectrum::along_x(map, Taper::None).unwrap();
+    let share = inside(&along(&draw(1)), &maps.iter().map(along).collect::<Vec<_>>());
+    println!("along x: {share}");
+    assert!((share - 0.95).abs() < TOLERANCE, "{share}");
+}
+
+#[test]
+fn bands_of_cut_maps_cover_their_spectrum() {
+    let cut = |index| {
+        let whole = self_affine_map(&surface(4.0), 384, surface_seed(4, index)).unwrap();
+        whole.cropped(0..96, 96..192).unwrap()
+    };
+    let maps: Vec<HeightMap> = (0..COUNT).map(cut).collect();
+    let bins = Bins::of_wavenumbers(&maps[0], 12.0).unwrap();
+    for taper in [Taper::Hann, Taper::RadialHann] {
+        let spectra: Vec<_> =
+            maps.iter().map(|map| PowerSpectrum::radial(map, taper, &bins).unwrap()).collect();
+        // Smeared by the window, the expected spectrum is the mean of many.
+        let mut truth = spectra[0].clone();
+        for (k, density) in truth.density.iter_mut().enumerate() {
+            *density = spectra.iter().map(|s| s.density[k]).sum::<f64>() / spectra.len() as f64;
+        }
+        let share = inside(&truth, &spectra);
+        println!("{taper:?}: {share}");
+        assert!((share - 0.95).abs() < TOLERANCE, "{taper:?} {share}");
+    }
+}

@@ -1,0 +1,180 @@
+//! Whether fitted intervals cover the truth as often as they say.
+
+#![allow(clippy::unwrap_used)] // Tests, as a whole.
+
+use analysis::binomial_test;
+use contact_model::{Amplitude, Boundary, HeightMap, SelfAffine};
+use std::f64::consts::TAU;
+use std::time::Instant;
+use surface_gen::{self_affine_map, surface_seed};
+use surface_statistics::{FitOptions, SpectrumFit, Wavelength};
+
+/// Where a map comes from.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    /// All of a period, amplitudes prescribed.
+    Period,
+    /// All of a period, the sum of 16 independent surfaces: each wave has a Gaussian amplitude, all but
+    /// exactly.
+    Gaussian,
+    /// Cut out of a map four times as large along each side.
+    Cut,
+}
+
+/// Surfaces whose true parameters are known.
+struct Case {
+    name: &'static str,
+    hurst: f64,
+    /// Wavelengths in sides of the map (of `sqrt(Lx Ly)`); `None`: none.
+    roll_off: Option<f64>,
+    cut_off: Option<f64>,
+    cells: [usize; 2],
+    part: Part,
+    /// Shortest wavelength of the fit.
+    shortest: Option<f64>,
+}
+
+fn draw(case: &Case, seed: u64) -> HeightMap {
+    let [columns, rows] = case.cells;
+    let size = [columns as f64 / 128.0, rows as f64 / 128.0];
+    let times = if case.part == Part::Cut { 4 } else { 1 };
+    let surface = SelfAffine {
+        size: size.map(|side| side * times as f64).into(),
+        hurst: case.hurst,
+        amplitude: Amplitude::RmsHeight(0.01),
+        roll_off: case.roll_off.map(|l| TAU / l),
+        short_cutoff: case.cut_off.map(|l| TAU / l),
+    };
+    let draw = |seed| self_affine_map(&surface, case.cells.map(|n| n * times), seed).unwrap();
+    let map = draw(seed);
+    if case.part == Part::Gaussian {
+        return (1..16).fold(map, |sum, k| sum.plus(&draw(surface_seed(seed, k))).unwrap());
+    }
+    if times == 1 {
+        map
+    } else {
+        map.cropped(columns / 2..columns / 2 + columns, rows / 2..rows / 2 + rows).unwrap()
+    }
+}
+
+fn coverage(case: &Case, master: u64, count: u64) {
+    let start = Instant::now();
+    let boundary = if case.part == Part::Cut { Boundary::Free } else { Boundary::Periodic };
+    let options = FitOptions { boundary, shortest: case.shortest, longest: None };
+    let mut covered = [0; 3];
+    let (mut bounds, mut good, mut widths) = ([0; 2], 0, Vec::new());
+    for index in 0..count {
+        let map = draw(case, surface_seed(master, index));
+        let fit = SpectrumFit::new(&map, &options).unwrap();
+        let inside = [
+            fit.hurst.contains(case.hurst),
+            fit.roll_off.contains(case.roll_off.unwrap_or(f64::INFINITY)),
+            fit.cut_off.contains(case.cut_off.unwrap_or(0.0)),
+        ];
+        for (sum, inside) in covered.iter_mut().zip(inside) {
+            *sum += usize::from(inside);
+        }
+        bounds[0] += usize::from(matches!(fit.roll_off, Wavelength::AtLeast(_)));
+        bounds[1] += usize::from(matches!(fit.cut_off, Wavelength::AtMost(_)));
+        good += usize::from(fit.goodness > 0.05);
+        widths.push(fit.hurst.high - fit.hurst.low);
+    }
+    let width = widths.iter().sum::<f64>() / widths.len() as f64;
+    let all = count as usize;
+    println!(
+        "{}: H {}, roll-off {} ({} bounds), cut-off {} ({} bounds) of {all}; mean width of H {width:.3}, goodness above 5 %: {good}; \
+         {:.1} s",
+        case.name,
+        covered[0],
+        covered[1],
+        bounds[0],
+        covered[2],
+        bounds[1],
+        start.elapsed().as_secs_f64()
+    );
+    for (sum, what) in covered.into_iter().zip(["H", "roll-off", "cut-off"]) {
+        assert!(binomial_test(sum, all, 0.95) > 0.01, "{}: {what} {sum} of {all}", case.name);
+    }
+}
+
+const CASES: [Case; 7] = [
+    Case {
+        name: "periodic, Gaussian",
+        hurst: 0.7,
+        roll_off: Some(0.12),
+        cut_off: Some(0.02),
+        cells: [128, 96],
+        part: Part::Gaussian,
+        shortest: None,
+    },
+    Case {
+        name: "periodic",
+        hurst: 0.8,
+        roll_off: Some(0.125),
+        cut_off: Some(0.02),
+        cells: [128, 128],
+        part: Part::Period,
+        shortest: None,
+    },
+    Case {
+        name: "free",
+        hurst: 0.8,
+        roll_off: Some(0.1),
+        cut_off: Some(0.0213),
+        cells: [128, 128],
+        part: Part::Cut,
+        shortest: None,
+    },
+    Case {
+        name: "free, no limits inside",
+        hurst: 0.6,
+        roll_off: None,
+        cut_off: None,
+        cells: [128, 128],
+        part: Part::Cut,
+        shortest: None,
+    },
+    Case {
+        name: "free rectangle",
+        hurst: 0.5,
+        roll_off: Some(0.08),
+        cut_off: None,
+        cells: [192, 96],
+        part: Part::Cut,
+        shortest: None,
+    },
+    Case {
+        name: "free, tip limit",
+        hurst: 0.7,
+        roll_off: Some(0.12),
+        cut_off: Some(0.02),
+        cells: [128, 128],
+        part: Part::Cut,
+        shortest: Some(0.028),
+    },
+    Case {
+        name: "free, steep",
+        hurst: 1.0,
+        roll_off: None,
+        cut_off: Some(0.03),
+        cells: [128, 128],
+        part: Part::Cut,
+        shortest: None,
+    },
+];
+
+#[test]
+fn intervals_of_a_few_surfaces_cover_the_truth() {
+    for case in &CASES {
+        coverage(case, 11, 12);
+    }
+}
+
+/// `cargo test -p surface-statistics --release --test coverage -- --ignored --nocapture`.
+#[test]
+#[ignore = "minutes"]
+fn intervals_cover_the_truth_in_95_of_100_surfaces() {
+    for case in &CASES {
+        coverage(case, 12, 100);
+    }
+}
