@@ -79,6 +79,9 @@ pub enum Command {
         /// All channels of a surface's file as JSON, lengths in metres.
         #[arg(long)]
         json: bool,
+        /// Directory for statistics of a surface: parameters of ISO 25178, spectra with bands, height differences, fit.
+        #[arg(long, value_name = "DIR", conflicts_with = "json")]
+        out: Option<PathBuf>,
         /// Number, from 0, or name of the channel of a file with several.
         #[arg(long, conflicts_with = "json")]
         channel: Option<surface_io::ChannelChoice>,

@@ -5,7 +5,8 @@ mod arguments;
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json, run,
+    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json,
+    info_statistics, run,
 };
 use std::path::Path;
 use std::process::ExitCode;
@@ -34,12 +35,16 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
             run_scene(&scene, &Options { out, threads, fresh })
         }
-        Command::Info { file, json, channel, format, unit, size, cell, more } => {
+        Command::Info { file, json, out, channel, format, unit, size, cell, more } => {
             let rest = surface_io::ReadOptions::default();
             let (declared, preprocessing) =
                 more.options(surface_io::ReadOptions { channel, format, unit, size, cell, ..rest });
-            let text =
+            let mut text =
                 if json { info_json(&file, &declared)? } else { info(&file, &declared, &preprocessing)? };
+            if let Some(out) = out {
+                text.push('\n');
+                text += &info_statistics(&file, &declared, &preprocessing, &out)?;
+            }
             runs::print(format_args!("{text}"));
             Ok(ExitCode::SUCCESS)
         }

@@ -157,3 +157,27 @@ fn a_click_reads_the_value_of_the_file() {
         assert_eq!(compared, 6, "{found:?}");
     }
 }
+
+#[test]
+fn statistics_are_written_where_they_are_asked_for() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = SCENE.replace("CELLS", "64").replace("grid_error = true", "statistics = true");
+    let page = report(dir.path(), "rough.toml", &scene);
+    assert!(page.contains("Hurst exponent of the fitted spectrum"));
+    let read = |name: &str| runs::CsvFile::read(&dir.path().join("out").join(name)).unwrap();
+    let table = read("statistics.csv");
+    let (names, values) = (table.texts("quantity").unwrap(), table.numbers("value").unwrap());
+    let of = |name: &str| values[names.iter().position(|n| *n == name).unwrap()].unwrap();
+    assert!((of("Sq") / 1e-6 - 1.0).abs() < 0.3 && of("Sz") > of("Sp") && (of("H") - 0.8).abs() < 0.2);
+    let spectrum = read("spectrum.csv");
+    for name in ["wavenumber", "density", "low", "high"] {
+        assert!(
+            spectrum.numbers(name).unwrap().iter().flatten().all(|v| v.is_finite() && *v > 0.0),
+            "{name}"
+        );
+    }
+    assert!(dir.path().join("out/height-difference.svg").exists());
+    // Asked for no more, they go.
+    let page = report(dir.path(), "rough.toml", &SCENE.replace("CELLS", "64"));
+    assert!(!page.contains("Hurst exponent of") && !dir.path().join("out/statistics.csv").exists());
+}

@@ -87,6 +87,9 @@ pub struct Preprocessed {
     pub map: HeightMap,
     /// One line for each step, with what it found; empty where nothing was done.
     pub steps: Vec<String>,
+    /// From which distance on the tip lets heights be seen, in the unit of the map's sides; `None` without a tip, and where that is
+    /// from no distance or from all of them on.
+    pub reliable_from: Option<f64>,
 }
 
 /// A part of a scan.
@@ -217,8 +220,11 @@ impl Scan {
         if let Some(value) = heights.iter().copied().find(|h| h.is_infinite()) {
             return Err(ContentError::Overflow { value });
         }
+        let mut reliable_from = None;
         if let Some(radius) = preprocessing.tip_radius {
-            steps.push(self.tip(radius, cells, cell, &heights)?);
+            let (step, distance) = self.tip(radius, cells, cell, &heights)?;
+            steps.push(step);
+            reliable_from = distance;
         }
         let form = |kind| form::Form::fit(kind, cells, cell, &heights).map(Some);
         let form = match preprocessing.detrend {
@@ -277,7 +283,7 @@ impl Scan {
                 hann(&map).map_err(ContentError::Map)?
             }
         };
-        Ok(Preprocessed { map, steps })
+        Ok(Preprocessed { map, steps, reliable_from })
     }
 
     /// From which distance on a tip lets the surface be seen.
@@ -287,20 +293,22 @@ impl Scan {
         cells: Cells,
         cell: [f64; 2],
         heights: &[f64],
-    ) -> Result<String, ContentError> {
+    ) -> Result<(String, Option<f64>), ContentError> {
         let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
         let what = "tip_radius";
         let value = radius.expect(unit).map_err(|source| ContentError::Quantity { what, source })?;
         if value <= 0.0 {
             return Err(ContentError::OutOfRange { what, value, expected: "a length > 0" });
         }
-        Ok(match tip::reliable_from(cells, cell, heights, value) {
+        let found = tip::reliable_from(cells, cell, heights, value);
+        let step = match found {
             Some(distance) if distance > 0.0 => {
                 format!("with a tip of radius {radius}, heights are reliable from {distance:e} on")
             }
             Some(_) => format!("with a tip of radius {radius}, heights are reliable at all distances"),
             None => format!("with a tip of radius {radius}, heights are reliable at no distance"),
-        })
+        };
+        Ok((step, found.filter(|distance| *distance > 0.0)))
     }
 
     /// Sides of the map and of a cell in metres, or in the numbers of the file.

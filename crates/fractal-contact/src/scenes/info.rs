@@ -1,8 +1,12 @@
 //! What a file holds: a scene, a surface or a table of results.
 
+use crate::scenes::entries::System;
 use crate::scenes::error::{Error, Result};
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
+use crate::scenes::statistics::MapStatisticsTables;
+use contact_model::Boundary;
+use runs::Header;
 use std::path::Path;
 use surface_io::{Dimension, Metadata, Preprocessing, Quantity, ReadOptions, SurfaceFile, describe};
 
@@ -76,6 +80,34 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
         Err(error) => text += &format!("\nno map as it is: {error}\n"),
     }
     Ok(text)
+}
+
+/// Statistics of a surface's file in a directory: tables and pictures of parameters, spectra and height differences; the parameters as lines.
+///
+/// The map is taken as a piece of a larger surface: not periodic.
+///
+/// # Errors
+/// [`Error::Surface`] with what is wrong with the file or stands in the way of a map; [`Error::Run`] for files that cannot be written.
+pub fn info_statistics(
+    path: &Path,
+    declared: &ReadOptions,
+    preprocessing: &Preprocessing,
+    out: &Path,
+) -> Result<String> {
+    let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan).map_err(Error::Surface)?;
+    let found = scan.preprocessed(preprocessing).map_err(Error::Surface)?;
+    let metric = scan.metadata().unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
+    let system = if metric { System::Si } else { System::None };
+    let statistics = MapStatisticsTables::new(&found.map, Boundary::Free, found.reliable_from, system);
+    let name = path.file_name().map_or_else(|| "surface".into(), |name| name.to_string_lossy().into_owned());
+    let mut header = Header { command: format!("fractal-contact info {name}"), ..Header::default() };
+    for step in &found.steps {
+        header = header.with_note(step.clone());
+    }
+    runs::files::create_directory(out)?;
+    let files = statistics.write(out, &header, &name)?;
+    let names: Vec<String> = runs::file_names(&files);
+    Ok(format!("{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
 }
 
 /// What is known of each channel of a file of several.

@@ -105,6 +105,7 @@ mod scene_file;
 mod scene_job;
 mod scene_surface;
 mod state_result;
+mod statistics;
 mod summary;
 mod warnings;
 
@@ -117,7 +118,7 @@ pub use effects::{EffectLine, effect_lines};
 pub use entries::System;
 pub use error::{Error, Result};
 pub use generated_surface::GeneratedSurface;
-pub use info::{info, info_json};
+pub use info::{info, info_json, info_statistics};
 pub use loads::{Loading, Loads, Prescribed};
 pub use numerics::Numerics;
 pub use outcome::{Options, SceneOutcome, SharedStop};

@@ -47,6 +47,8 @@ pub struct RequestedOutputs {
     pub distributions: Vec<Distributed>,
     /// Whether states of boundary elements are compared with those on coarser grids.
     pub grid_error: bool,
+    /// Whether the surface is described: parameters, spectra, height differences.
+    pub statistics: bool,
     /// Whether curves are drawn.
     pub curves: bool,
 }
@@ -75,6 +77,7 @@ impl RequestedOutputs {
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
             ("curves", self.curves),
+            ("statistics", self.statistics),
         ]
     }
 }
@@ -91,6 +94,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     requested.outputs.mean_gap = flag("mean_gap")?;
     requested.grid_error = flag("grid_error")?;
     requested.curves = flag("curves")?;
+    requested.statistics = flag("statistics")?;
     let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
     requested.pressure = formats("pressure")?;
     requested.displacement = formats("displacement")?;

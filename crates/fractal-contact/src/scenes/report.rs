@@ -14,6 +14,7 @@ use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_surface::SceneSurface;
 use crate::scenes::state_result::FieldFile;
+use crate::scenes::statistics::MapStatisticsTables;
 use crate::scenes::summary;
 use analysis::{Table, Value};
 use base64::Engine as _;
@@ -37,6 +38,7 @@ pub(crate) struct Report<'a> {
     pub table: &'a Table,
     pub means: &'a [Mean],
     pub solved: &'a [Solved<'a>],
+    pub statistics: Option<&'a MapStatisticsTables>,
 }
 
 impl Report<'_> {
@@ -149,6 +151,14 @@ impl Report<'_> {
     }
 
     fn spectrum(&self) -> Result<Markup> {
+        if let Some(statistics) = self.statistics {
+            let charts = statistics.charts(&pictures::scene_name(self.scene));
+            let drawn = charts.iter().map(|(_, c)| chart(c, &c.title)).collect::<Result<Vec<_>>>()?;
+            return Ok(html! {
+                h3 { "Statistics" } pre { (statistics.text()) }
+                div.charts { @for figure in drawn { (figure) } }
+            });
+        }
         let Some(map) = self.plan.prepared.as_ref().filter(|map| map.spectrum.len() > 1) else {
             return Ok(html! {});
         };
@@ -378,7 +388,7 @@ const CERTIFICATES: [(&str, &str); 5] = [
 /// A chart as a picture that keeps its names to itself.
 fn chart(chart: &Chart, alt: &str) -> Result<Markup> {
     let svg = STANDARD.encode(chart.svg()?);
-    let plain = alt.replace("$", "").replace("\\", "");
+    let plain = alt.replace(['$', '\\'], "");
     Ok(
         html! { figure { img src={ "data:image/svg+xml;base64," (svg) } alt=(plain) width="800" height="600"; } },
     )

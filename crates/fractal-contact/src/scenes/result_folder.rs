@@ -5,6 +5,7 @@ use crate::scenes::error::Result;
 use crate::scenes::pictures;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::state_result::field_of_file;
+use crate::scenes::statistics;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -52,6 +53,7 @@ impl ResultFolder {
         );
         files.extend(pictures::curve_files(scene));
         files.extend(distributions::files(scene));
+        files.extend(statistics::FILES.map(str::to_owned));
         files.retain(|name| self.owned.contains(name) || may_write(scene, name));
         files
     }
@@ -106,6 +108,7 @@ fn may_write(scene: &SceneFile, name: &str) -> bool {
     let requested = &scene.requested;
     match name {
         "results.csv" | "report.html" | "manifest.json" => true,
+        _ if statistics::FILES.contains(&name) => requested.statistics,
         "patches.csv" => requested.outputs.contact_patches,
         "ensemble.csv" => scene.sampling.surfaces > 1,
         _ if distributions::files(scene).iter().any(|file| file == name) => true,

@@ -18,6 +18,7 @@ use crate::scenes::result_folder::ResultFolder;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_job::SceneJob;
 use crate::scenes::state_result::{ModelResult, StateResult};
+use crate::scenes::statistics::MapStatisticsTables;
 use crate::scenes::summary;
 use crate::scenes::warnings::Warning;
 use analysis::{Column, Table, Value};
@@ -102,12 +103,25 @@ pub fn run(
     if scene.requested.curves {
         outcome.files.extend(pictures::curves(scene, &table, &means, &options.out)?);
     }
+    let statistics = scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
+    if let Some(statistics) = &statistics {
+        outcome.files.extend(statistics.write(&options.out, &header, &pictures::scene_name(scene))?);
+        outcome.notes.extend(statistics.notes.iter().map(|note| format!("statistics: {note}")));
+    }
     outcome.summary = summary::summary(scene, &table, &means);
     outcome.actual = actual(scene, &units, &results, &table);
     outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
-    let report = Report { scene, plan, outcome: &outcome, table: &table, means: &means, solved: &solved }
-        .write(&options.out)?;
+    let report = Report {
+        scene,
+        plan,
+        outcome: &outcome,
+        table: &table,
+        means: &means,
+        solved: &solved,
+        statistics: statistics.as_ref(),
+    }
+    .write(&options.out)?;
     outcome.files.push(report);
     outcome.files.push(options.out.join("manifest.json"));
     if !outcome.stopped {

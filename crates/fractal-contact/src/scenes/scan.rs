@@ -14,6 +14,8 @@ pub(crate) struct FileMap {
     pub map: HeightMap,
     /// Metadata of its file.
     pub metadata: String,
+    /// From which distance on the tip of the instrument lets heights be seen.
+    pub reliable_from: Option<f64>,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,
 }
@@ -74,7 +76,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     let scan = Scan::read(&path, &declared).map_err(wrong)?;
     let metadata = scan.metadata();
     let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
-    let Preprocessed { map, steps, .. } = scan.preprocessed(&preprocessing).map_err(wrong)?;
+    let Preprocessed { map, steps, reliable_from, .. } = scan.preprocessed(&preprocessing).map_err(wrong)?;
     if metric != (system == System::Si) {
         let (found, scene) = if metric { ("a unit", "none") } else { ("no unit", "units") };
         return Err(file
@@ -101,7 +103,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     for step in steps {
         metadata += &format!("\nthen       {step}");
     }
-    Ok(FileMap { map, metadata, notes })
+    Ok(FileMap { map, metadata, reliable_from, notes })
 }
 
 /// Reads the surface of the second body, lays it on the first face to face, and adds both.
@@ -126,7 +128,7 @@ pub(crate) fn read_second(
             }
         },
     };
-    let FileMap { map, mut metadata, notes } = read_map(table, system, directory)?;
+    let FileMap { map, mut metadata, reliable_from, notes } = read_map(table, system, directory)?;
     let (map, how) = match facing {
         Some(mirror) => (mirror.of(&map), mirror.to_string()),
         None => (map, "as it is seen through its body".to_owned()),
@@ -140,7 +142,7 @@ pub(crate) fn read_second(
         sum.size().x,
         sum.size().y
     );
-    Ok(FileMap { map: sum, metadata, notes })
+    Ok(FileMap { map: sum, metadata, reliable_from, notes })
 }
 
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points reaches 6.

@@ -52,6 +52,8 @@ pub struct SceneFile {
     pub sampling: Sampling,
     /// Metadata of the surface's file.
     pub metadata: Option<String>,
+    /// From which distance on the tip of the instrument lets heights be seen, where the scene names one.
+    pub reliable_from: Option<f64>,
     /// Remarks on what stands in the file, such as keys that have a new name.
     pub notes: Vec<Diagnostic>,
     places: Places,
@@ -106,6 +108,7 @@ impl SceneFile {
             requested: RequestedOutputs::default(),
             sampling: Sampling { seed: 0, surfaces: 1 },
             metadata: None,
+            reliable_from: None,
             notes: Vec::new(),
             places: Places::default(),
         }
@@ -268,7 +271,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     let (modulus, pair) = read_material(&scene, system)?;
     let hardness = scene.find("hardness").map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
     let accuracy = read_accuracy(&scene)?;
-    let SurfaceEntry { surface, metadata, mut notes } = read_surface(&scene, system, directory)?;
+    let SurfaceEntry { surface, metadata, reliable_from, mut notes } =
+        read_surface(&scene, system, directory)?;
     check_cells(options.as_ref(), &models, &surface)?;
     if accuracy.is_some() {
         check_no_grid(options.as_ref())?;
@@ -300,13 +304,14 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
         requested,
         sampling,
         metadata,
+        reliable_from,
         notes,
         places,
     })
 }
 
 fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
-    const NAMES: [&str; 12] = [
+    const NAMES: [&str; 13] = [
         "stiffness",
         "area",
         "conductance",
@@ -319,6 +324,7 @@ fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
         "distributions",
         "grid_error",
         "curves",
+        "statistics",
     ];
     let Some(table) = table else { return Vec::new() };
     NAMES.iter().filter_map(|name| Some((*name, table.entry(name)?.key_span()))).collect()

@@ -136,13 +136,15 @@ pub(crate) struct SurfaceEntry {
     pub surface: SceneSurface,
     /// Metadata of its file.
     pub metadata: Option<String>,
+    /// From which distance on the tips of its instruments let heights be seen.
+    pub reliable_from: Option<f64>,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,
 }
 
 impl From<SceneSurface> for SurfaceEntry {
     fn from(surface: SceneSurface) -> Self {
-        Self { surface, metadata: None, notes: Vec::new() }
+        Self { surface, metadata: None, reliable_from: None, notes: Vec::new() }
     }
 }
 
@@ -172,10 +174,12 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
         return Ok(SceneSurface::Plain(read_body(&body, None, system)?).into());
     };
     if of_file(&surface)? {
-        let scan::FileMap { mut map, mut metadata, mut notes } = scan::read_map(&surface, system, directory)?;
+        let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes } =
+            scan::read_map(&surface, system, directory)?;
         if let Some(second) = second {
             let other = scan::read_second(&second, &map, system, directory)?;
             map = other.map;
+            reliable_from = [reliable_from, other.reliable_from].into_iter().flatten().reduce(f64::max);
             metadata += &format!("\nsecond surface\n{}", other.metadata);
             notes.extend(other.notes);
         }
@@ -187,7 +191,7 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
             }
         };
         let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
-        return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), notes });
+        return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), reliable_from, notes });
     }
     let rough = read_self_affine(&surface, system)?;
     surface.known_only()?;
