@@ -189,7 +189,7 @@ impl Scheme<'_> {
 
     /// Gives each wave the amplitude of the spectrum; returns the rms change over the rms height.
     fn take_spectrum(&mut self) -> f64 {
-        let mut spectrum = self.waves.transform().forward(&self.heights, 0.0, 1.0);
+        let mut spectrum = self.waves.transform().forward(&self.heights, 0.0, self.rms);
         for (wave, amplitude) in spectrum.iter_mut().zip(self.waves.amplitudes()) {
             let found = wave.norm();
             // A wave without amplitude has no phase.
@@ -291,6 +291,14 @@ mod tests {
             let law = HeightDistribution::Weibull { shape };
             let error = PrescribedMap::new(&waves, &law, Exact::Distribution, 1).unwrap_err().to_string();
             assert!(error.starts_with("shape of Weibull's law = "), "{error}");
+        }
+        // Extreme units are no errors.
+        for unit in [1e-300, 1e300] {
+            let map = self_affine_map(&SelfAffine::new(2.3, 1.0, unit).unwrap(), 24, 1).unwrap();
+            let waves = WaveGenerator::twin(&map, TwinSpectrum::EachWave).unwrap();
+            let weibull = HeightDistribution::Weibull { shape: 2.0 };
+            let found = PrescribedMap::new(&waves, &weibull, Exact::Distribution, 1).unwrap();
+            assert!(found.spectrum_residual < 0.2, "{}", found.spectrum_residual);
         }
         // Heights of this law overflow.
         let steep = HeightDistribution::Weibull { shape: 1e-3 };

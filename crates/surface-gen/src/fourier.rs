@@ -25,7 +25,7 @@ impl MapTransform {
         }
     }
 
-    /// `H = 1/N sum h exp(-2 pi i (mx ix / columns + my iy / rows))` of the heights `(h - middle)/unit`.
+    /// `1/columns sum h exp(-2 pi i (mx ix / columns + my iy / rows))` of the heights `(h - middle)/unit`.
     pub(crate) fn forward(&self, heights: &[f64], middle: f64, unit: f64) -> Vec<Complex64> {
         let Cells { columns, rows } = self.cells;
         let mut waves = vec![Complex64::new(0.0, 0.0); (columns / 2 + 1) * rows];
@@ -43,9 +43,6 @@ impl MapTransform {
             }
         }
         along_y.process(&mut waves);
-        for value in &mut waves {
-            *value /= rows as f64;
-        }
         waves
     }
 

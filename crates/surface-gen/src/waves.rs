@@ -45,6 +45,7 @@ pub struct Anisotropy {
 pub struct WaveGenerator {
     cells: Cells,
     size: Size,
+    rms: f64,
     /// `|H|` of the waves of the half plane, with the indices of a [`MapTransform`]; 0 for the mean.
     amplitudes: Arc<[f64]>,
     transform: MapTransform,
@@ -176,15 +177,17 @@ impl WaveGenerator {
 
     fn of_variances(cells: Cells, size: Size, variances: Vec<f64>, rms: Option<f64>) -> Result<Self> {
         let mut amplitudes: Vec<f64> = variances.into_iter().map(f64::sqrt).collect();
-        let scale = rms.map_or(1.0, |rms| rms / total(cells, &amplitudes).sqrt());
-        if !scale.is_normal() {
+        let found = total(cells, &amplitudes).sqrt();
+        let rms = rms.unwrap_or(found);
+        let scale = rms / found;
+        if !(scale.is_normal() && rms.is_normal()) {
             let expected = "amplitudes within the range of f64 (choose other units)";
-            return Err(Error::domain("rms height of the spectrum", scale, expected));
+            return Err(Error::domain("rms height of the spectrum", rms, expected));
         }
         for amplitude in &mut amplitudes {
             *amplitude *= scale;
         }
-        Ok(Self { cells, size, amplitudes: amplitudes.into(), transform: MapTransform::new(cells) })
+        Ok(Self { cells, size, rms, amplitudes: amplitudes.into(), transform: MapTransform::new(cells) })
     }
 
     /// Numbers of columns and rows of its maps.
@@ -194,7 +197,7 @@ impl WaveGenerator {
 
     /// The rms height that every map of this generator has, from the amplitudes alone.
     pub fn rms_height(&self) -> f64 {
-        total(self.cells, &self.amplitudes).sqrt()
+        self.rms
     }
 
     /// `|H|` of the waves of the half plane, with the indices of a [`MapTransform`].
@@ -354,6 +357,29 @@ mod tests {
             let steepest = 0.5 * (2.0 * xy).atan2(xx - yy).to_degrees();
             let off = (steepest - (lay + 90.0)).rem_euclid(180.0);
             assert!(off.min(180.0 - off) < 3.0, "{lay}: {steepest}");
+        }
+    }
+
+    #[test]
+    fn small_maps_and_extreme_heights_are_finite_or_refused() {
+        for cells in [[1, 1], [2, 1], [1, 3], [2, 2], [3, 2], [16, 1], [5, 4]] {
+            for unit in [1e-150, 1e-300, 1.0, 1e300] {
+                let map = HeightMap::from_fn(cells, [2.0, 1.0], |ix, iy| (ix * 5 + iy * 3 % 4) as f64 * unit);
+                for like in [TwinSpectrum::EachWave, TwinSpectrum::Rings] {
+                    let Ok(waves) = WaveGenerator::twin(map.as_ref().unwrap(), like) else { continue };
+                    let rms = rms_height(waves.map(1).unwrap().heights());
+                    assert_relative_eq!(
+                        rms,
+                        rms_height(map.as_ref().unwrap().heights()),
+                        max_relative = 1e-9
+                    );
+                    assert_relative_eq!(rms, waves.rms_height(), max_relative = 1e-9);
+                }
+            }
+            let surface = SelfAffine::new(2.2, [2.0, 1.0], 0.1).unwrap();
+            let plain = self_affine_map(&surface, cells, 1);
+            let grooved = WaveGenerator::anisotropic(&surface, Anisotropy { ratio: 2.0, lay: 10.0 }, cells);
+            assert_eq!(plain.is_ok(), grooved.is_ok(), "{cells:?}");
         }
     }
 

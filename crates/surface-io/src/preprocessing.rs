@@ -87,8 +87,8 @@ pub struct Preprocessed {
     pub map: HeightMap,
     /// One line for each step, with what it found; empty where nothing was done.
     pub steps: Vec<String>,
-    /// From which distance on the tip lets heights be seen, in the unit of the map's sides; `None` without a tip, and where that is
-    /// from no distance or from all of them on.
+    /// From which distance on the tip lets heights be seen, in the unit of the map's sides; infinite where from none, `None` without a
+    /// tip and where from all.
     pub reliable_from: Option<f64>,
 }
 
@@ -308,7 +308,7 @@ impl Scan {
             Some(_) => format!("with a tip of radius {radius}, heights are reliable at all distances"),
             None => format!("with a tip of radius {radius}, heights are reliable at no distance"),
         };
-        Ok((step, found.filter(|distance| *distance > 0.0)))
+        Ok((step, Some(found.unwrap_or(f64::INFINITY)).filter(|distance| *distance > 0.0)))
     }
 
     /// Sides of the map and of a cell in metres, or in the numbers of the file.

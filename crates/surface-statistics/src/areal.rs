@@ -150,8 +150,8 @@ pub struct SpatialParameters {
     /// Distance of the slowest decay to s, a length. `None` where it does not decay in all directions inside
     /// the map.
     pub slowest: Option<f64>,
-    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`;
-    /// it then is at most Sal over half of the longer side.
+    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`: it then is
+    /// at most about Sal over the shorter side.
     pub str: Option<f64>,
 }
 

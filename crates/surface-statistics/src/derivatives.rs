@@ -247,6 +247,48 @@ mod tests {
         }
     }
 
+    /// From SurfaceTopography 1.27.1, whose maps of two axes give the mean cell side in place of that along
+    /// x, and leave out of free maps what has no neighbour along y either.
+    #[test]
+    fn slopes_and_curvatures_by_scale_are_those_of_an_independent_program() {
+        let slopes = [
+            55.133_527_751_749_54,
+            26.245_914_714_783_435,
+            8.978_308_403_396_056,
+            14.158_374_158_904_305,
+            6.162_514_058_458_376,
+        ];
+        let curvatures =
+            [484.856_457_432_223_24, 110.497_565_628_406_1, 21.764_763_129_066_914, 32.649_425_534_687_38];
+        let close = |found: &ScaleDependence, expected: &[f64]| {
+            for (found, expected) in found.rms.iter().zip(expected) {
+                assert_relative_eq!(*found, *expected, max_relative = 1e-10);
+            }
+        };
+        let slope = ScaleDependence::slope_along_x(&map(), Boundary::Periodic).unwrap();
+        close(&slope, &slopes);
+        assert_relative_eq!(slope.distance[4], 1.2, max_relative = 1e-12);
+        let curvature = ScaleDependence::curvature_along_x(&map(), Boundary::Periodic).unwrap();
+        close(&curvature, &curvatures);
+        assert_relative_eq!(curvature.distance[1], 0.8, max_relative = 1e-12);
+        let periodic = Derivatives::new(&map(), Boundary::Periodic).unwrap();
+        assert_relative_eq!(periodic.rms_gradient, 114.435_956_916_059_16, max_relative = 1e-10);
+        assert_relative_eq!(periodic.rms_curvature, 1_094.548_378_081_473, max_relative = 1e-10);
+        let free = Derivatives::new(&map(), Boundary::Free).unwrap();
+        assert_relative_eq!(free.rms_gradient, 114.640_619_288_754_15, max_relative = 1e-10);
+        assert_relative_eq!(free.rms_curvature, 1_090.986_747_551_652, max_relative = 1e-10);
+        assert_relative_eq!(free.rms_slope[0], 55.143_150_485_391_58, max_relative = 1e-10);
+        // The same of the spectrum along x, which has the factor 2 pi there.
+        let spectrum = crate::spectrum::PowerSpectrum::along_x(&map(), crate::taper::Taper::None).unwrap();
+        for (found, expected) in spectrum.density.iter().zip([
+            5.308_693_907_585_837_5,
+            1.859_989_638_801_829_8,
+            1.510_355_029_210_193_3,
+        ]) {
+            assert_relative_eq!(found * std::f64::consts::TAU, expected, max_relative = 1e-10);
+        }
+    }
+
     #[test]
     fn undefined_points_are_left_out() {
         let plane: Vec<f64> =

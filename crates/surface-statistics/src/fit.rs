@@ -101,6 +101,14 @@ pub struct FitOptions {
 /// limit of the grid. Intervals are those of the profile likelihood (twice its logarithm has fallen by 3.84);
 /// a bound is one-sided (2.71). The interval of a cut-off is no narrower than one wave of the map.
 ///
+/// * A cut-off is one where it raises the logarithm of the likelihood by more than 6: anywhere among the
+///   rings, and with a noise behind it, it may be any step. Its edge fills several rings through the window;
+///   they then count a fifth each in what follows. Rings farther behind that hold less than ten times the
+///   leakage of long waves are left out.
+/// * Where the likelihood does not tell a roll-off, a cut-off or a noise from none, the exponent is that
+///   without it, and its interval holds both with and without: each of them can only make the exponent
+///   larger.
+///
 /// Assumes an isotropic Gaussian surface; waves beyond the limit of the grid are taken as absent (not folded
 /// back by the sampling). Surfaces with prescribed amplitudes, as those of [`surface_gen::self_affine_map`],
 /// scatter less on their own period than the law says, and their intervals are too wide; a part cut out of
@@ -114,10 +122,11 @@ pub struct SpectrumFit {
     pub roll_off: Wavelength,
     /// Cut-off, a length.
     pub cut_off: Wavelength,
-    /// Density `C_2D` of the power law at the wavenumber `sqrt(q_1 q_2)` of `fitted`, noise left out, in
-    /// length^4.
+    /// Density `C_2D` of the power law at the wavenumber `sqrt(q_1 q_2)` of `fitted`, continued to there
+    /// where it has rolled off, noise left out, in length^4.
     pub density: f64,
-    /// Density of the white noise where the likelihood tells it from none (95 %), in length^4.
+    /// Density of the white noise where the likelihood tells it from none (95 %), in length^4. Behind a
+    /// cut-off it is what there is, rounding and leakage of the window too.
     pub noise: Option<f64>,
     /// Wavenumbers from and to which there are rings, in 1/length.
     pub fitted: [f64; 2],

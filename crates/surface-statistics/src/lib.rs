@@ -1,4 +1,103 @@
-//! Statistics of rough surfaces.
+//! Statistics of rough surfaces, measured or generated: areal parameters of ISO 25178-2, spectra and
+//! correlations with confidence bands, slopes and curvatures by scale, and the fit of a self-affine spectrum
+//! with intervals.
+//!
+//! All of it takes a [`contact_model::HeightMap`]: a rectangle of equal cells, oblong ones too, in one length
+//! unit.
+//!
+//! ```
+//! use contact_model::{Boundary, SelfAffine};
+//! use surface_statistics::{Bins, FitOptions, HeightParameters, PowerSpectrum, SpectrumFit, Taper, Wavelength};
+//! // A part of a surface of H = 0.8 with a roll-off at 0.1: it is not periodic.
+//! let surface = SelfAffine { roll_off: Some(20.0 * std::f64::consts::PI), ..SelfAffine::new(2.2, 3.0, 0.01)? };
+//! let map = surface_gen::self_affine_map(&surface, 384, 1)?.cropped(0..128, 0..128)?;
+//!
+//! println!("Sa = {:.2e}", HeightParameters::new(&map)?.sa);
+//! let spectrum = PowerSpectrum::radial(&map, Taper::Hann, &Bins::of_wavenumbers(&map, 10.0)?)?;
+//! let [low, high] = spectrum.band(0.95)?[5];
+//! assert!(low < spectrum.density[5] && spectrum.density[5] < high);
+//!
+//! let fit = SpectrumFit::new(&map, &FitOptions::default())?;
+//! assert!(fit.hurst.contains(0.8) && fit.roll_off.contains(0.1) && fit.goodness > 0.01);
+//! // The cells are too coarse for a cut-off: it is shorter than this.
+//! assert!(matches!(fit.cut_off, Wavelength::AtMost(_)));
+//! # Ok::<(), contact_model::Error>(())
+//! ```
+//!
+//! # What is where
+//!
+//! | quantity | item | undefined points |
+//! |---|---|---|
+//! | Sa, Sq, Ssk, Sku, Sp, Sv, Sz | [`HeightParameters`] | left out |
+//! | Sdq, Sdr | [`HybridParameters`] | left out |
+//! | Sal, Str | [`SpatialParameters`] | left out |
+//! | Std | [`texture_direction`] | error |
+//! | Spd, Spc | [`FeatureParameters`] | like an edge |
+//! | spectra along x, along y, over rings | [`PowerSpectrum`] | error |
+//! | structure function, autocorrelation | [`DifferenceMap`], [`HeightDifference`] | left out |
+//! | rms gradient and curvature by differences | [`Derivatives`] | left out |
+//! | slope and curvature over a distance | [`ScaleDependence`] | left out |
+//! | Nayak's parameter | [`nayak_parameter`] | error |
+//! | Hurst exponent, roll-off, cut-off, noise | [`SpectrumFit`] | error |
+//! | wavelengths to be trusted | [`ReliableWavelengths`] | |
+//!
+//! # Conventions
+//!
+//! * **Fourier.** Those of [`surface_gen`]: wavenumbers q = 2 pi/wavelength, `H(q) = 1/N sum h exp(-i q x)`,
+//!   densities two-sided, `C_2D = Lx Ly/(2 pi)^2 |H|^2` and `C_1D = L/(2 pi) |H|^2`, so that their integrals
+//!   over all q are the variance. SurfaceTopography and Jacobs, Junge, Pastewka (2017) leave `1/(2 pi)^2` and
+//!   `1/(2 pi)` out: their densities are 39.5 and 6.28 times these.
+//! * **Boundary.** [`contact_model::Boundary::Periodic`] takes neighbours across the edges, `Free` those
+//!   inside alone. Spectra of a free map need a window ([`Taper`]), whose factors have the mean square 1,
+//!   over the heights about their mean; subtract a tilt before. The fit does both by itself.
+//! * **Height differences.** `A(r) = <[h(x + r) - h(x)]^2>/2` over all pairs of points and all directions,
+//!   each pair with the same weight. SurfaceTopography averages vectors with the same weight, for free maps
+//!   those with both components positive alone.
+//! * **Curvature** is half the Laplacian; along an axis it is the second derivative.
+//! * **Standard.** ISO 25178-2 defines its parameters for a scale-limited surface: levelling and filters are
+//!   the caller's. Ratios are not in per cent, angles run from x towards y.
+//!
+//! # Accuracy
+//!
+//! Rms gradient, rms curvature, spectrum and autocorrelation agree with SurfaceTopography 1.27.1 on the real
+//! maps of `tests/measured.rs` to 1e-10, the factors above applied; parameters of the standard with surfalize
+//! 0.19.2 as `data/iso25178/README.md` says. 95 % bands of spectra hold the truth for 94 to 96 % of values
+//! (`tests/bands.rs`).
+//!
+//! Of 100 surfaces each, with seeds that had no part in setting up the fit, intervals and bounds hold the true
+//! exponent, roll-off and cut-off (`tests/coverage.rs`, about 40 s):
+//!
+//! ```text
+//! cargo test -p surface-statistics --test coverage -- --ignored --nocapture
+//! ```
+//!
+//! | surfaces | H | roll-off | cut-off | mean width of the interval of H |
+//! |---|---|---|---|---|
+//! | periodic, Gaussian amplitudes, 128 x 96 | 96 | 97 | 100 | 0.09 |
+//! | periodic, prescribed amplitudes, 128 x 128 | 100 | 100 | 100 | 0.08 |
+//! | free (cut out of a larger map), both limits inside, 128 x 128 | 95 | 98 | 100 | 0.19 |
+//! | free, no limit inside, 128 x 128 | 98 | 98 | 100 | 0.16 |
+//! | free, oblong cells, 192 x 80 | 95 | 93 | 100 | 0.38 |
+//! | free, waves below a tip's limit left out, 128 x 128 | 95 | 97 | 100 | 0.54 |
+//! | free, H = 0.2, cut-off far inside, 128 x 128 | 95 | 95 | 100 | 0.42 |
+//! | free, H = 1, no roll-off, 128 x 128 | 98 | 99 | 100 | 0.23 |
+//!
+//! Cut-offs are covered more often than in 95 of 100 cases: their edge is sharp, and its interval is kept at
+//! one wave of the map at least.
+//!
+//! A free map of 128 cells a side without limits inside has an exponent to +-0.08, one of 512 to +-0.02. What
+//! no fit can tell: whether a surface with prescribed amplitudes is Gaussian (its intervals are too wide),
+//! and intervals of a surface that is not self-affine, which a small [`SpectrumFit::goodness`] tells.
+//!
+//! # Speed
+//!
+//! On one core of a 2020s machine a map of 512 x 512 points is fitted in 0.6 s, its correlation takes 0.2 s,
+//! its hills 0.1 s; all but the fit is O(N log N) without a large factor.
+//!
+//! # What it does not do
+//!
+//! Filters (Gaussian, spline) and levelling, functional and volume parameters (Sk, Vmp, ...), profiles of
+//! lines, fits of anisotropic spectra, dales.
 
 mod areal;
 mod bins;

@@ -9,6 +9,10 @@ use surface_gen::{hann_window, periodogram};
 
 /// Beyond so many degrees of freedom the normal law stands for the chi-square law.
 const MANY: f64 = 1e4;
+/// Least quantile of the chi-square law that is looked for, and halvings of the logarithm of a range of 1e30
+/// down to rounding.
+const LEAST: f64 = 1e-25;
+const HALVINGS: usize = 56;
 
 /// A spectrum and how well it is known: the values of each index belong together, wavenumbers rise.
 #[derive(Debug, Clone, PartialEq)]
@@ -140,7 +144,8 @@ impl PowerSpectrum {
         let mut spectrum = Self::empty();
         for ([count, q, variance], pairs) in sums.into_iter().zip(pairs).filter(|(sum, _)| sum[0] > 0.0) {
             let density = ((variance / count).sqrt() * unit * (length / TAU)).powi(2);
-            spectrum.push(q / count, density, count * (count / pairs))?;
+            // However wide the window's transform is, one wave is left.
+            spectrum.push(q / count, density, (count * (count / pairs)).max(count.min(2.0)))?;
         }
         if spectrum.wavenumber.is_empty() {
             let last = bins.edges().last().copied().unwrap_or_default();
@@ -218,7 +223,17 @@ fn quantile(freedom: f64, probability: f64) -> Result<f64> {
     }
     let law = ChiSquared::new(freedom)
         .map_err(|_| Error::domain("degrees of freedom", freedom, "a finite number > 0"))?;
-    Ok(law.inverse_cdf(probability))
+    // By halving in ln x: the library's own search gives NaN below two degrees of freedom.
+    let (mut low, mut high) = (LEAST.ln(), (freedom + 10.0).ln() + 3.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if law.cdf(middle.exp()) < probability {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok((0.5 * (low + high)).exp())
 }
 
 #[cfg(test)]
@@ -249,9 +264,38 @@ mod tests {
     }
 
     #[test]
+    fn a_profile_has_the_mean_spectrum_of_its_rows() {
+        let height = |ix: usize, iy: usize| ((ix * ix * 3 + iy * 11 + ix * iy) % 13) as f64;
+        for columns in [14, 15] {
+            let map = HeightMap::from_fn([columns, 6], [2.8, 1.0], height).unwrap();
+            let found = PowerSpectrum::along_x(&map, Taper::None).unwrap();
+            let mut mean = vec![0.0; columns / 2];
+            for row in map.heights().chunks(columns) {
+                let line = contact_model::Line::new(2.8, row.to_vec()).unwrap();
+                for (sum, (_, c)) in mean.iter_mut().zip(surface_gen::line_spectrum(&line)) {
+                    *sum += c / 6.0;
+                }
+            }
+            for (a, b) in found.density.iter().zip(mean) {
+                assert_relative_eq!(*a, b, max_relative = 1e-10);
+            }
+            let across = PowerSpectrum::along_y(&map.transposed(), Taper::None).unwrap();
+            assert_eq!(across, found);
+        }
+    }
+
+    #[test]
+    fn quantiles_of_few_degrees_of_freedom() {
+        // Squares of the normal quantiles 0.5125 and 0.9875; -2 ln(1 - p).
+        assert_relative_eq!(quantile(1.0, 0.025).unwrap(), 9.820_691_171_752_58e-4, max_relative = 1e-6);
+        assert_relative_eq!(quantile(1.0, 0.975).unwrap(), 5.023_886_187_314_888, max_relative = 1e-6);
+        assert_relative_eq!(quantile(2.0, 0.025).unwrap(), -2.0 * 0.975_f64.ln(), max_relative = 1e-6);
+    }
+
+    #[test]
     fn quantiles_join() {
         for probability in [0.025, 0.5, 0.975] {
-            let exact = ChiSquared::new(MANY).unwrap().inverse_cdf(probability);
+            let exact = quantile(MANY, probability).unwrap();
             assert_relative_eq!(quantile(MANY * 1.000_001, probability).unwrap(), exact, max_relative = 1e-5);
         }
     }

@@ -69,13 +69,14 @@ fn quadrant(map: &HeightMap, bins: &Bins) -> Vec<[f64; 2]> {
     sums.iter().filter(|s| s[0] > 0.0).map(|[n, r, a]| [r / n, a / n]).collect()
 }
 
-fn check(entry: &Value, map: &HeightMap) -> Result<f64, String> {
+/// The largest relative difference; `None` for a plane.
+fn check(entry: &Value, map: &HeightMap) -> Result<Option<f64>, String> {
     let plane = &entry["plane_removed"];
     let number = |name: &str| plane[name].as_f64().ok_or(name.to_owned());
     let rms = surface_gen::rms_height(map.heights());
     let range = map.highest().abs().max(entry["rms"].as_f64().ok_or("rms")?);
     if number("rms")? < ROUNDING * range {
-        return Ok(0.0);
+        return Ok(None);
     }
     let derivatives = Derivatives::new(map, Boundary::Free).map_err(|e| e.to_string())?;
     let mut worst: f64 = 0.0;
@@ -98,7 +99,7 @@ fn check(entry: &Value, map: &HeightMap) -> Result<f64, String> {
     worst = worst.max(compare("spectrum", &curve, &numbers(&entry["psd"]))?);
     let from = (0.5 * (cell[0] + cell[1])).max(cell[0].min(cell[1]));
     let distances = bins(from, 0.5 * (size.x + size.y), 5.0);
-    Ok(worst.max(compare("autocorrelation", &quadrant(map, &distances), &numbers(&entry["acf"]))?))
+    Ok(Some(worst.max(compare("autocorrelation", &quadrant(map, &distances), &numbers(&entry["acf"]))?)))
 }
 
 /// The map of a scan in the unit of the entry, without its plane.
@@ -128,12 +129,12 @@ fn measures_of_real_maps_are_those_of_an_independent_program() {
         let channel = entry["channel"].as_u64().unwrap() as usize;
         let file = SurfaceFile::open(&directory.join(name), &ReadOptions::default()).unwrap();
         let scan = file.scans().nth(channel).unwrap().unwrap();
-        count += 1;
         match map_of(&scan, entry).and_then(|map| check(entry, &map)) {
-            Ok(found) => worst = worst.max(found),
+            Ok(Some(found)) => (count, worst) = (count + 1, worst.max(found)),
+            Ok(None) => println!("{name}, channel {channel}: a plane"),
             Err(problem) => wrong.push(format!("{name}, channel {channel}: {problem}")),
         }
     }
     println!("{count} maps, largest relative difference {worst:e}");
-    assert!(count >= 18 && wrong.is_empty(), "{} of {count}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(count >= 16 && wrong.is_empty(), "{} of {count}:\n{}", wrong.len(), wrong.join("\n"));
 }

@@ -171,6 +171,8 @@ impl MapStatisticsTables {
     }
 
     fn fit(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>) {
+        // Of the tip's distance the stencil has two.
+        let instrument = instrument.map(|distance| 2.0 * distance);
         let Some(reliable) = self.known("wavelengths", ReliableWavelengths::new(map, boundary, instrument))
         else {
             return;

@@ -98,7 +98,8 @@ fn all_waves(map: &HeightMap, mut visit: impl FnMut(Wave)) -> Result<f64> {
         for (iy, value) in column.iter().enumerate() {
             let my = iy.cast_signed() - if 2 * iy > ny { ny.cast_signed() } else { 0 };
             if (mx, my) != (0, 0) {
-                visit(Wave { index: [mx.cast_signed(), my], variance: value.norm_sqr(), copies });
+                let variance = value.norm_sqr() / (ny as f64).powi(2);
+                visit(Wave { index: [mx.cast_signed(), my], variance, copies });
             }
         }
     }

@@ -23,6 +23,8 @@ const WITHOUT_PLANE: f64 = 2.16;
 const HANN_CORRELATION: f64 = 3.780_864_197_530_864;
 /// Powers below this share of the largest are rounding of the transform.
 const ROUNDING: f64 = 1e-24;
+/// Rings with less than this times the leakage of far waves are left out.
+const LEAKAGE: f64 = 10.0;
 /// Slack of limits that are multiples of a wave.
 const SLACK: f64 = 1e-12;
 
@@ -109,7 +111,7 @@ impl Rings {
         let scale = if total > 0.0 { total } else { 1.0 };
         let largest = sums.iter().filter(|s| s[0] > 0.0).map(|s| s[2] / s[0]).fold(0.0, f64::max) / scale;
         let rings = sums.iter().zip(responses.rows).filter(|(sum, _)| sum[0] > 0.0);
-        let all = rings
+        let mut all: Vec<Ring> = rings
             .map(|([count, q, power], row)| {
                 let first = row.iter().position(|w| *w > 0.0).unwrap_or(0);
                 let last = row.iter().rposition(|w| *w > 0.0).map_or(first, |k| k + 1);
@@ -122,9 +124,29 @@ impl Rings {
                 }
             })
             .collect();
+        if windowed {
+            all = without_leakage(&all);
+        }
         let density = (scale * unit * unit) * (size.x / TAU) * (size.y / TAU);
         Ok(Self { all, nodes: responses.nodes, width, range: [from, to], windowed, density })
     }
+}
+
+/// The rings whose power is more than what the window's transform brings from beyond its reach: behind the
+/// edge of a spectrum there is nothing else, and the responses end there.
+fn without_leakage(all: &[Ring]) -> Vec<Ring> {
+    let clear = |ring: &&Ring| {
+        let far = all.iter().filter(|other| ring.wavenumber - other.wavenumber > REACH as f64 - 0.5);
+        // The largest it can be at each distance, not the zeros between.
+        let leakage: f64 = far
+            .map(|other| {
+                let nu = ring.wavenumber - other.wavenumber;
+                other.power * 2.0 / 3.0 / (PI * nu * (nu * nu - 1.0)).powi(2)
+            })
+            .sum();
+        ring.power > LEAKAGE * leakage
+    };
+    all.iter().filter(clear).cloned().collect()
 }
 
 /// How much of the density at each node is in the sum of the powers of each ring.
