@@ -129,9 +129,51 @@ pub enum Command {
         /// The shortest wave [default: two cells].
         #[arg(long, value_name = "LENGTH")]
         shortest_wavelength: Option<String>,
+        /// Ratio of wavelengths along the lay to those across [default: 1, isotropic].
+        #[arg(long, value_name = "RATIO")]
+        anisotropy: Option<f64>,
+        /// Direction of the lay in degrees, from x towards y.
+        #[arg(
+            long,
+            value_name = "DEGREES",
+            default_value_t = 0.0,
+            requires = "anisotropy",
+            allow_negative_numbers = true
+        )]
+        lay: f64,
+        /// Shape of Weibull's law of the heights [default: nearly Gaussian].
+        #[arg(long, value_name = "SHAPE")]
+        weibull: Option<f64>,
         /// The same seed is the same surface, here and in a scene.
         #[arg(long)]
         seed: u64,
+    },
+    /// Draws an artificial twin of a map: its spectrum, the phases of a seed.
+    Twin {
+        /// The map: what `info` reads.
+        file: PathBuf,
+        /// The twin, in the format of its ending as with `surface`.
+        twin: PathBuf,
+        /// The same seed is the same twin.
+        #[arg(long)]
+        seed: u64,
+        /// An isotropic twin: means over rings of the spectrum instead of each wave.
+        #[arg(long)]
+        rings: bool,
+        /// Number, from 0, or name of the channel of a file with several.
+        #[arg(long)]
+        channel: Option<surface_io::ChannelChoice>,
+        /// Unit of its heights, such as nm.
+        #[arg(long)]
+        unit: Option<surface_io::Unit>,
+        /// Side of a square map, or both, where the file does not say.
+        #[arg(long, conflicts_with = "cell")]
+        size: Option<surface_io::Sides>,
+        /// Side of one cell, or both.
+        #[arg(long)]
+        cell: Option<surface_io::Sides>,
+        #[command(flatten)]
+        more: Box<MapArguments>,
     },
     /// A script that completes arguments in a shell.
     Completions {

@@ -6,8 +6,9 @@ use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
 use fractal_contact::scenes::{
     Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json,
-    info_statistics, run,
+    info_statistics, run, write_twin,
 };
+use fractal_contact::surface_gen::{Anisotropy, TwinSpectrum};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -58,6 +59,9 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             rms_height,
             roll_off_wavelength,
             shortest_wavelength,
+            anisotropy,
+            lay,
+            weibull,
             seed,
         } => {
             let fractal_dimension = fractal_dimension.or_else(|| Some(3.0 - hurst?)).unwrap_or(2.4);
@@ -69,9 +73,20 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 rms_height,
                 roll_off_wavelength,
                 shortest_wavelength,
+                anisotropy: anisotropy.map(|ratio| Anisotropy { ratio, lay }),
+                weibull,
                 seed,
             };
             runs::print(format_args!("{}", make.write(&file)?));
+            Ok(ExitCode::SUCCESS)
+        }
+        Command::Twin { file, twin, seed, rings, channel, unit, size, cell, more } => {
+            let rest = surface_io::ReadOptions::default();
+            let (declared, preprocessing) =
+                more.options(surface_io::ReadOptions { channel, unit, size, cell, ..rest });
+            let like = if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave };
+            let text = write_twin(&file, (&declared, &preprocessing), like, seed, &twin)?;
+            runs::print(format_args!("{text}"));
             Ok(ExitCode::SUCCESS)
         }
         Command::Completions { shell } => {

@@ -158,3 +158,71 @@ fn an_interrupt_keeps_the_states_so_far() {
     assert!(file.rows.len() >= 9);
     assert!(std::fs::read_to_string(path("out/manifest.json")).unwrap().contains("\"complete\": false"));
 }
+
+#[test]
+fn lays_laws_of_heights_and_twins_are_drawn() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let drawn = |name: &str, more: &[&str]| {
+        let file = path(name);
+        let common = [
+            "surface",
+            &file,
+            "--seed",
+            "4",
+            "--cells",
+            "64",
+            "--hurst",
+            "0.8",
+            "--roll-off-wavelength",
+            "0.25",
+        ];
+        program(&[&common[..], more].concat())
+    };
+    let parameter = |name: &str, quantity: &str| -> f64 {
+        let out = path(&format!("{name}-statistics"));
+        let told = program(&["info", &path(name), "--unit", "none", "--size", "1", "--out", &out]);
+        assert!(told.status.success(), "{}", texts(&told).1);
+        let table = runs::CsvFile::read(&Path::new(&out).join("statistics.csv")).unwrap();
+        let row = table.texts("quantity").unwrap().iter().position(|q| *q == quantity).unwrap();
+        table.numbers("value").unwrap()[row].unwrap()
+    };
+    assert!(drawn("lay.npy", &["--anisotropy", "4", "--lay", "30"]).status.success());
+    // Waves are across the lay.
+    assert!((parameter("lay.npy", "Std") - 120.0).abs() < 10.0);
+    let weibull = drawn("weibull.npy", &["--weibull", "1.5"]);
+    assert!(texts(&weibull).0.contains("Weibull, shape 1.5"));
+    assert!((parameter("weibull.npy", "Ssk") - 1.07).abs() < 0.05);
+    // The twin of a surface with its own seed is that surface.
+    assert!(drawn("surface.npy", &[]).status.success());
+    let reading = ["--unit", "none", "--size", "1", "--seed"];
+    let values = |name: &str| -> Vec<f64> {
+        let bytes = std::fs::read(path(name)).unwrap();
+        let (_, values) = bytes.split_at(bytes.len() - 8 * 64 * 64);
+        values.chunks_exact(8).map(|v| f64::from_le_bytes(v.try_into().unwrap())).collect()
+    };
+    let difference = |seed: &str| {
+        let twin =
+            program(&[&["twin", &path("surface.npy"), &path("twin.npy")][..], &reading, &[seed]].concat());
+        assert!(twin.status.success(), "{}", texts(&twin).1);
+        let pairs = values("surface.npy").into_iter().zip(values("twin.npy"));
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    assert!(difference("4") < 1e-12 && difference("5") > 1e-3);
+    assert!((parameter("twin.npy", "Sq") - 0.01).abs() < 1e-12);
+    for (wrong, named) in [
+        (&["--anisotropy", "0"][..], "ratio of an anisotropy"),
+        (&["--anisotropy", "NaN"], "ratio of an anisotropy"),
+        (&["--weibull=-1"], "shape"),
+        (&["--lay", "3"], "--anisotropy"),
+        (&["--fractal-dimension", "2.2"], "--hurst"),
+    ] {
+        let refused = drawn("wrong.npy", wrong);
+        assert!(
+            !refused.status.success() && texts(&refused).1.contains(named),
+            "{wrong:?}: {}",
+            texts(&refused).1
+        );
+    }
+    assert!(!Path::new(&path("wrong.npy")).exists());
+}

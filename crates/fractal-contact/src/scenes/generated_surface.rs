@@ -1,10 +1,11 @@
-//! A generated surface as a file.
+//! Generated surfaces as files: self-affine ones, and twins of a map.
 
 use crate::scenes::error::{Error, Result};
-use contact_model::{Amplitude, Cells, SelfAffine, Size};
+use contact_model::{Amplitude, Cells, HeightMap, SelfAffine, Size};
 use std::f64::consts::PI;
 use std::path::Path;
-use surface_io::{Dimension, Metric, Quantity, Sides, describe, write_map};
+use surface_gen::{Anisotropy, Exact, HeightDistribution, PrescribedMap, TwinSpectrum, WaveGenerator};
+use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, Sides, describe, write_map};
 
 /// Memory of drawing a surface and writing it, bytes per cell.
 const BYTES: f64 = 24.0;
@@ -26,12 +27,16 @@ pub struct GeneratedSurface {
     pub roll_off_wavelength: Option<String>,
     /// The shortest wave.
     pub shortest_wavelength: Option<String>,
+    /// Waves longer along a lay; `None`: isotropic.
+    pub anisotropy: Option<Anisotropy>,
+    /// Shape of Weibull's law of the heights; `None`: what the random phases give, nearly Gaussian.
+    pub weibull: Option<f64>,
     /// Surface number 0 of this seed, as in a scene.
     pub seed: u64,
 }
 
 impl GeneratedSurface {
-    /// Draws the surface, writes it (`.npy`, `.txt`, `.xyz` or `.vti`) and says in a few lines what it is.
+    /// Draws the surface, writes it by the name's ending ([`surface_io::write_map`]) and says in a few lines what it is.
     ///
     /// # Errors
     /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Run`] for numbers
@@ -74,10 +79,55 @@ impl GeneratedSurface {
         let cells = self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square });
         let memory = BYTES * cells.columns as f64 * cells.rows as f64;
         runs::threads_for_memory(1, memory, "cells", format!("{} x {}", cells.columns, cells.rows))?;
-        let map =
-            surface_gen::self_affine_map(&surface, cells, seed).map_err(runs::Error::model("the surface"))?;
+        let waves = || {
+            let isotropic = Anisotropy { ratio: 1.0, lay: 0.0 };
+            WaveGenerator::anisotropic(&surface, self.anisotropy.unwrap_or(isotropic), cells)
+        };
+        let draw = || match (self.weibull, self.anisotropy) {
+            (Some(shape), _) => {
+                let law = HeightDistribution::Weibull { shape };
+                let found = PrescribedMap::new(&waves()?, &law, Exact::Distribution, seed)?;
+                let told = format!(
+                    "heights            Weibull, shape {shape}; amplitudes of the waves within {:.2e} of the rms height\n",
+                    found.spectrum_residual
+                );
+                Ok((found.map, told))
+            }
+            (None, Some(_)) => Ok((waves()?.map(seed)?, String::new())),
+            (None, None) => Ok((surface_gen::self_affine_map(&surface, cells, seed)?, String::new())),
+        };
+        let (map, told) = draw().map_err(runs::Error::model("the surface"))?;
         write_map(path, &map, metric).map_err(Error::Surface)?;
-        let unit = if metric == Metric::Metres { "m" } else { "none" };
-        Ok(format!("{}\nunit               {unit}\n{}\n", path.display(), describe(&map)))
+        Ok(told_of(path, &map, metric) + &told)
     }
+}
+
+/// Writes an artificial twin of a map into a file: its spectrum with the phases of a seed, and says what it is.
+///
+/// The map is that of a surface's file as `declared` and after `preprocessing`; where it is not periodic, take its trend off and lay a
+/// window over it.
+///
+/// # Errors
+/// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map without relief.
+pub fn write_twin(
+    path: &Path,
+    (declared, preprocessing): (&ReadOptions, &Preprocessing),
+    like: TwinSpectrum,
+    seed: u64,
+    out: &Path,
+) -> Result<String> {
+    let scan = Scan::read(path, declared).map_err(Error::Surface)?;
+    let map = scan.map(preprocessing).map_err(Error::Surface)?;
+    let unit = scan.metadata().unit.as_ref().map_or(Ok(Metric::Unitless), |unit| Metric::of(&unit.value));
+    let metric = unit.map_err(|problem| Error::Argument { name: "unit", reason: problem.to_string() })?;
+    let seed = surface_gen::surface_seed(seed, 0);
+    let twin = WaveGenerator::twin(&map, like).and_then(|waves| waves.map(seed));
+    let twin = twin.map_err(runs::Error::model("the twin"))?;
+    write_map(out, &twin, metric).map_err(Error::Surface)?;
+    Ok(told_of(out, &twin, metric))
+}
+
+fn told_of(path: &Path, map: &HeightMap, metric: Metric) -> String {
+    let unit = if metric == Metric::Metres { "m" } else { "none" };
+    format!("{}\nunit               {unit}\n{}\n", path.display(), describe(map))
 }

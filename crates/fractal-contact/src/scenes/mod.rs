@@ -117,7 +117,7 @@ pub use distributed::Distributed;
 pub use effects::{EffectLine, effect_lines};
 pub use entries::System;
 pub use error::{Error, Result};
-pub use generated_surface::GeneratedSurface;
+pub use generated_surface::{GeneratedSurface, write_twin};
 pub use info::{info, info_json, info_statistics};
 pub use loads::{Loading, Loads, Prescribed};
 pub use numerics::Numerics;

@@ -125,7 +125,8 @@ impl MapStatisticsTables {
             self.push("Str", s.str, 0, "that over the longest one: 1 for an isotropic surface");
         }
         if let Some(std) = self.known("texture direction", texture_direction(map)) {
-            let meaning = "direction of the lay, from x towards y";
+            let meaning =
+                "direction of the waves that have most of the variance, from x towards y; the lay is across";
             self.parameters.push(Parameter {
                 symbol: "Std",
                 value: Some(std),
