@@ -166,8 +166,8 @@ impl Report<'_> {
         let spectrum = Chart {
             title: "Power spectral density".into(),
             subtitle: "averaged over rings of the wavenumber, two-sided".into(),
-            x_label: format!("wavenumber $q$ {m}").trim_end().to_owned(),
-            y_label: format!("$C$ {m4}").trim_end().to_owned(),
+            x_label: format!("wavenumber $q${m}"),
+            y_label: format!("$C${m4}"),
             curves: vec![Curve { label: "as solved".into(), points: map.spectrum.clone(), band: Vec::new() }],
             logarithmic: true,
         };

@@ -415,10 +415,10 @@ impl MapStatisticsTables {
                     subtitle: format!(
                         "{name}: averaged over rings, two-sided; shaded: 95 % of Gaussian heights"
                     ),
-                    x_label: format!("wavenumber $q$ {}", si("1/m")).trim_end().to_owned(),
-                    y_label: format!("$C_{{2D}}$ {}", si("m^4")).trim_end().to_owned(),
+                    x_label: format!("wavenumber $q${}", si("1/m")),
+                    y_label: format!("$C_{{2D}}${}", si("m^4")),
                     curves: vec![Curve {
-                        label: "as solved".into(),
+                        label: "map".into(),
                         points: points(&s.wavenumber, &s.density),
                         band,
                     }],
@@ -432,10 +432,10 @@ impl MapStatisticsTables {
                 Chart {
                     title: "Height differences".into(),
                     subtitle: format!("{name}: half the mean square over all directions"),
-                    x_label: format!("distance $r$ {}", si("m")).trim_end().to_owned(),
-                    y_label: format!("$A$ {}", si("m^2")).trim_end().to_owned(),
+                    x_label: format!("distance $r${}", si("m")),
+                    y_label: format!("$A${}", si("m^2")),
                     curves: vec![Curve {
-                        label: "as solved".into(),
+                        label: "map".into(),
                         points: points(&d.distance, &d.half_square),
                         band: Vec::new(),
                     }],
