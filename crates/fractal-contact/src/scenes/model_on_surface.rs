@@ -386,13 +386,14 @@ mod tests {
         let unit = ModelOnSurface { model: 0, surface: 0 };
         std::fs::create_dir(dir.path().join(".units")).unwrap();
         unit.write_fields(&scene, &mut state, dir.path(), &mut kept).unwrap();
-        assert_eq!((kept.files.len(), state.fields.is_none()), (8, true));
+        // Three files of each field, its values for the picture, and what the report shows of it.
+        assert_eq!((kept.files.len(), state.fields.is_none()), (10, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
         field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result).unwrap();
         let files = &result.states[0].files;
-        assert_eq!((files.len(), files.iter().any(StoredFile::is_hidden)), (8, false));
+        assert_eq!((files.len(), files.iter().filter(|file| file.is_hidden()).count()), (10, 2));
         assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
-        assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 0);
+        assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 2);
         let scan = |name: &str| {
             surface_io::Scan::read(&dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };
