@@ -153,10 +153,9 @@ fn split(text: &str) -> Result<(&str, i64, &str), QuantityError> {
 }
 
 impl fmt::Display for Quantity {
-    /// The value in SI units, such as `0.001 m`, to 14 digits: what units leave behind them is rounding.
+    /// The value in SI units, such as `0.001 m`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value: f64 = format!("{:.13e}", self.value).parse().unwrap_or(self.value);
-        let size = value.abs();
+        let (value, size) = (self.value, self.value.abs());
         if size > 0.0 && !(1e-4..1e6).contains(&size) {
             write!(f, "{value:e}")?;
         } else {
