@@ -77,26 +77,11 @@ pub enum Command {
         /// A scene (.toml), results (.csv) or a surface (files of instruments and programs, NPY, text).
         file: PathBuf,
         /// All channels of a surface's file as JSON, lengths in metres.
-        #[arg(long)]
+        #[arg(long, conflicts_with = "channel")]
         json: bool,
         /// Directory for statistics of a surface: parameters of ISO 25178, spectra with bands, height differences, fit.
         #[arg(long, value_name = "DIR", conflicts_with = "json")]
         out: Option<PathBuf>,
-        /// Number, from 0, or name of the channel of a file with several.
-        #[arg(long, conflicts_with = "json")]
-        channel: Option<surface_io::ChannelChoice>,
-        /// Format of a surface, where its name and content do not tell: text or xyz, for instance.
-        #[arg(long)]
-        format: Option<surface_io::Format>,
-        /// Unit of its heights, such as nm.
-        #[arg(long)]
-        unit: Option<surface_io::Unit>,
-        /// Side of a square map, such as "1 mm", or both of a rectangle, "2 mm x 1 mm".
-        #[arg(long, conflicts_with = "cell")]
-        size: Option<surface_io::Sides>,
-        /// Side of one cell, such as "0.5 um", or both, "0.5 um x 0.25 um".
-        #[arg(long)]
-        cell: Option<surface_io::Sides>,
         #[command(flatten)]
         more: Box<MapArguments>,
     },
@@ -160,18 +145,6 @@ pub enum Command {
         /// An isotropic twin: means over rings of the spectrum instead of each wave.
         #[arg(long)]
         rings: bool,
-        /// Number, from 0, or name of the channel of a file with several.
-        #[arg(long)]
-        channel: Option<surface_io::ChannelChoice>,
-        /// Unit of its heights, such as nm.
-        #[arg(long)]
-        unit: Option<surface_io::Unit>,
-        /// Side of a square map, or both, where the file does not say.
-        #[arg(long, conflicts_with = "cell")]
-        size: Option<surface_io::Sides>,
-        /// Side of one cell, or both.
-        #[arg(long)]
-        cell: Option<surface_io::Sides>,
         #[command(flatten)]
         more: Box<MapArguments>,
     },
@@ -185,6 +158,21 @@ pub enum Command {
 /// The keys of [scene.surface] in a scene: how a file is meant, and what is done to the map before it is described.
 #[derive(Debug, Default, clap::Args)]
 pub struct MapArguments {
+    /// Number, from 0, or name of the channel of a file with several.
+    #[arg(long)]
+    channel: Option<surface_io::ChannelChoice>,
+    /// Format of a surface, where its name and content do not tell: text or xyz, for instance.
+    #[arg(long)]
+    format: Option<surface_io::Format>,
+    /// Unit of its heights, such as nm.
+    #[arg(long)]
+    unit: Option<surface_io::Unit>,
+    /// Side of a square map, such as "1 mm", or both of a rectangle, "2 mm x 1 mm".
+    #[arg(long, conflicts_with = "cell")]
+    size: Option<surface_io::Sides>,
+    /// Side of one cell, such as "0.5 um", or both, "0.5 um x 0.25 um".
+    #[arg(long)]
+    cell: Option<surface_io::Sides>,
     /// Unit of x and y of points, such as um.
     #[arg(long)]
     lateral_unit: Option<surface_io::Unit>,
@@ -227,9 +215,20 @@ pub struct MapArguments {
 }
 
 impl MapArguments {
-    /// How the file is read, apart from what `rest` says, and what is done to its map.
-    pub fn options(self, rest: ReadOptions) -> (ReadOptions, Preprocessing) {
-        let Self { lateral_unit, height_scale, decimal, missing, skip_lines, crop, fill, detrend, .. } = self;
+    /// How the file is read, and what is done to its map.
+    pub fn options(self) -> (ReadOptions, Preprocessing) {
+        let Self {
+            format,
+            lateral_unit,
+            height_scale,
+            decimal,
+            missing,
+            skip_lines,
+            crop,
+            fill,
+            detrend,
+            ..
+        } = self;
         let undefined = fill.is_none().then_some(surface_io::Undefined::NoContact);
         let preprocessing = Preprocessing {
             crop,
@@ -244,6 +243,19 @@ impl MapArguments {
             window: self.window,
             ..Preprocessing::default()
         };
-        (ReadOptions { lateral_unit, height_scale, decimal, missing, skip_lines, ..rest }, preprocessing)
+        let declared = ReadOptions {
+            format,
+            channel: self.channel,
+            unit: self.unit,
+            height_scale,
+            lateral_unit,
+            size: self.size,
+            cell: self.cell,
+            decimal,
+            missing,
+            skip_lines,
+            ..ReadOptions::default()
+        };
+        (declared, preprocessing)
     }
 }

@@ -36,16 +36,13 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
             run_scene(&scene, &Options { out, threads, fresh })
         }
-        Command::Info { file, json, out, channel, format, unit, size, cell, more } => {
-            let rest = surface_io::ReadOptions::default();
-            let (declared, preprocessing) =
-                more.options(surface_io::ReadOptions { channel, format, unit, size, cell, ..rest });
-            let mut text =
-                if json { info_json(&file, &declared)? } else { info(&file, &declared, &preprocessing)? };
-            if let Some(out) = out {
-                text.push('\n');
-                text += &info_statistics(&file, &declared, &preprocessing, &out)?;
-            }
+        Command::Info { file, json, out, more } => {
+            let (declared, preprocessing) = more.options();
+            let text = match out {
+                None if json => info_json(&file, &declared)?,
+                None => info(&file, &declared, &preprocessing)?,
+                Some(out) => info_statistics(&file, &declared, &preprocessing, &out)?,
+            };
             runs::print(format_args!("{text}"));
             Ok(ExitCode::SUCCESS)
         }
@@ -80,10 +77,8 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             runs::print(format_args!("{}", make.write(&file)?));
             Ok(ExitCode::SUCCESS)
         }
-        Command::Twin { file, twin, seed, rings, channel, unit, size, cell, more } => {
-            let rest = surface_io::ReadOptions::default();
-            let (declared, preprocessing) =
-                more.options(surface_io::ReadOptions { channel, unit, size, cell, ..rest });
+        Command::Twin { file, twin, seed, rings, more } => {
+            let (declared, preprocessing) = more.options();
             let like = if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave };
             let text = write_twin(&file, (&declared, &preprocessing), like, seed, &twin)?;
             runs::print(format_args!("{text}"));

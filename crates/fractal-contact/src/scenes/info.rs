@@ -8,7 +8,9 @@ use crate::scenes::statistics::MapStatisticsTables;
 use contact_model::Boundary;
 use runs::Header;
 use std::path::Path;
-use surface_io::{Dimension, Metadata, Preprocessing, Quantity, ReadOptions, SurfaceFile, describe};
+use surface_io::{
+    Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, SurfaceFile, describe,
+};
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
 /// (anything else).
@@ -68,21 +70,15 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
         return each(file);
     }
     let scan = file.scan().map_err(Error::Surface)?;
-    let mut text = format!("{}\n", scan.metadata());
-    match scan.preprocessed(preprocessing) {
-        Ok(found) => {
-            for step in &found.steps {
-                text += &format!("then       {step}\n");
-            }
-            text += &format!("\n{}\n", describe(&found.map));
-        }
+    Ok(match scan.preprocessed(preprocessing) {
+        Ok(found) => described(&scan, &found),
         // What stands in the way of a map is part of the answer.
-        Err(error) => text += &format!("\nno map as it is: {error}\n"),
-    }
-    Ok(text)
+        Err(error) => format!("{}\n\nno map as it is: {error}\n", scan.metadata()),
+    })
 }
 
-/// Statistics of a surface's file in a directory: tables and pictures of parameters, spectra and height differences; the parameters as lines.
+/// As [`info`] of a surface, and its statistics: tables and pictures of parameters, spectra and height differences in a directory, the
+/// parameters as lines.
 ///
 /// The map is taken as a piece of a larger surface: not periodic.
 ///
@@ -94,6 +90,11 @@ pub fn info_statistics(
     preprocessing: &Preprocessing,
     out: &Path,
 ) -> Result<String> {
+    let ending = path.extension().and_then(|e| e.to_str());
+    if ending == Some("toml") || ending == Some("csv") && explains_itself(path) {
+        let reason = format!("{} is no surface: statistics are of the heights in a file", path.display());
+        return Err(Error::Argument { name: "out", reason });
+    }
     let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan).map_err(Error::Surface)?;
     let found = scan.preprocessed(preprocessing).map_err(Error::Surface)?;
     let metric = scan.metadata().unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
@@ -105,9 +106,15 @@ pub fn info_statistics(
         header = header.with_note(step.clone());
     }
     runs::files::create_directory(out)?;
-    let files = statistics.write(out, &header, &name)?;
-    let names: Vec<String> = runs::file_names(&files);
-    Ok(format!("{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
+    let names: Vec<String> = runs::file_names(&statistics.write(out, &header, &name)?);
+    let text = described(&scan, &found);
+    Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
+}
+
+/// What was understood of a file, what was done to its map, and what the map is.
+fn described(scan: &Scan, found: &Preprocessed) -> String {
+    let steps: String = found.steps.iter().map(|step| format!("then       {step}\n")).collect();
+    format!("{}\n{steps}\n{}\n", scan.metadata(), describe(&found.map))
 }
 
 /// What is known of each channel of a file of several.
