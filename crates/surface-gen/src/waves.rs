@@ -8,7 +8,7 @@ use crate::spectrum::{CUTOFF_SLACK, MapSpectrum};
 use crate::turn::Circle;
 use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size};
 use rustfft::num_complex::Complex64;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
 
@@ -144,7 +144,8 @@ impl WaveGenerator {
         }
         let spectrum = MapSpectrum::new(surface, cells)?;
         let lattice = Lattice::new(cells, size);
-        let (sin, cos) = (lay.rem_euclid(180.0) / 180.0 * PI).sin_cos();
+        // As the phases, so that no library's sine decides.
+        let [cos, sin] = Circle::shared().cos_sin((lay.rem_euclid(180.0) / 360.0 * 2f64.powi(64)) as u64);
         let unit = [size.length() / size.x, size.length() / size.y];
         let grid = lattice.limit().powi(2) * (1.0 + CUTOFF_SLACK);
         let cut_off = surface
