@@ -16,6 +16,7 @@ scene() {
 scene ball-on-plate curve-approach.svg
 scene rough-sphere curve-stiffness.svg pressure-bem3d-0-004.png pressure-bem3d-0-005.png
 scene measured-map pressure-bem3d-0-002.png gap-bem3d-0-002.png distribution-pressure.svg
+scene anisotropic pressure-bem3d-0-001.png
 scene cattaneo-mindlin-loop curve-tangential_force.svg
 scene viscoelastic-indentation curve-approach.svg
 scene fractal-3d-and-1d curve-stiffness.svg
@@ -23,3 +24,14 @@ scene contact-conductance curve-conductance.svg
 scene periodic-theories curve-stiffness.svg curve-area.svg
 scene rough-friction curve-tangential_force.svg
 scene rough-creep curve-approach.svg
+
+fractal-contact info data/measured/uncd-afm.001 --channel 0 --detrend plane --tip-radius "26 nm" --out out/uncd
+for picture in spectrum.svg slope.svg; do
+    cp "out/uncd/$picture" "$pictures/uncd-$picture"
+done
+
+# The upper part of a report, where there is a browser.
+if command -v chromium > /dev/null; then
+    chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1000,1750 \
+        --screenshot="$pictures/report.png" "file://$PWD/out/anisotropic/report.html"
+fi

@@ -145,6 +145,9 @@ pub enum Command {
         /// An isotropic twin: means over rings of the spectrum instead of each wave.
         #[arg(long)]
         rings: bool,
+        /// With the distribution of the map's heights, met exactly, instead of a nearly Gaussian one.
+        #[arg(long)]
+        keep_heights: bool,
         #[command(flatten)]
         more: Box<MapArguments>,
     },

@@ -8,7 +8,7 @@ use fractal_contact::scenes::{
     Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json,
     info_statistics, run, write_twin,
 };
-use fractal_contact::surface_gen::{Anisotropy, TwinSpectrum};
+use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -71,16 +71,16 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
                 roll_off_wavelength,
                 shortest_wavelength,
                 anisotropy: anisotropy.map(|ratio| Anisotropy { ratio, lay }),
-                weibull,
+                heights: weibull.map(|shape| HeightDistribution::Weibull { shape }),
                 seed,
             };
             runs::print(format_args!("{}", make.write(&file)?));
             Ok(ExitCode::SUCCESS)
         }
-        Command::Twin { file, twin, seed, rings, more } => {
+        Command::Twin { file, twin, seed, rings, keep_heights, more } => {
             let (declared, preprocessing) = more.options();
             let like = if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave };
-            let text = write_twin(&file, (&declared, &preprocessing), like, seed, &twin)?;
+            let text = write_twin(&file, (&declared, &preprocessing), (like, keep_heights), seed, &twin)?;
             runs::print(format_args!("{text}"));
             Ok(ExitCode::SUCCESS)
         }

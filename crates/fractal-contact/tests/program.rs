@@ -191,7 +191,7 @@ fn lays_laws_of_heights_and_twins_are_drawn() {
     // Waves are across the lay.
     assert!((parameter("lay.npy", "Std") - 120.0).abs() < 10.0);
     let weibull = drawn("weibull.npy", &["--weibull", "1.5"]);
-    assert!(texts(&weibull).0.contains("Weibull, shape 1.5"));
+    assert!(texts(&weibull).0.contains("heights            as prescribed; amplitudes of the waves within"));
     assert!((parameter("weibull.npy", "Ssk") - 1.07).abs() < 0.05);
     // The twin of a surface with its own seed is that surface.
     assert!(drawn("surface.npy", &[]).status.success());
@@ -210,6 +210,10 @@ fn lays_laws_of_heights_and_twins_are_drawn() {
     };
     assert!(difference("4") < 1e-12 && difference("5") > 1e-3);
     assert!((parameter("twin.npy", "Sq") - 0.01).abs() < 1e-12);
+    let [from, to] = [path("weibull.npy"), path("skewed.npy")];
+    let skewed = [&["twin", &from, &to, "--keep-heights"][..], &reading, &["5"]];
+    assert!(program(&skewed.concat()).status.success());
+    assert!((parameter("skewed.npy", "Ssk") - parameter("weibull.npy", "Ssk")).abs() < 1e-9);
     for (wrong, named) in [
         (&["--anisotropy", "0"][..], "ratio of an anisotropy"),
         (&["--anisotropy", "NaN"], "ratio of an anisotropy"),

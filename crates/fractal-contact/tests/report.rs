@@ -1,6 +1,6 @@
 //! `report.html` in a browser: no error, maps that draw, values that are those of the files, nothing that a name could do.
 
-use fractal_contact::scenes::{Options, Plan, SceneFile, run};
+use fractal_contact::scenes::{Options, Plan, SceneFile, info_statistics, run};
 use std::path::Path;
 use std::process::Command;
 
@@ -91,6 +91,45 @@ fn a_report_stands_alone_and_escapes_what_it_is_given() {
     assert_eq!(page.matches("<img ").count(), page.matches(" alt=\"").count());
 }
 
+/// Draws a page, clicks on its maps and gives the three texts of each: clicked, moved, number of colours.
+fn probed(browser: &str, dir: &Path, page: &str) -> Vec<String> {
+    let page =
+        page.replace("<head>", &format!("<head>{WATCH}")).replace("</body>", &format!("{PROBE}</body>"));
+    let path = dir.join("probe.html");
+    std::fs::write(&path, page).unwrap();
+    let seen = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1000,800", "--dump-dom"])
+        .arg(format!("file://{}", path.display()))
+        .output()
+        .unwrap();
+    let dom = String::from_utf8_lossy(&seen.stdout);
+    let probe = dom.rsplit_once("<pre id=\"probe\">").expect("the page's scripts ran to their end").1;
+    let probe = &probe[..probe.find("</pre>").unwrap()];
+    let probe: serde_json::Value =
+        serde_json::from_str(&probe.replace("&gt;", ">").replace("&lt;", "<").replace("&amp;", "&")).unwrap();
+    assert_eq!(probe["errors"], serde_json::json!([]));
+    assert_eq!(
+        (&probe["images"], &probe["scripted"]),
+        (&serde_json::json!(0), &serde_json::json!("undefined"))
+    );
+    let found = probe["found"].as_array().unwrap().iter();
+    found.filter_map(|text| text.as_str().map(str::to_owned)).collect()
+}
+
+/// Compares what a click read with the value of an NPY file of so many columns and rows.
+fn compare(text: &str, file: &Path, [columns, rows]: [usize; 2]) {
+    let word = |before: &str| {
+        let rest = &text[text.find(before).unwrap() + before.len()..];
+        rest.split([' ', ',', ':']).next().unwrap().to_owned()
+    };
+    let bytes = std::fs::read(file).unwrap();
+    let (_, values) = bytes.split_at(bytes.len() - 8 * columns * rows);
+    let (column, row): (usize, usize) = (word("column ").parse().unwrap(), word("row ").parse().unwrap());
+    let value = f64::from_le_bytes(values[8 * (row * columns + column)..][..8].try_into().unwrap());
+    let read: f64 = text.split(' ').nth(1).unwrap().parse().unwrap();
+    assert!((read - value).abs() <= 5e-7 * value.abs(), "{text}: {value} in {}", file.display());
+}
+
 #[test]
 fn a_click_reads_the_value_of_the_file() {
     let Some(browser) = browser() else {
@@ -100,61 +139,58 @@ fn a_click_reads_the_value_of_the_file() {
     // Each cell is seen, and blocks of cells are.
     for cells in [64, 600] {
         let dir = tempfile::tempdir().unwrap();
-        let page = report(
-            dir.path(),
-            &format!("{HOSTILE}.toml").replace('/', ""),
-            &SCENE.replace("CELLS", &cells.to_string()),
-        );
+        let name = format!("{HOSTILE}.toml").replace('/', "");
+        let page = report(dir.path(), &name, &SCENE.replace("CELLS", &cells.to_string()));
         assert!(page.len() < 5_000_000, "{}", page.len());
-        let page =
-            page.replace("<head>", &format!("<head>{WATCH}")).replace("</body>", &format!("{PROBE}</body>"));
-        let path = dir.path().join("probe.html");
-        std::fs::write(&path, page).unwrap();
-        let seen = Command::new(browser)
-            .args(["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1000,800", "--dump-dom"])
-            .arg(format!("file://{}", path.display()))
-            .output()
-            .unwrap();
-        let dom = String::from_utf8_lossy(&seen.stdout);
-        let probe = dom.rsplit_once("<pre id=\"probe\">").expect("the page's scripts ran to their end").1;
-        let probe: serde_json::Value = serde_json::from_str(
-            &probe[..probe.find("</pre>").unwrap()]
-                .replace("&gt;", ">")
-                .replace("&lt;", "<")
-                .replace("&amp;", "&"),
-        )
-        .unwrap();
-        assert_eq!(probe["errors"], serde_json::json!([]));
-        assert_eq!(
-            (&probe["images"], &probe["scripted"]),
-            (&serde_json::json!(0), &serde_json::json!("undefined"))
-        );
-        let found: Vec<&str> = probe["found"].as_array().unwrap().iter().filter_map(|v| v.as_str()).collect();
+        let found = probed(browser, dir.path(), &page);
         let mut compared = 0;
         for figure in found.chunks(3) {
             assert!(figure[2].parse::<usize>().unwrap() > 3, "{figure:?}: the map is not drawn");
             for text in &figure[..2] {
-                let word = |before: &str| {
-                    let rest = &text[text.find(before).unwrap() + before.len()..];
-                    rest.split([' ', ',', ':']).next().unwrap().to_owned()
-                };
                 let file = match text.split(' ').next().unwrap() {
                     "height" => "heights-bem3d-0-000.npy",
                     "pressure" if compared < 4 => "pressure-bem3d-0-001.npy",
                     "pressure" => "pressure-bem3d-0-000.npy",
                     _ => continue,
                 };
-                let bytes = std::fs::read(dir.path().join("out").join(file)).unwrap();
-                let (_, values) = bytes.split_at(bytes.len() - 8 * cells * (cells / 2));
-                let (column, row): (usize, usize) =
-                    (word("column ").parse().unwrap(), word("row ").parse().unwrap());
-                let value = f64::from_le_bytes(values[8 * (row * cells + column)..][..8].try_into().unwrap());
-                let read: f64 = text.split(' ').nth(1).unwrap().parse().unwrap();
-                assert!((read - value).abs() <= 2e-7 * value.abs(), "{text}: {value} in {file}");
+                compare(text, &dir.path().join("out").join(file), [cells, cells / 2]);
                 compared += 1;
             }
         }
         assert_eq!(compared, 6, "{found:?}");
+    }
+}
+
+#[test]
+fn a_surface_has_a_report() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join(format!("{HOSTILE}.npy").replace('/', ""));
+    let surface = contact_model::SelfAffine::new(2.2, [2.0, 1.0], 0.01).unwrap();
+    let map = surface_gen::self_affine_map(&surface, [300, 150], 5).unwrap();
+    surface_io::write_map(&file, &map, surface_io::Metric::Unitless).unwrap();
+    let declared = surface_io::ReadOptions {
+        unit: Some("none".parse().unwrap()),
+        size: Some("2 x 1".parse().unwrap()),
+        ..Default::default()
+    };
+    let out = dir.path().join("out");
+    let preprocessing = surface_io::Preprocessing::default();
+    let told = info_statistics(&file, &declared, &preprocessing, &out).unwrap_or_else(|e| panic!("{e}"));
+    assert!(told.contains("report.html"));
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("&lt;img src=x onerror=") && !page.contains("<img src=x"));
+    assert!(!page.contains("http://") && !page.contains("https://"));
+    assert!(page.len() < 5_000_000 && page.contains("Hurst exponent of the fitted spectrum"));
+    assert_eq!(page.matches("<img ").count(), page.matches(" alt=\"").count());
+    let Some(browser) = browser() else {
+        println!("skipped: no Chromium");
+        return;
+    };
+    let found = probed(browser, dir.path(), &page);
+    assert_eq!(found.len(), 3);
+    assert!(found[2].parse::<usize>().unwrap() > 3, "{found:?}: the map is not drawn");
+    for text in &found[..2] {
+        compare(text, &file, [300, 150]);
     }
 }
 

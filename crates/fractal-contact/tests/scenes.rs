@@ -1,8 +1,12 @@
 //! Every scene of `data/scenes` is run as it stands, and says what its comment promises.
 
+use contact_model::{HeightMap, SelfAffine, Surface};
 use fractal_contact::scenes::{Options, Plan, SceneFile, SceneOutcome, run};
 use runs::{CsvFile, Silent};
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use surface_gen::{Anisotropy, WaveGenerator};
 
 /// Two exact solutions of one contact, each good to about 1e-12.
 const EXACT: f64 = 1e-9;
@@ -271,4 +275,97 @@ fn diamond_scenes_give_the_numbers_of_their_page() {
         page.contains(&format!("differ by {lines} nm rms"))
             && page.contains(&format!("\n   {points}: noise"))
     );
+}
+
+/// The heights of a scene's first surface that a model with cells solves.
+fn drawn(scene: &SceneFile) -> Arc<HeightMap> {
+    match scene.scene(&scene.models[0], scene.seed(0)).unwrap().surface {
+        Surface::Heights(map) => map,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn parsed(text: &str) -> Result<SceneFile, String> {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    std::fs::copy(folder().join("measured-map.npy"), dir.path().join("measured-map.npy")).unwrap();
+    let scene = SceneFile::read(&path).map_err(|e| e.to_string())?;
+    Plan::new(&scene).map_err(|e| e.to_string())?;
+    Ok(scene)
+}
+
+#[test]
+fn a_twin_has_the_heights_and_the_spectrum_of_its_map() {
+    let text = std::fs::read_to_string(folder().join("twin.toml")).unwrap();
+    let kept = |line: &&str| {
+        !line.starts_with("twin") && !line.starts_with("keep_heights") && !line.starts_with("surfaces")
+    };
+    let own = text.lines().filter(kept).collect::<Vec<_>>().join("\n");
+    let (twin, map) = (parsed(&text).unwrap(), drawn(&parsed(&own).unwrap()));
+    let heights = |map: &HeightMap| -> Vec<f64> {
+        let mean = map.heights().iter().sum::<f64>() / map.heights().len() as f64;
+        let mut heights: Vec<f64> = map.heights().iter().map(|h| h - mean).collect();
+        heights.sort_by(f64::total_cmp);
+        heights
+    };
+    let found = drawn(&twin);
+    let rms = surface_gen::rms_height(map.heights());
+    for (a, b) in heights(&found).iter().zip(heights(&map)) {
+        assert!((a - b).abs() < 1e-9 * rms, "{a} {b}");
+    }
+    assert_ne!(found, map);
+    let slopes = [&found, &map].map(|map| surface_gen::rms_slope_differences(map));
+    approx::assert_relative_eq!(slopes[0], slopes[1], max_relative = 0.01);
+    // A coarser grid is a sample of the twin, and not the twin of a sample.
+    let compared = text.replace("area = true", "grid_error = true").replace("surfaces = 8", "surfaces = 1");
+    assert!(parsed(&compared).is_ok());
+    for (wrong, message) in [
+        (text.replace("twin = \"waves\"", "twin = \"wave\""), "waves"),
+        (text.replace("twin = \"waves\"        #", "#"), "`keep_heights` is given, but no `twin`"),
+        (text.replace("[sampling]\nseed = 1\nsurfaces = 8", ""), "no seed is given"),
+        (text.replace("[sampling]", "[models.bem3d]\ncells = 48\n[sampling]"), "the map brings its own 96"),
+    ] {
+        let error = parsed(&wrong).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn a_lay_is_the_one_that_the_program_draws() {
+    let text = std::fs::read_to_string(folder().join("anisotropic.toml")).unwrap();
+    let scene = parsed(&text).unwrap();
+    let surface = SelfAffine {
+        roll_off: Some(TAU / 2e-4),
+        short_cutoff: Some(TAU / 62.5e-6),
+        ..SelfAffine::new(2.2, 1e-3, 1e-6).unwrap()
+    };
+    let lay = Anisotropy { ratio: 4.0, lay: 30.0 };
+    let waves = WaveGenerator::anisotropic(&surface, lay, 128).unwrap();
+    let wanted = waves.map(surface_gen::surface_seed(1, 0)).unwrap();
+    for (a, b) in drawn(&scene).heights().iter().zip(wanted.heights()) {
+        assert!((a - b).abs() < 1e-15, "{a} {b}");
+    }
+    for (wrong, message) in [
+        (text.replace("\nanisotropy = 4", ""), "`lay` is given, but no `anisotropy`"),
+        (text.replace("anisotropy = 4", "anisotropy = -1"), "anisotropy"),
+        (
+            text.replace("\"bem3d\"]", "\"bem3d\", \"mdr1d\"]")
+                .replace("[effects]\nboundary = \"periodic\"", ""),
+            "it draws no map",
+        ),
+        (text.replace("anisotropy = 4", "anisotropy = 4\nweibull = 0"), "weibull"),
+    ] {
+        let error = parsed(&wrong).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn weibull_heights_have_their_skewness() {
+    let map = drawn(&SceneFile::read(&folder().join("skewed.toml")).unwrap());
+    let rms = surface_gen::rms_height(map.heights());
+    let skewness = map.heights().iter().map(|h| (h / rms).powi(3)).sum::<f64>() / map.heights().len() as f64;
+    // Of Weibull's law with the shape 6.
+    assert!((skewness + 0.3733).abs() < 0.005, "{skewness}");
 }

@@ -35,6 +35,7 @@
 //! | Spd, Spc | [`FeatureParameters`] | like an edge |
 //! | spectra along x, along y, over rings | [`PowerSpectrum`] | error |
 //! | structure function, autocorrelation | [`DifferenceMap`], [`HeightDifference`] | left out |
+//! | their bands, those of slopes and curvatures by distance | [`DifferenceBands`] | error |
 //! | rms gradient and curvature by differences | [`Derivatives`] | left out |
 //! | slope and curvature over a distance | [`ScaleDependence`] | left out |
 //! | Nayak's parameter | [`nayak_parameter`] | error |
@@ -61,8 +62,8 @@
 //!
 //! Rms gradient, rms curvature, spectrum and autocorrelation agree with SurfaceTopography 1.27.1 on the real
 //! maps of `tests/measured.rs` to 1e-10, the factors above applied; parameters of the standard with surfalize
-//! 0.19.2 as `data/iso25178/README.md` says. 95 % bands of spectra hold the truth for 94 to 96 % of values
-//! (`tests/bands.rs`).
+//! 0.19.2 as `data/iso25178/README.md` says. 95 % bands of spectra, height differences, slopes and
+//! curvatures hold the truth for 93 to 96 % of values (`tests/bands.rs`).
 //!
 //! Of 100 surfaces each, with seeds that had no part in setting up the fit, intervals and bounds hold the true
 //! exponent, roll-off and cut-off (`tests/coverage.rs`, about 40 s):
@@ -101,8 +102,10 @@
 
 mod areal;
 mod bins;
+mod chi_square;
 mod derivatives;
 mod difference;
+mod difference_bands;
 mod fit;
 mod fourier;
 mod normal;
@@ -117,6 +120,7 @@ pub use areal::{
 pub use bins::Bins;
 pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};
 pub use difference::{DifferenceMap, HeightDifference};
+pub use difference_bands::DifferenceBands;
 pub use fit::{FitOptions, Interval, SpectrumFit, Wavelength};
 pub use reliable::ReliableWavelengths;
 pub use spectrum::PowerSpectrum;

@@ -2,15 +2,15 @@
 
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 
-use contact_model::{HeightMap, SelfAffine};
+use contact_model::{Boundary, HeightMap, SelfAffine};
 use std::f64::consts::TAU;
 use surface_gen::{self_affine_map, surface_seed};
-use surface_statistics::{Bins, PowerSpectrum, Taper};
+use surface_statistics::{Bins, DifferenceBands, DifferenceMap, PowerSpectrum, ScaleDependence, Taper};
 
 /// Bins of a spectrum are as good as independent; of all of them, so much may be more or less than 95 % outside.
 const TOLERANCE: f64 = 0.02;
 /// Surfaces.
-const COUNT: u64 = 60;
+const COUNT: u64 = 200;
 
 fn surface(size: f64) -> SelfAffine {
     SelfAffine { roll_off: Some(8.0 * TAU), ..SelfAffine::new(2.2, size, 1.0).unwrap() }
@@ -28,8 +28,8 @@ fn inside(truth: &PowerSpectrum, spectra: &[PowerSpectrum]) -> f64 {
     inside as f64 / all as f64
 }
 
-#[test]
-fn bands_of_gaussian_surfaces_cover_their_spectrum() {
+/// Periodic maps.
+fn gaussian_maps() -> Vec<HeightMap> {
     let draw = |seed| self_affine_map(&surface(1.0), 96, seed).unwrap();
     // Sums of independent surfaces are all but Gaussian; one surface has the amplitudes themselves.
     let gaussian = |index| {
@@ -37,7 +37,22 @@ fn bands_of_gaussian_surfaces_cover_their_spectrum() {
         let sum = (1..16).fold(draw(seed), |sum, k| sum.plus(&draw(surface_seed(seed, k))).unwrap());
         sum.scaled(1.0, 0.25).unwrap()
     };
-    let maps: Vec<HeightMap> = (0..COUNT).map(gaussian).collect();
+    (0..COUNT).map(gaussian).collect()
+}
+
+/// Free maps.
+fn cut_maps() -> Vec<HeightMap> {
+    let cut = |index| {
+        let whole = self_affine_map(&surface(4.0), 384, surface_seed(4, index)).unwrap();
+        whole.cropped(0..96, 96..192).unwrap()
+    };
+    (0..COUNT).map(cut).collect()
+}
+
+#[test]
+fn bands_of_gaussian_surfaces_cover_their_spectrum() {
+    let draw = |seed| self_affine_map(&surface(1.0), 96, seed).unwrap();
+    let maps = gaussian_maps();
     let bins = Bins::of_wavenumbers(&maps[0], 12.0).unwrap();
     let radial = |map: &HeightMap| PowerSpectrum::radial(map, Taper::None, &bins).unwrap();
     let share = inside(&radial(&draw(1)), &maps.iter().map(radial).collect::<Vec<_>>());
@@ -51,11 +66,7 @@ fn bands_of_gaussian_surfaces_cover_their_spectrum() {
 
 #[test]
 fn bands_of_cut_maps_cover_their_spectrum() {
-    let cut = |index| {
-        let whole = self_affine_map(&surface(4.0), 384, surface_seed(4, index)).unwrap();
-        whole.cropped(0..96, 96..192).unwrap()
-    };
-    let maps: Vec<HeightMap> = (0..COUNT).map(cut).collect();
+    let maps = cut_maps();
     let bins = Bins::of_wavenumbers(&maps[0], 12.0).unwrap();
     for taper in [Taper::Hann, Taper::RadialHann] {
         let spectra: Vec<_> =
@@ -68,5 +79,45 @@ fn bands_of_cut_maps_cover_their_spectrum() {
         let share = inside(&truth, &spectra);
         println!("{taper:?}: {share}");
         assert!((share - 0.95).abs() < TOLERANCE, "{taper:?} {share}");
+    }
+}
+
+/// Of mean squares over distances, with the bands of each surface.
+type Banded = Vec<(f64, Option<[f64; 2]>)>;
+
+#[test]
+fn bands_of_differences_cover_the_mean_square() {
+    for (boundary, maps) in [(Boundary::Periodic, gaussian_maps()), (Boundary::Free, cut_maps())] {
+        let bins = Bins::of_distances(&maps[0], 10.0).unwrap();
+        let of = |map: &HeightMap| -> [Banded; 3] {
+            let bands = DifferenceBands::new(map, boundary).unwrap();
+            let a = DifferenceMap::new(map, boundary).radial(&bins).unwrap();
+            let slope = ScaleDependence::slope_along_x(map, boundary).unwrap();
+            let curvature = ScaleDependence::curvature_along_y(map, boundary).unwrap();
+            let squares = |rms: &[f64], bands: Vec<Option<[f64; 2]>>| -> Banded {
+                let bands = bands.into_iter().map(|band| band.map(|limits| limits.map(|l| l * l)));
+                rms.iter().map(|v| v * v).zip(bands).collect()
+            };
+            [
+                a.half_square.iter().copied().zip(bands.of_differences(&a, 0.95).unwrap()).collect(),
+                squares(&slope.rms, bands.of_slopes(&slope, 0, 0.95).unwrap()),
+                squares(&curvature.rms, bands.of_curvatures(&curvature, 1, 0.95).unwrap()),
+            ]
+        };
+        let found: Vec<_> = maps.iter().map(of).collect();
+        for (kind, name) in ["height differences", "slopes", "curvatures"].iter().enumerate() {
+            let (mut all, mut inside, mut by_distance) = (0, 0, Vec::new());
+            for k in 0..found[0][kind].len() {
+                let mean = found.iter().map(|f| f[kind][k].0).sum::<f64>() / COUNT as f64;
+                let bands: Vec<[f64; 2]> = found.iter().filter_map(|f| f[kind][k].1).collect();
+                let holding = bands.iter().filter(|[low, high]| (*low..=*high).contains(&mean)).count();
+                all += bands.len();
+                inside += holding;
+                by_distance.push(holding);
+            }
+            let share = inside as f64 / all as f64;
+            println!("{boundary:?} {name}: {share:.3} {by_distance:?}");
+            assert!((share - 0.95).abs() < 0.03, "{boundary:?} {name}: {share}");
+        }
     }
 }

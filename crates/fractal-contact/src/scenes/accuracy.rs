@@ -12,11 +12,10 @@ use crate::scenes::numerics::{MOST_CELLS, Numerics};
 use crate::scenes::outcome::SharedStop;
 use crate::scenes::pictures;
 use crate::scenes::scene_file::{SceneFile, cells};
-use crate::scenes::scene_surface::SceneSurface;
 use crate::scenes::summary::short;
 use analysis::grid_error;
 use bem3d::Bem3d;
-use contact_model::{Boundary, Cells, Load, Surface};
+use contact_model::{Boundary, Cells, Load};
 use std::time::Instant;
 
 /// Tolerance of the solver as a part of the accuracy, and its limits.
@@ -101,7 +100,7 @@ impl SceneFile {
             let message = format!("an accuracy of {}: {message}", percent(share));
             self.at_accuracy(Diagnostic::new(message).with_help(help)).into()
         };
-        let given = matches!(self.surface, SceneSurface::Plain(Surface::Heights(_)));
+        let given = self.surface.own_cells().is_some();
         let (model, rungs) = (with_tolerance(self, model, share), rungs(self));
         let normalised_on = if given { rungs.last() } else { rungs.first() };
         let loads = loads(self, &model, normalised_on.copied().unwrap_or(COARSEST)).map_err(failed)?;
@@ -226,8 +225,8 @@ fn largest_cells(scene: &SceneFile) -> usize {
 /// Grids that double: of free squares one more than powers of two, so that a coarser grid has every second point; of a given map its own
 /// cells, every second one, every fourth.
 fn rungs(scene: &SceneFile) -> Vec<usize> {
-    if let SceneSurface::Plain(Surface::Heights(map)) = &scene.surface {
-        let own = map.columns().max(map.rows());
+    if let Some(Cells { columns, rows }) = scene.surface.own_cells() {
+        let own = columns.max(rows);
         let coarser = |n: &usize| Some(n.div_ceil(2)).filter(|&fewer| fewer >= COARSEST / 4 && fewer < *n);
         let mut rungs: Vec<usize> = std::iter::successors(Some(own), coarser).collect();
         rungs.reverse();

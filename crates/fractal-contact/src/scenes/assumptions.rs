@@ -4,9 +4,8 @@ use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::human_readable::number;
 use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::SceneFile;
-use crate::scenes::scene_surface::SceneSurface;
 use analytic::greenwood_williamson::Summits;
-use contact_model::{Boundary, Surface};
+use contact_model::Boundary;
 use std::f64::consts::TAU;
 use surface_gen::{MapStatistics, SelfAffineFit};
 
@@ -24,7 +23,7 @@ pub(crate) struct Assumptions(MapStatistics, Option<SelfAffineFit>);
 impl Assumptions {
     /// Measured where a theory is to answer for a map; `None` elsewhere. Cost of some transforms of the map.
     pub fn measured(scene: &SceneFile) -> Option<Self> {
-        let SceneSurface::Plain(Surface::Heights(map)) = &scene.surface else { return None };
+        let map = scene.surface.given_map()?;
         let periodic = scene.effects.boundary == Boundary::Periodic;
         if !periodic && !scene.models.iter().any(Numerics::is_statistical) {
             return None;

@@ -3,9 +3,9 @@
 use crate::scenes::any_model::AnyModel;
 use crate::scenes::cost::Cost;
 use crate::scenes::error::Result;
-use crate::scenes::grid_comparison::sampled;
 use crate::scenes::loads::Loading;
 use crate::scenes::numerics::Numerics;
+use crate::scenes::sampled::sampled;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
 use contact_model::{Cells, ContactState, Surface};

@@ -1,10 +1,12 @@
 //! Generated surfaces as files: self-affine ones, and twins of a map.
 
 use crate::scenes::error::{Error, Result};
-use contact_model::{Amplitude, Cells, HeightMap, SelfAffine, Size};
+use crate::scenes::random_surface::{Drawn, RandomSpectrum, RandomSurface};
+use contact_model::{Amplitude, Cells, SelfAffine, Size};
 use std::f64::consts::PI;
 use std::path::Path;
-use surface_gen::{Anisotropy, Exact, HeightDistribution, PrescribedMap, TwinSpectrum, WaveGenerator};
+use std::sync::Arc;
+use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, Sides, describe, write_map};
 
 /// Memory of drawing a surface and writing it, bytes per cell.
@@ -29,8 +31,8 @@ pub struct GeneratedSurface {
     pub shortest_wavelength: Option<String>,
     /// Waves longer along a lay; `None`: isotropic.
     pub anisotropy: Option<Anisotropy>,
-    /// Shape of Weibull's law of the heights; `None`: what the random phases give, nearly Gaussian.
-    pub weibull: Option<f64>,
+    /// Distribution of its heights; `None`: what the random phases give, nearly Gaussian.
+    pub heights: Option<HeightDistribution>,
     /// Surface number 0 of this seed, as in a scene.
     pub seed: u64,
 }
@@ -79,55 +81,45 @@ impl GeneratedSurface {
         let cells = self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square });
         let memory = BYTES * cells.columns as f64 * cells.rows as f64;
         runs::threads_for_memory(1, memory, "cells", format!("{} x {}", cells.columns, cells.rows))?;
-        let waves = || {
-            let isotropic = Anisotropy { ratio: 1.0, lay: 0.0 };
-            WaveGenerator::anisotropic(&surface, self.anisotropy.unwrap_or(isotropic), cells)
-        };
-        let draw = || match (self.weibull, self.anisotropy) {
-            (Some(shape), _) => {
-                let law = HeightDistribution::Weibull { shape };
-                let found = PrescribedMap::new(&waves()?, &law, Exact::Distribution, seed)?;
-                let told = format!(
-                    "heights            Weibull, shape {shape}; amplitudes of the waves within {:.2e} of the rms height\n",
-                    found.spectrum_residual
-                );
-                Ok((found.map, told))
-            }
-            (None, Some(_)) => Ok((waves()?.map(seed)?, String::new())),
-            (None, None) => Ok((surface_gen::self_affine_map(&surface, cells, seed)?, String::new())),
-        };
-        let (map, told) = draw().map_err(runs::Error::model("the surface"))?;
-        write_map(path, &map, metric).map_err(Error::Surface)?;
-        Ok(told_of(path, &map, metric) + &told)
+        let spectrum = RandomSpectrum::SelfAffine { surface, anisotropy: self.anisotropy };
+        let drawn = RandomSurface::new(spectrum, self.heights.clone()).draw(cells, seed);
+        write(path, &drawn.map_err(runs::Error::model("the surface"))?, metric)
     }
 }
 
 /// Writes an artificial twin of a map into a file: its spectrum with the phases of a seed, and says what it is.
 ///
 /// The map is that of a surface's file as `declared` and after `preprocessing`; where it is not periodic, take its trend off and lay a
-/// window over it.
+/// window over it. With `keep_heights` the twin has the distribution of its heights too.
 ///
 /// # Errors
 /// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map without relief.
 pub fn write_twin(
     path: &Path,
     (declared, preprocessing): (&ReadOptions, &Preprocessing),
-    like: TwinSpectrum,
+    (like, keep_heights): (TwinSpectrum, bool),
     seed: u64,
     out: &Path,
 ) -> Result<String> {
     let scan = Scan::read(path, declared).map_err(Error::Surface)?;
-    let map = scan.map(preprocessing).map_err(Error::Surface)?;
+    let of = Arc::new(scan.map(preprocessing).map_err(Error::Surface)?);
     let unit = scan.metadata().unit.as_ref().map_or(Ok(Metric::Unitless), |unit| Metric::of(&unit.value));
     let metric = unit.map_err(|problem| Error::Argument { name: "unit", reason: problem.to_string() })?;
-    let seed = surface_gen::surface_seed(seed, 0);
-    let twin = WaveGenerator::twin(&map, like).and_then(|waves| waves.map(seed));
-    let twin = twin.map_err(runs::Error::model("the twin"))?;
-    write_map(out, &twin, metric).map_err(Error::Surface)?;
-    Ok(told_of(out, &twin, metric))
+    let (cells, heights) = (of.cells(), keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of))));
+    let twin = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
+    let drawn = twin.draw(cells, surface_gen::surface_seed(seed, 0));
+    write(out, &drawn.map_err(runs::Error::model("the twin"))?, metric)
 }
 
-fn told_of(path: &Path, map: &HeightMap, metric: Metric) -> String {
+/// Writes a surface and says what it is.
+fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) -> Result<String> {
+    write_map(path, map, metric).map_err(Error::Surface)?;
     let unit = if metric == Metric::Metres { "m" } else { "none" };
-    format!("{}\nunit               {unit}\n{}\n", path.display(), describe(map))
+    let mut text = format!("{}\nunit               {unit}\n{}\n", path.display(), describe(map));
+    if let Some(residual) = spectrum_residual {
+        text += &format!(
+            "heights            as prescribed; amplitudes of the waves within {residual:.2e} of the rms height\n"
+        );
+    }
+    Ok(text)
 }

@@ -3,7 +3,6 @@
 use crate::scenes::any_model::AnyModel;
 use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::{SceneFile, cells};
-use crate::scenes::scene_surface::SceneSurface;
 use analysis::{GridError, grid_error};
 use contact_model::{Boundary, Cells, ContactState, Error, HeightMap, Load, Result, Scene, Stop, Surface};
 use std::sync::Arc;
@@ -77,9 +76,7 @@ impl GridComparison {
 /// One model of a scene, and the scene, on a grid with so many cells along its longer side: a given map is sampled at every so many-th cell.
 pub(crate) fn on_grid(scene: &SceneFile, numerics: &Numerics, longer: usize) -> Result<SceneFile> {
     let mut coarse = scene.clone();
-    if let SceneSurface::Plain(Surface::Heights(map)) = &scene.surface {
-        coarse.surface = SceneSurface::Plain(Surface::Heights(Arc::new(sampled(map, longer)?)));
-    }
+    coarse.surface = scene.surface.coarser(cells(scene, numerics), longer)?;
     coarse.models = vec![numerics.clone().reduced(longer, usize::MAX, scene.surface.size())];
     Ok(coarse)
 }
@@ -125,48 +122,5 @@ fn rms_slope(scene: &SceneFile, map: &HeightMap) -> Result<f64> {
         surface_gen::rms_slope(map)
     } else {
         Ok(surface_gen::rms_slope_differences(map))
-    }
-}
-
-/// The cells of a map nearest to the centres of a coarser grid, with at most `longer` along its longer side.
-pub(crate) fn sampled(map: &HeightMap, longer: usize) -> Result<HeightMap> {
-    let most = map.columns().max(map.rows());
-    if most <= longer {
-        return Ok(map.clone());
-    }
-    let fewer = |count: usize| (count * longer).div_ceil(most).max(1);
-    let (columns, rows) = (fewer(map.columns()), fewer(map.rows()));
-    // floor((i + 1/2) n / m)
-    let nearest = |i: usize, all: usize, few: usize| (2 * i + 1) * all / (2 * few);
-    let at = |i: usize| {
-        let (row, column) =
-            (nearest(i / columns, map.rows(), rows), nearest(i % columns, map.columns(), columns));
-        map.heights()[row * map.columns() + column]
-    };
-    let height = |h: f64| if h.is_finite() { h } else { f64::NAN };
-    let heights = (0..columns * rows).map(|i| height(at(i))).collect();
-    HeightMap::with_undefined([columns, rows], map.size(), heights)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sampled_maps_keep_their_shape_and_undefined_points() {
-        let height = |i: usize| if i % 16 == 1 { f64::NAN } else { i as f64 };
-        let map = HeightMap::with_undefined([16, 4], [8.0, 1.0], (0..64).map(height).collect()).unwrap();
-        let thin = sampled(&map, 8).unwrap();
-        assert_eq!((thin.cells(), thin.size(), thin.undefined()), ([8, 2].into(), map.size(), 2));
-        assert_eq!((thin.heights()[1], thin.heights()[9]), (19.0, 51.0));
-        assert_eq!(sampled(&map, 16).unwrap(), map);
-        // Of an odd number every second one, beginning with the first.
-        let odd = HeightMap::new([5, 1], [5.0, 1.0], vec![0.0, 1.0, 2.0, 3.0, 4.0]).unwrap();
-        assert_eq!(sampled(&odd, 3).unwrap().heights(), [0.0, 2.0, 4.0]);
-        let all = HeightMap::with_undefined([2, 1], [2.0, 1.0], vec![1.0, f64::NAN]).unwrap();
-        assert_eq!(
-            sampled(&all, 1).unwrap_err().to_string(),
-            "defined points = 0: expected at least 1 (every height of the map is undefined)"
-        );
     }
 }

@@ -5,6 +5,7 @@ use crate::scenes::error::{Error, Result};
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::statistics::MapStatisticsTables;
+use crate::scenes::surface_report::SurfaceReport;
 use contact_model::Boundary;
 use runs::Header;
 use std::path::Path;
@@ -77,8 +78,8 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     })
 }
 
-/// As [`info`] of a surface, and its statistics: tables and pictures of parameters, spectra and height differences in a directory, the
-/// parameters as lines.
+/// As [`info`] of a surface, and its statistics: tables and pictures of parameters, spectra and height differences and `report.html`
+/// in a directory, the parameters as lines.
 ///
 /// The map is taken as a piece of a larger surface: not periodic.
 ///
@@ -106,7 +107,16 @@ pub fn info_statistics(
         header = header.with_note(step.clone());
     }
     runs::files::create_directory(out)?;
-    let names: Vec<String> = runs::file_names(&statistics.write(out, &header, &name)?);
+    let mut files = statistics.write(out, &header, &name)?;
+    let report = SurfaceReport {
+        name: &name,
+        metadata: scan.metadata(),
+        steps: &found.steps,
+        map: &found.map,
+        statistics: &statistics,
+    };
+    files.push(report.write(out)?);
+    let names: Vec<String> = runs::file_names(&files);
     let text = described(&scan, &found);
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
 }

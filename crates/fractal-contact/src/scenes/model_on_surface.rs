@@ -12,11 +12,9 @@ use crate::scenes::numerics::Numerics;
 use crate::scenes::outputs::FieldFormat;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
-use crate::scenes::scene_surface::SceneSurface;
 use crate::scenes::state_result::{FieldFile, ModelResult, StateResult, StoredFile};
 use crate::scenes::warnings::Warning;
-use contact_model::{Cells, ContactState, Field, Fields, Load, Scene, Step, Stop, Surface};
-use runs::fnv1a_128;
+use contact_model::{Cells, ContactState, Field, Fields, Load, Scene, Step, Stop};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -40,13 +38,7 @@ impl ModelOnSurface {
 
     /// Everything that decides its numbers.
     pub fn key(&self, scene: &SceneFile) -> String {
-        let surface = match &scene.surface {
-            SceneSurface::Plain(Surface::Heights(map)) => {
-                let bytes: Vec<u8> = map.heights().iter().flat_map(|h| h.to_le_bytes()).collect();
-                format!("map {:?} {:?} {:032x}", map.cells(), map.size(), fnv1a_128(&bytes))
-            }
-            other => format!("{other:?}"),
-        };
+        let surface = scene.surface.key();
         let SceneFile { modulus, hardness, accuracy, pair, effects, request, requested, system, .. } = scene;
         format!(
             "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
@@ -327,8 +319,8 @@ impl ModelOnSurface {
 
 /// A field as files have it: there is no gap at an undefined point.
 fn on_defined_points<'a>(name: &str, field: &'a Field, scene: &SceneFile) -> Cow<'a, [f64]> {
-    match &scene.surface {
-        SceneSurface::Plain(Surface::Heights(map)) if map.undefined() > 0 && name == "gap" => {
+    match scene.surface.given_map() {
+        Some(map) if map.undefined() > 0 && name == "gap" => {
             let defined = |(h, g): (&f64, &f64)| if h.is_finite() { *g } else { f64::NAN };
             map.heights().iter().zip(field.values()).map(defined).collect()
         }
@@ -370,7 +362,7 @@ mod tests {
     fn fields_are_arrays_of_rows_and_columns() {
         let heights = vec![1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0];
         let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
-        let surface = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
+        let surface = SceneSurface::Plain(contact_model::Surface::Heights(Arc::new(map)));
         let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
         let mut scene = SceneFile::new(vec![Numerics::ALL[0].clone()], surface, 1.0, loads);
         let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];

@@ -11,9 +11,8 @@ use crate::scenes::human_readable::{memory, number, time};
 use crate::scenes::model_on_surface::{ModelOnSurface, probe};
 use crate::scenes::numerics::Numerics;
 use crate::scenes::scene_file::{SceneFile, cells};
-use crate::scenes::scene_surface::SceneSurface;
 use crate::scenes::summary::short;
-use contact_model::{Cells, Surface};
+use contact_model::Cells;
 use std::fmt;
 
 /// What one model will do.
@@ -188,12 +187,8 @@ fn steep(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option<Dia
 }
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
-    match &scene.surface {
-        SceneSurface::Plain(Surface::Heights(map)) if map.heights().len() <= LARGEST_DESCRIBED => {
-            Some(surface_io::describe(map))
-        }
-        _ => None,
-    }
+    let map = scene.surface.given_map().filter(|map| map.heights().len() <= LARGEST_DESCRIBED)?;
+    Some(surface_io::describe(map))
 }
 
 fn grid(scene: &SceneFile, numerics: &Numerics) -> String {

@@ -6,26 +6,20 @@ use crate::scenes::ensemble::Mean;
 use crate::scenes::entries::System;
 use crate::scenes::error::Result;
 use crate::scenes::field_pictures;
-use crate::scenes::field_view::{FieldView, Picked};
+use crate::scenes::field_view::FieldView;
 use crate::scenes::human_readable::{memory, number, time};
 use crate::scenes::outcome::SceneOutcome;
+use crate::scenes::page;
 use crate::scenes::pictures;
 use crate::scenes::plan::Plan;
 use crate::scenes::scene_file::SceneFile;
-use crate::scenes::scene_surface::SceneSurface;
 use crate::scenes::state_result::FieldFile;
 use crate::scenes::statistics::MapStatisticsTables;
 use crate::scenes::summary;
 use analysis::{Table, Value};
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
-use contact_model::Surface;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-use plots::{Chart, Curve, prefixed};
+use maud::{Markup, PreEscaped, html};
+use plots::{Chart, Curve};
 use std::path::{Path, PathBuf};
-
-const STYLE: &str = include_str!("report/page.css");
-const SCRIPT: &str = include_str!("report/page.js");
 
 /// Bytes that the fields of a page may take: it stays below 5 MB.
 const MOST_BYTES: usize = 4_000_000;
@@ -56,41 +50,24 @@ impl Report<'_> {
         let name = pictures::scene_name(self.scene);
         let (curves, fields, distributions) = (self.curves()?, self.fields(out)?, self.distributions()?);
         let spectrum = self.spectrum()?;
-        Ok(html! {
-            (DOCTYPE)
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    meta name="generator" content=(concat!("fractal-contact ", env!("CARGO_PKG_VERSION")));
-                    title { (name) }
-                    style { (PreEscaped(STYLE)) }
-                }
-                body {
-                    header {
-                        h1 { (name) }
-                        @if !self.plan.shows.is_empty() { p.lead { (self.plan.shows) } }
-                        (self.verdict())
-                    }
-                    nav aria-label="Sections" { ul {
-                        @for (id, words) in SECTIONS { li { a href={ "#" (id) } { (words) } } }
-                    } }
-                    main {
-                        section id="results" { h2 { "Results" } (self.states()) div.charts { (curves) } (distributions) }
-                        section id="fields" { h2 { "Map, pressure and gap" } (fields) }
-                        section id="surface" { h2 { "The surface, as it was understood" } (self.surface()) (spectrum) }
-                        section id="certificates" { h2 { "How sure the solutions are" } (self.certificates()) }
-                        section id="effects" { h2 { "Effects and outputs" } (self.effects()) }
-                        section id="work" { h2 { "Work and time" } (self.work()) }
-                        section id="cite" { h2 { "Sources to cite" } (self.sources()) }
-                        section id="scene" { h2 { "The scene" } pre { (self.scene.text) } }
-                    }
-                    footer { p { "fractal-contact " (env!("CARGO_PKG_VERSION")) }  }
-                    script id="palette" type="application/octet-stream" { (PreEscaped(STANDARD.encode(plots::viridis().as_flattened()))) }
-                    script { (PreEscaped(SCRIPT)) }
-                }
-            }
-        })
+        let head = html! {
+            @if !self.plan.shows.is_empty() { p.lead { (self.plan.shows) } }
+            (self.verdict())
+        };
+        let results = html! { (self.states()) div.charts { (curves) } (distributions) };
+        let surface = html! { (self.surface()) (spectrum) };
+        let scene = html! { pre { (self.scene.text) } };
+        let sections = [
+            ("results", "Results", "Results", results),
+            ("fields", "Map, pressure and gap", "Map, pressure and gap", fields),
+            ("surface", "Surface", "The surface, as it was understood", surface),
+            ("certificates", "How sure", "How sure the solutions are", self.certificates()),
+            ("effects", "Effects", "Effects and outputs", self.effects()),
+            ("work", "Work and time", "Work and time", self.work()),
+            ("cite", "Sources", "Sources to cite", self.sources()),
+            ("scene", "Scene", "The scene", scene),
+        ];
+        Ok(page::page(&name, &head, &sections))
     }
 
     fn verdict(&self) -> Markup {
@@ -137,14 +114,14 @@ impl Report<'_> {
 
     fn curves(&self) -> Result<Markup> {
         let charts = pictures::charts(self.scene, self.table, self.means);
-        let drawn = charts.iter().map(|(_, c)| chart(c, &c.title)).collect::<Result<Vec<_>>>()?;
+        let drawn = charts.iter().map(|(_, c)| page::chart(c)).collect::<Result<Vec<_>>>()?;
         Ok(html! { @for figure in drawn { (figure) } })
     }
 
     fn distributions(&self) -> Result<Markup> {
         let asked = &self.scene.requested.distributions;
         let charts = asked.iter().filter_map(|&of| distributions::chart(self.scene, of, self.solved));
-        let drawn = charts.map(|c| chart(&c, &c.title)).collect::<Result<Vec<_>>>()?;
+        let drawn = charts.map(|c| page::chart(&c)).collect::<Result<Vec<_>>>()?;
         Ok(
             html! { @if !drawn.is_empty() { h3 { "Distributions" } div.charts { @for figure in drawn { (figure) } } } },
         )
@@ -153,9 +130,9 @@ impl Report<'_> {
     fn spectrum(&self) -> Result<Markup> {
         if let Some(statistics) = self.statistics {
             let charts = statistics.charts(&pictures::scene_name(self.scene));
-            let drawn = charts.iter().map(|(_, c)| chart(c, &c.title)).collect::<Result<Vec<_>>>()?;
+            let drawn = charts.iter().map(|(_, c)| page::chart(c)).collect::<Result<Vec<_>>>()?;
             return Ok(html! {
-                h3 { "Statistics" } pre { (statistics.text()) }
+                h3 { "Statistics" } (page::statistics(statistics))
                 div.charts { @for figure in drawn { (figure) } }
             });
         }
@@ -171,7 +148,7 @@ impl Report<'_> {
             curves: vec![Curve { label: "as solved".into(), points: map.spectrum.clone(), band: Vec::new() }],
             logarithmic: true,
         };
-        Ok(html! { div.charts { (chart(&spectrum, "Power spectral density over wavenumber")?) } })
+        Ok(html! { div.charts { (page::chart(&spectrum)?) } })
     }
 
     fn surface(&self) -> Markup {
@@ -274,11 +251,7 @@ impl Report<'_> {
                 }));
             }
         }
-        let given = match &self.scene.surface {
-            SceneSurface::Plain(Surface::Heights(map)) => Some(map),
-            _ => None,
-        };
-        if let (Some(map), false) = (given, views.iter().any(|v| v.1 == "heights")) {
+        if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(|v| v.1 == "heights")) {
             let model = self.scene.models.first().map_or("", |model| model.name());
             views.insert(0, (FieldView::new("heights", map.cells(), map.heights()), "heights", model, 0));
         }
@@ -288,7 +261,9 @@ impl Report<'_> {
         let mut drawn = Vec::new();
         let mut bytes = 0;
         for view in &views {
-            let figure = self.field(view)?.into_string();
+            let (view, field, model, state) = view;
+            let picture = pictures::field(self.scene, field, model, (0, *state), view.cells, &[]);
+            let figure = page::field(&picture, view, field)?.into_string();
             bytes += figure.len();
             if bytes > MOST_BYTES {
                 break;
@@ -299,80 +274,13 @@ impl Report<'_> {
             @if drawn.is_empty() {
                 p { "No field was asked for: name `pressure`, `gap` or `heights` in [outputs]." }
             } @else {
-                p { "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or \
-                     control." @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, those of the largest loads; the others \
-                     are files beside this page." } }
+                p { (page::READING) @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, those of the largest loads; the \
+                     others are files beside this page." } }
                 div.fields { @for figure in &drawn { (PreEscaped(figure)) } }
             }
         })
     }
-
-    fn field(&self, (view, field, model, state): &(FieldView, &str, &str, usize)) -> Result<Markup> {
-        let none = pictures::field(self.scene, field, model, (0, *state), view.cells, &[]);
-        let [low, high] = view.ends().unwrap_or_default();
-        let zero = *field == "pressure";
-        let low_end = if zero { low.min(0.0) } else { low };
-        let png = plots::encode_viridis(view.columns, &view.values, [low_end, high], zero)?;
-        let size = self.scene.surface.size();
-        let (length, scale) = prefixed(none.length_unit, size.x.max(size.y));
-        let (unit, per_unit) = prefixed(none.unit, f64::from(high.abs().max(low.abs())));
-        let end =
-            |v: f32| format!("{} {unit}", summary::short(per_unit * f64::from(v))).trim_end().to_owned();
-        let words = field.strip_suffix('s').unwrap_or(field);
-        let data = serde_json::json!({
-            "across": view.columns, "down": view.rows, "block": view.block, "picked": Picked::of(field).words(),
-            "dx": size.x / view.cells.columns as f64, "dy": size.y / view.cells.rows as f64,
-            "low": low_end, "high": high, "zero": zero,
-            "quantity": if *field == "pressure" { "pressure" } else { words }, "unit": none.unit, "length": length, "scale": scale,
-        });
-        let alt = format!(
-            "{}, {}: {} columns and {} rows, from {} to {}.",
-            none.title,
-            none.subtitle,
-            view.cells.columns,
-            view.cells.rows,
-            end(low),
-            end(high)
-        );
-        let mut ramp = "linear-gradient(to right".to_owned();
-        for [r, g, b] in plots::viridis().into_iter().step_by(17) {
-            ramp += &format!(",rgb({r},{g},{b})");
-        }
-        Ok(html! {
-            figure.field data-field=(data.to_string()) {
-                img src={ "data:image/png;base64," (STANDARD.encode(png)) } alt=(alt);
-                div.bar aria-hidden="true" { span { (end(low_end)) } i style={ "background:" (ramp) ")" } {} span { (end(high)) } }
-                div.tools {
-                    button type="button" aria-label={ "Enlarge: " (words) } { "+" }
-                    button type="button" aria-label={ "Reduce: " (words) } { "-" }
-                    button type="button" { "whole map" }
-                }
-                figcaption {
-                    strong { (none.title) } ", " (none.subtitle)
-                    @if view.block > 1 { "; each pixel is " (Picked::of(field).words()) " of " (view.block) " x " (view.block) " cells" }
-                }
-                output aria-live="polite" {}
-                script.values type="application/octet-stream" {
-                    (PreEscaped(STANDARD.encode(view.values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())))
-                }
-                script.places type="application/octet-stream" {
-                    (PreEscaped(STANDARD.encode(view.places.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())))
-                }
-            }
-        })
-    }
 }
-
-const SECTIONS: [(&str, &str); 8] = [
-    ("results", "Results"),
-    ("fields", "Map, pressure and gap"),
-    ("surface", "Surface"),
-    ("certificates", "How sure"),
-    ("effects", "Effects"),
-    ("work", "Work and time"),
-    ("cite", "Sources"),
-    ("scene", "Scene"),
-];
 
 const CERTIFICATES: [(&str, &str); 5] = [
     (
@@ -384,12 +292,3 @@ const CERTIFICATES: [(&str, &str); 5] = [
     ("load_error", "the force is the one that was asked for"),
     ("stiffness_error", "an estimate: the stiffness belongs to the contact set of the exact solution"),
 ];
-
-/// A chart as a picture that keeps its names to itself.
-fn chart(chart: &Chart, alt: &str) -> Result<Markup> {
-    let svg = STANDARD.encode(chart.svg()?);
-    let plain = alt.replace(['$', '\\'], "");
-    Ok(
-        html! { figure { img src={ "data:image/svg+xml;base64," (svg) } alt=(plain) width="800" height="600"; } },
-    )
-}

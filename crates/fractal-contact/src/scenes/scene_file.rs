@@ -10,7 +10,7 @@ use crate::scenes::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::scenes::outputs::{RequestedOutputs, read_outputs};
 use crate::scenes::registry::Registry;
 use crate::scenes::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
-use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Pair, Rheology, Scene, Surface};
+use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Pair, Rheology, Scene};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use surface_io::Dimension;
@@ -227,7 +227,7 @@ impl SceneFile {
 
     /// Whether a seed decides what a model is given or draws.
     pub(crate) fn is_random(&self) -> bool {
-        let given = matches!(self.surface, SceneSurface::Plain(Surface::Heights(_)));
+        let given = self.surface.given_map().is_some();
         self.surface.is_random() || given && self.models.iter().any(|m| self.surface.is_random_for(m))
     }
 
@@ -375,9 +375,7 @@ fn read_sampling(
     surface: &SceneSurface,
     notes: &mut Vec<Diagnostic>,
 ) -> Read<Sampling> {
-    let line = models.iter().find(|(m, _)| {
-        matches!(surface, SceneSurface::Plain(Surface::Heights(_))) && surface.is_random_for(m)
-    });
+    let line = models.iter().find(|(m, _)| surface.given_map().is_some() && surface.is_random_for(m));
     let is_random = surface.is_random() || line.is_some();
     let Some((name, entry)) = root.one_of(&["sampling", "chance"])? else {
         if let Some((_, model)) = line {
@@ -434,7 +432,7 @@ fn check_cells(
     models: &[(Numerics, Entry<'_>)],
     surface: &SceneSurface,
 ) -> Read<()> {
-    let SceneSurface::Plain(Surface::Heights(map)) = surface else {
+    let Some(own) = surface.own_cells() else {
         for (numerics, name) in models {
             let Some(elements) = numerics.boundary_elements() else { continue };
             let cells = elements.grid(surface.size());
@@ -453,7 +451,7 @@ fn check_cells(
     let Some(options) = options else { return Ok(()) };
     for model in ["bem3d", "equivalent"] {
         let Some(table) = options.entry(model) else { continue };
-        for (key, own) in [("cells", map.columns()), ("rows", map.rows())] {
+        for (key, own) in [("cells", own.columns), ("rows", own.rows)] {
             if let Some(cells) = table.table()?.entry(key) {
                 return Err(cells
                     .diagnostic_at_key(format!("`{key}` is given, but the map brings its own {own}"))
@@ -472,7 +470,7 @@ fn check_homogeneous(
     models: &[(Numerics, Entry<'_>)],
     surface: &SceneSurface,
 ) -> Read<()> {
-    if !matches!(surface, SceneSurface::Plain(Surface::Heights(_))) || scene.entry("body").is_none() {
+    if surface.own_cells().is_none() || scene.entry("body").is_none() {
         return Ok(());
     }
     let Some((numerics, name)) = models.iter().find(|(m, _)| m.is_statistical()) else { return Ok(()) };
@@ -499,7 +497,9 @@ fn check_request(
         Prescribed::MeanGap if !periodic => Err(entry
             .diagnostic_at_key("a mean gap with free boundaries")
             .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]")),
-        Prescribed::ForceBar if !surface.is_rough() || matches!(surface, SceneSurface::Sum { .. }) => {
+        Prescribed::ForceBar
+            if !surface.is_rough() || matches!(surface, SceneSurface::Drawn { body: Some(_), .. }) =>
+        {
             Err(entry
                 .diagnostic_at_key(
                     "`force_bar` counts forces in the rms height of a rough surface, which this body has not",
@@ -542,9 +542,9 @@ fn check_histories(
 }
 /// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.
 pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> Cells {
-    match (&scene.surface, numerics.boundary_elements()) {
-        (SceneSurface::Plain(Surface::Heights(map)), _) => map.cells(),
-        (surface, Some(elements)) => elements.grid(surface.size()),
-        _ => Cells { columns: numerics.size(), rows: 1 },
+    match (scene.surface.own_cells(), numerics.boundary_elements()) {
+        (Some(own), _) => own,
+        (None, Some(elements)) => elements.grid(scene.surface.size()),
+        (None, None) => Cells { columns: numerics.size(), rows: 1 },
     }
 }

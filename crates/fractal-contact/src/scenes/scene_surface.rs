@@ -1,27 +1,31 @@
 //! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
 
 use crate::scenes::diagnostic::Diagnostic;
-use crate::scenes::entries::{Entries, LengthOrPair, Read, System};
-use crate::scenes::human_readable::number;
+use crate::scenes::entries::{Entries, Entry, LengthOrPair, Read, System};
 use crate::scenes::numerics::Numerics;
+use crate::scenes::random_surface::{
+    RandomSpectrum, RandomSurface, describe_self_affine, describe_sides, map_key,
+};
+use crate::scenes::sampled::sampled;
 use crate::scenes::scan;
-use contact_model::{Amplitude, Error, HeightMap, Result, SelfAffine, Size, Surface};
+use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size, Surface};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
+use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum, WaveGenerator};
 use surface_io::Dimension;
 
-/// What is pressed: a surface, or a random surface on a body.
+/// What is pressed: a surface, or what a seed draws on cells, alone or on a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SceneSurface {
     /// One surface.
     Plain(Surface),
-    /// A random surface on a body: heights add.
-    Sum {
+    /// A random surface that is drawn on the cells of each model; heights of a body are added.
+    Drawn {
         /// The random part.
-        rough: SelfAffine,
+        rough: RandomSurface,
         /// The body.
-        body: Surface,
+        body: Option<Surface>,
     },
 }
 
@@ -30,13 +34,13 @@ impl SceneSurface {
     pub fn size(&self) -> Size {
         match self {
             Self::Plain(surface) => surface.size(),
-            Self::Sum { rough, .. } => rough.size,
+            Self::Drawn { rough, .. } => rough.size(),
         }
     }
 
     /// Whether a seed decides what it looks like.
     pub fn is_random(&self) -> bool {
-        matches!(self, Self::Plain(Surface::SelfAffine(_)) | Self::Sum { .. })
+        matches!(self, Self::Plain(Surface::SelfAffine(_)) | Self::Drawn { .. })
     }
 
     /// Whether a model has other numbers for other seeds: of a given map only the line that stands for it has.
@@ -50,17 +54,47 @@ impl SceneSurface {
         matches!(
             self,
             Self::Plain(Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. })
-                | Self::Sum { .. }
+                | Self::Drawn { .. }
         )
+    }
+
+    /// The map of a file, as it is solved.
+    pub fn given_map(&self) -> Option<&Arc<HeightMap>> {
+        match self {
+            Self::Plain(Surface::Heights(map)) => Some(map),
+            _ => None,
+        }
+    }
+
+    /// Cells that it brings, whatever a model asks for: those of a given map, and of its twin.
+    pub(crate) fn own_cells(&self) -> Option<Cells> {
+        match self {
+            Self::Plain(Surface::Heights(map)) => Some(map.cells()),
+            Self::Plain(_) => None,
+            Self::Drawn { rough, .. } => rough.own_cells(),
+        }
+    }
+
+    /// The same surface on at most so many cells along its longer side, where a model has `cells` otherwise.
+    pub(crate) fn coarser(&self, cells: Cells, longer: usize) -> Result<Self> {
+        Ok(match self {
+            Self::Plain(Surface::Heights(map)) => {
+                Self::Plain(Surface::Heights(Arc::new(sampled(map, longer)?)))
+            }
+            Self::Plain(_) => self.clone(),
+            Self::Drawn { rough, body } => {
+                Self::Drawn { rough: rough.coarser(cells, longer), body: body.clone() }
+            }
+        })
     }
 
     /// In a phrase.
     pub fn describe(&self) -> String {
         match self {
-            Self::Plain(Surface::SelfAffine(s)) => self_affine(s),
+            Self::Plain(Surface::SelfAffine(s)) => describe_self_affine(s),
             Self::Plain(Surface::Heights(map)) => {
-                let mut text =
-                    format!("a map of {} x {} cells, {}", map.columns(), map.rows(), sides(map.size()));
+                let sides = describe_sides(map.size());
+                let mut text = format!("a map of {} x {} cells, {sides}", map.columns(), map.rows());
                 if map.undefined() > 0 {
                     text += &format!(", {} undefined points", map.undefined());
                 }
@@ -69,54 +103,49 @@ impl SceneSurface {
             Self::Plain(surface) => {
                 let size = surface.size();
                 let shape = if size.is_square() { "square" } else { "rectangle" };
-                format!("{} on a {shape} of {}", surface.kind(), sides(size))
+                format!("{} on a {shape} of {}", surface.kind(), describe_sides(size))
             }
-            Self::Sum { rough, body } => format!("{} on {}", self_affine(rough), body.kind()),
+            Self::Drawn { rough, body: None } => rough.describe(),
+            Self::Drawn { rough, body: Some(body) } => format!("{} on {}", rough.describe(), body.kind()),
         }
     }
 
-    /// What a model is given: sums are drawn on the model's own cells.
+    /// Everything that decides its heights, but the seed, in a line.
+    pub(crate) fn key(&self) -> String {
+        match self {
+            Self::Plain(Surface::Heights(map)) => map_key(map),
+            Self::Drawn { rough, body } => format!("{} on {body:?}", rough.key()),
+            Self::Plain(surface) => format!("{surface:?}"),
+        }
+    }
+
+    /// What a model is given: what is drawn is drawn on the model's own cells.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for a sum and a model without cells, and what drawing a surface refuses.
+    /// [`Error::Unsupported`] for a model without cells and a surface that needs them, and what drawing it refuses.
     pub fn for_model(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
-        match self {
-            Self::Plain(surface) => Ok(surface.clone()),
-            Self::Sum { rough, body } => {
-                let Some(elements) = numerics.boundary_elements() else {
-                    return Err(Error::unsupported(
-                        numerics.name(),
-                        "a rough surface on a body (it takes one or the other)",
-                    ));
-                };
-                let rough = surface_gen::self_affine_map(rough, elements.grid(rough.size), seed)?;
-                Ok(Surface::Heights(Arc::new(add(&rough, body)?)))
+        let (rough, body) = match self {
+            Self::Plain(surface) => return Ok(surface.clone()),
+            Self::Drawn { rough, body } => (rough, body),
+        };
+        let elements = numerics.boundary_elements();
+        let cells = match (elements.map(|elements| elements.grid(rough.size())), rough.own_cells(), body) {
+            (Some(cells), ..) | (None, Some(cells), None) => cells,
+            (None, _, Some(_)) => {
+                let what = "a rough surface on a body (it takes one or the other)";
+                return Err(Error::unsupported(numerics.name(), what));
             }
-        }
+            (None, None, None) => {
+                let what = "a lay or a distribution of heights: it draws no map";
+                return Err(Error::unsupported(numerics.name(), what));
+            }
+        };
+        let map = rough.draw(cells, seed)?.map;
+        Ok(Surface::Heights(Arc::new(match body {
+            Some(body) => add(&map, body)?,
+            None => map,
+        })))
     }
-}
-
-/// One side of a square or both of a rectangle.
-fn sides(size: Size) -> String {
-    if size.is_square() {
-        format!("side {}", number(size.x))
-    } else {
-        format!("sides {} x {}", number(size.x), number(size.y))
-    }
-}
-
-fn self_affine(s: &SelfAffine) -> String {
-    let mut text = format!("a self-affine surface, D_f = {}, {}", s.fractal_dimension(), sides(s.size));
-    if let Amplitude::RmsHeight(h) = s.amplitude {
-        text += &format!(", rms height {}", number(h));
-    }
-    if let Some(q) = s.roll_off {
-        text += &format!(", roll-off at the wavelength {}", number(2.0 * PI / q));
-    }
-    if let Some(q) = s.short_cutoff {
-        text += &format!(", shortest wavelength {}", number(2.0 * PI / q));
-    }
-    text
 }
 
 /// Heights of a map plus those of a body on the same cells.
@@ -174,6 +203,7 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
         return Ok(SceneSurface::Plain(read_body(&body, None, system)?).into());
     };
     if of_file(&surface)? {
+        let twin = read_twin(&surface, second.is_some())?;
         let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes } =
             scan::read_map(&surface, system, directory)?;
         if let Some(second) = second {
@@ -183,23 +213,78 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
             metadata += &format!("\nsecond surface\n{}", other.metadata);
             notes.extend(other.notes);
         }
+        let body = body.map(|body| read_body(&body, Some(map.size()), system)).transpose()?;
+        if let Some((entry, like, keep_heights)) = twin {
+            let of = Arc::new(map);
+            // What stands in the way of a twin is found before anything is solved.
+            WaveGenerator::twin(&of, like).map_err(|e| {
+                entry.diagnostic(format!("no twin of this map: {e}")).with_help(
+                    "undefined points need `fill`; a map that is not periodic `detrend` and `window = \"hann\"`",
+                )
+            })?;
+            let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
+            let rough = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
+            let surface = SceneSurface::Drawn { rough, body };
+            return Ok(SurfaceEntry { surface, metadata: Some(metadata), reliable_from, notes });
+        }
         let map = match body {
             None => map,
-            Some(body) => {
-                let body = read_body(&body, Some(map.size()), system)?;
-                add(&map, &body).map_err(|e| scene.diagnostic(e.to_string()))?
-            }
+            Some(body) => add(&map, &body).map_err(|e| scene.diagnostic(e.to_string()))?,
         };
         let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
         return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), reliable_from, notes });
     }
     let rough = read_self_affine(&surface, system)?;
+    let (anisotropy, heights) = (read_anisotropy(&surface)?, read_heights(&surface)?);
     surface.known_only()?;
-    let sum = match body {
-        None => SceneSurface::Plain(Surface::SelfAffine(rough)),
-        Some(body) => SceneSurface::Sum { rough, body: read_body(&body, Some(rough.size), system)? },
+    let body = body.map(|body| read_body(&body, Some(rough.size), system)).transpose()?;
+    if anisotropy.is_none() && heights.is_none() && body.is_none() {
+        return Ok(SceneSurface::Plain(Surface::SelfAffine(rough)).into());
+    }
+    let spectrum = RandomSpectrum::SelfAffine { surface: rough, anisotropy };
+    Ok(SceneSurface::Drawn { rough: RandomSurface::new(spectrum, heights), body }.into())
+}
+
+/// `twin` and `keep_heights`.
+fn read_twin<'a>(table: &Entries<'a>, is_second: bool) -> Read<Option<(Entry<'a>, TwinSpectrum, bool)>> {
+    let keep = table.find("keep_heights");
+    let Some(entry) = table.find("twin") else {
+        return match keep {
+            None => Ok(None),
+            Some(keep) => Err(keep
+                .diagnostic_at_key("`keep_heights` is given, but no `twin`")
+                .with_help("add `twin = \"waves\"`, or remove it: the map itself has its heights")),
+        };
     };
-    Ok(sum.into())
+    let like = entry.choice(&[("waves", TwinSpectrum::EachWave), ("rings", TwinSpectrum::Rings)])?;
+    if is_second {
+        return Err(entry
+            .diagnostic_at_key("`twin` beside [scene.second_surface]")
+            .with_help("draw the twin into a file with `fractal-contact twin`, and read that file here"));
+    }
+    let keep_heights = keep.map_or(Ok(false), |keep| keep.flag())?;
+    Ok(Some((entry, like, keep_heights)))
+}
+
+/// `anisotropy` and `lay`.
+fn read_anisotropy(table: &Entries<'_>) -> Read<Option<Anisotropy>> {
+    let lay = table.find("lay");
+    let Some(ratio) = table.find("anisotropy") else {
+        return match lay {
+            None => Ok(None),
+            Some(lay) => Err(lay
+                .diagnostic_at_key("`lay` is given, but no `anisotropy`")
+                .with_help("add `anisotropy = 4`: waves along the lay are so many times as long as across")),
+        };
+    };
+    let lay = lay.map_or(Ok(0.0), |lay| lay.number())?;
+    Ok(Some(Anisotropy { ratio: ratio.positive_number()?, lay }))
+}
+
+/// `weibull`.
+fn read_heights(table: &Entries<'_>) -> Read<Option<HeightDistribution>> {
+    let shape = table.find("weibull").map(|shape| shape.positive_number()).transpose()?;
+    Ok(shape.map(|shape| HeightDistribution::Weibull { shape }))
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -259,7 +344,7 @@ fn read_size(table: &Entries<'_>, system: System) -> Read<Size> {
     }
 }
 
-fn within(entry: &crate::scenes::entries::Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
+fn within(entry: &Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
     if (low..=high).contains(&value) {
         Ok(value)
     } else {

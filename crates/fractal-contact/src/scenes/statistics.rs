@@ -4,16 +4,11 @@ use crate::scenes::entries::System;
 use crate::scenes::error::Result;
 use crate::scenes::grid_comparison::solved_map;
 use crate::scenes::scene_file::SceneFile;
-use crate::scenes::scene_surface::SceneSurface;
 use crate::scenes::summary::short;
-use analysis::{Column, Table, Value};
-use contact_model::{Boundary, HeightMap, Surface};
-use plots::{Chart, Curve};
-use runs::{Header, write_csv};
-use std::path::{Path, PathBuf};
+use contact_model::{Boundary, HeightMap};
 use std::sync::Arc;
 use surface_statistics::{
-    Bins, Derivatives, DifferenceMap, FeatureParameters, HeightDifference, HeightParameters,
+    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightDifference, HeightParameters,
     HybridParameters, Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters,
     SpectrumFit, Taper, Wavelength, texture_direction,
 };
@@ -21,9 +16,9 @@ use surface_statistics::{
 /// Bins in a decade of wavenumbers and of distances.
 const PER_DECADE: f64 = 10.0;
 /// Of the bands.
-const LEVEL: f64 = 0.95;
+pub(crate) const LEVEL: f64 = 0.95;
 /// The files.
-pub(crate) const FILES: [&str; 8] = [
+pub(crate) const FILES: [&str; 10] = [
     "statistics.csv",
     "spectrum.csv",
     "height-difference.csv",
@@ -32,26 +27,40 @@ pub(crate) const FILES: [&str; 8] = [
     "spectrum.png",
     "height-difference.svg",
     "height-difference.png",
+    "slope.svg",
+    "slope.png",
 ];
 
 /// One number.
-struct Parameter {
-    symbol: &'static str,
-    value: Option<f64>,
+pub(crate) struct Parameter {
+    pub symbol: &'static str,
+    pub value: Option<f64>,
     /// Ends of the 95 % interval; one of them for a bound.
-    ends: [Option<f64>; 2],
+    pub ends: [Option<f64>; 2],
     /// Power of the length in its unit; `None` for an angle.
-    power: Option<i32>,
-    meaning: &'static str,
+    pub power: Option<i32>,
+    pub meaning: &'static str,
+}
+
+/// Limits over each distance, where they are known.
+pub(crate) type Bands = Vec<Option<[f64; 2]>>;
+
+/// Slope and curvature along one axis.
+pub(crate) struct Scale {
+    pub axis: &'static str,
+    pub slope: (ScaleDependence, Bands),
+    pub curvature: (ScaleDependence, Bands),
 }
 
 /// What a map is, and why some of it is not known.
 pub(crate) struct MapStatisticsTables {
-    system: System,
-    parameters: Vec<Parameter>,
-    spectra: Vec<(&'static str, PowerSpectrum)>,
-    differences: Option<HeightDifference>,
-    scales: Vec<(&'static str, ScaleDependence, ScaleDependence)>,
+    pub system: System,
+    pub parameters: Vec<Parameter>,
+    pub spectra: Vec<(&'static str, PowerSpectrum)>,
+    pub differences: Option<(HeightDifference, Bands)>,
+    pub scales: Vec<Scale>,
+    /// Shortest and longest wavelength that can be trusted.
+    pub reliable: Option<[f64; 2]>,
     /// Reasons why a part is missing.
     pub notes: Vec<String>,
 }
@@ -65,14 +74,27 @@ impl MapStatisticsTables {
             spectra: Vec::new(),
             differences: None,
             scales: Vec::new(),
+            reliable: None,
             notes: Vec::new(),
         };
         found.heights(map);
         found.spectra(map, boundary);
         found.fit(map, boundary, instrument);
+        found.distances(map, boundary);
+        found
+    }
+
+    fn distances(&mut self, map: &HeightMap, boundary: Boundary) {
+        let bands = self.known("bands over distances", DifferenceBands::new(map, boundary));
+        let limits = |of: &dyn Fn(&DifferenceBands) -> contact_model::Result<Bands>| -> Bands {
+            bands.as_ref().and_then(|bands| of(bands).ok()).unwrap_or_default()
+        };
         let differences = DifferenceMap::new(map, boundary);
         let radial = Bins::of_distances(map, PER_DECADE).and_then(|bins| differences.radial(&bins));
-        found.differences = found.known("height differences", radial);
+        if let Some(found) = self.known("height differences", radial) {
+            let limits = limits(&|bands| bands.of_differences(&found, LEVEL));
+            self.differences = Some((found, limits));
+        }
         let along = [
             (
                 "x",
@@ -85,13 +107,23 @@ impl MapStatisticsTables {
                 ScaleDependence::curvature_along_y(map, boundary),
             ),
         ];
-        for (axis, slope, curvature) in along {
-            let slope = found.known("slope by scale", slope);
-            if let Some((slope, curvature)) = slope.zip(found.known("curvature by scale", curvature)) {
-                found.scales.push((axis, slope, curvature));
+        for (i, (axis, slope, curvature)) in along.into_iter().enumerate() {
+            let slope = self.known("slope by scale", slope);
+            if let Some((slope, curvature)) = slope.zip(self.known("curvature by scale", curvature)) {
+                let of_slope = limits(&|bands| bands.of_slopes(&slope, i, LEVEL));
+                let of_curvature = limits(&|bands| bands.of_curvatures(&curvature, i, LEVEL));
+                self.scales.push(Scale {
+                    axis,
+                    slope: (slope, of_slope),
+                    curvature: (curvature, of_curvature),
+                });
             }
         }
-        found
+    }
+
+    /// Sq.
+    pub fn rms_height(&self) -> Option<f64> {
+        self.parameters.iter().find(|p| p.symbol == "Sq")?.value
     }
 
     fn known<T>(&mut self, what: &str, found: contact_model::Result<T>) -> Option<T> {
@@ -174,10 +206,14 @@ impl MapStatisticsTables {
     fn fit(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>) {
         // Of the tip's distance the stencil has two.
         let instrument = instrument.map(|distance| 2.0 * distance);
+        // Where nothing is left between both limits, the limits are known all the same.
+        let longest = map.size().x.min(map.size().y) * if boundary == Boundary::Free { 0.5 } else { 1.0 };
+        self.reliable = instrument.map(|shortest| [shortest, longest]);
         let Some(reliable) = self.known("wavelengths", ReliableWavelengths::new(map, boundary, instrument))
         else {
             return;
         };
+        self.reliable = Some([reliable.shortest, reliable.longest]);
         self.push("shortest", Some(reliable.shortest), 1, "wavelength down to which the map can be trusted");
         self.push("longest", Some(reliable.longest), 1, "wavelength up to which it can");
         let Some(fit) = self
@@ -207,7 +243,7 @@ impl MapStatisticsTables {
         );
     }
 
-    fn unit(&self, power: i32) -> &'static str {
+    pub fn unit(&self, power: i32) -> &'static str {
         match (self.system, power) {
             (_, 0) => "1",
             (System::None, _) => "scene",
@@ -224,10 +260,7 @@ impl MapStatisticsTables {
     /// # Errors
     /// A surface that cannot be drawn.
     pub fn of_scene(scene: &SceneFile) -> Result<Self> {
-        let of_file = match &scene.surface {
-            SceneSurface::Plain(Surface::Heights(map)) => Some(Arc::clone(map)),
-            _ => None,
-        };
+        let of_file = scene.surface.given_map().map(Arc::clone);
         let with_cells = scene.models.iter().find(|model| model.boundary_elements().is_some());
         let drawn = with_cells.map(|model| solved_map(scene, model, scene.seed(0))).transpose();
         let Some(map) = drawn.map_err(runs::Error::model("statistics"))?.or(of_file) else {
@@ -240,209 +273,37 @@ impl MapStatisticsTables {
         Ok(Self::new(&map, scene.effects.boundary, scene.reliable_from, scene.system))
     }
 
-    /// The parameters as aligned lines, what is missing below.
-    pub fn text(&self) -> String {
-        let mut text = String::new();
-        for p in &self.parameters {
+    /// The parameters as texts: symbol, value, interval, meaning.
+    pub fn rows(&self) -> impl Iterator<Item = [String; 4]> {
+        self.parameters.iter().map(|p| {
             let unit = p.power.map_or(" degrees".to_owned(), |power| match self.unit(power) {
                 "1" | "scene" => String::new(),
                 unit => format!(" {unit}"),
             });
-            let value = match (p.value, p.ends) {
+            let known = |v: f64| format!("{}{unit}", short(v));
+            let (value, interval) = match (p.value, p.ends) {
                 (Some(v), [Some(low), Some(high)]) => {
-                    format!("{}{unit} ({} to {})", short(v), short(low), short(high))
+                    (known(v), format!("{} to {}", short(low), short(high)))
                 }
-                (Some(v), _) => format!("{}{unit}", short(v)),
-                (None, [Some(low), None]) => format!("at least {}{unit}", short(low)),
-                (None, [None, Some(high)]) => format!("at most {}{unit}", short(high)),
-                (None, _) => "not found".to_owned(),
+                (Some(v), _) => (known(v), String::new()),
+                (None, [Some(low), None]) => (format!("at least {}", known(low)), String::new()),
+                (None, [None, Some(high)]) => (format!("at most {}", known(high)), String::new()),
+                (None, _) => ("not found".to_owned(), String::new()),
             };
-            text += &format!("{:14} {value:36} {}\n", p.symbol, p.meaning);
+            [p.symbol.to_owned(), value, interval, p.meaning.to_owned()]
+        })
+    }
+
+    /// The parameters as aligned lines, what is missing below.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for [symbol, value, interval, meaning] in self.rows() {
+            let value = if interval.is_empty() { value } else { format!("{value} ({interval})") };
+            text += &format!("{symbol:14} {value:36} {meaning}\n");
         }
         for note in &self.notes {
             text += &format!("not known      {note}\n");
         }
         text
-    }
-
-    /// Writes the tables, and pictures of spectra and height differences.
-    ///
-    /// # Errors
-    /// Files that cannot be written.
-    pub fn write(&self, out: &Path, header: &Header, name: &str) -> Result<Vec<PathBuf>> {
-        let tables =
-            [self.parameter_table()?, self.spectrum_table()?, self.difference_table()?, self.scale_table()?];
-        let mut files = Vec::new();
-        for (file, table) in FILES.iter().zip(tables) {
-            let path = out.join(file);
-            write_csv(&path, &table, header)?;
-            files.push(path);
-        }
-        for (file, chart) in self.charts(name) {
-            files.extend(chart.save(out, file)?);
-        }
-        Ok(files)
-    }
-
-    fn parameter_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
-        let columns = vec![
-            column("quantity", "-", "symbol"),
-            column("value", "of its row", "empty where there is only a bound, or nothing"),
-            column("low", "of its row", "lower end of the 95 % interval, where there is one"),
-            column("high", "of its row", "its upper end"),
-            column("unit", "-", "of the row"),
-            column("meaning", "-", "what it is"),
-        ];
-        let mut table = Table::new("Statistics of a surface", columns);
-        for p in &self.parameters {
-            let unit = p.power.map_or("degrees", |power| self.unit(power));
-            let row = vec![
-                p.symbol.into(),
-                p.value.into(),
-                p.ends[0].into(),
-                p.ends[1].into(),
-                unit.into(),
-                p.meaning.into(),
-            ];
-            table.push(row).map_err(runs::Error::model("statistics"))?;
-        }
-        Ok(table)
-    }
-
-    fn spectrum_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
-        let columns = vec![
-            column(
-                "direction",
-                "-",
-                "radial: averaged over rings, in length^4; x and y: of profiles, averaged, in length^3",
-            ),
-            column("wavenumber", self.unit(-1), "q = 2 pi/wavelength"),
-            column(
-                "density",
-                "of its row",
-                "two-sided: its integral over all q is the variance of the heights",
-            ),
-            column("low", "of its row", "lower end of the 95 % band of Gaussian heights"),
-            column("high", "of its row", "its upper end"),
-            column("degrees_of_freedom", "1", "of the mean"),
-        ];
-        let mut table = Table::new("Power spectral densities", columns);
-        for (direction, s) in &self.spectra {
-            let bands = s.band(LEVEL).unwrap_or_default();
-            for (i, (&q, &density)) in s.wavenumber.iter().zip(&s.density).enumerate() {
-                let [low, high] = bands
-                    .get(i)
-                    .map_or([None; 2], |band| band.map(Some))
-                    .map(|v| v.filter(|v| v.is_finite()));
-                let freedom = s.degrees_of_freedom.get(i).copied();
-                let row: Vec<Value> = vec![
-                    (*direction).into(),
-                    q.into(),
-                    density.into(),
-                    low.into(),
-                    high.into(),
-                    freedom.into(),
-                ];
-                table.push(row).map_err(runs::Error::model("a spectrum"))?;
-            }
-        }
-        Ok(table)
-    }
-
-    fn difference_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
-        let square = if self.system == System::Si { "m^2" } else { "scene" };
-        let columns = vec![
-            column("distance", self.unit(1), "between two points, in any direction"),
-            column("half_square", square, "<[h(x + r) - h(x)]^2>/2: the variance less the autocorrelation"),
-            column("slope", "1", "rms slope over that distance: sqrt(2 half_square)/distance"),
-            column("pairs", "1", "of points"),
-        ];
-        let mut table = Table::new("Height differences", columns);
-        if let Some(d) = &self.differences {
-            for (((&r, &a), slope), &pairs) in
-                d.distance.iter().zip(&d.half_square).zip(d.slope()).zip(&d.pairs)
-            {
-                table
-                    .push(vec![r.into(), a.into(), slope.into(), pairs.into()])
-                    .map_err(runs::Error::model("differences"))?;
-            }
-        }
-        Ok(table)
-    }
-
-    fn scale_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
-        let columns = vec![
-            column("axis", "-", "along which differences are taken"),
-            column("distance", self.unit(1), "over which they are taken"),
-            column("rms_slope", "1", "of first differences over that distance"),
-            column(
-                "rms_curvature",
-                self.unit(-1),
-                "of second differences over it; empty where the map is too short",
-            ),
-        ];
-        let mut table = Table::new("Slope and curvature by scale", columns);
-        for (axis, slope, curvature) in &self.scales {
-            for (&distance, &rms) in slope.distance.iter().zip(&slope.rms) {
-                let of = curvature.distance.iter().position(|d| (d - distance).abs() <= 1e-9 * distance);
-                let curvature = of.and_then(|i| curvature.rms.get(i)).copied();
-                table
-                    .push(vec![(*axis).into(), distance.into(), rms.into(), curvature.into()])
-                    .map_err(runs::Error::model("scales"))?;
-            }
-        }
-        Ok(table)
-    }
-
-    /// The pictures, by the names of their files.
-    pub fn charts(&self, name: &str) -> Vec<(&'static str, Chart)> {
-        let si = |unit: &str| {
-            if self.system == System::Si { format!(" ($\\rm{{{unit}}}$)") } else { String::new() }
-        };
-        let mut charts = Vec::new();
-        let points = |x: &[f64], y: &[f64]| x.iter().copied().zip(y.iter().copied()).collect::<Vec<_>>();
-        if let Some((_, s)) = self.spectra.iter().find(|(direction, _)| *direction == "radial") {
-            let band = s.band(LEVEL).unwrap_or_default();
-            let band = s.wavenumber.iter().zip(band).map(|(&q, [low, high])| (q, low, high)).collect();
-            charts.push((
-                "spectrum",
-                Chart {
-                    title: "Power spectral density".into(),
-                    subtitle: format!(
-                        "{name}: averaged over rings, two-sided; shaded: 95 % of Gaussian heights"
-                    ),
-                    x_label: format!("wavenumber $q${}", si("1/m")),
-                    y_label: format!("$C_{{2D}}${}", si("m^4")),
-                    curves: vec![Curve {
-                        label: "map".into(),
-                        points: points(&s.wavenumber, &s.density),
-                        band,
-                    }],
-                    logarithmic: true,
-                },
-            ));
-        }
-        if let Some(d) = &self.differences {
-            charts.push((
-                "height-difference",
-                Chart {
-                    title: "Height differences".into(),
-                    subtitle: format!("{name}: half the mean square over all directions"),
-                    x_label: format!("distance $r${}", si("m")),
-                    y_label: format!("$A${}", si("m^2")),
-                    curves: vec![Curve {
-                        label: "map".into(),
-                        points: points(&d.distance, &d.half_square),
-                        band: Vec::new(),
-                    }],
-                    logarithmic: true,
-                },
-            ));
-        }
-        charts
     }
 }
