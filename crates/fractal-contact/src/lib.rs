@@ -10,6 +10,7 @@
 //! | [`analytic`] | closed forms and theories: Hertz, JKR, Westergaard, Persson, Greenwood and Williamson, ... |
 //! | [`surface_gen`] | self-affine surfaces from a seed, and what is measured on a surface |
 //! | [`analysis`] | means, fits with errors, tables |
+//! | [`surface_statistics`] | parameters of ISO 25178, spectra with bands, fits with intervals |
 //! | [`surface_io`] | measured surfaces from files, fields into files |
 //! | `scenes` | text files that name what is pressed and what is asked, and the program `fractal-contact` |
 //! | `runs`, `plots` | jobs with a result store, CSV and manifest; charts and pictures of maps (feature `scenes`) |
@@ -42,7 +43,7 @@ pub use contact_model::*;
 
 pub use bem3d::Bem3d;
 pub use mdr1d::{Equivalent, Mdr1d};
-pub use {analysis, analytic, bem3d, mdr1d, surface_gen, surface_io};
+pub use {analysis, analytic, bem3d, mdr1d, surface_gen, surface_io, surface_statistics};
 
 #[cfg(feature = "scenes")]
 pub mod scenes;

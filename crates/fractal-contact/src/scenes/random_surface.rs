@@ -79,6 +79,14 @@ impl RandomSurface {
         Self { sampling: (!drawn).then_some((finest, longer)), ..self.clone() }
     }
 
+    /// The map that a seed draws on these cells; a twin has those of its map, whatever they are.
+    ///
+    /// # Errors
+    /// Those of [`WaveGenerator`], [`PrescribedMap`] and [`surface_gen::self_affine_map`].
+    pub fn map(&self, cells: impl Into<Cells>, seed: u64) -> Result<HeightMap> {
+        Ok(self.draw(cells.into(), seed)?.map)
+    }
+
     /// Draws it; `cells` count where it brings none of its own.
     ///
     /// # Errors

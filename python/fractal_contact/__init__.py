@@ -1,0 +1,121 @@
+"""Normal contact of elastic bodies with rough surfaces, each result with its error.
+
+>>> import numpy as np
+>>> import fractal_contact as fc
+>>> rough = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01).height_map(65, seed=1)
+>>> scene = fc.Scene(rough, modulus=1.0, outputs=["stiffness", "pressure"])
+>>> contact = fc.Bem3d(tolerance=1e-8).prepare(scene)
+>>> state = contact.solve(force=0.001)
+>>> state.pressure.shape
+(65, 65)
+>>> bool(np.isclose(state.pressure.sum() / 65**2, 0.001))
+True
+
+Arrays are ``[row, column]``: columns along x, rows along y. Lengths, forces and moduli are in units of your choice that
+fit together; files have metres and pascals. The same words mean the same as in Rust and in scene files.
+"""
+
+from . import statistics, surface_gen
+from ._core import (
+    VERSION as __version__,
+)
+from ._core import (
+    Certificate,
+    Contact,
+    ContactState,
+    HeightMap,
+    History,
+    HistoryState,
+    Normalisation,
+    SceneFile,
+    set_threads,
+    threads,
+)
+from ._errors import (
+    DomainError,
+    Error,
+    NotConverged,
+    OutOfRange,
+    ReadError,
+    SceneError,
+    ShapeError,
+    Stopped,
+    Unsupported,
+)
+from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, write_surface
+from ._inputs import Body, Effects, Scene, Surface
+from ._models import (
+    Bem3d,
+    CattaneoMindlin,
+    Equivalent,
+    FlatPunch,
+    GreenwoodWilliamson,
+    Hertz,
+    HistoryModel,
+    Jkr,
+    Mdr1d,
+    Model,
+    PartialSlip,
+    Persson,
+    PowerLaw,
+    PowerLawBody,
+    Viscoelastic,
+    Westergaard,
+    ensemble,
+    sweep,
+    table,
+)
+
+__all__ = [
+    "Bem3d",
+    "Body",
+    "CattaneoMindlin",
+    "Certificate",
+    "Contact",
+    "ContactState",
+    "DomainError",
+    "Effects",
+    "Equivalent",
+    "Error",
+    "FlatPunch",
+    "GreenwoodWilliamson",
+    "HeightMap",
+    "Hertz",
+    "History",
+    "HistoryModel",
+    "HistoryState",
+    "Jkr",
+    "Mdr1d",
+    "Model",
+    "Normalisation",
+    "NotConverged",
+    "OutOfRange",
+    "PartialSlip",
+    "Persson",
+    "PowerLaw",
+    "PowerLawBody",
+    "ReadError",
+    "ReadSurface",
+    "Scene",
+    "SceneError",
+    "SceneFile",
+    "SceneOutcome",
+    "ShapeError",
+    "Stopped",
+    "Surface",
+    "Unsupported",
+    "Viscoelastic",
+    "Westergaard",
+    "__version__",
+    "channels",
+    "ensemble",
+    "read_surface",
+    "run_scene",
+    "set_threads",
+    "statistics",
+    "surface_gen",
+    "sweep",
+    "table",
+    "threads",
+    "write_surface",
+]

@@ -1,0 +1,102 @@
+"""The exceptions; each holds the numbers that its message names."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ._core import ContactState
+
+
+class Error(Exception):
+    """What can go wrong between a scene and a state."""
+
+
+class DomainError(Error, ValueError):
+    """A number lies outside of what makes sense.
+
+    Attributes
+    ----------
+    quantity : str
+        The quantity.
+    value : float
+        The value found.
+    expected : str
+        What was expected instead.
+    """
+
+    quantity: str
+    value: float
+    expected: str
+
+
+class ShapeError(Error, ValueError):
+    """An array does not have the expected number of values; attributes as of `DomainError`."""
+
+    quantity: str
+    value: int
+    expected: str
+
+
+class Unsupported(Error):
+    """The model does not know this surface, effect, load or output.
+
+    Attributes
+    ----------
+    model : str
+        Name of the model.
+    what : str
+        What it was asked for.
+    """
+
+    model: str
+    what: str
+
+
+class OutOfRange(Error, ValueError):
+    """A load outside of the range in which the model holds.
+
+    Attributes
+    ----------
+    quantity : str
+        The quantity that left its range.
+    value, low, high : float
+        The value that was asked for or reached, and the ends of the range.
+    """
+
+    quantity: str
+    value: float
+    low: float
+    high: float
+
+
+class NotConverged(Error):
+    """The solver stopped before its tolerance was met.
+
+    Attributes
+    ----------
+    best : ContactState
+        The best state reached, with its certificate: evidence, not an answer.
+    """
+
+    best: ContactState
+
+
+class Stopped(Error):
+    """The solve was stopped.
+
+    Attributes
+    ----------
+    best : ContactState or None
+        The best state so far.
+    """
+
+    best: ContactState | None
+
+
+class SceneError(Error, ValueError):
+    """A mistake in a scene file; the message shows the place."""
+
+
+class ReadError(Error, ValueError):
+    """A file of a surface cannot be read or written."""

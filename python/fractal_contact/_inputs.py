@@ -1,0 +1,250 @@
+"""What a question consists of: surfaces, effects, bodies, scenes; plain values to compare, copy and pickle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._core import HeightMap, SceneFile
+
+Size = float | tuple[float, float]
+Cells = int | tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """What carries the relief, where it is no height map. Made by one of the methods below.
+
+    Axisymmetric bodies sit in the middle of the rectangle, apex up. Lengths are in one unit of your choice.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> fc.Surface.sphere(radius=1.0, size=2.0)
+    Surface.sphere(radius=1.0, size=2.0)
+    """
+
+    kind: str
+    parameters: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        self._core()
+
+    def _core(self) -> _core.Surface:
+        return _core.surface(self.kind, dict(self.parameters))
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items() if value is not None)
+        return f"Surface.{self.kind}({values})"
+
+    @classmethod
+    def self_affine(
+        cls,
+        *,
+        size: Size,
+        rms_height: float,
+        hurst: float | None = None,
+        fractal_dimension: float | None = None,
+        roll_off_wavelength: float | None = None,
+        shortest_wavelength: float | None = None,
+    ) -> Surface:
+        """Random self-affine surface, drawn from a seed.
+
+        Parameters
+        ----------
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly).
+        rms_height : float
+            Of the samples, exactly.
+        hurst, fractal_dimension : float
+            One of them: H in [0, 1] or D_f = 3 - H.
+        roll_off_wavelength, shortest_wavelength : float, optional
+            Constant spectrum for longer waves; no shorter waves than the grid's, or these.
+        """
+        if (hurst is None) == (fractal_dimension is None):
+            raise TypeError("give one of hurst and fractal_dimension")
+        if hurst is None:
+            assert fractal_dimension is not None
+            hurst = 3.0 - fractal_dimension
+        return cls(
+            "self_affine",
+            {
+                "hurst": hurst,
+                "rms_height": rms_height,
+                "size": size,
+                "roll_off_wavelength": roll_off_wavelength,
+                "shortest_wavelength": shortest_wavelength,
+            },
+        )
+
+    @classmethod
+    def sphere(cls, *, radius: float, size: Size) -> Surface:
+        """Paraboloid r^2/(2 radius): Hertz's sphere."""
+        return cls("sphere", {"radius": radius, "size": size})
+
+    @classmethod
+    def cone(cls, *, slope: float, size: Size) -> Surface:
+        """Cone of depth slope * r."""
+        return cls("cone", {"slope": slope, "size": size})
+
+    @classmethod
+    def power_law(cls, *, coefficient: float, exponent: float, size: Size) -> Surface:
+        """Body of depth coefficient * r^exponent."""
+        return cls("power_law", {"coefficient": coefficient, "exponent": exponent, "size": size})
+
+    @classmethod
+    def flat_circle(cls, *, radius: float, size: Size) -> Surface:
+        """Flat circular punch."""
+        return cls("flat_circle", {"radius": radius, "size": size})
+
+    @classmethod
+    def flat(cls, *, size: Size) -> Surface:
+        """Flat rectangle: all of it touches at once."""
+        return cls("flat", {"size": size})
+
+    @classmethod
+    def sine(cls, *, amplitude: float, wavelength: float, size: Size) -> Surface:
+        """Waves amplitude * cos(2 pi x/wavelength) along x."""
+        return cls("sine", {"amplitude": amplitude, "wavelength": wavelength, "size": size})
+
+    @classmethod
+    def line(cls, heights: ArrayLike, *, length: float, size: Size) -> Surface:
+        """Heights of a line, for `Mdr1d`, which stand for a rectangle."""
+        values = np.ascontiguousarray(heights, dtype=np.float64)
+        return cls("line", {"heights": values, "length": length, "size": size})
+
+    def height_map(self, cells: Cells, seed: int = 0) -> HeightMap:
+        """The height of each cell.
+
+        Parameters
+        ----------
+        cells : int or (int, int)
+            Columns, with as many rows as make the cells nearly square, or columns and rows.
+        seed : int
+            Of a random surface.
+        """
+        return _core.height_map(self._core(), cells, seed)
+
+
+@dataclass(frozen=True)
+class Body:
+    """An isotropic and linearly elastic body.
+
+    Parameters
+    ----------
+    young : float
+        Young's modulus.
+    poisson : float
+        Poisson's ratio in [0, 1/2].
+    """
+
+    young: float
+    poisson: float
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Effects beyond linear elastic normal contact with free boundaries.
+
+    Off unless named; a model that lacks one refuses it.
+
+    Parameters
+    ----------
+    boundary : {"free", "periodic"}
+        What lies outside of the rectangle.
+    adhesion : float, optional
+        Work of adhesion (short range).
+    friction : float, optional
+        Coefficient of Coulomb's friction.
+    rheology : mapping, optional
+        ``{"kind": "kelvin_voigt" or "maxwell", "viscosity": ...}``,
+        ``{"kind": "standard_solid", "weight": ..., "time": ...}`` or
+        ``{"kind": "prony", "weights": [...], "times": [...]}``.
+    """
+
+    boundary: str = "free"
+    adhesion: float | None = None
+    friction: float | None = None
+    rheology: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything physical about one question. Numerics are options of a model, chance is the seed.
+
+    Parameters
+    ----------
+    surface : HeightMap or Surface
+        What carries the relief.
+    modulus : float, optional
+        Effective modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+    bodies : (Body or None, Body or None), optional
+        Both bodies in place of ``modulus``, None for a rigid one: where E* does not say enough (friction).
+    effects : Effects or mapping
+        Off unless named.
+    outputs : iterable of str
+        What is computed besides force and approach: "stiffness", "area", "mean_gap", "pressure", "displacement", "gap",
+        "contact_patches".
+    conductance : (str, float, float), optional
+        ("electrical", resistivity, resistivity) or ("thermal", conductivity, conductivity).
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0)
+    >>> state = fc.Hertz().prepare(scene).solve(force=4 / 3)
+    >>> round(state.approach, 12)
+    1.0
+    """
+
+    surface: HeightMap | Surface
+    modulus: float | None = None
+    bodies: tuple[Body | None, Body | None] | None = None
+    effects: Effects = field(default_factory=Effects)
+    outputs: tuple[str, ...] = ("stiffness",)
+    conductance: tuple[str, float, float] | None = None
+
+    def __init__(
+        self,
+        surface: HeightMap | Surface,
+        modulus: float | None = None,
+        *,
+        bodies: tuple[Body | None, Body | None] | None = None,
+        effects: Effects | Mapping[str, Any] | None = None,
+        outputs: Iterable[str] = ("stiffness",),
+        conductance: tuple[str, float, float] | None = None,
+    ) -> None:
+        if isinstance(outputs, str):
+            raise TypeError(f"outputs is the text {outputs!r}: expected a list of names")
+        if effects is None:
+            effects = Effects()
+        elif not isinstance(effects, Effects):
+            effects = Effects(**effects)
+        put = object.__setattr__
+        put(self, "surface", surface)
+        put(self, "modulus", modulus)
+        put(self, "bodies", None if bodies is None else tuple(bodies))
+        put(self, "effects", effects)
+        put(self, "outputs", tuple(outputs))
+        put(self, "conductance", conductance)
+        # Mistakes are told where they are made.
+        self._core()
+
+    def _core(self) -> _core.Scene:
+        surface = self.surface._core() if isinstance(self.surface, Surface) else self.surface
+        bodies = self.bodies and [body and (body.young, body.poisson) for body in self.bodies]
+        effects = asdict(self.effects)
+        if self.effects.rheology is not None:
+            effects["rheology"] = dict(self.effects.rheology)
+        return _core.scene(surface, self.modulus, bodies, effects, list(self.outputs), self.conductance)
+
+    @staticmethod
+    def from_toml(text: str, *, directory: str | Path = ".") -> SceneFile:
+        """A scene file from its text: the same keys as the program takes; relative paths count from `directory`."""
+        return SceneFile.from_toml(text, directory=Path(directory))

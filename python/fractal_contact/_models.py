@@ -1,0 +1,369 @@
+"""The models, by the names that they have in Rust."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._core import Contact, ContactState, History
+from ._errors import Error
+from ._inputs import Scene
+
+LOADS = ("force", "approach", "mean_pressure", "mean_gap")
+
+
+class _Options:
+    """A model with its numerics: options by name."""
+
+    _name: ClassVar[str]
+
+    def __init__(self, **options: Any) -> None:
+        self._options = {name: value for name, value in options.items() if value is not None}
+        # Mistakes are told where they are made.
+        self._core()
+
+    def _core(self) -> _core.Model:
+        return _core.model(self._name, self._options)
+
+    @property
+    def name(self) -> str:
+        """Name of the model, the same in scenes and tables."""
+        return self._name
+
+    @property
+    def sources(self) -> list[tuple[str, str]]:
+        """What it is built on: (citation, what is taken from it)."""
+        return self._core().sources
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{k}={v!r}' for k, v in self._options.items())})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash(repr(self))
+
+
+class Model(_Options):
+    """A way to answer what force, approach and stiffness belong together: plan once, solve often."""
+
+    def prepare(self, scene: Scene, seed: int = 0) -> Contact:
+        """Checks the scene against what this model can do, and plans.
+
+        Parameters
+        ----------
+        scene : Scene
+            The question.
+        seed : int
+            Draws the surface, where it is random.
+
+        Raises
+        ------
+        Unsupported
+            For a surface, effect or output that the model lacks.
+        """
+        return self._core().prepare(scene._core(), seed)
+
+
+class Bem3d(Model):
+    """Exact contact in three dimensions by boundary elements, free or periodic.
+
+    Parameters
+    ----------
+    cells : int
+        Columns, 257 by default; a height map brings its own.
+    rows : int, optional
+        Rows; by default as many as make the cells nearly square.
+    tolerance : float
+        Bound of the certificate and of the estimated relative error of the stiffness, 1e-6 by default.
+    max_outer_iterations : int
+        Outer iterations at most.
+    method : {"auto", "iterative", "single_level"}
+        How small systems are solved.
+
+    Examples
+    --------
+    >>> import numpy as np, fractal_contact as fc
+    >>> x = np.linspace(0, 1, 64, endpoint=False)
+    >>> h = 0.01 * np.cos(2 * np.pi * x)[None, :] * np.ones((64, 1))
+    >>> scene = fc.Scene(fc.HeightMap(h, size=1.0), modulus=1.0, outputs=["stiffness", "pressure"])
+    >>> state = fc.Bem3d(tolerance=1e-8).prepare(scene).solve(force=0.01)
+    >>> state.pressure.shape, state.certificate.meets(1e-8)
+    ((64, 64), True)
+    """
+
+    _name = "bem3d"
+
+    def __init__(
+        self,
+        *,
+        cells: int | None = None,
+        rows: int | None = None,
+        tolerance: float | None = None,
+        max_outer_iterations: int | None = None,
+        method: str | None = None,
+    ) -> None:
+        super().__init__(
+            cells=cells,
+            rows=rows,
+            tolerance=tolerance,
+            max_outer_iterations=max_outer_iterations,
+            method=method,
+        )
+
+
+class Mdr1d(Model):
+    """The reduction to one dimension (method of dimensionality reduction).
+
+    Parameters
+    ----------
+    elements : int
+        Of a rough line.
+    """
+
+    _name = "mdr1d"
+
+    def __init__(self, *, elements: int | None = None) -> None:
+        super().__init__(elements=elements)
+
+
+class _Formula(Model):
+    def __init__(self) -> None:
+        super().__init__()
+
+
+class Hertz(_Formula):
+    """Hertz's contact of a sphere."""
+
+    _name = "hertz"
+
+
+class FlatPunch(_Formula):
+    """Flat circular punch, or flat rectangle as far as it has closed forms."""
+
+    _name = "flat_punch"
+
+
+class PowerLawBody(_Formula):
+    """Bodies of revolution r^n (Sneddon, Galin)."""
+
+    _name = "power_law_body"
+
+
+class PowerLaw(_Formula):
+    """The power law of the paper for self-affine surfaces."""
+
+    _name = "power_law"
+
+
+class Jkr(_Formula):
+    """Adhesive contact of a sphere (Johnson, Kendall, Roberts)."""
+
+    _name = "jkr"
+
+
+class Westergaard(_Formula):
+    """Periodic contact of a wave."""
+
+    _name = "westergaard"
+
+
+class Persson(Model):
+    """Persson's theory of rough contact.
+
+    Parameters
+    ----------
+    gamma : float
+        Elastic energy over that of full contact.
+    """
+
+    _name = "persson"
+
+    def __init__(self, *, gamma: float | None = None) -> None:
+        super().__init__(gamma=gamma)
+
+
+class GreenwoodWilliamson(Model):
+    """Greenwood and Williamson's theory of rough contact.
+
+    Parameters
+    ----------
+    heights : {"gaussian", "exponential"}
+        Distribution of the heights of the summits.
+    """
+
+    _name = "greenwood_williamson"
+
+    def __init__(self, *, heights: str | None = None) -> None:
+        super().__init__(heights=heights)
+
+
+class HistoryModel(_Options):
+    """A way to answer what happens along a path: friction, rheology."""
+
+    def history(self, scene: Scene, seed: int = 0) -> History:
+        """Checks the scene and plans: no contact at time 0."""
+        return self._core().history(scene._core(), seed)
+
+
+class Equivalent(HistoryModel):
+    """Friction or rheology of any surface, on the stiffness over approach of another model.
+
+    Parameters
+    ----------
+    model : Model
+        The model that presses.
+    per_decade, decades : int
+        Nodes per decade of the approach, and decades below the first load.
+    """
+
+    _name = "equivalent"
+
+    def __init__(self, model: Model, *, per_decade: int | None = None, decades: int | None = None) -> None:
+        self.model = model
+        super().__init__(per_decade=per_decade, decades=decades)
+
+    def _core(self) -> _core.Model:
+        return _core.model(self._name, self._options, self.model._core())
+
+    def __repr__(self) -> str:
+        options = "".join(f", {k}={v!r}" for k, v in self._options.items())
+        return f"Equivalent({self.model!r}{options})"
+
+
+class _PathFormula(HistoryModel):
+    def __init__(self) -> None:
+        super().__init__()
+
+
+class CattaneoMindlin(_PathFormula):
+    """Partial slip of a sphere in closed form."""
+
+    _name = "cattaneo_mindlin"
+
+
+class PartialSlip(_PathFormula):
+    """Partial slip of round bodies by reduction to one dimension."""
+
+    _name = "partial_slip"
+
+
+class Viscoelastic(_PathFormula):
+    """Viscoelastic contact of round bodies by reduction to one dimension."""
+
+    _name = "viscoelastic"
+
+
+def _one_of(given: Mapping[str, Iterable[float] | None]) -> tuple[str, list[float]]:
+    named = [(name, values) for name, values in given.items() if values is not None]
+    if len(named) != 1:
+        raise TypeError(f"give exactly one of {', '.join(given)}")
+    name, values = named[0]
+    return name, [float(value) for value in np.asarray(values, dtype=np.float64).ravel()]
+
+
+def sweep(
+    contact: Contact,
+    *,
+    force: Iterable[float] | None = None,
+    approach: Iterable[float] | None = None,
+    mean_pressure: Iterable[float] | None = None,
+    mean_gap: Iterable[float] | None = None,
+) -> Iterator[ContactState]:
+    """Solves for loads in their order; each state as soon as it is there.
+
+    Parameters
+    ----------
+    contact : Contact
+        A planned contact. Increasing loads are the fastest order.
+    force, approach, mean_pressure, mean_gap : iterable of float
+        Exactly one of them.
+
+    Yields
+    ------
+    ContactState
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0))
+    >>> [round(state.approach, 3) for state in fc.sweep(contact, force=[0.0, 4 / 3])]
+    [0.0, 1.0]
+    """
+    given = {"force": force, "approach": approach, "mean_pressure": mean_pressure, "mean_gap": mean_gap}
+    name, values = _one_of(given)
+    # Checked at the call, not at the first state.
+    return (contact.solve(**{name: value}) for value in values)
+
+
+def ensemble(
+    model: Model,
+    scene: Scene,
+    *,
+    seed: int,
+    surfaces: int,
+    force: Iterable[float] | None = None,
+    approach: Iterable[float] | None = None,
+    mean_pressure: Iterable[float] | None = None,
+    mean_gap: Iterable[float] | None = None,
+    force_bar: Iterable[float] | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> list[list[ContactState | Error]]:
+    """The same loads on many surfaces of a seed, on all threads (`set_threads`).
+
+    Parameters
+    ----------
+    model : Model
+        Solves each of them.
+    scene : Scene
+        With a random surface.
+    seed : int
+        Surface number i has the seed ``surface_gen.surface_seed(seed, i)``, as in scenes and figures.
+    surfaces : int
+        How many.
+    force, approach, mean_pressure, mean_gap, force_bar : iterable of float
+        Exactly one of them; ``force_bar`` counts in E* h L of each surface.
+    progress : callable, optional
+        Called with the number of surfaces that are done and that of all.
+
+    Returns
+    -------
+    list of list of ContactState
+        ``[surface][load]``; a load that the model refused is the exception in its place.
+    """
+    given = {
+        "force": force,
+        "approach": approach,
+        "mean_pressure": mean_pressure,
+        "mean_gap": mean_gap,
+        "force_bar": force_bar,
+    }
+    name, values = _one_of(given)
+    loads = [(name, value) for value in values]
+    return _core.ensemble(model._core(), scene._core(), loads, seed, surfaces, progress)
+
+
+def table(states: Sequence[ContactState]) -> NDArray[np.void]:
+    """States as a structured array, a row each: what pandas and xarray read.
+
+    Numbers that a state has not are NaN.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0))
+    >>> rows = fc.table(list(contact.sweep(force=[0.5, 1.0])))
+    >>> rows["force"].tolist()
+    [0.5, 1.0]
+    """
+    rows = [state.to_dict() for state in states]
+    texts = {name for row in rows for name, value in row.items() if isinstance(value, str)}
+    names = list(rows[0]) if rows else ["force"]
+    kinds = [(name, "U24" if name in texts else "f8") for name in names]
+    absent = [tuple(np.nan if row[name] is None and name not in texts else row[name] for name in names) for row in rows]
+    return np.array(absent, dtype=kinds)

@@ -1,0 +1,109 @@
+"""Statistics of a map: parameters of ISO 25178-2, spectra and differences with bands, the fit of a spectrum."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._core import HeightMap
+
+Curves = dict[str, NDArray[np.float64]]
+
+
+def parameters(heights: HeightMap, *, periodic: bool = False) -> dict[str, float | None]:
+    """Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sal, Str, Std, Spd, Spc, rms gradient and curvature, Nayak's parameter.
+
+    None where the map does not define one. Lengths are in the unit of the map, Std in degrees.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> rough = fc.Surface.self_affine(hurst=0.8, size=1.0, rms_height=0.01).height_map(64, seed=1)
+    >>> round(fc.statistics.parameters(rough)["Sq"], 12)
+    0.01
+    """
+    return _core.parameters(heights, periodic)
+
+
+def power_spectrum(
+    heights: HeightMap,
+    direction: str = "radial",
+    *,
+    periodic: bool = False,
+    per_decade: float = 10.0,
+    level: float = 0.95,
+) -> Curves:
+    """Two-sided power spectral density over q = 2 pi/wavelength.
+
+    Parameters
+    ----------
+    heights : HeightMap
+        Without undefined points.
+    direction : {"radial", "x", "y"}
+        Averaged over rings (length^4), or of profiles (length^3).
+    periodic : bool
+        Whether the map is: otherwise it is taken under Hann's window.
+    per_decade : float
+        Rings in a decade of wavenumbers.
+    level : float
+        Of the band.
+
+    Returns
+    -------
+    dict of numpy.ndarray
+        wavenumber, density, low, high, degrees_of_freedom.
+    """
+    return _core.power_spectrum(heights, direction, periodic, per_decade, level)
+
+
+def height_difference(
+    heights: HeightMap, *, periodic: bool = False, per_decade: float = 10.0, level: float = 0.95
+) -> Curves:
+    """Half the mean square of h(x + r) - h(x): the variance less the autocorrelation.
+
+    Returns
+    -------
+    dict of numpy.ndarray
+        distance, half_square, low, high, pairs; no band (NaN) beyond half the side of a map that is not periodic.
+    """
+    return _core.height_difference(heights, periodic, per_decade, level)
+
+
+def slope(heights: HeightMap, axis: str = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
+    """Rms slope over distances along an axis: distance, rms, low, high."""
+    return _core.scale_dependence(heights, False, _along_y(axis), periodic, level)
+
+
+def curvature(heights: HeightMap, axis: str = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
+    """Rms curvature over distances along an axis: distance, rms, low, high."""
+    return _core.scale_dependence(heights, True, _along_y(axis), periodic, level)
+
+
+def fit_spectrum(heights: HeightMap, *, periodic: bool = False, instrument: float | None = None) -> dict[str, Any]:
+    """Fits a self-affine spectrum.
+
+    Parameters
+    ----------
+    heights : HeightMap
+        Without undefined points.
+    periodic : bool
+        Whether the map is.
+    instrument : float, optional
+        Shortest wavelength that the instrument resolves.
+
+    Returns
+    -------
+    dict
+        hurst, roll_off and cut_off (wavelengths) as (value, low, high) of 95 %, with None where there is only a bound;
+        goodness, below 0.01 of a surface that is none of the kind; fitted, the wavelengths that were used.
+    """
+    return _core.fit_spectrum(heights, periodic, instrument)
+
+
+def _along_y(axis: str) -> bool:
+    if axis not in ("x", "y"):
+        raise ValueError(f'axis is {axis!r}: expected "x" or "y"')
+    return axis == "y"

@@ -1,0 +1,63 @@
+"""Generated maps: the same seed is the same surface as in Rust, to the last bit."""
+
+from __future__ import annotations
+
+from . import _core
+from ._core import HeightMap, surface_seed
+from ._inputs import Cells, Surface
+
+__all__ = ["self_affine_map", "surface_seed", "twin"]
+
+
+def self_affine_map(
+    surface: Surface,
+    cells: Cells,
+    seed: int,
+    *,
+    anisotropy: float | None = None,
+    lay: float = 0.0,
+    weibull: float | None = None,
+) -> HeightMap:
+    """Draws a self-affine surface.
+
+    Parameters
+    ----------
+    surface : Surface
+        Of `Surface.self_affine`.
+    cells : int or (int, int)
+        Columns, with nearly square cells, or columns and rows.
+    seed : int
+        See `surface_seed` for that of a surface of an ensemble.
+    anisotropy : float, optional
+        Ratio of wavelengths along the lay to those across.
+    lay : float
+        Direction of the lay in degrees, from x towards y.
+    weibull : float, optional
+        Shape of Weibull's law of the heights; nearly Gaussian otherwise.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> rough = fc.Surface.self_affine(hurst=0.8, size=1.0, rms_height=0.01)
+    >>> fc.surface_gen.self_affine_map(rough, 64, seed=1).shape
+    (64, 64)
+    """
+    given = None if anisotropy is None else (anisotropy, lay)
+    return _core.self_affine_map(surface._core(), cells, seed, given, weibull)
+
+
+def twin(heights: HeightMap, seed: int, *, rings: bool = False, keep_heights: bool = False) -> HeightMap:
+    """Draws an artificial twin of a map: its spectrum, the phases of a seed.
+
+    Parameters
+    ----------
+    heights : HeightMap
+        Without undefined points.
+    seed : int
+        Of the phases.
+    rings : bool
+        An isotropic twin: means over rings of the spectrum.
+    keep_heights : bool
+        With the distribution of the heights of the map.
+    """
+    return _core.twin(heights, seed, rings, keep_heights)

@@ -1,0 +1,90 @@
+//! Errors of the library as the exceptions of `fractal_contact._errors`, with their numbers as attributes.
+
+use crate::state;
+use fractal_contact::{ContactState, Error, scenes};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyType};
+
+/// An exception class of `fractal_contact._errors`.
+fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyType>> {
+    static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+    let module =
+        MODULE.get_or_try_init(py, || py.import("fractal_contact._errors").map(Bound::unbind))?.bind(py);
+    Ok(module.getattr(name)?.cast_into::<PyType>()?)
+}
+
+/// An exception with a message and attributes.
+pub fn exception(py: Python<'_>, name: &str, message: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
+    let raise = || -> PyResult<PyErr> {
+        let value = class(py, name)?.call1((message,))?;
+        for (key, attribute) in attributes {
+            value.setattr(key.cast_into()?, attribute)?;
+        }
+        Ok(PyErr::from_value(value))
+    };
+    raise().unwrap_or_else(|error| error)
+}
+
+/// An exception without numbers.
+pub fn plain(py: Python<'_>, name: &str, message: &str) -> PyErr {
+    exception(py, name, message, &PyDict::new(py))
+}
+
+/// An error of a model.
+pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
+    let attributes = PyDict::new(py);
+    let message = error.to_string();
+    let fill = || -> PyResult<&str> {
+        Ok(match error {
+            Error::Domain { name, value, expected } => {
+                attributes.set_item("quantity", name)?;
+                attributes.set_item("value", value)?;
+                attributes.set_item("expected", expected)?;
+                "DomainError"
+            }
+            Error::Shape { name, found, expected } => {
+                attributes.set_item("quantity", name)?;
+                attributes.set_item("value", found)?;
+                attributes.set_item("expected", expected)?;
+                "ShapeError"
+            }
+            Error::Unsupported { model, what } => {
+                attributes.set_item("model", model)?;
+                attributes.set_item("what", what)?;
+                "Unsupported"
+            }
+            Error::OutOfRange { name, value, min, max } => {
+                attributes.set_item("quantity", name)?;
+                attributes.set_item("value", value)?;
+                attributes.set_item("low", min)?;
+                attributes.set_item("high", max)?;
+                "OutOfRange"
+            }
+            Error::NotConverged { best } => {
+                attributes.set_item("best", state::of(py, *best)?)?;
+                "NotConverged"
+            }
+            Error::Stopped { best } => {
+                let best = best.map(|best: Box<ContactState>| state::of(py, *best)).transpose()?;
+                attributes.set_item("best", best)?;
+                "Stopped"
+            }
+            _ => "Error",
+        })
+    };
+    match fill() {
+        Ok(name) => exception(py, name, &message, &attributes),
+        Err(error) => error,
+    }
+}
+
+/// An error of a scene or its files.
+pub fn of_scene(py: Python<'_>, error: &scenes::Error) -> PyErr {
+    let name = match error {
+        scenes::Error::Scene(_) => "SceneError",
+        scenes::Error::Surface(_) => "ReadError",
+        _ => "Error",
+    };
+    plain(py, name, error.to_string().trim_start_matches("error: "))
+}

@@ -1,0 +1,156 @@
+//! Surfaces from files.
+
+use crate::errors::plain;
+use crate::height_map::HeightMap;
+use crate::scene::optional;
+use fractal_contact::surface_io::{
+    self, Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, ReadOptions, SurfaceFile,
+    Undefined,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::fmt::Display;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// A word of the program's options.
+fn word<T: FromStr>(of: &Bound<'_, PyDict>, name: &str) -> PyResult<Option<T>>
+where
+    T::Err: Display,
+{
+    let Some(value) = of.get_item(name)?.filter(|value| !value.is_none()) else { return Ok(None) };
+    let text = value.str()?.to_string();
+    text.parse()
+        .map(Some)
+        .map_err(|error: T::Err| PyValueError::new_err(format!("{name} = {text:?}: {error}")))
+}
+
+fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
+    const KNOWN: [&str; 22] = [
+        "format",
+        "channel",
+        "unit",
+        "lateral_unit",
+        "size",
+        "cell",
+        "height_scale",
+        "decimal",
+        "missing",
+        "skip_lines",
+        "crop",
+        "outliers",
+        "tip_radius",
+        "undefined",
+        "fill",
+        "detrend",
+        "cells",
+        "rows",
+        "mirror",
+        "rotate",
+        "window",
+        "path",
+    ];
+    for key in of.keys() {
+        let key: String = key.extract()?;
+        if !KNOWN.contains(&key.as_str()) {
+            let known = KNOWN[..KNOWN.len() - 1].join(", ");
+            return Err(PyTypeError::new_err(format!("no option is called {key:?}: there are {known}")));
+        }
+    }
+    let declared = ReadOptions {
+        format: word(of, "format")?,
+        channel: word(of, "channel")?,
+        unit: word(of, "unit")?,
+        lateral_unit: word(of, "lateral_unit")?,
+        size: word(of, "size")?,
+        cell: word(of, "cell")?,
+        height_scale: word(of, "height_scale")?,
+        decimal: word::<Decimal>(of, "decimal")?.unwrap_or_default(),
+        missing: optional(of, "missing")?,
+        skip_lines: optional(of, "skip_lines")?.unwrap_or(0),
+        ..ReadOptions::default()
+    };
+    let degrees: u16 = optional(of, "rotate")?.unwrap_or(0);
+    if !degrees.is_multiple_of(90) || degrees > 270 {
+        return Err(PyValueError::new_err(format!("rotate = {degrees}: expected 0, 90, 180 or 270")));
+    }
+    let preprocessing = Preprocessing {
+        crop: word(of, "crop")?,
+        outliers: optional(of, "outliers")?,
+        tip_radius: word(of, "tip_radius")?,
+        undefined: word::<Undefined>(of, "undefined")?,
+        fill: word(of, "fill")?,
+        detrend: word::<Detrend>(of, "detrend")?.unwrap_or_default(),
+        cells: optional(of, "cells")?,
+        rows: optional(of, "rows")?,
+        mirror: word(of, "mirror")?,
+        quarter_turns: (degrees / 90) as u8,
+        window: word(of, "window")?,
+    };
+    Ok((declared, preprocessing))
+}
+
+fn failed(py: Python<'_>, error: &Error) -> PyErr {
+    plain(py, "ReadError", &error.to_string())
+}
+
+/// What a file says of a channel.
+fn metadata<'py>(py: Python<'py>, of: &Metadata) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    let metric = of.unit.as_ref().is_some_and(|unit| unit.value.dimension() == Dimension::LENGTH);
+    dict.set_item("format", of.format.to_string())?;
+    dict.set_item("channel", of.number)?;
+    dict.set_item("name", of.name.clone())?;
+    dict.set_item("shape", (of.rows, of.columns))?;
+    dict.set_item("size", of.size.map(|[x, y]| (x.value(), y.value())))?;
+    dict.set_item("unit", if metric { Some("m") } else { None })?;
+    dict.set_item("undefined", of.undefined)?;
+    dict.set_item("text", of.to_string())?;
+    Ok(dict)
+}
+
+/// Map, metadata, steps, and the distance from which on heights are reliable.
+type Read<'py> = (HeightMap, Bound<'py, PyDict>, Vec<String>, Option<f64>);
+
+/// A surface of a file: its map, what the file says, what was done to the map, from which distance on the tip lets heights be seen.
+#[pyfunction]
+#[pyo3(signature = (path, options))]
+pub fn read_surface<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    options: &Bound<'py, PyDict>,
+) -> PyResult<Read<'py>> {
+    let (declared, preprocessing) = self::options(options)?;
+    let read = || -> Result<_, Error> {
+        let scan = SurfaceFile::open(&path, &declared)?.scan()?;
+        let found = scan.preprocessed(&preprocessing)?;
+        Ok((scan.metadata().clone(), found))
+    };
+    let (described, found) = py.detach(read).map_err(|error| failed(py, &error))?;
+    Ok((found.map.into(), metadata(py, &described)?, found.steps, found.reliable_from))
+}
+
+/// What a file says of each of its channels.
+#[pyfunction]
+#[pyo3(signature = (path, options))]
+pub fn channels<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    options: &Bound<'py, PyDict>,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let (declared, _) = self::options(options)?;
+    let read = || -> Result<Vec<Metadata>, Error> {
+        SurfaceFile::open(&path, &declared)?.scans().map(|scan| Ok(scan?.metadata().clone())).collect()
+    };
+    let found = py.detach(read).map_err(|error| failed(py, &error))?;
+    found.iter().map(|of| metadata(py, of)).collect()
+}
+
+/// Writes a map by the ending of the file's name; lengths are in metres, or without a unit.
+#[pyfunction]
+pub fn write_surface(py: Python<'_>, path: PathBuf, map: &HeightMap, metres: bool) -> PyResult<()> {
+    let metric = if metres { Metric::Metres } else { Metric::Unitless };
+    let map = &map.0;
+    py.detach(|| surface_io::write_map(&path, map, metric)).map_err(|error| failed(py, &error))
+}

@@ -1,0 +1,43 @@
+//! The Python package `fractal_contact`: classes and functions of the Rust crates, without logic of their own.
+//!
+//! What a user sees is in `fractal_contact/*.py`, which call this module `_core`.
+
+#![allow(clippy::needless_pass_by_value)] // Arguments of Python functions come as values.
+#![allow(clippy::unnecessary_wraps)]
+
+mod errors;
+mod height_map;
+mod io;
+mod model;
+mod pool;
+mod scene;
+mod scenes;
+mod state;
+mod statistics;
+mod surface_gen;
+
+/// The compiled part of `fractal_contact`.
+#[pyo3::pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::height_map::HeightMap;
+    #[pymodule_export]
+    use crate::io::{channels, read_surface, write_surface};
+    #[pymodule_export]
+    use crate::model::{Contact, History, Model, Normalisation, ensemble, model};
+    #[pymodule_export]
+    use crate::pool::{set_threads, threads};
+    #[pymodule_export]
+    use crate::scene::{Scene, Surface, height_map, scene, surface};
+    #[pymodule_export]
+    use crate::scenes::{SceneFile, run_scene};
+    #[pymodule_export]
+    use crate::state::{Certificate, ContactState, HistoryState};
+    #[pymodule_export]
+    use crate::statistics::{fit_spectrum, height_difference, parameters, power_spectrum, scale_dependence};
+    #[pymodule_export]
+    use crate::surface_gen::{self_affine_map, surface_seed, twin};
+
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}

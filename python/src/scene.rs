@@ -1,0 +1,210 @@
+//! Scenes from the values of the Python classes.
+
+use crate::errors::of_model;
+use crate::height_map::{HeightMap, OneOrTwo};
+use fractal_contact::{
+    Adhesion, Amplitude, Body, Boundary, Conductance, Effects, Friction, Line, Outputs, Pair, PronySeries,
+    Relaxing, Rheology, Scene as RustScene, SelfAffine, Surface as RustSurface,
+};
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A parameter that has to be there.
+fn required<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyDict>, name: &str) -> PyResult<T> {
+    let value = of.get_item(name)?.ok_or_else(|| PyTypeError::new_err(format!("{name} is missing")))?;
+    value.extract::<T>().map_err(Into::into)
+}
+
+/// A parameter that may be None or absent.
+pub fn optional<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyDict>, name: &str) -> PyResult<Option<T>> {
+    match of.get_item(name)? {
+        Some(value) if !value.is_none() => value.extract::<T>().map(Some).map_err(Into::into),
+        _ => Ok(None),
+    }
+}
+
+/// What carries the relief.
+#[pyclass(frozen, module = "fractal_contact._core")]
+#[derive(Clone)]
+pub struct Surface(pub RustSurface);
+
+/// A surface of a kind.
+#[pyfunction]
+pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> PyResult<Surface> {
+    let number = |name: &str| required::<f64>(parameters, name);
+    let size = required::<OneOrTwo<f64>>(parameters, "size")?.size();
+    let surface = match kind {
+        "self_affine" => {
+            let wavenumber = |name: &str| -> PyResult<Option<f64>> {
+                Ok(optional::<f64>(parameters, name)?.map(|wavelength| TAU / wavelength))
+            };
+            RustSurface::SelfAffine(SelfAffine {
+                size,
+                hurst: number("hurst")?,
+                amplitude: Amplitude::RmsHeight(number("rms_height")?),
+                roll_off: wavenumber("roll_off_wavelength")?,
+                short_cutoff: wavenumber("shortest_wavelength")?,
+            })
+        }
+        "sphere" => RustSurface::Sphere { radius: number("radius")?, size },
+        "cone" => RustSurface::Cone { slope: number("slope")?, size },
+        "power_law" => {
+            RustSurface::PowerLaw { coefficient: number("coefficient")?, exponent: number("exponent")?, size }
+        }
+        "flat_circle" => RustSurface::FlatCircle { radius: number("radius")?, size },
+        "flat" => RustSurface::Flat { size },
+        "sine" => {
+            RustSurface::Sine { amplitude: number("amplitude")?, wavelength: number("wavelength")?, size }
+        }
+        "line" => {
+            let heights = required::<PyReadonlyArray1<'_, f64>>(parameters, "heights")?;
+            let values = heights.as_slice()?.to_vec();
+            let line = Line::new(number("length")?, values).map_err(|error| of_model(py, error))?;
+            RustSurface::Line { line: Arc::new(line), size }
+        }
+        other => return Err(PyValueError::new_err(format!("no surface is of the kind {other:?}"))),
+    };
+    surface.validate().map_err(|error| of_model(py, error))?;
+    Ok(Surface(surface))
+}
+
+/// The height of each cell of a surface.
+#[pyfunction]
+pub fn height_map(py: Python<'_>, of: &Surface, cells: OneOrTwo<usize>, seed: u64) -> PyResult<HeightMap> {
+    let cells = crate::surface_gen::cells(cells, of.0.size());
+    let surface = of.0.clone();
+    let (map, raised) = crate::pool::run(py, &mut |_| Ok(()), |_| {
+        fractal_contact::surface_gen::height_map(&surface, cells, seed)
+    })?;
+    raised.map_or(Ok(()), Err)?;
+    map.map(HeightMap).map_err(|error| of_model(py, error))
+}
+
+/// Everything physical about one question.
+#[pyclass(frozen, module = "fractal_contact._core")]
+#[derive(Clone)]
+pub struct Scene(pub RustScene);
+
+#[derive(FromPyObject)]
+pub enum AnySurface {
+    Map(Py<HeightMap>),
+    Described(Py<Surface>),
+}
+
+fn body(of: Option<(f64, f64)>) -> Body {
+    of.map_or(Body::Rigid, |(young, poisson)| Body::Elastic { young, poisson })
+}
+
+/// A scene of the values of the Python class.
+#[pyfunction]
+#[pyo3(signature = (surface, modulus, bodies, effects, outputs, conductance))]
+pub fn scene(
+    py: Python<'_>,
+    surface: AnySurface,
+    modulus: Option<f64>,
+    bodies: Option<[Option<(f64, f64)>; 2]>,
+    effects: &Bound<'_, PyDict>,
+    outputs: Vec<String>,
+    conductance: Option<(String, f64, f64)>,
+) -> PyResult<Scene> {
+    let surface = match surface {
+        AnySurface::Map(map) => RustSurface::Heights(Arc::clone(&map.get().0)),
+        AnySurface::Described(surface) => surface.get().0.clone(),
+    };
+    let pair = bodies.map(|[first, second]| Pair { first: body(first), second: body(second) });
+    let made = match (modulus, pair) {
+        (Some(modulus), None) => Ok(RustScene::new(surface, modulus)),
+        (None, Some(pair)) => RustScene::of_pair(surface, pair),
+        _ => return Err(PyTypeError::new_err("give modulus or bodies, and not both")),
+    };
+    let mut scene = made.map_err(|error| of_model(py, error))?;
+    scene.effects = read_effects(py, effects)?;
+    scene.outputs = Outputs::default();
+    for name in &outputs {
+        let place = match name.as_str() {
+            "stiffness" => &mut scene.outputs.stiffness,
+            "area" => &mut scene.outputs.area,
+            "mean_gap" => &mut scene.outputs.mean_gap,
+            "pressure" => &mut scene.outputs.pressure,
+            "displacement" => &mut scene.outputs.displacement,
+            "gap" => &mut scene.outputs.gap,
+            "contact_patches" => &mut scene.outputs.contact_patches,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "no output is called {other:?}: there are stiffness, area, mean_gap, pressure, displacement, gap and \
+                     contact_patches"
+                )));
+            }
+        };
+        *place = true;
+    }
+    scene.outputs.conductance = match conductance {
+        None => Conductance::Off,
+        Some((kind, first, second)) if kind == "electrical" => Conductance::Electrical { first, second },
+        Some((kind, first, second)) if kind == "thermal" => Conductance::Thermal { first, second },
+        Some((kind, ..)) => {
+            return Err(PyValueError::new_err(format!(
+                "no conductance is called {kind:?}: there are electrical and thermal"
+            )));
+        }
+    };
+    scene.validate().map_err(|error| of_model(py, error))?;
+    Ok(Scene(scene))
+}
+
+fn read_effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Effects> {
+    let boundary = match optional::<String>(of, "boundary")?.as_deref() {
+        None | Some("free") => Boundary::Free,
+        Some("periodic") => Boundary::Periodic,
+        Some(other) => {
+            return Err(PyValueError::new_err(format!(
+                "boundary is {other:?}: expected \"free\" or \"periodic\""
+            )));
+        }
+    };
+    let adhesion = optional::<f64>(of, "adhesion")?;
+    let friction = optional::<f64>(of, "friction")?;
+    let rheology = match optional::<Bound<'_, PyDict>>(of, "rheology")? {
+        None => Rheology::Elastic,
+        Some(rheology) => read_rheology(py, &rheology)?,
+    };
+    Ok(Effects {
+        boundary,
+        adhesion: adhesion.map_or(Adhesion::Off, |work| Adhesion::ShortRange { work }),
+        friction: friction.map_or(Friction::Off, |coefficient| Friction::Coulomb { coefficient }),
+        rheology,
+    })
+}
+
+fn read_rheology(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Rheology> {
+    let kind: String = required(of, "kind")?;
+    Ok(match kind.as_str() {
+        "kelvin_voigt" => Rheology::KelvinVoigt { viscosity: required(of, "viscosity")? },
+        "maxwell" => Rheology::Maxwell { viscosity: required(of, "viscosity")? },
+        "standard_solid" => Rheology::StandardSolid {
+            arm: Relaxing { weight: required(of, "weight")?, time: required(of, "time")? },
+        },
+        "prony" => {
+            let (weights, times): (Vec<f64>, Vec<f64>) = (required(of, "weights")?, required(of, "times")?);
+            if weights.len() != times.len() {
+                return Err(PyValueError::new_err(format!(
+                    "{} weights and {} times: expected as many",
+                    weights.len(),
+                    times.len()
+                )));
+            }
+            let arms: Vec<Relaxing> =
+                weights.into_iter().zip(times).map(|(weight, time)| Relaxing { weight, time }).collect();
+            Rheology::Prony(PronySeries::new(&arms).map_err(|error| of_model(py, error))?)
+        }
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "no rheology is called {other:?}: there are kelvin_voigt, maxwell, standard_solid and prony"
+            )));
+        }
+    })
+}

@@ -1,0 +1,353 @@
+//! States of a contact.
+
+use fractal_contact::{
+    Certificate as RustCertificate, ContactState as RustState, Field, HistoryState as RustHistoryState,
+};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A field as an array `[row, column]` that owns its values; nothing is copied.
+pub fn array(py: Python<'_>, field: Field) -> PyResult<Py<PyArray2<f64>>> {
+    let shape = [field.rows(), field.columns()];
+    Ok(PyArray1::from_vec(py, field.into_values()).reshape(shape)?.unbind())
+}
+
+/// How exactly the contact conditions hold, measured with the exact operator in double precision.
+///
+/// All numbers are relative and dimensionless.
+#[pyclass(frozen, module = "fractal_contact")]
+#[derive(Clone)]
+pub struct Certificate(RustCertificate);
+
+#[pymethods]
+impl Certificate {
+    /// float: duality gap of the quadratic programme over force times rms height.
+    #[getter]
+    fn duality_gap(&self) -> f64 {
+        self.0.duality_gap
+    }
+
+    /// float: deepest penetration over the rms height.
+    #[getter]
+    fn penetration(&self) -> f64 {
+        self.0.penetration
+    }
+
+    /// float: sum of pressure times gap over force times rms height.
+    #[getter]
+    fn complementarity(&self) -> f64 {
+        self.0.complementarity
+    }
+
+    /// float: relative difference of the force from the one asked for.
+    #[getter]
+    fn load_error(&self) -> f64 {
+        self.0.load_error
+    }
+
+    /// float or None: estimated relative error of the stiffness.
+    #[getter]
+    fn stiffness_error(&self) -> Option<f64> {
+        self.0.stiffness_error
+    }
+
+    /// float: the largest of the numbers.
+    #[getter]
+    fn worst(&self) -> f64 {
+        self.0.worst()
+    }
+
+    /// Whether every number is at most `tolerance`.
+    fn meets(&self, tolerance: f64) -> bool {
+        self.0.meets(tolerance)
+    }
+
+    /// The numbers by their names.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        dict.set_item("duality_gap", self.0.duality_gap)?;
+        dict.set_item("penetration", self.0.penetration)?;
+        dict.set_item("complementarity", self.0.complementarity)?;
+        dict.set_item("load_error", self.0.load_error)?;
+        dict.set_item("stiffness_error", self.0.stiffness_error)?;
+        Ok(dict)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Certificate: {}>", self.0)
+    }
+}
+
+/// One contact state. What was not asked for, or what the model does not claim, is None.
+#[pyclass(frozen, module = "fractal_contact")]
+pub struct ContactState {
+    state: RustState,
+    pressure: Option<Py<PyArray2<f64>>>,
+    displacement: Option<Py<PyArray2<f64>>>,
+    gap: Option<Py<PyArray2<f64>>>,
+}
+
+/// Moves a state into Python.
+pub fn of(py: Python<'_>, mut state: RustState) -> PyResult<Py<ContactState>> {
+    let fields = state.fields.take().unwrap_or_default();
+    let array = |field: Option<Field>| field.map(|field| array(py, field)).transpose();
+    let (pressure, displacement, gap) =
+        (array(fields.pressure)?, array(fields.displacement)?, array(fields.gap)?);
+    Py::new(py, ContactState { state, pressure, displacement, gap })
+}
+
+#[pymethods]
+impl ContactState {
+    /// float: normal force; negative where adhesion holds against a pull.
+    #[getter]
+    fn force(&self) -> f64 {
+        self.state.force
+    }
+
+    /// float or None: approach from first touch; None with periodic boundaries.
+    #[getter]
+    fn approach(&self) -> Option<f64> {
+        self.state.approach
+    }
+
+    /// float or None: distance of the mean planes.
+    #[getter]
+    fn mean_gap(&self) -> Option<f64> {
+        self.state.mean_gap
+    }
+
+    /// float or None: incremental stiffness dF/dd.
+    #[getter]
+    fn stiffness(&self) -> Option<f64> {
+        self.state.stiffness
+    }
+
+    /// float or None: real contact area.
+    #[getter]
+    fn area(&self) -> Option<f64> {
+        self.state.area
+    }
+
+    /// float or None: real contact area with a correction for its boundary, where cells were counted.
+    #[getter]
+    fn area_corrected(&self) -> Option<f64> {
+        self.state.resolution.and_then(|resolution| resolution.corrected_area)
+    }
+
+    /// float or None: largest pressure of a cell.
+    #[getter]
+    fn largest_pressure(&self) -> Option<f64> {
+        self.state.resolution.map(|resolution| resolution.largest_pressure)
+    }
+
+    /// int or None: cells in contact at an edge of a free rectangle.
+    #[getter]
+    fn edge_cells(&self) -> Option<usize> {
+        self.state.resolution.map(|resolution| resolution.edge_cells)
+    }
+
+    /// float or None: conductance through the contact.
+    #[getter]
+    fn conductance(&self) -> Option<f64> {
+        self.state.conductance
+    }
+
+    /// numpy.ndarray or None: areas of the connected contacts, the largest first.
+    #[getter]
+    fn patches<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.state.patches.as_ref().map(|patches| PyArray1::from_slice(py, patches.areas()))
+    }
+
+    /// numpy.ndarray or None: pressure of each cell, [row, column].
+    #[getter]
+    fn pressure(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
+        self.pressure.as_ref().map(|field| field.clone_ref(py))
+    }
+
+    /// numpy.ndarray or None: displacement of the elastic surface, [row, column].
+    #[getter]
+    fn displacement(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
+        self.displacement.as_ref().map(|field| field.clone_ref(py))
+    }
+
+    /// numpy.ndarray or None: gap, [row, column]; infinite at undefined points.
+    #[getter]
+    fn gap(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
+        self.gap.as_ref().map(|field| field.clone_ref(py))
+    }
+
+    /// Certificate: how exactly the contact conditions hold.
+    #[getter]
+    fn certificate(&self) -> Certificate {
+        Certificate(self.state.report.certificate)
+    }
+
+    /// str: how the solve ended, such as ``converged``.
+    #[getter]
+    fn status(&self) -> &'static str {
+        self.state.report.status.as_str()
+    }
+
+    /// str: which way was taken.
+    #[getter]
+    fn strategy(&self) -> &str {
+        &self.state.report.strategy
+    }
+
+    /// int: iterations of the linear solvers.
+    #[getter]
+    fn iterations(&self) -> usize {
+        self.state.report.iterations
+    }
+
+    /// int: applications of the influence matrix on the fine grid, the certificate's included.
+    #[getter]
+    fn applications(&self) -> usize {
+        self.state.report.applications
+    }
+
+    /// int: linear systems solved.
+    #[getter]
+    fn linear_solves(&self) -> usize {
+        self.state.report.work.linear_solves
+    }
+
+    /// int or None: cells in contact.
+    #[getter]
+    fn contact_cells(&self) -> Option<usize> {
+        self.state.report.contact_cells
+    }
+
+    /// All numbers by their names; arrays only with ``fields=True``.
+    #[pyo3(signature = (*, fields=false))]
+    fn to_dict<'py>(&self, py: Python<'py>, fields: bool) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        dict.set_item("force", self.force())?;
+        dict.set_item("approach", self.approach())?;
+        dict.set_item("mean_gap", self.mean_gap())?;
+        dict.set_item("stiffness", self.stiffness())?;
+        dict.set_item("area", self.area())?;
+        dict.set_item("area_corrected", self.area_corrected())?;
+        dict.set_item("largest_pressure", self.largest_pressure())?;
+        dict.set_item("conductance", self.conductance())?;
+        dict.set_item("contact_cells", self.contact_cells())?;
+        dict.set_item("status", self.status())?;
+        dict.set_item("iterations", self.iterations())?;
+        dict.set_item("applications", self.applications())?;
+        dict.update(self.certificate().to_dict(py)?.as_mapping())?;
+        if fields {
+            dict.set_item("pressure", self.pressure(py))?;
+            dict.set_item("displacement", self.displacement(py))?;
+            dict.set_item("gap", self.gap(py))?;
+            dict.set_item("patches", self.patches(py))?;
+        }
+        Ok(dict)
+    }
+
+    fn __repr__(&self) -> String {
+        let mut text = format!("<ContactState: force={:.6e}", self.state.force);
+        let known = [
+            ("approach", self.approach()),
+            ("mean_gap", self.mean_gap()),
+            ("stiffness", self.stiffness()),
+            ("area", self.area()),
+            ("conductance", self.conductance()),
+        ];
+        for (name, value) in known {
+            if let Some(value) = value {
+                text += &format!(", {name}={value:.6e}");
+            }
+        }
+        text + &format!(", {}, {}>", self.status(), self.state.report.certificate)
+    }
+}
+
+/// The state at the end of a step of a path.
+#[pyclass(frozen, module = "fractal_contact")]
+pub struct HistoryState {
+    time: f64,
+    normal: Py<ContactState>,
+    contact_radius: Option<f64>,
+    tangential: Option<fractal_contact::TangentialState>,
+}
+
+/// Moves a state of a path into Python.
+pub fn of_history(py: Python<'_>, state: RustHistoryState) -> PyResult<Py<HistoryState>> {
+    let RustHistoryState { time, normal, contact_radius, tangential, .. } = state;
+    Py::new(py, HistoryState { time, normal: of(py, normal)?, contact_radius, tangential })
+}
+
+#[pymethods]
+impl HistoryState {
+    /// float: time at the end of the step.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// ContactState: the normal part.
+    #[getter]
+    fn normal(&self, py: Python<'_>) -> Py<ContactState> {
+        self.normal.clone_ref(py)
+    }
+
+    /// float: normal force.
+    #[getter]
+    fn force(&self) -> f64 {
+        self.normal.get().force()
+    }
+
+    /// float or None: approach.
+    #[getter]
+    fn approach(&self) -> Option<f64> {
+        self.normal.get().approach()
+    }
+
+    /// float or None: radius of a round contact, or of the round contact of the same stiffness.
+    #[getter]
+    fn contact_radius(&self) -> Option<f64> {
+        self.contact_radius
+    }
+
+    /// float or None: tangential force.
+    #[getter]
+    fn tangential_force(&self) -> Option<f64> {
+        self.tangential.map(|of| of.force)
+    }
+
+    /// float or None: tangential displacement of the bodies relative to each other.
+    #[getter]
+    fn tangential_displacement(&self) -> Option<f64> {
+        self.tangential.map(|of| of.displacement)
+    }
+
+    /// float or None: radius inside which nothing slips.
+    #[getter]
+    fn stick_radius(&self) -> Option<f64> {
+        self.tangential.and_then(|of| of.stick_radius)
+    }
+
+    /// float or None: energy that friction has dissipated since the first step.
+    #[getter]
+    fn dissipated(&self) -> Option<f64> {
+        self.tangential.map(|of| of.dissipated)
+    }
+
+    /// All numbers by their names.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        dict.set_item("time", self.time)?;
+        dict.update(self.normal.get().to_dict(py, false)?.as_mapping())?;
+        dict.set_item("contact_radius", self.contact_radius)?;
+        dict.set_item("tangential_force", self.tangential_force())?;
+        dict.set_item("tangential_displacement", self.tangential_displacement())?;
+        dict.set_item("stick_radius", self.stick_radius())?;
+        dict.set_item("dissipated", self.dissipated())?;
+        Ok(dict)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<HistoryState: time={:e}, {}>", self.time, self.normal.get().__repr__())
+    }
+}

@@ -1,0 +1,212 @@
+//! Statistics of a map.
+
+use crate::errors::of_model;
+use crate::height_map::HeightMap;
+use fractal_contact::surface_statistics::{
+    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightParameters, HybridParameters,
+    Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters, SpectrumFit, Taper,
+    Wavelength, nayak_parameter, texture_direction,
+};
+use fractal_contact::{Boundary, Error, Result};
+use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+fn boundary(periodic: bool) -> Boundary {
+    if periodic { Boundary::Periodic } else { Boundary::Free }
+}
+
+fn known<T>(py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
+    result.map_err(|error| of_model(py, error))
+}
+
+fn arrays(dict: &Bound<'_, PyDict>, of: &[(&str, Vec<f64>)]) -> PyResult<()> {
+    for (name, values) in of {
+        dict.set_item(*name, PyArray1::from_slice(dict.py(), values))?;
+    }
+    Ok(())
+}
+
+/// Parameters of ISO 25178-2 and of the derivatives; None where the map does not define one.
+#[pyfunction]
+pub fn parameters<'py>(py: Python<'py>, map: &HeightMap, periodic: bool) -> PyResult<Bound<'py, PyDict>> {
+    let of = &map.0;
+    let found = py.detach(|| -> Result<Vec<(&str, Option<f64>)>> {
+        let mut all = Vec::new();
+        let h = HeightParameters::new(of)?;
+        for (name, value) in [
+            ("Sa", h.sa),
+            ("Sq", h.sq),
+            ("Ssk", h.ssk),
+            ("Sku", h.sku),
+            ("Sp", h.sp),
+            ("Sv", h.sv),
+            ("Sz", h.sz),
+        ] {
+            all.push((name, Some(value)));
+        }
+        let hybrid = HybridParameters::new(of).ok();
+        all.push(("Sdq", hybrid.as_ref().map(|h| h.sdq)));
+        all.push(("Sdr", hybrid.as_ref().map(|h| h.sdr)));
+        let spatial = SpatialParameters::new(of).ok();
+        all.push(("Sal", spatial.as_ref().and_then(|s| s.sal)));
+        all.push(("Str", spatial.as_ref().and_then(|s| s.str)));
+        all.push(("Std", texture_direction(of).ok()));
+        let features = FeatureParameters::new(of).ok();
+        all.push(("Spd", features.as_ref().map(|f| f.spd)));
+        all.push(("Spc", features.as_ref().and_then(|f| f.spc)));
+        let derivatives = Derivatives::new(of, boundary(periodic)).ok();
+        all.push(("rms_gradient", derivatives.as_ref().map(|d| d.rms_gradient)));
+        all.push(("rms_curvature", derivatives.as_ref().map(|d| d.rms_curvature)));
+        let moments = fractal_contact::surface_gen::MapStatistics::new(of).ok();
+        all.push(("nayak", moments.as_ref().map(nayak_parameter).filter(|alpha| alpha.is_finite())));
+        Ok(all)
+    });
+    let dict = PyDict::new(py);
+    for (name, value) in known(py, found)? {
+        dict.set_item(name, value)?;
+    }
+    Ok(dict)
+}
+
+/// A power spectral density with its band.
+#[pyfunction]
+pub fn power_spectrum<'py>(
+    py: Python<'py>,
+    map: &HeightMap,
+    direction: &str,
+    periodic: bool,
+    per_decade: f64,
+    level: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (of, taper) = (&map.0, if periodic { Taper::None } else { Taper::Hann });
+    let found = match direction {
+        "radial" => py.detach(|| PowerSpectrum::radial(of, taper, &Bins::of_wavenumbers(of, per_decade)?)),
+        "x" => py.detach(|| PowerSpectrum::along_x(of, taper)),
+        "y" => py.detach(|| PowerSpectrum::along_y(of, taper)),
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "direction is {other:?}: expected \"radial\", \"x\" or \"y\""
+            )));
+        }
+    };
+    let found = known(py, found)?;
+    let (low, high) = known(py, found.band(level))?.into_iter().map(|[low, high]| (low, high)).unzip();
+    let dict = PyDict::new(py);
+    arrays(
+        &dict,
+        &[
+            ("wavenumber", found.wavenumber),
+            ("density", found.density),
+            ("low", low),
+            ("high", high),
+            ("degrees_of_freedom", found.degrees_of_freedom),
+        ],
+    )?;
+    Ok(dict)
+}
+
+/// The limits of a band, NaN where there are none.
+fn limits(bands: Option<Vec<Option<[f64; 2]>>>, count: usize) -> (Vec<f64>, Vec<f64>) {
+    let nan = (f64::NAN, f64::NAN);
+    let one = |band: Option<[f64; 2]>| band.map_or(nan, |[low, high]| (low, high));
+    bands.unwrap_or_else(|| vec![None; count]).into_iter().map(one).unzip()
+}
+
+/// Half the mean square height difference over distances, with its band.
+#[pyfunction]
+pub fn height_difference<'py>(
+    py: Python<'py>,
+    map: &HeightMap,
+    periodic: bool,
+    per_decade: f64,
+    level: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let of = &map.0;
+    let found = py.detach(|| -> Result<_> {
+        let found =
+            DifferenceMap::new(of, boundary(periodic)).radial(&Bins::of_distances(of, per_decade)?)?;
+        let bands = DifferenceBands::new(of, boundary(periodic)).ok();
+        let bands = bands.map(|bands| bands.of_differences(&found, level)).transpose()?;
+        Ok((found, bands))
+    });
+    let (found, bands) = known(py, found)?;
+    let (low, high) = limits(bands, found.distance.len());
+    let dict = PyDict::new(py);
+    arrays(
+        &dict,
+        &[
+            ("distance", found.distance),
+            ("half_square", found.half_square),
+            ("low", low),
+            ("high", high),
+            ("pairs", found.pairs),
+        ],
+    )?;
+    Ok(dict)
+}
+
+/// Rms slope or curvature over distances along an axis, with its band.
+#[pyfunction]
+pub fn scale_dependence<'py>(
+    py: Python<'py>,
+    map: &HeightMap,
+    of_curvature: bool,
+    along_y: bool,
+    periodic: bool,
+    level: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (of, boundary, axis) = (&map.0, boundary(periodic), usize::from(along_y));
+    let found = py.detach(|| -> Result<_> {
+        let bands = DifferenceBands::new(of, boundary).ok();
+        let (found, bands) = if of_curvature {
+            let along = [ScaleDependence::curvature_along_x, ScaleDependence::curvature_along_y][axis];
+            let found = along(of, boundary)?;
+            let bands = bands.map(|bands| bands.of_curvatures(&found, axis, level)).transpose()?;
+            (found, bands)
+        } else {
+            let along = [ScaleDependence::slope_along_x, ScaleDependence::slope_along_y][axis];
+            let found = along(of, boundary)?;
+            let bands = bands.map(|bands| bands.of_slopes(&found, axis, level)).transpose()?;
+            (found, bands)
+        };
+        Ok((found, bands))
+    });
+    let (found, bands) = known(py, found)?;
+    let (low, high) = limits(bands, found.distance.len());
+    let dict = PyDict::new(py);
+    arrays(&dict, &[("distance", found.distance), ("rms", found.rms), ("low", low), ("high", high)])?;
+    Ok(dict)
+}
+
+/// The fit of a self-affine spectrum: each quantity as (value, low, high), None where there is only a bound.
+#[pyfunction]
+#[pyo3(signature = (map, periodic, instrument))]
+pub fn fit_spectrum<'py>(
+    py: Python<'py>,
+    map: &HeightMap,
+    periodic: bool,
+    instrument: Option<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (of, boundary) = (&map.0, boundary(periodic));
+    let found = py.detach(|| {
+        let reliable = ReliableWavelengths::new(of, boundary, instrument)?;
+        SpectrumFit::new(of, &reliable.fit_options(boundary))
+    });
+    let fit = known(py, found)?;
+    let interval = |of: &Interval| (Some(of.value), Some(of.low), Some(of.high));
+    let wavelength = |of: &Wavelength| match of {
+        Wavelength::Interval(of) => interval(of),
+        Wavelength::AtLeast(bound) => (None, Some(*bound), None),
+        Wavelength::AtMost(bound) => (None, None, Some(*bound)),
+        _ => (None, None, None),
+    };
+    let dict = PyDict::new(py);
+    dict.set_item("hurst", interval(&fit.hurst))?;
+    dict.set_item("roll_off", wavelength(&fit.roll_off))?;
+    dict.set_item("cut_off", wavelength(&fit.cut_off))?;
+    dict.set_item("goodness", fit.goodness)?;
+    dict.set_item("fitted", (fit.fitted[0], fit.fitted[1]))?;
+    Ok(dict)
+}

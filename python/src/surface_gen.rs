@@ -1,0 +1,73 @@
+//! Generated maps.
+
+use crate::errors::of_model;
+use crate::height_map::{HeightMap, OneOrTwo};
+use crate::pool;
+use crate::scene::Surface;
+use fractal_contact::scenes::{RandomSpectrum, RandomSurface};
+use fractal_contact::surface_gen::{self, Anisotropy, HeightDistribution, TwinSpectrum};
+use fractal_contact::{Cells, HeightMap as RustMap, Result, Size, Surface as RustSurface};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// Columns, with nearly square cells, or columns and rows.
+pub fn cells(given: OneOrTwo<usize>, size: Size) -> Cells {
+    match given {
+        OneOrTwo::One(columns) => Cells::nearly_square(columns, size),
+        OneOrTwo::Two((columns, rows)) => Cells { columns, rows },
+    }
+}
+
+fn drawn(py: Python<'_>, work: impl FnOnce() -> Result<RustMap> + Send) -> PyResult<HeightMap> {
+    let (map, raised) = pool::run(py, &mut |_| Ok(()), |_| work())?;
+    raised.map_or(Ok(()), Err)?;
+    map.map(HeightMap::from).map_err(|error| of_model(py, error))
+}
+
+/// Seed of surface number `index` of the ensemble of a master seed.
+#[pyfunction]
+pub fn surface_seed(seed: u64, index: u64) -> u64 {
+    surface_gen::surface_seed(seed, index)
+}
+
+/// A self-affine map: isotropic, with a lay, with a distribution of heights.
+#[pyfunction]
+#[pyo3(signature = (surface, cells, seed, anisotropy, weibull))]
+pub fn self_affine_map(
+    py: Python<'_>,
+    surface: &Surface,
+    cells: OneOrTwo<usize>,
+    seed: u64,
+    anisotropy: Option<(f64, f64)>,
+    weibull: Option<f64>,
+) -> PyResult<HeightMap> {
+    let RustSurface::SelfAffine(described) = &surface.0 else {
+        return Err(PyTypeError::new_err("the surface is not self-affine"));
+    };
+    let spectrum = RandomSpectrum::SelfAffine {
+        surface: *described,
+        anisotropy: anisotropy.map(|(ratio, lay)| Anisotropy { ratio, lay }),
+    };
+    let heights = weibull.map(|shape| HeightDistribution::Weibull { shape });
+    let random = RandomSurface::new(spectrum, heights);
+    let cells = self::cells(cells, random.size());
+    drawn(py, move || random.map(cells, seed))
+}
+
+/// An artificial twin of a map.
+#[pyfunction]
+#[pyo3(signature = (map, seed, rings, keep_heights))]
+pub fn twin(
+    py: Python<'_>,
+    map: &HeightMap,
+    seed: u64,
+    rings: bool,
+    keep_heights: bool,
+) -> PyResult<HeightMap> {
+    let of = Arc::clone(&map.0);
+    let (cells, like) = (of.cells(), if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave });
+    let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
+    let random = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
+    drawn(py, move || random.map(cells, seed))
+}

@@ -1,0 +1,79 @@
+"""What is shipped."""
+
+import doctest
+import importlib
+import importlib.metadata
+import inspect
+import pkgutil
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import fractal_contact as fc
+
+PYTHON = Path(__file__).resolve().parents[1]
+MODULES = [fc.__name__] + [f"{fc.__name__}.{m.name}" for m in pkgutil.iter_modules(fc.__path__) if m.name != "_core"]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_of_the_documentation(name):
+    result = doctest.testmod(importlib.import_module(name))
+    assert result.failed == 0
+
+
+def test_what_is_public_is_documented():
+    for name in fc.__all__:
+        value = getattr(fc, name)
+        if name == "__version__":
+            continue
+        assert inspect.getdoc(value), name
+        if inspect.isclass(value):
+            for method, member in vars(value).items():
+                if not method.startswith("_") and (callable(member) or isinstance(member, property)):
+                    assert inspect.getdoc(getattr(value, method)), f"{name}.{method}"
+
+
+def test_the_version_is_that_of_the_workspace():
+    workspace = PYTHON.parent / "Cargo.toml"
+    if workspace.exists():
+        assert tomllib.loads(workspace.read_text())["workspace"]["package"]["version"] == fc.__version__
+    assert importlib.metadata.version("fractal-contact") == fc.__version__
+
+
+def test_licences_are_in_the_wheel():
+    names = {Path(file).name for file in importlib.metadata.files("fractal-contact") or []}
+    assert {"LICENSE-MIT", "LICENSE-APACHE", "py.typed", "_core.pyi"} <= names
+
+
+def test_dependencies_are_those_of_the_workspace():
+    """The same versions of what both are built from: the same bits."""
+    if not (PYTHON.parent / "Cargo.lock").exists():
+        pytest.skip("outside of the repository")
+
+    def versions(path):
+        packages = tomllib.loads(path.read_text())["package"]
+        return {(package["name"], package["version"]) for package in packages if "source" in package}
+
+    workspace = versions(PYTHON.parent / "Cargo.lock")
+    known = {name for name, _ in workspace}
+    differing = {one for one in versions(PYTHON / "Cargo.lock") if one[0] in known} - workspace
+    assert not differing
+
+
+def test_importing_is_quick():
+    code = "import numpy, time; t = time.perf_counter(); import fractal_contact; print(time.perf_counter() - t)"
+    told = [
+        float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
+        for _ in range(3)
+    ]
+    print(f"import takes {min(told):.3f} s beyond numpy")
+    assert min(told) < 5.0  # Whatever the machine.
+
+
+def test_numpy_is_the_only_dependency():
+    required = [r for r in importlib.metadata.requires("fractal-contact") or [] if "extra" not in r]
+    assert [re.split(r"[<>=]", r)[0] for r in required] == ["numpy"]

@@ -1,0 +1,194 @@
+"""Manners of a library: pickling, processes, threads, Ctrl-C, memory."""
+
+import concurrent.futures
+import gc
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import fractal_contact as fc
+
+
+def rough(cells=129, seed=1, hurst=0.6):
+    return fc.Surface.self_affine(hurst=hurst, size=1.0, rms_height=0.01).height_map(cells, seed)
+
+
+def stiffness(force, cells=129):
+    return fc.Bem3d().prepare(fc.Scene(rough(cells), modulus=1.0)).solve(force=force).stiffness
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        rough(17),
+        fc.HeightMap(np.array([[1.0, np.nan]]), size=(2.0, 1.0), undefined="no_contact"),
+        fc.Surface.sphere(radius=1.0, size=(2.0, 1.0)),
+        fc.Scene(rough(17), modulus=1.0, outputs=["pressure"], effects={"boundary": "periodic"}),
+        fc.Scene(rough(17), bodies=(fc.Body(1.0, 0.3), None), conductance=("thermal", 1.0, 2.0)),
+        fc.Bem3d(cells=33, tolerance=1e-8),
+        fc.Equivalent(fc.Mdr1d(elements=1024), decades=2),
+        fc.Effects(friction=0.3),
+    ],
+)
+def test_inputs_are_pickled(value):
+    assert pickle.loads(pickle.dumps(value)) == value
+
+
+def test_errors_are_pickled():
+    with pytest.raises(fc.DomainError) as caught:
+        fc.Bem3d(tolerance=-1.0)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert str(again) == str(caught.value) and again.value == -1.0
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_other_processes(method):
+    # A large map first: the threads of this process have worked, and do not survive a fork.
+    expected = [stiffness(force, 257) for force in (0.01, 0.1)]
+    with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context(method)) as pool:
+        found = list(pool.map(stiffness, (0.01, 0.1), (257, 257), timeout=120))
+    assert found == expected
+
+
+def test_threads_solve_at_the_same_time():
+    expected = [stiffness(force) for force in (0.01, 0.03, 0.1, 0.3)]
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(stiffness, (0.01, 0.03, 0.1, 0.3))) == expected
+    # One contact in two threads: one after the other.
+    contact = fc.Bem3d(tolerance=1e-8).prepare(fc.Scene(rough(), modulus=1.0))
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda force: contact.solve(force=force).approach, [0.01, 0.1] * 4))
+    assert np.ptp(found[::2]) < 1e-7 and np.ptp(found[1::2]) < 1e-7
+
+
+def test_other_threads_run_meanwhile():
+    contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(513), modulus=1.0))
+    done, ticks = threading.Event(), []
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.perf_counter()
+    contact.solve(force=0.05)
+    end = time.perf_counter()
+    done.set()
+    thread.join()
+    inside = [t for t in ticks if start < t < end]
+    # Were the interpreter's lock held, there would be none.
+    assert len(inside) >= 3, (len(inside), end - start)
+
+
+def test_no_bit_depends_on_the_number_of_threads():
+    before = fc.threads()
+    try:
+        found = []
+        for count in (1, 2, 3):
+            fc.set_threads(count)
+            assert fc.threads() == count
+            found.append(stiffness(0.05, 257))
+        assert len(set(found)) == 1
+    finally:
+        fc.set_threads(before)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_ctrl_c_stops_a_solve_and_nothing_is_lost():
+    contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(1025, hurst=0.3), modulus=1.0))
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        for force in np.geomspace(1e-4, 10.0, 200):
+            contact.solve(force=force)
+    assert time.perf_counter() - start < 30
+    # It goes on as if nothing had been.
+    again = contact.solve(force=0.5)
+    assert again.certificate.meets(1e-10)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_ctrl_c_stops_an_ensemble_and_a_handler_may_raise():
+    class Alarm(Exception):
+        pass
+
+    def ring(*_):
+        raise Alarm
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, 0.3)
+    try:
+        surface = fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=0.01)
+        with pytest.raises(Alarm):
+            fc.ensemble(
+                fc.Bem3d(cells=257), fc.Scene(surface, modulus=1.0), seed=1, surfaces=5000, force_bar=[0.1, 1.0]
+            )
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_an_exception_of_a_callback_ends_an_ensemble():
+    surface = fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=0.01)
+
+    def fail(done, of):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        fc.ensemble(
+            fc.Bem3d(cells=129), fc.Scene(surface, modulus=1.0), seed=1, surfaces=2000, force_bar=[1.0], progress=fail
+        )
+
+
+def resident():
+    with open("/proc/self/statm", encoding="ascii") as about:
+        return int(about.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc")
+def test_memory_stays_flat_over_ten_thousand_solves():
+    contact = fc.Bem3d().prepare(fc.Scene(rough(17), modulus=1.0, outputs=["pressure", "gap", "contact_patches"]))
+
+    def solve(count):
+        for i in range(count):
+            contact.solve(force=0.01 + 1e-6 * i)
+        gc.collect()
+        return resident()
+
+    before = solve(2000)
+    assert solve(10_000) - before < 3e6
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc")
+def test_a_field_is_not_copied():
+    code = """
+import numpy as np, fractal_contact as fc, os
+def resident():
+    return int(open("/proc/self/statm").read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+n = 2049
+scene = fc.Scene(fc.Surface.flat(size=1.0), modulus=1.0, outputs=["pressure"])
+h = fc.HeightMap(np.zeros((n, n)), size=1.0)
+x = (np.arange(n) / n - 0.5) ** 2
+h = fc.HeightMap(-(x[:, None] + x[None, :]), size=1.0)
+contact = fc.Bem3d(tolerance=1e-3).prepare(fc.Scene(h, modulus=1.0, outputs=["pressure"]))
+state = contact.solve(force=1e-4)
+before = resident()
+kept = [state.pressure for _ in range(10)]
+assert all(one is kept[0] for one in kept)
+view = kept[0]
+assert view.flags.c_contiguous and view.shape == (n, n) and view.base.nbytes == view.nbytes
+# Ten times the field would be 336 MB.
+print(resident() - before)
+"""
+    told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert int(told.stdout) < 4e6
