@@ -9,6 +9,7 @@ from ._errors import Error
 
 VERSION: str
 __all__ = [
+    "VERSION",
     "Certificate",
     "Contact",
     "ContactState",
@@ -20,7 +21,6 @@ __all__ = [
     "Scene",
     "SceneFile",
     "Surface",
-    "VERSION",
     "channels",
     "ensemble",
     "fit_spectrum",

@@ -25,6 +25,12 @@ def test_examples_of_the_documentation(name):
     assert result.failed == 0
 
 
+def test_the_readme_runs():
+    text = (PYTHON / "README.md").read_text()
+    for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(block, {})
+
+
 def test_what_is_public_is_documented():
     for name in fc.__all__:
         value = getattr(fc, name)
