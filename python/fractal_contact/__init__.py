@@ -42,7 +42,7 @@ from ._errors import (
     Stopped,
     Unsupported,
 )
-from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, write_surface
+from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, si, write_surface
 from ._inputs import Body, Effects, Scene, Surface
 from ._models import (
     Bem3d,
@@ -112,6 +112,7 @@ __all__ = [
     "read_surface",
     "run_scene",
     "set_threads",
+    "si",
     "statistics",
     "surface_gen",
     "sweep",

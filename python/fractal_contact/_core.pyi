@@ -35,6 +35,7 @@ __all__ = [
     "scene",
     "self_affine_map",
     "set_threads",
+    "si",
     "surface",
     "surface_seed",
     "threads",
@@ -45,7 +46,12 @@ __all__ = [
 @final
 class HeightMap:
     def __new__(
-        cls, heights: ArrayLike, size: float | tuple[float, float], *, undefined: str = "error"
+        cls,
+        heights: ArrayLike,
+        size: float | str | tuple[float, float] | tuple[str, str],
+        *,
+        unit: str | None = None,
+        undefined: str = "error",
     ) -> HeightMap: ...
     @property
     def heights(self) -> NDArray[np.float64]: ...
@@ -273,6 +279,7 @@ def read_surface(
     path: Path, options: Mapping[str, Any]
 ) -> tuple[HeightMap, dict[str, Any], list[str], float | None]: ...
 def channels(path: Path, options: Mapping[str, Any]) -> list[dict[str, Any]]: ...
+def si(text: str) -> float: ...
 def write_surface(path: Path, map: HeightMap, metres: bool) -> None: ...
 def run_scene(
     scene: SceneFile,

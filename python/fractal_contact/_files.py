@@ -50,6 +50,18 @@ def read_surface(path: str | Path, **options: Any) -> ReadSurface:
     return ReadSurface(*_core.read_surface(Path(path), options))
 
 
+def si(text: str) -> float:
+    """A number with a unit, in SI units.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> fc.si("115 GPa"), fc.si("1 mm")
+    (115000000000.0, 0.001)
+    """
+    return _core.si(text)
+
+
 def channels(path: str | Path, **options: Any) -> list[dict[str, Any]]:
     """What a file says of each of its channels."""
     return _core.channels(Path(path), options)

@@ -37,7 +37,10 @@ class Surface:
         self._core()
 
     def _core(self) -> _core.Surface:
-        return _core.surface(self.kind, dict(self.parameters))
+        values = dict(self.parameters)
+        if self.kind == "line":
+            values["heights"] = np.asarray(values["heights"], dtype=np.float64)
+        return _core.surface(self.kind, values)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items() if value is not None)
@@ -116,8 +119,10 @@ class Surface:
     @classmethod
     def line(cls, heights: ArrayLike, *, length: float, size: Size) -> Surface:
         """Heights of a line, for `Mdr1d`, which stand for a rectangle."""
-        values = np.ascontiguousarray(heights, dtype=np.float64)
-        return cls("line", {"heights": values, "length": length, "size": size})
+        values = np.asarray(heights, dtype=np.float64)
+        if values.ndim != 1:
+            raise ValueError(f"heights of a line have {values.ndim} dimensions: expected 1")
+        return cls("line", {"heights": tuple(values.tolist()), "length": length, "size": size})
 
     def height_map(self, cells: Cells, seed: int = 0) -> HeightMap:
         """The height of each cell.

@@ -334,7 +334,8 @@ def ensemble(
     Returns
     -------
     list of list of ContactState
-        ``[surface][load]``; a load that the model refused is the exception in its place.
+        ``[surface][load]``; a load that the model refused is the exception in its place. An exception that ends it
+        early, such as KeyboardInterrupt, has the surfaces that were finished as ``finished``, a dict by their number.
     """
     given = {
         "force": force,

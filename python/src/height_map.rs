@@ -1,9 +1,11 @@
 //! Maps of heights.
 
 use crate::errors::of_model;
+use fractal_contact::surface_io::{Dimension, Sides, Unit};
 use fractal_contact::{Cells, HeightMap as RustMap, Size};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
@@ -18,8 +20,11 @@ const MOST: usize = 256;
 /// heights : array_like
 ///     Two-dimensional, ``[row, column]``: columns along x, rows along y, of any real type. A masked array has
 ///     undefined points where it is masked.
-/// size : float or (float, float)
-///     Side of a square or sides ``(Lx, Ly)`` of the rectangle, in the unit of the heights.
+/// size : float, str, (float, float) or (str, str)
+///     Side of a square or sides ``(Lx, Ly)`` of the rectangle, in the unit of the heights; texts with a unit, such as
+///     ``"1 mm"`` or ``"2 mm x 1 mm"``, are metres.
+/// unit : str, optional
+///     Unit of the heights in the array, such as ``"nm"``: the map is then in metres.
 /// undefined : {"error", "no_contact"}
 ///     What NaN means: an error, or a point that cannot touch. Masked points cannot touch either way.
 #[pyclass(frozen, module = "fractal_contact")]
@@ -48,25 +53,59 @@ impl OneOrTwo<f64> {
     }
 }
 
+/// Sides as numbers, or as texts with units.
+#[derive(FromPyObject)]
+enum Extent {
+    Numbers(OneOrTwo<f64>),
+    Text(String),
+    Texts((String, String)),
+}
+
+impl Extent {
+    fn size(self) -> PyResult<Size> {
+        let text = match self {
+            Self::Numbers(numbers) => return Ok(numbers.size()),
+            Self::Text(text) => text,
+            Self::Texts((x, y)) => format!("{x} x {y}"),
+        };
+        let sides: Sides =
+            text.parse().map_err(|error| PyValueError::new_err(format!("size = {text:?}: {error}")))?;
+        let [x, y] = sides.both();
+        Ok([x.value(), y.value()].into())
+    }
+}
+
 #[pymethods]
 impl HeightMap {
     #[new]
-    #[pyo3(signature = (heights, size, *, undefined="error"))]
+    #[pyo3(signature = (heights, size, *, unit=None, undefined="error"))]
     fn new(
         py: Python<'_>,
         heights: &Bound<'_, PyAny>,
-        size: OneOrTwo<f64>,
+        size: Extent,
+        unit: Option<&str>,
         undefined: &str,
     ) -> PyResult<Self> {
+        let size = size.size()?;
         // Numpy's own rules for types, masks and memory orders.
         let prepared = py.import("fractal_contact._arrays")?.call_method1("heights", (heights, undefined))?;
         let (array, partly): (PyReadonlyArray2<'_, f64>, bool) = prepared.extract()?;
         let [rows, columns] = array.shape() else { unreachable!("two dimensions") };
-        let (cells, values) = (Cells { columns: *columns, rows: *rows }, array.to_vec()?);
+        let (cells, mut values) = (Cells { columns: *columns, rows: *rows }, array.to_vec()?);
+        if let Some(unit) = unit {
+            let known: Unit =
+                unit.parse().map_err(|error| PyValueError::new_err(format!("unit = {unit:?}: {error}")))?;
+            if known.dimension() != Dimension::LENGTH {
+                return Err(PyValueError::new_err(format!("unit = {unit:?}: expected a unit of length")));
+            }
+            for value in &mut values {
+                *value = known.to_si(*value);
+            }
+        }
         let map = if partly {
-            RustMap::with_undefined(cells, size.size(), values)
+            RustMap::with_undefined(cells, size, values)
         } else {
-            RustMap::new(cells, size.size(), values)
+            RustMap::new(cells, size, values)
         };
         map.map(Self::from).map_err(|error| of_model(py, error))
     }

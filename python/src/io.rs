@@ -4,8 +4,8 @@ use crate::errors::plain;
 use crate::height_map::HeightMap;
 use crate::scene::optional;
 use fractal_contact::surface_io::{
-    self, Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, ReadOptions, SurfaceFile,
-    Undefined,
+    self, Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, Quantity, ReadOptions,
+    SurfaceFile, Undefined,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -145,6 +145,13 @@ pub fn channels<'py>(
     };
     let found = py.detach(read).map_err(|error| failed(py, &error))?;
     found.iter().map(|of| metadata(py, of)).collect()
+}
+
+/// A text with a unit in SI units.
+#[pyfunction]
+pub fn si(text: &str) -> PyResult<f64> {
+    let quantity: Result<Quantity, _> = text.parse();
+    quantity.map(Quantity::value).map_err(|error| PyValueError::new_err(format!("{text:?}: {error}")))
 }
 
 /// Writes a map by the ending of the file's name; lengths are in metres, or without a unit.

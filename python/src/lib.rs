@@ -22,7 +22,7 @@ mod _core {
     #[pymodule_export]
     use crate::height_map::HeightMap;
     #[pymodule_export]
-    use crate::io::{channels, read_surface, write_surface};
+    use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]
     use crate::model::{Contact, History, Model, Normalisation, ensemble, model};
     #[pymodule_export]

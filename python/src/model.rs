@@ -491,10 +491,6 @@ pub fn ensemble(
             .map(|index| answer(index, stop))
             .collect::<Vec<fractal_contact::Result<_>>>()
     })?;
-    raised.map_or(Ok(()), Err)?;
-    if let Some(progress) = &progress {
-        progress.call1(py, (surfaces, surfaces))?;
-    }
     // A load that was refused stands for itself among the others.
     let one = |state: fractal_contact::Result<RustState>| -> PyResult<Py<PyAny>> {
         match state {
@@ -502,8 +498,27 @@ pub fn ensemble(
             Err(error) => Ok(of_model(py, error).into_value(py).into_any()),
         }
     };
-    found
-        .into_iter()
-        .map(|states| states.map_err(|error| of_model(py, error))?.into_iter().map(one).collect())
-        .collect()
+    let mut surfaces_done = Vec::new();
+    for (index, states) in found.into_iter().enumerate() {
+        match (states, &raised) {
+            (Ok(states), _) => {
+                surfaces_done.push((index, states.into_iter().map(one).collect::<PyResult<Vec<_>>>()?));
+            }
+            (Err(error), None) => return Err(of_model(py, error)),
+            (Err(_), Some(_)) => {}
+        }
+    }
+    if let Some(raised) = raised {
+        // What is finished goes with the exception.
+        let finished = PyDict::new(py);
+        for (index, states) in surfaces_done {
+            finished.set_item(index, states)?;
+        }
+        raised.value(py).setattr("finished", finished)?;
+        return Err(raised);
+    }
+    if let Some(progress) = &progress {
+        progress.call1(py, (surfaces, surfaces))?;
+    }
+    Ok(surfaces_done.into_iter().map(|(_, states)| states).collect())
 }

@@ -7,22 +7,36 @@ use fractal_contact::{
     Relaxing, Rheology, Scene as RustScene, SelfAffine, Surface as RustSurface,
 };
 use numpy::PyReadonlyArray1;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// A parameter as what it should be; the error names it.
+fn extracted<'py, T: FromPyObjectOwned<'py>>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<T> {
+    value.extract::<T>().map_err(|error| {
+        let error: PyErr = error.into();
+        let shown = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+        let message = format!("{name} = {shown}: {}", error.value(value.py()));
+        if error.is_instance_of::<PyOverflowError>(value.py()) {
+            PyValueError::new_err(message)
+        } else {
+            PyTypeError::new_err(message)
+        }
+    })
+}
+
 /// A parameter that has to be there.
 fn required<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyDict>, name: &str) -> PyResult<T> {
     let value = of.get_item(name)?.ok_or_else(|| PyTypeError::new_err(format!("{name} is missing")))?;
-    value.extract::<T>().map_err(Into::into)
+    extracted(&value, name)
 }
 
 /// A parameter that may be None or absent.
 pub fn optional<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyDict>, name: &str) -> PyResult<Option<T>> {
     match of.get_item(name)? {
-        Some(value) if !value.is_none() => value.extract::<T>().map(Some).map_err(Into::into),
+        Some(value) if !value.is_none() => extracted(&value, name).map(Some),
         _ => Ok(None),
     }
 }

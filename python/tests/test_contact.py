@@ -195,3 +195,12 @@ def test_conductance_and_patches():
     state = fc.Bem3d().prepare(scene).solve(force=0.01)
     assert state.patches.sum() == pytest.approx(state.area) and np.all(np.diff(state.patches) <= 0)
     assert state.conductance > 0 and state.stiffness is None
+
+
+def test_lines_stand_for_rectangles():
+    heights = 0.01 * np.cos(2 * np.pi * np.arange(256) / 64)
+    line = fc.Surface.line(heights, length=2 / np.sqrt(np.pi), size=1.0)
+    state = fc.Mdr1d().prepare(fc.Scene(line, modulus=1.0)).solve(force=1e-3)
+    assert state.stiffness > 0 and line == fc.Surface.line(heights.tolist(), length=2 / np.sqrt(np.pi), size=1.0)
+    with pytest.raises(ValueError, match="2 dimensions"):
+        fc.Surface.line(np.zeros((2, 2)), length=1.0, size=1.0)

@@ -72,7 +72,24 @@ def test_sizes_that_make_no_sense(size):
         fc.Bem3d().prepare(fc.Scene(fc.HeightMap(GOOD, size=size), modulus=1.0)).solve(force=1e300)
 
 
-@pytest.mark.parametrize("size", [(1.0,), (1.0, 2.0, 3.0), "1 mm", None, 1j])
+@pytest.mark.parametrize("size", ["1 furlong", "1 mm x", "", ("1 mm", "2 parsnips")])
+def test_sizes_that_are_no_lengths(size):
+    with pytest.raises(ValueError, match="size = "):
+        fc.HeightMap(GOOD, size=size)
+
+
+def test_units():
+    told = fc.HeightMap(GOOD, size=("2 mm", "1 mm"), unit="nm")
+    assert told.size == (2e-3, 1e-3) and np.allclose(told.heights, GOOD * 1e-9, rtol=1e-15, atol=0)
+    assert fc.HeightMap(GOOD, size="1 um").size == (1e-6, 1e-6)
+    for unit in ("parsnip", "kPa", ""):
+        with pytest.raises(ValueError, match="unit"):
+            fc.HeightMap(GOOD, size=1.0, unit=unit)
+    with pytest.raises(ValueError, match="lightyears"):
+        fc.si("3 lightyears")
+
+
+@pytest.mark.parametrize("size", [(1.0,), (1.0, 2.0, 3.0), None, 1j])
 def test_sizes_of_other_types(size):
     with pytest.raises(TypeError):
         fc.HeightMap(GOOD, size=size)
@@ -108,7 +125,7 @@ def test_moduli_and_options(value):
         lambda: fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=value),
         lambda: fc.Effects(friction=value) and fc.Scene(fc.HeightMap(GOOD, 1.0), 1.0, effects={"friction": value}),
     ):
-        with contextlib.suppress(fc.Error, TypeError, OverflowError):
+        with contextlib.suppress(ValueError, fc.Error, TypeError, OverflowError):
             make()
 
 
@@ -141,3 +158,9 @@ def test_words_that_nothing_is_called():
         fc.Bem3d(method="magic")
     with pytest.raises(TypeError):
         fc.Bem3d(tolerence=1e-8)
+    with pytest.raises(ValueError, match="cells = -3"):
+        fc.Bem3d(cells=-3)
+    with pytest.raises(TypeError, match="elements = 'many'"):
+        fc.Mdr1d(elements="many")
+    with pytest.raises(TypeError, match="radius = None"):
+        fc.Surface.sphere(radius=None, size=1.0)
