@@ -71,6 +71,9 @@ impl Extent {
         let sides: Sides =
             text.parse().map_err(|error| PyValueError::new_err(format!("size = {text:?}: {error}")))?;
         let [x, y] = sides.both();
+        if [x, y].iter().any(|side| ![Dimension::LENGTH, Dimension::NONE].contains(&side.dimension())) {
+            return Err(PyValueError::new_err(format!("size = {text:?}: expected lengths")));
+        }
         Ok([x.value(), y.value()].into())
     }
 }

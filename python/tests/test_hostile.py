@@ -72,7 +72,7 @@ def test_sizes_that_make_no_sense(size):
         fc.Bem3d().prepare(fc.Scene(fc.HeightMap(GOOD, size=size), modulus=1.0)).solve(force=1e300)
 
 
-@pytest.mark.parametrize("size", ["1 furlong", "1 mm x", "", ("1 mm", "2 parsnips")])
+@pytest.mark.parametrize("size", ["1 furlong", "1 mm x", "", ("1 mm", "2 parsnips"), "1 kPa"])
 def test_sizes_that_are_no_lengths(size):
     with pytest.raises(ValueError, match="size = "):
         fc.HeightMap(GOOD, size=size)
