@@ -127,6 +127,7 @@ fn compare(text: &str, file: &Path, [columns, rows]: [usize; 2]) {
     let (column, row): (usize, usize) = (word("column ").parse().unwrap(), word("row ").parse().unwrap());
     let value = f64::from_le_bytes(values[8 * (row * columns + column)..][..8].try_into().unwrap());
     let read: f64 = text.split(' ').nth(1).unwrap().parse().unwrap();
+    // Seven digits are shown.
     assert!((read - value).abs() <= 5e-7 * value.abs(), "{text}: {value} in {}", file.display());
 }
 

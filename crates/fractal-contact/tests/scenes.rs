@@ -317,9 +317,6 @@ fn a_twin_has_the_heights_and_the_spectrum_of_its_map() {
     assert_ne!(found, map);
     let slopes = [&found, &map].map(|map| surface_gen::rms_slope_differences(map));
     approx::assert_relative_eq!(slopes[0], slopes[1], max_relative = 0.01);
-    // A coarser grid is a sample of the twin, and not the twin of a sample.
-    let compared = text.replace("area = true", "grid_error = true").replace("surfaces = 8", "surfaces = 1");
-    assert!(parsed(&compared).is_ok());
     for (wrong, message) in [
         (text.replace("twin = \"waves\"", "twin = \"wave\""), "waves"),
         (text.replace("twin = \"waves\"        #", "#"), "`keep_heights` is given, but no `twin`"),
@@ -359,6 +356,16 @@ fn a_lay_is_the_one_that_the_program_draws() {
         let error = parsed(&wrong).unwrap_err();
         assert!(error.contains(message), "{error}");
     }
+}
+
+#[test]
+fn an_accuracy_is_not_asked_of_surfaces_that_differ_by_grid() {
+    let text = std::fs::read_to_string(folder().join("skewed.toml")).unwrap();
+    let text = text.replace("weibull = 6", "weibull = 6\n").replace("[models.bem3d]\ncells = 128\n", "");
+    let asked = text.replace("[scene]\n", "[scene]\naccuracy = \"5 %\"\n");
+    let error =
+        parsed(&asked).unwrap().with_grid_for_accuracy(&contact_model::never).unwrap_err().to_string();
+    assert!(error.contains("is another one on each") && error.contains("grid_error"), "{error}");
 }
 
 #[test]

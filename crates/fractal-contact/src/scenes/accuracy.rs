@@ -75,6 +75,13 @@ impl SceneFile {
                     .with_help("ask for `stiffness`, `area` or `mean_gap` in [outputs]");
             return Err(self.at_accuracy(diagnostic).into());
         }
+        if self.surface.differs_by_grid() {
+            let diagnostic = Diagnostic::new(
+                "`accuracy` compares grids, and a surface with a prescribed distribution of heights is another one on each",
+            )
+            .with_help("give `cells` in [models.bem3d] and `grid_error = true`: coarser grids then sample one surface");
+            return Err(self.at_accuracy(diagnostic).into());
+        }
         let chosen = self.first_grid(&self.models[place], target, stop)?;
         let Cells { columns, rows } = cells(&chosen.scene, &chosen.scene.models[0]);
         let percent = |share: f64| format!("{} %", short(100.0 * share));

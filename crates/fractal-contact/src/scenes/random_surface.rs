@@ -72,7 +72,8 @@ impl RandomSurface {
 
     /// The same surface on at most so many cells along the longer side, where it is drawn on `cells` otherwise.
     ///
-    /// A self-affine surface without a distribution of heights is drawn on the coarser cells, with fewer short waves.
+    /// A self-affine surface without a distribution of heights is drawn on the coarser cells, with fewer short waves. With one, maps that
+    /// are drawn on two grids differ by some per cent of the rms height: it is drawn on the finer cells, and sampled.
     pub(crate) fn coarser(&self, cells: Cells, longer: usize) -> Self {
         let drawn = matches!(self.spectrum, RandomSpectrum::SelfAffine { .. }) && self.heights.is_none();
         let finest = self.sampling.map_or(cells, |(finest, _)| finest);
@@ -194,4 +195,38 @@ pub(crate) fn describe_self_affine(s: &SelfAffine) -> String {
         text += &format!(", shortest wavelength {}", number(2.0 * PI / q));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::SelfAffine;
+
+    /// Cells of the coarser grid are nearest to these of the finer one, twice as many.
+    fn every_second(map: &HeightMap) -> Vec<f64> {
+        let inside = |i: &usize| (i / map.columns()) % 2 == 1 && i % map.columns() % 2 == 1;
+        (0..map.heights().len()).filter(inside).map(|i| map.heights()[i]).collect()
+    }
+
+    #[test]
+    fn coarser_grids_sample_what_is_another_surface_on_them() {
+        let surface = SelfAffine { roll_off: Some(30.0), ..SelfAffine::new(2.2, 1.0, 0.01).unwrap() };
+        let plain = RandomSpectrum::SelfAffine { surface, anisotropy: None };
+        let of = Arc::new(RandomSurface::new(plain.clone(), None).map(64, 1).unwrap());
+        let weibull = Some(HeightDistribution::Weibull { shape: 1.5 });
+        let twin = RandomSpectrum::Twin { of: Arc::clone(&of), like: TwinSpectrum::EachWave };
+        for random in [RandomSurface::new(plain.clone(), weibull), RandomSurface::new(twin, None)] {
+            let fine = random.map(64, 7).unwrap();
+            let coarse = random.coarser(fine.cells(), 32);
+            let found = coarse.map(32, 7).unwrap();
+            assert_eq!((found.cells(), coarse.own_cells()), ([32, 32].into(), Some([32, 32].into())));
+            assert_eq!(found.heights(), every_second(&fine));
+            // And of what is sampled already, the finest grid is.
+            let coarsest = coarse.coarser(found.cells(), 16).map(16, 7).unwrap();
+            assert_eq!(coarsest, sampled(&fine, 16).unwrap());
+        }
+        // Waves of its own alone: drawn again.
+        let drawn = RandomSurface::new(plain, None).coarser([64, 64].into(), 32);
+        assert!(drawn.own_cells().is_none() && drawn.map(32, 7).unwrap().columns() == 32);
+    }
 }

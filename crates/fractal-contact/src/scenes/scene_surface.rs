@@ -75,6 +75,11 @@ impl SceneSurface {
         }
     }
 
+    /// Whether a seed draws another surface on other cells, and not only more or fewer short waves of the same one.
+    pub(crate) fn differs_by_grid(&self) -> bool {
+        matches!(self, Self::Drawn { rough, .. } if rough.heights.is_some()) && self.own_cells().is_none()
+    }
+
     /// The same surface on at most so many cells along its longer side, where a model has `cells` otherwise.
     pub(crate) fn coarser(&self, cells: Cells, longer: usize) -> Result<Self> {
         Ok(match self {
