@@ -1,4 +1,4 @@
-"""What Python adds to a solve of 512 x 512 cells: pairs of runs in Rust and in Python, one after the other.
+"""What Python adds: to a solve of 512 x 512 cells, in pairs of runs in Rust and in Python, to formulas, to its start.
 
 cargo build --release --example solve_times, then python benchmarks/overhead.py PATH/TO/solve_times [PAIRS]
 """
@@ -35,6 +35,14 @@ def main() -> None:
     print(
         f"median ratio {statistics.median(ratios):.4f}, quartiles {quarters[0]:.4f} to {quarters[2]:.4f}, {pairs} pairs"
     )
+    ball = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0))
+    start = time.perf_counter()
+    for _ in range(10_000):
+        ball.solve(force=0.1)
+    print(f"10 000 solves by Hertz's formula {time.perf_counter() - start:.4f} s")
+    code = "import numpy, time; t = time.perf_counter(); import fractal_contact; print(time.perf_counter() - t)"
+    told = [float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(5)]
+    print(f"importing, beyond numpy {statistics.median(told):.4f} s, median of 5")
 
 
 if __name__ == "__main__":

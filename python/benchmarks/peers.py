@@ -97,8 +97,8 @@ def kernel_shape(n):
     return (2 * n, 2 * n)
 
 
-def main() -> None:
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 256
+def compare(n: int) -> None:
+    """Prints a line for each program that is installed."""
     fc.set_threads(1)
     rough = fc.Surface.self_affine(fractal_dimension=2.2, size=1.0, rms_height=0.01)
     h = fc.surface_gen.self_affine_map(rough, n, fc.surface_gen.surface_seed(1, 0)).heights
@@ -121,4 +121,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    compare(int(sys.argv[1]) if len(sys.argv) > 1 else 256)

@@ -1,6 +1,7 @@
 //! Maps of heights.
 
 use crate::errors::of_model;
+use crate::pool;
 use fractal_contact::surface_io::{Dimension, Sides, Unit};
 use fractal_contact::{Cells, HeightMap as RustMap, Size};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -146,9 +147,12 @@ impl HeightMap {
 
     /// float: rms height about the mean of the defined points.
     #[getter]
-    fn rms_height(&self) -> f64 {
-        let defined: Vec<f64> = self.0.defined().collect();
-        fractal_contact::surface_gen::rms_height(&defined)
+    fn rms_height(&self, py: Python<'_>) -> PyResult<f64> {
+        // On the pool, as all that shares its work: the threads of rayon's own pool do not survive a fork.
+        pool::call(py, || {
+            let defined: Vec<f64> = self.0.defined().collect();
+            fractal_contact::surface_gen::rms_height(&defined)
+        })
     }
 
     /// The map with x and y exchanged.
@@ -200,15 +204,15 @@ impl HeightMap {
         Ok((py.import("fractal_contact._arrays")?.getattr("restored")?, arguments))
     }
 
-    fn __repr__(&self) -> String {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (rows, columns) = self.shape();
         let (x, y) = self.size();
         let undefined =
             if self.undefined() > 0 { format!(", {} undefined", self.undefined()) } else { String::new() };
-        format!(
-            "<HeightMap: {rows} rows x {columns} columns, {x:e} x {y:e}, rms height {:.4e}{undefined}>",
-            self.rms_height()
-        )
+        let rms = self.rms_height(py)?;
+        Ok(format!(
+            "<HeightMap: {rows} rows x {columns} columns, {x:e} x {y:e}, rms height {rms:.4e}{undefined}>"
+        ))
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
@@ -223,7 +227,7 @@ impl HeightMap {
             .map_err(|error| crate::errors::plain(py, "Error", &error.to_string()))?;
         let image = py.import("base64")?.call_method1("b64encode", (png.into_py_any(py)?,))?;
         let image: String = image.call_method1("decode", ("ascii",))?.extract()?;
-        let told = self.__repr__().replace('<', "&lt;").replace('>', "&gt;");
+        let told = self.__repr__(py)?.replace('<', "&lt;").replace('>', "&gt;");
         Ok(format!(
             "<div>{told}</div><img alt=\"heights, the first row at the bottom\" width=\"320\" \
              style=\"image-rendering: pixelated\" src=\"data:image/png;base64,{image}\">"

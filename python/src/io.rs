@@ -2,6 +2,7 @@
 
 use crate::errors::plain;
 use crate::height_map::HeightMap;
+use crate::pool;
 use crate::scene::optional;
 use fractal_contact::surface_io::{
     self, Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, Quantity, ReadOptions,
@@ -27,7 +28,7 @@ where
 }
 
 fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
-    const KNOWN: [&str; 22] = [
+    const KNOWN: [&str; 21] = [
         "format",
         "channel",
         "unit",
@@ -49,12 +50,11 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
         "mirror",
         "rotate",
         "window",
-        "path",
     ];
     for key in of.keys() {
         let key: String = key.extract()?;
         if !KNOWN.contains(&key.as_str()) {
-            let known = KNOWN[..KNOWN.len() - 1].join(", ");
+            let known = KNOWN.join(", ");
             return Err(PyTypeError::new_err(format!("no option is called {key:?}: there are {known}")));
         }
     }
@@ -127,7 +127,7 @@ pub fn read_surface<'py>(
         let found = scan.preprocessed(&preprocessing)?;
         Ok((scan.metadata().clone(), found))
     };
-    let (described, found) = py.detach(read).map_err(|error| failed(py, &error))?;
+    let (described, found) = pool::call(py, read)?.map_err(|error| failed(py, &error))?;
     Ok((found.map.into(), metadata(py, &described)?, found.steps, found.reliable_from))
 }
 
@@ -143,7 +143,7 @@ pub fn channels<'py>(
     let read = || -> Result<Vec<Metadata>, Error> {
         SurfaceFile::open(&path, &declared)?.scans().map(|scan| Ok(scan?.metadata().clone())).collect()
     };
-    let found = py.detach(read).map_err(|error| failed(py, &error))?;
+    let found = pool::call(py, read)?.map_err(|error| failed(py, &error))?;
     found.iter().map(|of| metadata(py, of)).collect()
 }
 
@@ -159,5 +159,5 @@ pub fn si(text: &str) -> PyResult<f64> {
 pub fn write_surface(py: Python<'_>, path: PathBuf, map: &HeightMap, metres: bool) -> PyResult<()> {
     let metric = if metres { Metric::Metres } else { Metric::Unitless };
     let map = &map.0;
-    py.detach(|| surface_io::write_map(&path, map, metric)).map_err(|error| failed(py, &error))
+    pool::call(py, || surface_io::write_map(&path, map, metric))?.map_err(|error| failed(py, &error))
 }

@@ -5,8 +5,11 @@
 #![allow(clippy::needless_pass_by_value)] // Arguments of Python functions come as values.
 #![allow(clippy::unnecessary_wraps)]
 
+mod contact;
+mod ensemble;
 mod errors;
 mod height_map;
+mod history;
 mod io;
 mod model;
 mod pool;
@@ -20,11 +23,17 @@ mod surface_gen;
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
+    use crate::contact::{Contact, Normalisation};
+    #[pymodule_export]
+    use crate::ensemble::ensemble;
+    #[pymodule_export]
     use crate::height_map::HeightMap;
+    #[pymodule_export]
+    use crate::history::History;
     #[pymodule_export]
     use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]
-    use crate::model::{Contact, History, Model, Normalisation, ensemble, model};
+    use crate::model::{Model, model};
     #[pymodule_export]
     use crate::pool::{set_threads, threads};
     #[pymodule_export]

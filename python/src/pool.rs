@@ -104,3 +104,9 @@ pub fn run<R: Send>(
         None => Err(PyRuntimeError::new_err("the solver ended without a result")),
     }
 }
+
+/// Runs `work` on the pool, which cannot be stopped.
+pub fn call<R: Send>(py: Python<'_>, work: impl FnOnce() -> R + Send) -> PyResult<R> {
+    let (result, raised) = run(py, &mut |_| Ok(()), |_| work())?;
+    raised.map_or(Ok(result), Err)
+}

@@ -1,10 +1,10 @@
 //! Scene files.
 
-use crate::errors::of_scene;
+use crate::errors::{of_scene, plain};
 use crate::pool;
-use crate::scene::Scene;
-use fractal_contact::runs::Progress;
+use fractal_contact::runs::{CsvFile, Progress};
 use fractal_contact::scenes::{Options, Plan, SceneFile as RustSceneFile, SceneOutcome, run};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ impl SceneFile {
     /// Reads a file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| RustSceneFile::read(&path)).map(Self).map_err(|error| of_scene(py, &error))
+        pool::call(py, || RustSceneFile::read(&path))?.map(Self).map_err(|error| of_scene(py, &error))
     }
 
     /// Reads a text; relative paths in it count from `directory`.
@@ -27,7 +27,7 @@ impl SceneFile {
     #[pyo3(signature = (text, *, directory=PathBuf::new(), name="scene".to_owned()))]
     fn from_toml(py: Python<'_>, text: String, directory: PathBuf, name: String) -> PyResult<Self> {
         let path = directory.join(format!("{name}.toml"));
-        py.detach(|| RustSceneFile::parse(&path, text)).map(Self).map_err(|error| of_scene(py, &error))
+        pool::call(py, || RustSceneFile::parse(&path, text))?.map(Self).map_err(|error| of_scene(py, &error))
     }
 
     /// str: the file itself.
@@ -44,18 +44,8 @@ impl SceneFile {
 
     /// What will be computed, what not and why, what it will cost.
     fn plan(&self, py: Python<'_>) -> PyResult<String> {
-        let planned = py.detach(|| Plan::new(&self.0).map(|plan| plan.to_string()));
+        let planned = pool::call(py, || Plan::new(&self.0).map(|plan| plan.to_string()))?;
         planned.map_err(|error| of_scene(py, &error))
-    }
-
-    fn _scene(&self, py: Python<'_>, model: usize, surface: usize) -> PyResult<Scene> {
-        let Some(numerics) = self.0.models.get(model) else {
-            return Err(pyo3::exceptions::PyIndexError::new_err(format!(
-                "the scene has no model number {model}"
-            )));
-        };
-        let scene = py.detach(|| self.0.scene(numerics, self.0.seed(surface)));
-        scene.map(Scene).map_err(|error| crate::errors::of_model(py, error))
     }
 
     fn __repr__(&self) -> String {
@@ -83,6 +73,21 @@ impl Progress for Counter {
     fn end(&self) {}
 }
 
+/// The columns of a table: numbers as arrays with NaN where there is none, texts as lists.
+fn columns<'py>(py: Python<'py>, table: &CsvFile) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for name in &table.columns {
+        let texts = table.texts(name).map_err(|error| plain(py, "Error", &error.to_string()))?;
+        if texts.iter().all(|text| text.is_empty() || text.parse::<f64>().is_ok()) {
+            let number = |text: &&str| text.parse().unwrap_or(f64::NAN);
+            dict.set_item(name, PyArray1::from_vec(py, texts.iter().map(number).collect()))?;
+        } else {
+            dict.set_item(name, texts)?;
+        }
+    }
+    Ok(dict)
+}
+
 /// Runs a scene as the program does; the files, the summary and the counts by their names.
 #[pyfunction]
 #[pyo3(signature = (scene, out, threads, fresh, progress))]
@@ -95,7 +100,7 @@ pub fn run_scene<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let threads = threads.map_or_else(pool::threads, Ok)?.max(1);
-    let (counter, file) = (Counter::default(), scene.0.clone());
+    let (counter, file, table) = (Counter::default(), scene.0.clone(), out.join("results.csv"));
     let mut told = 0;
     let mut listen = |py: Python<'_>| {
         let (done, total) = (counter.done.load(Ordering::Relaxed), counter.total.load(Ordering::Relaxed));
@@ -117,6 +122,8 @@ pub fn run_scene<'py>(
     }
     let outcome: SceneOutcome = outcome.map_err(|error| of_scene(py, &error))?;
     let dict = PyDict::new(py);
+    let table = CsvFile::read(&table).map_err(|error| plain(py, "Error", &error.to_string()))?;
+    dict.set_item("results", columns(py, &table)?)?;
     dict.set_item("files", &outcome.files)?;
     dict.set_item("summary", &outcome.summary)?;
     dict.set_item("notes", &outcome.notes)?;

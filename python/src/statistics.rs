@@ -2,6 +2,7 @@
 
 use crate::errors::of_model;
 use crate::height_map::HeightMap;
+use crate::pool;
 use fractal_contact::surface_statistics::{
     Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightParameters, HybridParameters,
     Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters, SpectrumFit, Taper,
@@ -17,8 +18,8 @@ fn boundary(periodic: bool) -> Boundary {
     if periodic { Boundary::Periodic } else { Boundary::Free }
 }
 
-fn known<T>(py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
-    result.map_err(|error| of_model(py, error))
+fn known<T>(py: Python<'_>, result: PyResult<Result<T, Error>>) -> PyResult<T> {
+    result?.map_err(|error| of_model(py, error))
 }
 
 fn arrays(dict: &Bound<'_, PyDict>, of: &[(&str, Vec<f64>)]) -> PyResult<()> {
@@ -32,7 +33,7 @@ fn arrays(dict: &Bound<'_, PyDict>, of: &[(&str, Vec<f64>)]) -> PyResult<()> {
 #[pyfunction]
 pub fn parameters<'py>(py: Python<'py>, map: &HeightMap, periodic: bool) -> PyResult<Bound<'py, PyDict>> {
     let of = &map.0;
-    let found = py.detach(|| -> Result<Vec<(&str, Option<f64>)>> {
+    let found = pool::call(py, || -> Result<Vec<(&str, Option<f64>)>> {
         let mut all = Vec::new();
         let h = HeightParameters::new(of)?;
         for (name, value) in [
@@ -82,9 +83,11 @@ pub fn power_spectrum<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (of, taper) = (&map.0, if periodic { Taper::None } else { Taper::Hann });
     let found = match direction {
-        "radial" => py.detach(|| PowerSpectrum::radial(of, taper, &Bins::of_wavenumbers(of, per_decade)?)),
-        "x" => py.detach(|| PowerSpectrum::along_x(of, taper)),
-        "y" => py.detach(|| PowerSpectrum::along_y(of, taper)),
+        "radial" => {
+            pool::call(py, || PowerSpectrum::radial(of, taper, &Bins::of_wavenumbers(of, per_decade)?))
+        }
+        "x" => pool::call(py, || PowerSpectrum::along_x(of, taper)),
+        "y" => pool::call(py, || PowerSpectrum::along_y(of, taper)),
         other => {
             return Err(PyValueError::new_err(format!(
                 "direction is {other:?}: expected \"radial\", \"x\" or \"y\""
@@ -92,7 +95,7 @@ pub fn power_spectrum<'py>(
         }
     };
     let found = known(py, found)?;
-    let (low, high) = known(py, found.band(level))?.into_iter().map(|[low, high]| (low, high)).unzip();
+    let (low, high) = known(py, Ok(found.band(level)))?.into_iter().map(|[low, high]| (low, high)).unzip();
     let dict = PyDict::new(py);
     arrays(
         &dict,
@@ -124,7 +127,7 @@ pub fn height_difference<'py>(
     level: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let of = &map.0;
-    let found = py.detach(|| -> Result<_> {
+    let found = pool::call(py, || -> Result<_> {
         let found =
             DifferenceMap::new(of, boundary(periodic)).radial(&Bins::of_distances(of, per_decade)?)?;
         let bands = DifferenceBands::new(of, boundary(periodic)).ok();
@@ -158,7 +161,7 @@ pub fn scale_dependence<'py>(
     level: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (of, boundary, axis) = (&map.0, boundary(periodic), usize::from(along_y));
-    let found = py.detach(|| -> Result<_> {
+    let found = pool::call(py, || -> Result<_> {
         let bands = DifferenceBands::new(of, boundary).ok();
         let (found, bands) = if of_curvature {
             let along = [ScaleDependence::curvature_along_x, ScaleDependence::curvature_along_y][axis];
@@ -190,7 +193,7 @@ pub fn fit_spectrum<'py>(
     instrument: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (of, boundary) = (&map.0, boundary(periodic));
-    let found = py.detach(|| {
+    let found = pool::call(py, || {
         let reliable = ReliableWavelengths::new(of, boundary, instrument)?;
         SpectrumFit::new(of, &reliable.fit_options(boundary))
     });

@@ -20,9 +20,7 @@ pub fn cells(given: OneOrTwo<usize>, size: Size) -> Cells {
 }
 
 fn drawn(py: Python<'_>, work: impl FnOnce() -> Result<RustMap> + Send) -> PyResult<HeightMap> {
-    let (map, raised) = pool::run(py, &mut |_| Ok(()), |_| work())?;
-    raised.map_or(Ok(()), Err)?;
-    map.map(HeightMap::from).map_err(|error| of_model(py, error))
+    pool::call(py, work)?.map(HeightMap::from).map_err(|error| of_model(py, error))
 }
 
 /// Seed of surface number `index` of the ensemble of a master seed.

@@ -49,10 +49,20 @@ def test_errors_are_pickled():
     assert str(again) == str(caught.value) and again.value == -1.0
 
 
+def measured(cells):
+    surface = rough(cells)
+    told = fc.statistics.power_spectrum(surface)["density"].sum(), fc.surface_gen.twin(surface, 3).rms_height
+    theory = fc.Persson().prepare(fc.Scene(surface, modulus=1.0, outputs=["area"], effects={"boundary": "periodic"}))
+    return (*told, theory.solve(force=0.01).area, fc.statistics.parameters(surface)["Sal"])
+
+
 @pytest.mark.parametrize("method", ["fork", "spawn"])
 def test_other_processes(method):
-    # A large map first: the threads of this process have worked, and do not survive a fork.
+    # Large maps first: the threads of this process have worked, and do not survive a fork.
     expected = [stiffness(force, 257) for force in (0.01, 0.1)]
+    statistics = measured(1025)
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context(method)) as pool:
+        assert pool.submit(measured, 1025).result(timeout=120) == statistics
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context(method)) as pool:
         found = list(pool.map(stiffness, (0.01, 0.1), (257, 257), timeout=120))
     assert found == expected
@@ -107,11 +117,11 @@ def test_no_bit_depends_on_the_number_of_threads():
 def test_ctrl_c_stops_a_solve_and_nothing_is_lost():
     contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(1025, hurst=0.3), modulus=1.0))
     threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-    start = time.perf_counter()
     with pytest.raises(KeyboardInterrupt):
-        for force in np.geomspace(1e-4, 10.0, 200):
+        for force in np.geomspace(1e-2, 10.0, 2000):
             contact.solve(force=force)
-    assert time.perf_counter() - start < 30
+    # Between its iterations, and not where it would have ended anyway.
+    assert contact.best.status == "stopped"
     # It goes on as if nothing had been.
     again = contact.solve(force=0.5)
     assert again.certificate.meets(1e-10)
@@ -129,13 +139,14 @@ def test_ctrl_c_stops_an_ensemble_and_a_handler_may_raise():
     signal.setitimer(signal.ITIMER_REAL, 0.3)
     try:
         surface = fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=0.01)
-        with pytest.raises(Alarm):
+        with pytest.raises(Alarm) as caught:
             fc.ensemble(
                 fc.Bem3d(cells=257), fc.Scene(surface, modulus=1.0), seed=1, surfaces=5000, force_bar=[0.1, 1.0]
             )
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+    assert 0 < len(caught.value.finished) < 5000
 
 
 def test_an_exception_of_a_callback_ends_an_ensemble():

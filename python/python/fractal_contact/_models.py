@@ -49,6 +49,11 @@ class _Options:
         return hash(repr(self))
 
 
+class _NoOptions(_Options):
+    def __init__(self) -> None:
+        super().__init__()
+
+
 class Model(_Options):
     """A way to answer what force, approach and stiffness belong together: plan once, solve often."""
 
@@ -132,42 +137,37 @@ class Mdr1d(Model):
         super().__init__(elements=elements)
 
 
-class _Formula(Model):
-    def __init__(self) -> None:
-        super().__init__()
-
-
-class Hertz(_Formula):
+class Hertz(_NoOptions, Model):
     """Hertz's contact of a sphere."""
 
     _name = "hertz"
 
 
-class FlatPunch(_Formula):
+class FlatPunch(_NoOptions, Model):
     """Flat circular punch, or flat rectangle as far as it has closed forms."""
 
     _name = "flat_punch"
 
 
-class PowerLawBody(_Formula):
+class PowerLawBody(_NoOptions, Model):
     """Bodies of revolution r^n (Sneddon, Galin)."""
 
     _name = "power_law_body"
 
 
-class PowerLaw(_Formula):
+class PowerLaw(_NoOptions, Model):
     """The power law of the paper for self-affine surfaces."""
 
     _name = "power_law"
 
 
-class Jkr(_Formula):
+class Jkr(_NoOptions, Model):
     """Adhesive contact of a sphere (Johnson, Kendall, Roberts)."""
 
     _name = "jkr"
 
 
-class Westergaard(_Formula):
+class Westergaard(_NoOptions, Model):
     """Periodic contact of a wave."""
 
     _name = "westergaard"
@@ -236,24 +236,19 @@ class Equivalent(HistoryModel):
         return f"Equivalent({self.model!r}{options})"
 
 
-class _PathFormula(HistoryModel):
-    def __init__(self) -> None:
-        super().__init__()
-
-
-class CattaneoMindlin(_PathFormula):
+class CattaneoMindlin(_NoOptions, HistoryModel):
     """Partial slip of a sphere in closed form."""
 
     _name = "cattaneo_mindlin"
 
 
-class PartialSlip(_PathFormula):
+class PartialSlip(_NoOptions, HistoryModel):
     """Partial slip of round bodies by reduction to one dimension."""
 
     _name = "partial_slip"
 
 
-class Viscoelastic(_PathFormula):
+class Viscoelastic(_NoOptions, HistoryModel):
     """Viscoelastic contact of round bodies by reduction to one dimension."""
 
     _name = "viscoelastic"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -96,18 +95,6 @@ class SceneOutcome:
     """Columns of ``results.csv``: numbers with NaN where a state has none, or texts."""
 
 
-def _columns(path: Path) -> dict[str, NDArray[Any]]:
-    with path.open(newline="", encoding="utf-8") as lines:
-        rows = list(csv.reader(line for line in lines if not line.startswith("#")))
-    columns: dict[str, NDArray[Any]] = {}
-    for name, *values in zip(*rows, strict=True):
-        try:
-            columns[name] = np.array([float(value) if value else np.nan for value in values])
-        except ValueError:
-            columns[name] = np.array(values)
-    return columns
-
-
 def run_scene(
     scene: SceneFile | str | Path,
     out: str | Path,
@@ -135,4 +122,5 @@ def run_scene(
         scene = SceneFile.read(Path(scene))
     found = _core.run_scene(scene, Path(out), threads, fresh, progress)
     files = [Path(file) for file in found.pop("files")]
-    return SceneOutcome(files=files, results=_columns(Path(out) / "results.csv"), **found)
+    results = {name: np.asarray(values) for name, values in found.pop("results").items()}
+    return SceneOutcome(files=files, results=results, **found)

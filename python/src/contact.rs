@@ -1,0 +1,201 @@
+//! Planned contacts.
+
+use crate::errors::of_model;
+use crate::pool;
+use crate::state::{self, ContactState};
+use fractal_contact::{
+    ContactState as RustState, Error, Load, Normalisation as RustNormalisation, PreparedContact,
+};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Mutex, PoisonError};
+
+/// What a solve had reached when a signal came: its result, or the best state so far.
+pub type Reached<R> = Result<R, Option<Box<RustState>>>;
+
+/// Runs on the pool where it may be long; Ctrl-C and errors become exceptions. `keep` is given what an interrupted solve had reached.
+pub fn solved<R: Send>(
+    py: Python<'_>,
+    long: bool,
+    keep: impl FnOnce(Reached<R>),
+    work: impl FnOnce(&(dyn Fn() -> bool + Sync)) -> fractal_contact::Result<R> + Send,
+) -> PyResult<R> {
+    let (result, raised) = if long {
+        pool::run(py, &mut |_| Ok(()), work)?
+    } else {
+        (py.detach(|| work(&fractal_contact::never)), None)
+    };
+    match (result, raised) {
+        (Err(Error::Stopped { best }), Some(raised)) => {
+            keep(Err(best));
+            Err(raised)
+        }
+        // It was done before it heard of the signal.
+        (Ok(found), Some(raised)) => {
+            keep(Ok(found));
+            Err(raised)
+        }
+        (result, _) => result.map_err(|error| of_model(py, error)),
+    }
+}
+
+/// What turns forces and stiffnesses into the dimensionless ones of the paper.
+#[pyclass(frozen, module = "fractal_contact")]
+#[derive(Clone)]
+pub struct Normalisation(pub RustNormalisation);
+
+#[pymethods]
+impl Normalisation {
+    /// float: effective modulus E*.
+    #[getter]
+    fn modulus(&self) -> f64 {
+        self.0.modulus
+    }
+
+    /// float: L = sqrt(Lx Ly).
+    #[getter]
+    fn length(&self) -> f64 {
+        self.0.length
+    }
+
+    /// float or None: measured rms height of this very surface.
+    #[getter]
+    fn rms_height(&self) -> Option<f64> {
+        self.0.height
+    }
+
+    /// F for F_bar = F/(E* h L).
+    fn force(&self, py: Python<'_>, force_bar: f64) -> PyResult<f64> {
+        self.0.force(force_bar).map_err(|error| of_model(py, error))
+    }
+
+    /// F_bar = F/(E* h L) for F.
+    fn force_bar(&self, py: Python<'_>, force: f64) -> PyResult<f64> {
+        self.0.force_bar(force).map_err(|error| of_model(py, error))
+    }
+
+    /// k_bar = k/(1.1419 E* L) for k.
+    fn stiffness_bar(&self, stiffness: f64) -> f64 {
+        self.0.stiffness_bar(stiffness)
+    }
+
+    fn __repr__(&self) -> String {
+        let RustNormalisation { modulus, length, height, .. } = self.0;
+        format!(
+            "<Normalisation: modulus={modulus:e}, length={length:e}, rms_height={}>",
+            height.map_or("None".into(), |h| format!("{h:e}"))
+        )
+    }
+}
+
+/// A planned contact: solve often. It keeps tables, plans and the last state, from which the next solve starts.
+#[pyclass(frozen, module = "fractal_contact")]
+pub struct Contact {
+    inner: Mutex<Box<dyn PreparedContact>>,
+    normalisation: RustNormalisation,
+    long: bool,
+    best: Mutex<Option<Py<ContactState>>>,
+}
+
+impl Contact {
+    /// A contact whose solves are long, or not.
+    pub fn new(contact: Box<dyn PreparedContact>, long: bool) -> Self {
+        let normalisation = contact.normalisation();
+        Self { inner: Mutex::new(contact), normalisation, long, best: Mutex::new(None) }
+    }
+}
+
+/// The one load that is given.
+pub fn load(
+    normalisation: &RustNormalisation,
+    force: Option<f64>,
+    approach: Option<f64>,
+    mean_pressure: Option<f64>,
+    mean_gap: Option<f64>,
+) -> PyResult<Load> {
+    match (force, approach, mean_pressure, mean_gap) {
+        (Some(force), None, None, None) => Ok(Load::Force(force)),
+        (None, Some(approach), None, None) => Ok(Load::Approach(approach)),
+        (None, None, Some(pressure), None) => Ok(Load::Force(pressure * normalisation.length.powi(2))),
+        (None, None, None, Some(gap)) => Ok(Load::MeanGap(gap)),
+        _ => Err(PyTypeError::new_err("give exactly one of force, approach, mean_pressure and mean_gap")),
+    }
+}
+
+#[pymethods]
+impl Contact {
+    /// Solves for one load.
+    ///
+    /// Parameters
+    /// ----------
+    /// force, approach, mean_pressure, mean_gap : float
+    ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries.
+    ///
+    /// Returns
+    /// -------
+    /// ContactState
+    ///
+    /// Raises
+    /// ------
+    /// DomainError, OutOfRange, Unsupported
+    ///     For a load that makes no sense or that the model does not hold for.
+    /// NotConverged
+    ///     With the state that was reached as ``best``.
+    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None))]
+    fn solve(
+        &self,
+        py: Python<'_>,
+        force: Option<f64>,
+        approach: Option<f64>,
+        mean_pressure: Option<f64>,
+        mean_gap: Option<f64>,
+    ) -> PyResult<Py<ContactState>> {
+        let load = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
+        let mut best = None;
+        let inner = &self.inner;
+        let result = solved(
+            py,
+            self.long,
+            |reached| best = reached.map_or_else(|best| best.map(|best| *best), Some),
+            |stop| inner.lock().unwrap_or_else(PoisonError::into_inner).solve_until(load, &|| stop()),
+        );
+        if let Some(best) = best {
+            *self.best.lock().unwrap_or_else(PoisonError::into_inner) = Some(state::of(py, best)?);
+        }
+        state::of(py, result?)
+    }
+
+    /// Solves for loads in their order: an iterator that yields each state as soon as it is there.
+    ///
+    /// Parameters
+    /// ----------
+    /// force, approach, mean_pressure, mean_gap : iterable of float
+    ///     Exactly one of them. Increasing loads are the fastest order.
+    ///
+    /// Yields
+    /// ------
+    /// ContactState
+    #[pyo3(signature = (**loads))]
+    fn sweep<'py>(slf: &Bound<'py, Self>, loads: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), loads)
+    }
+
+    /// Normalisation: of this very surface.
+    #[getter]
+    fn normalisation(&self) -> Normalisation {
+        Normalisation(self.normalisation)
+    }
+
+    /// ContactState or None: what the last solve had reached that a signal such as Ctrl-C interrupted.
+    #[getter]
+    fn best(&self, py: Python<'_>) -> Option<Py<ContactState>> {
+        self.best.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|best| best.clone_ref(py))
+    }
+
+    fn __repr__(&self) -> String {
+        let RustNormalisation { modulus, length, height, .. } = self.normalisation;
+        let height = height.map_or("none".into(), |h| format!("{h:.4e}"));
+        format!("<Contact: modulus={modulus:e}, length={length:e}, rms height {height}>")
+    }
+}
