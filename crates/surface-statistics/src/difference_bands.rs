@@ -17,7 +17,7 @@ const RINGS: f64 = 8.0;
 /// heights are Gaussian. With `n = 2 (2 (sum w |H|^2)^2/sum (w |H|^2)^2 - 1)` over the waves, each with its conjugate (Satterthwaite), n times
 /// the mean square over the expected one is about chi-square distributed with n degrees of freedom. Weights: `1 - J_0(q r)` for height
 /// differences in all directions, `1 - cos(q_x r)` for slopes along x, `(1 - cos(q_x r/2))^2` for curvatures. Free maps are taken under
-/// Hann's window for the spectrum, and n by the share of pairs of points at r that lie inside of the map.
+/// Hann's window for the spectrum, and n is multiplied by the share of pairs of points at r that lie inside of the map.
 ///
 /// Assumes Gaussian heights. A free map says nothing of waves much longer than itself: bands end at half of its shorter side.
 ///
