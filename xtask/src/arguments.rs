@@ -1,14 +1,18 @@
 //! The command line.
 
 mod bench;
+mod cluster;
 mod sizes;
 mod studies;
 
 pub use bench::BenchArguments;
+pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};
 
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
+use runs::ShardChoice;
 use sizes::{Both, LineSizes, Maps, Reduced, Solid};
+use std::path::PathBuf;
 use studies::{
     AccuracyCost, Audit, BookArguments, BudgetCheck, ExponentArguments, Reference, StabilityArguments,
     TwoCasesArguments,
@@ -91,6 +95,15 @@ pub enum Command {
     /// The exponent of stiffness over force with bands, by pairs of surfaces on neighbouring grids (exponent.csv and others).
     #[command(after_help = EXPAND)]
     Exponent(ExponentArguments),
+    /// What a command takes on many machines: jobs, core-hours, memory of a task, makespan, disk. Solves nothing.
+    Plan(PlanArguments),
+    /// Writes a batch script for SLURM or HyperQueue that does the shards of a command and merges them; with --now submits it. What is done is
+    /// not done again.
+    Submit(SubmitArguments),
+    /// What is done, running, failed and missing of the shards in a directory.
+    Status(ShardsArguments),
+    /// Tables and pictures from the shards in a directory: the bytes of one process. Refuses gaps, damage and mixed plans.
+    Merge(ShardsArguments),
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
@@ -118,6 +131,29 @@ impl Command {
         solve.target().map(|target| (Requirements { solid, line }, target))
     }
 
+    /// The shard that it is asked for.
+    pub fn shard(&self) -> Option<ShardChoice> {
+        let sharded = match self {
+            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => &a.solve.sharded,
+            Self::ReproduceFig6(a) => &a.solve.sharded,
+            Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
+                &a.solve.sharded
+            }
+            Self::Audit(a) => &a.solid.solve.sharded,
+            Self::Exponent(a) => &a.sharded,
+            Self::BudgetCheck(a) => &a.sharded,
+            Self::ReproduceTwoCases(a) => &a.sharded,
+            Self::AccuracyCost(a) => &a.sharded,
+            _ => return None,
+        };
+        sharded.shard
+    }
+
+    /// Directory of the results.
+    pub fn out(&self) -> PathBuf {
+        self.request().out.unwrap_or_else(|| "out".into())
+    }
+
     /// What it asks for.
     pub fn request(&self) -> Request {
         let mut request = Request::default();
@@ -131,9 +167,16 @@ impl Command {
             }
             Self::Audit(a) => a.solid.fill(&mut request),
             Self::Exponent(a) => a.fill(&mut request),
-            Self::Bench(_) | Self::Redraw(_) | Self::Book(_) | Self::Tuning(_) => {}
+            Self::Bench(_)
+            | Self::Redraw(_)
+            | Self::Book(_)
+            | Self::Tuning(_)
+            | Self::Plan(_)
+            | Self::Submit(_)
+            | Self::Status(_)
+            | Self::Merge(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
-            Self::ReproduceTwoCases(a) => request.out = Some(a.out.clone()),
+            Self::ReproduceTwoCases(a) => (request.out, request.threads) = (Some(a.out.clone()), a.threads),
             Self::AccuracyCost(a) => request.out = Some(a.out.clone()),
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
             Self::Stability(a) => request.out = Some(a.out.clone()),

@@ -9,18 +9,20 @@
 
 mod arguments;
 mod book;
+mod cluster;
 
 use arguments::{Arguments, BenchArguments, Command, Redraw, TuningArguments};
 use clap::Parser as _;
 use evaluation::{BenchRow, Outcome, Run};
-use runs::{Error, Reporter, Result, Store};
+use runs::{Error, Failure, Reporter, Result, Store};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
-    match execute(Arguments::parse().command) {
+    let typed: Vec<String> = std::env::args().skip(1).collect();
+    match execute(Arguments::parse().command, &typed) {
         Ok(code) => code,
         Err(error) => {
             runs::err!("error: {error}");
@@ -29,7 +31,29 @@ fn main() -> ExitCode {
     }
 }
 
-fn execute(command: Command) -> Result<ExitCode> {
+fn execute(command: Command, typed: &[String]) -> Result<ExitCode, Failure> {
+    if let Some(choice) = command.shard() {
+        tell_what_an_interruption_leaves(command.out())?;
+        return cluster::shard(&command, choice, typed).map(|()| ExitCode::SUCCESS);
+    }
+    match &command {
+        Command::Plan(options) => cluster::plan(options)?,
+        Command::Submit(options) => cluster::submit(options)?,
+        Command::Status(options) => {
+            if !cluster::tell_status(options)?.complete() {
+                return Ok(ExitCode::from(3));
+            }
+        }
+        Command::Merge(options) => {
+            let (command, typed) = cluster::merged(options)?;
+            return Ok(solve(command, &typed)?);
+        }
+        _ => return Ok(solve(command, typed)?),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
     match &command {
         Command::CheckReference(options) => return check_reference(options.bless, &options.out),
         Command::Stability(options) => return stability(options.thorough, &options.out),
@@ -104,7 +128,6 @@ fn execute(command: Command) -> Result<ExitCode> {
     {
         outcomes.push(evaluation::state_budgets(&run, requirements.solid, requirements.line, &reporter)?);
     }
-    let typed: Vec<String> = std::env::args().skip(1).collect();
     // The first word that was typed is the subcommand: no flag stands before it.
     let name = typed.first().map_or("", String::as_str);
     let manifest =

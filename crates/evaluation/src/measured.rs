@@ -71,6 +71,41 @@ pub fn with_coarser(
     Ok(Measured { coarser: Some(Box::new([on(half)?, on(quarter)?])), ..measured })
 }
 
+/// Everything that the ensembles of a run solve, coarser grids included.
+pub fn run_units(run: &Run, solid: bool, line: bool) -> Vec<Realisation> {
+    let solid = solid.then(|| {
+        let discretisation = Discretisation::Bem3d { cells: run.cells, tolerance: run.tolerance };
+        (discretisation, run.surfaces, run.forces_3d.values())
+    });
+    let line =
+        line.then(|| (Discretisation::Mdr1d { elements: run.elements }, run.lines, run.forces_1d.values()));
+    let ensembles = solid.into_iter().chain(line);
+    let grids = ensembles.flat_map(|(discretisation, surfaces, forces)| {
+        let coarser = discretisation.coarser().into_iter().flatten();
+        let coarser = coarser.map(move |grid| (grid, surfaces.min(COARSER_SURFACES), forces));
+        std::iter::once((discretisation, surfaces, forces)).chain(coarser)
+    });
+    grids.flat_map(|(grid, surfaces, forces)| units(grid, surfaces, forces, run)).collect()
+}
+
+/// Surface by surface, so that an interrupted run holds whole ensembles of fewer surfaces.
+fn units(discretisation: Discretisation, surfaces: usize, forces: &[f64], run: &Run) -> Vec<Realisation> {
+    let forces: Arc<[f64]> = forces.into();
+    let dimensions = run.dimensions();
+    let of_surface = |index: usize| {
+        let seed = surface_gen::surface_seed(run.seed, index as u64);
+        let of = |&fractal_dimension: &f64| Realisation {
+            discretisation,
+            fractal_dimension,
+            index,
+            seed,
+            forces: Arc::clone(&forces),
+        };
+        dimensions.iter().map(of).collect::<Vec<_>>()
+    };
+    (0..surfaces).flat_map(of_surface).collect()
+}
+
 /// An ensemble on its own grid alone.
 ///
 /// # Errors
@@ -83,22 +118,8 @@ pub fn measure(
     store: &Store,
     progress: &dyn Progress,
 ) -> Result<Measured> {
-    let forces: Arc<[f64]> = forces.into();
     let dimensions = run.dimensions();
-    // Surface by surface, so that an interrupted run holds whole ensembles of fewer surfaces.
-    let units: Vec<Realisation> = (0..surfaces)
-        .flat_map(|index| {
-            let seed = surface_gen::surface_seed(run.seed, index as u64);
-            let forces = &forces;
-            dimensions.iter().map(move |&fractal_dimension| Realisation {
-                discretisation,
-                fractal_dimension,
-                index,
-                seed,
-                forces: Arc::clone(forces),
-            })
-        })
-        .collect();
+    let units = units(discretisation, surfaces, forces, run);
     let (kind, size) = match discretisation {
         Discretisation::Bem3d { cells, .. } => ("surfaces", format!("{cells} x {cells} cells")),
         Discretisation::Mdr1d { elements } => ("lines", format!("{elements} elements")),
@@ -113,7 +134,7 @@ pub fn measure(
     let series = pairs
         .into_iter()
         .zip(&dimensions)
-        .map(|(units, &d)| Series::new(d, units, &forces))
+        .map(|(units, &d)| Series::new(d, units, forces))
         .collect::<Result<_>>()?;
     Ok(Measured { discretisation, series, coarser: None })
 }

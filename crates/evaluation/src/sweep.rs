@@ -4,6 +4,7 @@ use crate::realisation::{Discretisation, Models, Realisation, RealisationResult}
 use crate::sample::{FIELDS, Sample};
 use contact_model::{Stop, never};
 use runs::{Error, Job, Progress, Result, Store, Threads, collect, number, run_stored, threads_for_memory};
+use std::sync::Arc;
 
 /// Solves all units that the store does not hold, the largest first, and gives the results in the order of
 /// `units`. The results do not depend on `threads`.
@@ -21,26 +22,31 @@ pub fn sweep(
     threads: usize,
     progress: &dyn Progress,
 ) -> Result<Vec<RealisationResult>> {
-    let models = Models::default();
     let largest =
         units.iter().map(|unit| unit.discretisation).max_by(|a, b| a.memory().total_cmp(&b.memory()));
     let in_flight = largest.map_or(Ok(threads), |largest| {
         let name = if matches!(largest, Discretisation::Bem3d { .. }) { "cells" } else { "elements" };
         threads_for_memory(threads, largest.memory(), name, largest.size())
     })?;
-    let jobs: Vec<RealisationJob<'_>> =
-        units.iter().map(|unit| RealisationJob { unit, models: &models }).collect();
+    let jobs = realisation_jobs(units.to_vec());
     let threads = Threads { total: threads, jobs: in_flight };
     collect(run_stored(what, &jobs, store, threads, progress, &never)?)
 }
 
-/// A unit with what all of them share.
-struct RealisationJob<'a> {
-    unit: &'a Realisation,
-    models: &'a Models,
+/// Units as jobs that share what a line's ensemble plans once.
+pub fn realisation_jobs(units: Vec<Realisation>) -> Vec<RealisationJob> {
+    let models = Arc::new(Models::default());
+    units.into_iter().map(|unit| RealisationJob { unit, models: Arc::clone(&models) }).collect()
 }
 
-impl Job for RealisationJob<'_> {
+/// A unit with what all of them share.
+#[derive(Debug, Clone)]
+pub struct RealisationJob {
+    unit: Realisation,
+    models: Arc<Models>,
+}
+
+impl Job for RealisationJob {
     type Output = RealisationResult;
     type Error = Error;
 
@@ -48,23 +54,40 @@ impl Job for RealisationJob<'_> {
         self.unit.key()
     }
 
+    fn name(&self) -> String {
+        let Realisation { discretisation, fractal_dimension, index, .. } = &self.unit;
+        let (model, size) = (discretisation.name(), discretisation.size());
+        let kind =
+            if matches!(discretisation, Discretisation::Bem3d { .. }) { "cells a side" } else { "elements" };
+        format!("{model}, D_f = {fractal_dimension:?}, surface {index}, {size} {kind}")
+    }
+
     fn cost(&self) -> u64 {
         self.unit.cost()
     }
 
-    fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
-        self.unit.solve_among(self.models, stop)
+    fn memory(&self) -> f64 {
+        self.unit.discretisation.memory()
     }
 
-    fn encode(&self, result: &RealisationResult) -> Option<String> {
+    fn stored_bytes(&self) -> u64 {
+        1000 + 250 * self.unit.forces.len() as u64
+    }
+
+    fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
+        self.unit.solve_among(&self.models, stop)
+    }
+
+    fn encode(&self, result: &RealisationResult) -> String {
         let mut table = csv::Writer::from_writer(Vec::new());
-        table.write_record(FIELDS).ok()?;
+        // Writing into memory does not fail; what it would leave is no result when it is read.
+        let _ = table.write_record(FIELDS);
         for sample in &result.samples {
-            table.write_record(sample.fields()).ok()?;
+            let _ = table.write_record(sample.fields());
         }
-        let table = String::from_utf8(table.into_inner().ok()?).ok()?;
+        let table = String::from_utf8(table.into_inner().unwrap_or_default()).unwrap_or_default();
         let (height, seconds) = (number(result.rms_height), number(result.seconds));
-        Some(format!("# measured_rms_height {height}\n# seconds {seconds}\n{table}"))
+        format!("# measured_rms_height {height}\n# seconds {seconds}\n{table}")
     }
 
     fn decode(&self, text: &str) -> Option<RealisationResult> {
@@ -103,13 +126,13 @@ mod tests {
             seed: 1,
             forces: [0.1, 1.0].into(),
         };
-        let job = RealisationJob { unit: &unit, models: &Models::default() };
+        let job = realisation_jobs(vec![unit]).remove(0);
         let result = RealisationResult {
             rms_height: 1.0 / 3.0,
             seconds: 0.25,
             samples: vec![sample(0.1), sample(1.0)],
         };
-        let text = job.encode(&result).unwrap();
+        let text = job.encode(&result);
         assert_eq!(job.decode(&text), Some(result));
         let without_a_row: String =
             text.lines().filter(|l| !l.starts_with("0.1,")).flat_map(|l| [l, "\n"]).collect();

@@ -48,5 +48,5 @@ pub use fig6::fig6;
 pub use fig7::fig7;
 pub use redraw::{Beside, redraw};
 pub use reference::{RELATIVE, check_reference};
-pub use two_cases::{TwoCases, two_cases};
+pub use two_cases::{TwoCases, two_cases, two_cases_jobs};
 pub use verify::verify;

@@ -4,7 +4,7 @@
 
 use evaluation::{AccuracyTarget, Request, Requirements, Run, Verdict};
 use figures::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
-use runs::{CsvFile, Error, Progress, Silent};
+use runs::{CsvFile, Error, Progress, Silent, Store};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -46,13 +46,15 @@ impl Progress for Counter {
     fn end(&self) {}
 }
 
-fn units(out: &Path) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> =
-        fs::read_dir(out.join(".units")).unwrap().map(|e| e.unwrap().path()).collect();
-    // The lock of the store is no result.
-    files.retain(|file| file.extension().is_some_and(|end| end == "csv"));
-    files.sort();
-    files
+/// The pack of a store that one run made, and its text: the head, then each result.
+fn results(out: &Path) -> (PathBuf, Vec<String>) {
+    let mut packs = Store::packs(out).unwrap();
+    assert_eq!(packs.len(), 1);
+    let path = packs.remove(0).path;
+    let text = fs::read_to_string(&path).unwrap();
+    let mark = "# fractal-contact result ";
+    let pieces = text.split(mark).enumerate();
+    (path, pieces.map(|(i, piece)| if i == 0 { piece.to_owned() } else { mark.to_owned() + piece }).collect())
 }
 
 const TABLES: [&str; 2] = ["fig2.csv", "fig2-samples.csv"];
@@ -80,19 +82,19 @@ fn a_run_resumes_and_damage_is_solved_again() {
     let run = run(dir.path());
     fig2(&run, &Silent).unwrap();
     let whole: Vec<Vec<u8>> = TABLES.iter().map(|t| read(dir.path(), t)).collect();
-    let files = units(dir.path());
-    assert_eq!(files.len(), 4);
-    // One unit lost, one cut short, one of somebody else's, and what a kill leaves behind.
-    fs::remove_file(&files[0]).unwrap();
-    let text = fs::read_to_string(&files[1]).unwrap();
-    fs::write(&files[1], &text[..text.len() / 2]).unwrap();
-    fs::copy(&files[3], &files[2]).unwrap();
+    let (path, text) = results(dir.path());
+    assert_eq!(text.len(), 1 + 4);
+    // One result lost, one cut short, one of another surface under its name, and what a kill leaves behind.
+    let half = &text[2][..text[2].len() / 2];
+    let (name, _) = text[3].split_once('\n').unwrap();
+    let (_, other) = text[4].split_once('\n').unwrap();
+    fs::write(&path, [&text[0], half, "\n", name, "\n", other, &text[4]].concat()).unwrap();
     fs::write(dir.path().join(".units/.partial-0-0-x.csv"), "half").unwrap();
     let counter = Counter::default();
     fig2(&run, &counter).unwrap();
     assert_eq!((counter.units.into_inner(), counter.reused.into_inner()), (4, 1));
     assert!(TABLES.map(|t| read(dir.path(), t)).to_vec() == whole);
-    assert_eq!(units(dir.path()).len(), 4);
+    assert_eq!(Store::count(dir.path()), 4);
 }
 
 #[test]

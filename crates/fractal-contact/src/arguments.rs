@@ -2,6 +2,8 @@
 
 use clap::builder::TypedValueParser as _;
 use clap::{Parser, Subcommand};
+use runs::ShardChoice;
+use runs::cluster::{Division, Submission};
 use std::path::PathBuf;
 use surface_io::{Preprocessing, ReadOptions};
 
@@ -34,6 +36,7 @@ Examples:
   fractal-contact plan scene.toml              what will be computed, what not and why, what it will cost
   fractal-contact run scene.toml               results.csv, manifest.json and what the scene asks for, in out/scene/
   fractal-contact run scene.toml --out DIR --threads 2
+  fractal-contact submit scene.toml --engine slurm --tasks 20 --now      its surfaces on a cluster; then status, merge
   fractal-contact info results.csv             also scenes and surfaces
   fractal-contact surface rough.txt --seed 1 --size '1 mm' --rms-height '1 um'
   fractal-contact completions bash > /etc/bash_completion.d/fractal-contact
@@ -57,6 +60,14 @@ pub enum Command {
     Plan {
         /// The scene.
         scene: PathBuf,
+        /// Also what it takes on so many nodes: jobs, core-hours, memory of a task, makespan, disk.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        nodes: Option<u16>,
+        /// Cores of a node [default: those of this machine].
+        #[arg(long, value_name = "N", requires = "nodes", value_parser = clap::value_parser!(u16).range(1..))]
+        node_cores: Option<u16>,
+        #[command(flatten)]
+        division: Division,
     },
     /// Computes what the scene asks for.
     Run {
@@ -71,7 +82,28 @@ pub enum Command {
         /// Compute again what is stored.
         #[arg(long)]
         fresh: bool,
+        /// Do one of N parts of the surfaces, counted from 0, store what it finds and write no table: 0/4, or auto, as the variables of a SLURM array
+        /// or of a HyperQueue task say. `merge` makes the tables.
+        #[arg(long, value_name = "i/N", conflicts_with = "fresh")]
+        shard: Option<ShardChoice>,
     },
+    /// Writes a batch script for SLURM or HyperQueue that does the shards of a scene and merges them; with --now submits it. What is done is not
+    /// done again.
+    Submit {
+        /// The scene.
+        scene: PathBuf,
+        /// Directory of the results [default: out/NAME of the scene].
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        #[command(flatten)]
+        submission: Submission,
+        #[command(flatten)]
+        division: Division,
+    },
+    /// What is done, running, failed and missing of the shards in a folder of results.
+    Status(ShardsArguments),
+    /// Tables and pictures from the shards in a folder of results. Refuses gaps, damage and mixed plans.
+    Merge(ShardsArguments),
     /// What a scene, a surface or a table of results holds.
     Info {
         /// A scene (.toml), results (.csv) or a surface (files of instruments and programs, NPY, text).
@@ -156,6 +188,17 @@ pub enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
+}
+
+/// Flags of what reads a folder of shards.
+#[derive(Debug, clap::Args)]
+pub struct ShardsArguments {
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// The plan, by the beginning of its digest, where the directory holds several.
+    #[arg(long, value_name = "DIGEST")]
+    pub plan: Option<String>,
 }
 
 /// The keys of [scene.surface] in a scene: how a file is meant, and what is done to the map before it is described.

@@ -1,6 +1,7 @@
 //! The program: arguments, progress, Ctrl-C and exit codes; no science.
 
 mod arguments;
+mod cluster;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
@@ -26,15 +27,37 @@ fn main() -> ExitCode {
 
 fn execute(arguments: Arguments) -> Result<ExitCode> {
     match arguments.command {
-        Command::Plan { scene } => {
-            runs::print(format_args!("{}", Plan::calibrated(&read_scene(&scene)?)?));
+        Command::Plan { scene, nodes, node_cores, division } => {
+            let scene = read_scene(&scene)?;
+            let plan = Plan::calibrated(&scene)?;
+            runs::print(format_args!("{plan}"));
+            if let Some(nodes) = nodes {
+                let here = all_threads();
+                cluster::tell(
+                    &scene,
+                    &plan,
+                    &division,
+                    (nodes.into(), node_cores.map_or(here, usize::from)),
+                )?;
+            }
             Ok(ExitCode::SUCCESS)
         }
-        Command::Run { scene, out, threads, fresh } => {
+        Command::Run { scene, out, threads, fresh, shard } => {
             let out = out.unwrap_or_else(|| default_directory(&scene));
-            let threads =
-                threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
-            run_scene(&scene, &Options { out, threads, fresh })
+            let options = Options { out, threads: threads.unwrap_or_else(all_threads), fresh };
+            match shard {
+                Some(choice) => cluster::shard(&scene, choice, &options),
+                None => run_scene(&scene, &options),
+            }
+        }
+        Command::Submit { scene, out, submission, division } => {
+            let out = out.unwrap_or_else(|| default_directory(&scene));
+            cluster::submit(&scene, &out, &submission, &division)
+        }
+        Command::Status(options) => cluster::status(&options),
+        Command::Merge(options) => {
+            let scene = cluster::merged(&options)?;
+            run_scene(&scene, &Options { out: options.out, threads: all_threads(), fresh: false })
         }
         Command::Info { file, json, out, more } => {
             let (declared, preprocessing) = more.options();
@@ -93,6 +116,10 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
     }
 }
 
+fn all_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// `out/NAME` beside where the program is called.
 fn default_directory(scene: &Path) -> std::path::PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or_default())
@@ -103,13 +130,10 @@ fn read_scene(path: &Path) -> Result<SceneFile> {
     SceneFile::read(path)?.with_grid_for_accuracy(&|| false)
 }
 
-fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
-    let scene = read_scene(path)?;
-    let plan = Plan::calibrated(&scene)?;
-    runs::print_error(format_args!("{plan}"));
+/// Becomes true with the first Ctrl-C, SIGTERM or SIGHUP; the second ends the process.
+fn stopped_by_signals() -> Result<Arc<AtomicBool>> {
     let stopped = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stopped);
-    // The first Ctrl-C, SIGTERM or SIGHUP asks the solvers to stop, the second ends the process.
     ctrlc::set_handler(move || {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
@@ -117,6 +141,14 @@ fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
         runs::err!("stopping: the states so far are written; once more ends at once");
     })
     .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
+    Ok(stopped)
+}
+
+fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
+    let scene = read_scene(path)?;
+    let plan = Plan::calibrated(&scene)?;
+    runs::print_error(format_args!("{plan}"));
+    let stopped = stopped_by_signals()?;
     let outcome = run(&scene, &plan, options, &runs::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
     for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
         if let Some(predicted) = &planned.predicted {

@@ -30,6 +30,10 @@ impl Job for Summit<'_> {
         format!("example summit 1\nD_f 2.4, 129 cells, seed {}", self.seed)
     }
 
+    fn name(&self) -> String {
+        format!("surface {}", self.seed)
+    }
+
     fn cost(&self) -> u64 {
         1
     }
@@ -40,8 +44,8 @@ impl Job for Summit<'_> {
         Ok(draw().map_err(Error::model(format!("surface {}", self.seed)))?.highest())
     }
 
-    fn encode(&self, highest: &f64) -> Option<String> {
-        Some(number(*highest) + "\n")
+    fn encode(&self, highest: &f64) -> String {
+        number(*highest) + "\n"
     }
 
     fn decode(&self, text: &str) -> Option<f64> {

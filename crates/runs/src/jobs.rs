@@ -118,8 +118,21 @@ pub trait Job: Sync {
     /// Everything that decides the numbers, as text. Two jobs with the same key have the same output.
     fn key(&self) -> String;
 
-    /// Relative cost, an estimate that orders the work and moves the progress bar.
+    /// What a person calls it.
+    fn name(&self) -> String;
+
+    /// Predicted processor milliseconds, at least 1: they order the work, divide it into shards and move the progress bar.
     fn cost(&self) -> u64;
+
+    /// Memory that it needs, bytes; 0 where nothing to speak of.
+    fn memory(&self) -> f64 {
+        0.0
+    }
+
+    /// Bytes that its results take on the disk, about.
+    fn stored_bytes(&self) -> u64 {
+        4096
+    }
 
     /// Does the work; polls `stop` between iterations.
     ///
@@ -142,8 +155,13 @@ pub trait Job: Sync {
         self.solve(stop)
     }
 
-    /// The output as lines of text that [`Job::decode`] reads back bit for bit; `None` for what is not worth storing.
-    fn encode(&self, output: &Self::Output) -> Option<String>;
+    /// Whether its output is worth storing; what is not is computed again each time, by every shard's merge too.
+    fn is_stored(&self) -> bool {
+        true
+    }
+
+    /// The output as lines of text that [`Job::decode`] reads back bit for bit.
+    fn encode(&self, output: &Self::Output) -> String;
 
     /// Reads an output back; `None` where the text is no output of this job, or a part of one.
     fn decode(&self, text: &str) -> Option<Self::Output>;
@@ -167,22 +185,121 @@ pub fn run_stored<J: Job>(
 ) -> Result<Vec<Option<Result<J::Output, J::Error>>>, Error> {
     progress.begin(what, jobs.iter().map(Job::cost).sum());
     let order = largest_first(jobs.len(), |i| jobs[i].cost());
-    let done = run_jobs(threads, &order, stop, |i, stop| {
-        let (job, key) = (&jobs[i], jobs[i].key());
-        let stored = store.load(&key);
-        if let Some(output) = stored.as_deref().and_then(|text| job.decode(text)) {
-            progress.advance(job.cost(), true);
-            return Ok(output);
-        }
-        let output = job.resume(stored.as_deref(), &|text| store.save(&key, text), stop)?;
-        if let Some(text) = job.encode(&output) {
-            store.save(&key, &text)?;
-        }
-        progress.advance(job.cost(), false);
-        Ok(output)
-    })?;
+    let done = run_jobs(threads, &order, stop, |i, stop| solve_stored(&jobs[i], store, progress, stop))?;
     progress.end();
     Ok(done)
+}
+
+/// The output of a job, from the store where it is there.
+fn solve_stored<J: Job>(
+    job: &J,
+    store: &Store,
+    progress: &dyn Progress,
+    stop: Stop<'_>,
+) -> Result<J::Output, J::Error> {
+    let key = job.key();
+    let stored: Vec<String> = store.texts(&key).collect();
+    if let Some(output) = stored.iter().find_map(|text| job.decode(text)) {
+        progress.advance(job.cost(), true);
+        return Ok(output);
+    }
+    let newest = stored.first().map(String::as_str);
+    let output = job.resume(newest, &|text| store.save(&key, text), stop)?;
+    if job.is_stored() {
+        store.save(&key, &job.encode(&output))?;
+    }
+    progress.advance(job.cost(), false);
+    Ok(output)
+}
+
+/// Whatever ends a job.
+pub type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Jobs of one kind, whatever they give: what a plan, its shards and their merge need of them.
+pub trait JobList: Sync {
+    /// Their number.
+    fn count(&self) -> usize;
+    /// As [`Job::key`].
+    fn key(&self, job: usize) -> String;
+    /// As [`Job::name`].
+    fn name(&self, job: usize) -> String;
+    /// As [`Job::cost`], at least 1.
+    fn cost(&self, job: usize) -> u64;
+    /// As [`Job::memory`].
+    fn memory(&self, job: usize) -> f64;
+    /// As [`Job::stored_bytes`].
+    fn stored_bytes(&self, job: usize) -> u64;
+    /// As [`Job::is_stored`].
+    fn is_stored(&self, job: usize) -> bool;
+    /// Whether a text is a whole output of this job.
+    fn is_output(&self, job: usize, text: &str) -> bool;
+    /// Does those of `which` that the store does not hold, and keeps no output in memory.
+    ///
+    /// # Errors
+    /// The first failure that is not the stop of the others; a stop.
+    fn work(
+        &self,
+        which: &[usize],
+        store: &Store,
+        threads: Threads,
+        progress: &dyn Progress,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), Failure>;
+}
+
+impl<J: Job> JobList for Vec<J>
+where
+    J::Error: Into<Failure>,
+{
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn key(&self, job: usize) -> String {
+        self[job].key()
+    }
+
+    fn name(&self, job: usize) -> String {
+        self[job].name()
+    }
+
+    fn cost(&self, job: usize) -> u64 {
+        self[job].cost().max(1)
+    }
+
+    fn memory(&self, job: usize) -> f64 {
+        self[job].memory()
+    }
+
+    fn stored_bytes(&self, job: usize) -> u64 {
+        self[job].stored_bytes()
+    }
+
+    fn is_stored(&self, job: usize) -> bool {
+        self[job].is_stored()
+    }
+
+    fn is_output(&self, job: usize, text: &str) -> bool {
+        self[job].decode(text).is_some()
+    }
+
+    fn work(
+        &self,
+        which: &[usize],
+        store: &Store,
+        threads: Threads,
+        progress: &dyn Progress,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), Failure> {
+        let order = largest_first(which.len(), |i| self[which[i]].cost());
+        let done = run_jobs(threads, &order, stop, |i, stop| {
+            solve_stored(&self[which[i]], store, progress, stop).map(drop)
+        })?;
+        match done.into_iter().flatten().find_map(Result::err) {
+            Some(failure) => Err(failure.into()),
+            None => Ok(()),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -239,6 +356,10 @@ mod tests {
             format!("double {}\n", self.0)
         }
 
+        fn name(&self) -> String {
+            format!("the double of {}", self.0)
+        }
+
         fn cost(&self) -> u64 {
             1
         }
@@ -247,8 +368,12 @@ mod tests {
             Ok(2 * self.0)
         }
 
-        fn encode(&self, output: &usize) -> Option<String> {
-            (self.0 < 2).then(|| format!("{output}\n"))
+        fn is_stored(&self) -> bool {
+            self.0 < 2
+        }
+
+        fn encode(&self, output: &usize) -> String {
+            format!("{output}\n")
         }
 
         fn decode(&self, text: &str) -> Option<usize> {

@@ -34,7 +34,7 @@ pub fn machine() -> Value {
 
 /// The vector instructions of the processor that transforms and factors choose between at run time: results are the same bytes where they
 /// are the same.
-fn instructions() -> Vec<&'static str> {
+pub(crate) fn instructions() -> Vec<&'static str> {
     #[cfg(target_arch = "x86_64")]
     {
         let all = [

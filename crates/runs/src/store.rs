@@ -1,23 +1,117 @@
-//! The result store: `DIR/.units/<hash>.csv`, one file per job, written whole and checked on reading.
+//! The result store: packs of results in `DIR/.units`, each written by one process and read by all.
+//!
+//! A pack is a text file. Its head says which process of which plan wrote it; then one result after the other, each with the hash of its key, its
+//! length and a digest. Results are appended whole and never changed: what a kill or a full disk cuts off, and what a disk damages, fails its
+//! digest and is as good as absent, and the results after it are still read. No two processes write one pack, so there is nothing to lock, and
+//! a million results are as many files as there were processes.
 
 use crate::error::{Error, Result};
 use crate::files;
+use std::collections::HashMap;
 use std::fs::{self, File, TryLockError};
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::{Duration, Instant};
 
-/// First line of every stored result, of ensembles and of scenes alike; older results of ensembles have it and are still read.
-const TITLE: &str = "# fractal-contact unit: one surface under all its loads";
+/// First words of a pack.
+const PACK: &str = "# fractal-contact results 1\n";
+/// First words of each result in it; the hash of its key and the bytes after this line follow.
+const RESULT: &str = "# fractal-contact result ";
+/// Before the digest of a result, its last line.
+const DIGEST: &str = "# whole ";
+/// Ending of a pack's name.
+const ENDING: &str = "pack";
+/// Results are brought to the disk at most so often: a crash of the machine, not of the process, loses what is younger.
+const SYNC_EVERY: Duration = Duration::from_secs(1);
+/// A pack is written anew when more than so many bytes, and more than half of it, are parts of results that were replaced.
+const LEAST_WASTE: u64 = 1 << 20;
+
+/// Who writes a pack.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PackHead {
+    /// Digest of the plan whose shard it was; `None` for a run that was not sharded.
+    pub plan: Option<String>,
+    /// The shard, as `index/count`.
+    pub shard: Option<String>,
+    /// Vector instructions of the processor: results are the same bytes where they are the same.
+    pub instructions: String,
+}
+
+impl PackHead {
+    fn text(&self) -> String {
+        let Self { plan, shard, instructions } = self;
+        let or = |word: &Option<String>| word.clone().unwrap_or_else(|| "-".to_owned());
+        format!("{PACK}# plan {}\n# shard {}\n# instructions {instructions}\n", or(plan), or(shard))
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        let mut lines = text.strip_prefix(PACK)?.lines();
+        let mut next =
+            |word: &str| Some(lines.next()?.strip_prefix("# ")?.strip_prefix(word)?.trim().to_owned());
+        let given = |word: String| (word != "-").then_some(word);
+        Some(Self {
+            plan: given(next("plan")?),
+            shard: given(next("shard")?),
+            instructions: next("instructions")?,
+        })
+    }
+}
+
+/// Where a result lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Place {
+    /// Number of its pack.
+    pack: usize,
+    offset: u64,
+    bytes: u64,
+}
+
+/// A pack that was found.
+#[derive(Debug, Clone)]
+pub struct Pack {
+    /// Where.
+    pub path: PathBuf,
+    /// Who wrote it.
+    pub head: PackHead,
+    /// Hashes of the keys of its results, in their order.
+    pub results: Vec<u128>,
+    /// Bytes that belong to no result: what a kill, a full disk or a damaged header left.
+    pub damaged_bytes: u64,
+}
 
 /// Where the results of finished jobs are kept, each under a key that names everything that decides its numbers.
-///
-/// As long as it is open, no other process can open one in the same directory.
 #[derive(Debug, Clone)]
-pub struct Store {
+pub struct Store(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
     directory: PathBuf,
-    fresh: bool,
-    /// `None` where the file system has no locks.
+    head: PackHead,
+    /// What is stored, and what is written now.
+    packs: Mutex<Packs>,
+    /// `None` for a shard, which shares the directory with others, and where the file system has no locks.
     _lock: Option<Arc<Lock>>,
+}
+
+#[derive(Debug, Default)]
+struct Packs {
+    /// The pack of each number.
+    paths: Vec<PathBuf>,
+    /// Places of each key, the newest last.
+    places: HashMap<u128, Vec<Place>>,
+    own: Option<Own>,
+}
+
+/// The pack that this process writes.
+#[derive(Debug)]
+struct Own {
+    file: File,
+    number: usize,
+    bytes: u64,
+    /// Bytes of results that were replaced.
+    waste: u64,
+    synced: Instant,
 }
 
 /// A locked file.
@@ -31,51 +125,328 @@ impl Drop for Lock {
     }
 }
 
+impl Drop for Shared {
+    fn drop(&mut self) {
+        let packs = self.packs.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if let Some(own) = &packs.own {
+            // Each result was written; what cannot be synced now is for the system to bring to the disk.
+            let _ = own.file.sync_data();
+        }
+    }
+}
+
 impl Store {
-    /// Opens (and creates) `out/.units` and removes what interrupted runs left half-written. With `fresh` nothing stored is read.
+    /// Opens (and creates) `out/.units` for a run that has the directory for itself: as long as it is open, no other such run can open it. Removes what
+    /// interrupted runs left half-written. With `fresh` nothing stored is read.
     ///
     /// # Errors
     /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Parameter`] when another process uses it.
     pub fn open(out: &Path, fresh: bool) -> Result<Self> {
-        let directory = out.join(".units");
+        let directory = directory(out);
         files::create_directory(&directory)?;
         let lock = lock(&directory.join("lock"), out)?;
         files::clean(&directory)?;
-        Ok(Self { directory, fresh, _lock: lock })
+        let head =
+            PackHead { instructions: crate::manifest::instructions().join(" "), ..PackHead::default() };
+        let packs = if fresh { Packs::default() } else { Packs::read(&directory, &|_| true)? };
+        Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: lock })))
+    }
+
+    /// Opens it beside others, for a shard of a plan. Packs of other shards of the same division hold none of its jobs and are not read.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when the directory cannot be made or read.
+    pub fn open_shared(out: &Path, plan: &str, shard: crate::Shard) -> Result<Self> {
+        let directory = directory(out);
+        files::create_directory(&directory)?;
+        let instructions = crate::manifest::instructions().join(" ");
+        let head = PackHead { plan: Some(plan.to_owned()), shard: Some(shard.to_string()), instructions };
+        let of_others = |found: &PackHead| {
+            let theirs = found.shard.as_deref().and_then(|s| s.parse::<crate::Shard>().ok());
+            found.plan == head.plan
+                && theirs.is_some_and(|theirs| theirs.count == shard.count && theirs != shard)
+        };
+        let packs = Packs::read(&directory, &|found| !of_others(found))?;
+        Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: None })))
+    }
+
+    /// What a directory holds, to read; nothing is made or removed.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when it cannot be read.
+    pub fn view(out: &Path) -> Result<Self> {
+        let directory = directory(out);
+        let packs = Mutex::new(Packs::read(&directory, &|_| true)?);
+        Ok(Self(Arc::new(Shared { directory, head: PackHead::default(), packs, _lock: None })))
+    }
+
+    /// The packs of a directory; none where it has no store.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] where one cannot be read.
+    pub fn packs(out: &Path) -> Result<Vec<Pack>> {
+        names(&directory(out))?
+            .iter()
+            .filter_map(|path| Pack::read(path, &|_| true).transpose())
+            .map(|pack| Ok(pack?.0))
+            .collect()
     }
 
     /// Number of results that the store of a directory holds; 0 where there is none.
     pub fn count(out: &Path) -> usize {
-        let names =
-            fs::read_dir(out.join(".units")).into_iter().flatten().flatten().map(|entry| entry.file_name());
-        names.filter(|name| Path::new(name).extension().is_some_and(|end| end == "csv")).count()
+        let mut all: Vec<u128> =
+            Self::packs(out).unwrap_or_default().into_iter().flat_map(|pack| pack.results).collect();
+        all.sort_unstable();
+        all.dedup();
+        all.len()
     }
 
-    fn path(&self, key: &str) -> PathBuf {
-        self.directory.join(format!("{:032x}.csv", fnv1a_128(key.as_bytes())))
+    /// The texts stored under this key that are whole and of the same key, the newest first. A job that two processes did by mistake has two.
+    pub fn texts(&self, key: &str) -> impl Iterator<Item = String> + '_ {
+        let body = head(key);
+        let found: Vec<(PathBuf, Place)> = {
+            let packs = self.held();
+            let places = packs.places.get(&fnv1a_128(key.as_bytes()));
+            places
+                .into_iter()
+                .flatten()
+                .rev()
+                .map(|place| (packs.paths[place.pack].clone(), *place))
+                .collect()
+        };
+        found.into_iter().filter_map(move |(path, place)| whole(&read_at(&path, place).ok()?, &body))
     }
 
-    /// The text stored under this key, if the file is there, whole and of the same key: anything else is as good as absent.
+    /// The newest text stored under this key, if one is whole: anything else is as good as absent.
     pub fn load(&self, key: &str) -> Option<String> {
-        if self.fresh {
-            return None;
-        }
-        let text = String::from_utf8(files::read(&self.path(key), u64::MAX).ok()?).ok()?;
-        let (body, digest) = text.split_at(text.rfind("# whole ")?);
-        let digest = u128::from_str_radix(digest.strip_prefix("# whole ")?.trim_end(), 16).ok()?;
-        let whole = digest == fnv1a_128(body.as_bytes());
-        body.strip_prefix(&head(key)).filter(|_| whole).map(str::to_owned)
+        self.texts(key).next()
     }
 
-    /// Stores a text of whole lines.
+    /// Whether anything is stored under this key, whole or not.
+    pub fn has(&self, key: &str) -> bool {
+        self.held().places.contains_key(&fnv1a_128(key.as_bytes()))
+    }
+
+    /// Stores a text of whole lines; one that this process stored under the same key before is replaced.
     ///
     /// # Errors
-    /// [`crate::Error::File`] when it cannot be written.
+    /// [`crate::Error::File`] when it cannot be written: then the pack is as it was.
     pub fn save(&self, key: &str, text: &str) -> Result<()> {
-        let body = head(key) + text;
-        let digest = fnv1a_128(body.as_bytes());
-        files::write_whole(&self.path(key), format!("{body}# whole {digest:032x}\n").as_bytes())
+        let hash = fnv1a_128(key.as_bytes());
+        let result = result(hash, key, text);
+        let mut packs = self.held();
+        let packs = &mut *packs;
+        let number = match &packs.own {
+            Some(own) => own.number,
+            None => self.create(packs)?,
+        };
+        let Some(own) = &mut packs.own else { return Ok(()) };
+        let path = &packs.paths[number];
+        let offset = own.bytes;
+        let written = own.file.write_all(result.as_bytes()).and_then(|()| {
+            if own.synced.elapsed() < SYNC_EVERY {
+                return Ok(());
+            }
+            own.synced = Instant::now();
+            own.file.sync_data()
+        });
+        if let Err(error) = written {
+            // The next result goes into a pack of its own if the half of this one stays.
+            if own.file.set_len(offset).and_then(|()| own.file.seek(SeekFrom::End(0))).is_err() {
+                packs.own = None;
+            }
+            return Err(Error::file("write", path)(error));
+        }
+        own.bytes += result.len() as u64;
+        let places = packs.places.entry(hash).or_default();
+        if let Some(old) = places.pop_if(|place| place.pack == number) {
+            own.waste += old.bytes;
+        }
+        places.push(Place { pack: number, offset, bytes: result.len() as u64 });
+        if own.waste > LEAST_WASTE && 2 * own.waste > own.bytes {
+            self.compact(packs)?;
+        }
+        Ok(())
     }
+
+    fn held(&self) -> MutexGuard<'_, Packs> {
+        // A poisoned lock means that another thread panicked while it wrote; what it left fails its digest.
+        self.0.packs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A new pack of this process: its number.
+    fn create(&self, packs: &mut Packs) -> Result<usize> {
+        let directory = &self.0.directory;
+        // Newer packs have higher numbers, so that their results are found first.
+        let mut serial =
+            names(directory)?.iter().filter_map(|path| serial(path)).max().map_or(0, |last| last + 1);
+        let head = self.0.head.text();
+        loop {
+            let path = directory.join(format!("{serial:08}.{ENDING}"));
+            match File::options().read(true).append(true).create_new(true).open(&path) {
+                // Another process was faster.
+                Err(taken) if taken.kind() == std::io::ErrorKind::AlreadyExists => serial += 1,
+                opened => {
+                    let mut file = opened.map_err(Error::file("write", &path))?;
+                    if let Err(error) = file.write_all(head.as_bytes()) {
+                        let _ = fs::remove_file(&path);
+                        return Err(Error::file("write", &path)(error));
+                    }
+                    // The name, too, is to survive a crash, where the system can be asked for that.
+                    let _ = File::open(directory).and_then(|d| d.sync_all());
+                    let number = packs.paths.len();
+                    packs.paths.push(path);
+                    let bytes = head.len() as u64;
+                    packs.own = Some(Own { file, number, bytes, waste: 0, synced: Instant::now() });
+                    return Ok(number);
+                }
+            }
+        }
+    }
+
+    /// Writes the results of the own pack that were not replaced into a new one, and removes the old one.
+    fn compact(&self, packs: &mut Packs) -> Result<()> {
+        let Some(old) = packs.own.take() else { return Ok(()) };
+        let path = packs.paths[old.number].clone();
+        let number = self.create(packs)?;
+        let Some(own) = &mut packs.own else { return Ok(()) };
+        for places in packs.places.values_mut() {
+            for place in places.iter_mut().filter(|place| place.pack == old.number) {
+                let text = read_at(&path, *place)?;
+                own.file.write_all(text.as_bytes()).map_err(Error::file("write", &path))?;
+                *place = Place { pack: number, offset: own.bytes, ..*place };
+                own.bytes += place.bytes;
+            }
+        }
+        own.file.sync_data().map_err(Error::file("write", &path))?;
+        fs::remove_file(&path).map_err(Error::file("remove", &path))
+    }
+}
+
+impl Packs {
+    /// All packs whose head is wanted.
+    fn read(directory: &Path, wanted: &dyn Fn(&PackHead) -> bool) -> Result<Self> {
+        let mut packs = Self::default();
+        for path in names(directory)? {
+            let Some((pack, places)) = Pack::read(&path, wanted)? else { continue };
+            let number = packs.paths.len();
+            packs.paths.push(path);
+            for (hash, (offset, bytes)) in pack.results.into_iter().zip(places) {
+                packs.places.entry(hash).or_default().push(Place { pack: number, offset, bytes });
+            }
+        }
+        Ok(packs)
+    }
+}
+
+impl Pack {
+    /// Reads where the results of a pack lie, not the results; `None` for a file that is none, and one that is not wanted.
+    #[allow(clippy::type_complexity)] // Offset and length of each result.
+    fn read(path: &Path, wanted: &dyn Fn(&PackHead) -> bool) -> Result<Option<(Self, Vec<(u64, u64)>)>> {
+        // A pipe would wait for its other end.
+        if !path.metadata().is_ok_and(|about| about.is_file()) {
+            return Ok(None);
+        }
+        let mut file = File::open(path).map_err(Error::file("read", path))?;
+        let length = file.metadata().map_err(Error::file("read", path))?.len();
+        let mut start = |at: u64, most: u64| -> Result<Vec<u8>> {
+            let mut bytes = Vec::new();
+            file.seek(SeekFrom::Start(at)).map_err(Error::file("read", path))?;
+            (&file).take(most).read_to_end(&mut bytes).map_err(Error::file("read", path))?;
+            Ok(bytes)
+        };
+        let first = start(0, 1024)?;
+        let text = String::from_utf8_lossy(&first);
+        let Some(head) = PackHead::parse(&text).filter(wanted) else { return Ok(None) };
+        let mut pack = Self { path: path.to_owned(), head, results: Vec::new(), damaged_bytes: 0 };
+        let mut places = Vec::new();
+        let mut at = pack.head.text().len() as u64;
+        let mut searched = 0;
+        while at < length {
+            let line = start(at, HEADER)?;
+            let parsed = parse_header(&line).filter(|(_, line, body)| line + body <= length - at);
+            if let Some((hash, line, body)) = parsed {
+                pack.results.push(hash);
+                places.push((at, line + body));
+                at += line + body;
+                continue;
+            }
+            // Cut off or damaged: the next result begins at the next line that says so, which may lie inside the last one if that was cut.
+            let last = places.last().map_or(at, |&(offset, _)| offset);
+            let from = if std::mem::replace(&mut searched, at) == at { at } else { last };
+            let rest = start(from + 1, u64::MAX)?;
+            let mark = format!("\n{RESULT}");
+            let found = rest.windows(mark.len()).position(|window| window == mark.as_bytes());
+            let next = found.map_or(length, |position| from + position as u64 + 2);
+            if next < at {
+                pack.results.pop();
+                places.pop();
+                pack.damaged_bytes += next - last;
+            } else {
+                pack.damaged_bytes += next - at;
+            }
+            at = next;
+        }
+        Ok(Some((pack, places)))
+    }
+}
+
+/// Bytes that hold the first line of a result.
+const HEADER: u64 = 96;
+
+/// Hash, bytes of the line, bytes after it.
+fn parse_header(bytes: &[u8]) -> Option<(u128, u64, u64)> {
+    let end = bytes.iter().position(|&b| b == b'\n')?;
+    let words = std::str::from_utf8(&bytes[..end]).ok()?.strip_prefix(RESULT)?;
+    let (hash, length) = words.split_once(' ')?;
+    Some((u128::from_str_radix(hash, 16).ok()?, end as u64 + 1, length.parse().ok()?))
+}
+
+/// A result as it is stored.
+fn result(hash: u128, key: &str, text: &str) -> String {
+    let body = head(key) + text;
+    let body = format!("{body}{DIGEST}{:032x}\n", fnv1a_128(body.as_bytes()));
+    format!("{RESULT}{hash:032x} {}\n{body}", body.len())
+}
+
+/// The text of a stored result, if it is whole and begins with these lines.
+fn whole(stored: &str, head: &str) -> Option<String> {
+    let (_, stored) = stored.split_once('\n')?;
+    let (body, digest) = stored.split_at(stored.rfind(DIGEST)?);
+    let digest = u128::from_str_radix(digest.strip_prefix(DIGEST)?.trim_end(), 16).ok()?;
+    let whole = digest == fnv1a_128(body.as_bytes());
+    body.strip_prefix(head).filter(|_| whole).map(str::to_owned)
+}
+
+fn read_at(path: &Path, place: Place) -> Result<String> {
+    let mut bytes = vec![0; place.bytes as usize];
+    let read = File::open(path).and_then(|mut file| {
+        file.seek(SeekFrom::Start(place.offset))?;
+        file.read_exact(&mut bytes)
+    });
+    read.map_err(Error::file("read", path))?;
+    String::from_utf8(bytes).map_err(|_| Error::content(path, "not text"))
+}
+
+fn directory(out: &Path) -> PathBuf {
+    out.join(".units")
+}
+
+/// The packs of a store, the oldest first.
+fn names(directory: &Path) -> Result<Vec<PathBuf>> {
+    let entries = match fs::read_dir(directory) {
+        Err(none) if none.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(Error::file("read the directory", directory))?,
+    };
+    let mut names: Vec<PathBuf> =
+        entries.flatten().map(|entry| entry.path()).filter(|path| serial(path).is_some()).collect();
+    names.sort();
+    Ok(names)
+}
+
+fn serial(path: &Path) -> Option<u64> {
+    path.extension().filter(|end| *end == ENDING)?;
+    path.file_stem()?.to_str()?.parse().ok()
 }
 
 /// The lock of a directory. The system lets go of it when the process ends, however it ends; within the process all stores of a
@@ -109,12 +480,11 @@ fn lock(path: &Path, out: &Path) -> Result<Option<Arc<Lock>>> {
 }
 
 fn head(key: &str) -> String {
-    let key: String = key.lines().flat_map(|line| ["# ", line, "\n"]).collect();
-    format!("{TITLE}\n{key}")
+    key.lines().flat_map(|line| ["# ", line, "\n"]).collect()
 }
 
 /// FNV-1a of 128 bits (Fowler, Noll, Vo; offset basis and prime of draft-eastlake-fnv): the same for ever, unlike the hasher of
-/// the standard library. It names files; on reading the whole key is compared.
+/// the standard library. It names results; on reading the whole key is compared.
 ///
 /// ```
 /// // The published test vector of the letter a.
@@ -129,9 +499,15 @@ pub fn fnv1a_128(bytes: &[u8]) -> u128 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Shard;
 
     const KEY: &str = "seed 1\nload 2\n";
     const TEXT: &str = "a,b\n1,0.25\n";
+
+    /// The pack that a store wrote.
+    fn pack_of(dir: &Path) -> PathBuf {
+        names(&directory(dir)).unwrap().pop().unwrap()
+    }
 
     #[test]
     fn results_come_back_byte_for_byte() {
@@ -142,11 +518,20 @@ mod tests {
         assert_eq!(store.load(KEY).as_deref(), Some(TEXT));
         assert_eq!((Store::count(dir.path()), Store::count(&dir.path().join("nowhere"))), (1, 0));
         assert_eq!(store.load("seed 2\nload 2\n"), None);
-        assert_eq!(Store::open(dir.path(), true).unwrap().load(KEY), None);
+        drop(store);
+        assert_eq!(Store::open(dir.path(), false).unwrap().load(KEY).as_deref(), Some(TEXT));
+        // Solved again, the newer result counts, also after a run that read the older one.
+        let again = Store::open(dir.path(), true).unwrap();
+        assert_eq!(again.load(KEY), None);
+        again.save(KEY, "b\n").unwrap();
+        drop(again);
+        let store = Store::open(dir.path(), false).unwrap();
+        assert_eq!(store.texts(KEY).collect::<Vec<_>>(), ["b\n", TEXT]);
+        assert_eq!(Store::count(dir.path()), 1);
     }
 
     #[test]
-    fn one_process_at_a_time() {
+    fn one_run_at_a_time_but_for_shards() {
         let dir = tempfile::tempdir().unwrap();
         // A lock of a file that was opened on its own, as by another process.
         fs::create_dir(dir.path().join(".units")).unwrap();
@@ -154,33 +539,95 @@ mod tests {
         other.lock().unwrap();
         let refused = Store::open(dir.path(), false).unwrap_err().to_string();
         assert!(refused.contains("no other process"), "{refused}");
+        let shard = Shard { index: 0, count: 2 };
+        Store::open_shared(dir.path(), "p", shard).unwrap().save(KEY, TEXT).unwrap();
         drop(other);
         let store = Store::open(dir.path(), false).unwrap();
         let again = Store::open(dir.path(), false).unwrap();
+        assert_eq!(again.load(KEY).as_deref(), Some(TEXT));
         drop((store, again));
         assert!(File::open(dir.path().join(".units/lock")).unwrap().try_lock().is_ok());
     }
 
     #[test]
-    fn damaged_and_foreign_results_are_as_good_as_absent() {
+    fn shards_write_packs_of_their_own() {
+        let dir = tempfile::tempdir().unwrap();
+        let shard = |index| Store::open_shared(dir.path(), "p", Shard { index, count: 2 }).unwrap();
+        let (a, b) = (shard(0), shard(1));
+        a.save("a\n", "1\n").unwrap();
+        b.save("b\n", "2\n").unwrap();
+        // The same job by mistake.
+        b.save("a\n", "1\n").unwrap();
+        drop((a, b));
+        let packs = Store::packs(dir.path()).unwrap();
+        assert_eq!(packs.iter().map(|p| p.results.len()).collect::<Vec<_>>(), [1, 2]);
+        assert_eq!(packs[1].head.shard.as_deref(), Some("1/2"));
+        assert_eq!(Store::count(dir.path()), 2);
+        // What another shard of the same division has done is none of its business; of another division, it is.
+        assert!(shard(0).load("b\n").is_none() && shard(0).load("a\n").is_some());
+        let other = Store::open_shared(dir.path(), "p", Shard { index: 0, count: 3 }).unwrap();
+        assert!(other.load("b\n").is_some());
+    }
+
+    #[test]
+    fn damaged_and_foreign_results_are_as_good_as_absent_and_others_stay() {
         let dir = tempfile::tempdir().unwrap();
         let store = Store::open(dir.path(), false).unwrap();
-        let path = store.path(KEY);
         store.save(KEY, TEXT).unwrap();
-        let whole = fs::read_to_string(&path).unwrap();
-        for cut in 0..whole.len() - 1 {
-            fs::write(&path, &whole[..cut]).unwrap();
-            assert_eq!(store.load(KEY), None, "{cut} bytes");
+        store.save("second\n", "2\n").unwrap();
+        let path = pack_of(dir.path());
+        drop(store);
+        let all = fs::read(&path).unwrap();
+        let read = || {
+            let store = Store::open(dir.path(), false).unwrap();
+            (store.load(KEY).is_some(), store.load("second\n").is_some())
+        };
+        assert_eq!(read(), (true, true));
+        let mark = all.windows(RESULT.len()).rposition(|w| w == RESULT.as_bytes()).unwrap();
+        for cut in 0..all.len() {
+            fs::write(&path, &all[..cut]).unwrap();
+            assert_eq!(read(), (cut >= mark, false), "{cut} bytes");
         }
-        fs::write(&path, whole.replace("0.25", "0.26")).unwrap();
-        assert_eq!(store.load(KEY), None);
+        let start =
+            PackHead { instructions: crate::manifest::instructions().join(" "), ..PackHead::default() };
+        for at in start.text().len()..all.len() {
+            let mut damaged = all.clone();
+            damaged[at] ^= 0x11;
+            fs::write(&path, &damaged).unwrap();
+            // The line that begins the second result ends the first one where that has lost its own.
+            let (first, second) = read();
+            assert!(
+                if at < mark { !first && second } else { first && !second },
+                "byte {at}: {first} {second}"
+            );
+        }
+        // Whole, but of another key, under the hash of this one.
+        let foreign = result(fnv1a_128(KEY.as_bytes()), "seed 2\n", TEXT);
+        fs::write(&path, start.text() + &foreign).unwrap();
+        assert_eq!(read(), (false, false));
         fs::write(&path, [0xff, 0xfe]).unwrap();
-        assert_eq!(store.load(KEY), None);
-        // Whole, but of another key, under the name of this one.
-        store.save("seed 2\n", TEXT).unwrap();
-        fs::copy(store.path("seed 2\n"), &path).unwrap();
-        assert_eq!(store.load(KEY), None);
-        fs::write(&path, whole).unwrap();
-        assert!(store.load(KEY).is_some());
+        assert_eq!(read(), (false, false));
+        fs::write(&path, &all).unwrap();
+        assert_eq!(read(), (true, true));
+    }
+
+    #[test]
+    fn what_is_replaced_often_does_not_grow() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = Store::open(dir.path(), false).unwrap();
+        let text = "x".repeat(100_000) + "\n";
+        store.save("other\n", TEXT).unwrap();
+        for _ in 0..60 {
+            store.save(KEY, &text).unwrap();
+        }
+        assert_eq!(names(&directory(dir.path())).unwrap().len(), 1);
+        assert!(fs::metadata(pack_of(dir.path())).unwrap().len() < 3 * LEAST_WASTE);
+        assert_eq!(store.load(KEY).unwrap().len(), text.len());
+        drop(store);
+        let store = Store::open(dir.path(), false).unwrap();
+        assert_eq!(
+            (store.load(KEY).unwrap().len(), store.load("other\n").as_deref()),
+            (text.len(), Some(TEXT))
+        );
     }
 }

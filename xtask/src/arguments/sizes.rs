@@ -1,5 +1,6 @@
 //! Flags that the figures share: sizes, what to solve, where to write.
 
+use super::cluster::Sharded;
 use clap::{Args, ValueEnum};
 use evaluation::{AccuracyTarget, Preset, Request};
 use std::path::PathBuf;
@@ -69,6 +70,8 @@ pub struct SolveSizes {
     /// Draw the curves of another run's fig2.csv or fig6.csv underneath (Figs. 2 and 6).
     #[arg(long, value_name = "FILE.csv")]
     over: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) sharded: Sharded,
 }
 
 impl SolveSizes {

@@ -1,5 +1,6 @@
 //! Flags of the commands beside the paper's figures.
 
+use super::cluster::Sharded;
 use super::sizes::{Solid, seconds, share};
 use clap::{Args, ValueEnum};
 use evaluation::{Depth, Exponent, ExponentSizes, Forces, Request, Run};
@@ -42,6 +43,8 @@ pub struct AccuracyCost {
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    #[command(flatten)]
+    pub(super) sharded: Sharded,
 }
 
 impl AccuracyCost {
@@ -70,6 +73,8 @@ pub struct BudgetCheck {
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    #[command(flatten)]
+    pub(super) sharded: Sharded,
 }
 
 /// Flags of the two cases.
@@ -113,10 +118,12 @@ pub struct TwoCasesArguments {
     seed: u64,
     /// Surfaces solved at the same time (default: all cores).
     #[arg(long, allow_hyphen_values = true)]
-    threads: Option<usize>,
+    pub(super) threads: Option<usize>,
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    #[command(flatten)]
+    pub(super) sharded: Sharded,
 }
 
 impl TwoCasesArguments {
@@ -200,6 +207,8 @@ pub struct ExponentArguments {
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    #[command(flatten)]
+    pub(super) sharded: Sharded,
 }
 
 impl ExponentArguments {

@@ -128,6 +128,11 @@ impl Ladder {
         (0..self.surfaces[level]).take_while(|&index| is_there(index)).count()
     }
 
+    /// Everything that a study solves.
+    pub fn units(&self, dimensions: &[f64], seed: u64) -> Vec<Realisation> {
+        self.places(dimensions, seed, &self.surfaces).into_iter().map(|place| place.unit).collect()
+    }
+
     /// Solves so many surfaces of each level, or takes them from the store: the largest grids first, each with the threads that its memory
     /// allows.
     ///

@@ -19,7 +19,7 @@ pub use picture::draw as draw_exponent;
 use crate::header::header;
 use crate::outcome::Outcome;
 use crate::run::{FRACTAL_DIMENSIONS, SEED, list};
-use crate::{Discretisation, Forces};
+use crate::{Discretisation, Forces, Realisation};
 use analysis::Table;
 use contact_model::ContactModel as _;
 use curve::{Convention, MeanCurve};
@@ -123,6 +123,19 @@ impl Exponent {
         }
         self.solid.validate("grids", "surfaces")?;
         self.line.validate("elements", "lines")
+    }
+
+    /// Everything that it solves.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for sizes that make no sense.
+    pub fn units(&self) -> Result<Vec<Realisation>> {
+        self.validate()?;
+        Ok(self
+            .ladders()
+            .into_iter()
+            .flat_map(|(_, l)| l.units(&self.fractal_dimensions, self.seed))
+            .collect())
     }
 
     fn command(&self) -> String {

@@ -4,18 +4,29 @@ use super::study::{CaseSolve, Solves, SurfaceCase, TwoCases};
 use analysis::StiffnessSample;
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, ContactState, Stop};
+use evaluation::{Discretisation, Realisation};
 use runs::{Error, Job, Result, number};
+use std::sync::Arc;
 
 /// Raised when the meaning of the stored lines changes.
 const FORMAT: u32 = 1;
 
-pub(super) struct CaseJob<'a> {
-    pub(super) study: &'a TwoCases,
+/// One surface of one case under all loads.
+#[derive(Debug, Clone)]
+pub(super) struct CaseJob {
+    pub(super) study: Arc<TwoCases>,
     pub(super) case: SurfaceCase,
     pub(super) seed: u64,
 }
 
-impl Job for CaseJob<'_> {
+impl CaseJob {
+    // A periodic square takes no more than a free one.
+    pub(super) fn discretisation(&self) -> Discretisation {
+        Discretisation::Bem3d { cells: self.study.cells, tolerance: self.study.tolerance }
+    }
+}
+
+impl Job for CaseJob {
     type Output = Solves;
     type Error = Error;
 
@@ -36,13 +47,32 @@ impl Job for CaseJob<'_> {
         )
     }
 
+    fn name(&self) -> String {
+        format!("{}, {} cells a side, seed {}", self.case.label(), self.study.cells, self.seed)
+    }
+
+    // Free squares are those of Fig. 2, and periodic ones take about as long.
     fn cost(&self) -> u64 {
-        let n = self.study.cells as u64;
-        1 + n * n * self.study.forces.values().len() as u64 / 1000
+        let unit = Realisation {
+            discretisation: self.discretisation(),
+            fractal_dimension: self.case.fractal_dimension,
+            index: 0,
+            seed: self.seed,
+            forces: self.study.forces.values().into(),
+        };
+        unit.cost()
+    }
+
+    fn memory(&self) -> f64 {
+        self.discretisation().memory()
+    }
+
+    fn stored_bytes(&self) -> u64 {
+        1000 + 60 * self.study.forces.values().len() as u64
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<Solves> {
-        let mut scene = self.case.scene(self.study)?;
+        let mut scene = self.case.scene(&self.study)?;
         scene.outputs.area = true;
         let model = Bem3d { cells: self.study.cells, tolerance: self.study.tolerance, ..Bem3d::default() };
         let mut solves = Vec::new();
@@ -67,7 +97,7 @@ impl Job for CaseJob<'_> {
         Ok(solves)
     }
 
-    fn encode(&self, solves: &Solves) -> Option<String> {
+    fn encode(&self, solves: &Solves) -> String {
         let line = |solve: &CaseSolve| match solve {
             CaseSolve::StiffnessSample(sample, area) => {
                 let cells = sample.contact_cells.map_or_else(|| "-".to_owned(), |n| n.to_string());
@@ -76,7 +106,7 @@ impl Job for CaseJob<'_> {
             CaseSolve::FullContact => "full contact\n".to_owned(),
             CaseSolve::NotConverged => "not converged\n".to_owned(),
         };
-        Some(solves.iter().map(line).collect())
+        solves.iter().map(line).collect()
     }
 
     fn decode(&self, text: &str) -> Option<Solves> {

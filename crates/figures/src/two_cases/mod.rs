@@ -11,15 +11,17 @@ use analysis::{Curves, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
 use contact_model::{Boundary, ContactModel, ContactState, never};
-use evaluation::{Discretisation, Outcome, header};
+use evaluation::{Outcome, header};
 use job::CaseJob;
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
 use reading::{areas, claims, pairs, summary};
 use runs::{
-    Error, Progress, Result, Store, Threads, collect, files, run_stored, threads_for_memory, write_csv,
+    Error, Job, JobList, Progress, Result, Store, Threads, collect, files, run_stored, threads_for_memory,
+    write_csv,
 };
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 pub(crate) use study::NAME;
 use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
@@ -86,15 +88,29 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     Ok(outcome)
 }
 
+/// What a study solves, the coarser grids included.
+///
+/// # Errors
+/// As [`two_cases`] before it solves.
+pub fn two_cases_jobs(study: &TwoCases) -> Result<Box<dyn JobList>> {
+    study.check()?;
+    let mut all = jobs(study);
+    all.extend(jobs(&study.coarser()));
+    Ok(Box::new(all))
+}
+
+fn jobs(study: &TwoCases) -> Vec<CaseJob> {
+    let shared = Arc::new(study.clone());
+    let seeds = (0..study.surfaces).map(|i| surface_gen::surface_seed(study.seed, i as u64));
+    let all = |case| seeds.clone().map(move |seed| (case, seed));
+    let all = study.cases().into_iter().flat_map(all);
+    all.map(|(case, seed)| CaseJob { study: Arc::clone(&shared), case, seed }).collect()
+}
+
 /// All surfaces of all cases, each under increasing loads; in order, whatever the number of threads.
 fn solve(study: &TwoCases, store: &Store, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
-    let seeds: Vec<u64> =
-        (0..study.surfaces).map(|i| surface_gen::surface_seed(study.seed, i as u64)).collect();
-    let cases = study.cases();
-    let jobs: Vec<CaseJob<'_>> =
-        cases.iter().flat_map(|&case| seeds.iter().map(move |&seed| CaseJob { study, case, seed })).collect();
-    // A periodic square takes no more than a free one.
-    let memory = Discretisation::Bem3d { cells: study.cells, tolerance: study.tolerance }.memory();
+    let jobs = jobs(study);
+    let memory = jobs.iter().map(Job::memory).fold(0.0, f64::max);
     let in_flight = threads_for_memory(study.threads, memory, "cells", study.cells)?;
     let threads = Threads { total: study.threads, jobs: in_flight };
     let what = format!("{} surfaces of {} cells a side", jobs.len(), study.cells);

@@ -88,7 +88,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
 }
 
 /// Memory that a model needs for one surface at least, bytes; at least 1.
-fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
+pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let Cells { columns, rows } = cells(scene, numerics);
     let bytes = match numerics {
         Numerics::Bem3d(_) | Numerics::Equivalent(_) => LIGHT_BYTES * columns as f64 * rows as f64,

@@ -65,8 +65,7 @@
 //!
 //! # What it does not do
 //!
-//! No mechanics of its own, no distribution over machines (a model on a surface is the unit that one would
-//! distribute), no error budgets of means (`evaluation` has them).
+//! No mechanics of its own, no error budgets of means (`evaluation` has them).
 
 mod accuracy;
 mod accuracy_target;
@@ -107,6 +106,7 @@ mod scan;
 mod scene_file;
 mod scene_job;
 mod scene_surface;
+mod shards;
 mod state_result;
 mod statistics;
 mod statistics_files;
@@ -134,3 +134,4 @@ pub use registry::Registry;
 pub use run::run;
 pub use scene_file::{Sampling, SceneFile};
 pub use scene_surface::SceneSurface;
+pub use shards::{jobs, run_scene_shard};

@@ -26,11 +26,14 @@ impl ResultFolder {
     /// # Errors
     /// The name of a file that this run would overwrite and no run of a scene wrote; a directory that cannot be read.
     pub fn claim(directory: &Path, scene: &SceneFile) -> Result<Self> {
-        let listed = Manifest::read(directory);
-        let mut owned = listed.files;
         let entries =
             std::fs::read_dir(directory).map_err(runs::Error::file("read the directory", directory))?;
-        for entry in entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()) {
+        let entries: Vec<String> =
+            entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+        // After the directory: another shard writes its manifest before its fields.
+        let listed = Manifest::read(directory);
+        let mut owned = listed.files;
+        for entry in entries {
             if owned.contains(&entry) {
                 continue;
             }

@@ -16,7 +16,7 @@ use crate::scenes::plan::{ModelPlan, Plan};
 use crate::scenes::report::Report;
 use crate::scenes::result_folder::ResultFolder;
 use crate::scenes::scene_file::SceneFile;
-use crate::scenes::scene_job::SceneJob;
+use crate::scenes::shards::{scene_jobs, units};
 use crate::scenes::state_result::{ModelResult, StateResult};
 use crate::scenes::statistics::MapStatisticsTables;
 use crate::scenes::summary;
@@ -55,15 +55,8 @@ pub fn run(
     let folder = ResultFolder::claim(&options.out, scene)?;
     manifest::write_begun(scene, options, &folder.files(scene))?;
     let columns = columns::columns(scene);
-    let surfaces = |model: usize| {
-        if scene.surface.is_random_for(&scene.models[model]) { scene.sampling.surfaces } else { 1 }
-    };
-    let units: Vec<ModelOnSurface> = (0..scene.models.len())
-        .flat_map(|model| (0..surfaces(model)).map(move |surface| ModelOnSurface { model, surface }))
-        .collect();
-    let jobs: Vec<SceneJob<'_>> = (units.iter())
-        .map(|&unit| SceneJob { unit, scene, out: &options.out, columns: columns.len() })
-        .collect();
+    let units = units(scene);
+    let jobs = scene_jobs(scene, &options.out);
     let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop)?;
     let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
     let mut outcome =

@@ -1,5 +1,6 @@
 //! A model and a surface as a job, and its result as text.
 
+use crate::scenes::calibration;
 use crate::scenes::distributed::{Bin, Distributed};
 use crate::scenes::error::{Error, Result};
 use crate::scenes::model_on_surface::ModelOnSurface;
@@ -32,8 +33,24 @@ impl Job for SceneJob<'_> {
         self.unit.key(self.scene)
     }
 
+    fn name(&self) -> String {
+        format!("{}, surface {}", self.unit.numerics(self.scene).name(), self.unit.surface)
+    }
+
     fn cost(&self) -> u64 {
         self.unit.cost(self.scene)
+    }
+
+    fn memory(&self) -> f64 {
+        calibration::least_memory(self.scene, self.unit.numerics(self.scene))
+    }
+
+    fn stored_bytes(&self) -> u64 {
+        self.unit.stored_bytes(self.scene, self.columns)
+    }
+
+    fn is_stored(&self) -> bool {
+        self.unit.numerics(self.scene).is_stored()
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<ModelResult> {
@@ -51,10 +68,8 @@ impl Job for SceneJob<'_> {
         begun.kept = begun.states.len();
         let mut last = Instant::now();
         let mut keep = |result: &ModelResult| {
-            if last.elapsed() >= KEEP_EVERY
-                && let Some(text) = self.encode(result)
-            {
-                store(&text)?;
+            if last.elapsed() >= KEEP_EVERY && self.is_stored() {
+                store(&self.encode(result))?;
                 last = Instant::now();
             }
             Ok(())
@@ -62,8 +77,8 @@ impl Job for SceneJob<'_> {
         self.unit.solve(self.scene, self.out, begun, &mut keep, stop)
     }
 
-    fn encode(&self, result: &ModelResult) -> Option<String> {
-        self.unit.numerics(self.scene).is_stored().then(|| format(result))
+    fn encode(&self, result: &ModelResult) -> String {
+        format(result)
     }
 
     /// A result with a state or a file missing or changed is as good as absent.

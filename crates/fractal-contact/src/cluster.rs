@@ -1,0 +1,135 @@
+//! Scenes on many machines: shards, their plan, submission, status and merge.
+
+use crate::arguments::ShardsArguments;
+use crate::{read_scene, stopped_by_signals};
+use fractal_contact::scenes::{Error, Options, Plan, Result, SceneFile, jobs, run_scene_shard};
+use runs::cluster::{Division, Forecast, ShardPlan, Submission, Target, check, quoted, submitted_tasks};
+use runs::{JobList, ShardChoice};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+
+/// How the program calls itself.
+const PROGRAM: &str = "fractal-contact";
+
+/// The plan of a scene: tasks begin elsewhere, so the path of the scene is absolute.
+fn plan_of(path: &Path, jobs: &dyn JobList) -> Result<ShardPlan> {
+    let path = std::fs::canonicalize(path).map_err(runs::Error::file("find", path))?;
+    let text = path.to_str().ok_or_else(|| {
+        runs::Error::parameter(
+            "scene",
+            path.display(),
+            "a path in UTF-8, where a scene is divided into shards",
+        )
+    })?;
+    Ok(ShardPlan::new(PROGRAM, vec!["run".to_owned(), text.to_owned()], jobs))
+}
+
+/// Does one shard of a scene.
+pub fn shard(path: &Path, choice: ShardChoice, options: &Options) -> Result<ExitCode> {
+    let shard = choice.resolve(&|name| std::env::var(name).ok())?;
+    let scene = read_scene(path)?;
+    fractal_contact::scenes::check(&scene)?;
+    let plan = plan_of(path, &*jobs(&scene, &options.out))?;
+    let stopped = stopped_by_signals()?;
+    let stop = || stopped.load(Ordering::Relaxed);
+    let report = run_scene_shard(&scene, &plan, shard, options, &runs::Reporter::new(), &stop);
+    let report = report.map_err(|failure| match failure.downcast::<Error>() {
+        Ok(error) => *error,
+        Err(failure) => match failure.downcast::<runs::Error>() {
+            Ok(error) => Error::Run(*error),
+            Err(other) => Error::Argument { name: "shard", reason: other.to_string() },
+        },
+    })?;
+    if stop() {
+        runs::err!("stopped: the states so far are kept; the same command goes on with the others");
+        return Ok(ExitCode::from(130));
+    }
+    runs::out!("{report}");
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The forecast of a scene, with the times of its plan.
+fn forecast(jobs: &dyn JobList, plan: &Plan, division: &Division) -> Forecast {
+    let forecast = Forecast::new(jobs, division);
+    match plan.predicted() {
+        Some(cost) => {
+            forecast.measured(cost.seconds, "from small solves on this machine, within a factor of six")
+        }
+        None => forecast,
+    }
+}
+
+/// Tells what a scene takes on nodes of so many cores.
+pub fn tell(
+    scene: &SceneFile,
+    plan: &Plan,
+    division: &Division,
+    (nodes, cores): (usize, usize),
+) -> Result<()> {
+    let forecast = forecast(&*jobs(scene, Path::new(".")), plan, division);
+    let at_once = forecast.at_once(nodes, cores, None);
+    if at_once == 0 {
+        let expected = format!("nodes of at least {} cores, those of a task", forecast.cores);
+        return Err(runs::Error::parameter("node-cores", cores, expected).into());
+    }
+    let makespan = runs::cluster::duration(forecast.makespan(at_once));
+    runs::out!(
+        "\n{forecast}\nmakespan    {makespan} on {nodes} nodes of {cores} cores, {at_once} tasks at a time"
+    );
+    Ok(())
+}
+
+/// Writes the scripts of a scene and submits them where that is asked for.
+pub fn submit(path: &Path, out: &Path, submission: &Submission, division: &Division) -> Result<ExitCode> {
+    let scene = read_scene(path)?;
+    let calibrated = Plan::calibrated(&scene)?;
+    runs::files::create_directory(out)?;
+    let jobs = jobs(&scene, out);
+    let plan = plan_of(path, &*jobs)?;
+    let found = check(&plan, &*jobs, out)?;
+    // The same division as before keeps what each task has to read small.
+    let tasks = division.tasks.or_else(|| submitted_tasks(out, &plan));
+    let forecast = forecast(&*jobs, &calibrated, &Division { tasks, ..division.clone() });
+    let binary = std::env::current_exe().map_err(runs::Error::file("find", Path::new("this program")))?;
+    let target = Target { binary: &binary, out, plan: &plan, jobs: &*jobs };
+    runs::out!("{forecast}");
+    runs::out!("{}", submission.write(&target, &forecast, &found)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The plan of a directory and its scene.
+fn planned(options: &ShardsArguments) -> Result<(ShardPlan, PathBuf, SceneFile)> {
+    let plan = ShardPlan::only(&options.out, PROGRAM, options.plan.as_deref())?;
+    let path = match plan.arguments.as_slice() {
+        [run, path] if run == "run" => PathBuf::from(path),
+        _ => return Err(runs::Error::parameter("plan", plan.command(), "fractal-contact run SCENE").into()),
+    };
+    let scene = read_scene(&path)?;
+    Ok((plan, path, scene))
+}
+
+/// Tells what is done of the shards of a directory.
+pub fn status(options: &ShardsArguments) -> Result<ExitCode> {
+    let (plan, _, scene) = planned(options)?;
+    let jobs = jobs(&scene, &options.out);
+    let status = runs::cluster::status(&check(&plan, &*jobs, &options.out)?, &*jobs, &options.out);
+    runs::out!("{status}");
+    Ok(if status.complete() { ExitCode::SUCCESS } else { ExitCode::from(3) })
+}
+
+/// The scene whose tables the shards of a directory make, when all of its jobs are there.
+pub fn merged(options: &ShardsArguments) -> Result<PathBuf> {
+    let (plan, path, scene) = planned(options)?;
+    let jobs = jobs(&scene, &options.out);
+    let found = check(&plan, &*jobs, &options.out)?;
+    let (scene, out) = (quoted(&path.to_string_lossy()), quoted(&options.out.to_string_lossy()));
+    let again = format!(
+        "{PROGRAM} run {scene} --out {out} --shard 0/1, or on a cluster: {PROGRAM} submit {scene} --out {out} --engine slurm --now"
+    );
+    found.require(&options.out, &again)?;
+    for remark in found.remarks() {
+        runs::err!("note: {remark}");
+    }
+    Ok(path)
+}

@@ -1,0 +1,191 @@
+//! What a plan will take: cores, memory, time, disk.
+
+use super::makespan::{Cluster, makespan};
+use super::shard_run::shards;
+use crate::jobs::JobList;
+use std::fmt;
+
+/// Memory that a core of a cluster has as a rule, bytes: a task that needs more takes the cores that belong to it.
+const MEMORY_OF_CORE: f64 = 4e9;
+/// Most cores of one task that are worth it: two threads in one solve were measured to be 1.45 to 1.8 times as fast as one on 2049 cells a side
+/// (data/bench/threads.csv), and the memory of a core stays idle otherwise.
+const MOST_CORES: usize = 4;
+/// A task is to take about so many seconds: the start is nothing beside it, and little is lost with it.
+const TASK: f64 = 3600.0;
+/// Tasks at most, where nobody says: as many as SLURM allows in an array by itself.
+const MOST_TASKS: usize = 1000;
+/// Memory of the program itself, bytes.
+const PROGRAM: f64 = 200e6;
+/// What is asked for is so many times what is predicted: machines differ by a factor of three, and a task that is cut off loses the job in hand.
+const MARGIN: f64 = 3.0;
+/// What is asked for at least, seconds.
+const LEAST_TIME: f64 = 600.0;
+
+/// How a plan is divided; what is not said follows from its jobs.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct Division {
+    /// Tasks that the jobs are divided into [default: one for each predicted hour of a core, at most 1000].
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", value_parser = at_least_one))]
+    pub tasks: Option<usize>,
+    /// Cores of a task [default: 1, and more where one solve needs the memory of several cores, 4 GB each].
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", value_parser = at_least_one))]
+    pub cores: Option<usize>,
+}
+
+#[cfg(feature = "clap")]
+fn at_least_one(text: &str) -> Result<usize, String> {
+    let number: usize = text.parse().map_err(|_| "expected a whole number from 1".to_owned())?;
+    if (1..=crate::MOST_SHARDS).contains(&number) {
+        Ok(number)
+    } else {
+        Err(format!("expected a whole number from 1 to {}", crate::MOST_SHARDS))
+    }
+}
+
+/// What a plan will take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    /// Jobs that are stored.
+    pub jobs: usize,
+    /// Tasks.
+    pub tasks: usize,
+    /// Cores of a task.
+    pub cores: usize,
+    /// Memory of a task, bytes.
+    pub memory: f64,
+    /// Processor seconds of all jobs, of the longest task and of the longest job.
+    pub seconds: [f64; 3],
+    /// Bytes of the results.
+    pub disk: u64,
+    /// Predicted seconds of each job.
+    costs: Vec<f64>,
+    /// What the times are worth.
+    basis: &'static str,
+}
+
+impl Forecast {
+    /// What a list of jobs takes.
+    pub fn new(jobs: &dyn JobList, division: &Division) -> Self {
+        let stored: Vec<usize> = (0..jobs.count()).filter(|&job| jobs.is_stored(job)).collect();
+        let costs: Vec<u64> = stored.iter().map(|&job| jobs.cost(job)).collect();
+        let total = 1e-3 * costs.iter().sum::<u64>() as f64;
+        let tasks = division.tasks.unwrap_or_else(|| ((total / TASK).ceil() as usize).clamp(1, MOST_TASKS));
+        let tasks = tasks.min(stored.len().max(1));
+        let largest = stored.iter().map(|&job| jobs.memory(job)).fold(0.0, f64::max);
+        let wanted = (largest / MEMORY_OF_CORE).ceil() as usize;
+        let cores = division.cores.unwrap_or_else(|| wanted.clamp(1, MOST_CORES));
+        // As many jobs side by side as have a core each, unless one takes the memory of them all.
+        let in_flight = if wanted > 1 { (cores / wanted).max(1) } else { cores };
+        let mut loads = vec![0; tasks];
+        for (job, shard) in shards(jobs, tasks).into_iter().enumerate() {
+            if let Some(shard) = shard {
+                loads[shard] += jobs.cost(job);
+            }
+        }
+        let longest = |of: &[u64]| 1e-3 * of.iter().copied().max().unwrap_or(0) as f64;
+        Self {
+            jobs: stored.len(),
+            tasks,
+            cores,
+            memory: 1.2 * in_flight as f64 * largest + PROGRAM,
+            seconds: [total, longest(&loads), longest(&costs)],
+            disk: stored.iter().map(|&job| jobs.stored_bytes(job)).sum(),
+            costs: costs.iter().map(|&cost| 1e-3 * cost as f64).collect(),
+            basis: "predicted for one core of the machine of data/bench, within a factor of two; machines differ by a factor of three",
+        }
+    }
+
+    /// The same where all jobs are known to take so many seconds together.
+    #[must_use]
+    pub fn measured(mut self, total: f64, basis: &'static str) -> Self {
+        let factor = total / self.seconds[0];
+        if factor.is_finite() {
+            self.seconds = self.seconds.map(|seconds| factor * seconds);
+            self.costs.iter_mut().for_each(|seconds| *seconds *= factor);
+            self.basis = basis;
+        }
+        self
+    }
+
+    /// Whole minutes to ask an engine for.
+    pub fn minutes(&self) -> u64 {
+        ((MARGIN * self.seconds[1]).max(LEAST_TIME) / 60.0).ceil() as u64
+    }
+
+    /// Whole megabytes to ask an engine for.
+    pub fn megabytes(&self) -> u64 {
+        (self.memory / 1e6).ceil() as u64
+    }
+
+    /// Tasks that run at the same time on nodes of so many cores and, where it is told, so much memory.
+    pub fn at_once(&self, nodes: usize, cores: usize, memory: Option<f64>) -> usize {
+        let by_memory = memory.map_or(usize::MAX, |memory| (memory / self.memory) as usize);
+        nodes * (cores / self.cores).min(by_memory)
+    }
+
+    /// Predicted seconds until the last of the tasks has ended, with so many at the same time.
+    pub fn makespan(&self, at_once: usize) -> f64 {
+        let costs: Vec<u64> = self.costs.iter().map(|seconds| (1e6 * seconds) as u64).collect();
+        let cluster = Cluster { cores: at_once, tasks: self.tasks, ..Cluster::default() };
+        makespan(&self.costs, &costs, &cluster).tasks
+    }
+}
+
+/// `45 s`, `12 min`, `3.5 h`.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+fn bytes(bytes: f64) -> String {
+    match bytes {
+        b if b < 1e6 => format!("{:.0} kB", b / 1e3),
+        b if b < 1e9 => format!("{:.0} MB", b / 1e6),
+        b => format!("{:.1} GB", b / 1e9),
+    }
+}
+
+impl fmt::Display for Forecast {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [total, task, job] = self.seconds;
+        writeln!(f, "jobs        {}, the longest {}", self.jobs, duration(job))?;
+        writeln!(f, "core-hours  {:.2}", total / 3600.0)?;
+        writeln!(
+            f,
+            "tasks       {} of {} cores and {}, the longest {}",
+            self.tasks,
+            self.cores,
+            bytes(self.memory),
+            duration(task)
+        )?;
+        writeln!(f, "disk        {}", bytes(self.disk as f64))?;
+        write!(f, "({})", self.basis)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cluster::tests_support::Squares;
+
+    #[test]
+    #[allow(clippy::float_cmp)] // Sums of whole seconds.
+    fn forecasts_by_hand() {
+        // Seven jobs of a second.
+        let squares = Squares::to(7);
+        let all = Forecast::new(&squares, &Division::default());
+        assert_eq!((all.jobs, all.tasks, all.cores, all.minutes(), all.megabytes()), (7, 1, 1, 10, 200));
+        assert_eq!(all.seconds, [7.0, 7.0, 1.0]);
+        let three = Forecast::new(&squares, &Division { tasks: Some(3), cores: Some(2) });
+        assert_eq!((three.seconds, three.cores), ([7.0, 3.0, 1.0], 2));
+        assert_eq!((three.makespan(1), three.makespan(2), three.makespan(100)), (7.0, 4.0, 3.0));
+        assert_eq!((three.at_once(4, 64, None), three.at_once(4, 64, Some(1e9))), (128, 20));
+        // No more tasks than jobs.
+        assert_eq!(Forecast::new(&squares, &Division { tasks: Some(99), cores: None }).tasks, 7);
+        assert!(all.to_string().starts_with("jobs        7, the longest 1 s\ncore-hours  0.00\n"), "{all}");
+    }
+}

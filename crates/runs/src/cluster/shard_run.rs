@@ -1,0 +1,121 @@
+//! One shard of a plan.
+
+use super::plan::ShardPlan;
+use crate::error::Result;
+use crate::jobs::{Failure, JobList, Threads};
+use crate::meters::threads_for_memory;
+use crate::progress::Progress;
+use crate::shard::{Shard, assign};
+use crate::store::Store;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+
+/// What a shard did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ShardReport {
+    /// Which.
+    pub shard: Shard,
+    /// Its jobs.
+    pub jobs: usize,
+    /// Those of the plan.
+    pub of: usize,
+}
+
+impl fmt::Display for ShardReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "shard {}: {} of the {} jobs are done and stored", self.shard, self.jobs, self.of)
+    }
+}
+
+/// Jobs of a shard that are worth storing.
+pub(super) fn members(jobs: &dyn JobList, shard: Shard) -> Vec<usize> {
+    let of = shards(jobs, shard.count);
+    (0..jobs.count()).filter(|&job| of[job] == Some(shard.index)).collect()
+}
+
+/// The shard of each job; none for what is not stored.
+pub(super) fn shards(jobs: &dyn JobList, count: usize) -> Vec<Option<usize>> {
+    let stored: Vec<usize> = (0..jobs.count()).filter(|&job| jobs.is_stored(job)).collect();
+    let costs: Vec<u64> = stored.iter().map(|&job| jobs.cost(job)).collect();
+    let mut of = vec![None; jobs.count()];
+    for (&job, shard) in stored.iter().zip(assign(&costs, count)) {
+        of[job] = Some(shard);
+    }
+    of
+}
+
+/// Does the jobs of a shard that the store of `out` does not hold, the most expensive first, as many at a time as there are threads and memory.
+/// Other shards may run at the same time, here or elsewhere.
+///
+/// # Errors
+/// The first failure; what was done before is stored.
+pub fn run_shard(
+    plan: &ShardPlan,
+    jobs: &dyn JobList,
+    shard: Shard,
+    (out, threads): (&Path, usize),
+    progress: &dyn Progress,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<ShardReport, Failure> {
+    let store = Store::open_shared(out, &plan.digest, shard)?;
+    plan.write(out)?;
+    let mine = members(jobs, shard);
+    // Jobs that leave room for as many others are done together, the largest first.
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for &job in &mine {
+        let room = threads_for_memory(threads, jobs.memory(job), "job", jobs.name(job))?;
+        groups.entry(room).or_default().push(job);
+    }
+    let what = format!("shard {shard}: {} of {} jobs", mine.len(), jobs.count());
+    progress.begin(&what, mine.iter().map(|&job| jobs.cost(job)).sum());
+    for (room, group) in groups {
+        jobs.work(&group, &store, Threads { total: threads, jobs: room }, progress, stop)?;
+    }
+    progress.end();
+    Ok(ShardReport { shard, jobs: mine.len(), of: jobs.count() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cluster::tests_support::Squares;
+    use crate::{Silent, cluster};
+    use contact_model::never;
+
+    fn plan(jobs: &dyn JobList) -> ShardPlan {
+        ShardPlan::new("p", vec!["squares".into()], jobs)
+    }
+
+    #[test]
+    fn shards_do_every_job_once() {
+        let dir = tempfile::tempdir().unwrap();
+        let squares = Squares::to(7);
+        for index in [2, 0, 1] {
+            let shard = Shard { index, count: 3 };
+            let report =
+                run_shard(&plan(&squares), &squares, shard, (dir.path(), 2), &Silent, &never).unwrap();
+            assert!(report.to_string().starts_with(&format!("shard {index}/3: ")), "{report}");
+        }
+        assert_eq!(squares[0].solved(), 7);
+        // Once more, and undivided: nothing is solved again.
+        for shard in [Shard { index: 1, count: 3 }, Shard { index: 0, count: 1 }] {
+            run_shard(&plan(&squares), &squares, shard, (dir.path(), 1), &Silent, &never).unwrap();
+        }
+        assert_eq!(squares[0].solved(), 7);
+        let found = cluster::check(&plan(&squares), &squares, dir.path()).unwrap();
+        assert!(found.require(dir.path(), "p").is_ok());
+    }
+
+    #[test]
+    fn a_stop_and_a_full_directory_lose_nothing_that_was_done() {
+        let dir = tempfile::tempdir().unwrap();
+        let squares = Squares::to(6);
+        let one = Shard { index: 0, count: 1 };
+        let stopped = || squares[0].solved() >= 2;
+        run_shard(&plan(&squares), &squares, one, (dir.path(), 1), &Silent, &stopped).unwrap();
+        assert_eq!((squares[0].solved(), Store::count(dir.path())), (2, 2));
+        run_shard(&plan(&squares), &squares, one, (dir.path(), 1), &Silent, &never).unwrap();
+        assert_eq!(squares[0].solved(), 6);
+    }
+}

@@ -1,0 +1,434 @@
+//! Batch scripts for the engines, and their submission.
+
+use super::check::{Completeness, JobState};
+use super::forecast::{Forecast, duration};
+use super::plan::ShardPlan;
+use super::shard_run::shards;
+use crate::error::{Error, Result};
+use crate::files;
+use crate::jobs::JobList;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::str::FromStr;
+
+/// What runs tasks on many machines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Engine {
+    /// SLURM: a job array.
+    Slurm,
+    /// HyperQueue: a job definition file.
+    Hyperqueue,
+}
+
+impl Engine {
+    /// Its name, in lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slurm => "slurm",
+            Self::Hyperqueue => "hyperqueue",
+        }
+    }
+}
+
+impl FromStr for Engine {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let all = [Self::Slurm, Self::Hyperqueue];
+        all.into_iter()
+            .find(|engine| engine.name() == text)
+            .ok_or_else(|| Error::parameter("engine", text, "slurm or hyperqueue"))
+    }
+}
+
+/// What an engine is asked for.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct Submission {
+    /// The engine: slurm or hyperqueue.
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub engine: Engine,
+    /// Time limit of a task in minutes [default: three times the predicted time of the longest one, at least 10].
+    #[cfg_attr(feature = "clap", arg(long = "time", value_name = "MINUTES", value_parser = clap::value_parser!(u64).range(1..)))]
+    pub minutes: Option<u64>,
+    /// Memory of a task in megabytes [default: predicted].
+    #[cfg_attr(feature = "clap", arg(long = "memory", value_name = "MB", value_parser = clap::value_parser!(u64).range(1..)))]
+    pub megabytes: Option<u64>,
+    /// Partition (SLURM).
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
+    pub partition: Option<String>,
+    /// Account that pays (SLURM).
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
+    pub account: Option<String>,
+    /// A further line of the batch script, such as --option=--constraint=avx512; may be given again (SLURM).
+    #[cfg_attr(feature = "clap", arg(long = "option", value_name = "OPTION", allow_hyphen_values = true))]
+    pub options: Vec<String>,
+    /// Submit it, too: without this only the scripts are written.
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub now: bool,
+}
+
+/// What was written, and submitted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Submitted {
+    /// The scripts; the last one submits the others.
+    pub files: Vec<PathBuf>,
+    /// Shards with something left to do.
+    pub shards: Vec<usize>,
+    /// Jobs that are left to do.
+    pub jobs: usize,
+    /// What the engine answered, where it was submitted.
+    pub answer: Option<String>,
+}
+
+impl fmt::Display for Submitted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for file in &self.files {
+            writeln!(f, "{}", file.display())?;
+        }
+        write!(f, "{} jobs to do in {} tasks", self.jobs, self.shards.len())?;
+        match (&self.answer, self.files.last()) {
+            (Some(answer), _) => write!(f, "; submitted: {}", answer.trim()),
+            (None, Some(script)) => write!(f, "; submit with: bash {}", quoted(&script.to_string_lossy())),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The program, its directory of results and how its jobs are divided.
+#[derive(Debug, Clone)]
+pub struct Target<'a> {
+    /// The program that the tasks run: a built binary.
+    pub binary: &'a Path,
+    /// Directory of the results.
+    pub out: &'a Path,
+    /// The plan.
+    pub plan: &'a ShardPlan,
+    /// Its jobs.
+    pub jobs: &'a dyn JobList,
+}
+
+impl fmt::Debug for dyn JobList + '_ {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} jobs", self.count())
+    }
+}
+
+impl Submission {
+    /// Writes the scripts into `OUT/slurm` or `OUT/hyperqueue`, for the shards with jobs that are neither done nor, as far as the engine knows, at
+    /// work or waiting; submits them where that is asked for.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where nothing is left to do, for paths that a script cannot hold, and with what the engine said where it refuses;
+    /// [`Error::File`] for files that cannot be written.
+    pub fn write(&self, target: &Target<'_>, forecast: &Forecast, found: &Completeness) -> Result<Submitted> {
+        let Target { out, plan, jobs, .. } = *target;
+        let of = shards(jobs, forecast.tasks);
+        let busy = super::status::busy(out, plan, forecast.tasks);
+        let left: Vec<usize> = (0..of.len()).filter(|&job| found.states[job] != JobState::Done).collect();
+        let wanted: BTreeSet<usize> =
+            left.iter().filter_map(|&job| of[job]).filter(|shard| !busy.contains(shard)).collect();
+        if left.is_empty() {
+            let expected = format!("jobs to do; all are done: {} merge --out {}", plan.program, shown(out));
+            return Err(Error::parameter("out", out.display(), expected));
+        }
+        if wanted.is_empty() {
+            let expected = "shards that are not queued; the engine has all of those that are left";
+            return Err(Error::parameter("out", out.display(), expected));
+        }
+        let shards: Vec<usize> = wanted.into_iter().collect();
+        plan.write(out)?;
+        let directory = out.join(self.engine.name());
+        files::create_directory(&directory)?;
+        let script = Script::new(self, target, forecast, &directory)?;
+        let texts = match self.engine {
+            Engine::Slurm => script.slurm(&shards),
+            Engine::Hyperqueue => script.hyperqueue(&shards),
+        };
+        let mut submitted = Submitted { files: Vec::new(), shards, jobs: left.len(), answer: None };
+        for (name, text) in texts {
+            let path = directory.join(name);
+            files::write_whole(&path, text.as_bytes())?;
+            submitted.files.push(path);
+        }
+        if self.now
+            && let Some(last) = submitted.files.last()
+        {
+            submitted.answer = Some(run(last)?);
+        }
+        Ok(submitted)
+    }
+}
+
+/// Runs a script that submits.
+fn run(script: &Path) -> Result<String> {
+    let done = Command::new("bash").arg(script).output().map_err(Error::file("run", script))?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
+    if done.status.success() {
+        return Ok(text(&done.stdout));
+    }
+    let expected = format!("an engine that takes it; {} said: {}", script.display(), text(&done.stderr));
+    Err(Error::parameter("engine", "submission", expected))
+}
+
+/// What all scripts need, as text.
+struct Script<'a> {
+    submission: &'a Submission,
+    plan: &'a ShardPlan,
+    forecast: &'a Forecast,
+    directory: String,
+    /// The task's command and the merge's.
+    task: Vec<String>,
+    merge: Vec<String>,
+    minutes: u64,
+    megabytes: u64,
+}
+
+impl<'a> Script<'a> {
+    fn new(
+        submission: &'a Submission,
+        target: &Target<'a>,
+        forecast: &'a Forecast,
+        directory: &Path,
+    ) -> Result<Self> {
+        // Tasks begin elsewhere.
+        let absolute = |path: &Path| -> Result<String> {
+            let path = std::fs::canonicalize(path).map_err(Error::file("find", path))?;
+            let text = path.to_str().filter(|text| !text.contains(['\n', '\r']));
+            let refused =
+                || Error::parameter("path", path.display(), "UTF-8 without line breaks, for a script");
+            text.map(str::to_owned).ok_or_else(refused)
+        };
+        let (binary, out) = (absolute(target.binary)?, absolute(target.out)?);
+        for word in
+            [&submission.partition, &submission.account].into_iter().flatten().chain(&submission.options)
+        {
+            if word.is_empty() || word.contains(|c: char| c.is_control()) {
+                return Err(Error::parameter("option", format!("{word:?}"), "a line of a script"));
+            }
+        }
+        let mut task = vec![binary.clone()];
+        task.extend(target.plan.arguments.iter().cloned());
+        task.extend(["--out".to_owned(), out.clone()]);
+        let merge =
+            vec![binary, "merge".into(), "--out".into(), out, "--plan".into(), target.plan.digest.clone()];
+        Ok(Self {
+            submission,
+            plan: target.plan,
+            forecast,
+            directory: absolute(directory)?,
+            task,
+            merge,
+            minutes: submission.minutes.unwrap_or_else(|| forecast.minutes()),
+            megabytes: submission.megabytes.unwrap_or_else(|| forecast.megabytes()),
+        })
+    }
+
+    fn comment(&self, shards: usize) -> String {
+        let Forecast { jobs, tasks, seconds: [total, longest, _], .. } = self.forecast;
+        format!(
+            "# {}\n# {jobs} jobs in {tasks} shards, {shards} of them here; predicted: {:.2} core-hours, the longest shard {}.\n",
+            self.plan.command(),
+            total / 3600.0,
+            duration(*longest)
+        )
+    }
+
+    /// An array, a merge after it whatever becomes of it (it says what is missing), and what submits both.
+    fn slurm(&self, shards: &[usize]) -> Vec<(&'static str, String)> {
+        let Self { submission, directory, minutes, megabytes, .. } = self;
+        let count = self.forecast.tasks;
+        let mut common = String::new();
+        for (name, value) in [("partition", &submission.partition), ("account", &submission.account)] {
+            if let Some(value) = value {
+                common += &format!("#SBATCH --{name}={value}\n");
+            }
+        }
+        for option in &submission.options {
+            common += &format!("#SBATCH {option}\n");
+        }
+        let task = format!(
+            "#!/bin/bash\n{}#SBATCH --job-name=fractal-contact\n#SBATCH --array={}\n#SBATCH --ntasks=1\n\
+             #SBATCH --cpus-per-task={}\n#SBATCH --mem={megabytes}M\n#SBATCH --time={minutes}\n\
+             #SBATCH --output=\"{directory}/shard-%a.%A.log\"\n{common}\
+             # exec: signals of SLURM go to the program itself.\n\
+             exec {} --shard \"$SLURM_ARRAY_TASK_ID/{count}\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
+            self.comment(shards.len()),
+            ranges(shards),
+            self.forecast.cores,
+            line(&self.task),
+        );
+        let merge = format!(
+            "#!/bin/bash\n{}#SBATCH --job-name=fractal-contact-merge\n#SBATCH --ntasks=1\n#SBATCH --mem={}M\n\
+             #SBATCH --time={minutes}\n#SBATCH --output=\"{directory}/merge.%j.log\"\n{common}exec {}\n",
+            self.comment(shards.len()),
+            megabytes.max(&1000),
+            line(&self.merge),
+        );
+        let submit = format!(
+            "#!/bin/bash\n# Submits the shards and, after them, the merge; remembers the job for `status`.\nset -euo pipefail\n\
+             cd {}\nshards=$(sbatch --parsable shards.sh)\nshards=${{shards%%;*}}\necho \"slurm $shards {count}\" >> {}\n\
+             merge=$(sbatch --parsable --dependency=\"afterany:$shards\" merge.sh)\n\
+             echo \"SLURM jobs $shards (shards) and ${{merge%%;*}} (merge)\"\n",
+            quoted(directory),
+            quoted(&format!("../.units/plans/{}.submitted", self.plan.digest)),
+        );
+        vec![("shards.sh", task), ("merge.sh", merge), ("submit.sh", submit)]
+    }
+
+    /// One job whose last task, the merge, depends on the others.
+    fn hyperqueue(&self, shards: &[usize]) -> Vec<(&'static str, String)> {
+        let Self { directory, minutes, megabytes, .. } = self;
+        let count = self.forecast.tasks;
+        let cores = self.forecast.cores;
+        let mut job = self.comment(shards.len());
+        job += "name = \"fractal-contact\"\n";
+        let mut add = |id: usize, name: String, command: &[String], deps: String| {
+            let words: Vec<String> = command.iter().map(|word| toml(word)).collect();
+            let log = toml(&format!("{directory}/{name}.%{{JOB_ID}}.log"));
+            job += &format!(
+                "\n[[task]]\nid = {id}\ncommand = [{}]\nstdout = {log}\nstderr = {log}\ntime_limit = \"{minutes}m\"\n{deps}\
+                 [[task.request]]\nresources = {{ \"cpus\" = \"{cores}\" }}\n",
+                words.join(", ")
+            );
+        };
+        for &shard in shards {
+            let mut command = self.task.clone();
+            let threads = cores.to_string();
+            command.extend(["--shard".into(), format!("{shard}/{count}"), "--threads".into(), threads]);
+            add(shard, format!("shard-{shard}"), &command, String::new());
+        }
+        let deps: Vec<String> = shards.iter().map(usize::to_string).collect();
+        add(count, "merge".into(), &self.merge, format!("deps = [{}]\n", deps.join(", ")));
+        job += &format!("# Memory of a task: about {megabytes} MB.\n");
+        let submit = format!(
+            "#!/bin/bash\n# Submits the shards and the merge that depends on them; remembers the job for `status`.\nset -euo pipefail\n\
+             cd {}\njob=$(hq --output-mode quiet job submit-file job.toml)\necho \"hyperqueue $job {count}\" >> {}\n\
+             echo \"HyperQueue job $job\"\n",
+            quoted(directory),
+            quoted(&format!("../.units/plans/{}.submitted", self.plan.digest)),
+        );
+        vec![("job.toml", job), ("submit.sh", submit)]
+    }
+}
+
+/// Numbers as `0-3,7`, as engines write them.
+fn ranges(numbers: &[usize]) -> String {
+    let mut parts: Vec<(usize, usize)> = Vec::new();
+    for &number in numbers {
+        match parts.last_mut() {
+            Some((_, last)) if *last + 1 == number => *last = number,
+            _ => parts.push((number, number)),
+        }
+    }
+    let part = |&(first, last): &(usize, usize)| {
+        if first == last { first.to_string() } else { format!("{first}-{last}") }
+    };
+    parts.iter().map(part).collect::<Vec<_>>().join(",")
+}
+
+/// A word for a shell.
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=@%+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+fn line(words: &[String]) -> String {
+    words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+}
+
+fn shown(path: &Path) -> String {
+    quoted(&path.to_string_lossy())
+}
+
+/// A string of TOML.
+fn toml(text: &str) -> String {
+    let escaped: String = text
+        .chars()
+        .map(|c| match c {
+            '"' | '\\' => format!("\\{c}"),
+            c if c.is_control() => format!("\\u{:04x}", c as u32),
+            c => c.to_string(),
+        })
+        .collect();
+    format!("\"{escaped}\"")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cluster::tests_support::Squares;
+    use crate::cluster::{Division, check, run_shard};
+    use crate::{Shard, Silent};
+    use contact_model::never;
+
+    fn submission(engine: Engine) -> Submission {
+        Submission {
+            engine,
+            minutes: None,
+            megabytes: None,
+            partition: Some("long".into()),
+            account: None,
+            options: vec!["--constraint=avx512".into()],
+            now: false,
+        }
+    }
+
+    #[test]
+    fn words_for_shells_and_ranges_for_engines() {
+        assert_eq!(ranges(&[0, 1, 2, 5, 7, 8]), "0-2,5,7-8");
+        assert_eq!(quoted("a b"), "'a b'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!((quoted(""), quoted("/a/b-1.0,2")), ("''".into(), "/a/b-1.0,2".into()));
+        assert_eq!(toml("a\"b\\\n"), "\"a\\\"b\\\\\\u000a\"");
+        assert!("pbs".parse::<Engine>().unwrap_err().to_string().ends_with("expected slurm or hyperqueue"));
+    }
+
+    #[test]
+    fn scripts_name_what_is_left() {
+        let dir = tempfile::tempdir().unwrap();
+        let out = dir.path().join("it's out");
+        std::fs::create_dir(&out).unwrap();
+        let squares = Squares::to(6);
+        let plan = ShardPlan::new("p", vec!["squares".into()], &squares);
+        let forecast = Forecast::new(&squares, &Division { tasks: Some(3), cores: None });
+        run_shard(&plan, &squares, Shard { index: 1, count: 3 }, (&out, 1), &Silent, &never).unwrap();
+        let binary = std::env::current_exe().unwrap();
+        let target = Target { binary: &binary, out: &out, plan: &plan, jobs: &squares };
+        let write =
+            |engine| submission(engine).write(&target, &forecast, &check(&plan, &squares, &out).unwrap());
+        let slurm = write(Engine::Slurm).unwrap();
+        assert_eq!((slurm.shards.clone(), slurm.jobs), (vec![0, 2], 4));
+        assert!(slurm.to_string().contains("4 jobs to do in 2 tasks; submit with: bash '"), "{slurm}");
+        let text = |i: usize| std::fs::read_to_string(&slurm.files[i]).unwrap();
+        for part in [
+            "#SBATCH --array=0,2\n",
+            "#SBATCH --partition=long\n",
+            "#SBATCH --constraint=avx512\n",
+            "#SBATCH --time=10\n",
+            "--shard \"$SLURM_ARRAY_TASK_ID/3\"",
+            r"it'\''s out' --shard",
+        ] {
+            assert!(text(0).contains(part), "{part}: {}", text(0));
+        }
+        assert!(text(1).contains(" merge --out ") && text(2).contains("afterany:$shards"));
+        let queue = write(Engine::Hyperqueue).unwrap();
+        let job = std::fs::read_to_string(&queue.files[0]).unwrap();
+        assert!(job.contains("\"--shard\", \"2/3\"") && job.contains("deps = [0, 2]"), "{job}");
+        // Shells find no mistake in them.
+        for script in slurm.files.iter().chain(queue.files.last()) {
+            assert!(Command::new("bash").arg("-n").arg(script).status().unwrap().success());
+        }
+        for index in [0, 2] {
+            run_shard(&plan, &squares, Shard { index, count: 3 }, (&out, 1), &Silent, &never).unwrap();
+        }
+        let done = write(Engine::Slurm).unwrap_err().to_string();
+        assert!(done.contains("all are done: p merge --out"), "{done}");
+    }
+}

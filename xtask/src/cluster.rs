@@ -1,0 +1,162 @@
+//! Commands on many machines: shards, their plan, submission, status and merge.
+
+use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
+use clap::Parser as _;
+use evaluation::{Run, realisation_jobs, run_units};
+use runs::cluster::{
+    self, Division, Forecast, Status, Target, check, quoted, run_shard, status, submitted_tasks,
+    without_flags,
+};
+use runs::{Error, JobList, Reporter, Result, ShardChoice};
+use std::path::Path;
+
+/// How the program calls itself.
+const PROGRAM: &str = "cargo xtask";
+
+/// The jobs of a command.
+///
+/// # Errors
+/// [`Error::Parameter`] for a command without any, and for what [`Run::new`] refuses.
+pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
+    if let Some((_, target)) = command.target() {
+        let expected = "no accuracy to choose sizes for while it solves; ask for it on one machine, and give the sizes that it prints";
+        return Err(Error::parameter("accuracy", target.accuracy, expected));
+    }
+    let request = command.request();
+    if request.fresh {
+        return Err(Error::parameter("fresh", true, "no --fresh beside shards: choose another --out"));
+    }
+    let run = Run::new(&request)?;
+    let figure = |solid, line| -> Result<Box<dyn JobList>> {
+        Ok(Box::new(realisation_jobs(run_units(&run, solid, line))))
+    };
+    match command {
+        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => figure(true, false),
+        Command::ReproduceFig6(_) => figure(false, true),
+        Command::ReproduceFig3(_)
+        | Command::ReproduceFig7(_)
+        | Command::ReproduceAll(_)
+        | Command::Verify(_) => figure(true, true),
+        Command::Exponent(options) => Ok(Box::new(realisation_jobs(options.study(&run)?.units()?))),
+        Command::ReproduceTwoCases(options) => figures::two_cases_jobs(&options.study()?),
+        _ => {
+            let expected = "reproduce-fig2, -fig3, -fig4, -fig6, -fig7, reproduce-all, verify, reproduce-two-cases, exponent, accuracy-cost or budget-check";
+            Err(Error::parameter("command", "one without jobs to share", expected))
+        }
+    }
+}
+
+/// Does one shard of a command.
+///
+/// # Errors
+/// What [`jobs`] refuses; the first job that fails.
+pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result<(), runs::Failure> {
+    let shard = choice.resolve(&|name| std::env::var(name).ok())?;
+    let jobs = jobs(command)?;
+    let (out, run) = (command.out(), Run::new(&command.request())?);
+    runs::files::create_directory(&out)?;
+    let plan = plan_of(typed, &*jobs);
+    let report = run_shard(&plan, &*jobs, shard, (&out, run.threads), &Reporter::new(), &|| false)?;
+    runs::out!("{report}");
+    Ok(())
+}
+
+fn plan_of(typed: &[String], jobs: &dyn JobList) -> cluster::ShardPlan {
+    let arguments = without_flags(typed, &["out", "shard", "threads"], &["fresh"]);
+    cluster::ShardPlan::new(PROGRAM, arguments, jobs)
+}
+
+fn parsed(typed: &[String]) -> Result<Command> {
+    let words = std::iter::once("cargo xtask".to_owned()).chain(typed.iter().cloned());
+    match Arguments::try_parse_from(words) {
+        Ok(arguments) => Ok(arguments.command),
+        Err(error) => {
+            let error = error.to_string();
+            let reason = error.trim_start_matches("error: ").trim().to_owned();
+            Err(Error::parameter("command", typed.join(" "), format!("a command of cargo xtask: {reason}")))
+        }
+    }
+}
+
+/// Tells what a command will take.
+///
+/// # Errors
+/// What [`jobs`] refuses.
+pub fn plan(options: &PlanArguments) -> Result<()> {
+    let command = parsed(&options.command)?;
+    let forecast = Forecast::new(&*jobs(&command)?, &options.division);
+    runs::out!("{forecast}");
+    let here = std::thread::available_parallelism().map_or(1, usize::from);
+    let (nodes, cores) = (usize::from(options.nodes), options.node_cores.map_or(here, usize::from));
+    let at_once = forecast.at_once(nodes, cores, options.node_memory.map(|mb| 1e6 * mb as f64));
+    if at_once == 0 {
+        let expected =
+            format!("nodes that hold a task of {} cores and {} MB", forecast.cores, forecast.megabytes());
+        return Err(Error::parameter("node-cores", cores, expected));
+    }
+    let makespan = cluster::duration(forecast.makespan(at_once));
+    runs::out!("makespan    {makespan} on {nodes} nodes of {cores} cores, {at_once} tasks at a time");
+    Ok(())
+}
+
+/// Writes the scripts of a command and submits them where that is asked for.
+///
+/// # Errors
+/// What [`jobs`] refuses, and what the engine refuses.
+pub fn submit(options: &SubmitArguments) -> Result<()> {
+    let command = parsed(&options.command)?;
+    let jobs = jobs(&command)?;
+    let out = command.out();
+    runs::files::create_directory(&out)?;
+    let plan = plan_of(&options.command, &*jobs);
+    let found = check(&plan, &*jobs, &out)?;
+    // The same division as before keeps what each task has to read small.
+    let tasks = options.division.tasks.or_else(|| submitted_tasks(&out, &plan));
+    let forecast = Forecast::new(&*jobs, &Division { tasks, ..options.division.clone() });
+    let binary = std::env::current_exe().map_err(Error::file("find", Path::new("this program")))?;
+    let target = Target { binary: &binary, out: &out, plan: &plan, jobs: &*jobs };
+    runs::out!("{forecast}");
+    runs::out!("{}", options.submission.write(&target, &forecast, &found)?);
+    Ok(())
+}
+
+/// The plan of a directory, the command that it is of, and the jobs.
+fn planned(options: &ShardsArguments) -> Result<(cluster::ShardPlan, Command, Box<dyn JobList>)> {
+    let plan = cluster::ShardPlan::only(&options.out, PROGRAM, options.plan.as_deref())?;
+    let mut words = plan.arguments.clone();
+    words.extend(["--out".to_owned(), options.out.to_string_lossy().into_owned()]);
+    let command = parsed(&words)?;
+    let jobs = jobs(&command)?;
+    Ok((plan, command, jobs))
+}
+
+/// Tells what is done of the shards of a directory.
+///
+/// # Errors
+/// A directory without a plan or with several.
+pub fn tell_status(options: &ShardsArguments) -> Result<Status> {
+    let (plan, _, jobs) = planned(options)?;
+    let status = status(&check(&plan, &*jobs, &options.out)?, &*jobs, &options.out);
+    runs::out!("{status}");
+    Ok(status)
+}
+
+/// The command whose tables the shards of a directory make, when all of its jobs are there, and what was typed for it.
+///
+/// # Errors
+/// [`Error::Parameter`] with what is missing, damaged or of another plan.
+pub fn merged(options: &ShardsArguments) -> Result<(Command, Vec<String>)> {
+    let (plan, command, jobs) = planned(options)?;
+    let found = check(&plan, &*jobs, &options.out)?;
+    let out = quoted(&options.out.to_string_lossy());
+    let again = format!(
+        "{} --out {out} --shard 0/1, or on a cluster: {PROGRAM} submit --engine slurm --now {} --out {out}",
+        plan.command(),
+        plan.arguments.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+    );
+    found.require(&options.out, &again)?;
+    for remark in found.remarks() {
+        runs::err!("note: {remark}");
+    }
+    Ok((command, plan.arguments))
+}
