@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::jobs::JobList;
 use crate::store::fnv1a_128;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -23,11 +24,9 @@ pub struct ShardPlan {
 impl ShardPlan {
     /// The plan of a list of jobs.
     pub fn new(program: &str, arguments: Vec<String>, jobs: &dyn JobList) -> Self {
-        let mut hashes = Vec::with_capacity(16 * jobs.count());
-        for job in 0..jobs.count() {
-            hashes.extend(fnv1a_128(jobs.key(job).as_bytes()).to_be_bytes());
-        }
-        let digest = format!("{:032x}", fnv1a_128(&hashes));
+        let hash = |job| fnv1a_128(jobs.key(job).as_bytes()).to_be_bytes();
+        let hashes: Vec<[u8; 16]> = (0..jobs.count()).into_par_iter().map(hash).collect();
+        let digest = format!("{:032x}", fnv1a_128(hashes.as_flattened()));
         Self { digest, program: program.to_owned(), arguments, jobs: jobs.count() }
     }
 
