@@ -40,7 +40,7 @@ def submit(path: str) -> None:
         tasks[task["id"]] = job.program(
             task["command"],
             stdout=task["stdout"].replace("%{JOB_ID}", "job"),
-            stderr=task["stderr"].replace("%{JOB_ID}", "job") + ".errors",
+            stderr=task["stderr"].replace("%{JOB_ID}", "job"),
             deps=[tasks[id] for id in task.get("deps", [])],
             env=task.get("env"),
             resources=ResourceRequest(cpus=request["cpus"]),

@@ -6,7 +6,7 @@ mod sizes;
 mod studies;
 
 pub use bench::BenchArguments;
-pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};
+pub use cluster::{MakespanArguments, PlanArguments, ShardsArguments, SubmitArguments};
 
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
@@ -39,6 +39,7 @@ Examples:
   cargo xtask verify                                  one line per claim of the paper
   cargo xtask reproduce-fig2 --preset paper           2049 cells, 60 surfaces: stop and resume at will
   cargo xtask reproduce-fig2 --preset extended --over data/figures/paper/fig2.csv   16385 cells, light loads
+  cargo xtask submit --engine slurm --now reproduce-fig2 --preset paper --out DIR   its surfaces on a cluster; then status, merge
 
 Results go to out/ (--out). Finished surfaces are kept in out/.units and reused by every command with the same parameters; an
 interruption loses at most the surfaces in flight, and the same command resumes. The same command gives the same bytes of CSV
@@ -104,6 +105,8 @@ pub enum Command {
     Status(ShardsArguments),
     /// Tables and pictures from the shards in a directory: the bytes of one process. Refuses gaps, damage and mixed plans.
     Merge(ShardsArguments),
+    /// How long a study of surfaces or lines takes on many cores: measured times replayed, with slow cores and failures.
+    Makespan(MakespanArguments),
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
@@ -174,10 +177,11 @@ impl Command {
             | Self::Plan(_)
             | Self::Submit(_)
             | Self::Status(_)
-            | Self::Merge(_) => {}
+            | Self::Merge(_)
+            | Self::Makespan(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => (request.out, request.threads) = (Some(a.out.clone()), a.threads),
-            Self::AccuracyCost(a) => request.out = Some(a.out.clone()),
+            Self::AccuracyCost(a) => (request.out, request.fresh) = (Some(a.out.clone()), a.fresh),
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
             Self::Stability(a) => request.out = Some(a.out.clone()),
         }

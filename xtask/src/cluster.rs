@@ -1,13 +1,15 @@
 //! Commands on many machines: shards, their plan, submission, status and merge.
 
-use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
+use crate::arguments::{
+    Arguments, Command, MakespanArguments, PlanArguments, ShardsArguments, SubmitArguments,
+};
 use clap::Parser as _;
-use evaluation::{Run, realisation_jobs, run_units};
+use evaluation::{Realisation, Run, realisation_jobs, run_units};
 use runs::cluster::{
     self, Division, Forecast, Status, Target, check, quoted, run_shard, status, submitted_tasks,
     without_flags,
 };
-use runs::{Error, JobList, Reporter, Result, ShardChoice};
+use runs::{Error, JobList, Reporter, Result, ShardChoice, Store};
 use std::path::Path;
 
 /// How the program calls itself.
@@ -26,19 +28,13 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
     if request.fresh {
         return Err(Error::parameter("fresh", true, "no --fresh beside shards: choose another --out"));
     }
-    let run = Run::new(&request)?;
-    let figure = |solid, line| -> Result<Box<dyn JobList>> {
-        Ok(Box::new(realisation_jobs(run_units(&run, solid, line))))
-    };
+    if let Some(units) = units(command)? {
+        return Ok(Box::new(realisation_jobs(units)));
+    }
     match command {
-        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => figure(true, false),
-        Command::ReproduceFig6(_) => figure(false, true),
-        Command::ReproduceFig3(_)
-        | Command::ReproduceFig7(_)
-        | Command::ReproduceAll(_)
-        | Command::Verify(_) => figure(true, true),
-        Command::Exponent(options) => Ok(Box::new(realisation_jobs(options.study(&run)?.units()?))),
         Command::ReproduceTwoCases(options) => figures::two_cases_jobs(&options.study()?),
+        Command::AccuracyCost(options) => evaluation::accuracy_cost_jobs(options.depth(), options.seed),
+        Command::BudgetCheck(options) => evaluation::budget_check_jobs(options.cases, options.seed),
         _ => {
             let expected = "reproduce-fig2, -fig3, -fig4, -fig6, -fig7, reproduce-all, verify, reproduce-two-cases, exponent, accuracy-cost or budget-check";
             Err(Error::parameter("command", "one without jobs to share", expected))
@@ -59,6 +55,21 @@ pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result
     let report = run_shard(&plan, &*jobs, shard, (&out, run.threads), &Reporter::new(), &|| false)?;
     runs::out!("{report}");
     Ok(())
+}
+
+/// The surfaces and lines of a command that solves no others.
+fn units(command: &Command) -> Result<Option<Vec<Realisation>>> {
+    let run = Run::new(&command.request())?;
+    Ok(Some(match command {
+        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => run_units(&run, true, false),
+        Command::ReproduceFig6(_) => run_units(&run, false, true),
+        Command::ReproduceFig3(_)
+        | Command::ReproduceFig7(_)
+        | Command::ReproduceAll(_)
+        | Command::Verify(_) => run_units(&run, true, true),
+        Command::Exponent(options) => options.study(&run)?.units()?,
+        _ => return Ok(None),
+    }))
 }
 
 fn plan_of(typed: &[String], jobs: &dyn JobList) -> cluster::ShardPlan {
@@ -87,7 +98,8 @@ pub fn plan(options: &PlanArguments) -> Result<()> {
     let forecast = Forecast::new(&*jobs(&command)?, &options.division);
     runs::out!("{forecast}");
     let here = std::thread::available_parallelism().map_or(1, usize::from);
-    let (nodes, cores) = (usize::from(options.nodes), options.node_cores.map_or(here, usize::from));
+    let (nodes, cores) =
+        (usize::from(options.nodes), options.node_cores.map_or(here.max(forecast.cores), usize::from));
     let at_once = forecast.at_once(nodes, cores, options.node_memory.map(|mb| 1e6 * mb as f64));
     if at_once == 0 {
         let expected =
@@ -117,6 +129,57 @@ pub fn submit(options: &SubmitArguments) -> Result<()> {
     let target = Target { binary: &binary, out: &out, plan: &plan, jobs: &*jobs };
     runs::out!("{forecast}");
     runs::out!("{}", options.submission.write(&target, &forecast, &found)?);
+    Ok(())
+}
+
+/// Replays the measured times of a study on many cores.
+///
+/// # Errors
+/// A command without surfaces or lines, a directory without any of them, numbers that make no sense.
+pub fn makespan(options: &MakespanArguments) -> Result<()> {
+    let command = parsed(&options.command)?;
+    let refused = || Error::parameter("command", options.command.join(" "), "a study of surfaces or lines");
+    let units = units(&command)?.ok_or_else(refused)?;
+    let positive =
+        [("speed-up", options.speed_up), ("slowness", options.slowness), ("operations", options.operations)];
+    if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite()))
+    {
+        return Err(Error::parameter(name, value, "a number above 0"));
+    }
+    let others = [
+        ("start", options.start),
+        ("slow-share", options.slow_share),
+        ("failures", options.failures),
+        ("merge", options.merge),
+    ];
+    if let Some((name, value)) = others.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite())) {
+        return Err(Error::parameter(name, value, "a number from 0"));
+    }
+    let machines = cluster::Cluster {
+        start: options.start,
+        slow_share: options.slow_share,
+        slowness: options.slowness,
+        failures: options.failures,
+        operations: options.operations,
+        merge: options.merge,
+        seed: options.seed,
+        ..cluster::Cluster::default()
+    };
+    let seconds = evaluation::replayed_seconds(&units, &Store::view(&options.measured)?)?;
+    let of_task = (options.cores_of_task, options.speed_up);
+    let found = evaluation::simulate(&units, &seconds, &options.cores, of_task, &machines);
+    runs::out!("{:>8} {:>7} {:>12} {:>10}  limited by", "cores", "tasks", "makespan", "efficiency");
+    for run in &found {
+        let (time, share) =
+            (cluster::duration(run.found.seconds()), 100.0 * run.found.efficiency(run.cluster.cores));
+        runs::out!("{:>8} {:>7} {time:>12} {share:>8.1} %  {}", run.cores(), run.cluster.tasks, run.limit());
+    }
+    if let Some(path) = &options.csv {
+        let words: Vec<String> = std::env::args().skip(1).collect();
+        let header = evaluation::header(format!("{PROGRAM} {}", words.join(" ")));
+        runs::write_csv(path, &evaluation::makespan_table(&found)?, &header)?;
+        runs::out!("{}", path.display());
+    }
     Ok(())
 }
 

@@ -39,6 +39,7 @@ fn execute(command: Command, typed: &[String]) -> Result<ExitCode, Failure> {
     match &command {
         Command::Plan(options) => cluster::plan(options)?,
         Command::Submit(options) => cluster::submit(options)?,
+        Command::Makespan(options) => cluster::makespan(options)?,
         Command::Status(options) => {
             if !cluster::tell_status(options)?.complete() {
                 return Ok(ExitCode::from(3));
@@ -92,7 +93,12 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
         Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
         Command::AccuracyCost(options) => {
-            vec![evaluation::accuracy_cost(options.depth(), options.seed, &options.out, &reporter)?]
+            vec![evaluation::accuracy_cost(
+                options.depth(),
+                options.seed,
+                (&options.out, options.fresh),
+                &reporter,
+            )?]
         }
         Command::ReproduceTwoCases(options) => {
             vec![figures::two_cases(&options.study()?, &options.out, &reporter)?]

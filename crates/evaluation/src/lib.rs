@@ -35,6 +35,7 @@ mod forces;
 mod grid_error;
 mod hard_cases;
 mod header;
+mod makespans;
 mod manifest;
 mod measured;
 mod outcome;
@@ -48,8 +49,8 @@ mod tables;
 mod tuning;
 
 pub use accuracy::{
-    AccuracyPlan, AccuracyTarget, Coverage, Depth, Requirements, accuracy_cost, budget_check, plan,
-    redraw_accuracy, settle,
+    AccuracyPlan, AccuracyTarget, Coverage, Depth, Requirements, accuracy_cost, accuracy_cost_jobs,
+    budget_check, budget_check_jobs, plan, redraw_accuracy, settle,
 };
 pub use audit::audit;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, measure_parts, parts_table, write_bench};
@@ -64,6 +65,7 @@ pub use forces::Forces;
 pub use grid_error::differences as grid_differences;
 pub use hard_cases::hard_cases;
 pub use header::{FLAGS_1D, FLAGS_3D, PAPER, describe, header};
+pub use makespans::{SimulatedRun, makespan_table, replayed_seconds, simulate};
 pub use manifest::write_manifest;
 pub use measured::{COARSER_SURFACES, Measured, Series, measure_1d, measure_3d, run_units, transformed};
 pub use outcome::Outcome;

@@ -202,7 +202,9 @@ impl Realisation {
                 let filled = |force: &f64| force.powf(0.9) / (force.powf(0.9) + 0.5);
                 let loads: f64 = self.forces.iter().map(|force| 0.005 + 1.2 * filled(force)).sum();
                 let digits = 1.0 + 0.2 * (-tolerance.log10() - 3.0);
-                0.2 * digits * (n / 512.0).powf(2.2) * loads
+                // Of one load the contact of a rougher surface has fewer cells.
+                let rough = 2_f64.powf(1.3 * (2.45 - self.fractal_dimension));
+                0.2 * digits * rough * (n / 512.0).powf(2.2) * loads
             }
             // One sort and one transform; the loads cost nothing beside them.
             Discretisation::Mdr1d { .. } => 1e-9 * n * n.log2(),

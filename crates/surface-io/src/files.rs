@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Prefix of a file that is being written; the process that writes it follows.
+/// Prefix of a file that is being written; the process that writes it and a hash of its machine's name follow.
 const PREFIX: &str = ".partial-";
 
 /// A left-over whose writer cannot be asked for (no /proc) is cleaned after this age.
@@ -65,14 +65,16 @@ fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let (mut file, partial) = loop {
         let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-        let partial = path.with_file_name(format!("{PREFIX}{}-{number}-{name}", std::process::id()));
+        let partial = path.with_file_name(partial_name(std::process::id(), &machine(), number, &name));
         // A name that is taken, by a link to another place for instance, is not opened.
         match fs::File::options().write(true).create_new(true).open(&partial) {
             Err(taken) if taken.kind() == std::io::ErrorKind::AlreadyExists => {}
             opened => break (opened?, partial),
         }
     };
-    let written = file.write_all(bytes).and_then(|()| fs::rename(&partial, path));
+    // On the disk before it has its name: a machine that crashes leaves the old file or the new one.
+    let written =
+        file.write_all(bytes).and_then(|()| file.sync_data()).and_then(|()| fs::rename(&partial, path));
     if written.is_err() {
         // Nothing more can be done when this fails too; the next start cleans up.
         let _ = fs::remove_file(&partial);
@@ -97,9 +99,26 @@ pub fn clean(directory: &Path) -> Result<()> {
     Ok(())
 }
 
+fn partial_name(process: u32, machine: &str, number: u64, name: &str) -> String {
+    format!("{PREFIX}{process}-{machine}-{number}-{name}")
+}
+
+/// Hash of the name of this machine, as far as the system tells.
+fn machine() -> String {
+    let name = fs::read("/proc/sys/kernel/hostname").unwrap_or_default();
+    // FNV-1a of 64 bits.
+    let hash = name
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &b| (hash ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    format!("{hash:016x}")
+}
+
 fn abandoned(rest: &str, entry: &fs::DirEntry) -> bool {
-    let writer = rest.split('-').next().unwrap_or_default();
-    if Path::new("/proc/self").exists() {
+    let mut words = rest.split('-');
+    let writer = words.next().unwrap_or_default();
+    // The processes of another machine that shares the directory cannot be asked for.
+    let here = words.next() == Some(&machine());
+    if here && Path::new("/proc/self").exists() {
         return !Path::new("/proc").join(writer).exists();
     }
     let age = entry.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
@@ -137,7 +156,7 @@ mod tests {
         assert!(at("link").is_symlink() && fs::read(at("target")).unwrap() == b"new");
         // A link that somebody planted under the temporary names is not followed.
         for number in 0..10_000 {
-            symlink(at("target"), at(&format!("{PREFIX}{}-{number}-a", std::process::id()))).unwrap();
+            symlink(at("target"), at(&partial_name(std::process::id(), &machine(), number, "a"))).unwrap();
         }
         write_whole(&at("a"), b"a").unwrap();
         assert_eq!(
@@ -156,15 +175,18 @@ mod tests {
     fn left_overs_of_the_dead_are_cleaned() {
         let dir = tempfile::tempdir().unwrap();
         // No process has the number 0; our own is alive.
-        let dead = dir.path().join(format!("{PREFIX}0-1-a.csv"));
-        let alive = dir.path().join(format!("{PREFIX}{}-1-a.csv", std::process::id()));
-        fs::write(&dead, "half").unwrap();
-        fs::write(&alive, "half").unwrap();
+        let name = |process, machine: &str| dir.path().join(partial_name(process, machine, 1, "a.csv"));
+        let dead = name(0, &machine());
+        let alive = name(std::process::id(), &machine());
+        let elsewhere = name(0, "another machine");
+        for path in [&dead, &alive, &elsewhere] {
+            fs::write(path, "half").unwrap();
+        }
         clean(dir.path()).unwrap();
         if Path::new("/proc/self").exists() {
             assert!(!dead.exists());
         }
-        assert!(alive.exists());
+        assert!(alive.exists() && elsewhere.exists());
         assert!(clean(&dir.path().join("nowhere")).is_err());
     }
 }

@@ -40,6 +40,9 @@ pub struct AccuracyCost {
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     pub seed: u64,
+    /// Ignore what is stored and measure everything again.
+    #[arg(long)]
+    pub fresh: bool,
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,

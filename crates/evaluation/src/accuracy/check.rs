@@ -1,32 +1,16 @@
 //! Coverage of the error budgets: random cases against references.
 
-use crate::budget::algebraic;
-use crate::grid_error::{EdgePart, discretisation_error, relative_differences};
+use super::random_case::{CaseJob, FINER, REFERENCE, RandomCase, STRATA, stratum};
 use crate::header::header;
-use crate::measured::COARSER_SURFACES;
 use crate::outcome::Outcome;
-use crate::realisation::{Discretisation, Realisation};
-use crate::run::FRACTAL_DIMENSIONS;
-use crate::sample::Sample;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::{Table, binomial_test};
 use contact_model::never;
-use runs::{Error, Progress, Result, Threads, collect, files, run_jobs, write_csv};
+use runs::{Error, JobList, Progress, Result, Store, Threads, collect, files, run_stored, write_csv};
 use std::path::Path;
 use std::time::Instant;
-use surface_gen::surface_seed;
 
-/// Tolerance of the references.
-const REFERENCE: f64 = 1e-10;
-/// The reference grid has cells so many times smaller.
-const FINER: usize = 4;
-/// Grids and tolerances that are drawn from.
-const CELLS: [usize; 5] = [65, 97, 129, 193, 257];
-const TOLERANCES: (f64, f64) = (1e-6, 1e-1);
-/// Ranges of loads; each with each of the paper's fractal dimensions is a stratum, and the cases go round them.
-const LOADS: [(f64, f64); 3] = [(1e-3, 0.086), (0.086, 2.0), (2.0, 20.0)];
-const STRATA: usize = LOADS.len() * FRACTAL_DIMENSIONS.len();
 /// Share of the true errors that a budget is to hold, and the level of the exact binomial test of it.
 const COVERED: f64 = 0.95;
 const LEVEL: f64 = 0.01;
@@ -34,38 +18,6 @@ const LEVEL: f64 = 0.01;
 const SHARP: f64 = 0.2;
 /// Fewest cases.
 const FEWEST: usize = STRATA;
-
-/// One case with its truth.
-#[derive(Debug, Clone)]
-struct RandomCase {
-    fractal_dimension: f64,
-    seed: u64,
-    force_bar: f64,
-    cells: usize,
-    tolerance: f64,
-    stiffness_bar: f64,
-    contact_cells: usize,
-    /// Relative half-widths.
-    algebraic: f64,
-    discretisation: f64,
-    /// k_bar to 1e-10 on the same grid and on the reference grid.
-    tight: f64,
-    reference: f64,
-}
-
-impl RandomCase {
-    fn budget(&self) -> f64 {
-        self.algebraic + self.discretisation
-    }
-
-    fn error(&self) -> f64 {
-        (self.stiffness_bar / self.reference - 1.0).abs()
-    }
-
-    fn algebraic_error(&self) -> f64 {
-        (self.stiffness_bar / self.tight - 1.0).abs()
-    }
-}
 
 /// One range of loads at one fractal dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,8 +103,12 @@ impl std::fmt::Display for Coverage {
 /// Cases on the one-cell floor (fewer than 10 contact cells on some surface) are drawn again, as the figures mark such rows. The truth is itself on
 /// a finite grid: with errors of first order it is known to a quarter of them.
 ///
+/// Cases that are stored in the directory are not solved again, and a larger number of cases begins with the same
+/// ones.
+///
 /// # Errors
-/// [`Error::Parameter`] for fewer cases than strata or no thread; what the solver refuses; files that cannot be written.
+/// [`Error::Parameter`] for fewer cases than strata, no thread, or a directory that another process works in; what
+/// the solver refuses; files that cannot be written.
 pub fn budget_check(
     cases: usize,
     seed: u64,
@@ -161,19 +117,12 @@ pub fn budget_check(
     progress: &dyn Progress,
 ) -> Result<(Outcome, Coverage)> {
     let start = Instant::now();
-    if cases < FEWEST {
-        return Err(Error::parameter("cases", cases, format!("at least {FEWEST}, one for each stratum")));
-    }
+    let jobs = jobs(cases, seed)?;
     files::create_directory(out)?;
-    progress.begin(&format!("{cases} random cases against references"), cases as u64);
-    let order: Vec<usize> = (0..cases).collect();
-    let done = run_jobs(Threads::all(threads), &order, &never, |i, _| {
-        let case = case(seed, i as u64);
-        progress.advance(1, false);
-        case
-    })?;
-    progress.end();
-    let found = collect(done)?;
+    files::clean(out)?;
+    let store = Store::open(out, false)?;
+    let what = format!("{cases} random cases against references");
+    let found = collect(run_stored(&what, &jobs, &store, Threads::all(threads), progress, &never)?)?;
     let coverage = judge(&found);
     let path = out.join("budget-check.csv");
     let mut header = header(format!("cargo xtask budget-check --cases {cases} --seed {seed}"))
@@ -185,6 +134,21 @@ pub fn budget_check(
     outcome.files.push(path);
     outcome.seconds = start.elapsed().as_secs_f64();
     Ok((outcome, coverage))
+}
+
+/// What [`budget_check`] solves, case by case.
+///
+/// # Errors
+/// [`Error::Parameter`] for fewer cases than strata.
+pub fn budget_check_jobs(cases: usize, seed: u64) -> Result<Box<dyn JobList>> {
+    Ok(Box::new(jobs(cases, seed)?))
+}
+
+fn jobs(cases: usize, seed: u64) -> Result<Vec<CaseJob>> {
+    if cases < FEWEST {
+        return Err(Error::parameter("cases", cases, format!("at least {FEWEST}, one for each stratum")));
+    }
+    Ok((0..cases as u64).map(|number| CaseJob { seed, number }).collect())
 }
 
 /// One line for each stratum.
@@ -200,12 +164,6 @@ fn strata(coverage: &Coverage) -> Vec<String> {
         )
     };
     coverage.strata.iter().map(line).collect()
-}
-
-/// Stratum of a case by its number.
-fn stratum(number: usize) -> (f64, (f64, f64)) {
-    let of = number % STRATA;
-    (FRACTAL_DIMENSIONS[of % FRACTAL_DIMENSIONS.len()], LOADS[of / FRACTAL_DIMENSIONS.len()])
 }
 
 /// Shares and ratios; the cases are in the order of their numbers.
@@ -232,84 +190,6 @@ fn judge(cases: &[RandomCase]) -> Coverage {
         median: median(&all),
         strata,
     }
-}
-
-/// A number in [0, 1) from a stream of its own.
-fn uniform(seed: u64, case: u64, stream: u64) -> f64 {
-    (surface_seed(surface_seed(seed ^ 0xb0d6, case), stream) >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-fn logarithmic(u: f64, (low, high): (f64, f64)) -> f64 {
-    low * (high / low).powf(u)
-}
-
-fn pick<T: Copy>(u: f64, of: &[T]) -> T {
-    of[((u * of.len() as f64) as usize).min(of.len() - 1)]
-}
-
-/// Draws until a case lies above the floor.
-fn case(seed: u64, number: u64) -> Result<RandomCase> {
-    let (d, loads) = stratum(number as usize);
-    // The heaviest load of a range never lies on the floor of the finest grid; light ones do in a few draws out of ten.
-    for attempt in 0_u64.. {
-        let u = |stream| uniform(seed, number, 16 * attempt + stream);
-        let cells = pick(u(1), &CELLS);
-        let (force_bar, tolerance) = (logarithmic(u(2), loads), logarithmic(u(3), TOLERANCES));
-        // The surface of the case, and those that its budget comes from: others for each case, so that the cases are independent.
-        let surface = surface_seed(seed ^ 0xca5e, 1 + number);
-        let discretisation = Discretisation::Bem3d { cells, tolerance };
-        let mine = solve(discretisation, d, surface, force_bar)?;
-        let (Some(k), Some(touching)) = (mine.stiffness_bar, mine.contact_cells) else { continue };
-        if mine.below_floor() || !mine.converged() {
-            continue;
-        }
-        let Some([half, quarter]) = discretisation.coarser() else { continue };
-        let on = |discretisation| -> Result<Vec<Sample>> {
-            (0..COARSER_SURFACES as u64)
-                .map(|i| solve(discretisation, d, surface_seed(surface, 1 + i), force_bar))
-                .collect()
-        };
-        let fine = on(discretisation)?;
-        if fine.iter().any(Sample::below_floor) {
-            continue;
-        }
-        let differences: Vec<[f64; 2]> = (fine.iter().zip(on(half)?).zip(on(quarter)?))
-            .filter_map(|((fine, half), quarter)| {
-                relative_differences(fine.stiffness_bar?, half.stiffness_bar?, quarter.stiffness_bar?)
-            })
-            .collect();
-        let stiffnesses: Vec<f64> = fine.iter().filter_map(|s| s.stiffness_bar).collect();
-        let mean = analysis::sum(stiffnesses.iter().copied()) / stiffnesses.len().max(1) as f64;
-        let edge = EdgePart::at(mean, discretisation);
-        let Some(discretisation) = discretisation_error(&differences, edge, 1) else { continue };
-        let truth = |cells| {
-            let exact = solve(Discretisation::Bem3d { cells, tolerance: REFERENCE }, d, surface, force_bar)?;
-            exact.stiffness_bar.filter(|_| exact.converged()).ok_or_else(|| {
-                Error::parameter("cases", number, "a reference that meets its tolerance (another seed)")
-            })
-        };
-        return Ok(RandomCase {
-            fractal_dimension: d,
-            seed: surface,
-            force_bar,
-            cells,
-            tolerance,
-            stiffness_bar: k,
-            contact_cells: touching,
-            algebraic: algebraic(&mine),
-            discretisation,
-            tight: truth(cells)?,
-            reference: truth(FINER * (cells - 1) + 1)?,
-        });
-    }
-    Err(Error::parameter("cases", number, "a case above the floor"))
-}
-
-fn solve(discretisation: Discretisation, d: f64, seed: u64, force_bar: f64) -> Result<Sample> {
-    let unit =
-        Realisation { discretisation, fractal_dimension: d, index: 0, seed, forces: [force_bar].into() };
-    let result = unit.solve(&never)?;
-    result.samples.into_iter().next().ok_or_else(|| Error::parameter("cases", force_bar, "a load"))
 }
 
 fn table(cases: &[RandomCase]) -> Result<Table> {
@@ -340,6 +220,8 @@ fn table(cases: &[RandomCase]) -> Result<Table> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use runs::{Job, Silent};
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn made(error: f64, budget: f64) -> RandomCase {
         RandomCase {
@@ -377,14 +259,42 @@ mod tests {
     }
 
     #[test]
-    fn draws_are_within_their_ranges() {
-        for i in 0..50 {
-            let u = uniform(1, i, 3);
-            assert!((0.0..1.0).contains(&u));
-            let f = logarithmic(u, LOADS[0]);
-            assert!(f >= LOADS[0].0 && f <= LOADS[0].1 && CELLS.contains(&pick(u, &CELLS)));
-        }
-        assert_eq!(stratum(0), (2.0, LOADS[0]));
-        assert_eq!(stratum(STRATA + 17), (3.0, LOADS[2]));
+    fn cases_that_were_interrupted_give_the_same_table() {
+        // The three cheapest of a round of strata.
+        let mut all = jobs(FEWEST, 1).unwrap();
+        all.sort_by_key(Job::cost);
+        all.truncate(3);
+        let dirs = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        let [whole, parts] = dirs.each_ref().map(|dir| Store::open(dir.path(), false).unwrap());
+        let finish = |store: &Store| {
+            let run = run_stored("cases", &all, store, Threads::all(2), &Silent, &never);
+            collect(run.unwrap()).unwrap()
+        };
+        let expected = finish(&whole);
+        // Stopped inside the first case, then after it; a case is stored whole or not at all.
+        let polls = AtomicUsize::new(0);
+        let stop = || polls.fetch_add(1, Ordering::Relaxed) >= 20;
+        let work = |which: &[usize], stop: &(dyn Fn() -> bool + Sync)| {
+            all.work(which, &parts, Threads::all(1), &Silent, stop).map_err(|e| e.to_string())
+        };
+        assert!(work(&[0, 1, 2], &stop).unwrap_err().contains("stopped"));
+        assert_eq!(Store::count(dirs[1].path()), 0);
+        work(&[1], &never).unwrap();
+        assert_eq!(Store::count(dirs[1].path()), 1);
+        let resumed = finish(&parts);
+        assert_eq!(resumed, expected);
+        let text = |name: &str, cases: &[RandomCase]| {
+            let path = dirs[0].path().join(name);
+            write_csv(&path, &table(cases).unwrap(), &header("cases".into())).unwrap();
+            std::fs::read(path).unwrap()
+        };
+        assert_eq!(text("a.csv", &resumed), text("b.csv", &expected));
+    }
+
+    #[test]
+    fn fewer_cases_than_strata_are_refused() {
+        let refused = budget_check_jobs(FEWEST - 1, 1).map(drop).unwrap_err().to_string();
+        assert!(refused.contains("one for each stratum"), "{refused}");
+        assert_eq!(budget_check_jobs(FEWEST, 1).unwrap().count(), FEWEST);
     }
 }

@@ -4,12 +4,13 @@ use super::limit::{Limit, limit, slope};
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
 use super::row::{Answer, Parts, StudyRow, Way, measure};
 use super::sizes::{Order, StudySizes};
+use super::study::unless_stopped;
 use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use analytic::flat_punch::SQUARE_STIFFNESS;
-use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Surface, never};
-use runs::{Error, Progress, Result, cpu_seconds, on_one_thread};
+use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Stop, Surface, never};
+use runs::{Error, Result, cpu_seconds, on_one_thread};
 use std::sync::Arc;
 
 /// Tolerance of the ensembles: far below their scatter.
@@ -18,61 +19,89 @@ const TOLERANCE: f64 = crate::run::TOLERANCE;
 const PAPER_SURFACES: f64 = 60.0;
 
 /// One ensemble: statistics of k/(E* L) and mean approach at each load, with the cost of all its surfaces.
-struct EnsembleMeans {
-    way: Way,
-    stiffness: Vec<Option<Statistics>>,
-    approach: Vec<Option<f64>>,
-    answer: Answer,
-    surfaces: usize,
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct EnsembleMeans {
+    pub way: Way,
+    pub stiffness: Vec<Option<Statistics>>,
+    pub approach: Vec<Option<f64>>,
+    pub answer: Answer,
+    pub surfaces: usize,
 }
 
-/// Rows of all ensembles, references and closed forms.
-pub(crate) fn means(
-    sizes: &StudySizes,
-    seed: u64,
-    orders: &mut Vec<Order>,
-    progress: &dyn Progress,
-) -> Result<Vec<StudyRow>> {
+impl EnsembleMeans {
+    /// Without any load yet.
+    pub fn new(discretisation: Discretisation, surfaces: usize, answer: Answer) -> Self {
+        let way = match discretisation {
+            Discretisation::Bem3d { cells, tolerance } => {
+                Way::Solid { cells, tolerance, method: bem3d::Method::Auto }
+            }
+            Discretisation::Mdr1d { elements } => Way::Line { elements },
+        };
+        Self { way, stiffness: Vec::new(), approach: Vec::new(), answer, surfaces }
+    }
+}
+
+/// How the ensembles of one fractal dimension are solved.
+pub(crate) fn discretisations(sizes: &StudySizes) -> Vec<Discretisation> {
     let solids = sizes.ensembles.iter().map(|&cells| Discretisation::Bem3d { cells, tolerance: TOLERANCE });
     let lines = sizes.elements.iter().map(|&elements| Discretisation::Mdr1d { elements });
-    let all: Vec<Discretisation> = solids.chain(lines).collect();
-    let cost = |n: &Discretisation| unit(*n, 2.0, 0, seed).cost() * sizes.surfaces as u64;
-    progress.begin("accuracy against time: ensembles", all.iter().map(cost).sum::<u64>() * 3);
-    let mut rows = Vec::new();
-    for d in DIMENSIONS {
-        let mut found = Vec::new();
-        for &discretisation in &all {
-            found.push(on_one_thread(|| ensemble(discretisation, d, sizes.surfaces, seed))?);
-            progress.advance(cost(&discretisation), false);
-        }
-        for (j, &force_bar) in LOADS.iter().enumerate() {
-            rows.extend(at_load(d, force_bar, j, &found, orders)?);
-        }
-    }
-    progress.end();
-    Ok(rows)
+    solids.chain(lines).collect()
 }
 
-fn unit(discretisation: Discretisation, d: f64, index: usize, seed: u64) -> Realisation {
+/// What a closed form says of a mean.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ClosedForm {
+    /// Number of the load.
+    pub load: usize,
+    pub way: Way,
+    pub answer: Answer,
+}
+
+/// Rows of all ensembles, references and closed forms. The ensembles of each fractal dimension follow one another;
+/// its closed forms are in the order of the loads.
+pub(crate) fn means(
+    sizes: &StudySizes,
+    found: &[EnsembleMeans],
+    forms: &[Vec<ClosedForm>],
+    orders: &mut Vec<Order>,
+) -> Vec<StudyRow> {
+    let mut rows = Vec::new();
+    let found = found.chunks(discretisations(sizes).len());
+    for ((d, found), forms) in DIMENSIONS.into_iter().zip(found).zip(forms) {
+        for j in 0..LOADS.len() {
+            rows.extend(at_load(d, j, found, forms, orders));
+        }
+    }
+    rows
+}
+
+pub(crate) fn unit(discretisation: Discretisation, d: f64, index: usize, seed: u64) -> Realisation {
     let seed = surface_gen::surface_seed(seed, index as u64);
     Realisation { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS) }
 }
 
-fn ensemble(discretisation: Discretisation, d: f64, surfaces: usize, seed: u64) -> Result<EnsembleMeans> {
+/// Solves an ensemble; asks `stop` between the surfaces.
+pub(crate) fn ensemble(
+    discretisation: Discretisation,
+    d: f64,
+    surfaces: usize,
+    seed: u64,
+    stop: Stop<'_>,
+) -> Result<EnsembleMeans> {
     let models = Models::default();
-    let way = match discretisation {
-        Discretisation::Bem3d { cells, tolerance } => {
-            Way::Solid { cells, tolerance, method: bem3d::Method::Auto }
-        }
-        Discretisation::Mdr1d { elements } => Way::Line { elements },
-    };
     let mut answer = Answer { status: Status::Converged.as_str().to_owned(), ..Answer::default() };
     let mut k: Vec<Vec<f64>> = vec![Vec::new(); LOADS.len()];
     let mut approach = k.clone();
-    let start = cpu_seconds();
+    let mut seconds = Some(0.0);
     for index in 0..surfaces {
-        let result = unit(discretisation, d, index, seed).solve_among(&models, &never)?;
-        for (j, s) in result.samples.iter().enumerate().filter(|(_, s)| s.converged()) {
+        unless_stopped(stop)?;
+        let (result, taken) = on_one_thread(|| {
+            let start = cpu_seconds();
+            let result = unit(discretisation, d, index, seed).solve_among(&models, &never);
+            (result, cpu_seconds().zip(start).map(|(end, start)| end - start))
+        });
+        seconds = seconds.zip(taken).map(|(all, one)| all + one);
+        for (j, s) in result?.samples.iter().enumerate().filter(|(_, s)| s.converged()) {
             k[j].extend(s.stiffness_bar.map(|k| k * PAPER_STIFFNESS_FACTOR));
             approach[j].extend(s.approach_over_h);
             answer.iterations += s.iterations;
@@ -80,34 +109,34 @@ fn ensemble(discretisation: Discretisation, d: f64, surfaces: usize, seed: u64) 
         }
     }
     // The loads of one surface are solved together: each has its share.
-    answer.cpu_seconds = cpu_seconds().zip(start).map(|(end, start)| (end - start) / LOADS.len() as f64);
+    answer.cpu_seconds = seconds.map(|seconds| seconds / LOADS.len() as f64);
     answer.iterations /= LOADS.len();
     answer.applications /= LOADS.len();
     let stiffness = k.iter().map(|k| statistics(k)).collect();
     let approach = approach.iter().map(|d| statistics(d).map(|s| s.mean)).collect();
-    Ok(EnsembleMeans { way, stiffness, approach, answer, surfaces })
+    Ok(EnsembleMeans { stiffness, approach, ..EnsembleMeans::new(discretisation, surfaces, answer) })
 }
 
 fn at_load(
     d: f64,
-    force_bar: f64,
     j: usize,
     found: &[EnsembleMeans],
+    forms: &[ClosedForm],
     orders: &mut Vec<Order>,
-) -> Result<Vec<StudyRow>> {
+) -> Vec<StudyRow> {
     let solids: Vec<(f64, Statistics)> = found
         .iter()
         .filter(|e| matches!(e.way, Way::Solid { .. }))
         .filter_map(|e| Some((1.0 / e.way.size()? as f64, e.stiffness[j]?)))
         .collect();
     let sequence: Vec<(f64, f64)> = solids.iter().map(|s| (s.0, s.1.mean)).collect();
-    let Some(&(_, finest)) = solids.last() else { return Ok(Vec::new()) };
-    let Some(mut reference) = limit(&sequence) else { return Ok(Vec::new()) };
+    let Some(&(_, finest)) = solids.last() else { return Vec::new() };
+    let Some(mut reference) = limit(&sequence) else { return Vec::new() };
     // What the number of surfaces leaves open stays open on any grid.
     let scatter = finest.standard_error.unwrap_or(finest.mean);
     let deviation = scatter * (solids.last().map_or(1.0, |s| s.1.count as f64)).sqrt();
     let sixty = deviation / PAPER_SURFACES.sqrt() / finest.mean;
-    let problem = ProblemKey::rough(Family::Mean, d, force_bar);
+    let problem = ProblemKey::rough(Family::Mean, d, LOADS[j]);
     orders.push(order(problem, reference, &sequence));
     reference.uncertainty = reference.uncertainty.hypot(scatter);
     let mut rows = Vec::new();
@@ -133,21 +162,30 @@ fn at_load(
         let answer = Answer { stiffness: Some(k.mean), approach: e.approach[j], ..e.answer.clone() };
         add(e.way, e.surfaces, answer, k.relative_error());
     }
-    for (name, answer) in formulas(d, force_bar)? {
-        add(Way::Formula(name), 0, answer, None);
+    for form in forms.iter().filter(|form| form.load == j) {
+        add(form.way, 0, form.answer.clone(), None);
     }
-    Ok(rows)
+    rows
 }
 
+/// Names of the closed forms of a mean.
+pub(crate) const FORMULAS: [&str; 2] = ["power_law", "plateau"];
+
 /// Eq. 12 where it is claimed to hold, and the plateau of the rigid square under the largest load.
-fn formulas(d: f64, force_bar: f64) -> Result<Vec<(&'static str, Answer)>> {
+pub(crate) fn closed_forms(d: f64, stop: Stop<'_>) -> Result<Vec<ClosedForm>> {
     let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model("Eq. 12"))?;
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
-    let law = measure(&PowerLaw, &scene, Load::Force(force_bar), 0)?;
-    let mut all: Vec<_> = law.into_iter().map(|answer| ("power_law", answer)).collect();
-    if force_bar > 1.0 {
-        let status = Status::Converged.as_str().to_owned();
-        all.push(("plateau", Answer { stiffness: Some(SQUARE_STIFFNESS), status, ..Answer::default() }));
+    let [law, plateau] = FORMULAS.map(Way::Formula);
+    let mut all = Vec::new();
+    for (load, force_bar) in LOADS.into_iter().enumerate() {
+        unless_stopped(stop)?;
+        let answer = measure(&PowerLaw, &scene, Load::Force(force_bar), 0)?;
+        all.extend(answer.map(|answer| ClosedForm { load, way: law, answer }));
+        if force_bar > 1.0 {
+            let status = Status::Converged.as_str().to_owned();
+            let answer = Answer { stiffness: Some(SQUARE_STIFFNESS), status, ..Answer::default() };
+            all.push(ClosedForm { load, way: plateau, answer });
+        }
     }
     Ok(all)
 }

@@ -5,26 +5,30 @@
 //! extrapolated where the observed order is established; each comes with its uncertainty, and no error is reported below it.
 
 mod check;
+mod job;
 mod limit;
 mod means;
 mod picture;
 mod plan;
 mod pressure;
 mod problem;
+mod random_case;
 mod row;
 mod sizes;
+mod stored;
 mod study;
 mod table;
 mod text;
 
-pub use check::{Coverage, budget_check};
+pub use check::{Coverage, budget_check, budget_check_jobs};
+pub use job::accuracy_cost_jobs;
 pub use plan::{AccuracyPlan, AccuracyTarget, Requirements, plan, settle};
 pub use study::Depth;
 
 use crate::header::header;
 use crate::outcome::Outcome;
 use contact_model::ContactModel as _;
-use runs::{Progress, Result, files, write_csv};
+use runs::{Progress, Result, Store, files, write_csv};
 use sizes::StudySizes;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -33,27 +37,36 @@ use std::time::Instant;
 const NAME: &str = "accuracy-cost";
 
 /// Runs the study and writes `accuracy-cost.csv`, `accuracy-order.csv`, `accuracy-cost.svg`, `accuracy-cost.png` (drawn from the CSV)
-/// and `accuracy-cost.md` into a directory.
+/// and `accuracy-cost.md` into a directory. What is stored there is not solved again, and keeps the times of the
+/// machine that solved it.
 ///
-/// It runs on one thread, so that processor seconds are those of each row; they are the only numbers that differ from run to run.
+/// It runs on one thread, so that processor seconds are those of each row; they, the memory and which rows are on
+/// the Pareto front are all that differs between machines.
 ///
 /// # Errors
-/// What a solver refuses, and files that cannot be written.
-pub fn accuracy_cost(depth: Depth, seed: u64, out: &Path, progress: &dyn Progress) -> Result<Outcome> {
+/// What a solver refuses, a directory that another process works in, and files that cannot be written.
+pub fn accuracy_cost(
+    depth: Depth,
+    seed: u64,
+    (out, fresh): (&Path, bool),
+    progress: &dyn Progress,
+) -> Result<Outcome> {
     let command = format!("cargo xtask accuracy-cost --preset {} --seed {seed}", depth.as_str());
-    with_sizes(&depth.sizes(), command, seed, out, progress)
+    with_sizes(&depth.sizes(), command, seed, (out, fresh), progress)
 }
 
 fn with_sizes(
     sizes: &StudySizes,
     command: String,
     seed: u64,
-    out: &Path,
+    (out, fresh): (&Path, bool),
     progress: &dyn Progress,
 ) -> Result<Outcome> {
     let start = Instant::now();
     files::create_directory(out)?;
-    let study = study::study(sizes, seed, progress)?;
+    files::clean(out)?;
+    let store = Store::open(out, fresh)?;
+    let study = study::study(sizes, seed, &store, progress)?;
     let header = header(command)
         .with_sources(bem3d::Bem3d::default().sources())
         .with_sources(mdr1d::Mdr1d::default().sources())
@@ -103,8 +116,8 @@ fn redraw(csv: &Path, order: &Path, out: &Path) -> Result<Vec<PathBuf>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use runs::CsvFile;
-    use runs::Silent;
+    use runs::{CsvFile, JobList as _, Silent};
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// A quarter of the finest quick grid: a second of work.
     const TINY: StudySizes = StudySizes {
@@ -124,7 +137,7 @@ mod tests {
     #[test]
     fn a_tiny_study_is_complete() {
         let dir = tempfile::tempdir().unwrap();
-        let outcome = with_sizes(&TINY, "tiny".into(), 1, dir.path(), &Silent).unwrap();
+        let outcome = with_sizes(&TINY, "tiny".into(), 1, (dir.path(), false), &Silent).unwrap();
         assert_eq!(outcome.files.len(), 5);
         assert!(outcome.files.iter().all(|f| f.exists()));
         assert_eq!(outcome.not_converged, 0);
@@ -150,5 +163,71 @@ mod tests {
         assert!(std::fs::read(dir.path().join("accuracy-cost.png")).unwrap() == drawn);
         let text = std::fs::read_to_string(dir.path().join("accuracy-cost.md")).unwrap();
         assert!(text.contains("## Which part dominates") && !text.contains("NaN") && !text.contains("inf"));
+    }
+
+    /// Less still.
+    const SMALL: StudySizes = StudySizes {
+        grids: &[17, 33],
+        between: &[25],
+        ladder: 17,
+        elements: &[256],
+        surfaces: 2,
+        ensembles: &[17, 33],
+        ..TINY
+    };
+
+    /// Counts the jobs that were taken from the store.
+    #[derive(Default)]
+    struct Stored(AtomicUsize);
+
+    impl Progress for Stored {
+        fn begin(&self, _: &str, _: u64) {}
+        fn advance(&self, _: u64, stored: bool) {
+            self.0.fetch_add(usize::from(stored), Ordering::Relaxed);
+        }
+        fn end(&self) {}
+    }
+
+    /// The tables of a directory, and the same without what is measured.
+    fn tables(dir: &Path) -> [Vec<Vec<String>>; 2] {
+        let files =
+            ["accuracy-cost.csv", "accuracy-order.csv"].map(|name| CsvFile::read(&dir.join(name)).unwrap());
+        let measured = ["cpu_seconds", "bytes", "pareto"];
+        let rest = |file: &CsvFile| {
+            let kept = |row: &Vec<String>| {
+                let entries = row.iter().zip(&file.columns).filter(|e| !measured.contains(&e.1.as_str()));
+                entries.map(|e| e.0.clone()).collect()
+            };
+            file.rows.iter().map(kept).collect::<Vec<Vec<String>>>()
+        };
+        let rest = files.iter().flat_map(rest).collect();
+        [files.into_iter().flat_map(|file| file.rows).collect(), rest]
+    }
+
+    #[test]
+    fn a_study_that_was_interrupted_gives_the_same_tables() {
+        let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        let run = |dir: &Path| {
+            let stored = Stored::default();
+            with_sizes(&SMALL, "small".into(), 1, (dir, false), &stored).unwrap();
+            (tables(dir), stored.0.into_inner())
+        };
+        let ([_, expected], found) = run(whole.path());
+        assert_eq!(found, 0);
+        // As in a shard with two threads, stopped inside the jobs.
+        let jobs = job::jobs(&SMALL, 1).unwrap();
+        let (all, polls) = ((0..jobs.len()).collect::<Vec<_>>(), AtomicUsize::new(0));
+        let stop = || polls.fetch_add(1, Ordering::Relaxed) >= 80;
+        let store = Store::open(parts.path(), false).unwrap();
+        let stopped = jobs.work(&all, &store, runs::Threads::all(2), &Silent, &stop).unwrap_err();
+        assert!(stopped.to_string().contains("stopped"), "{stopped}");
+        drop(store);
+        let done = Store::count(parts.path());
+        assert!(done > 0 && done < jobs.len(), "{done} of {}", jobs.len());
+        let ([all, resumed], found) = run(parts.path());
+        assert_eq!((resumed, found), (expected, done));
+        // Once more, everything comes from the store, times too.
+        let ([again, _], found) = run(parts.path());
+        assert_eq!((again, found), (all, jobs.len()));
     }
 }

@@ -8,13 +8,13 @@ use std::sync::Arc;
 use surface_gen::MapGenerator;
 
 /// Contact radius of the sphere in sides: far from the edges, with 39 cells on 129.
-const RADIUS: f64 = 0.3;
+pub(crate) const RADIUS: f64 = 0.3;
 
 /// Cells of the coarsest grid in the shortest wave of a band-limited surface.
 pub(crate) const CELLS_PER_WAVE: f64 = 16.0;
 
 /// The paper's grid: the spectrum's constant is such that its rms height there is 1.
-const PAPER_CELLS: usize = 2049;
+pub(crate) const PAPER_CELLS: usize = 2049;
 
 /// Loads of the rough surfaces.
 pub(crate) const LOADS: [f64; 4] = [1e-2, 0.1, 1.0, 20.0];

@@ -24,6 +24,13 @@ impl Way {
         }
     }
 
+    /// All of it as one word.
+    pub fn name(&self) -> String {
+        let size = self.size().map(|n| format!("/{n}")).unwrap_or_default();
+        let tolerance = self.tolerance().map(|t| format!("/{t:?}/{}", self.method())).unwrap_or_default();
+        format!("{}{size}{tolerance}", self.model())
+    }
+
     pub fn size(&self) -> Option<usize> {
         match *self {
             Self::Solid { cells, .. } => Some(cells),
@@ -50,7 +57,7 @@ impl Way {
 }
 
 /// What a way gave and what it cost.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Answer {
     /// k in units of E* L.
     pub stiffness: Option<f64>,
@@ -68,7 +75,7 @@ pub(crate) struct Answer {
 }
 
 /// The four contributions to the error of k, relative.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Parts {
     /// What the tightest tolerance on the same grid changes.
     pub algebraic: Option<f64>,
@@ -81,7 +88,7 @@ pub(crate) struct Parts {
 }
 
 /// A row of the table.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StudyRow {
     pub problem: ProblemKey,
     pub way: Way,

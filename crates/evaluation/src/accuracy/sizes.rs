@@ -27,7 +27,7 @@ pub(crate) struct StudySizes {
 }
 
 /// Where a number goes on ever finer grids.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Order {
     pub problem: ProblemKey,
     /// `stiffness`, `approach`, `area`, `pressure`.

@@ -1,5 +1,6 @@
 //! Solves every problem in every way and compares.
 
+use super::job::{StudyJob, StudyPart, jobs};
 use super::limit::{Limit, limit, slope};
 use super::problem::{Family, StudyProblem};
 use super::row::{Answer, Parts, StudyRow, Way, mark_pareto, measure};
@@ -8,9 +9,9 @@ use super::{means, pressure};
 use analytic::Hertz;
 use analytic::flat_punch::SQUARE_STIFFNESS_UNCERTAINTY;
 use bem3d::{Bem3d, Method};
-use contact_model::ContactModel;
+use contact_model::{ContactModel, Stop, never};
 use mdr1d::Mdr1d;
-use runs::{Progress, Result};
+use runs::{Error, Progress, Result, Store, Threads, collect, run_stored};
 
 /// How much is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -79,7 +80,7 @@ impl Depth {
 
 impl StudySizes {
     /// Everything that is solved in three dimensions on one surface, coarse grids first.
-    fn solids(&self) -> Vec<Way> {
+    pub fn solids(&self) -> Vec<Way> {
         let last = self.grids.last().copied();
         let mut all = Vec::new();
         for &cells in self.grids.iter().chain(self.between) {
@@ -120,36 +121,64 @@ pub(crate) struct Study {
 /// Quantities that have a sequence.
 pub(crate) const QUANTITIES: [&str; 4] = ["stiffness", "approach", "area", "pressure"];
 
-/// Solves everything.
-pub(crate) fn study(sizes: &StudySizes, seed: u64, progress: &dyn Progress) -> Result<Study> {
-    let problems = StudyProblem::all(sizes.grids[0])?;
-    let solids = sizes.solids();
-    let cost = |w: &Way| w.size().map_or(1, |n| (n * n / 1000).max(1) as u64);
-    let each: u64 = solids.iter().map(cost).sum();
-    progress.begin("accuracy against time: single surfaces", each * problems.len() as u64);
-    let surface_seed = surface_gen::surface_seed(seed, 0);
+/// Solves everything that the store does not hold, one job at a time and on one thread: times are what the study
+/// is about.
+pub(crate) fn study(sizes: &StudySizes, seed: u64, store: &Store, progress: &dyn Progress) -> Result<Study> {
+    let jobs = jobs(sizes, seed)?;
+    // First what measures memory: it counts from what the process holds.
+    let (problems, means) = jobs.split_at(jobs.partition_point(StudyJob::is_problem));
+    let solve =
+        |what, jobs| collect(run_stored(what, jobs, store, Threads { total: 1, jobs: 1 }, progress, &never)?);
     let mut study = Study::default();
-    for problem in &problems {
-        let mut rows = Vec::new();
-        for &way in &solids {
-            let Way::Solid { cells, tolerance, method } = way else { continue };
-            let model = Bem3d { cells, tolerance, method, ..Bem3d::default() };
-            if let Some(answer) = measure(&model, &problem.scene, problem.load, surface_seed)? {
-                rows.push(StudyRow::new(problem.key, way, answer));
+    let (mut ensembles, mut forms) = (Vec::new(), Vec::new());
+    let mut parts = solve("accuracy against time: single surfaces", problems)?;
+    parts.extend(solve("accuracy against time: ensembles", means)?);
+    for part in parts {
+        match part {
+            StudyPart::Problem(rows, orders) => {
+                study.rows.extend(rows);
+                study.orders.extend(orders);
             }
-            progress.advance(cost(&way), false);
+            StudyPart::Ensemble(found) => ensembles.push(found),
+            StudyPart::ClosedForms(found) => forms.push(found),
         }
-        compare(problem, sizes, &mut rows, &mut study.orders);
-        rows.extend(others(problem, sizes)?);
-        for row in &mut rows {
-            row.answer.pressure = None;
-        }
-        study.rows.extend(rows);
     }
-    progress.end();
-    study.rows.extend(means::means(sizes, seed, &mut study.orders, progress)?);
+    study.rows.extend(means::means(sizes, &ensembles, &forms, &mut study.orders));
     mark_pareto(&mut study.rows);
     Ok(study)
+}
+
+/// One problem in every way; asks `stop` between the ways.
+pub(crate) fn solve_problem(
+    problem: &StudyProblem,
+    sizes: &StudySizes,
+    seed: u64,
+    stop: Stop<'_>,
+) -> Result<(Vec<StudyRow>, Vec<Order>)> {
+    let surface_seed = surface_gen::surface_seed(seed, 0);
+    let (mut rows, mut orders) = (Vec::new(), Vec::new());
+    for way in sizes.solids() {
+        let Way::Solid { cells, tolerance, method } = way else { continue };
+        unless_stopped(stop)?;
+        let model = Bem3d { cells, tolerance, method, ..Bem3d::default() };
+        if let Some(answer) = measure(&model, &problem.scene, problem.load, surface_seed)? {
+            rows.push(StudyRow::new(problem.key, way, answer));
+        }
+    }
+    compare(problem, sizes, &mut rows, &mut orders);
+    rows.extend(others(problem, sizes)?);
+    for row in &mut rows {
+        row.answer.pressure = None;
+    }
+    Ok((rows, orders))
+}
+
+/// A measurement has a thread of its own, to which `stop` cannot be sent: it is asked before each measurement.
+pub(crate) fn unless_stopped(stop: Stop<'_>) -> Result<()> {
+    if stop() {
+        return Err(Error::model("accuracy against time")(contact_model::Error::Stopped { best: None }));
+    }
+    Ok(())
 }
 
 /// Lines and closed forms for the bodies whose answer is known; rough surfaces have theirs as means.

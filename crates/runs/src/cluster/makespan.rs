@@ -19,7 +19,8 @@ pub struct Cluster {
     pub slowness: f64,
     /// Failures of a core in an hour of its work: the task is queued again and loses the job in hand.
     pub failures: f64,
-    /// Operations a second that the file system does for all cores together: each result is two, a write and a sync.
+    /// Operations a second that the file system does for all cores together: a task brings its results to the disk after each, but at most once a
+    /// second.
     pub operations: f64,
     /// Seconds that the merge takes for each result.
     pub merge: f64,
@@ -126,7 +127,7 @@ pub fn makespan(seconds: &[f64], costs: &[u64], cluster: &Cluster) -> Makespan {
     }
     let (work, count) = (seconds.iter().sum::<f64>(), seconds.len() as f64);
     // The file system serves all cores: no run is shorter than its operations.
-    let tasks = (end as f64 * 1e-6).max(2.0 * count / cluster.operations);
+    let tasks = (end as f64 * 1e-6).max(count.min(work) / cluster.operations);
     Makespan {
         tasks,
         merge: cluster.merge * count,
@@ -171,7 +172,7 @@ mod tests {
         assert_relative_eq!(makespan(&[3.0, 3.0, 2.0], &[3, 3, 2], &ideal(100, 100)).tasks, 3.0);
         let slow = Cluster { start: 1.0, merge: 0.5, slow_share: 1.0, slowness: 2.0, ..ideal(3, 3) };
         assert_relative_eq!(makespan(&[3.0, 3.0, 2.0], &[3, 3, 2], &slow).seconds(), 7.0 + 1.5);
-        let disk = Cluster { operations: 0.5, ..ideal(3, 3) };
+        let disk = Cluster { operations: 0.25, ..ideal(3, 3) };
         assert_relative_eq!(makespan(&[3.0, 3.0, 2.0], &[3, 3, 2], &disk).tasks, 12.0);
     }
 

@@ -284,14 +284,19 @@ impl<'a> Script<'a> {
         let count = self.forecast.tasks;
         let cores = self.forecast.cores;
         let mut job = self.comment(shards.len());
+        job += &format!(
+            "# A task needs about {megabytes} MB: on workers that count memory add \"mem\" = {megabytes} to the resources.\n"
+        );
         job += "name = \"fractal-contact\"\n";
         let mut add = |id: usize, name: String, command: &[String], deps: String| {
             let words: Vec<String> = command.iter().map(|word| toml(word)).collect();
-            let log = toml(&format!("{directory}/{name}.%{{JOB_ID}}.log"));
+            let log = |end: &str| toml(&format!("{directory}/{name}.%{{JOB_ID}}.{end}"));
             job += &format!(
-                "\n[[task]]\nid = {id}\ncommand = [{}]\nstdout = {log}\nstderr = {log}\ntime_limit = \"{minutes}m\"\n{deps}\
+                "\n[[task]]\nid = {id}\ncommand = [{}]\nstdout = {}\nstderr = {}\ntime_limit = \"{minutes}m\"\n{deps}\
                  [[task.request]]\nresources = {{ \"cpus\" = \"{cores}\" }}\n",
-                words.join(", ")
+                words.join(", "),
+                log("out"),
+                log("log"),
             );
         };
         for &shard in shards {
@@ -302,7 +307,6 @@ impl<'a> Script<'a> {
         }
         let deps: Vec<String> = shards.iter().map(usize::to_string).collect();
         add(count, "merge".into(), &self.merge, format!("deps = [{}]\n", deps.join(", ")));
-        job += &format!("# Memory of a task: about {megabytes} MB.\n");
         let submit = format!(
             "#!/bin/bash\n# Submits the shards and the merge that depends on them; remembers the job for `status`.\nset -euo pipefail\n\
              cd {}\njob=$(hq --output-mode quiet job submit-file job.toml)\necho \"hyperqueue $job {count}\" >> {}\n\

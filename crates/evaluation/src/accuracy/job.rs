@@ -1,0 +1,425 @@
+//! One part of the study, as a job that is stored: a problem in every way, or an ensemble under all loads.
+
+use super::limit::Limit;
+use super::means::{ClosedForm, EnsembleMeans, FORMULAS, closed_forms, discretisations, ensemble, unit};
+use super::problem::{CELLS_PER_WAVE, DIMENSIONS, LOADS, PAPER_CELLS, RADIUS, StudyProblem};
+use super::row::{Answer, Parts, StudyRow, Way};
+use super::sizes::{Order, StudySizes};
+use super::stored::{Word, Words, line};
+use super::study::{QUANTITIES, solve_problem};
+use crate::realisation::{Discretisation, FORMAT, Realisation};
+use analysis::Statistics;
+use contact_model::Stop;
+use runs::{Error, Job, JobList, Result};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Number of the format of stored parts. Raise it when their lines change, or how limits, errors and references
+/// come about, or the closed forms.
+const STORED: u32 = 1;
+
+/// Predicted processor milliseconds of one load on one grid, solved from nothing: the problems of
+/// `data/accuracy` took between 0.4 and 1.3 of it, cases of the check that are not drawn again between 0.8 and 2.2.
+pub(super) fn cold_cost(discretisation: Discretisation, force_bar: f64) -> u64 {
+    // Without a load before it, a rough surface takes as long as a smooth one: about what the prediction for
+    // sweeps says in the middle of the fractal dimensions.
+    let (fractal_dimension, forces) = (2.45, [force_bar].into());
+    Realisation { discretisation, fractal_dimension, index: 0, seed: 0, forces }.cost()
+}
+
+/// What is solved together.
+#[derive(Debug, Clone)]
+enum StudyTask {
+    /// One problem, in every way.
+    Problem(Box<StudyProblem>),
+    /// One ensemble of this fractal dimension.
+    Ensemble(f64, Discretisation),
+    /// What closed forms say of the means of this fractal dimension.
+    ClosedForms(f64),
+}
+
+/// What a task gave.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum StudyPart {
+    /// Of a problem; the rows are without their pressures.
+    Problem(Vec<StudyRow>, Vec<Order>),
+    /// Of an ensemble.
+    Ensemble(EnsembleMeans),
+    /// Of closed forms.
+    ClosedForms(Vec<ClosedForm>),
+}
+
+/// One task of a study.
+#[derive(Debug, Clone)]
+pub(super) struct StudyJob {
+    sizes: Arc<StudySizes>,
+    seed: u64,
+    task: StudyTask,
+}
+
+/// Everything that a study solves: first the problems, then the ensembles of each fractal dimension, then the
+/// closed forms of each.
+pub(super) fn jobs(sizes: &StudySizes, seed: u64) -> Result<Vec<StudyJob>> {
+    let problems = StudyProblem::all(sizes.grids[0])?.into_iter().map(|p| StudyTask::Problem(Box::new(p)));
+    let of = |d| discretisations(sizes).into_iter().map(move |n| StudyTask::Ensemble(d, n));
+    let sizes = Arc::new(sizes.clone());
+    let job = |task| StudyJob { sizes: Arc::clone(&sizes), seed, task };
+    let ensembles = DIMENSIONS.into_iter().flat_map(of);
+    let forms = DIMENSIONS.into_iter().map(StudyTask::ClosedForms);
+    Ok(problems.chain(ensembles).chain(forms).map(job).collect())
+}
+
+/// What [`super::accuracy_cost`] solves: one job for each problem, each ensemble, and the closed forms of each
+/// fractal dimension.
+///
+/// A job measures on one thread, and no two jobs of a process measure at the same time, whatever the threads. The
+/// times are those of the machine that solved the job: they compare where all shards ran on machines of one kind
+/// with nothing else to do.
+///
+/// # Errors
+/// None that a depth can cause; [`Error::Model`] where a surface cannot be made.
+pub fn accuracy_cost_jobs(depth: super::Depth, seed: u64) -> Result<Box<dyn JobList>> {
+    Ok(Box::new(jobs(&depth.sizes(), seed)?))
+}
+
+impl StudyJob {
+    pub fn is_problem(&self) -> bool {
+        matches!(self.task, StudyTask::Problem(_))
+    }
+
+    /// Every way in which a problem may be solved.
+    fn ways(&self) -> Vec<Way> {
+        let mut ways = self.sizes.solids();
+        ways.extend([Way::Line { elements: self.sizes.elements[0] }, Way::Formula("hertz")]);
+        ways
+    }
+}
+
+impl Job for StudyJob {
+    type Output = StudyPart;
+    type Error = Error;
+
+    fn key(&self) -> String {
+        let Self { sizes, seed, task } = self;
+        match task {
+            StudyTask::Problem(problem) => format!(
+                "accuracy problem {STORED}\nformat {FORMAT}\nmodel_format {}\nproblem {:?}\nradius {RADIUS:?}\n\
+                 cells_per_wave {CELLS_PER_WAVE:?}\npaper_cells {PAPER_CELLS}\nsizes {sizes:?}\nways {:?}\nseed {seed}\n",
+                bem3d::FORMAT,
+                problem.key,
+                self.ways(),
+            ),
+            // The first surface stands for all of them: their seeds follow from the master seed.
+            StudyTask::Ensemble(d, discretisation) => format!(
+                "accuracy ensemble {STORED}\nsurfaces {}\nmaster_seed {seed}\n{}",
+                sizes.surfaces,
+                unit(*discretisation, *d, 0, *seed).key(),
+            ),
+            StudyTask::ClosedForms(d) => {
+                format!("accuracy closed forms {STORED}\nfractal_dimension {d:?}\nforce_bar {LOADS:?}\n")
+            }
+        }
+    }
+
+    fn name(&self) -> String {
+        match &self.task {
+            StudyTask::Problem(problem) => {
+                let number =
+                    |name: &str, v: Option<f64>| v.map(|v| format!(", {name} = {v:?}")).unwrap_or_default();
+                let key = problem.key;
+                let (d, force) = (number("D_f", key.fractal_dimension), number("F_bar", key.force_bar));
+                format!("accuracy: {}{d}{force}", key.family.as_str())
+            }
+            StudyTask::Ensemble(d, n) => {
+                let (surfaces, size) = (self.sizes.surfaces, n.size());
+                format!("accuracy: {surfaces} surfaces of D_f = {d:?}, {} {size}", n.name())
+            }
+            StudyTask::ClosedForms(d) => format!("accuracy: closed forms of D_f = {d:?}"),
+        }
+    }
+
+    fn cost(&self) -> u64 {
+        match &self.task {
+            StudyTask::Problem(problem) => {
+                let force_bar = problem.key.force_bar.unwrap_or(1.0);
+                let cost = |way: &Way| match *way {
+                    Way::Solid { cells, tolerance, .. } => {
+                        cold_cost(Discretisation::Bem3d { cells, tolerance }, force_bar)
+                    }
+                    _ => 1,
+                };
+                self.ways().iter().map(cost).sum()
+            }
+            StudyTask::Ensemble(d, discretisation) => {
+                unit(*discretisation, *d, 0, self.seed).cost() * self.sizes.surfaces as u64
+            }
+            StudyTask::ClosedForms(_) => 1,
+        }
+    }
+
+    fn memory(&self) -> f64 {
+        match &self.task {
+            StudyTask::Problem(_) => {
+                let sizes = self.sizes.sequence().into_iter();
+                let memory = |cells| Discretisation::Bem3d { cells, tolerance: self.sizes.tight }.memory();
+                let largest = sizes.map(memory).fold(0.0, f64::max);
+                // The pressures of all ways are compared at the end.
+                let solids = self.ways().into_iter().filter(|way| matches!(way, Way::Solid { .. }));
+                let cells: usize = solids.filter_map(|way| way.size()).map(|n| n * n).sum();
+                largest + (size_of::<f64>() * cells) as f64
+            }
+            StudyTask::Ensemble(_, discretisation) => discretisation.memory(),
+            StudyTask::ClosedForms(_) => 0.0,
+        }
+    }
+
+    fn solve(&self, stop: Stop<'_>) -> Result<StudyPart> {
+        // The peak of memory is that of the whole process, and another measurement would share the caches:
+        // they take turns, also in a shard that has more threads.
+        static MEASURING: Mutex<()> = Mutex::new(());
+        let _turn = MEASURING.lock().unwrap_or_else(PoisonError::into_inner);
+        match &self.task {
+            StudyTask::Problem(problem) => {
+                let (rows, orders) = solve_problem(problem, &self.sizes, self.seed, stop)?;
+                Ok(StudyPart::Problem(rows, orders))
+            }
+            StudyTask::Ensemble(d, discretisation) => {
+                ensemble(*discretisation, *d, self.sizes.surfaces, self.seed, stop).map(StudyPart::Ensemble)
+            }
+            StudyTask::ClosedForms(d) => closed_forms(*d, stop).map(StudyPart::ClosedForms),
+        }
+    }
+
+    fn encode(&self, part: &StudyPart) -> String {
+        match part {
+            StudyPart::Problem(rows, orders) => {
+                let lines: String = rows.iter().map(row_line).chain(orders.iter().map(order_line)).collect();
+                line(&[&rows.len(), &orders.len()]) + &lines
+            }
+            StudyPart::Ensemble(means) => {
+                let loads = means.stiffness.iter().zip(&means.approach);
+                let load = |(k, d): (&Option<Statistics>, &Option<f64>)| match k {
+                    Some(k) => line(&[d, &k.mean, &k.standard_error, &k.log_mean, &k.count]),
+                    None => line(&[d, &None::<f64>]),
+                };
+                answer_line(&means.answer) + &loads.map(load).collect::<String>()
+            }
+            StudyPart::ClosedForms(forms) => {
+                let form = |f: &ClosedForm| format!("{} {} {}", f.load, f.way.name(), answer_line(&f.answer));
+                line(&[&forms.len()]) + &forms.iter().map(form).collect::<String>()
+            }
+        }
+    }
+
+    fn decode(&self, text: &str) -> Option<StudyPart> {
+        let mut lines = text.strip_suffix('\n')?.split('\n');
+        let part = match &self.task {
+            StudyTask::Problem(problem) => {
+                let mut counts = Words::of(lines.next()?);
+                let (rows, orders): (usize, usize) = (counts.word()?, counts.word()?);
+                counts.end()?;
+                let ways = self.ways();
+                let mut found = (Vec::new(), Vec::new());
+                for _ in 0..rows {
+                    found.0.push(read_row(problem, &ways, lines.next()?)?);
+                }
+                for _ in 0..orders {
+                    found.1.push(read_order(problem, lines.next()?)?);
+                }
+                StudyPart::Problem(found.0, found.1)
+            }
+            StudyTask::Ensemble(_, discretisation) => {
+                let mut words = Words::of(lines.next()?);
+                let answer = read_answer(&mut words)?;
+                words.end()?;
+                let mut found = EnsembleMeans::new(*discretisation, self.sizes.surfaces, answer);
+                for _ in LOADS {
+                    let mut words = Words::of(lines.next()?);
+                    found.approach.push(words.word()?);
+                    found.stiffness.push(match words.word()? {
+                        Some(mean) => {
+                            let (standard_error, log_mean) = (words.word()?, words.word()?);
+                            Some(Statistics { mean, standard_error, log_mean, count: words.word()? })
+                        }
+                        None => None,
+                    });
+                    words.end()?;
+                }
+                StudyPart::Ensemble(found)
+            }
+            StudyTask::ClosedForms(_) => {
+                let count = usize::read(lines.next()?)?;
+                let forms = (0..count).map(|_| read_form(lines.next()?)).collect::<Option<_>>()?;
+                StudyPart::ClosedForms(forms)
+            }
+        };
+        lines.next().is_none().then_some(part)
+    }
+}
+
+fn answer_line(answer: &Answer) -> String {
+    let Answer { stiffness, approach, area, contact_cells, cpu_seconds, bytes, .. } = answer;
+    let Answer { iterations, applications, status, .. } = answer;
+    line(&[stiffness, approach, area, contact_cells, cpu_seconds, bytes, iterations, applications, status])
+}
+
+fn read_answer(words: &mut Words<'_>) -> Option<Answer> {
+    // In the order of `answer_line`.
+    Some(Answer {
+        stiffness: words.word()?,
+        approach: words.word()?,
+        area: words.word()?,
+        pressure: None,
+        contact_cells: words.word()?,
+        cpu_seconds: words.word()?,
+        bytes: words.word()?,
+        iterations: words.word()?,
+        applications: words.word()?,
+        status: words.word()?,
+    })
+}
+
+/// The way of a name, among those that there are.
+fn read_way(ways: &[Way], words: &mut Words<'_>) -> Option<Way> {
+    let name: String = words.word()?;
+    ways.iter().copied().find(|way| way.name() == name)
+}
+
+fn row_line(row: &StudyRow) -> String {
+    let [stiffness, approach, area, pressure] = &row.errors;
+    let Parts { algebraic, discretisation, model, ensemble } = &row.parts;
+    let errors = [stiffness, approach, area, pressure, &row.reference_error];
+    let parts = [algebraic, discretisation, model, ensemble];
+    let words: Vec<&dyn Word> = errors.into_iter().chain(parts).map(|v| v as &dyn Word).collect();
+    format!("{} {} {}", row.way.name(), line(&words).trim_end(), answer_line(&row.answer))
+}
+
+fn read_row(problem: &StudyProblem, ways: &[Way], line: &str) -> Option<StudyRow> {
+    let mut words = Words::of(line);
+    let way = read_way(ways, &mut words)?;
+    let errors = [words.word()?, words.word()?, words.word()?, words.word()?];
+    let reference_error = words.word()?;
+    let parts = Parts {
+        algebraic: words.word()?,
+        discretisation: words.word()?,
+        model: words.word()?,
+        ensemble: words.word()?,
+    };
+    let answer = read_answer(&mut words)?;
+    words.end()?;
+    Some(StudyRow { errors, reference_error, parts, ..StudyRow::new(problem.key, way, answer) })
+}
+
+fn read_form(line: &str) -> Option<ClosedForm> {
+    let mut words = Words::of(line);
+    let load = words.word().filter(|load| *load < LOADS.len())?;
+    let way = read_way(&FORMULAS.map(Way::Formula), &mut words)?;
+    let answer = read_answer(&mut words)?;
+    words.end()?;
+    Some(ClosedForm { load, way, answer })
+}
+
+fn order_line(order: &Order) -> String {
+    let quantity = order.quantity.to_owned();
+    let [coarsest, finest] = &order.errors;
+    let (value, uncertainty) = (order.limit.map(|l| l.value), order.limit.map(|l| l.uncertainty));
+    let extrapolated = order.limit.and_then(|l| l.order);
+    line(&[
+        &quantity,
+        &order.power,
+        &order.established,
+        &value,
+        &uncertainty,
+        &extrapolated,
+        coarsest,
+        finest,
+    ])
+}
+
+fn read_order(problem: &StudyProblem, line: &str) -> Option<Order> {
+    let mut words = Words::of(line);
+    let quantity: String = words.word()?;
+    let quantity = QUANTITIES.into_iter().find(|of| *of == quantity)?;
+    let (power, established) = (words.word()?, words.word()?);
+    let (value, uncertainty, order): (Option<f64>, Option<f64>, _) =
+        (words.word()?, words.word()?, words.word()?);
+    let limit = value.zip(uncertainty).map(|(value, uncertainty)| Limit { value, uncertainty, order });
+    let errors = [words.word()?, words.word()?];
+    words.end()?;
+    Some(Order { problem: problem.key, quantity, power, established, limit, errors })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::never;
+
+    const SIZES: StudySizes = StudySizes {
+        grids: &[17, 33],
+        between: &[25, 29],
+        tolerances: &[1e-1],
+        finest: &[1e-2],
+        ladder: 33,
+        tight: 1e-8,
+        elements: &[256],
+        surfaces: 2,
+        ensembles: &[17],
+    };
+
+    /// Of a sphere, a band and a spectrum, of ensembles of surfaces and lines, and of closed forms.
+    fn some() -> Vec<StudyJob> {
+        let all = jobs(&SIZES, 1).unwrap();
+        assert_eq!((all.len(), all.partition_point(StudyJob::is_problem)), (26 + 3 * 3, 26));
+        [0, 3, 20, 26, 29, 32].map(|i| all[i].clone()).into()
+    }
+
+    #[test]
+    fn parts_come_back_bit_for_bit_and_damage_does_not() {
+        for job in some() {
+            let part = job.solve(&never).unwrap();
+            let text = job.encode(&part);
+            let back = job.decode(&text).unwrap();
+            // The words hold every bit, the sign of a zero too.
+            assert_eq!(job.encode(&back), text);
+            assert_eq!(back, part);
+            for cut in 0..text.len() {
+                assert!(job.decode(&text[..cut]).is_none(), "{}: {cut} of {} bytes", job.name(), text.len());
+            }
+            let (first, rest) = text.split_once('\n').unwrap();
+            let word = |to: &str| text.replacen(rest.split([' ', '\n']).nth(1).unwrap(), to, 1);
+            for bad in
+                [word("NaN"), word("inf"), format!("{text}-\n"), format!("{first} -\n{rest}"), word("x")]
+            {
+                assert!(job.decode(&bad).is_none(), "{}: {bad}", job.name());
+            }
+            for other in some().iter().filter(|other| other.key() != job.key()) {
+                assert!(other.is_problem() == job.is_problem() || other.decode(&text).is_none());
+            }
+        }
+    }
+
+    #[test]
+    fn keys_hold_what_decides_and_ensembles_are_shared_between_depths() {
+        let all = jobs(&SIZES, 1).unwrap();
+        let mut keys: Vec<String> = all.iter().map(Job::key).collect();
+        let deeper = StudySizes { grids: &[17, 33, 65], ensembles: &[17, 33], ..SIZES };
+        let deeper: Vec<String> = jobs(&deeper, 1).unwrap().iter().map(Job::key).collect();
+        assert_eq!(keys.iter().filter(|key| deeper.contains(key)).count(), 6 + 3);
+        for other in [jobs(&SIZES, 2).unwrap(), jobs(&StudySizes { surfaces: 3, ..SIZES }, 1).unwrap()] {
+            // Closed forms know neither seeds nor sizes.
+            assert_eq!(other.iter().filter(|job| keys.contains(&job.key())).count(), 3);
+        }
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), all.len());
+        assert!(all.iter().all(|job| job.cost() > 0 && job.memory() >= 0.0));
+        assert_eq!(accuracy_cost_jobs(super::super::Depth::Quick, 1).unwrap().count(), 26 + 3 * 7);
+    }
+
+    #[test]
+    fn stopped_before_the_next_measurement() {
+        for job in some() {
+            let stopped = job.solve(&|| true).unwrap_err();
+            assert!(matches!(stopped, Error::Model { source: contact_model::Error::Stopped { .. }, .. }));
+        }
+    }
+}
