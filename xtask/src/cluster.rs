@@ -170,8 +170,7 @@ pub fn makespan(options: &MakespanArguments) -> Result<()> {
     let found = evaluation::simulate(&units, &seconds, &options.cores, of_task, &machines);
     runs::out!("{:>8} {:>7} {:>12} {:>10}  limited by", "cores", "tasks", "makespan", "efficiency");
     for run in &found {
-        let (time, share) =
-            (cluster::duration(run.found.seconds()), 100.0 * run.found.efficiency(run.cluster.cores));
+        let (time, share) = (cluster::duration(run.found.seconds()), 100.0 * run.efficiency());
         runs::out!("{:>8} {:>7} {time:>12} {share:>8.1} %  {}", run.cores(), run.cluster.tasks, run.limit());
     }
     if let Some(path) = &options.csv {

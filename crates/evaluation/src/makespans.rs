@@ -57,6 +57,8 @@ pub struct SimulatedRun {
     pub cluster: Cluster,
     /// Cores of each task.
     pub cores_of_task: usize,
+    /// How much faster than one they solve.
+    pub speed_up: f64,
     /// What was found.
     pub found: Makespan,
     /// Jobs of the study.
@@ -67,6 +69,11 @@ impl SimulatedRun {
     /// Cores that are reserved.
     pub fn cores(&self) -> usize {
         self.cluster.cores * self.cores_of_task
+    }
+
+    /// Processor seconds of the jobs on one undisturbed core each, over what was reserved.
+    pub fn efficiency(&self) -> f64 {
+        self.found.efficiency(self.cluster.cores) * self.speed_up / self.cores_of_task as f64
     }
 
     /// What more of would make it shorter.
@@ -111,7 +118,7 @@ pub fn simulate(
             }
             let cluster = Cluster { cores: at_once, tasks, ..machines.clone() };
             let found = makespan(&seconds, &costs, &cluster);
-            all.push(SimulatedRun { cluster, cores_of_task, found, jobs: jobs.len() });
+            all.push(SimulatedRun { cluster, cores_of_task, speed_up, found, jobs: jobs.len() });
         }
     }
     all
@@ -128,10 +135,13 @@ pub fn makespan_table(runs: &[SimulatedRun]) -> Result<Table> {
         .column("jobs", "1", "surfaces and lines", |r| r.jobs)
         .column("tasks", "1", "shards that they are divided into", |r| r.cluster.tasks)
         .column("makespan", "s", "from the first task to the merged tables", |r| r.found.seconds())
-        .column("efficiency", "1", "work of undisturbed cores over what was reserved", |r| {
-            r.found.work / (r.found.seconds() * r.cluster.cores as f64)
-        })
-        .column("work", "s", "of all jobs", |r| r.found.work)
+        .column(
+            "efficiency",
+            "1",
+            "work on one undisturbed core each over what was reserved",
+            SimulatedRun::efficiency,
+        )
+        .column("work", "s", "of all jobs on such tasks", |r| r.found.work)
         .column("longest_job", "s", "no run is shorter", |r| r.found.longest)
         .column("merge", "s", "reading all results and making the tables", |r| r.found.merge)
         .column("failed_tasks", "1", "queued again", |r| r.found.failed)

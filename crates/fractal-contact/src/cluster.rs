@@ -1,7 +1,7 @@
 //! Scenes on many machines: shards, their plan, submission, status and merge.
 
 use crate::arguments::ShardsArguments;
-use crate::{read_scene, stopped_by_signals};
+use crate::start::{read_scene, stopped_by_signals};
 use fractal_contact::scenes::{Error, Options, Plan, Result, SceneFile, jobs, run_scene_shard};
 use runs::cluster::{Division, Forecast, ShardPlan, Submission, Target, check, quoted, submitted_tasks};
 use runs::{JobList, ShardChoice};

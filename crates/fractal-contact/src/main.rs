@@ -2,6 +2,7 @@
 
 mod arguments;
 mod cluster;
+mod start;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
@@ -10,6 +11,7 @@ use fractal_contact::scenes::{
     info_statistics, run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
+use start::{read_scene, stopped_by_signals};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -123,25 +125,6 @@ fn all_threads() -> usize {
 /// `out/NAME` beside where the program is called.
 fn default_directory(scene: &Path) -> std::path::PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or_default())
-}
-
-/// A scene with the grid that it asks for.
-fn read_scene(path: &Path) -> Result<SceneFile> {
-    SceneFile::read(path)?.with_grid_for_accuracy(&|| false)
-}
-
-/// Becomes true with the first Ctrl-C, SIGTERM or SIGHUP; the second ends the process.
-fn stopped_by_signals() -> Result<Arc<AtomicBool>> {
-    let stopped = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stopped);
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-        runs::err!("stopping: the states so far are written; once more ends at once");
-    })
-    .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
-    Ok(stopped)
 }
 
 fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {

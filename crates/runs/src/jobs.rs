@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::progress::Progress;
+use crate::shard::largest_first;
 use crate::store::Store;
 use contact_model::Stop;
 use std::sync::OnceLock;
@@ -75,13 +76,6 @@ pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
         }
     });
     Ok(results.into_iter().map(OnceLock::into_inner).collect())
-}
-
-/// The numbers of jobs, the most expensive first; equal costs keep their order, so that one of each kind comes early.
-pub fn largest_first<C: Ord>(count: usize, cost: impl Fn(usize) -> C) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by_key(|&i| std::cmp::Reverse(cost(i)));
-    order
 }
 
 /// All results in their places, or why some are missing.

@@ -40,7 +40,7 @@ mod terminal;
 
 pub use csv_file::{CsvFile, Header, number, write_csv};
 pub use error::{Error, Result};
-pub use jobs::{Failure, Job, JobList, Threads, collect, largest_first, on_one_thread, run_jobs, run_stored};
+pub use jobs::{Failure, Job, JobList, Threads, collect, on_one_thread, run_jobs, run_stored};
 pub use manifest::{file_names, machine, write_manifest};
 pub use meters::{
     available_memory, cpu_seconds, peak_memory, process_cpu_seconds, reset_peak_memory, resident_memory,
@@ -49,6 +49,6 @@ pub use meters::{
 pub use npy::{read_map, unit_area, write_npy};
 pub use progress::{Progress, Silent};
 pub use reporter::Reporter;
-pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign};
+pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign, largest_first};
 pub use store::{Pack, PackHead, Store, fnv1a_128};
 pub use terminal::{print, print_error};

@@ -119,13 +119,20 @@ impl ShardChoice {
     }
 }
 
+/// The numbers of jobs, the most expensive first; equal costs keep their order, so that one of each kind comes early.
+pub fn largest_first<C: Ord>(count: usize, cost: impl Fn(usize) -> C) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(cost(i)));
+    order
+}
+
 /// The shard of each job: the most expensive first, each to the shard that has the least to do (Graham's rule: no shard is longer than 4/3 of the
 /// best division). Depends on the costs and the count alone.
 pub fn assign(costs: &[u64], count: usize) -> Vec<usize> {
     let mut shards: BinaryHeap<Reverse<(u64, usize)>> =
         (0..count.max(1)).map(|shard| Reverse((0, shard))).collect();
     let mut of = vec![0; costs.len()];
-    for job in crate::largest_first(costs.len(), |i| costs[i]) {
+    for job in largest_first(costs.len(), |i| costs[i]) {
         if let Some(mut least) = shards.peek_mut() {
             let Reverse((load, shard)) = *least;
             of[job] = shard;

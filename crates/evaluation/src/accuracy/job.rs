@@ -1,12 +1,13 @@
 //! One part of the study, as a job that is stored: a problem in every way, or an ensemble under all loads.
 
+use super::depth::Depth;
+use super::every_way::{QUANTITIES, solve_problem};
 use super::limit::Limit;
 use super::means::{ClosedForm, EnsembleMeans, FORMULAS, closed_forms, discretisations, ensemble, unit};
 use super::problem::{CELLS_PER_WAVE, DIMENSIONS, LOADS, PAPER_CELLS, RADIUS, StudyProblem};
 use super::row::{Answer, Parts, StudyRow, Way};
 use super::sizes::{Order, StudySizes};
 use super::stored::{Word, Words, line};
-use super::study::{QUANTITIES, solve_problem};
 use crate::realisation::{Discretisation, FORMAT, Realisation};
 use analysis::Statistics;
 use contact_model::Stop;
@@ -77,7 +78,7 @@ pub(super) fn jobs(sizes: &StudySizes, seed: u64) -> Result<Vec<StudyJob>> {
 ///
 /// # Errors
 /// None that a depth can cause; [`Error::Model`] where a surface cannot be made.
-pub fn accuracy_cost_jobs(depth: super::Depth, seed: u64) -> Result<Box<dyn JobList>> {
+pub fn accuracy_cost_jobs(depth: Depth, seed: u64) -> Result<Box<dyn JobList>> {
     Ok(Box::new(jobs(&depth.sizes(), seed)?))
 }
 
@@ -412,7 +413,7 @@ mod tests {
         keys.dedup();
         assert_eq!(keys.len(), all.len());
         assert!(all.iter().all(|job| job.cost() > 0 && job.memory() >= 0.0));
-        assert_eq!(accuracy_cost_jobs(super::super::Depth::Quick, 1).unwrap().count(), 26 + 3 * 7);
+        assert_eq!(accuracy_cost_jobs(super::super::depth::Depth::Quick, 1).unwrap().count(), 26 + 3 * 7);
     }
 
     #[test]

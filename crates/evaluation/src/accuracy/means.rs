@@ -2,9 +2,8 @@
 
 use super::limit::{Limit, limit, slope};
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
-use super::row::{Answer, Parts, StudyRow, Way, measure};
+use super::row::{Answer, Parts, StudyRow, Way, measure, unless_stopped};
 use super::sizes::{Order, StudySizes};
-use super::study::unless_stopped;
 use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;

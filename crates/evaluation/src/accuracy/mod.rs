@@ -5,6 +5,8 @@
 //! extrapolated where the observed order is established; each comes with its uncertainty, and no error is reported below it.
 
 mod check;
+mod depth;
+mod every_way;
 mod job;
 mod limit;
 mod means;
@@ -21,9 +23,9 @@ mod table;
 mod text;
 
 pub use check::{Coverage, budget_check, budget_check_jobs};
+pub use depth::Depth;
 pub use job::accuracy_cost_jobs;
 pub use plan::{AccuracyPlan, AccuracyTarget, Requirements, plan, settle};
-pub use study::Depth;
 
 use crate::header::header;
 use crate::outcome::Outcome;

@@ -1,7 +1,7 @@
 //! One way to answer one problem: what it gave, what it cost, how far off it is.
 
 use super::problem::ProblemKey;
-use contact_model::{ContactModel, ContactState, Field, Load, Scene};
+use contact_model::{ContactModel, ContactState, Field, Load, Scene, Stop};
 use runs::{Error, Result, cpu_seconds, on_one_thread, peak_memory, reset_peak_memory, resident_memory};
 
 /// How an answer is found.
@@ -121,6 +121,14 @@ impl StudyRow {
     pub fn converged(&self) -> bool {
         self.answer.status == contact_model::Status::Converged.as_str()
     }
+}
+
+/// A measurement has a thread of its own, to which `stop` cannot be sent: it is asked before each measurement.
+pub(crate) fn unless_stopped(stop: Stop<'_>) -> Result<()> {
+    if stop() {
+        return Err(Error::model("accuracy against time")(contact_model::Error::Stopped { best: None }));
+    }
+    Ok(())
 }
 
 /// Prepares and solves from nothing, on one thread, with the meters running. A model that does not claim this load or surface gives `None`.

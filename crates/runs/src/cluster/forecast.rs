@@ -2,6 +2,7 @@
 
 use super::makespan::{Cluster, makespan};
 use super::shard_run::shards;
+use super::words::{bytes, duration};
 use crate::jobs::JobList;
 use std::fmt;
 
@@ -129,23 +130,6 @@ impl Forecast {
         let costs: Vec<u64> = self.costs.iter().map(|seconds| (1e6 * seconds) as u64).collect();
         let cluster = Cluster { cores: at_once, tasks: self.tasks, ..Cluster::default() };
         makespan(&self.costs, &costs, &cluster).tasks
-    }
-}
-
-/// `45 s`, `12 min`, `3.5 h`.
-pub fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
-fn bytes(bytes: f64) -> String {
-    match bytes {
-        b if b < 1e6 => format!("{:.0} kB", b / 1e3),
-        b if b < 1e9 => format!("{:.0} MB", b / 1e6),
-        b => format!("{:.1} GB", b / 1e9),
     }
 }
 

@@ -14,11 +14,13 @@ mod status;
 mod submission;
 #[cfg(test)]
 mod tests_support;
+mod words;
 
 pub use check::{Completeness, JobState, check};
-pub use forecast::{Division, Forecast, duration};
+pub use forecast::{Division, Forecast};
 pub use makespan::{Cluster, Makespan, makespan};
 pub use plan::{ShardPlan, without_flags};
 pub use shard_run::{ShardReport, run_shard};
 pub use status::{Status, status, submitted_tasks};
-pub use submission::{Engine, Submission, Submitted, Target, quoted};
+pub use submission::{Engine, Submission, Submitted, Target};
+pub use words::{duration, quoted};

@@ -1,5 +1,6 @@
 //! Which command the shards of a directory belong to.
 
+use super::words::quoted;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::jobs::JobList;
@@ -32,7 +33,7 @@ impl ShardPlan {
 
     /// The command as it was typed.
     pub fn command(&self) -> String {
-        let words: Vec<String> = self.arguments.iter().map(|word| super::submission::quoted(word)).collect();
+        let words: Vec<String> = self.arguments.iter().map(|word| quoted(word)).collect();
         format!("{} {}", self.program, words.join(" "))
     }
 

@@ -1,0 +1,25 @@
+//! What every command that solves begins with: a scene with its grid, and signals that stop it.
+
+use fractal_contact::scenes::{Error, Result, SceneFile};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A scene with the grid that it asks for.
+pub fn read_scene(path: &Path) -> Result<SceneFile> {
+    SceneFile::read(path)?.with_grid_for_accuracy(&|| false)
+}
+
+/// Becomes true with the first Ctrl-C, SIGTERM or SIGHUP; the second ends the process.
+pub fn stopped_by_signals() -> Result<Arc<AtomicBool>> {
+    let stopped = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stopped);
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        runs::err!("stopping: the states so far are written; once more ends at once");
+    })
+    .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
+    Ok(stopped)
+}
