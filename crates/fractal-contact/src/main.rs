@@ -7,15 +7,13 @@ mod start;
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json,
-    info_statistics, run, write_twin,
+    GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use start::{read_scene, stopped_by_signals};
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 fn main() -> ExitCode {
     match execute(Arguments::parse()) {
