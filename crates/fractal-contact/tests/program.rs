@@ -159,6 +159,56 @@ fn an_interrupt_keeps_the_states_so_far() {
     assert!(std::fs::read_to_string(path("out/manifest.json")).unwrap().contains("\"complete\": false"));
 }
 
+/// Shards of a scene with fields, one of them killed and begun again; then the tables of one process.
+#[test]
+fn shards_of_a_scene_are_merged_into_its_tables() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    let scene = path("a scene.toml");
+    let fields = SCENE
+        .replace("[\"bem3d\", \"mdr1d\"]", "[\"bem3d\"]")
+        .replace("[models.mdr1d]\nelements = 1024\n", "")
+        .replace("[outputs]\n", "[outputs]\npressure = [\"npy\"]\n");
+    std::fs::write(&scene, &fields).unwrap();
+    assert_eq!(program(&["run", &scene, "--out", &path("one")]).status.code(), Some(0));
+    let out = path("many shards");
+    let shard = |which: &str| program(&["run", &scene, "--out", &out, "--shard", which]);
+    assert!(texts(&shard("1/2")).0.starts_with("shard 1/2: "));
+    // Not all of them yet.
+    let gap = program(&["merge", "--out", &out]);
+    let (_, said) = texts(&gap);
+    assert!(
+        gap.status.code() == Some(1) && said.contains("what computes them: fractal-contact run '"),
+        "{said}"
+    );
+    assert_eq!(program(&["status", "--out", &out]).status.code(), Some(3));
+    assert_eq!(shard("0/2").status.code(), Some(0));
+    assert_eq!(program(&["status", "--out", &out]).status.code(), Some(0));
+    assert_eq!(program(&["merge", "--out", &out]).status.code(), Some(0));
+    let files = |of: &str| {
+        let all = std::fs::read_dir(path(of)).unwrap().map(|entry| entry.unwrap().path());
+        let kept =
+            |path: &std::path::PathBuf| path.extension().is_some_and(|end| end == "csv" || end == "npy");
+        let mut all: Vec<_> = all
+            .filter(kept)
+            .map(|p| (p.file_name().unwrap().to_owned(), std::fs::read(&p).unwrap()))
+            .collect();
+        all.sort();
+        all
+    };
+    assert!(files("one").len() >= 4 && files("one") == files("many shards"));
+    // A field that was changed since is a damaged result of its surface.
+    let field =
+        files("many shards").into_iter().find(|(name, _)| name.to_string_lossy().ends_with("npy")).unwrap().0;
+    std::fs::write(Path::new(&out).join(field), "x").unwrap();
+    let (_, said) = texts(&program(&["merge", "--out", &out]));
+    assert!(said.contains("0 are missing and 1 damaged"), "{said}");
+    // The scene is another one now.
+    std::fs::write(&scene, fields.replace("surfaces = 3", "surfaces = 4")).unwrap();
+    let (_, said) = texts(&program(&["merge", "--out", &out]));
+    assert!(said.contains("was changed since"), "{said}");
+}
+
 #[test]
 fn lays_laws_of_heights_and_twins_are_drawn() {
     let dir = tempfile::tempdir().unwrap();
