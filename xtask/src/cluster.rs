@@ -174,7 +174,8 @@ pub fn makespan(options: &MakespanArguments) -> Result<()> {
         runs::out!("{:>8} {:>7} {time:>12} {share:>8.1} %  {}", run.cores(), run.cluster.tasks, run.limit());
     }
     if let Some(path) = &options.csv {
-        let words: Vec<String> = std::env::args().skip(1).collect();
+        let words: Vec<String> =
+            std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
         let header = evaluation::header(format!("{PROGRAM} {}", words.join(" ")));
         runs::write_csv(path, &evaluation::makespan_table(&found)?, &header)?;
         runs::out!("{}", path.display());

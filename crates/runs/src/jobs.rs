@@ -289,11 +289,20 @@ where
         let done = run_jobs(threads, &order, stop, |i, stop| {
             solve_stored(&self[which[i]], store, progress, stop).map(drop)
         })?;
-        match done.into_iter().flatten().find_map(Result::err) {
-            Some(failure) => Err(failure.into()),
-            None => Ok(()),
-        }
+        let mut failures: Vec<Failure> =
+            done.into_iter().flatten().filter_map(Result::err).map(Into::into).collect();
+        // Others that were in flight were told to stop: their reason is not the reason.
+        failures.sort_by_key(|failure| is_stop(&**failure));
+        failures.into_iter().next().map_or(Ok(()), Err)
     }
+}
+
+/// Whether a failure is that of a solve that was told to stop.
+fn is_stop(failure: &(dyn std::error::Error + 'static)) -> bool {
+    let mut chain = std::iter::successors(Some(failure), |error| error.source());
+    chain.any(|error| {
+        matches!(error.downcast_ref::<contact_model::Error>(), Some(contact_model::Error::Stopped { .. }))
+    })
 }
 
 #[cfg(test)]
@@ -337,6 +346,8 @@ mod tests {
         assert!(reason(vec![Some(Err(stopped())), Some(Err(wrong())), None]).starts_with("cells = 0"));
         // A shorter list would no longer be in step with the jobs.
         assert!(reason(vec![Some(Ok(1)), None]).starts_with("jobs that were not begun"));
+        let failures: [Failure; 2] = [stopped().into(), wrong().into()];
+        assert_eq!(failures.map(|failure| is_stop(&*failure)), [true, false]);
     }
 
     /// Twice its number; stops being worth storing at 2.

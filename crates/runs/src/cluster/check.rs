@@ -2,6 +2,7 @@
 
 use super::plan::ShardPlan;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::jobs::JobList;
 use crate::store::{Pack, Store, fnv1a_128};
 use rayon::prelude::*;
@@ -122,7 +123,7 @@ impl Completeness {
     /// Refuses a plan with jobs that are not done, or beside which results of other plans lie.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the list of jobs and the command that computes them.
+    /// [`Error::Parameter`] with the list of jobs (a long one is in a file, which it names) and the command that computes them.
     pub fn require(&self, out: &Path, again: &str) -> Result<()> {
         if !self.missing.is_empty() {
             let (damaged, missing) = (self.count(JobState::Damaged), self.count(JobState::Missing));
@@ -131,7 +132,9 @@ impl Completeness {
                 list += &format!("\n  {name}");
             }
             if self.missing.len() > LISTED {
-                list += &format!("\n  and {} more", self.missing.len() - LISTED);
+                let path = ShardPlan::directory(out).join(format!("{}.missing", self.plan.digest));
+                files::write_whole(&path, (self.missing.join("\n") + "\n").as_bytes())?;
+                list += &format!("\n  and {} more: {}", self.missing.len() - LISTED, path.display());
             }
             let mut expected = format!(
                 "whole results of all {} jobs of `{}`; {missing} are missing and {damaged} damaged:{list}\nwhat computes them: {again}",

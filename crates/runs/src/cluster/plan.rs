@@ -53,6 +53,10 @@ impl ShardPlan {
         if Self::read(&path).is_some() {
             return Ok(());
         }
+        // A pipe would wait for its other end.
+        if path.symlink_metadata().is_ok_and(|about| !about.is_file()) {
+            return Err(Error::content(&path, "not a regular file: remove it"));
+        }
         let Self { digest, program, arguments, jobs } = self;
         let text = json!({ "digest": digest, "program": program, "arguments": arguments, "jobs": jobs });
         files::write_whole(&path, format!("{text:#}\n").as_bytes())
