@@ -34,11 +34,12 @@ def submit(path: str) -> None:
     tasks = {}
     for task in described["task"]:
         request = task["request"][0]["resources"]
-        unknown = set(task) - {"id", "command", "stdout", "stderr", "time_limit", "deps", "env", "request"}
+        unknown = set(task) - {"id", "command", "cwd", "stdout", "stderr", "time_limit", "deps", "env", "request"}
         if unknown:
             sys.exit(f"{path}: keys that are not known here: {unknown}")
         tasks[task["id"]] = job.program(
             task["command"],
+            cwd=task["cwd"],
             stdout=task["stdout"].replace("%{JOB_ID}", "job"),
             stderr=task["stderr"].replace("%{JOB_ID}", "job"),
             deps=[tasks[id] for id in task.get("deps", [])],

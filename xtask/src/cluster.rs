@@ -217,7 +217,7 @@ pub fn merged(options: &ShardsArguments) -> Result<(Command, Vec<String>)> {
         plan.command(),
         plan.arguments.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
     );
-    found.require(&options.out, &again)?;
+    found.require(&options.out, options.plan.is_some(), &again)?;
     for remark in found.remarks() {
         runs::err!("note: {remark}");
     }

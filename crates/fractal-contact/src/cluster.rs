@@ -127,7 +127,7 @@ pub fn merged(options: &ShardsArguments) -> Result<PathBuf> {
     let again = format!(
         "{PROGRAM} run {scene} --out {out} --shard 0/1, or on a cluster: {PROGRAM} submit {scene} --out {out} --engine slurm --now"
     );
-    found.require(&options.out, &again)?;
+    found.require(&options.out, options.plan.is_some(), &again)?;
     for remark in found.remarks() {
         runs::err!("note: {remark}");
     }

@@ -347,11 +347,11 @@ impl Pack {
         if !path.metadata().is_ok_and(|about| about.is_file()) {
             return Ok(None);
         }
-        let mut file = File::open(path).map_err(Error::file("read", path))?;
+        let file = File::open(path).map_err(Error::file("read", path))?;
         let length = file.metadata().map_err(Error::file("read", path))?.len();
-        let mut start = |at: u64, most: u64| -> Result<Vec<u8>> {
+        let start = |at: u64, most: u64| -> Result<Vec<u8>> {
             let mut bytes = Vec::new();
-            file.seek(SeekFrom::Start(at)).map_err(Error::file("read", path))?;
+            (&file).seek(SeekFrom::Start(at)).map_err(Error::file("read", path))?;
             (&file).take(most).read_to_end(&mut bytes).map_err(Error::file("read", path))?;
             Ok(bytes)
         };
@@ -361,26 +361,43 @@ impl Pack {
         let mut pack = Self { path: path.to_owned(), head, results: Vec::new(), damaged_bytes: 0 };
         let mut places = Vec::new();
         let mut at = pack.head.text().len() as u64;
+        // Results whose inside was searched for another one's beginning.
         let mut searched = 0;
+        // A damaged pack is read whole, once.
+        let mut all: Option<Vec<u8>> = None;
+        let mark = format!("\n{RESULT}");
         while at < length {
-            let line = start(at, HEADER)?;
-            let parsed = parse_header(&line).filter(|(_, line, body)| line + body <= length - at);
-            if let Some((hash, line, body)) = parsed {
+            let line = match &all {
+                Some(all) => all[at as usize..].iter().copied().take(HEADER as usize).collect(),
+                None => start(at, HEADER)?,
+            };
+            let bytes =
+                |(_, line, body): (u128, u64, u64)| line.checked_add(body).filter(|all| *all <= length - at);
+            let parsed = parse_header(&line);
+            if let (Some((hash, ..)), Some(bytes)) = (parsed, parsed.and_then(bytes)) {
                 pack.results.push(hash);
-                places.push((at, line + body));
-                at += line + body;
+                places.push((at, bytes));
+                at += bytes;
                 continue;
             }
             // Cut off or damaged: the next result begins at the next line that says so, which may lie inside the last one if that was cut.
             let last = places.last().map_or(at, |&(offset, _)| offset);
-            let from = if std::mem::replace(&mut searched, at) == at { at } else { last };
-            let rest = start(from + 1, u64::MAX)?;
-            let mark = format!("\n{RESULT}");
+            let from = if std::mem::replace(&mut searched, places.len()) == places.len() { at } else { last };
+            let all = match &mut all {
+                Some(all) => all,
+                none => none.insert(start(0, length)?),
+            };
+            let rest = all.get(from as usize + 1..).unwrap_or_default();
             let found = rest.windows(mark.len()).position(|window| window == mark.as_bytes());
             let next = found.map_or(length, |position| from + position as u64 + 2);
+            // A pack that became shorter while it was read has no more.
+            if all.len() as u64 != length {
+                break;
+            }
             if next < at {
                 pack.results.pop();
                 places.pop();
+                searched = places.len();
                 pack.damaged_bytes += next - last;
             } else {
                 pack.damaged_bytes += next - at;
@@ -609,6 +626,24 @@ mod tests {
         assert_eq!(read(), (false, false));
         fs::write(&path, &all).unwrap();
         assert_eq!(read(), (true, true));
+    }
+
+    #[test]
+    fn lengths_of_nonsense_end_no_process() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = Store::open(dir.path(), false).unwrap();
+        store.save(KEY, TEXT).unwrap();
+        drop(store);
+        let path = pack_of(dir.path());
+        let text = fs::read_to_string(&path).unwrap();
+        let whole = format!("{RESULT}{:032x} {}\n", 7, u64::MAX - 76);
+        // Far beyond the end, and so that its end is its beginning; and many lines that promise a result.
+        for bad in [whole.clone(), whole.repeat(2), format!("{RESULT}x\n").repeat(50_000)] {
+            for pack in [text.clone() + &bad, text.replacen(RESULT, &format!("{bad}{RESULT}"), 1)] {
+                fs::write(&path, pack).unwrap();
+                assert_eq!(Store::open(dir.path(), false).unwrap().load(KEY).as_deref(), Some(TEXT));
+            }
+        }
     }
 
     #[test]

@@ -120,11 +120,11 @@ impl Completeness {
         lines
     }
 
-    /// Refuses a plan with jobs that are not done, or beside which results of other plans lie.
+    /// Refuses a plan with jobs that are not done, or beside which results of other plans lie, unless it was `chosen` among them.
     ///
     /// # Errors
     /// [`Error::Parameter`] with the list of jobs (a long one is in a file, which it names) and the command that computes them.
-    pub fn require(&self, out: &Path, again: &str) -> Result<()> {
+    pub fn require(&self, out: &Path, chosen: bool, again: &str) -> Result<()> {
         if !self.missing.is_empty() {
             let (damaged, missing) = (self.count(JobState::Damaged), self.count(JobState::Missing));
             let mut list = String::new();
@@ -146,11 +146,12 @@ impl Completeness {
             }
             return Err(Error::parameter("out", out.display(), expected));
         }
-        if !self.foreign.is_empty() {
+        if !chosen && !self.foreign.is_empty() {
             let expected = format!(
-                "results of the plan of `{}` alone; of another plan are {}: move them away",
+                "results of the plan of `{}` alone; of another plan are {}: move them away, or choose this plan with --plan {}",
                 self.plan.command(),
-                self.foreign.join(", ")
+                self.foreign.join(", "),
+                self.plan.short_digest()
             );
             return Err(Error::parameter("out", out.display(), expected));
         }
@@ -175,14 +176,14 @@ mod tests {
             run_shard(&plan, &squares, Shard { index, count: 2 }, (dir.path(), 1), &Silent, &never).unwrap();
         };
         let found = || check(&plan, &squares, dir.path()).unwrap();
-        let refused = || found().require(dir.path(), "p squares --shard 1/2").unwrap_err().to_string();
+        let refused = || found().require(dir.path(), false, "p squares --shard 1/2").unwrap_err().to_string();
         work(0);
         assert_eq!((found().count(JobState::Done), found().missing.len()), (3, 3));
         let gaps = refused();
         assert!(gaps.contains("3 are missing and 0 damaged") && gaps.contains("the square of "), "{gaps}");
         assert!(gaps.contains("what computes them: p squares --shard 1/2"), "{gaps}");
         work(1);
-        found().require(dir.path(), "").unwrap();
+        found().require(dir.path(), false, "").unwrap();
         assert!(found().remarks().is_empty());
         // Damage in the middle of a pack: one job is to be done again, the others stay.
         let path = Store::packs(dir.path()).unwrap().remove(0).path;
@@ -190,12 +191,12 @@ mod tests {
         std::fs::write(&path, text.replacen("# the square", "# the squire", 1)).unwrap();
         assert!(refused().contains("0 are missing and 1 damaged"), "{}", refused());
         work(0);
-        found().require(dir.path(), "").unwrap();
+        found().require(dir.path(), false, "").unwrap();
         // A pack cut short is told, though another holds its result.
         std::fs::write(&path, &text[..text.len() - 5]).unwrap();
         assert!(refused().contains("bytes are of no whole result"), "{}", refused());
         work(0);
-        found().require(dir.path(), "").unwrap();
+        found().require(dir.path(), false, "").unwrap();
         assert_eq!(found().remarks().len(), 1);
         // Another processor.
         std::fs::write(&path, text.replacen("# instructions", "# instructions vax", 1)).unwrap();
@@ -205,6 +206,7 @@ mod tests {
         let theirs = ShardPlan::new("p", vec!["squares".into(), "9".into()], &other);
         run_shard(&theirs, &other, Shard { index: 0, count: 1 }, (dir.path(), 1), &Silent, &never).unwrap();
         assert!(refused().contains("of another plan are"), "{}", refused());
+        found().require(dir.path(), true, "").unwrap();
         // The jobs changed since.
         let changed = check(&plan, &other, dir.path()).unwrap_err().to_string();
         assert!(changed.contains("was changed since"), "{changed}");

@@ -37,12 +37,17 @@ impl ShardPlan {
         format!("{} {}", self.program, words.join(" "))
     }
 
+    /// The beginning of the digest, for people.
+    pub fn short_digest(&self) -> String {
+        self.digest.chars().take(12).collect()
+    }
+
     /// Where the plans of a directory are.
     pub(super) fn directory(out: &Path) -> PathBuf {
         out.join(".units/plans")
     }
 
-    /// Writes it where no other shard has.
+    /// Writes it where no other shard has. Of several commands with the same jobs the last one is the plan's.
     ///
     /// # Errors
     /// [`Error::File`] when it cannot be written.
@@ -50,7 +55,7 @@ impl ShardPlan {
         let directory = Self::directory(out);
         files::create_directory(&directory)?;
         let path = directory.join(format!("{}.json", self.digest));
-        if Self::read(&path).is_some() {
+        if Self::read(&path).as_ref() == Some(self) {
             return Ok(());
         }
         // A pipe would wait for its other end.
@@ -89,7 +94,7 @@ impl ShardPlan {
     pub fn only(out: &Path, program: &str, chosen: Option<&str>) -> Result<Self> {
         let mut plans = Self::all(out);
         let list = |plans: &[Self]| {
-            let line = |p: &Self| format!("\n  {}  {}", &p.digest[..12.min(p.digest.len())], p.command());
+            let line = |p: &Self| format!("\n  {}  {}", p.short_digest(), p.command());
             plans.iter().map(line).collect::<Vec<_>>().concat()
         };
         if let Some(chosen) = chosen {
@@ -102,7 +107,7 @@ impl ShardPlan {
         }
         match plans.len() {
             0 => {
-                let expected = "a directory in which shards were run (--shard or submit)";
+                let expected = "a directory in which shards were run (--shard or submit); where its plan was lost or damaged, run one of them again";
                 Err(Error::parameter("out", out.display(), expected))
             }
             1 => {

@@ -1,7 +1,7 @@
 //! One shard of a plan.
 
 use super::plan::ShardPlan;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::jobs::{Failure, JobList, Threads};
 use crate::meters::threads_for_memory;
 use crate::progress::Progress;
@@ -73,6 +73,16 @@ pub fn run_shard(
         jobs.work(&group, &store, Threads { total: threads, jobs: room }, progress, stop)?;
     }
     progress.end();
+    drop(store);
+    let stored = Store::open_shared(out, &plan.digest, shard)?;
+    if !stop()
+        && let Some(&lost) = mine.iter().find(|&&job| !stored.has(&jobs.key(job)))
+    {
+        let expected = "the results that this shard has just stored; somebody removed them";
+        return Err(
+            Error::parameter("out", format!("{}: {}", out.display(), jobs.name(lost)), expected).into()
+        );
+    }
     Ok(ShardReport { shard, jobs: mine.len(), of: jobs.count() })
 }
 
@@ -104,7 +114,7 @@ mod tests {
         }
         assert_eq!(squares[0].solved(), 7);
         let found = cluster::check(&plan(&squares), &squares, dir.path()).unwrap();
-        assert!(found.require(dir.path(), "p").is_ok());
+        assert!(found.require(dir.path(), false, "p").is_ok());
     }
 
     #[test]

@@ -3,7 +3,10 @@
 use super::check::{Completeness, JobState};
 use super::plan::ShardPlan;
 use super::shard_run::shards;
+use crate::error::{Error, Result};
+use crate::files;
 use crate::jobs::JobList;
+use crate::shard::MOST_SHARDS;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::Path;
@@ -51,13 +54,15 @@ struct Noted {
 
 fn noted(out: &Path, plan: &ShardPlan) -> Vec<Noted> {
     let path = ShardPlan::directory(out).join(format!("{}.submitted", plan.digest));
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = files::read(&path, 1 << 24).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text).into_owned();
     let parse = |line: &str| {
         let mut words = line.split(' ');
         let (engine, job) = (words.next()?.to_owned(), words.next()?.to_owned());
         // It becomes an argument of the engine's programs.
-        let plain = job.chars().all(|c| c.is_ascii_digit());
-        Some(Noted { engine, job, count: words.next()?.parse().ok()? }).filter(|_| plain)
+        let plain = !job.is_empty() && job.chars().all(|c| c.is_ascii_digit());
+        let count = words.next()?.parse().ok().filter(|count| (1..=MOST_SHARDS).contains(count))?;
+        Some(Noted { engine, job, count }).filter(|_| plain)
     };
     text.lines().filter_map(parse).collect()
 }
@@ -67,14 +72,16 @@ pub fn submitted_tasks(out: &Path, plan: &ShardPlan) -> Option<usize> {
     noted(out, plan).last().map(|noted| noted.count)
 }
 
-/// What the engines say of each shard of a division into `count`; of several submissions, what is running or waiting counts.
-fn tasks(out: &Path, plan: &ShardPlan, count: usize) -> BTreeMap<usize, TaskState> {
+/// What the engines say of each shard of a division into `count`; of several submissions, what is running or waiting counts. A remark for each
+/// submission that could not be asked about.
+fn tasks(out: &Path, plan: &ShardPlan, count: usize) -> (BTreeMap<usize, TaskState>, Vec<String>) {
     let mut all: BTreeMap<usize, TaskState> = BTreeMap::new();
-    for Noted { engine, job, count: divided } in noted(out, plan) {
-        if divided != count {
-            continue;
-        }
-        let found = if engine == "slurm" { slurm(&job) } else { hyperqueue(&job) };
+    let mut silent = Vec::new();
+    for noted in noted(out, plan).into_iter().filter(|noted| noted.count == count) {
+        let found = noted.ask().unwrap_or_else(|reason| {
+            silent.push(reason);
+            Vec::new()
+        });
         for (shard, state) in found.into_iter().filter(|(shard, _)| *shard < count) {
             let known = all.entry(shard).or_insert_with(|| state.clone());
             if state > *known || matches!(state, TaskState::Ended(_)) && matches!(known, TaskState::Ended(_))
@@ -83,24 +90,72 @@ fn tasks(out: &Path, plan: &ShardPlan, count: usize) -> BTreeMap<usize, TaskStat
             }
         }
     }
-    all
+    (all, silent)
 }
 
 /// Shards that an engine is working on, or has in its queue.
-pub(super) fn busy(out: &Path, plan: &ShardPlan, count: usize) -> BTreeSet<usize> {
-    let busy = |(shard, state): (usize, TaskState)| (!matches!(state, TaskState::Ended(_))).then_some(shard);
-    tasks(out, plan, count).into_iter().filter_map(busy).collect()
+///
+/// # Errors
+/// [`Error::Parameter`] where SLURM cannot be asked, and where shards of another division are still queued: their jobs would be done twice.
+pub(super) fn busy(out: &Path, plan: &ShardPlan, count: usize) -> Result<BTreeSet<usize>> {
+    let live = |states: BTreeMap<usize, TaskState>| -> BTreeSet<usize> {
+        let live =
+            |(shard, state): (usize, TaskState)| (!matches!(state, TaskState::Ended(_))).then_some(shard);
+        states.into_iter().filter_map(live).collect()
+    };
+    let divisions: BTreeSet<usize> =
+        noted(out, plan).iter().map(|noted| noted.count).chain([count]).collect();
+    let mut busy = BTreeSet::new();
+    for division in divisions {
+        let (states, silent) = tasks(out, plan, division);
+        if let Some(reason) = silent.into_iter().next() {
+            let path = ShardPlan::directory(out).join(format!("{}.submitted", plan.digest));
+            let expected = format!(
+                "an answer about the tasks that are submitted already ({reason}); where none of them is left, remove {}",
+                path.display()
+            );
+            return Err(Error::parameter("engine", "no answer", expected));
+        }
+        let queued = live(states);
+        if division == count {
+            busy = queued;
+        } else if !queued.is_empty() {
+            let expected = format!(
+                "{division}, while {} shards of a division into {division} are running or waiting; or cancel those",
+                queued.len()
+            );
+            return Err(Error::parameter("tasks", count, expected));
+        }
+    }
+    Ok(busy)
 }
 
-/// What a program prints; nothing where it cannot be asked.
-fn asked(program: &str, arguments: &[&str]) -> String {
-    let done = Command::new(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::null()).output();
-    done.map(|done| String::from_utf8_lossy(&done.stdout).into_owned()).unwrap_or_default()
+/// What a program prints, or why it does not answer.
+fn asked(program: &str, arguments: &[&str]) -> Result<String, String> {
+    let done = Command::new(program).args(arguments).stdin(Stdio::null()).output();
+    let done = done.map_err(|reason| format!("{program}: {reason}"))?;
+    if done.status.success() {
+        return Ok(String::from_utf8_lossy(&done.stdout).into_owned());
+    }
+    Err(format!("{program}: {}", String::from_utf8_lossy(&done.stderr).trim()))
 }
 
-fn slurm(job: &str) -> Vec<(usize, TaskState)> {
-    // `-r`: one line for each task, those that wait as well; `-t all`: those that have ended too, as long as the controller knows them.
-    parse_squeue(&asked("squeue", &["-h", "-r", "-t", "all", "-j", job, "-o", "%K %T"]))
+impl Noted {
+    fn ask(&self) -> Result<Vec<(usize, TaskState)>, String> {
+        let Self { engine, job, .. } = self;
+        if engine == "slurm" {
+            // `-r`: one line for each task, those that wait as well; `-t all`: those that have ended too, as long as the controller knows them.
+            return match asked("squeue", &["-h", "-r", "-t", "all", "-j", job, "-o", "%K %T"]) {
+                Ok(text) => Ok(parse_squeue(&text)),
+                // It has ended long ago.
+                Err(reason) if reason.contains("Invalid job id") => Ok(Vec::new()),
+                Err(reason) => Err(reason),
+            };
+        }
+        // A server that was started anew knows nothing of the tasks of the one before.
+        let text = asked("hq", &["--output-mode", "json", "task", "list", job]).unwrap_or_default();
+        Ok(parse_hyperqueue(&text))
+    }
 }
 
 fn parse_squeue(text: &str) -> Vec<(usize, TaskState)> {
@@ -114,10 +169,6 @@ fn parse_squeue(text: &str) -> Vec<(usize, TaskState)> {
         Some((task.parse().ok()?, state(word)))
     };
     text.lines().filter_map(parse).collect()
-}
-
-fn hyperqueue(job: &str) -> Vec<(usize, TaskState)> {
-    parse_hyperqueue(&asked("hq", &["--output-mode", "json", "task", "list", job]))
 }
 
 /// Tasks are objects with `id` and `state`, in lists by job or in one.
@@ -154,15 +205,15 @@ fn parse_hyperqueue(text: &str) -> Vec<(usize, TaskState)> {
 pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> Status {
     let plan = &found.plan;
     let count = submitted_tasks(out, plan);
-    let (states, of) = match count {
+    let ((states, silent), of) = match count {
         Some(count) => (tasks(out, plan, count), shards(jobs, count)),
-        None => (BTreeMap::new(), vec![None; jobs.count()]),
+        None => ((BTreeMap::new(), Vec::new()), vec![None; jobs.count()]),
     };
     let cost = |job: usize| jobs.cost(job) as f64;
     let all: f64 = (0..jobs.count()).map(cost).sum();
     let mut status = Status {
         command: plan.command(),
-        digest: plan.digest.clone(),
+        digest: plan.short_digest(),
         jobs: jobs.count(),
         done: found.count(JobState::Done),
         share: 0.0,
@@ -171,7 +222,7 @@ pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> Status {
         failed: Group::default(),
         reasons: BTreeSet::new(),
         missing: 0,
-        remarks: found.remarks(),
+        remarks: found.remarks().into_iter().chain(silent).collect(),
     };
     for (job, shard) in of.into_iter().enumerate() {
         if found.states[job] == JobState::Done {
@@ -185,6 +236,11 @@ pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> Status {
         let group = match state {
             TaskState::Running => &mut status.running,
             TaskState::Waiting => &mut status.waiting,
+            // It ended well, and its result is gone.
+            TaskState::Ended(reason) if ["completed", "finished"].contains(&reason.as_str()) => {
+                status.missing += 1;
+                continue;
+            }
             TaskState::Ended(reason) => {
                 status.reasons.insert(reason.clone());
                 &mut status.failed
@@ -205,7 +261,7 @@ impl Status {
 
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} (plan {})", self.command, &self.digest[..12.min(self.digest.len())])?;
+        writeln!(f, "{} (plan {})", self.command, self.digest)?;
         writeln!(
             f,
             "  done     {:>6} of {} jobs, {:.0} % of the predicted time",
@@ -272,7 +328,11 @@ mod tests {
         );
         // Words that are no number are not given to an engine.
         let submitted = ShardPlan::directory(dir.path()).join(format!("{}.submitted", plan.digest));
-        std::fs::write(submitted, "slurm 1;reboot 2\nnonsense\n").unwrap();
+        std::fs::write(
+            submitted,
+            "slurm 1;reboot 2\nnonsense\nslurm  1\nslurm 1 0\nslurm 1 18446744073709551615\n",
+        )
+        .unwrap();
         assert!(noted(dir.path(), &plan).is_empty() && submitted_tasks(dir.path(), &plan).is_none());
     }
 }

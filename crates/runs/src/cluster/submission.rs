@@ -127,7 +127,8 @@ impl Submission {
     pub fn write(&self, target: &Target<'_>, forecast: &Forecast, found: &Completeness) -> Result<Submitted> {
         let Target { out, plan, jobs, .. } = *target;
         let of = shards(jobs, forecast.tasks);
-        let busy = super::status::busy(out, plan, forecast.tasks);
+        plan.write(out)?;
+        let busy = super::status::busy(out, plan, forecast.tasks)?;
         let left: Vec<usize> = (0..of.len()).filter(|&job| found.states[job] != JobState::Done).collect();
         let wanted: BTreeSet<usize> =
             left.iter().filter_map(|&job| of[job]).filter(|shard| !busy.contains(shard)).collect();
@@ -140,7 +141,6 @@ impl Submission {
             return Err(Error::parameter("out", out.display(), expected));
         }
         let shards: Vec<usize> = wanted.into_iter().collect();
-        plan.write(out)?;
         let directory = out.join(self.engine.name());
         files::create_directory(&directory)?;
         let script = Script::new(self, target, forecast, &directory)?;
@@ -165,6 +165,8 @@ impl Submission {
 
 /// Runs a script that submits.
 fn run(script: &Path) -> Result<String> {
+    // A name that begins with a dash is no option.
+    let script = &std::fs::canonicalize(script).map_err(Error::file("find", script))?;
     let done = Command::new("bash").arg(script).output().map_err(Error::file("run", script))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
     if done.status.success() {
@@ -180,6 +182,8 @@ struct Script<'a> {
     plan: &'a ShardPlan,
     forecast: &'a Forecast,
     directory: String,
+    /// Where it was submitted: relative paths of the command begin there.
+    here: String,
     /// The task's command and the merge's.
     task: Vec<String>,
     merge: Vec<String>,
@@ -197,17 +201,31 @@ impl<'a> Script<'a> {
         // Tasks begin elsewhere.
         let absolute = |path: &Path| -> Result<String> {
             let path = std::fs::canonicalize(path).map_err(Error::file("find", path))?;
-            let text = path.to_str().filter(|text| !text.contains(['\n', '\r']));
-            let refused =
-                || Error::parameter("path", path.display(), "UTF-8 without line breaks, for a script");
-            text.map(str::to_owned).ok_or_else(refused)
+            let text =
+                path.to_str().filter(|text| !text.contains(|c: char| c.is_control() || "\"\\%".contains(c)));
+            let expected = "a path in UTF-8 without control characters, \", \\ and %, which engines read in their own ways";
+            text.map(str::to_owned).ok_or_else(|| {
+                Error::parameter("path", format!("{:?}", path.display().to_string()), expected)
+            })
         };
+        // They stand in a comment of the script, too.
+        if let Some(word) = target.plan.arguments.iter().find(|word| word.contains(char::is_control)) {
+            return Err(Error::parameter(
+                "command",
+                format!("{word:?}"),
+                "words without control characters, for a script",
+            ));
+        }
         let (binary, out) = (absolute(target.binary)?, absolute(target.out)?);
         for word in
             [&submission.partition, &submission.account].into_iter().flatten().chain(&submission.options)
         {
             if word.is_empty() || word.contains(|c: char| c.is_control()) {
-                return Err(Error::parameter("option", format!("{word:?}"), "a line of a script"));
+                return Err(Error::parameter(
+                    "option",
+                    format!("{word:?}"),
+                    "one line without control characters, for --partition, --account or --option",
+                ));
             }
         }
         let mut task = vec![binary.clone()];
@@ -220,6 +238,7 @@ impl<'a> Script<'a> {
             plan: target.plan,
             forecast,
             directory: absolute(directory)?,
+            here: absolute(Path::new("."))?,
             task,
             merge,
             minutes: submission.minutes.unwrap_or_else(|| forecast.minutes()),
@@ -254,27 +273,32 @@ impl<'a> Script<'a> {
             "#!/bin/bash\n{}#SBATCH --job-name=fractal-contact\n#SBATCH --array={}\n#SBATCH --ntasks=1\n\
              #SBATCH --cpus-per-task={}\n#SBATCH --mem={megabytes}M\n#SBATCH --time={minutes}\n\
              #SBATCH --output=\"{directory}/shard-%a.%A.log\"\n{common}\
-             # exec: signals of SLURM go to the program itself.\n\
+             cd {} || exit\n# exec: signals of SLURM go to the program itself.\n\
              exec {} --shard \"$SLURM_ARRAY_TASK_ID/{count}\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
             self.comment(shards.len()),
             ranges(shards),
             self.forecast.cores,
+            quoted(&self.here),
             line(&self.task),
         );
         let merge = format!(
             "#!/bin/bash\n{}#SBATCH --job-name=fractal-contact-merge\n#SBATCH --ntasks=1\n#SBATCH --mem={}M\n\
-             #SBATCH --time={minutes}\n#SBATCH --output=\"{directory}/merge.%j.log\"\n{common}exec {}\n",
+             #SBATCH --time={minutes}\n#SBATCH --output=\"{directory}/merge.%j.log\"\n{common}cd {} || exit\nexec {}\n",
             self.comment(shards.len()),
             megabytes.max(&1000),
+            quoted(&self.here),
             line(&self.merge),
         );
+        let noted = quoted(&format!("../.units/plans/{}.submitted", self.plan.digest));
         let submit = format!(
-            "#!/bin/bash\n# Submits the shards and, after them, the merge; remembers the job for `status`.\nset -euo pipefail\n\
-             cd {}\nshards=$(sbatch --parsable shards.sh)\nshards=${{shards%%;*}}\necho \"slurm $shards {count}\" >> {}\n\
-             merge=$(sbatch --parsable --dependency=\"afterany:$shards\" merge.sh)\n\
-             echo \"SLURM jobs $shards (shards) and ${{merge%%;*}} (merge)\"\n",
+            "#!/bin/bash\n# Submits the shards and, after them, the merge; remembers the job for `status`. Both or none.\nset -euo pipefail\n\
+             cd {}\nnumber() {{ [[ $1 =~ ^[0-9]+$ ]] || {{ echo \"sbatch answered no number: '$1'\" >&2; exit 1; }}; }}\n\
+             shards=$(sbatch --parsable shards.sh)\nshards=${{shards%%;*}}\nnumber \"$shards\"\n\
+             if ! merge=$(sbatch --parsable --dependency=\"afterany:$shards\" merge.sh); then\n    \
+             scancel \"$shards\"\n    echo \"the merge was refused, and job $shards is cancelled\" >&2\n    exit 1\nfi\n\
+             merge=${{merge%%;*}}\necho \"slurm $shards {count}\" >> {noted}\n\
+             echo \"SLURM jobs $shards (shards) and $merge (merge)\"\n",
             quoted(directory),
-            quoted(&format!("../.units/plans/{}.submitted", self.plan.digest)),
         );
         vec![("shards.sh", task), ("merge.sh", merge), ("submit.sh", submit)]
     }
@@ -293,9 +317,10 @@ impl<'a> Script<'a> {
             let words: Vec<String> = command.iter().map(|word| toml(word)).collect();
             let log = |end: &str| toml(&format!("{directory}/{name}.%{{JOB_ID}}.{end}"));
             job += &format!(
-                "\n[[task]]\nid = {id}\ncommand = [{}]\nstdout = {}\nstderr = {}\ntime_limit = \"{minutes}m\"\n{deps}\
+                "\n[[task]]\nid = {id}\ncommand = [{}]\ncwd = {}\nstdout = {}\nstderr = {}\ntime_limit = \"{minutes}m\"\n{deps}\
                  [[task.request]]\nresources = {{ \"cpus\" = \"{cores}\" }}\n",
                 words.join(", "),
+                toml(&self.here),
                 log("out"),
                 log("log"),
             );
@@ -380,6 +405,24 @@ mod tests {
         let queue = write(Engine::Hyperqueue).unwrap();
         let job = std::fs::read_to_string(&queue.files[0]).unwrap();
         assert!(job.contains("\"--shard\", \"2/3\"") && job.contains("deps = [0, 2]"), "{job}");
+        // What a shell or an engine would read in its own way is refused.
+        let hostile = ShardPlan::new("p", vec!["x\ntouch y".into()], &squares);
+        let refused = submission(Engine::Slurm)
+            .write(
+                &Target { plan: &hostile, ..target.clone() },
+                &forecast,
+                &check(&hostile, &squares, &out).unwrap(),
+            )
+            .unwrap_err()
+            .to_string();
+        assert!(refused.starts_with("command = \"x\\ntouch y\""), "{refused}");
+        let odd = dir.path().join("a%j");
+        std::fs::create_dir(&odd).unwrap();
+        let refused = submission(Engine::Slurm)
+            .write(&Target { out: &odd, ..target.clone() }, &forecast, &check(&plan, &squares, &odd).unwrap())
+            .unwrap_err()
+            .to_string();
+        assert!(refused.starts_with("path = "), "{refused}");
         // Shells find no mistake in them.
         for script in slurm.files.iter().chain(queue.files.last()) {
             assert!(Command::new("bash").arg("-n").arg(script).status().unwrap().success());
