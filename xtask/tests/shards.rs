@@ -98,6 +98,26 @@ fn what_cannot_be_divided_is_told() {
     );
 }
 
+/// Several commands in one directory: none is taken by itself, each when it is chosen.
+#[test]
+fn a_chosen_plan_is_merged_beside_another() {
+    let (both, one) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let figure = |number, of| format!("reproduce-fig{number} {of} --fractal-dimensions 2.0 --forces 0.1,1");
+    let (solid, line) = (figure(2, "--cells 33 --surfaces 2"), figure(6, "--elements 1024 --lines 2"));
+    for command in [&solid, &line] {
+        assert!(xtask(&format!("{command} --shard 0/1"), both.path()).status.success());
+    }
+    let mixed = said(&xtask("merge", both.path()));
+    assert!(mixed.contains("there are 2"), "{mixed}");
+    assert!(xtask(&solid, one.path()).status.success());
+    let digest =
+        mixed.lines().find(|l| l.contains("reproduce-fig2")).unwrap().trim().split(' ').next().unwrap();
+    let merged = xtask(&format!("merge --plan {digest}"), both.path());
+    assert!(merged.status.success(), "{}", said(&merged));
+    let read = |dir: &Path| std::fs::read(dir.join("fig2.csv")).unwrap();
+    assert!(read(both.path()) == read(one.path()) && !both.path().join("fig6.csv").exists());
+}
+
 /// A gap is told with what closes it, and that command closes it.
 #[test]
 fn the_command_that_is_named_closes_the_gap() {
