@@ -257,6 +257,7 @@ fn outputs_are_those_asked_for() {
                         pressure: fields.pressure.is_some(),
                         displacement: fields.displacement.is_some(),
                         gap: fields.gap.is_some(),
+                        plastic_depth: fields.plastic_depth.is_some(),
                         contact_patches: state.patches.is_some(),
                         conductance: state.conductance.map_or(Conductance::Off, |_| COPPER),
                         mean_gap: state.mean_gap.is_some(),

@@ -4,9 +4,8 @@ use crate::closed::ROUNDED_UP;
 use crate::hertz::Hertz;
 use crate::memory::{Goal, SlipCurve, held, lost, reached};
 use contact_model::{
-    Adhesion, Boundary, ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState,
-    Normalisation, Outputs, PreparedContact, Result, Rheology, Scene, Source, Step, Surface, Tangential,
-    TangentialState,
+    ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Normalisation, Outputs,
+    PreparedContact, Result, Scene, Source, Step, Surface, Tangential, TangentialState,
 };
 
 const NAME: &str = "cattaneo_mindlin";
@@ -60,8 +59,8 @@ impl HistoryModel for CattaneoMindlin {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
         scene.validate()?;
-        let Effects { boundary, adhesion, friction, rheology } = scene.effects;
-        let rest = Effects { boundary, adhesion, friction: Friction::Off, rheology };
+        let friction = scene.effects.friction;
+        let rest = Effects { friction: Friction::Off, ..scene.effects };
         rest.refuse(NAME)?;
         let Friction::Coulomb { coefficient } = friction else {
             return Err(Error::unsupported(NAME, format!("friction ({friction:?}): it needs Coulomb's")));
@@ -79,12 +78,7 @@ impl HistoryModel for CattaneoMindlin {
             ));
         };
         let elastic = Scene {
-            effects: Effects {
-                boundary: Boundary::Free,
-                adhesion: Adhesion::Off,
-                friction: Friction::Off,
-                rheology: Rheology::Elastic,
-            },
+            effects: Effects::default(),
             outputs: Outputs { stiffness: true, ..scene.outputs },
             ..scene.clone()
         };
@@ -423,7 +417,7 @@ mod tests {
         smooth.effects.friction = Friction::Off;
         assert!(matches!(refused(&smooth), Error::Unsupported { .. }));
         let mut sticky = scene(MU);
-        sticky.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
+        sticky.effects.adhesion = contact_model::Adhesion::ShortRange { work: 0.1 };
         assert!(matches!(refused(&sticky), Error::Unsupported { .. }));
         let cone = Scene { surface: Surface::Cone { slope: 0.1, size: 1.0.into() }, ..scene(MU) };
         assert!(matches!(refused(&cone), Error::Unsupported { .. }));

@@ -84,10 +84,12 @@ impl Field {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Fields {
-    /// Pressure p >= 0.
+    /// Pressure p; negative (a tension) with adhesion only.
     pub pressure: Option<Field>,
     /// Displacement u of the elastic surface under each cell centre.
     pub displacement: Option<Field>,
-    /// Gap g = u + z - d; infinite at undefined points.
+    /// Gap g = u + z - d; infinite at undefined points. Over a plastic indentation its depth is added: the gap to the indented surface.
     pub gap: Option<Field>,
+    /// Depth of the plastic indentation >= 0.
+    pub plastic_depth: Option<Field>,
 }

@@ -49,6 +49,15 @@ impl Step {
     /// # Errors
     /// [`Error::Domain`] for a time before `last`, a normal load as [`Load::validated`], or a tangential load that is not finite.
     pub fn validated(self, last: f64) -> Result<Self> {
+        self.normal.validated()?;
+        self.validated_with_adhesion(last)
+    }
+
+    /// The same for models with adhesion, which can pull.
+    ///
+    /// # Errors
+    /// As [`Step::validated`], with [`Load::validated_with_adhesion`].
+    pub fn validated_with_adhesion(self, last: f64) -> Result<Self> {
         if !(self.time.is_finite() && self.time >= last) {
             return Err(Error::domain(
                 "time",
@@ -56,7 +65,7 @@ impl Step {
                 format!("a finite number >= {last}, the last time"),
             ));
         }
-        self.normal.validated()?;
+        self.normal.validated_with_adhesion()?;
         let (name, value) = match self.tangential {
             Tangential::Force(force) => ("tangential force", force),
             Tangential::Displacement(displacement) => ("tangential displacement", displacement),

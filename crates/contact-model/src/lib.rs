@@ -63,6 +63,11 @@ pub use outputs::{Conductance, Outputs};
 pub use pair::{Body, Pair};
 pub use patches::Patches;
 pub use rheology::{PronySeries, Relaxing, Rheology};
-pub use scene::{Adhesion, Amplitude, Boundary, Effects, Friction, Scene, SelfAffine, Surface, line_length};
-pub use state::{Certificate, ContactResolution, ContactState, SolveReport, Status};
+pub use scene::{
+    Adhesion, AdhesionLaw, Amplitude, Boundary, Effects, Friction, Hardness, Scene, SelfAffine, Surface,
+    line_length,
+};
+pub use state::{
+    AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, SolveReport, Status,
+};
 pub use work::Work;

@@ -19,6 +19,8 @@ pub struct Outputs {
     pub displacement: bool,
     /// Gap field.
     pub gap: bool,
+    /// Field of the plastic indentation; with a hardness only.
+    pub plastic_depth: bool,
     /// Connected contact areas, their number and sizes ([`crate::Patches`]).
     pub contact_patches: bool,
     /// Conductance through the contact.
@@ -26,9 +28,9 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Whether any field (pressure, displacement, gap) is asked for.
+    /// Whether any field (pressure, displacement, gap, plastic indentation) is asked for.
     pub fn any_field(&self) -> bool {
-        self.pressure || self.displacement || self.gap
+        self.pressure || self.displacement || self.gap || self.plastic_depth
     }
 
     /// Whether the stiffness has to be computed: for itself or for what follows from it.

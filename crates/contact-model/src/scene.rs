@@ -68,6 +68,10 @@ impl Scene {
             let what = "a mean gap: its states have an approach";
             return Err(Error::unsupported("of free boundaries", what));
         }
+        if self.outputs.plastic_depth && self.effects.hardness == Hardness::Off {
+            let what = "a field of the plastic indentation";
+            return Err(Error::unsupported("without hardness", what));
+        }
         self.surface.validate()
     }
 
@@ -293,6 +297,8 @@ pub fn line_length(side: f64) -> f64 {
 pub struct Effects {
     /// What lies outside the square.
     pub boundary: Boundary,
+    /// Largest pressure that the bodies carry.
+    pub hardness: Hardness,
     /// Attraction between the surfaces.
     pub adhesion: Adhesion,
     /// Friction under tangential load.
@@ -307,8 +313,18 @@ impl Effects {
     /// # Errors
     /// [`Error::Domain`] with the first value that makes no sense.
     pub fn validate(&self) -> Result<()> {
-        if let Adhesion::ShortRange { work } = self.adhesion {
-            non_negative("work of adhesion", work)?;
+        if let Hardness::Limit { pressure } = self.hardness {
+            positive("hardness", pressure)?;
+        }
+        match self.adhesion {
+            Adhesion::Off => {}
+            Adhesion::ShortRange { work } => {
+                non_negative("work of adhesion", work)?;
+            }
+            Adhesion::FiniteRange { work, range, .. } => {
+                non_negative("work of adhesion", work)?;
+                positive("range of adhesion", range)?;
+            }
         }
         if let Friction::Coulomb { coefficient } = self.friction {
             non_negative("coefficient of friction", coefficient)?;
@@ -328,9 +344,12 @@ impl Effects {
     /// assert!(Effects { adhesion: Adhesion::Off, ..effects }.refuse("jkr").is_ok());
     /// ```
     pub fn refuse(self, model: &'static str) -> Result<()> {
-        let Self { boundary, adhesion, friction, rheology } = self;
+        let Self { boundary, hardness, adhesion, friction, rheology } = self;
         if boundary != Boundary::Free {
             return Err(Error::unsupported(model, format!("the boundary {boundary:?}")));
+        }
+        if hardness != Hardness::Off {
+            return Err(Error::unsupported(model, format!("a hardness ({hardness:?})")));
         }
         if adhesion != Adhesion::Off {
             return Err(Error::unsupported(model, format!("adhesion ({adhesion:?})")));
@@ -356,6 +375,21 @@ pub enum Boundary {
     Periodic,
 }
 
+/// Largest pressure that the bodies carry: where it is reached, the softer one is indented without a further rise of the pressure
+/// (perfect plasticity, `0 <= p <= p_s`).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Hardness {
+    /// None: the contact stays elastic at any pressure.
+    #[default]
+    Off,
+    /// A limit of the pressure.
+    Limit {
+        /// Hardness p_s.
+        pressure: f64,
+    },
+}
+
 /// Attraction between the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
@@ -368,6 +402,25 @@ pub enum Adhesion {
         /// Work of adhesion Delta gamma.
         work: f64,
     },
+    /// Attraction across an open gap g.
+    FiniteRange {
+        /// Work of adhesion Delta gamma: the integral of the traction over all gaps.
+        work: f64,
+        /// Range rho: the traction is about `work/range` below it.
+        range: f64,
+        /// How the traction falls with the gap.
+        law: AdhesionLaw,
+    },
+}
+
+/// How the attractive traction of [`Adhesion::FiniteRange`] falls with the gap g.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AdhesionLaw {
+    /// `work/range exp(-g/range)`.
+    Exponential,
+    /// `work/range` up to the range, none beyond (Dugdale, Maugis).
+    Dugdale,
 }
 
 /// Friction under tangential load.
@@ -414,6 +467,11 @@ mod tests {
         let mut scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
         for effects in [
             Effects { adhesion: Adhesion::ShortRange { work: -0.1 }, ..Effects::default() },
+            Effects { hardness: Hardness::Limit { pressure: 0.0 }, ..Effects::default() },
+            Effects {
+                adhesion: Adhesion::FiniteRange { work: 1.0, range: f64::NAN, law: AdhesionLaw::Dugdale },
+                ..Effects::default()
+            },
             Effects { friction: Friction::Coulomb { coefficient: f64::INFINITY }, ..Effects::default() },
             Effects { rheology: Rheology::KelvinVoigt { viscosity: 0.0 }, ..Effects::default() },
         ] {

@@ -32,6 +32,10 @@ pub struct ContactState {
     pub conductance: Option<f64>,
     /// Connected contact areas.
     pub patches: Option<Patches>,
+    /// What has yielded, of contacts with a hardness.
+    pub plastic: Option<PlasticState>,
+    /// The adhesive part, of contacts with adhesion that are solved cell by cell.
+    pub adhesive: Option<AdhesiveState>,
     /// What the cells of the contact say about how well they resolve it, where the model has cells.
     pub resolution: Option<ContactResolution>,
     /// Fields, where asked for.
@@ -51,6 +55,8 @@ impl ContactState {
             area: None,
             conductance: None,
             patches: None,
+            plastic: None,
+            adhesive: None,
             resolution: None,
             fields: None,
             report,
@@ -87,6 +93,18 @@ impl ContactState {
         Self { patches: patches.into(), ..self }
     }
 
+    /// With what has yielded.
+    #[must_use]
+    pub fn with_plastic(self, plastic: impl Into<Option<PlasticState>>) -> Self {
+        Self { plastic: plastic.into(), ..self }
+    }
+
+    /// With an adhesive part.
+    #[must_use]
+    pub fn with_adhesive(self, adhesive: impl Into<Option<AdhesiveState>>) -> Self {
+        Self { adhesive: adhesive.into(), ..self }
+    }
+
     /// With what its cells say about their resolution.
     #[must_use]
     pub fn with_resolution(self, resolution: impl Into<Option<ContactResolution>>) -> Self {
@@ -112,6 +130,66 @@ impl ContactState {
     #[must_use]
     pub fn with_fields(self, fields: impl Into<Option<Fields>>) -> Self {
         Self { fields: fields.into(), ..self }
+    }
+}
+
+/// What has yielded in a contact with a hardness p_s ([`crate::Hardness`]).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct PlasticState {
+    /// Area under the pressure p_s.
+    pub area: f64,
+    /// Volume of the plastic indentation, since the virgin surface.
+    pub volume: f64,
+    /// Energy dissipated in it, `p_s volume`: plastic flow happens at the pressure p_s only.
+    pub dissipated: f64,
+}
+
+impl PlasticState {
+    /// This area under the hardness p_s, and an indentation of this volume.
+    pub fn new(area: f64, volume: f64, hardness: f64) -> Self {
+        Self { area, volume, dissipated: hardness * volume }
+    }
+}
+
+/// The adhesive part of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct AdhesiveState {
+    /// On which branch the state lies.
+    pub branch: Branch,
+    /// Elastic energy less the work of adhesion that the attraction has done: 0 for bodies far apart.
+    pub energy: f64,
+    /// How stable the state is, > 0 for a minimum of the energy.
+    ///
+    /// With [`crate::Adhesion::ShortRange`] the smallest energy that the attachment or detachment of a single cell would cost, over that of
+    /// the adhesion of a cell. With [`crate::Adhesion::FiniteRange`] the smallest curvature of the energy, over that without adhesion.
+    pub stability: f64,
+}
+
+impl AdhesiveState {
+    /// A state on this branch.
+    pub fn new(branch: Branch, energy: f64, stability: f64) -> Self {
+        Self { branch, energy, stability }
+    }
+}
+
+/// On which branch of a path with adhesion a state lies: between snap-in and pull-off both are stable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Branch {
+    /// The bodies came nearer since the contact area last shrank.
+    Approach,
+    /// They were drawn apart.
+    Withdrawal,
+}
+
+impl Branch {
+    /// The word used in CSV files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Approach => "approach",
+            Self::Withdrawal => "withdrawal",
+        }
     }
 }
 
@@ -222,16 +300,20 @@ impl Status {
 /// met when every one of them is at most `t` ([`Certificate::meets`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
-    /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form.
+    /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form. With a hardness p_s the minimum of
+    /// `sum q g` over all `0 <= q <= p_s` of the same force takes the place of `F min g`.
     pub duality_gap: f64,
-    /// `max(0, -min g) / s`.
+    /// `max(0, -min g) / s`. With a hardness of cells below p_s, and beside it the largest gap left under a cell at p_s.
     pub penetration: f64,
-    /// `sum p |g| / (F s)`.
+    /// `sum p |g| / (F s)`; of cells at the hardness p_s only a positive gap counts.
     pub complementarity: f64,
     /// `|F - F_asked| / F_asked`; 0 when the approach was prescribed.
     pub load_error: f64,
     /// Estimated relative error of the stiffness; `None` when it was not asked for.
     pub stiffness_error: Option<f64>,
+    /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over `work/range`; `None` without
+    /// adhesion of finite range.
+    pub equilibrium: Option<f64>,
 }
 
 impl Certificate {
@@ -248,6 +330,7 @@ impl Certificate {
             self.complementarity,
             self.load_error,
             self.stiffness_error.unwrap_or(0.0),
+            self.equilibrium.unwrap_or(0.0),
         ]
         .into_iter()
         .fold(0.0, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
@@ -263,6 +346,9 @@ impl fmt::Display for Certificate {
         )?;
         if let Some(e) = self.stiffness_error {
             write!(f, ", stiffness_error {e:.1e}")?;
+        }
+        if let Some(e) = self.equilibrium {
+            write!(f, ", equilibrium {e:.1e}")?;
         }
         Ok(())
     }

@@ -28,8 +28,8 @@ impl Work {
     /// ```
     pub fn of(linear_solves: usize, fields: Option<&Fields>) -> Self {
         let mut work = Self { linear_solves, ..Self::default() };
-        if let Some(Fields { pressure, displacement, gap }) = fields {
-            for field in [pressure, displacement, gap].into_iter().flatten() {
+        if let Some(Fields { pressure, displacement, gap, plastic_depth }) = fields {
+            for field in [pressure, displacement, gap, plastic_depth].into_iter().flatten() {
                 work.fields += 1;
                 work.bytes += size_of_val(field.values());
             }

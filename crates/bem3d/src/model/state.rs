@@ -26,6 +26,7 @@ impl PreparedBem3d {
             complementarity: solved.residuals.complementarity,
             load_error,
             stiffness_error: tangent.as_ref().map(|t| self.stiffness_error(t)),
+            equilibrium: None,
         };
         let met = certificate.meets(self.options.tolerance);
         let status = match solved.status {

@@ -20,7 +20,7 @@ pub(crate) enum Picked {
 impl Picked {
     pub fn of(field: &str) -> Self {
         match field {
-            "pressure" => Self::Largest,
+            "pressure" | "plastic_depth" => Self::Largest,
             "gap" => Self::Smallest,
             _ => Self::Middle,
         }

@@ -264,14 +264,15 @@ impl ModelOnSurface {
         if let Some(patches) = found.patches.as_ref() {
             kept.patches = patches.areas().to_vec();
         }
-        let Fields { pressure, displacement, gap, .. } = found.fields.take().unwrap_or_default();
+        let Fields { pressure, displacement, gap, plastic_depth, .. } =
+            found.fields.take().unwrap_or_default();
         let cell = scene.surface.size();
         let cell = cell.x * cell.y / cells(scene, self.numerics(scene)).checked_count().unwrap_or(1) as f64;
         let state = (pressure.as_ref(), gap.as_ref(), found.patches.as_ref());
         kept.distributions = distributed::of_state(&scene.requested.distributions, state, cell);
         let first = kept.index == 0 && !scene.requested.heights.is_empty();
         let heights = if first { self.heights(scene)? } else { None };
-        let fields = [pressure, displacement, gap, heights];
+        let fields = [pressure, displacement, gap, plastic_depth, heights];
         for ((name, formats), field) in scene.requested.fields().into_iter().zip(&fields) {
             let Some(field) = field else { continue };
             let values = &on_defined_points(name, field, scene);

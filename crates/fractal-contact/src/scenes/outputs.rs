@@ -41,6 +41,8 @@ pub struct RequestedOutputs {
     pub displacement: Vec<FieldFormat>,
     /// Formats of the gap field.
     pub gap: Vec<FieldFormat>,
+    /// Formats of the field of the plastic indentation.
+    pub plastic_depth: Vec<FieldFormat>,
     /// Formats of the heights as they are solved: after crop, fill and detrend, or as drawn.
     pub heights: Vec<FieldFormat>,
     /// Distributions that are counted.
@@ -55,15 +57,30 @@ pub struct RequestedOutputs {
 
 impl RequestedOutputs {
     /// The fields with their formats; the heights belong to the first state.
-    pub fn fields(&self) -> [(&'static str, &[FieldFormat]); 4] {
-        let Self { pressure, displacement, gap, heights, .. } = self;
-        [("pressure", pressure), ("displacement", displacement), ("gap", gap), ("heights", heights)]
+    pub fn fields(&self) -> [(&'static str, &[FieldFormat]); 5] {
+        let Self { pressure, displacement, gap, plastic_depth, heights, .. } = self;
+        [
+            ("pressure", pressure),
+            ("displacement", displacement),
+            ("gap", gap),
+            ("plastic_depth", plastic_depth),
+            ("heights", heights),
+        ]
     }
 
     /// Every output with whether it is asked for.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
-        let Outputs { stiffness, area, mean_gap, pressure, displacement, gap, contact_patches, conductance } =
-            self.outputs;
+        let Outputs {
+            stiffness,
+            area,
+            mean_gap,
+            pressure,
+            displacement,
+            gap,
+            plastic_depth,
+            contact_patches,
+            conductance,
+        } = self.outputs;
         vec![
             ("stiffness", stiffness),
             ("area", area),
@@ -73,6 +90,7 @@ impl RequestedOutputs {
             ("pressure", pressure),
             ("displacement", displacement),
             ("gap", gap),
+            ("plastic_depth", plastic_depth),
             ("heights", !self.heights.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
@@ -99,6 +117,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     requested.pressure = formats("pressure")?;
     requested.displacement = formats("displacement")?;
     requested.gap = formats("gap")?;
+    requested.plastic_depth = formats("plastic_depth")?;
     requested.heights = formats("heights")?;
     if let Some(entry) = table.find("conductance") {
         requested.outputs.conductance = read_conductance(&entry, system)?;
@@ -113,7 +132,9 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     }
     let counted = |of: Distributed| requested.distributions.contains(&of);
     // Pictures outline the contact.
-    let outlined = [&requested.gap, &requested.displacement].iter().any(|f| f.contains(&FieldFormat::Png));
+    let outlined = [&requested.gap, &requested.displacement, &requested.plastic_depth]
+        .iter()
+        .any(|f| f.contains(&FieldFormat::Png));
     // Where there is contact, the gap is rounding.
     requested.outputs.pressure = !requested.pressure.is_empty()
         || outlined
@@ -121,6 +142,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
         || counted(Distributed::Gap);
     requested.outputs.displacement = !requested.displacement.is_empty();
     requested.outputs.gap = !requested.gap.is_empty() || counted(Distributed::Gap);
+    requested.outputs.plastic_depth = !requested.plastic_depth.is_empty();
     requested.outputs.contact_patches |= counted(Distributed::Patches);
     table.finish()?;
     Ok(requested)

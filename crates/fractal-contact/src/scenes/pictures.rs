@@ -77,6 +77,7 @@ pub(crate) fn field<'a>(
         "pressure" => ("pressure $p$", "Pa", Shown::Largest),
         "displacement" => ("displacement $u$", "m", Shown::Middle),
         "gap" => ("gap $g$", "m", Shown::Smallest),
+        "plastic_depth" => ("plastic indentation", "m", Shown::Largest),
         _ => ("height", "m", Shown::Middle),
     };
     let load = if name == "heights" { "as solved".to_owned() } else { load(scene, state) };

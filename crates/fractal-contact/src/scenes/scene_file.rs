@@ -311,7 +311,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
 }
 
 fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
-    const NAMES: [&str; 13] = [
+    const NAMES: [&str; 14] = [
         "stiffness",
         "area",
         "conductance",
@@ -320,6 +320,7 @@ fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
         "pressure",
         "displacement",
         "gap",
+        "plastic_depth",
         "heights",
         "distributions",
         "grid_error",

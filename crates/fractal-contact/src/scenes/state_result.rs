@@ -92,7 +92,8 @@ pub(crate) fn field_of_file(name: &str) -> Option<FieldFile<'_>> {
     let (model, surface) = rest.rsplit_once('-')?;
     let file =
         FieldFile { field, model, surface: surface.parse().ok()?, state: state.parse().ok()?, extension };
-    (["pressure", "displacement", "gap", "heights"].contains(&field) && file.to_string() == name)
+    (["pressure", "displacement", "gap", "plastic_depth", "heights"].contains(&field)
+        && file.to_string() == name)
         .then_some(file)
 }
 
