@@ -49,16 +49,21 @@ pub fn solve(
     stop: Stop<'_>,
 ) -> Stiffness {
     let grid = problem.grid();
-    let Problem { operators, workspace, .. } = problem;
-    let (contact, tuning) = (&state.contact, *operators.tuning());
+    let Problem { operators, workspace, hardness, .. } = problem;
+    // Saturated cells keep their pressure: the rest of the contact is what is stiff.
+    let (contact, tuning) = (&*state.elastic(*hardness), *operators.tuning());
+    if contact.is_empty() && !state.contact.is_empty() {
+        return Stiffness { solve_error: 0.0, ..Stiffness::unknown() };
+    }
     let Some(recipe) = operators.planner().system(contact, contact.len(), true) else {
         return Stiffness::unknown();
     };
     // A factored state needs no transform.
     let conditioning = if state.q.is_some() { Conditioning::Identity } else { recipe.conditioning };
     let recipe = Recipe { conditioning, ..recipe };
-    let left = state.gap_on_contact();
-    let undecided = state.undecided(grid, &left, &tuning);
+    let left = state.gap_on(contact);
+    let room = state.room(contact, *hardness);
+    let undecided = state.undecided(grid, contact, &left, &tuning);
     let targets = contact.union(&undecided);
     let mut started = false;
     let mut q = guess.or_else(|| state.q.clone());
@@ -100,7 +105,7 @@ pub fn solve(
         }
         if error < best.solve_error && !rough {
             let at_undecided = undecided.carry(&targets, &v);
-            let set_error = set_error(operators.table(), state, &left, &at_undecided, q) / ritz;
+            let set_error = set_error(operators.table(), &room, &left, &at_undecided, q) / ritz;
             best = Stiffness { value: ritz, solve_error: error, set_error, q: q.clone(), steps };
         }
         if !rough && (error <= tuning.stiffness_share * tolerance || last || stop()) {
@@ -122,11 +127,11 @@ fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
 ///
 /// Adding cell j adds `(1 - (Gq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
 /// takes away `q_j^2 / (G^-1)_jj`, at most `q_j^2 G_jj`. Undecided are the cells of [`Solved::undecided`] and those whose pressure
-/// is below what their own residual gap can change. `tests/stiffness_error.rs` compares the sum of both parts with true errors.
-fn set_error(table: &KernelTable, state: &Solved, left: &[f64], at_undecided: &[f64], q: &[f64]) -> f64 {
+/// is nearer to its bounds (`room`) than what their own residual gap can change. `tests/stiffness_error.rs` compares the sum of both parts with true errors.
+fn set_error(table: &KernelTable, room: &[f64], left: &[f64], at_undecided: &[f64], q: &[f64]) -> f64 {
     let smallest = table.smallest_eigenvalue();
     let added: f64 = at_undecided.iter().map(|v| (1.0 - v).powi(2)).sum::<f64>() / smallest;
-    let doubtful = state.p.iter().zip(q).zip(left).filter(|&((p, _), gap)| *p < gap.abs() / smallest);
+    let doubtful = room.iter().zip(q).zip(left).filter(|&((p, _), gap)| *p < gap.abs() / smallest);
     let removed: f64 = doubtful.map(|((_, q), _)| q * q).sum::<f64>() * table.own();
     added + removed
 }

@@ -60,6 +60,11 @@ impl Nondimensionalisation {
         approach / self.height
     }
 
+    /// `pressure length / (E* height)`, dimensionless; infinite or 0 where no `f64` holds it.
+    pub fn pressure_in(self, pressure: f64) -> f64 {
+        product([pressure, self.length, self.modulus.recip(), self.height.recip()])
+    }
+
     /// `value E* length height`, a force.
     ///
     /// # Errors

@@ -101,6 +101,23 @@ impl Candidates {
         })
     }
 
+    /// So many of the lowest defined cells outside a set, fewer where there are no more.
+    ///
+    /// Cost: the grid.
+    pub fn lowest_outside(&self, set: &CellSet, count: usize) -> CellSet {
+        let mut taken = vec![false; self.z.len()];
+        set.index(self.grid).for_each(|i| taken[i] = true);
+        let mut others: Vec<u32> =
+            (0..self.z.len()).filter(|&i| !taken[i] && self.z[i].is_finite()).map(|i| i as u32).collect();
+        if count < others.len() {
+            let z = |i: &u32| self.z[*i as usize];
+            others.select_nth_unstable_by(count, |a, b| z(a).total_cmp(&z(b)).then(a.cmp(b)));
+            others.truncate(count);
+        }
+        others.sort_unstable();
+        CellSet::from_index(self.grid, &others)
+    }
+
     /// The undeformed gaps on a set.
     pub fn gaps(&self, set: &CellSet) -> Vec<f64> {
         let mut gaps = vec![0.0; set.len()];

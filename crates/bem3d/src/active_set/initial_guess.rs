@@ -6,6 +6,7 @@ use super::state::{Guess, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 use contact_model::Stop;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 use surface_gen::parallel::{for_each, threads_for};
@@ -35,12 +36,17 @@ impl LastState {
     }
 
     /// A guess of q at a state from the last one and the secant between them; on the way down the last q alone.
-    pub fn tangent_at(self, solved: &Solved, tuning: &Tuning) -> Option<Vec<f64>> {
-        let mut q = solved.contact.carry(&self.contact, &self.tangent.as_ref()?.0);
+    pub fn tangent_at(self, solved: &Solved, hardness: f64, tuning: &Tuning) -> Option<Vec<f64>> {
+        let elastic = solved.elastic(hardness);
+        let mut q = elastic.carry(&self.contact, &self.tangent.as_ref()?.0);
         let way = solved.d - self.d;
         if way > 0.0 {
-            let before = solved.contact.carry(&self.contact, &self.p);
-            for ((q, p), before) in q.iter_mut().zip(&solved.p).zip(&before) {
+            let before = elastic.carry(&self.contact, &self.p);
+            let now = match &elastic {
+                Cow::Borrowed(_) => Cow::Borrowed(&solved.p),
+                Cow::Owned(elastic) => Cow::Owned(elastic.carry(&solved.contact, &solved.p)),
+            };
+            for ((q, p), before) in q.iter_mut().zip(&*now).zip(&before) {
                 *q += tuning.extrapolation * ((p - before) / way - *q);
             }
         }
@@ -186,7 +192,9 @@ fn coarser(problem: &Problem) -> Problem {
             *mean = if count > 0.0 { sum / count } else { f64::INFINITY };
         }
     });
-    Problem::new(grid, Arc::new(z), problem.operators.table().boundary(), &tuning)
+    let mut coarse = Problem::new(grid, Arc::new(z), problem.operators.table().boundary(), &tuning);
+    coarse.hardness = problem.hardness * pressure_ratio(fine, &tuning);
+    coarse
 }
 
 /// Coarse pressure on the fine cells below it that lie under the plane (on all defined ones if none does).

@@ -1,6 +1,7 @@
 //! The complementarity problem at one load.
 
 mod candidates;
+mod hardness;
 mod initial_guess;
 mod progress;
 mod residuals;
@@ -8,6 +9,7 @@ mod solver;
 mod state;
 mod undecided;
 
+pub use hardness::is_saturated;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use solver::{resume, solve};
 pub use state::{Guess, Limits, Problem, Solved, Target};

@@ -1,5 +1,6 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating cells.
 
+use super::hardness;
 use super::progress::{Decision, Evaluated, OuterProgress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
@@ -66,6 +67,8 @@ struct Solver<'a> {
     /// The best pressure so far, unless it is the present one.
     best: Pressure,
     now_is_best: bool,
+    /// The pressure before with its gap, where cells are saturated.
+    before: Option<(Pressure, Continuation)>,
 }
 
 impl<'a> Solver<'a> {
@@ -79,7 +82,7 @@ impl<'a> Solver<'a> {
         problem.workspace.begin_load();
         let left = now.contact.carry(&state.checked, &state.gap);
         let (reach, best) = (state.reach, Pressure::default());
-        Self { problem, target, limits, now, state, left, reach, best, now_is_best: false }
+        Self { problem, target, limits, now, state, left, reach, best, now_is_best: false, before: None }
     }
 
     fn iterate(mut self, mut known: Option<Evaluated>, rough: bool, stop: Stop<'_>) -> Solved {
@@ -92,10 +95,12 @@ impl<'a> Solver<'a> {
             if progress.rough && evaluated.residuals.worst() <= tolerance {
                 evaluated = evaluate(false); // Better than expected.
             }
+            if std::env::var("TRACE").is_ok() { let h = self.problem.hardness; eprintln!("n {} C {} S {} d {:.6e} res {:?} rough {} J {:.9e}", self.problem.grid().columns, self.now.p.len(), self.now.p.iter().filter(|&&p| p >= h).count(), self.now.d, evaluated.residuals, progress.rough, 0.5 * sum_of_pairs(&self.now.p, &self.left, |p, g| p * (g + self.now.d)) + 0.5 * sum_of_pairs(&self.now.p, &self.problem.candidates.gaps(&self.now.contact), |p, z| p * z)); }
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
                 Decision::End(status) => break (status, evaluated),
                 Decision::Continue { best } => self.now_is_best |= best,
             }
+            self.before = self.is_saturated().then(|| (self.now.clone(), self.state.clone()));
             steps += self.improve(evaluated.residuals.worst(), stop);
         };
         let mut residuals = last.residuals;
@@ -111,15 +116,34 @@ impl<'a> Solver<'a> {
         Solved { contact, p, d, q, residuals, steps, status, continuation }
     }
 
+    /// Whether any cell is saturated.
+    fn is_saturated(&self) -> bool {
+        hardness::is_saturated(&self.now.p, self.problem.hardness)
+    }
+
     /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it makes.
     ///
     /// A `rough` evaluation in single precision says how to go on, but is never evidence.
     fn evaluate(&mut self, rough: bool) -> Evaluated {
         let Self { problem, target, limits, now, state, left, reach, .. } = self;
-        let Problem { candidates, operators, .. } = &mut **problem;
-        let tuning = *operators.tuning();
-        if let Target::Force(force) = *target {
+        let Problem { candidates, operators, hardness, .. } = &mut **problem;
+        let (tuning, hardness) = (*operators.tuning(), *hardness);
+        let force = match *target {
+            Target::Force(force) => Some(force),
+            Target::Approach(_) => None,
+        };
+        if let Some(force) = force
+            && !hardness::is_saturated(&now.p, hardness)
+        {
             rescale(&mut now.p, force);
+        }
+        let saturated = hardness::is_saturated(&now.p, hardness);
+        if saturated {
+            each(&mut now.p, |p| *p = p.min(hardness));
+            if let Some(force) = force {
+                hardness::bring_to(&mut now.contact, &mut now.p, force, hardness, candidates);
+                state.checked = state.checked.union(&now.contact);
+            }
         }
         // Later contact sets are subsets of the candidates that the first one is joined to.
         if state.checked.is_empty() || !(tuning.kept_candidates * state.reach..=state.reach).contains(reach) {
@@ -133,9 +157,22 @@ impl<'a> Solver<'a> {
             operators.exact(&now.contact, &now.p, checked, gap);
         }
         candidates.add_to(checked, gap);
+        if let Some((before, at)) = self.before.take()
+            && at.checked.len() == checked.len()
+        {
+            let old = (at.checked.carry(&before.contact, &before.p), &at.gap[..], before.d);
+            let mut p = checked.carry(&now.contact, &now.p);
+            if hardness::shorten(old, (&mut p, gap)) {
+                now.contact = checked.filter(&p, |p| p > 0.0);
+                p.retain(|&p| p > 0.0);
+                now.p = p;
+            }
+        }
+        let saturated = hardness::is_saturated(&now.p, hardness);
         now.contact.carry_to(checked, gap, left);
         let force = sum(&now.p);
         match *target {
+            Target::Force(_) if saturated => now.d = hardness::approach(&now.p, left, gap, hardness),
             // The mean weighted by the pressure: the gap is then right where it carries.
             Target::Force(_) if now.q.is_none() && force > 0.0 => {
                 now.d = sum_of_pairs(&now.p, left, |p, g| p / force * g);
@@ -149,7 +186,12 @@ impl<'a> Solver<'a> {
         }
         // Just above the plane: a generous guess must not make every outer iteration evaluate the whole grid.
         *reach = tuning.candidates * now.d;
-        let residuals = Residuals::measure(&now.p, left, smallest(gap), limits.height.unwrap_or(now.d));
+        let height = limits.height.unwrap_or(now.d);
+        let residuals = if saturated {
+            hardness::residuals(&checked.carry(&now.contact, &now.p), gap, hardness, height)
+        } else {
+            Residuals::measure(&now.p, left, smallest(gap), height)
+        };
         Evaluated { residuals, complete: !rough && now.d <= state.reach, factored: now.q.is_some() }
     }
 
@@ -158,13 +200,26 @@ impl<'a> Solver<'a> {
         let Self { problem, target, limits, now, state, left, .. } = self;
         let tuning = *problem.operators.tuning();
         let Continuation { checked, gap, .. } = &*state;
-        let noise = tuning.noise * root_mean_square(left);
-        let set = checked.filter(gap, |g| g < -noise).union(&now.contact);
+        let hardness = problem.hardness;
+        let saturated = hardness::is_saturated(&now.p, hardness);
+        let noise = tuning.noise
+            * if saturated {
+                root_mean_square(&hardness::of_elastic(&now.p, left, hardness))
+            } else {
+                root_mean_square(left)
+            };
+        let mut set = checked.filter(gap, |g| g < -noise).union(&now.contact);
+        let kept = saturated.then(|| hardness::kept(&now.contact, &now.p, left, hardness, noise));
+        if let Some(kept) = &kept {
+            set = set.without(kept);
+        }
         let planner = problem.operators.planner();
         let Some(recipe) = planner.system(&set, now.contact.len(), false) else { return 0 };
         if limits.factor
+            && !saturated
             && planner.factors(set.len(), recipe.window)
             && let Some(exact) = eliminate(problem, &set, *target)
+            && !hardness::is_saturated(&exact.p, hardness)
         {
             self.reach = tuning.candidates * exact.d;
             self.advance(exact);
@@ -179,8 +234,25 @@ impl<'a> Solver<'a> {
         let outcome = workspace.solve(operators, &mut change, fixed_sum, criteria, stop);
         let set = workspace.set();
         set.add_carried(&now.contact, &now.p, &mut change);
-        let contact = set.filter(&change, |p| p > 0.0);
+        let mut contact = set.filter(&change, |p| p > 0.0);
         change.retain(|&p| p > 0.0);
+        if saturated || hardness::is_saturated(&change, hardness) {
+            match target {
+                Target::Force(force) => {
+                    let held = kept.as_ref().map_or(0, CellSet::len) as f64 * hardness;
+                    hardness::scale_to(&mut change, *force - held, hardness);
+                    contact = contact.filter(&change, |p| p > 0.0);
+                    change.retain(|&p| p > 0.0);
+                }
+                Target::Approach(_) => each(&mut change, |p| *p = p.min(hardness)),
+            }
+        }
+        if let Some(kept) = kept {
+            let all = contact.union(&kept);
+            change = all.carry(&contact, &change);
+            all.add_carried(&kept, &vec![hardness; kept.len()], &mut change);
+            contact = all;
+        }
         let d = now.d;
         self.advance(Pressure { contact, p: change, d, q: None });
         outcome.steps

@@ -1,6 +1,7 @@
 //! What is solved, from where, how well, and what comes of it.
 
 use super::candidates::Candidates;
+use super::hardness::elastic;
 use super::residuals::Residuals;
 use super::undecided::undecided;
 use crate::geometry::{CellSet, Grid};
@@ -10,6 +11,7 @@ use crate::operator::Operators;
 use crate::parts::{Part, timed};
 use crate::tuning::Tuning;
 use contact_model::{Boundary, Status};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// One surface in nondimensional form: z in units of the rms height, p so that `u = sum I p`.
@@ -21,6 +23,8 @@ pub struct Problem {
     pub operators: Operators,
     /// Room for its linear systems.
     pub workspace: Workspace,
+    /// Largest pressure of a cell; infinite without a hardness.
+    pub hardness: f64,
     /// The same surface on larger cells, once a cold start has asked for it.
     pub coarser: Option<Box<Problem>>,
     /// Whether coarse grids may give initial guesses.
@@ -34,6 +38,7 @@ impl Problem {
             candidates: Candidates::new(grid, z),
             operators: timed(Part::Plans, || Operators::new(KernelTable::shared(grid, boundary), tuning)),
             workspace: Workspace::default(),
+            hardness: f64::INFINITY,
             coarser: None,
             nested: true,
         }
@@ -85,7 +90,7 @@ pub struct Guess {
 pub struct Solved {
     /// The contact set: cells with p > 0.
     pub contact: CellSet,
-    /// Pressure on it.
+    /// Pressure on it; exactly the hardness on saturated cells.
     pub p: Vec<f64>,
     /// Approach.
     pub d: f64,
@@ -114,14 +119,37 @@ pub struct Continuation {
 }
 
 impl Solved {
-    /// Gap left on the contact set.
-    pub fn gap_on_contact(&self) -> Vec<f64> {
-        self.contact.carry(&self.continuation.checked, &self.continuation.gap)
+    /// Gap left on a part of the contact set.
+    pub fn gap_on(&self, part: &CellSet) -> Vec<f64> {
+        part.carry(&self.continuation.checked, &self.continuation.gap)
     }
 
-    /// Cells outside the contact set that may belong to it: their gap is negative or below what it can still change.
-    pub fn undecided(&self, grid: Grid, left: &[f64], tuning: &Tuning) -> CellSet {
+    /// How far the pressure of the `elastic` cells is from its nearest bound, 0 or the hardness.
+    pub fn room(&self, elastic: &CellSet, hardness: f64) -> Cow<'_, [f64]> {
+        if hardness.is_infinite() {
+            return Cow::Borrowed(&self.p);
+        }
+        let mut room = elastic.carry(&self.contact, &self.p);
+        room.iter_mut().for_each(|p| *p = p.min(hardness - *p));
+        Cow::Owned(room)
+    }
+
+    /// The cells of the contact set below the hardness: all of them where no cell is saturated.
+    pub fn elastic(&self, hardness: f64) -> Cow<'_, CellSet> {
+        elastic(&self.contact, &self.p, hardness)
+    }
+
+    /// Cells outside the `elastic` ones that may belong to them: open cells whose gap is negative or below what it can still change, and
+    /// saturated cells of which the same is true of the indentation.
+    pub fn undecided(&self, grid: Grid, elastic: &CellSet, left: &[f64], tuning: &Tuning) -> CellSet {
         let Continuation { checked, gap, .. } = &self.continuation;
-        undecided(grid, &self.contact, left, checked, gap, tuning)
+        if elastic.len() == self.contact.len() {
+            return undecided(grid, elastic, left, checked, gap, tuning);
+        }
+        let saturated = self.contact.without(elastic);
+        let twice: Vec<f64> = saturated.carry(checked, gap).iter().map(|g| -2.0 * g).collect();
+        let mut away = gap.clone();
+        checked.add_carried(&saturated, &twice, &mut away);
+        undecided(grid, elastic, left, checked, &away, tuning)
     }
 }

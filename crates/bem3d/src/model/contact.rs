@@ -1,7 +1,7 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
 use super::prepared::{NAME, PreparedBem3d};
-use crate::active_set::{self, Limits, Solved, Target};
+use crate::active_set::{self, Limits, Solved, Target, is_saturated};
 use crate::parts::{Part, timed};
 use crate::stiffness::{self, Stiffness};
 use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
@@ -31,6 +31,9 @@ impl PreparedContact for PreparedBem3d {
         if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
             return self.no_contact();
         }
+        if let (Target::Force(force), Load::Force(asked)) = (target, load) {
+            self.refuse_beyond_hardness(force, asked)?;
+        }
         self.begin_count();
         let (solved, tangent) = self.settle(target, self.limits(), stop);
         let miss = match target {
@@ -42,6 +45,16 @@ impl PreparedContact for PreparedBem3d {
 }
 
 impl PreparedBem3d {
+    /// Errors for a force that all cells at the hardness do not carry.
+    fn refuse_beyond_hardness(&self, force: f64, asked: f64) -> Result<()> {
+        let capacity = self.capacity();
+        if force < capacity {
+            return Ok(());
+        }
+        let max = self.nondimensional.force(PI * capacity)?;
+        Err(Error::OutOfRange { name: "force".into(), value: asked, min: 0.0, max })
+    }
+
     /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the certificate does: as long as
     /// undecided cells could change it by more than the tolerance, the contact set is solved further.
     pub(super) fn settle(
@@ -54,14 +67,16 @@ impl PreparedBem3d {
         let guess = self.guess(target, limits, stop);
         let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
         // Full contact of a periodic surface has no finite stiffness.
-        let full = self.is_periodic() && solved.contact.len() == self.problem.grid().count();
+        let hardness = self.problem.hardness;
+        let whole = self.is_periodic() && solved.contact.len() == self.problem.grid().count();
+        let full = whole && !is_saturated(&solved.p, hardness);
         if full || !self.outputs.needs_stiffness() {
             return (solved, None);
         }
         // The last state is not needed any more, and as large as the contact.
         let last = self.last.take();
         let k = last.as_ref().and_then(|last| last.tangent.as_ref()).map(|&(_, k)| k);
-        let q = last.and_then(|last| last.tangent_at(&solved, &tuning));
+        let q = last.and_then(|last| last.tangent_at(&solved, hardness, &tuning));
         let mut tangent = self.tangent(&solved, q, k, stop);
         for _ in 0..tuning.tightenings {
             let (error, before) = (self.stiffness_error(&tangent), solved.residuals.worst());
@@ -82,7 +97,7 @@ impl PreparedBem3d {
             // The tighter state counts as converged when it meets the tolerance that was asked for.
             let converged = next.residuals.worst() <= self.options.tolerance;
             let status = if converged { Status::Converged } else { next.status };
-            let q = next.contact.carry(&solved.contact, &tangent.q);
+            let q = next.elastic(hardness).carry(&solved.elastic(hardness), &tangent.q);
             let steps = solved.steps + tangent.steps;
             solved = Solved { steps, status, ..next };
             tangent = self.tangent(&solved, Some(q), k, stop);

@@ -10,8 +10,9 @@ impl PreparedBem3d {
     pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
         let force: f64 = solved.p.iter().sum();
         let plane = solved.d - self.problem.operators.table().shift() * force;
-        // Rounding where the contact is full.
-        (self.mean - plane).max(0.0)
+        let gap = self.mean - plane;
+        // Rounding where the contact is full. A plastic indentation may bring the mean planes of the virgin surfaces beyond each other.
+        if self.problem.hardness.is_finite() { gap } else { gap.max(0.0) }
     }
 
     /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and secants where it is not: the gap
@@ -28,7 +29,9 @@ impl PreparedBem3d {
         let (limits, side) = (self.limits(), (self.problem.grid().count() as f64).sqrt());
         // A wave of the rms height and the length of the map closes at about side x rms.
         let mut x = self.last.as_ref().map_or(0.1 * side, |last| last.force).ln();
-        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        // With a hardness no force reaches that of all cells at it; without, this is infinite.
+        let (mut low, mut high) = (f64::NEG_INFINITY, self.capacity().ln());
+        x = x.min(high - GAP_STEP);
         let mut before: Option<(f64, f64)> = None;
         let mut steps = 0;
         for _ in 0..GAP_LOADS {

@@ -10,7 +10,7 @@ pub use options::{Bem3d, Method};
 
 use crate::tuning::Tuning;
 use contact_model::{
-    Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface,
+    Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, Result, Scene, Source, Surface,
 };
 use prepared::{NAME, PreparedBem3d};
 use std::sync::Arc;
@@ -47,11 +47,10 @@ impl Bem3d {
         tuning: &Tuning,
     ) -> Result<Box<dyn PreparedContact>> {
         scene.validate()?;
-        let boundary = scene.effects.boundary;
-        if boundary != Boundary::Periodic {
+        if !matches!(scene.effects.boundary, Boundary::Free | Boundary::Periodic) {
             scene.refuse_effects(NAME)?;
         }
-        Effects { boundary: Boundary::Free, ..scene.effects }.refuse(NAME)?;
+        Effects { boundary: Boundary::Free, hardness: Hardness::Off, ..scene.effects }.refuse(NAME)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }

@@ -7,8 +7,11 @@ use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
-    Boundary, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size, Stop,
+    Boundary, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size,
+    Stop,
 };
+use std::borrow::Cow;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Name of the model.
@@ -26,6 +29,8 @@ pub struct PreparedBem3d {
     pub(super) normalisation: Normalisation,
     /// Mean of z over the defined points.
     pub(super) mean: f64,
+    /// Number of defined points.
+    defined: usize,
     pub(super) last: Option<LastState>,
     /// Sides of the map.
     pub(super) size: Size,
@@ -58,6 +63,13 @@ impl PreparedBem3d {
         let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, tuning);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
+        if let Hardness::Limit { pressure } = scene.effects.hardness {
+            problem.hardness = nondimensional.pressure_in(pressure) / PI;
+            if !(problem.hardness.is_finite() && problem.hardness > 0.0) {
+                let expected = "a pressure nearer to E* times the slope of the surface";
+                return Err(Error::domain("hardness", pressure, expected));
+            }
+        }
         let normalisation =
             Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
         Ok(Self {
@@ -68,6 +80,7 @@ impl PreparedBem3d {
             height,
             normalisation,
             mean,
+            defined,
             last: None,
             size: map.size(),
         })
@@ -115,11 +128,21 @@ impl PreparedBem3d {
         tangent.error() * self.magnification(tangent.value)
     }
 
+    /// The force of all defined cells at the hardness, nondimensional; infinite without one.
+    pub(super) fn capacity(&self) -> f64 {
+        self.problem.hardness * self.defined as f64
+    }
+
     /// Keeps a state to begin the next from.
     pub(super) fn remember(&mut self, solved: Solved, tangent: Option<Stiffness>) {
+        let hardness = self.problem.hardness;
+        // Saturated cells do not follow the tangent.
+        let tangent = tangent.filter(|t| t.value > 0.0).map(|t| match solved.elastic(hardness) {
+            Cow::Borrowed(_) => (t.q, t.value),
+            Cow::Owned(elastic) => (solved.contact.carry(&elastic, &t.q), t.value),
+        });
         let Solved { contact, p, d, .. } = solved;
         let force = p.iter().sum();
-        let tangent = tangent.map(|t| (t.q, t.value));
         self.last = Some(LastState { contact, p, d, force, tangent });
     }
 

@@ -1,12 +1,12 @@
 //! From a solution to the state that is returned.
 
 use super::prepared::PreparedBem3d;
-use crate::active_set::Solved;
+use crate::active_set::{Solved, is_saturated};
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
 use contact_model::{
-    Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches, Result,
-    SolveReport, Status, Stop, Work,
+    Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches, PlasticState,
+    Result, SolveReport, Status, Stop, Work,
 };
 use std::f64::consts::PI;
 
@@ -48,12 +48,14 @@ impl PreparedBem3d {
         let stiffness = (tangent.as_ref())
             .map(|t| units.stiffness(PI * t.value * self.magnification(t.value)))
             .transpose()?;
+        let plastic = self.plastic(&solved)?;
         let area = self.outputs.area.then(|| units.area(solved.contact.len() as f64)).transpose()?;
         let state = ContactState::new(units.force(PI * force)?, report)
             .with_approach(approach)
             .with_mean_gap(mean_gap)
             .with_stiffness(stiffness)
             .with_area(area)
+            .with_plastic(plastic)
             .with_patches(self.patches(&solved.contact)?)
             .with_resolution(self.resolution(&solved)?)
             .with_fields(fields)
@@ -66,6 +68,20 @@ impl PreparedBem3d {
         } else {
             Err(Error::NotConverged { best: Box::new(state) })
         }
+    }
+
+    /// What has yielded, with a hardness.
+    fn plastic(&self, solved: &Solved) -> Result<Option<PlasticState>> {
+        let hardness = self.problem.hardness;
+        if hardness.is_infinite() {
+            return Ok(None);
+        }
+        let (saturated, depth) = plastic_depth(solved, hardness);
+        let area = self.nondimensional.area(saturated.len() as f64)?;
+        let mean = depth.iter().sum::<f64>() / saturated.len().max(1) as f64;
+        let volume = area * self.nondimensional.approach(mean)?;
+        let pressure = self.nondimensional.pressure(PI * hardness)?;
+        Ok(Some(PlasticState::new(area, volume, pressure)))
     }
 
     fn fields(&mut self, solved: &Solved) -> Result<Option<Fields>> {
@@ -81,6 +97,14 @@ impl PreparedBem3d {
             }
             fields.pressure = Some(self.field(p)?);
         }
+        let (saturated, depth) = plastic_depth(solved, self.problem.hardness);
+        if self.outputs.plastic_depth {
+            let mut depths = vec![0.0; grid.count()];
+            for (i, depth) in saturated.index(grid).zip(&depth) {
+                depths[i] = depth * self.height;
+            }
+            fields.plastic_depth = Some(self.field(depths)?);
+        }
         if self.outputs.displacement || self.outputs.gap {
             let mut u = Vec::new();
             self.problem.operators.exact(&solved.contact, &solved.p, &CellSet::all(grid), &mut u);
@@ -89,7 +113,10 @@ impl PreparedBem3d {
             let height = self.height;
             if self.outputs.gap {
                 let z = self.problem.candidates.z();
-                let gap = u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect();
+                let mut gap: Vec<f64> = u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect();
+                for (i, depth) in saturated.index(grid).zip(&depth) {
+                    gap[i] += depth * height;
+                }
                 fields.gap = Some(self.field(gap)?);
             }
             if self.outputs.displacement {
@@ -152,6 +179,7 @@ impl PreparedBem3d {
             let z = self.problem.candidates.z().iter();
             let gap = || self.field(z.map(|z| z * self.height).collect());
             fields.gap = self.outputs.gap.then(gap).transpose()?;
+            fields.plastic_depth = self.outputs.plastic_depth.then(zeros).transpose()?;
             Some(fields)
         } else {
             None
@@ -165,6 +193,7 @@ impl PreparedBem3d {
             .with_mean_gap(mean_gap)
             .with_stiffness(self.outputs.needs_stiffness().then_some(0.0))
             .with_area(self.outputs.area.then_some(0.0))
+            .with_plastic(self.problem.hardness.is_finite().then(PlasticState::default))
             .with_patches(self.outputs.contact_patches.then(Patches::default))
             .with_fields(fields)
             .completed(&self.outputs, self.normalisation.modulus)
@@ -178,4 +207,15 @@ impl PreparedBem3d {
             (false, None) => format!("direct {}", solved.contact.len()),
         }
     }
+}
+
+/// The saturated cells and the depth of their indentation.
+fn plastic_depth(solved: &Solved, hardness: f64) -> (CellSet, Vec<f64>) {
+    if !is_saturated(&solved.p, hardness) {
+        return (CellSet::default(), Vec::new());
+    }
+    let saturated = solved.contact.filter(&solved.p, |p| p >= hardness);
+    let mut depth = solved.gap_on(&saturated);
+    depth.iter_mut().for_each(|g| *g = (-*g).max(0.0));
+    (saturated, depth)
 }

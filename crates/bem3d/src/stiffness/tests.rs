@@ -123,7 +123,7 @@ fn cells_on_the_wrong_side_by_hand() {
         // The second contact cell carries less than its gap of 0.4 may change; the first far more.
         let estimate = |p: f64| {
             let doubtful = state(grid, &[3.0, 0.0, p, 0.0], vec![0.01, -0.2, 0.4, 1.0]);
-            set_error(&table, &doubtful, &doubtful.gap_on_contact(), &[0.7], &[0.2, 0.3])
+            set_error(&table, &doubtful.p, &doubtful.gap_on(&doubtful.contact), &[0.7], &[0.2, 0.3])
         };
         let added = 0.3f64.powi(2) / eigenvalue;
         let removed = 0.3f64.powi(2) * own;

@@ -60,7 +60,7 @@ mod tangent {
             let (mut problem, states) = path(grid, &[100.0, 200.0]);
             let solved = &states[1].0;
             let carried = solved.contact.carry(&states[0].0.contact, &states[0].1);
-            let extrapolated = last(&states[0]).tangent_at(solved, &TUNING).unwrap();
+            let extrapolated = last(&states[0]).tangent_at(solved, f64::INFINITY, &TUNING).unwrap();
             // A tolerance that any guess meets returns what the guess is worth.
             let [carried, extrapolated] = [carried, extrapolated].map(|q| {
                 let k = stiffness::solve(&mut problem, solved, Some(q), 100.0, &never);
@@ -70,11 +70,11 @@ mod tangent {
             assert!(extrapolated < 0.5 * carried, "{extrapolated} {carried}");
             // Between equal loads, or on the way down, there is no better guess than the tangent at the
             // larger load.
-            let back = last(&states[1]).tangent_at(&states[0].0, &TUNING).unwrap();
+            let back = last(&states[1]).tangent_at(&states[0].0, f64::INFINITY, &TUNING).unwrap();
             assert_eq!(back, states[0].0.contact.carry(&solved.contact, &states[1].1));
-            assert_eq!(last(&states[1]).tangent_at(solved, &TUNING).unwrap(), states[1].1);
+            assert_eq!(last(&states[1]).tangent_at(solved, f64::INFINITY, &TUNING).unwrap(), states[1].1);
             let bare = LastState { tangent: None, ..last(&states[0]) };
-            assert!(bare.tangent_at(solved, &TUNING).is_none());
+            assert!(bare.tangent_at(solved, f64::INFINITY, &TUNING).is_none());
         }
     }
 

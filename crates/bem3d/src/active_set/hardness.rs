@@ -1,0 +1,186 @@
+//! The upper bound of the pressure: cells at the hardness are saturated, their gap is negative by the plastic indentation.
+//!
+//! Open cells have p = 0 and g >= 0, elastic ones g = 0, saturated ones p = p_s and g <= 0: the conditions of `0 <= p <= p_s`. A cell is
+//! saturated exactly where its pressure is p_s. Without a hardness p_s is infinite, and nothing here is called but [`is_saturated`].
+
+use super::candidates::Candidates;
+use super::residuals::Residuals;
+use crate::geometry::CellSet;
+use crate::real::{each, largest, sum};
+use std::borrow::Cow;
+
+/// Rounds of scaling at most: each saturates a cell or is the last one.
+const ROUNDS: usize = 100;
+
+/// Share of a step from which it is taken whole.
+const FULL_STEP: f64 = 0.9;
+
+/// Whether any cell is saturated.
+pub fn is_saturated(p: &[f64], hardness: f64) -> bool {
+    hardness.is_finite() && largest(p) >= hardness
+}
+
+/// The cells below the hardness.
+pub fn elastic<'a>(contact: &'a CellSet, p: &[f64], hardness: f64) -> Cow<'a, CellSet> {
+    if is_saturated(p, hardness) {
+        Cow::Owned(contact.filter(p, |p| p < hardness))
+    } else {
+        Cow::Borrowed(contact)
+    }
+}
+
+/// The saturated cells that stay so: those whose gap is no larger than `noise`.
+pub fn kept(contact: &CellSet, p: &[f64], gap: &[f64], hardness: f64, noise: f64) -> CellSet {
+    let values: Vec<f64> =
+        p.iter().zip(gap).map(|(&p, &g)| if p >= hardness { g } else { f64::INFINITY }).collect();
+    contact.filter(&values, |g| g <= noise)
+}
+
+/// The values of the cells below the hardness.
+pub fn of_elastic(p: &[f64], values: &[f64], hardness: f64) -> Vec<f64> {
+    p.iter().zip(values).filter(|&(&p, _)| p < hardness).map(|(_, &v)| v).collect()
+}
+
+/// Scales a positive pressure and cuts it at the hardness so that its sum is `sum`; where that is more than the cells carry, all saturate.
+///
+/// The sum is a concave function of the factor: Newton's method from below ends after as many steps as cells saturate in turn.
+pub fn scale_to(p: &mut [f64], wanted: f64, hardness: f64) {
+    let mut factor = (wanted / sum(p)).max(0.0);
+    for _ in 0..ROUNDS {
+        let (mut saturated, mut rest) = (0, 0.0);
+        for p in p.iter() {
+            if p * factor >= hardness {
+                saturated += 1;
+            } else {
+                rest += p;
+            }
+        }
+        let next = (wanted - f64::from(saturated) * hardness) / rest;
+        if rest <= 0.0 || next.is_nan() || next <= factor {
+            break;
+        }
+        factor = next;
+    }
+    each(p, |p| *p = (*p * factor).min(hardness));
+}
+
+/// Brings a pressure to a force: the cells below the hardness are scaled, those that pass it saturate. Where the contact set cannot carry
+/// the force, the next lowest cells join it.
+///
+/// Cost: a few passes over the contact set; the whole grid where cells join.
+pub fn bring_to(contact: &mut CellSet, p: &mut Vec<f64>, force: f64, hardness: f64, candidates: &Candidates) {
+    for _ in 0..ROUNDS {
+        let saturated = p.iter().filter(|&&p| p >= hardness).count();
+        let total = sum(p);
+        let rest = if saturated == 0 { total } else { total - saturated as f64 * hardness };
+        let wanted = force - saturated as f64 * hardness;
+        if wanted <= 0.0 {
+            let factor = force / total;
+            return each(p, |p| *p *= factor);
+        }
+        if saturated == p.len() || rest <= 0.0 {
+            let joined = candidates.lowest_outside(contact, 1 + (wanted / hardness) as usize);
+            if joined.is_empty() {
+                return;
+            }
+            let share = (wanted / joined.len() as f64).min(hardness);
+            let all = contact.union(&joined);
+            let mut pressure = all.carry(contact, p);
+            all.add_carried(&joined, &vec![share; joined.len()], &mut pressure);
+            (*contact, *p) = (all, pressure);
+            continue;
+        }
+        let factor = wanted / rest;
+        each(p, |p| {
+            if *p < hardness {
+                *p = (*p * factor).min(hardness);
+            }
+        });
+        if p.iter().filter(|&&p| p >= hardness).count() == saturated {
+            return;
+        }
+    }
+}
+
+/// Shortens a step where the energy `p (u/2 + z)` passes its minimum on the way: the new pressure and its u + z become those of the minimum.
+/// The old ones are a pressure, the gap under it and its approach, all on the same cells. Whether it was shortened.
+///
+/// Sets that follow from each other may alternate for ever without it. Both pressures obey the bounds and have the same force, and so has
+/// every pressure between them; u is linear.
+pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut Vec<f64>, &mut Vec<f64>)) -> bool {
+    let ((before, gap, d), (p, displaced)) = (old, new);
+    let (mut first, mut last) = (0.0, 0.0);
+    for i in 0..p.len() {
+        let change = p[i] - before[i];
+        if change != 0.0 {
+            first += change * gap[i];
+            last += change * (displaced[i] - d);
+        }
+    }
+    let share = first / (first - last);
+    if !(first < 0.0 && share < FULL_STEP) {
+        return false;
+    }
+    for i in 0..p.len() {
+        p[i] = before[i] + share * (p[i] - before[i]);
+        displaced[i] = gap[i] + d + share * (displaced[i] - (gap[i] + d));
+    }
+    true
+}
+
+/// The approach under which the gaps of the cells below the hardness vanish on average, weighted by their pressure. Without such cells the
+/// one up to which the lowest cells carry the force at the hardness. `displaced` is u + z on the contact set, `everywhere` on all cells that
+/// could touch.
+pub fn approach(p: &[f64], displaced: &[f64], everywhere: &[f64], hardness: f64) -> f64 {
+    let below = || p.iter().zip(displaced).filter(|&(&p, _)| p < hardness);
+    let total: f64 = below().map(|(p, _)| p).sum();
+    if total > 0.0 {
+        return below().map(|(p, g)| p / total * g).sum();
+    }
+    let mut values = everywhere.to_vec();
+    let last = p.len().min(values.len() - 1);
+    *values.select_nth_unstable_by(last, f64::total_cmp).1
+}
+
+/// Residuals of a pressure p with the gap g on all cells that could touch, both on the same cells.
+///
+/// The duality gap is `sum p g - min sum q g` over all `0 <= q <= p_s` of the same sum: the lowest cells at p_s.
+pub fn residuals(p: &[f64], gap: &[f64], hardness: f64, s: f64) -> Residuals {
+    let force = sum(p);
+    let (mut deepest, mut weighted) = (0.0_f64, 0.0);
+    for (&p, &g) in p.iter().zip(gap) {
+        if p >= hardness {
+            deepest = deepest.max(g);
+            weighted += p / force * g.max(0.0);
+        } else {
+            deepest = deepest.max(-g);
+            weighted += p / force * g.abs();
+        }
+    }
+    let mut cells: Vec<(f64, f64)> = gap.iter().copied().zip(p.iter().copied()).collect();
+    let full = ((force / hardness) as usize).min(cells.len().saturating_sub(1));
+    let mut duality = 0.0;
+    if !cells.is_empty() {
+        cells.select_nth_unstable_by(full, |a, b| a.0.total_cmp(&b.0));
+        for (i, &(g, p)) in cells.iter().enumerate() {
+            let q = match i.cmp(&full) {
+                std::cmp::Ordering::Less => hardness,
+                std::cmp::Ordering::Equal => force - full as f64 * hardness,
+                std::cmp::Ordering::Greater => 0.0,
+            };
+            // Gaps of cells without pressure may be infinite.
+            if p - q != 0.0 {
+                duality += (p - q) / force * g;
+            }
+        }
+    }
+    Residuals {
+        duality_gap: duality.max(0.0) / s,
+        penetration: deepest / s,
+        complementarity: weighted / s,
+        deepest,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,166 @@
+use super::super::{Guess, Limits, Problem, Target, cold_start, solve};
+use super::*;
+use crate::geometry::Grid;
+use crate::kernel::KernelTable;
+use crate::linear::Factor;
+use crate::operator::{DirectSum, InfluenceOperator};
+use crate::tuning::Tuning;
+use approx::assert_relative_eq;
+use contact_model::{Boundary, Status, never};
+use proptest::prelude::*;
+use std::sync::Arc;
+
+/// Bound of the residuals, in approaches.
+const TIGHT: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
+/// What they leave open in the pressure of a few cells.
+const SAME: f64 = 1e-7;
+/// A solution nearer to a tie than this share of the hardness or of the approach may be found with a cell on its other side.
+const TIE: f64 = 1e-6;
+
+/// A solution of the conditions on a tiny grid.
+#[derive(Debug)]
+struct Enumerated {
+    p: Vec<f64>,
+    d: f64,
+    /// Nearest distance to a tie.
+    tie: f64,
+}
+
+/// All solutions, by trying every assignment of open, elastic and saturated to the cells. Cost `O(3^n n^3)`.
+fn every_state(grid: Grid, z: &[f64], target: Target, hardness: f64) -> Vec<Enumerated> {
+    let table = KernelTable::shared(grid, Boundary::Free);
+    let (n, all) = (grid.count(), CellSet::all(grid));
+    let apply = |p: &[f64]| {
+        let mut u = vec![0.0; n];
+        DirectSum(&table).apply(&all, p, &all, &mut u);
+        u
+    };
+    let try_one = |code: usize| {
+        let digit = |i: u32| code / 3usize.pow(i) % 3;
+        let cells = |kind: usize| (0..n as u32).filter(|&i| digit(i) == kind).collect::<Vec<_>>();
+        let (elastic, saturated) = (cells(1), cells(2));
+        let mut p = vec![0.0; n];
+        saturated.iter().for_each(|&i| p[i as usize] = hardness);
+        let u = apply(&p);
+        let set = CellSet::from_index(grid, &elastic);
+        let right: Vec<f64> = elastic.iter().map(|&i| z[i as usize] + u[i as usize]).collect();
+        let d = if elastic.is_empty() {
+            match target {
+                Target::Approach(d) => d,
+                Target::Force(_) => return None,
+            }
+        } else {
+            let (q, w) = Factor::new(&table, &set)?.solve_pair(&right);
+            let d = match target {
+                Target::Approach(d) => d,
+                Target::Force(force) => {
+                    let rest = force - hardness * saturated.len() as f64;
+                    (rest + w.iter().sum::<f64>()) / q.iter().sum::<f64>()
+                }
+            };
+            elastic.iter().zip(q.iter().zip(&w)).for_each(|(&i, (q, w))| p[i as usize] = d * q - w);
+            d
+        };
+        let gap: Vec<f64> = apply(&p).iter().zip(z).map(|(u, z)| u + z - d).collect();
+        let tie = (0..n)
+            .map(|i| match digit(i as u32) {
+                0 => gap[i] / d,
+                1 => p[i].min(hardness - p[i]) / hardness,
+                _ => -gap[i] / d,
+            })
+            .fold(f64::INFINITY, f64::min);
+        (tie > 0.0).then_some(Enumerated { p, d, tie })
+    };
+    (1..3usize.pow(n as u32)).filter_map(try_one).collect()
+}
+
+/// A prepared problem with a hardness.
+fn problem(grid: Grid, z: &[f64], hardness: f64) -> Problem {
+    let mut problem = Problem::new(grid, Arc::new(z.to_vec()), Boundary::Free, &Tuning::DEFAULT);
+    problem.hardness = hardness;
+    problem
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn the_only_solution_of_every_assignment_is_found(
+        heights in proptest::collection::vec(0f64..1.0, 6),
+        stretch in prop_oneof![Just(1.0), 0.7f64..1.4],
+        load in 0.05f64..8.0,
+        share in 0.02f64..3.0,
+        by_force in any::<bool>(),
+        factor in any::<bool>(),
+    ) {
+        let grid = Grid { columns: 3, rows: 2, stretch };
+        let highest = heights.iter().copied().fold(0.0, f64::max);
+        let z: Vec<f64> = heights.iter().map(|h| highest - h).collect();
+        // A force that the cells carry, or an approach.
+        let hardness = share * load / 6.0 + if by_force { load / 6.0 } else { 0.0 };
+        let target = if by_force { Target::Force(load) } else { Target::Approach(load) };
+        let found = every_state(grid, &z, target, hardness);
+        prop_assume!(found.iter().all(|one| one.tie > TIE));
+        prop_assert_eq!(found.len(), 1);
+        let mut problem = problem(grid, &z, hardness);
+        let limits = Limits { factor, ..TIGHT };
+        let guess = cold_start(&mut problem, target, limits, &never);
+        let solved = solve(&mut problem, target, guess, limits, &never);
+        prop_assert_eq!(solved.status, Status::Converged);
+        let p = CellSet::all(grid).carry(&solved.contact, &solved.p);
+        for (p, expected) in p.iter().zip(&found[0].p) {
+            prop_assert!((p - expected).abs() <= SAME * load, "{:?} {:?}", solved.p, found[0].p);
+        }
+        prop_assert!((solved.d / found[0].d - 1.0).abs() <= SAME, "{} {}", solved.d, found[0].d);
+    }
+}
+
+#[test]
+fn a_force_is_shared_by_hand() {
+    let grid = Grid::square(5, 1);
+    let candidates = Candidates::new(grid, Arc::new(vec![0.0, 0.1, 0.3, f64::INFINITY, 0.2]));
+    let brought = |cells: &[u32], p: &[f64], force: f64| {
+        let (mut set, mut p) = (CellSet::from_index(grid, cells), p.to_vec());
+        bring_to(&mut set, &mut p, force, 1.0, &candidates);
+        (set.index(grid).collect::<Vec<_>>(), p)
+    };
+    // One cell is saturated, the other takes the rest.
+    assert_eq!(brought(&[0, 1], &[1.0, 0.25], 1.5), (vec![0, 1], vec![1.0, 0.5]));
+    // Less than the saturated cell carries: all fall.
+    assert_eq!(brought(&[0, 1], &[1.0, 1.0], 1.0), (vec![0, 1], vec![0.5, 0.5]));
+    // The lowest cells outside join; an undefined one never does.
+    assert_eq!(brought(&[0], &[1.0], 1.5), (vec![0, 1], vec![1.0, 0.5]));
+    let (cells, p) = brought(&[0], &[1.0], 3.5);
+    assert_eq!(cells, [0, 1, 2, 4]);
+    assert_relative_eq!(p.iter().sum::<f64>(), 3.5, max_relative = 1e-14);
+}
+
+#[test]
+fn residuals_by_hand() {
+    // p_s = 1: a saturated cell indented by 0.2, an elastic one with a gap of 0.1, one open by 0.4; F = 1.5, s = 2.
+    let e = residuals(&[1.0, 0.5, 0.0], &[-0.2, 0.1, 0.4], 1.0, 2.0);
+    assert_relative_eq!(e.complementarity, 0.5 * 0.1 / 1.5 / 2.0, max_relative = 1e-14);
+    assert!(e.penetration == 0.0 && e.duality_gap == 0.0);
+    // The open cell penetrates by more than the saturated one: the best q has it at p_s and half of the saturated one.
+    let e = residuals(&[1.0, 0.5, 0.0], &[-0.2, 0.1, -0.4], 1.0, 2.0);
+    assert_relative_eq!(e.penetration, 0.2, max_relative = 1e-14);
+    assert_relative_eq!(
+        e.duality_gap,
+        (-0.2 + 0.05 - (-0.4 - 0.1)) / 1.5 / 2.0,
+        max_relative = 1e-14
+    );
+    // A gap under a saturated cell counts twice.
+    let e = residuals(&[1.0, 0.5, 0.0], &[0.3, 0.0, 0.4], 1.0, 2.0);
+    assert_relative_eq!(e.penetration, 0.15, max_relative = 1e-14);
+    assert_relative_eq!(e.complementarity, 0.3 / 1.5 / 2.0, max_relative = 1e-14);
+}
+
+#[test]
+fn the_factored_way_ends_where_cells_saturate() {
+    // Two summits under a force that one alone would carry above the hardness.
+    let grid = Grid::square(2, 1);
+    let mut problem = problem(grid, &[0.0, 1.0], 0.5);
+    let guess = Guess { set: CellSet::all(grid), p: vec![0.1; 2], d: 1.0, far: false };
+    let solved = solve(&mut problem, Target::Force(0.8), guess, TIGHT, &never);
+    assert_eq!((solved.status, solved.p.len()), (Status::Converged, 2));
+    assert!(solved.p[0] == 0.5 && (solved.p[1] - 0.3).abs() < 1e-12 && solved.q.is_none(), "{:?}", solved.p);
+}
