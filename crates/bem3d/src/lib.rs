@@ -98,7 +98,7 @@ mod tuning;
 #[doc(no_inline)]
 pub use contact_model::*;
 pub use kernel::love;
-pub use model::{Bem3d, Method};
+pub use model::{Bem3d, Bem3dPath, Method};
 
 #[doc(hidden)]
 pub mod benchmarks;

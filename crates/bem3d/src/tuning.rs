@@ -82,6 +82,11 @@ pub struct Tuning {
     /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact: penetrations below are within
     /// the error of the inner solve, and adding those cells would regrow the set.
     pub noise: f64,
+    /// With a hardness: share of a step from which it is taken whole ...
+    pub whole_step: f64,
+    /// ... and steps of the next inner solve at most after one that was not: long ones change the sets too much at once. 2 solved every
+    /// load of N = 257 and 1025, periodic and free, p_s = 1 to 0.01 of E* times the rms gradient (2026-11); without a limit some stagnated.
+    pub short_steps: usize,
     /// Candidates reach up to this multiple of the approach; a plane that ends higher costs one more outer iteration.
     pub candidates: f64,
     /// Candidates up to one approach serve another of at least this share of it. Chosen without a measurement.
@@ -171,6 +176,8 @@ impl Tuning {
         gain: (0.1, 0.4),
         single_noise: 1e-4,
         noise: 1.0,
+        whole_step: 0.9,
+        short_steps: 2,
         candidates: 1.05,
         kept_candidates: 0.9,
         factor_rounding: 1e-12,
@@ -212,7 +219,7 @@ macro_rules! constants {
 }
 
 /// Every constant of `Tuning`, for a study of what each is worth.
-pub const CONSTANTS: [Constant; 59] = constants![
+pub const CONSTANTS: [Constant; 61] = constants![
     pair_ns,
     point_ns,
     single,
@@ -246,6 +253,8 @@ pub const CONSTANTS: [Constant; 59] = constants![
     gain.1,
     single_noise,
     noise,
+    whole_step,
+    short_steps,
     candidates,
     kept_candidates,
     factor_rounding,

@@ -68,6 +68,11 @@ impl Candidates {
         &self.z
     }
 
+    /// The same, shared.
+    pub fn shared(&self) -> Arc<Vec<f64>> {
+        Arc::clone(&self.z)
+    }
+
     /// Where the gaps begin and end.
     pub fn range(&self) -> GapRange {
         self.range

@@ -12,9 +12,6 @@ use std::borrow::Cow;
 /// Rounds of scaling at most: each saturates a cell or is the last one.
 const ROUNDS: usize = 100;
 
-/// Share of a step from which it is taken whole.
-const FULL_STEP: f64 = 0.9;
-
 /// Whether any cell is saturated.
 pub fn is_saturated(p: &[f64], hardness: f64) -> bool {
     hardness.is_finite() && largest(p) >= hardness
@@ -65,10 +62,17 @@ pub fn scale_to(p: &mut [f64], wanted: f64, hardness: f64) {
 }
 
 /// Brings a pressure to a force: the cells below the hardness are scaled, those that pass it saturate. Where the contact set cannot carry
-/// the force, the next lowest cells join it.
+/// the force, the next lowest cells join it. Whether any did.
 ///
 /// Cost: a few passes over the contact set; the whole grid where cells join.
-pub fn bring_to(contact: &mut CellSet, p: &mut Vec<f64>, force: f64, hardness: f64, candidates: &Candidates) {
+pub fn bring_to(
+    contact: &mut CellSet,
+    p: &mut Vec<f64>,
+    force: f64,
+    hardness: f64,
+    candidates: &Candidates,
+) -> bool {
+    let mut grown = false;
     for _ in 0..ROUNDS {
         let saturated = p.iter().filter(|&&p| p >= hardness).count();
         let total = sum(p);
@@ -76,13 +80,15 @@ pub fn bring_to(contact: &mut CellSet, p: &mut Vec<f64>, force: f64, hardness: f
         let wanted = force - saturated as f64 * hardness;
         if wanted <= 0.0 {
             let factor = force / total;
-            return each(p, |p| *p *= factor);
+            each(p, |p| *p *= factor);
+            return grown;
         }
         if saturated == p.len() || rest <= 0.0 {
             let joined = candidates.lowest_outside(contact, 1 + (wanted / hardness) as usize);
             if joined.is_empty() {
-                return;
+                return grown;
             }
+            grown = true;
             let share = (wanted / joined.len() as f64).min(hardness);
             let all = contact.union(&joined);
             let mut pressure = all.carry(contact, p);
@@ -97,17 +103,18 @@ pub fn bring_to(contact: &mut CellSet, p: &mut Vec<f64>, force: f64, hardness: f
             }
         });
         if p.iter().filter(|&&p| p >= hardness).count() == saturated {
-            return;
+            return grown;
         }
     }
+    grown
 }
 
-/// Shortens a step where the energy `p (u/2 + z)` passes its minimum on the way: the new pressure and its u + z become those of the minimum.
+/// Shortens a step where the energy `p (u/2 + z)` passes its minimum on the way, before the share `whole` of it: the new pressure and its u + z become those of the minimum.
 /// The old ones are a pressure, the gap under it and its approach, all on the same cells. Whether it was shortened.
 ///
 /// Sets that follow from each other may alternate for ever without it. Both pressures obey the bounds and have the same force, and so has
 /// every pressure between them; u is linear.
-pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut Vec<f64>, &mut Vec<f64>)) -> bool {
+pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whole: f64) -> bool {
     let ((before, gap, d), (p, displaced)) = (old, new);
     let (mut first, mut last) = (0.0, 0.0);
     for i in 0..p.len() {
@@ -118,7 +125,7 @@ pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut Vec<f64>, &mut Vec<f64>)
         }
     }
     let share = first / (first - last);
-    if !(first < 0.0 && share < FULL_STEP) {
+    if !(first < 0.0 && share < whole) {
         return false;
     }
     for i in 0..p.len() {

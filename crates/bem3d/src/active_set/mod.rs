@@ -9,6 +9,7 @@ mod solver;
 mod state;
 mod undecided;
 
+pub use candidates::Candidates;
 pub use hardness::is_saturated;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use solver::{resume, solve};

@@ -69,6 +69,8 @@ struct Solver<'a> {
     now_is_best: bool,
     /// The pressure before with its gap, where cells are saturated.
     before: Option<(Pressure, Continuation)>,
+    /// Steps of the next inner solve at most: few after one that was shortened, because long ones change the sets too much at once.
+    inner_steps: usize,
 }
 
 impl<'a> Solver<'a> {
@@ -82,7 +84,19 @@ impl<'a> Solver<'a> {
         problem.workspace.begin_load();
         let left = now.contact.carry(&state.checked, &state.gap);
         let (reach, best) = (state.reach, Pressure::default());
-        Self { problem, target, limits, now, state, left, reach, best, now_is_best: false, before: None }
+        Self {
+            problem,
+            target,
+            limits,
+            now,
+            state,
+            left,
+            reach,
+            best,
+            now_is_best: false,
+            before: None,
+            inner_steps: usize::MAX,
+        }
     }
 
     fn iterate(mut self, mut known: Option<Evaluated>, rough: bool, stop: Stop<'_>) -> Solved {
@@ -95,7 +109,6 @@ impl<'a> Solver<'a> {
             if progress.rough && evaluated.residuals.worst() <= tolerance {
                 evaluated = evaluate(false); // Better than expected.
             }
-            if std::env::var("TRACE").is_ok() { let h = self.problem.hardness; eprintln!("n {} C {} S {} d {:.6e} res {:?} rough {} J {:.9e}", self.problem.grid().columns, self.now.p.len(), self.now.p.iter().filter(|&&p| p >= h).count(), self.now.d, evaluated.residuals, progress.rough, 0.5 * sum_of_pairs(&self.now.p, &self.left, |p, g| p * (g + self.now.d)) + 0.5 * sum_of_pairs(&self.now.p, &self.problem.candidates.gaps(&self.now.contact), |p, z| p * z)); }
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
                 Decision::End(status) => break (status, evaluated),
                 Decision::Continue { best } => self.now_is_best |= best,
@@ -138,17 +151,19 @@ impl<'a> Solver<'a> {
             rescale(&mut now.p, force);
         }
         let saturated = hardness::is_saturated(&now.p, hardness);
+        let mut joined = false;
         if saturated {
             each(&mut now.p, |p| *p = p.min(hardness));
             if let Some(force) = force {
-                hardness::bring_to(&mut now.contact, &mut now.p, force, hardness, candidates);
-                state.checked = state.checked.union(&now.contact);
+                joined = hardness::bring_to(&mut now.contact, &mut now.p, force, hardness, candidates);
             }
         }
         // Later contact sets are subsets of the candidates that the first one is joined to.
         if state.checked.is_empty() || !(tuning.kept_candidates * state.reach..=state.reach).contains(reach) {
             state.reach = *reach;
             state.checked = candidates.below(*reach).union(&now.contact);
+        } else if joined {
+            state.checked = state.checked.union(&now.contact);
         }
         let Continuation { checked, gap, .. } = state;
         if rough {
@@ -157,12 +172,16 @@ impl<'a> Solver<'a> {
             operators.exact(&now.contact, &now.p, checked, gap);
         }
         candidates.add_to(checked, gap);
+        let mut shortened = false;
         if let Some((before, at)) = self.before.take()
             && at.checked.len() == checked.len()
         {
             let old = (at.checked.carry(&before.contact, &before.p), &at.gap[..], before.d);
             let mut p = checked.carry(&now.contact, &now.p);
-            if hardness::shorten(old, (&mut p, gap)) {
+            shortened = hardness::shorten(old, (&mut p, gap), tuning.whole_step);
+            self.inner_steps =
+                if shortened { tuning.short_steps } else { self.inner_steps.saturating_mul(2) };
+            if shortened {
                 now.contact = checked.filter(&p, |p| p > 0.0);
                 p.retain(|&p| p > 0.0);
                 now.p = p;
@@ -192,7 +211,11 @@ impl<'a> Solver<'a> {
         } else {
             Residuals::measure(&now.p, left, smallest(gap), height)
         };
-        Evaluated { residuals, complete: !rough && now.d <= state.reach, factored: now.q.is_some() }
+        Evaluated {
+            residuals,
+            complete: !rough && !shortened && now.d <= state.reach,
+            factored: now.q.is_some(),
+        }
     }
 
     /// One outer iteration: a new set from the gap, a solution on it, and the cells in tension removed. Returns the steps taken.
@@ -227,7 +250,8 @@ impl<'a> Solver<'a> {
         }
         let mut change = set.carry(checked, gap);
         each(&mut change, |value| *value = -*value);
-        let criteria = criteria(*limits, error, now.d, &tuning);
+        let mut criteria = criteria(*limits, error, now.d, &tuning);
+        criteria.steps = criteria.steps.min(self.inner_steps);
         let Problem { operators, workspace, .. } = &mut **problem;
         workspace.take(operators, set, recipe);
         let fixed_sum = matches!(target, Target::Force(_));

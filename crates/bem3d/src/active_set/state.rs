@@ -130,7 +130,9 @@ impl Solved {
             return Cow::Borrowed(&self.p);
         }
         let mut room = elastic.carry(&self.contact, &self.p);
-        room.iter_mut().for_each(|p| *p = p.min(hardness - *p));
+        for p in &mut room {
+            *p = p.min(hardness - *p);
+        }
         Cow::Owned(room)
     }
 

@@ -28,8 +28,12 @@ impl PreparedContact for PreparedBem3d {
             }
             other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
         };
-        if matches!(target, Target::Force(x) | Target::Approach(x) if x <= 0.0) {
-            return self.no_contact();
+        // 0 but for an indented surface.
+        let first = self.problem.candidates.range().first;
+        match target {
+            Target::Force(force) if force <= 0.0 => return self.no_contact(first),
+            Target::Approach(d) if d <= first => return self.no_contact(d),
+            _ => {}
         }
         if let (Target::Force(force), Load::Force(asked)) = (target, load) {
             self.refuse_beyond_hardness(force, asked)?;

@@ -18,8 +18,9 @@ impl PreparedBem3d {
     /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and secants where it is not: the gap
     /// falls about linearly with ln F. It is met to the tolerance, in rms heights.
     pub(super) fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
-        if asked >= self.mean {
-            return self.no_contact();
+        let first = self.problem.candidates.range().first;
+        if asked >= self.mean - first {
+            return self.no_contact(first);
         }
         if asked <= 0.0 {
             let expected = "a number above 0, where every force from that of full contact on would do";

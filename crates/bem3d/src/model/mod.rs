@@ -1,11 +1,14 @@
 //! The boundary-element model behind the common traits.
 
 mod contact;
+mod history;
 mod mean_gap;
 mod options;
+mod plastic_path;
 mod prepared;
 mod state;
 
+pub use history::Bem3dPath;
 pub use options::{Bem3d, Method};
 
 use crate::tuning::Tuning;
@@ -46,6 +49,11 @@ impl Bem3d {
         seed: u64,
         tuning: &Tuning,
     ) -> Result<Box<dyn PreparedContact>> {
+        Ok(Box::new(self.prepared(scene, seed, tuning)?))
+    }
+
+    /// The surface of a scene, ready to be loaded.
+    fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
         scene.validate()?;
         if !matches!(scene.effects.boundary, Boundary::Free | Boundary::Periodic) {
             scene.refuse_effects(NAME)?;
@@ -60,7 +68,7 @@ impl Bem3d {
             surface => surface_gen::height_map(surface, self.grid(surface.size()), seed)?,
         };
         let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));
-        Ok(Box::new(PreparedBem3d::new(*self, scene, &map, has_rms, tuning)?))
+        PreparedBem3d::new(*self, scene, &map, has_rms, tuning)
     }
 }
 

@@ -1,8 +1,8 @@
 //! One surface, ready to be loaded.
 
 use super::options::{Bem3d, Method};
-use crate::active_set::{self, Guess, LastState, Limits, Problem, Solved, Target};
-use crate::geometry::Grid;
+use crate::active_set::{self, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
+use crate::geometry::{CellSet, Grid};
 use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
@@ -32,6 +32,8 @@ pub struct PreparedBem3d {
     /// Number of defined points.
     defined: usize,
     pub(super) last: Option<LastState>,
+    /// Depth of the plastic indentation on a path, nondimensional, row-major; it is in the gaps of the problem. `None`: no path.
+    pub(super) indentation: Option<Vec<f64>>,
     /// Sides of the map.
     pub(super) size: Size,
 }
@@ -82,6 +84,7 @@ impl PreparedBem3d {
             mean,
             defined,
             last: None,
+            indentation: None,
             size: map.size(),
         })
     }
@@ -131,6 +134,22 @@ impl PreparedBem3d {
     /// The force of all defined cells at the hardness, nondimensional; infinite without one.
     pub(super) fn capacity(&self) -> f64 {
         self.problem.hardness * self.defined as f64
+    }
+
+    /// Adds the indentation of saturated cells to that of the path.
+    pub(super) fn indent(&mut self, saturated: &CellSet, depth: &[f64]) {
+        let grid = self.problem.grid();
+        let Some(indentation) = &mut self.indentation else { return };
+        if saturated.is_empty() {
+            return;
+        }
+        let mut z = self.problem.candidates.z().to_vec();
+        for (i, depth) in saturated.index(grid).zip(depth) {
+            indentation[i] += depth;
+            z[i] += depth;
+        }
+        self.problem.candidates = Candidates::new(grid, Arc::new(z));
+        self.problem.coarser = None;
     }
 
     /// Keeps a state to begin the next from.

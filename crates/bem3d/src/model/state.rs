@@ -20,7 +20,7 @@ impl PreparedBem3d {
     ) -> Result<ContactState> {
         let force: f64 = solved.p.iter().sum();
         let periodic = self.is_periodic();
-        let certificate = Certificate {
+        let mut certificate = Certificate {
             duality_gap: solved.residuals.duality_gap,
             penetration: solved.residuals.penetration,
             complementarity: solved.residuals.complementarity,
@@ -28,6 +28,14 @@ impl PreparedBem3d {
             stiffness_error: tangent.as_ref().map(|t| self.stiffness_error(t)),
             equilibrium: None,
         };
+        let mut tangent = tangent;
+        if self.indentation.is_some() && !certificate.meets(self.options.tolerance) {
+            let rest = Certificate { stiffness_error: None, ..certificate };
+            if rest.meets(self.options.tolerance) {
+                // Cells are about to flow: the stiffness jumps.
+                (certificate, tangent) = (rest, None);
+            }
+        }
         let met = certificate.meets(self.options.tolerance);
         let status = match solved.status {
             Status::Converged if met => Status::Converged,
@@ -35,7 +43,8 @@ impl PreparedBem3d {
             Status::Converged => Status::Stagnated,
             other => other,
         };
-        let fields = self.fields(&solved)?;
+        let (saturated, depth) = plastic_depth(&solved, self.problem.hardness);
+        let fields = self.fields(&solved, &saturated, &depth)?;
         let units = self.nondimensional;
         let mut report = SolveReport::new(status, self.strategy(&solved));
         report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
@@ -48,7 +57,7 @@ impl PreparedBem3d {
         let stiffness = (tangent.as_ref())
             .map(|t| units.stiffness(PI * t.value * self.magnification(t.value)))
             .transpose()?;
-        let plastic = self.plastic(&solved)?;
+        let plastic = self.plastic(&saturated, &depth)?;
         let area = self.outputs.area.then(|| units.area(solved.contact.len() as f64)).transpose()?;
         let state = ContactState::new(units.force(PI * force)?, report)
             .with_approach(approach)
@@ -61,6 +70,7 @@ impl PreparedBem3d {
             .with_fields(fields)
             .completed(&self.outputs, self.normalisation.modulus)?;
         if status == Status::Converged {
+            self.indent(&saturated, &depth);
             self.remember(solved, tangent);
             Ok(state)
         } else if status == Status::Stopped {
@@ -71,20 +81,18 @@ impl PreparedBem3d {
     }
 
     /// What has yielded, with a hardness.
-    fn plastic(&self, solved: &Solved) -> Result<Option<PlasticState>> {
-        let hardness = self.problem.hardness;
+    fn plastic(&self, saturated: &CellSet, depth: &[f64]) -> Result<Option<PlasticState>> {
+        let (units, hardness) = (self.nondimensional, self.problem.hardness);
         if hardness.is_infinite() {
             return Ok(None);
         }
-        let (saturated, depth) = plastic_depth(solved, hardness);
-        let area = self.nondimensional.area(saturated.len() as f64)?;
-        let mean = depth.iter().sum::<f64>() / saturated.len().max(1) as f64;
-        let volume = area * self.nondimensional.approach(mean)?;
-        let pressure = self.nondimensional.pressure(PI * hardness)?;
-        Ok(Some(PlasticState::new(area, volume, pressure)))
+        let area = units.area(saturated.len() as f64)?;
+        let before: f64 = self.indentation.as_ref().map_or(0.0, |depth| depth.iter().sum());
+        let volume = units.area(1.0)? * units.approach(before + depth.iter().sum::<f64>())?;
+        Ok(Some(PlasticState::new(area, volume, units.pressure(PI * hardness)?)))
     }
 
-    fn fields(&mut self, solved: &Solved) -> Result<Option<Fields>> {
+    fn fields(&mut self, solved: &Solved, saturated: &CellSet, depth: &[f64]) -> Result<Option<Fields>> {
         if !self.outputs.any_field() {
             return Ok(None);
         }
@@ -97,13 +105,8 @@ impl PreparedBem3d {
             }
             fields.pressure = Some(self.field(p)?);
         }
-        let (saturated, depth) = plastic_depth(solved, self.problem.hardness);
         if self.outputs.plastic_depth {
-            let mut depths = vec![0.0; grid.count()];
-            for (i, depth) in saturated.index(grid).zip(&depth) {
-                depths[i] = depth * self.height;
-            }
-            fields.plastic_depth = Some(self.field(depths)?);
+            fields.plastic_depth = Some(self.plastic_field(saturated, depth)?);
         }
         if self.outputs.displacement || self.outputs.gap {
             let mut u = Vec::new();
@@ -114,7 +117,7 @@ impl PreparedBem3d {
             if self.outputs.gap {
                 let z = self.problem.candidates.z();
                 let mut gap: Vec<f64> = u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect();
-                for (i, depth) in saturated.index(grid).zip(&depth) {
+                for (i, depth) in saturated.index(grid).zip(depth) {
                     gap[i] += depth * height;
                 }
                 fields.gap = Some(self.field(gap)?);
@@ -125,6 +128,19 @@ impl PreparedBem3d {
             }
         }
         Ok(Some(fields))
+    }
+
+    /// The indentation of a path and of the saturated cells.
+    fn plastic_field(&self, saturated: &CellSet, depth: &[f64]) -> Result<Field> {
+        let grid = self.problem.grid();
+        let mut depths = self.indentation.clone().unwrap_or_else(|| vec![0.0; grid.count()]);
+        for (i, depth) in saturated.index(grid).zip(depth) {
+            depths[i] += depth;
+        }
+        for depth in &mut depths {
+            *depth *= self.height;
+        }
+        self.field(depths)
     }
 
     fn field(&self, values: Vec<f64>) -> Result<Field> {
@@ -169,17 +185,18 @@ impl PreparedBem3d {
         Ok(Some(Patches::new(areas)))
     }
 
-    /// The state before first touch, and at it.
-    pub(super) fn no_contact(&self) -> Result<ContactState> {
+    /// The state before first touch, and at it, at a nondimensional approach.
+    pub(super) fn no_contact(&self, d: f64) -> Result<ContactState> {
         let zeros = || self.field(vec![0.0; self.problem.grid().count()]);
         let fields = if self.outputs.any_field() {
             let mut fields = Fields::default();
             fields.pressure = self.outputs.pressure.then(zeros).transpose()?;
             fields.displacement = self.outputs.displacement.then(zeros).transpose()?;
             let z = self.problem.candidates.z().iter();
-            let gap = || self.field(z.map(|z| z * self.height).collect());
+            let gap = || self.field(z.map(|z| (z - d) * self.height).collect());
             fields.gap = self.outputs.gap.then(gap).transpose()?;
-            fields.plastic_depth = self.outputs.plastic_depth.then(zeros).transpose()?;
+            let depth = || self.plastic_field(&CellSet::default(), &[]);
+            fields.plastic_depth = self.outputs.plastic_depth.then(depth).transpose()?;
             Some(fields)
         } else {
             None
@@ -187,13 +204,14 @@ impl PreparedBem3d {
         let mut report = SolveReport::exact("no contact");
         report.contact_cells = Some(0);
         report.work = Work::of(0, fields.as_ref());
-        let mean_gap = self.outputs.mean_gap.then(|| self.nondimensional.approach(self.mean)).transpose()?;
+        let mean_gap =
+            self.outputs.mean_gap.then(|| self.nondimensional.approach(self.mean - d)).transpose()?;
         ContactState::new(0.0, report)
-            .with_approach((!self.is_periodic()).then_some(0.0))
+            .with_approach((!self.is_periodic()).then(|| self.nondimensional.approach(d)).transpose()?)
             .with_mean_gap(mean_gap)
             .with_stiffness(self.outputs.needs_stiffness().then_some(0.0))
             .with_area(self.outputs.area.then_some(0.0))
-            .with_plastic(self.problem.hardness.is_finite().then(PlasticState::default))
+            .with_plastic(self.plastic(&CellSet::default(), &[])?)
             .with_patches(self.outputs.contact_patches.then(Patches::default))
             .with_fields(fields)
             .completed(&self.outputs, self.normalisation.modulus)
@@ -216,6 +234,8 @@ fn plastic_depth(solved: &Solved, hardness: f64) -> (CellSet, Vec<f64>) {
     }
     let saturated = solved.contact.filter(&solved.p, |p| p >= hardness);
     let mut depth = solved.gap_on(&saturated);
-    depth.iter_mut().for_each(|g| *g = (-*g).max(0.0));
+    for g in &mut depth {
+        *g = (-*g).max(0.0);
+    }
     (saturated, depth)
 }

@@ -1,0 +1,62 @@
+//! A path with a hardness: the indentation stays, and what is unloaded is elastic until the old pressures are reached again.
+
+use super::prepared::{NAME, PreparedBem3d};
+use crate::active_set::Candidates;
+use contact_model::{
+    Error, History, HistoryState, Normalisation, PreparedContact, Result, Step, Stop, Tangential, never,
+};
+use std::sync::Arc;
+
+/// A surface that keeps its indentation from step to step.
+///
+/// Each step is solved on the surface as the last one left it. As long as loads rise, that is the same as one step from the virgin surface:
+/// saturated cells stay so, and their indentation grows. Plastic flow under falling loads is not excluded, and counted where it happens.
+///
+/// Where a load is reached again, cells are about to flow and the stiffness jumps: there it is not claimed.
+#[derive(Debug)]
+pub struct PlasticPath {
+    contact: PreparedBem3d,
+    virgin: Arc<Vec<f64>>,
+    time: f64,
+}
+
+impl PlasticPath {
+    /// The path begins with the virgin surface, at time 0.
+    pub fn new(mut contact: PreparedBem3d) -> Self {
+        let virgin = contact.problem.candidates.shared();
+        contact.indentation = Some(vec![0.0; virgin.len()]);
+        Self { contact, virgin, time: 0.0 }
+    }
+}
+
+impl History for PlasticPath {
+    fn normalisation(&self) -> Normalisation {
+        self.contact.normalisation()
+    }
+
+    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+        self.advance_until(step, &never)
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+        let step = step.validated(self.time)?;
+        if step.tangential != Tangential::default() {
+            return Err(Error::unsupported(NAME, format!("a tangential load ({:?})", step.tangential)));
+        }
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
+        let state = self.contact.solve_until(step.normal, stop)?;
+        self.time = step.time;
+        Ok(HistoryState::new(step.time, state))
+    }
+
+    fn restart(&mut self) {
+        let grid = self.contact.problem.grid();
+        self.contact.problem.candidates = Candidates::new(grid, Arc::clone(&self.virgin));
+        self.contact.problem.coarser = None;
+        self.contact.indentation = Some(vec![0.0; self.virgin.len()]);
+        self.contact.last = None;
+        self.time = 0.0;
+    }
+}
