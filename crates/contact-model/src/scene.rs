@@ -69,8 +69,8 @@ impl Scene {
             return Err(Error::unsupported("of free boundaries", what));
         }
         if self.outputs.plastic_depth && self.effects.hardness == Hardness::Off {
-            let what = "a field of the plastic indentation";
-            return Err(Error::unsupported("without hardness", what));
+            let what = "a field of the plastic indentation (it needs a hardness)";
+            return Err(Error::unsupported("of elastic contact", what));
         }
         self.surface.validate()
     }

@@ -53,7 +53,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let count = grid.columns as f64 * grid.rows as f64;
     let per_state = total / (solved.states.max(1)) as f64;
     let (time, applications) = match numerics {
-        Numerics::Bem3d(_) | Numerics::Equivalent(_) if used > 0 => {
+        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) if used > 0 => {
             // Cells a side of the squares of as many cells.
             let ratio = (count / used as f64).sqrt();
             (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
@@ -76,9 +76,9 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     cost.linear_solves *= per_state;
     cost.fields *= per_state;
     let outputs = &scene.requested.outputs;
-    if let Numerics::Bem3d(_) | Numerics::Equivalent(_) = numerics {
-        let fields =
-            [outputs.pressure, outputs.displacement, outputs.gap].iter().filter(|f| **f).count() as f64;
+    if let Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) = numerics {
+        let named = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
+        let fields = named.iter().filter(|f| **f).count() as f64;
         cost.fields = fields * total;
         cost.field_bytes = cost.fields * count * 8.0;
         let filled = (BOX_OVER_CONTACT * solved.filled).min(1.0);
@@ -91,7 +91,9 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
 pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let Cells { columns, rows } = cells(scene, numerics);
     let bytes = match numerics {
-        Numerics::Bem3d(_) | Numerics::Equivalent(_) => LIGHT_BYTES * columns as f64 * rows as f64,
+        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) => {
+            LIGHT_BYTES * columns as f64 * rows as f64
+        }
         _ => ELEMENT_BYTES * numerics.size() as f64,
     };
     bytes.max(1.0)

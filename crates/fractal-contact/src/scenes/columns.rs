@@ -5,7 +5,10 @@ use crate::scenes::grid_comparison::GridErrors;
 use crate::scenes::loads::{Loading, Prescribed};
 use crate::scenes::scene_file::SceneFile;
 use analysis::{Column, Value};
-use contact_model::{Boundary, Conductance, ContactState, Friction, HistoryState, Normalisation, Status};
+use contact_model::{
+    Adhesion, Boundary, Conductance, ContactState, Friction, Hardness, HistoryState, Normalisation,
+    PlasticState, Status,
+};
 
 /// What a row is made of.
 #[derive(Debug, Clone, Default)]
@@ -46,6 +49,10 @@ fn scaled(state: &State, pick: impl Fn(&ContactState, &Normalisation) -> Option<
 
 fn tangential(state: &State, pick: impl Fn(&contact_model::TangentialState) -> Option<f64>) -> Value {
     state.history.as_ref().and_then(|h| h.tangential.as_ref()).and_then(pick).into()
+}
+
+fn plastic_of(state: &State, pick: fn(&PlasticState) -> f64) -> Value {
+    state.normal.as_ref().and_then(|n| n.plastic.as_ref()).map(pick).into()
 }
 
 /// The columns of a scene.
@@ -104,6 +111,25 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         list.push(kind("dissipated", "J", "energy lost to friction since the first step", |s| {
             tangential(s, |t| Some(t.dissipated))
         }));
+    }
+    if scene.effects.hardness != Hardness::Off {
+        list.push(kind("plastic_area", "m^2", "area under the hardness", |s| plastic_of(s, |p| p.area)));
+        list.push(kind("plastic_volume", "m^3", "volume of the plastic indentation", |s| {
+            plastic_of(s, |p| p.volume)
+        }));
+        list.push(kind("plastic_work", "J", "energy dissipated in it, hardness times volume", |s| {
+            plastic_of(s, |p| p.dissipated)
+        }));
+    }
+    if scene.effects.adhesion != Adhesion::Off {
+        let at = "a minimum of the energy where > 0: least energy of one cell to attach or detach, or least curvature";
+        list.push(kind("branch", "-", "whether the bodies were brought nearer or drawn apart", |s| {
+            normal(s, |n| n.adhesive.map(|a| a.branch.as_str()))
+        }));
+        list.push(kind("energy", "J", "elastic energy less the work of adhesion done", |s| {
+            normal(s, |n| n.adhesive.map(|a| a.energy))
+        }));
+        list.push(kind("stability", "1", at, |s| normal(s, |n| n.adhesive.map(|a| a.stability))));
     }
     if outputs.stiffness {
         list.push(kind("stiffness", "N/m", "dF/dd on the contact set", |s| normal(s, |n| n.stiffness)));

@@ -2,7 +2,9 @@
 
 use crate::scenes::entries::{Entries, Entry, Read, System};
 use crate::scenes::human_readable::number;
-use contact_model::{Adhesion, Boundary, Effects, Friction, PronySeries, Relaxing, Rheology};
+use contact_model::{
+    Adhesion, AdhesionLaw, Boundary, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
+};
 use surface_io::Dimension;
 
 /// An effect of a scene and why it is on or off.
@@ -24,9 +26,18 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
         reason: if on { value } else { format!("not named: {off}") },
     };
     let boundary = effects.boundary == Boundary::Periodic;
-    let (work, adhesion) = match effects.adhesion {
-        Adhesion::ShortRange { work } => (work, true),
-        _ => (0.0, false),
+    let adhesion = match effects.adhesion {
+        Adhesion::Off => None,
+        Adhesion::ShortRange { work } => Some(format!("short range, work {} per area", number(work))),
+        Adhesion::FiniteRange { work, range, law } => {
+            let law = if law == AdhesionLaw::Dugdale { "Dugdale" } else { "exponential" };
+            Some(format!("{law}, work {} per area, range {}", number(work), number(range)))
+        }
+        other => Some(format!("{other:?}")),
+    };
+    let hardness = match effects.hardness {
+        Hardness::Limit { pressure } => Some(format!("no pressure above {}", number(pressure))),
+        _ => None,
     };
     let (coefficient, friction) = match effects.friction {
         Friction::Coulomb { coefficient } => (coefficient, true),
@@ -40,7 +51,8 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
             "periodic copies of the rectangle".into(),
             "an unloaded half-space outside the rectangle",
         ),
-        line("adhesion", adhesion, format!("short range, work {} per area", number(work)), "no attraction"),
+        line("hardness", hardness.is_some(), hardness.unwrap_or_default(), "elastic at any pressure"),
+        line("adhesion", adhesion.is_some(), adhesion.unwrap_or_default(), "no attraction"),
         line("friction", friction, format!("Coulomb, coefficient {coefficient}"), "no tangential load"),
         line("rheology", rheology, rheology_words(&effects.rheology), "elastic"),
     ]
@@ -68,11 +80,33 @@ pub(crate) fn read_effects(table: Option<Entries<'_>>, system: System) -> Read<E
     if let Some(entry) = table.find("boundary") {
         effects.boundary = entry.choice(&[("free", Boundary::Free), ("periodic", Boundary::Periodic)])?;
     }
+    if let Some(entry) = table.find("hardness") {
+        let inner = entry.table()?;
+        let pressure = inner.require("pressure", "\"2 GPa\"")?.positive(Dimension::PRESSURE, system)?;
+        inner.finish()?;
+        effects.hardness = Hardness::Limit { pressure };
+    }
     if let Some(entry) = table.find("adhesion") {
         let inner = entry.table()?;
         let work = inner.require("work", "\"50 mJ/m^2\"")?.positive(Dimension::ENERGY_PER_AREA, system)?;
+        let words = [("exponential", AdhesionLaw::Exponential), ("dugdale", AdhesionLaw::Dugdale)];
+        let law = inner.find("law").map(|e| Ok((e.choice(&words)?, e))).transpose()?;
+        effects.adhesion = match (inner.find("range"), law) {
+            (None, None) => Adhesion::ShortRange { work },
+            (Some(range), law) => {
+                let range = range.positive(Dimension::LENGTH, system)?;
+                let law = law.map_or(AdhesionLaw::Exponential, |(law, _)| law);
+                Adhesion::FiniteRange { work, range, law }
+            }
+            (None, Some((_, entry))) => {
+                return Err(entry
+                    .diagnostic_at_key(
+                        "`law` says how the attraction falls with the gap, and no `range` is given",
+                    )
+                    .with_help("add `range = \"1 nm\"`, or remove `law` for short-range adhesion (JKR)"));
+            }
+        };
         inner.finish()?;
-        effects.adhesion = Adhesion::ShortRange { work };
     }
     if let Some(entry) = table.find("friction") {
         let inner = entry.table()?;

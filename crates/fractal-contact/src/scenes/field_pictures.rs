@@ -31,7 +31,7 @@ pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
         let fields = scene.requested.fields();
         fields.iter().any(|(field, formats)| *field == of && formats.contains(&FieldFormat::Png))
     };
-    drawn(name) || name == "pressure" && (drawn("gap") || drawn("displacement"))
+    drawn(name) || name == "pressure" && (drawn("gap") || drawn("displacement") || drawn("plastic_depth"))
 }
 
 /// Keeps the values of a field, little-endian, row-major, until it is drawn.
@@ -87,8 +87,11 @@ pub(crate) fn draw(
         let range = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         for state in &mut result.states {
             let Some(values) = read(field, state.index) else { continue };
-            let pressure =
-                if matches!(field, "gap" | "displacement") { read("pressure", state.index) } else { None };
+            let pressure = if matches!(field, "gap" | "displacement" | "plastic_depth") {
+                read("pressure", state.index)
+            } else {
+                None
+            };
             let contact: Vec<bool> = pressure.into_iter().flatten().map(|p| p > 0.0).collect();
             let name = file(field, state.index, FieldFormat::Png.extension()).to_string();
             let mut picture = pictures::field(scene, field, model, (surface, state.index), cells, &values);

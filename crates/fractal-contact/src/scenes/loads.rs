@@ -92,12 +92,12 @@ pub(crate) fn read_request<'a>(
     match (loads, path) {
         (Some((key, _)), Some(path)) => Err(path
             .diagnostic_at_key(format!("`{key}` and `path` are both given in [scene]"))
-            .with_help(format!("loads one by one are `{key}`; a history (friction, rheology) is `path`: keep one of them"))),
+            .with_help(format!("loads one by one are `{key}`; a history (friction, rheology, indentation, adhesion) is `path`: keep one of them"))),
         (None, None) => Err(scene.misspelt_or(&KEYS, scene
             .diagnostic("nothing is pressed: [scene] has no load")
             .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history"))),
         (Some((key, entry)), None) => Ok((Loading::Loads(read_loads(key, &entry, system, pulls)?), entry)),
-        (None, Some(entry)) => Ok((Loading::Path(read_path(&entry, system)?), entry)),
+        (None, Some(entry)) => Ok((Loading::Path(read_path(&entry, system, pulls)?), entry)),
     }
 }
 
@@ -173,7 +173,7 @@ fn between(low: f64, high: f64, count: usize, even: bool) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
-fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
+fn read_path(entry: &Entry<'_>, system: System, pulls: bool) -> Read<Vec<Step>> {
     if !entry.is_list() {
         return Err(entry
             .diagnostic_at_key("`path` is no list of steps")
@@ -184,13 +184,14 @@ fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
     for item in entry.list() {
         let table = item.table()?;
         let time = table.find("time").map_or(Ok(last.time), |e| e.quantity(Dimension::TIME, system))?;
-        let normal = match table.one_of(&["force", "approach"])? {
+        let normal = match table.one_of(&["force", "approach", "mean_gap"])? {
             Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
+            Some(("mean_gap", e)) => Load::MeanGap(e.quantity(Dimension::LENGTH, system)?),
             Some((_, e)) => Load::Approach(e.quantity(Dimension::LENGTH, system)?),
             None if steps.is_empty() => {
                 return Err(item
                     .diagnostic("the first step of the path has no normal load")
-                    .with_help("give `force` or `approach`"));
+                    .with_help("give `force`, `approach` or (periodic) `mean_gap`"));
             }
             None => last.normal,
         };
@@ -213,8 +214,8 @@ fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
         }
         table.finish()?;
         let end = Step { time, normal, tangential };
-        end.validated(last.time)
-            .map_err(|e| item.diagnostic(e.to_string()).with_help("times never decrease along a path"))?;
+        let checked = if pulls { end.validated_with_adhesion(last.time) } else { end.validated(last.time) };
+        checked.map_err(|e| item.diagnostic(e.to_string()).with_help("times never decrease along a path"))?;
         for i in 1..=count {
             steps.push(if i == count { end } else { part(last, end, i as f64 / count as f64) });
         }
@@ -230,7 +231,12 @@ fn read_path(entry: &Entry<'_>, system: System) -> Read<Vec<Step>> {
 
 /// No contact and no load, in the words of the first step.
 fn beginning(normal: Load, tangential: Tangential) -> Step {
-    let normal = if let Load::Approach(_) = normal { Load::Approach(0.0) } else { Load::Force(0.0) };
+    let normal = match normal {
+        Load::Approach(_) => Load::Approach(0.0),
+        // The distance at first touch is not known here.
+        Load::MeanGap(gap) => Load::MeanGap(gap),
+        _ => Load::Force(0.0),
+    };
     let tangential = match tangential {
         Tangential::Displacement(_) => Tangential::Displacement(0.0),
         _ => Tangential::Force(0.0),
@@ -244,6 +250,7 @@ fn part(from: Step, to: Step, t: f64) -> Step {
     let normal = match (from.normal, to.normal) {
         (Load::Force(a), Load::Force(b)) => Load::Force(mix(a, b)),
         (Load::Approach(a), Load::Approach(b)) => Load::Approach(mix(a, b)),
+        (Load::MeanGap(a), Load::MeanGap(b)) => Load::MeanGap(mix(a, b)),
         (_, other) => other,
     };
     let tangential = match (from.tangential, to.tangential) {

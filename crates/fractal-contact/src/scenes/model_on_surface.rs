@@ -61,7 +61,7 @@ impl ModelOnSurface {
         let states = scene.request.count() as u64;
         match numerics {
             // A microsecond for each cell and state.
-            Numerics::Bem3d(_) => 1 + count * states / 1000,
+            Numerics::Bem3d(_) | Numerics::Bem3dPath(_) => 1 + count * states / 1000,
             Numerics::Equivalent(_) => 1 + count * (states + 49) / 1000,
             Numerics::Mdr1d(_) => 1 + n / 10_000,
             _ => 1,
@@ -115,7 +115,14 @@ impl ModelOnSurface {
             (AnyModel::History(model), Loading::Path(steps)) => {
                 let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
                 result = ModelResult::default();
-                self.path(scene, contact.as_mut(), steps, stop, &mut result);
+                self.path(scene, contact.as_mut(), (steps, out), stop, &mut result)?;
+                field_pictures::draw(
+                    scene,
+                    (numerics.name(), self.surface),
+                    cells(scene, numerics),
+                    out,
+                    &mut result,
+                )?;
             }
             // Reading a scene refuses these; one built in code may have them.
             (AnyModel::Contact(model), Loading::Path(_)) => {
@@ -216,10 +223,10 @@ impl ModelOnSurface {
         &self,
         scene: &SceneFile,
         contact: &mut dyn contact_model::History,
-        steps: &[Step],
+        (steps, out): (&[Step], &Path),
         stop: Stop<'_>,
         result: &mut ModelResult,
-    ) {
+    ) -> Result<()> {
         for (index, step) in steps.iter().enumerate() {
             let mut state = State {
                 model: self.numerics(scene).name(),
@@ -229,28 +236,32 @@ impl ModelOnSurface {
                 normalisation: Some(contact.normalisation()),
                 ..State::default()
             };
-            let refused = match contact.advance_until(*step, stop) {
-                Ok(found) => {
+            let mut kept = StateResult { index, ..StateResult::default() };
+            kept.failed = match contact.advance_until(*step, stop) {
+                Ok(mut found) => {
+                    self.write_fields(scene, &mut found.normal, out, &mut kept)?;
                     state.status = Some(found.normal.report.status);
                     state.note = Warning::note(&Warning::of(scene, &found.normal, &state.grid_errors));
                     state.normal = Some(found.normal.clone());
                     state.history = Some(found);
                     false
                 }
-                Err(contact_model::Error::Stopped { .. }) => return,
+                Err(contact_model::Error::Stopped { .. }) => return Ok(()),
                 Err(error) => {
                     state.note = Some(error.to_string());
                     true
                 }
             };
-            let row = columns::row(scene, &state);
-            result.states.push(StateResult { index, failed: refused, row, ..StateResult::default() });
+            let refused = kept.failed;
+            kept.row = columns::row(scene, &state);
+            result.states.push(kept);
             if refused {
                 // What comes after a step that failed would be another path.
                 break;
             }
         }
         result.complete = true;
+        Ok(())
     }
 
     /// Writes the fields that are asked for, counts distributions, and lets go of the fields.

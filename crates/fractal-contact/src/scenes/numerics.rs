@@ -6,7 +6,7 @@ use analytic::greenwood_williamson::SummitHeights;
 use analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
 };
-use bem3d::{Bem3d, Method};
+use bem3d::{Bem3d, Bem3dPath, Method};
 use contact_model::{Cells, Size};
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 use std::sync::Arc;
@@ -25,6 +25,8 @@ const PROBE_ELEMENTS: usize = 1 << 10;
 pub enum Numerics {
     /// Boundary elements in three dimensions.
     Bem3d(Bem3d),
+    /// The same along a path, a history: what `bem3d` is in a scene with one.
+    Bem3dPath(Bem3dPath),
     /// The method of reduction of dimensionality.
     Mdr1d(Mdr1d),
     /// A sphere.
@@ -94,6 +96,7 @@ impl Numerics {
         match *self {
             Self::Registered(ref own) => own.model(),
             Self::Bem3d(model) => AnyModel::Contact(Arc::new(model)),
+            Self::Bem3dPath(model) => AnyModel::History(Arc::new(model)),
             Self::Mdr1d(model) => AnyModel::Contact(Arc::new(model)),
             Self::Hertz => AnyModel::Contact(Arc::new(Hertz)),
             Self::PowerLawBody => AnyModel::Contact(Arc::new(PowerLawBody)),
@@ -124,8 +127,21 @@ impl Numerics {
             Self::Registered(own) => own.is_history(),
             _ => matches!(
                 self,
-                Self::CattaneoMindlin | Self::PartialSlip | Self::Viscoelastic | Self::Equivalent(_)
+                Self::CattaneoMindlin
+                    | Self::PartialSlip
+                    | Self::Viscoelastic
+                    | Self::Equivalent(_)
+                    | Self::Bem3dPath(_)
             ),
+        }
+    }
+
+    /// The same along a path, where the model has an effect that depends on it.
+    #[must_use]
+    pub(crate) fn along_path(self) -> Self {
+        match self {
+            Self::Bem3d(model) => Self::Bem3dPath(Bem3dPath(model)),
+            other => other,
         }
     }
 
@@ -148,7 +164,9 @@ impl Numerics {
     /// Columns of a grid, elements of a line; 0 for a formula, and for a registered model.
     pub fn size(&self) -> usize {
         match self {
-            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => numerics.cells,
+            Self::Bem3d(numerics)
+            | Self::Bem3dPath(Bem3dPath(numerics))
+            | Self::Equivalent(Equivalent { model: numerics, .. }) => numerics.cells,
             Self::Mdr1d(model) => model.elements,
             _ => 0,
         }
@@ -157,7 +175,9 @@ impl Numerics {
     /// The numerics of boundary elements, where they press.
     pub fn boundary_elements(&self) -> Option<&Bem3d> {
         match self {
-            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => Some(numerics),
+            Self::Bem3d(numerics)
+            | Self::Bem3dPath(Bem3dPath(numerics))
+            | Self::Equivalent(Equivalent { model: numerics, .. }) => Some(numerics),
             _ => None,
         }
     }
@@ -168,6 +188,7 @@ impl Numerics {
     pub fn reduced(self, cells: usize, elements: usize, size: Size) -> Self {
         match self {
             Self::Bem3d(model) => Self::Bem3d(reduced(model, cells, size)),
+            Self::Bem3dPath(Bem3dPath(model)) => Self::Bem3dPath(Bem3dPath(reduced(model, cells, size))),
             Self::Mdr1d(model) => Self::Mdr1d(Mdr1d { elements: model.elements.min(elements) }),
             Self::Equivalent(outer) => {
                 let model = reduced(outer.model, cells, size);
@@ -187,7 +208,7 @@ impl Numerics {
     pub fn accuracy(&self, rough: bool, cells: Cells) -> String {
         let Cells { columns, rows } = cells;
         match self {
-            Self::Bem3d(numerics) => format!(
+            Self::Bem3d(numerics) | Self::Bem3dPath(Bem3dPath(numerics)) => format!(
                 "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {columns} x {rows} cells; the cells \
                  themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
                 numerics.tolerance

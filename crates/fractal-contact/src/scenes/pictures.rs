@@ -4,10 +4,10 @@ use crate::scenes::ensemble::Mean;
 use crate::scenes::entries::System;
 use crate::scenes::error::Result;
 use crate::scenes::loads::{Loading, Prescribed};
-use crate::scenes::scene_file::SceneFile;
+use crate::scenes::scene_file::{SceneFile, depends_on_path};
 use crate::scenes::summary::short;
 use analysis::{Table, Value};
-use contact_model::Cells;
+use contact_model::{Boundary, Cells};
 use plots::{Chart, Curve, FieldPicture, Shown};
 use std::path::{Path, PathBuf};
 
@@ -57,6 +57,12 @@ fn pairs(scene: &SceneFile) -> Vec<(&'static str, &'static str)> {
         };
         return answers.iter().filter(|y| **y != x).map(|y| (x, *y)).collect();
     }
+    if depends_on_path(&scene.effects) {
+        return match scene.effects.boundary {
+            Boundary::Periodic => vec![("mean_gap", "force"), ("force", "area")],
+            _ => vec![("approach", "force"), ("force", "area")],
+        };
+    }
     if scene.effects.friction == contact_model::Friction::Off {
         return OVER_TIME.map(|y| ("time", y)).to_vec();
     }
@@ -81,7 +87,7 @@ pub(crate) fn field<'a>(
         _ => ("height", "m", Shown::Middle),
     };
     let load = if name == "heights" { "as solved".to_owned() } else { load(scene, state) };
-    let mut title = format!("{name}, {}", model_name(model));
+    let mut title = format!("{}, {}", name.replace('_', " "), model_name(model));
     title[..1].make_ascii_uppercase();
     let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
     let subtitle = format!("{}{number}: {load}", scene_name(scene));

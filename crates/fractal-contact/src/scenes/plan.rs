@@ -196,7 +196,7 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
         Numerics::Bem3d(_) if scene.accuracy.is_some() && !scene.requested.grid_error => {
             "chosen for the accuracy when it is planned".into()
         }
-        Numerics::Bem3d(_) | Numerics::Equivalent(_) => {
+        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) => {
             let (cells, size) = (cells(scene, numerics), scene.surface.size());
             let Cells { columns, rows } = cells;
             let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);

@@ -10,7 +10,7 @@ use crate::scenes::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::scenes::outputs::{RequestedOutputs, read_outputs};
 use crate::scenes::registry::Registry;
 use crate::scenes::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
-use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Pair, Rheology, Scene};
+use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Pair, Rheology, Scene};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use surface_io::Dimension;
@@ -269,7 +269,15 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     let output_places = places(outputs_table.as_ref());
     let requested = read_outputs(outputs_table, system)?;
     let (modulus, pair) = read_material(&scene, system)?;
-    let hardness = scene.find("hardness").map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
+    let hardness_entry = scene.find("hardness");
+    let hardness = hardness_entry.as_ref().map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
+    if let Some(entry) = &hardness_entry
+        && effects.hardness != Hardness::Off
+    {
+        return Err(entry.diagnostic_at_key("`hardness` is given in [scene] and in [effects]").with_help(
+            "keep that of [effects], which limits the pressure; that of [scene] only marks states",
+        ));
+    }
     let accuracy = read_accuracy(&scene)?;
     let SurfaceEntry { surface, metadata, reliable_from, mut notes } =
         read_surface(&scene, system, directory)?;
@@ -287,6 +295,11 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
         accuracy: accuracy.as_ref().map(|(_, entry)| entry.key_span()),
     };
     check_request(&request, &request_entry, &surface, &effects)?;
+    let along = matches!(request, Loading::Path(_)) && depends_on_path(&effects);
+    let models = models
+        .into_iter()
+        .map(|(numerics, entry)| (if along { numerics.along_path() } else { numerics }, entry))
+        .collect::<Vec<_>>();
     check_histories(&models, &request, &request_entry, &effects)?;
     let models = models.into_iter().map(|(numerics, _)| numerics).collect();
     Ok(SceneFile {
@@ -511,6 +524,11 @@ fn check_request(
     }
 }
 
+/// Whether boundary elements have an effect that depends on the path.
+pub(crate) fn depends_on_path(effects: &Effects) -> bool {
+    effects.hardness != Hardness::Off || effects.adhesion != Adhesion::Off
+}
+
 /// Effects that remember need a path and models that follow one.
 fn check_histories(
     models: &[(Numerics, Entry<'_>)],
@@ -518,8 +536,17 @@ fn check_histories(
     entry: &Entry<'_>,
     effects: &Effects,
 ) -> Read<()> {
-    let remembers = effects.friction != Friction::Off || effects.rheology != Rheology::Elastic;
+    let remembers = effects.friction != Friction::Off
+        || effects.rheology != Rheology::Elastic
+        || depends_on_path(effects);
     let path = matches!(request, Loading::Path(_));
+    if path && !remembers {
+        return Err(entry
+            .diagnostic_at_key("a path, but no effect that depends on it")
+            .with_help(
+                "add `hardness`, `adhesion`, `friction` or `rheology` to [effects], or prescribe `force` or `approach`",
+            ));
+    }
     for (numerics, model) in models {
         if numerics.is_history() && !path {
             return Err(entry
@@ -533,11 +560,6 @@ fn check_histories(
                 .diagnostic(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
                 .with_help(format!("models that follow a path: {}", known.join(", "))));
         }
-    }
-    if path && !remembers {
-        return Err(entry
-            .diagnostic_at_key("a path, but no effect that depends on it")
-            .with_help("add `friction` or `rheology` to [effects], or prescribe `force` or `approach`"));
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use crate::scenes::scene_file::SceneFile;
 use analysis::{Table, Value};
 
 /// Columns that are shown where the table has them.
-const SHOWN: [&str; 14] = [
+const SHOWN: [&str; 18] = [
     "prescribed",
     "time",
     "force",
@@ -18,6 +18,10 @@ const SHOWN: [&str; 14] = [
     "area_corrected",
     "area_corrected_grid_error",
     "contact_fraction",
+    "plastic_area",
+    "plastic_volume",
+    "branch",
+    "stability",
     "largest_pressure",
     "contact_cells",
 ];

@@ -4,7 +4,7 @@ use crate::scenes::accuracy::within;
 use crate::scenes::grid_comparison::GridErrors;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_surface::SceneSurface;
-use contact_model::{ContactState, Surface};
+use contact_model::{ContactState, Hardness, Surface};
 
 /// Fewer cells in contact than this are those of the grid.
 const FEW_CELLS: usize = 10;
@@ -69,7 +69,9 @@ impl Warning {
         let mut found = Vec::new();
         let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
         let flat = matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. }));
-        let hardness = scene.hardness.unwrap_or(YIELD * scene.modulus);
+        // Below a hardness that limits the pressure nothing is marked.
+        let limited = scene.effects.hardness != Hardness::Off;
+        let hardness = if limited { f64::INFINITY } else { scene.hardness.unwrap_or(YIELD * scene.modulus) };
         let resolution = state.resolution;
         let holds = |warning: Self| match (warning, resolution) {
             (Self::FewCells, _) => few,
