@@ -7,6 +7,9 @@ use crate::stiffness::{self, Stiffness};
 use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
 use std::f64::consts::PI;
 
+/// How far the force of all cells at the hardness may be rounded on its way through units.
+const CAPACITY_ROUNDING: f64 = 1e-12;
+
 impl PreparedContact for PreparedBem3d {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
@@ -52,7 +55,8 @@ impl PreparedBem3d {
     /// Errors for a force that all cells at the hardness do not carry.
     fn refuse_beyond_hardness(&self, force: f64, asked: f64) -> Result<()> {
         let capacity = self.capacity();
-        if force < capacity {
+        // A force of all cells leaves the approach open, and so does rounding below it.
+        if force < capacity * (1.0 - CAPACITY_ROUNDING) {
             return Ok(());
         }
         let max = self.nondimensional.force(PI * capacity)?;

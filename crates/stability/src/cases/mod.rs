@@ -2,6 +2,7 @@
 
 mod chance;
 mod few;
+mod hardness;
 mod limits;
 mod periodic;
 mod range;
@@ -29,6 +30,7 @@ pub fn cases() -> Vec<Case> {
         &periodic::CASES,
         &rectangles::CASES,
         &limits::CASES,
+        &hardness::CASES,
         &chance::CASES,
     ]
     .concat()
