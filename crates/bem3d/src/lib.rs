@@ -84,6 +84,7 @@
 //! Adhesion, friction and rheology are refused at `prepare`.
 
 mod active_set;
+mod finite_range;
 mod geometry;
 mod kernel;
 mod linear;

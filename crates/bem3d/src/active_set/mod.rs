@@ -9,5 +9,6 @@ mod state;
 mod undecided;
 
 pub use initial_guess::{LastState, cold_start, predicted_cells};
+pub use residuals::Residuals;
 pub use solver::{resume, solve};
 pub use state::{Guess, Limits, Problem, Solved, Target};

@@ -1,6 +1,8 @@
 //! The boundary-element model behind the common traits.
 
 mod contact;
+mod finite_range;
+mod history;
 mod mean_gap;
 mod options;
 mod prepared;
@@ -10,8 +12,9 @@ pub use options::{Bem3d, Method};
 
 use crate::tuning::Tuning;
 use contact_model::{
-    Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface,
+    Adhesion, Boundary, ContactModel, Effects, Error, PreparedContact, Result, Scene, Source, Surface,
 };
+use finite_range::FiniteRangeContact;
 use prepared::{NAME, PreparedBem3d};
 use std::sync::Arc;
 
@@ -46,6 +49,21 @@ impl Bem3d {
         seed: u64,
         tuning: &Tuning,
     ) -> Result<Box<dyn PreparedContact>> {
+        if let Adhesion::FiniteRange { work, range, law } = scene.effects.adhesion {
+            scene.validate()?;
+            if work > 0.0 {
+                let adhesion = (work, range, law);
+                return Ok(Box::new(FiniteRangeContact::new(self, scene, seed, adhesion, tuning)?));
+            }
+            // Without work the elastic states, bit by bit.
+            let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
+            return self.prepare_tuned(&Scene { effects, ..scene.clone() }, seed, tuning);
+        }
+        Ok(Box::new(self.prepared(scene, seed, tuning)?))
+    }
+
+    /// A surface without adhesion, ready to be loaded.
+    fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
         scene.validate()?;
         let boundary = scene.effects.boundary;
         if boundary != Boundary::Periodic {
@@ -61,7 +79,7 @@ impl Bem3d {
             surface => surface_gen::height_map(surface, self.grid(surface.size()), seed)?,
         };
         let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));
-        Ok(Box::new(PreparedBem3d::new(*self, scene, &map, has_rms, tuning)?))
+        PreparedBem3d::new(*self, scene, &map, has_rms, tuning)
     }
 }
 

@@ -35,7 +35,7 @@ impl PreparedBem3d {
             Status::Converged => Status::Stagnated,
             other => other,
         };
-        let fields = self.fields(&solved)?;
+        let fields = self.fields(&solved.contact, &solved.p, solved.d)?;
         let units = self.nondimensional;
         let mut report = SolveReport::new(status, self.strategy(&solved));
         report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
@@ -68,7 +68,8 @@ impl PreparedBem3d {
         }
     }
 
-    fn fields(&mut self, solved: &Solved) -> Result<Option<Fields>> {
+    /// The fields asked for, of a (net) pressure on a set at an approach.
+    pub(super) fn fields(&mut self, set: &CellSet, pressure: &[f64], d: f64) -> Result<Option<Fields>> {
         if !self.outputs.any_field() {
             return Ok(None);
         }
@@ -76,20 +77,20 @@ impl PreparedBem3d {
         let mut fields = Fields::default();
         if self.outputs.pressure {
             let mut p = vec![0.0; grid.count()];
-            for (i, &value) in solved.contact.index(grid).zip(&solved.p) {
-                p[i] = self.nondimensional.pressure(PI * value)?;
+            for (i, &value) in set.index(grid).zip(pressure) {
+                p[i] = self.nondimensional.pressure(PI * value.abs())?.copysign(value);
             }
             fields.pressure = Some(self.field(p)?);
         }
         if self.outputs.displacement || self.outputs.gap {
             let mut u = Vec::new();
-            self.problem.operators.exact(&solved.contact, &solved.p, &CellSet::all(grid), &mut u);
+            self.problem.operators.exact(set, pressure, &CellSet::all(grid), &mut u);
             // What the constant in the kernel adds to every displacement.
-            let shift = self.problem.operators.table().shift() * solved.p.iter().sum::<f64>();
+            let shift = self.problem.operators.table().shift() * pressure.iter().sum::<f64>();
             let height = self.height;
             if self.outputs.gap {
                 let z = self.problem.candidates.z();
-                let gap = u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect();
+                let gap = u.iter().zip(z).map(|(u, z)| (u + z - d) * height).collect();
                 fields.gap = Some(self.field(gap)?);
             }
             if self.outputs.displacement {
@@ -131,7 +132,7 @@ impl PreparedBem3d {
     }
 
     /// Connected patches of the contact set, where asked for.
-    fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
+    pub(super) fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
         if !self.outputs.contact_patches {
             return Ok(None);
         }
