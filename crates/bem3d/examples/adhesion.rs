@@ -99,7 +99,7 @@ fn map(
 fn line(state: &ContactState, start: Instant) -> String {
     let adhesive = state.adhesive.expect("a state with adhesion");
     format!(
-        "{:.6e} {} {:.4e} {:.8e} {} {} {} {:.3} {}",
+        "{:.6e} {} {:.4e} {:.8e} {} {} {} {:.3} [{}] {}",
         state.stiffness.unwrap_or(f64::NAN),
         adhesive.branch.as_str(),
         adhesive.stability,
@@ -108,6 +108,7 @@ fn line(state: &ContactState, start: Instant) -> String {
         state.report.iterations,
         state.report.applications,
         start.elapsed().as_secs_f64(),
+        state.report.strategy,
         state.report.certificate
     )
 }

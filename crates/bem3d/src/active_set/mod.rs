@@ -8,6 +8,7 @@ mod solver;
 mod state;
 mod undecided;
 
+pub use candidates::Candidates;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;
 pub use solver::{resume, solve};

@@ -8,11 +8,12 @@
 
 use super::law::Law;
 use super::mixing::Mixing;
-use crate::active_set::{self, Limits, Problem, Residuals, Target};
+use crate::active_set::{self, Candidates, Limits, Problem, Residuals, Target};
 use crate::geometry::CellSet;
 use crate::linear::StoppingCriteria;
 use crate::real::{dot, smallest, sum};
 use contact_model::{Status, Stop};
+use std::sync::Arc;
 
 /// A sweep lowers the gaps left on the contact by this factor: less than the attraction changes by would be lost, more is gone after the
 /// next change of the attraction.
@@ -23,6 +24,10 @@ const PLAIN_REDUCTION: f64 = 1e-2;
 const STEPS: usize = 40;
 /// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of the range.
 const SETTLED: f64 = 1e-3;
+/// With acceleration: by more than this share of what the attraction changes its gaps by ...
+const BALANCE: f64 = 0.1;
+/// ... and at most this.
+const SETTLED_FIRST: f64 = 0.05;
 /// Acceleration begins when no gap changes by more than this share of the range in a sweep: the attraction is then nearly linear in them.
 const ACCELERATED: f64 = 0.5;
 /// An accelerated step changes no attraction by more than this factor beyond that of the plain one, else it is not taken.
@@ -31,6 +36,8 @@ const LONGEST: f64 = 2.0;
 const PLAIN_SWEEPS: usize = 20;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
 const AHEAD: f64 = 0.5;
+/// A contact whose force changes by more than this factor is solved from coarse grids.
+const FAR: f64 = 2.0;
 /// Tolerance of the elastic contact that a first load begins with.
 const FIRST: f64 = 1e-2;
 
@@ -171,8 +178,12 @@ impl Search<'_> {
             state.d = d;
         }
         self.evaluate(&mut state, &mut mixing);
+        if self.is_far(&state) {
+            self.contact_afresh(&mut state, stop);
+            self.evaluate(&mut state, &mut mixing);
+        }
         for _ in 0..most {
-            let worst = state.residuals.worst().max(state.mismatch);
+            let worst = state.residuals.worst().max(state.mismatch).max(self.load_error(&state));
             if worst <= tolerance {
                 return Ok(state);
             }
@@ -190,6 +201,46 @@ impl Search<'_> {
             state.sweeps += 1;
         }
         Err((Ended::Status(Status::IterationLimit), state))
+    }
+
+    /// Whether the contact of a state is of another load than the one asked for: then it is solved from coarse grids.
+    fn is_far(&self, state: &Equilibrium) -> bool {
+        let Control::Force(asked) = self.control else { return false };
+        let (held, wanted) = (sum(&state.pressure), asked + sum(&state.attraction));
+        held > 0.0 && wanted > 0.0 && !(1.0 / FAR..=FAR).contains(&(wanted / held))
+    }
+
+    /// The contact under the present attraction, by nested iteration: the elastic problem of the gaps `z - G s`.
+    fn contact_afresh(&mut self, state: &mut Equilibrium, stop: Stop<'_>) {
+        let Control::Force(asked) = self.control else { return };
+        let grid = self.problem.grid();
+        let mut lifted = Vec::new();
+        self.problem.operators.exact(&state.cells, &state.attraction, &CellSet::all(grid), &mut lifted);
+        lifted.iter_mut().zip(self.problem.candidates.z()).for_each(|(u, z)| *u = z - *u);
+        // The plane of first touch is that of these gaps.
+        let first = smallest(&lifted);
+        lifted.iter_mut().for_each(|z| *z -= first);
+        let lifted = Candidates::new(grid, Arc::new(lifted));
+        let candidates = std::mem::replace(&mut self.problem.candidates, lifted);
+        let coarser = self.problem.coarser.take();
+        let target = Target::Force(asked + sum(&state.attraction));
+        let limits = Limits { tolerance: FIRST, ..self.limits };
+        let guess = active_set::cold_start(self.problem, target, limits, stop);
+        let solved = active_set::solve(self.problem, target, guess, limits, stop);
+        (self.problem.candidates, self.problem.coarser) = (candidates, coarser);
+        let cells = state.cells.union(&solved.contact);
+        state.take_cells(cells, state.reach);
+        state.pressure = state.cells.carry(&solved.contact, &solved.p);
+        state.d = solved.d + first;
+        state.steps += solved.steps;
+    }
+
+    /// How far the force of a state is from the one prescribed, relative to it; to the pressure of the contact where it is nothing.
+    pub fn load_error(&self, state: &Equilibrium) -> f64 {
+        let Control::Force(asked) = self.control else { return 0.0 };
+        let miss = (state.force() - asked).abs();
+        let scale = if asked.abs() > 0.0 { asked.abs() } else { sum(&state.pressure) };
+        if miss > 0.0 { miss / scale } else { 0.0 }
     }
 
     /// Evaluates the gap with the exact operator on all cells within reach.
@@ -246,7 +297,8 @@ impl Search<'_> {
     /// One sweep: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
     /// hold the force.
     fn sweep(&mut self, state: &mut Equilibrium, mixing: &mut Mixing, stop: Stop<'_>) -> bool {
-        let Self { problem, law, control, plain, .. } = self;
+        let Self { problem, law, control, plain, limits } = self;
+        let tolerance = limits.tolerance;
         let (law, plain) = (*law, *plain || law.kind == contact_model::AdhesionLaw::Dugdale);
         let tuning = *problem.operators.tuning();
         let held = sum(&state.pressure);
@@ -254,16 +306,13 @@ impl Search<'_> {
         let off = (state.pressure.iter().zip(&state.gap))
             .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
             .fold(0.0, f64::max);
-        let waits = plain && off > SETTLED * law.range && held > 0.0;
-        let (next, change) = if waits {
-            (state.attraction.clone(), 0.0)
-        } else {
-            let next: Vec<f64> = state.gap.iter().map(|&g| law.traction(g)).collect();
-            let change = (next.iter().zip(&state.attraction))
-                .map(|(a, b)| (a - b).abs() / a.max(*b).max(f64::MIN_POSITIVE) * (a.max(*b) / law.peak).sqrt())
-                .fold(0.0, f64::max);
-            (next, change)
-        };
+        let next: Vec<f64> = state.gap.iter().map(|&g| law.traction(g)).collect();
+        let change = (next.iter().zip(&state.attraction))
+            .map(|(a, b)| (a - b).abs() / (a.max(*b) * law.peak).sqrt().max(f64::MIN_POSITIVE))
+            .fold(0.0, f64::max);
+        let settled = if plain { SETTLED } else { (BALANCE * change).clamp(0.5 * tolerance, SETTLED_FIRST) };
+        let waits = off > settled * law.range && held > 0.0;
+        let next = if waits { state.attraction.clone() } else { next };
         let fixed_sum = matches!(control, Control::Force(_));
         let mut factor = 1.0;
         let mut pressure = state.pressure.clone();
@@ -320,7 +369,9 @@ impl Search<'_> {
             pressure.iter_mut().zip(&correction).for_each(|(p, x)| *p = (*p + x).max(0.0));
         }
         let mut attraction = next;
-        if plain || change > ACCELERATED {
+        if waits {
+            // The contact alone.
+        } else if plain || change > ACCELERATED {
             mixing.clear();
         } else {
             let own = problem.operators.table().own();

@@ -184,6 +184,7 @@ impl Linearised<'_> {
     fn response(&mut self, control: Control, tolerance: Option<f64>) -> Response {
         let mut response = Response { stability: 1.0, error: f64::INFINITY, ..Response::default() };
         if self.both.is_empty() {
+            // Nothing within reach: nothing responds.
             return Response { error: 0.0, ..response };
         }
         // The net pressure per approach, and what is left of its equation.

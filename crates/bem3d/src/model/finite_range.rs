@@ -151,6 +151,9 @@ impl FiniteRangeContact {
                 None => search.first(stop),
             };
             let ended = search.from(start, stop);
+            let search_error = match &ended {
+                Ok(equilibrium) | Err((_, equilibrium)) => search.load_error(equilibrium),
+            };
             let again = !plain && !stop();
             let (mut equilibrium, status) = match ended {
                 Ok(equilibrium) => (equilibrium, Status::Converged),
@@ -178,7 +181,8 @@ impl FiniteRangeContact {
             equilibrium.sweeps += spent.1;
             let stable = response.stability > 0.0;
             let status = if status == Status::Converged && !stable { Status::Stagnated } else { status };
-            return Ok(Found { equilibrium, response, control, status, load_error: 0.0 });
+            let load_error = search_error;
+            return Ok(Found { equilibrium, response, control, status, load_error });
         }
     }
 
@@ -263,15 +267,10 @@ impl FiniteRangeContact {
         let net = equilibrium.force();
         let stiffness = inner.outputs.needs_stiffness().then(|| {
             let rest = 1.0 - inner.problem.operators.table().shift() * response.stiffness;
-            (response.stiffness / rest, response.error / (response.stiffness.abs() * rest.abs()))
+            let scale = response.stiffness.abs() * rest.abs();
+            (response.stiffness / rest, if response.error > 0.0 { response.error / scale } else { 0.0 })
         });
-        let separated = equilibrium.cells.is_empty();
-        let stiffness_error = stiffness.map(|(_, e)| if separated { 0.0 } else { e });
-        let load_error = match control {
-            Control::Force(f) if f != 0.0 => ((net - f) / f).abs(),
-            Control::Force(_) => net.abs() / equilibrium.pressure.iter().sum::<f64>().max(f64::MIN_POSITIVE),
-            Control::Approach(_) => load_error,
-        };
+        let stiffness_error = stiffness.map(|(_, error)| error);
         let residuals = equilibrium.residuals;
         let certificate = Certificate {
             duality_gap: residuals.duality_gap,
@@ -292,7 +291,7 @@ impl FiniteRangeContact {
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
         let contact = equilibrium.contact();
         let fields = inner.fields(&equilibrium.cells, &equilibrium.net(), equilibrium.d)?;
-        let mut report = SolveReport::new(status, format!("attraction on {} cells", equilibrium.cells.len()));
+        let mut report = SolveReport::new(status, format!("attraction on {} cells, {} sweeps", equilibrium.cells.len(), equilibrium.sweeps));
         report.work = Work::of(std::mem::take(&mut inner.problem.operators.solves), fields.as_ref());
         report.iterations = equilibrium.steps + response.steps;
         report.applications = std::mem::take(&mut inner.problem.operators.applications);
