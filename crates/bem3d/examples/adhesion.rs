@@ -2,6 +2,7 @@
 //!
 //! `adhesion sphere LAW MU CELLS HALF_SIDE STEPS` draws a sphere (R = E* = 1) of Tabor's parameter MU from contact, and prints its path in
 //! Maugis's units and the pull-off force over pi w R; HALF_SIDE is half of the side in units of `(pi w R^2/K)^(1/3)`, K = 4/3.
+//! `adhesion heights CELLS HURST SEED FILE` writes the heights of that map, one a line.
 //! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* = h = 1) along these forces.
 
 use bem3d::{
@@ -18,12 +19,18 @@ fn main() -> Result<(), Box<dyn StdError>> {
         ["sphere", law, mu, cells, half, steps] => {
             sphere(law_of(law)?, mu.parse()?, cells.parse()?, half.parse()?, steps.parse()?)
         }
+        ["heights", cells, hurst, seed, file] => {
+            let surface = SelfAffine { hurst: hurst.parse()?, ..SelfAffine::new(2.5, 1.0, 1.0)? };
+            let cells = Bem3d { cells: cells.parse()?, ..Bem3d::default() }.grid(surface.size);
+            let map = surface_gen::height_map(&Surface::SelfAffine(surface), cells, seed.parse()?)?;
+            Ok(std::fs::write(file, map.heights().iter().map(|h| format!("{h:e}\n")).collect::<String>())?)
+        }
         ["map", cells, hurst, seed, work, range, tolerance, forces] => {
             let forces = forces.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>()?;
             let adhesion = (work.parse()?, range.parse()?);
             map(cells.parse()?, hurst.parse()?, seed.parse()?, adhesion, tolerance.parse()?, &forces)
         }
-        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | map CELLS HURST SEED WORK RANGE TOLERANCE F1,...".into()),
+        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,...".into()),
     }
 }
 

@@ -8,3 +8,6 @@ mod mixing;
 pub use equilibrium::{Control, Ended, Equilibrium, Search, energy};
 pub use law::Law;
 pub use linearised::{Response, respond};
+
+#[cfg(test)]
+mod tests;
