@@ -6,7 +6,8 @@
 //! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* = h = 1) along these forces.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Boundary, ContactState, Error, HistoryModel, Load, Scene, SelfAffine, Step, Surface,
+    Adhesion, AdhesionLaw, Bem3d, Boundary, ContactState, Error, HistoryModel, Load, Scene, SelfAffine, Step,
+    Surface,
 };
 use std::error::Error as StdError;
 use std::f64::consts::PI;
@@ -23,7 +24,8 @@ fn main() -> Result<(), Box<dyn StdError>> {
             let surface = SelfAffine { hurst: hurst.parse()?, ..SelfAffine::new(2.5, 1.0, 1.0)? };
             let cells = Bem3d { cells: cells.parse()?, ..Bem3d::default() }.grid(surface.size);
             let map = surface_gen::height_map(&Surface::SelfAffine(surface), cells, seed.parse()?)?;
-            Ok(std::fs::write(file, map.heights().iter().map(|h| format!("{h:e}\n")).collect::<String>())?)
+            let lines: Vec<String> = map.heights().iter().map(|h| format!("{h:e}")).collect();
+            Ok(std::fs::write(file, lines.join("\n"))?)
         }
         ["map", cells, hurst, seed, work, range, tolerance, forces] => {
             let forces = forces.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>()?;
@@ -56,7 +58,9 @@ fn sphere(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> R
     let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
     let mut history = HistoryModel::prepare(&model, &scene, 0)?;
     let mut lowest = f64::INFINITY;
-    println!("approach force radius stiffness branch stability energy cells sweep-steps applications seconds");
+    println!(
+        "approach force radius stiffness branch stability energy cells sweep-steps applications seconds"
+    );
     for i in 0..=steps {
         let approach = 1.0 - 3.5 * i as f64 / steps as f64;
         let start = Instant::now();
@@ -104,7 +108,7 @@ fn map(
 }
 
 fn line(state: &ContactState, start: Instant) -> String {
-    let adhesive = state.adhesive.expect("a state with adhesion");
+    let Some(adhesive) = state.adhesive else { return "no adhesion".into() };
     format!(
         "{:.6e} {} {:.4e} {:.8e} {} {} {} {:.3} [{}] {}",
         state.stiffness.unwrap_or(f64::NAN),

@@ -11,7 +11,7 @@ use super::mixing::Mixing;
 use crate::active_set::{self, Candidates, Limits, Problem, Residuals, Target};
 use crate::geometry::CellSet;
 use crate::linear::StoppingCriteria;
-use crate::real::{dot, smallest, sum};
+use crate::real::{dot, each, largest, smallest, sum};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
@@ -32,6 +32,8 @@ const SETTLED_FIRST: f64 = 0.05;
 const ACCELERATED: f64 = 0.5;
 /// An accelerated step changes no attraction by more than this factor beyond that of the plain one, else it is not taken.
 const LONGEST: f64 = 2.0;
+/// Attractions below this share of the largest one do not limit an accelerated step.
+const FELT: f64 = 1e-6;
 /// Sweeps of the plain iteration for each outer iteration allowed: it contracts by the factor rho only.
 const PLAIN_SWEEPS: usize = 20;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
@@ -169,7 +171,7 @@ impl Search<'_> {
         &mut self,
         mut state: Equilibrium,
         stop: Stop<'_>,
-    ) -> Result<Equilibrium, (Ended, Equilibrium)> {
+    ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
         let tolerance = self.limits.tolerance;
         let most = self.limits.outer_iterations * if self.plain { PLAIN_SWEEPS } else { 1 };
         let mut mixing = Mixing::default();
@@ -188,19 +190,19 @@ impl Search<'_> {
                 return Ok(state);
             }
             if stop() {
-                return Err((Ended::Status(Status::Stopped), state));
+                return Err(Box::new((Ended::Status(Status::Stopped), state)));
             }
             if worst > 2.0 * last {
                 mixing.clear();
             }
             last = worst;
             if !self.sweep(&mut state, &mut mixing, stop) {
-                return Err((Ended::PulledOff, state));
+                return Err(Box::new((Ended::PulledOff, state)));
             }
             self.evaluate(&mut state, &mut mixing);
             state.sweeps += 1;
         }
-        Err((Ended::Status(Status::IterationLimit), state))
+        Err(Box::new((Ended::Status(Status::IterationLimit), state)))
     }
 
     /// Whether the contact of a state is of another load than the one asked for: then it is solved from coarse grids.
@@ -219,7 +221,7 @@ impl Search<'_> {
         lifted.iter_mut().zip(self.problem.candidates.z()).for_each(|(u, z)| *u = z - *u);
         // The plane of first touch is that of these gaps.
         let first = smallest(&lifted);
-        lifted.iter_mut().for_each(|z| *z -= first);
+        each(&mut lifted, |z| *z -= first);
         let lifted = Candidates::new(grid, Arc::new(lifted));
         let candidates = std::mem::replace(&mut self.problem.candidates, lifted);
         let coarser = self.problem.coarser.take();
@@ -266,7 +268,7 @@ impl Search<'_> {
                 }
             }
             let d = state.d;
-            state.gap.iter_mut().for_each(|g| *g -= d);
+            each(&mut state.gap, |g| *g -= d);
             // A cell outside is lifted by the attraction no farther than the one lifted most.
             let reach = d + law.reach() - lowest;
             if reach <= state.reach {
@@ -282,16 +284,13 @@ impl Search<'_> {
             mixing.clear();
         }
         let contact = state.contact();
-        let (p, left) = (
-            contact.carry(&state.cells, &state.pressure),
-            contact.carry(&state.cells, &state.gap),
-        );
+        let (p, left) =
+            (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
         let lowest = if state.gap.is_empty() { 0.0 } else { smallest(&state.gap) };
         let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
         state.residuals = Residuals::measure(&p, &left, lowest, length);
-        state.mismatch = (state.attraction.iter().zip(&state.gap))
-            .map(|(&s, &g)| law.mismatch(s, g))
-            .fold(0.0, f64::max);
+        state.mismatch =
+            (state.attraction.iter().zip(&state.gap)).map(|(&s, &g)| law.mismatch(s, g)).fold(0.0, f64::max);
     }
 
     /// One sweep: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
@@ -329,14 +328,14 @@ impl Search<'_> {
                 pressure[first] = wanted;
             }
         }
-        pressure.iter_mut().for_each(|p| *p *= factor);
+        each(&mut pressure, |p| *p *= factor);
         // The gap that follows.
         let changed: Vec<f64> = (pressure.iter().zip(&state.pressure))
             .zip(next.iter().zip(&state.attraction))
             .map(|((p, p0), (s, s0))| (p - p0) - (s - s0))
             .collect();
         let mut gap = Vec::new();
-        if crate::real::largest(&changed) > 0.0 {
+        if largest(&changed) > 0.0 {
             problem.operators.rough(&state.cells, &changed, &state.cells, &mut gap);
             gap.iter_mut().zip(&state.gap).for_each(|(g, g0)| *g += g0);
         } else {
@@ -345,7 +344,7 @@ impl Search<'_> {
         if fixed_sum {
             let force = sum(&pressure);
             let offset: f64 = pressure.iter().zip(&gap).map(|(p, g)| p / force * g).sum();
-            gap.iter_mut().for_each(|g| *g -= offset);
+            each(&mut gap, |g| *g -= offset);
         }
         let (square, count) = (pressure.iter().zip(&gap))
             .filter(|(p, _)| **p > 0.0)
@@ -357,7 +356,7 @@ impl Search<'_> {
         let set = state.cells.filter(&marked, |m| m > 0.0);
         if let Some(recipe) = problem.operators.planner().system(&set, count, false) {
             let mut right: Vec<f64> = set.carry(&state.cells, &gap);
-            right.iter_mut().for_each(|r| *r = -*r);
+            each(&mut right, |r| *r = -*r);
             let reduction = if plain { PLAIN_REDUCTION } else { REDUCTION };
             let criteria = StoppingCriteria { reduction, energy: None, floor: 0.0, steps: STEPS };
             let Problem { operators, workspace, .. } = &mut **problem;
@@ -375,24 +374,7 @@ impl Search<'_> {
             mixing.clear();
         } else {
             let own = problem.operators.table().own();
-            let residual: Vec<f64> = (state.pressure.iter().zip(&state.gap))
-                .zip(attraction.iter().zip(&state.attraction))
-                .map(|((&p, &g), (&s, &s0))| {
-                    if p > 0.0 { g / own.sqrt() } else { (s - s0) / (s.max(s0) / law.range).sqrt().max(f64::MIN_POSITIVE) }
-                })
-                .collect();
-            let (mut p, mut s) = (pressure.clone(), attraction.clone());
-            mixing.combine(&mut p, &mut s, residual);
-            let allowed = |(new, plain): (&f64, &f64)| {
-                *plain < 1e-6 * law.peak || (*new <= LONGEST * plain && *new * LONGEST >= *plain)
-            };
-            if s.iter().zip(&attraction).all(allowed) {
-                p.iter_mut().for_each(|p| *p = p.max(0.0));
-                s.iter_mut().for_each(|s| *s = s.clamp(0.0, law.peak));
-                (pressure, attraction) = (p, s);
-            } else {
-                mixing.clear();
-            }
+            accelerate(law, own, state, mixing, (&mut pressure, &mut attraction));
         }
         if let Control::Force(force) = *control {
             let (wanted, sum) = (force + sum(&attraction), sum(&pressure));
@@ -400,10 +382,43 @@ impl Search<'_> {
                 return false;
             }
             if sum > 0.0 {
-                pressure.iter_mut().for_each(|p| *p *= wanted / sum);
+                each(&mut pressure, |p| *p *= wanted / sum);
             }
         }
         (state.pressure, state.attraction) = (pressure, attraction);
         true
+    }
+}
+
+/// Replaces what a sweep made of a state by the combination of the last sweeps, unless that would change an attraction too much.
+fn accelerate(
+    law: Law,
+    own: f64,
+    state: &Equilibrium,
+    mixing: &mut Mixing,
+    (pressure, attraction): (&mut Vec<f64>, &mut Vec<f64>),
+) {
+    // Both parts as roots of energies: of the gaps left on the contact, and of the changes of open gaps.
+    let residual: Vec<f64> = (state.pressure.iter().zip(&state.gap))
+        .zip(attraction.iter().zip(&state.attraction))
+        .map(|((&p, &g), (&s, &s0))| {
+            if p > 0.0 {
+                g / own.sqrt()
+            } else {
+                (s - s0) / (s.max(s0) / law.range).sqrt().max(f64::MIN_POSITIVE)
+            }
+        })
+        .collect();
+    let (mut p, mut s) = (pressure.clone(), attraction.clone());
+    mixing.combine(&mut p, &mut s, residual);
+    let allowed = |(new, plain): (&f64, &f64)| {
+        *plain < FELT * law.peak || (*new <= LONGEST * plain && *new * LONGEST >= *plain)
+    };
+    if s.iter().zip(&*attraction).all(allowed) {
+        each(&mut p, |p| *p = p.max(0.0));
+        each(&mut s, |s| *s = s.clamp(0.0, law.peak));
+        (*pressure, *attraction) = (p, s);
+    } else {
+        mixing.clear();
     }
 }

@@ -10,7 +10,7 @@ use super::law::Law;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
 use crate::linear::StoppingCriteria;
-use crate::real::{dot, sum};
+use crate::real::{dot, each, sum};
 use contact_model::{AdhesionLaw, Stop};
 
 /// Slopes below this share of the largest one are left out: what they change is below the rounding of the sums.
@@ -119,7 +119,7 @@ impl Linearised<'_> {
                 at_force[0] -= start / held;
             }
             found.smallest_at_force = lowest_eigenvalue(&at_force, &beside);
-            if !(curvature > 0.0) || found.smallest <= 0.0 {
+            if curvature.is_nan() || curvature <= 0.0 || found.smallest <= 0.0 {
                 break;
             }
             for ((v, r), (t, at)) in v.iter_mut().zip(&mut r).zip(t.iter().zip(&at)) {
@@ -237,7 +237,7 @@ impl Linearised<'_> {
             let mut own = self.open.carry(&self.both, &x);
             own.iter_mut().zip(&self.root).for_each(|(x, d)| *x = -*x / (d * d));
             self.both.add_carried(&self.open, &own, &mut r);
-            r.iter_mut().for_each(|r| *r = 1.0 - *r);
+            each(&mut r, |r| *r = 1.0 - *r);
         }
         response
     }

@@ -73,8 +73,9 @@ fn solved(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
         }
         for i in k + 1..n {
             let factor = rows[i][k] / rows[k][k];
-            for j in k..=n {
-                rows[i][j] -= factor * rows[k][j];
+            let (above, below) = rows.split_at_mut(i);
+            for (value, pivot) in below[0][k..].iter_mut().zip(&above[k][k..]) {
+                *value -= factor * pivot;
             }
         }
     }

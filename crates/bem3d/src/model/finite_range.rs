@@ -63,12 +63,17 @@ impl FiniteRangeContact {
         let law = Law { peak, range: reach, kind };
         let own = peak / reach * influence_of_rectangle(0, 0, inner.problem.grid().stretch);
         if !(own.is_finite() && own > 0.0) {
-            return Err(Error::domain("range of adhesion", range, "a length nearer to the scales of the surface"));
+            return Err(Error::domain(
+                "range of adhesion",
+                range,
+                "a length nearer to the scales of the surface",
+            ));
         }
         if own > RESOLVED {
             let (dx, dy) = inner.cell();
             let most = dx.max(dy) * RESOLVED / own;
-            let expected = format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
+            let expected =
+                format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
             return Err(Error::domain("side of a cell", dx.max(dy), expected));
         }
         Ok(Self { inner, law, time: 0.0, last: None, plain: false })
@@ -150,7 +155,7 @@ impl FiniteRangeContact {
                 Some(last) => last.equilibrium.again(),
                 None => search.first(stop),
             };
-            let ended = search.from(start, stop);
+            let ended = search.from(start, stop).map_err(|ended| *ended);
             let search_error = match &ended {
                 Ok(equilibrium) | Err((_, equilibrium)) => search.load_error(equilibrium),
             };
@@ -219,9 +224,10 @@ impl FiniteRangeContact {
         let length = self.inner.limits().height.unwrap_or(self.law.range);
         let gap_of = |e: &Equilibrium, mean: f64| mean - (e.d - shift * e.force());
         let mean = self.inner.mean;
-        let mut d = self.last.as_ref().map_or(mean - asked, |last| {
-            last.equilibrium.d + (gap_of(&last.equilibrium, mean) - asked)
-        });
+        let mut d = self
+            .last
+            .as_ref()
+            .map_or(mean - asked, |last| last.equilibrium.d + (gap_of(&last.equilibrium, mean) - asked));
         let mut before: Option<(f64, f64)> =
             self.last.as_ref().map(|last| (last.equilibrium.d, gap_of(&last.equilibrium, mean) - asked));
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -257,7 +263,7 @@ impl FiniteRangeContact {
     fn finish(&mut self, found: Found, stop: Stop<'_>) -> Result<Last> {
         let Found { equilibrium, response, control, status, load_error } = found;
         let branch = match (self.rises(control), &self.last) {
-            (Some(true), _) | (None, _) => Branch::Approach,
+            (Some(true) | None, _) => Branch::Approach,
             (Some(false), Some(last)) if self.same_load(control) => last.branch,
             _ => Branch::Withdrawal,
         };
@@ -291,7 +297,10 @@ impl FiniteRangeContact {
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
         let contact = equilibrium.contact();
         let fields = inner.fields(&equilibrium.cells, &equilibrium.net(), equilibrium.d)?;
-        let mut report = SolveReport::new(status, format!("attraction on {} cells, {} sweeps", equilibrium.cells.len(), equilibrium.sweeps));
+        let mut report = SolveReport::new(
+            status,
+            format!("attraction on {} cells, {} sweeps", equilibrium.cells.len(), equilibrium.sweeps),
+        );
         report.work = Work::of(std::mem::take(&mut inner.problem.operators.solves), fields.as_ref());
         report.iterations = equilibrium.steps + response.steps;
         report.applications = std::mem::take(&mut inner.problem.operators.applications);

@@ -4,7 +4,9 @@ use super::finite_range::{FiniteRangeContact, WithoutAdhesion};
 use super::options::Bem3d;
 use super::prepared::NAME;
 use crate::tuning::Tuning;
-use contact_model::{Adhesion, ContactModel, Effects, Error, History, HistoryModel, Result, Scene, Source, Step, Tangential};
+use contact_model::{
+    Adhesion, ContactModel, Effects, Error, History, HistoryModel, Result, Scene, Source, Step, Tangential,
+};
 
 impl HistoryModel for Bem3d {
     fn name(&self) -> &'static str {
