@@ -169,7 +169,12 @@ fn a_plateau_snaps_in_and_off_and_loses_energy() {
     let (rising, falling) = (states(&mut *history, &up), states(&mut *history, &back));
     let first = rising.iter().position(|s| s.report.contact_cells > Some(0)).unwrap();
     let last = falling.iter().position(|s| s.report.contact_cells == Some(0)).unwrap();
-    assert!(up[first] > back[last] + 0.02, "{} {}", up[first], back[last]);
+    // A rigid punch on a spring: beta = (A w/range^2)/k, k = 1.1419 E* L; in at -d = range (1 + ln beta), off at range beta. The edge of a
+    // punch gives way before its middle does, and a step is 0.01.
+    let beta: f64 = 0.25 * 0.04 / 0.01 / (1.1419 * 0.5);
+    assert!((up[first] + 0.1 * (1.0 + beta.ln())).abs() < 0.015, "{}", up[first]);
+    assert!((back[last] + 0.1 * beta).abs() < 0.015, "{}", back[last]);
+    assert!(up[first] > back[last] + 0.015, "{} {}", up[first], back[last]);
     let work = |states: &[ContactState], path: &[f64]| -> f64 {
         let pairs = states.windows(2).zip(path.windows(2));
         pairs.map(|(s, d)| 0.5 * (s[0].force + s[1].force) * (d[1] - d[0])).sum()
