@@ -11,9 +11,7 @@
 //!      10  12.4299   0.9915  0.51704     150  8e-6
 //! ```
 
-#![allow(clippy::wildcard_imports)] // the solver, its scenes and the traits, from one crate
-
-use bem3d::*;
+use bem3d::{Bem3d, ContactModel, Result, Scene, SelfAffine, Surface, never};
 
 fn main() -> Result<()> {
     let surface = SelfAffine::new(2.4, 1.0, 0.01)?; // D_f, side L, rms height h

@@ -32,6 +32,13 @@
 //! ([`contact_model::ContactState::mean_gap`]), which can also be prescribed, and `k = -dF/d(mean gap)`. Full contact has
 //! no finite stiffness: it stays `None` there. Every number of cells is solved on its own period.
 //!
+//! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is `p - s(g)`, p >= 0 still with
+//! p g = 0. Approach and withdrawal differ, so that such a scene is a path ([`HistoryModel`]); a single load is the path from no contact to it.
+//! Each state says on which branch it lies, its energy, and how stable it is ([`AdhesiveState::stability`]: `1 - rho` for the exponential
+//! law, see `finite_range`; for Dugdale's law, whose states are stable between the jumps of single cells, the smallest distance of the gap of a
+//! cell from the range, in ranges). Forces that nothing holds end the path with an error that has the last stable state. Cells too
+//! large for the range are refused with the side that would do; results with Dugdale's law are of first order in the cell.
+//!
 //! # How
 //!
 //! One load is an outer iteration over contact sets (`active_set`): from an initial guess (the tangent of the last state, or
@@ -81,9 +88,10 @@
 //!
 //! # What it does not do
 //!
-//! Adhesion, friction and rheology are refused at `prepare`.
+//! Adhesion of short range, friction and rheology are refused at `prepare`.
 
 mod active_set;
+mod finite_range;
 mod geometry;
 mod kernel;
 mod linear;

@@ -204,9 +204,14 @@ fn what_is_refused() {
         assert!(matches!(refused, Err(Error::Domain { .. })), "{pressure}");
     }
     let mut both = scene.clone();
-    both.effects.adhesion = Adhesion::ShortRange { work: 1.0 };
-    assert!(matches!(ContactModel::prepare(&TIGHT, &both, 5), Err(Error::Unsupported { .. })));
-    assert!(matches!(Bem3dPath(TIGHT).prepare(&both, 5), Err(Error::Unsupported { .. })));
+    for adhesion in [
+        Adhesion::ShortRange { work: 1.0 },
+        Adhesion::FiniteRange { work: 1.0, range: 1.0, law: AdhesionLaw::Exponential },
+    ] {
+        both.effects.adhesion = adhesion;
+        assert!(matches!(ContactModel::prepare(&TIGHT, &both, 5), Err(Error::Unsupported { .. })));
+        assert!(matches!(Bem3dPath(TIGHT).prepare(&both, 5), Err(Error::Unsupported { .. })));
+    }
     let mut path = Bem3dPath(TIGHT).prepare(&scene, 5).unwrap();
     path.advance(Step::normal(1.0, Load::Force(0.5))).unwrap();
     for step in [

@@ -12,5 +12,6 @@ mod undecided;
 pub use candidates::Candidates;
 pub use hardness::is_saturated;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
+pub use residuals::Residuals;
 pub use solver::{resume, solve};
 pub use state::{Guess, Limits, Problem, Solved, Target};

@@ -1,11 +1,13 @@
 //! Paths of loads: what the contact remembers.
 
 use super::Bem3d;
+use super::finite_range::{FiniteRangeContact, WithoutAdhesion};
 use super::plastic_path::PlasticPath;
 use super::prepared::NAME;
 use crate::tuning::Tuning;
 use contact_model::{
-    Adhesion, ContactModel, Effects, Error, Hardness, History, HistoryModel, Result, Scene, Source,
+    Adhesion, ContactModel, Effects, Error, Hardness, History, HistoryModel, Result, Scene, Source, Step,
+    Tangential,
 };
 
 /// The boundary-element model along a path of loads, for effects that remember it: hardness and adhesion.
@@ -34,12 +36,44 @@ impl HistoryModel for Bem3dPath {
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
-        let Effects { hardness, adhesion, .. } = scene.effects;
-        match (hardness, adhesion) {
-            (Hardness::Off, Adhesion::Off) => {
+        scene.validate()?;
+        refuse_together(&scene.effects)?;
+        match scene.effects.adhesion {
+            Adhesion::FiniteRange { work, range, law } if work > 0.0 => Ok(Box::new(
+                FiniteRangeContact::new(&self.0, scene, seed, (work, range, law), &Tuning::DEFAULT)?,
+            )),
+            Adhesion::FiniteRange { .. } => {
+                let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
+                let scene = Scene { effects, ..scene.clone() };
+                Ok(Box::new(WithoutAdhesion::new(ContactModel::prepare(&self.0, &scene, seed)?)))
+            }
+            Adhesion::Off if scene.effects.hardness == Hardness::Off => {
                 Err(Error::unsupported(NAME, "a path without hardness or adhesion: nothing depends on it"))
             }
             _ => Ok(Box::new(PlasticPath::new(self.0.prepared(scene, seed, &Tuning::DEFAULT)?))),
         }
     }
+}
+
+/// Hardness and adhesion together: attraction that indents is solved by neither.
+///
+/// # Errors
+/// [`Error::Unsupported`] where both are on.
+pub(super) fn refuse_together(effects: &Effects) -> Result<()> {
+    if effects.hardness == Hardness::Off || effects.adhesion == Adhesion::Off {
+        return Ok(());
+    }
+    let what = "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made";
+    Err(Error::unsupported(NAME, what))
+}
+
+/// A step whose tangential load is nothing: there is no friction.
+///
+/// # Errors
+/// [`Error::Unsupported`] for any other.
+pub(super) fn without_tangential(step: Step) -> Result<()> {
+    let (Tangential::Force(value) | Tangential::Displacement(value)) = step.tangential else {
+        return Err(Error::unsupported(NAME, "a tangential load"));
+    };
+    if value.abs() > 0.0 { Err(Error::unsupported(NAME, "a tangential load")) } else { Ok(()) }
 }

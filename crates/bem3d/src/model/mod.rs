@@ -1,6 +1,7 @@
 //! The boundary-element model behind the common traits.
 
 mod contact;
+mod finite_range;
 mod history;
 mod mean_gap;
 mod options;
@@ -13,8 +14,11 @@ pub use options::{Bem3d, Method};
 
 use crate::tuning::Tuning;
 use contact_model::{
-    Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, Result, Scene, Source, Surface,
+    Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, Result, Scene, Source,
+    Surface,
 };
+use finite_range::FiniteRangeContact;
+use history::refuse_together;
 use prepared::{NAME, PreparedBem3d};
 use std::sync::Arc;
 
@@ -49,10 +53,21 @@ impl Bem3d {
         seed: u64,
         tuning: &Tuning,
     ) -> Result<Box<dyn PreparedContact>> {
+        refuse_together(&scene.effects)?;
+        if let Adhesion::FiniteRange { work, range, law } = scene.effects.adhesion {
+            scene.validate()?;
+            if work > 0.0 {
+                let adhesion = (work, range, law);
+                return Ok(Box::new(FiniteRangeContact::new(self, scene, seed, adhesion, tuning)?));
+            }
+            // Without work the elastic states, bit by bit.
+            let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
+            return self.prepare_tuned(&Scene { effects, ..scene.clone() }, seed, tuning);
+        }
         Ok(Box::new(self.prepared(scene, seed, tuning)?))
     }
 
-    /// The surface of a scene, ready to be loaded.
+    /// A surface without adhesion, ready to be loaded.
     fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
         scene.validate()?;
         if !matches!(scene.effects.boundary, Boundary::Free | Boundary::Periodic) {

@@ -1,9 +1,10 @@
 //! A path with a hardness: the indentation stays, and what is unloaded is elastic until the old pressures are reached again.
 
-use super::prepared::{NAME, PreparedBem3d};
+use super::history::without_tangential;
+use super::prepared::PreparedBem3d;
 use crate::active_set::Candidates;
 use contact_model::{
-    Error, History, HistoryState, Normalisation, PreparedContact, Result, Step, Stop, Tangential, never,
+    Error, History, HistoryState, Normalisation, PreparedContact, Result, Step, Stop, never,
 };
 use std::sync::Arc;
 
@@ -40,9 +41,7 @@ impl History for PlasticPath {
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
         let step = step.validated(self.time)?;
-        if step.tangential != Tangential::default() {
-            return Err(Error::unsupported(NAME, format!("a tangential load ({:?})", step.tangential)));
-        }
+        without_tangential(step)?;
         if stop() {
             return Err(Error::Stopped { best: None });
         }

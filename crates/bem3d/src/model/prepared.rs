@@ -165,6 +165,12 @@ impl PreparedBem3d {
         self.last = Some(LastState { contact, p, d, force, tangent });
     }
 
+    /// Sides of a cell.
+    pub(super) fn cell(&self) -> (f64, f64) {
+        let grid = self.problem.grid();
+        (self.size.x / grid.columns as f64, self.size.y / grid.rows as f64)
+    }
+
     /// Work is counted from here.
     pub(super) fn begin_count(&mut self) {
         self.problem.operators.applications = 0;

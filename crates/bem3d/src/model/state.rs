@@ -44,7 +44,7 @@ impl PreparedBem3d {
             other => other,
         };
         let (saturated, depth) = plastic_depth(&solved, self.problem.hardness);
-        let fields = self.fields(&solved, &saturated, &depth)?;
+        let fields = self.fields((&solved.contact, &solved.p), solved.d, (&saturated, &depth))?;
         let units = self.nondimensional;
         let mut report = SolveReport::new(status, self.strategy(&solved));
         report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
@@ -92,7 +92,13 @@ impl PreparedBem3d {
         Ok(Some(PlasticState::new(area, volume, units.pressure(PI * hardness)?)))
     }
 
-    fn fields(&mut self, solved: &Solved, saturated: &CellSet, depth: &[f64]) -> Result<Option<Fields>> {
+    /// The fields asked for, of a (net) pressure on a set at an approach, with the depth of the indentation of saturated cells.
+    pub(super) fn fields(
+        &mut self,
+        (set, pressure): (&CellSet, &[f64]),
+        d: f64,
+        (saturated, depth): (&CellSet, &[f64]),
+    ) -> Result<Option<Fields>> {
         if !self.outputs.any_field() {
             return Ok(None);
         }
@@ -100,8 +106,8 @@ impl PreparedBem3d {
         let mut fields = Fields::default();
         if self.outputs.pressure {
             let mut p = vec![0.0; grid.count()];
-            for (i, &value) in solved.contact.index(grid).zip(&solved.p) {
-                p[i] = self.nondimensional.pressure(PI * value)?;
+            for (i, &value) in set.index(grid).zip(pressure) {
+                p[i] = self.nondimensional.pressure(PI * value.abs())?.copysign(value);
             }
             fields.pressure = Some(self.field(p)?);
         }
@@ -110,13 +116,13 @@ impl PreparedBem3d {
         }
         if self.outputs.displacement || self.outputs.gap {
             let mut u = Vec::new();
-            self.problem.operators.exact(&solved.contact, &solved.p, &CellSet::all(grid), &mut u);
+            self.problem.operators.exact(set, pressure, &CellSet::all(grid), &mut u);
             // What the constant in the kernel adds to every displacement.
-            let shift = self.problem.operators.table().shift() * solved.p.iter().sum::<f64>();
+            let shift = self.problem.operators.table().shift() * pressure.iter().sum::<f64>();
             let height = self.height;
             if self.outputs.gap {
                 let z = self.problem.candidates.z();
-                let mut gap: Vec<f64> = u.iter().zip(z).map(|(u, z)| (u + z - solved.d) * height).collect();
+                let mut gap: Vec<f64> = u.iter().zip(z).map(|(u, z)| (u + z - d) * height).collect();
                 for (i, depth) in saturated.index(grid).zip(depth) {
                     gap[i] += depth * height;
                 }
@@ -174,7 +180,7 @@ impl PreparedBem3d {
     }
 
     /// Connected patches of the contact set, where asked for.
-    fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
+    pub(super) fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
         if !self.outputs.contact_patches {
             return Ok(None);
         }

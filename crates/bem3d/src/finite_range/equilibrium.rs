@@ -1,0 +1,424 @@
+//! Equilibrium of contact pressure and attraction at one load: the attraction lags, the contact follows.
+//!
+//! With the attraction s given, the pressure of the contact solves an elastic contact problem of the gaps `z - G s`; then `s <- s(g)`. Where G
+//! on every set is an inverse M-matrix this map of s is monotone: more attraction here closes gaps everywhere, and never opens one. From a
+//! state whose load has risen it rises to the nearest equilibrium above, from one whose load has fallen it falls to the nearest one below: the
+//! branches of approach and withdrawal. Its derivative is `D^(1/2) G^ D^(1/2)` up to similarity, D the slopes of the law on open cells and G^
+//! the compliance of the open cells with the contact kept closed, so that it contracts exactly where the energy has a minimum.
+
+use super::law::Law;
+use super::mixing::Mixing;
+use crate::active_set::{self, Candidates, Limits, Problem, Residuals, Target};
+use crate::geometry::CellSet;
+use crate::linear::StoppingCriteria;
+use crate::real::{dot, each, largest, smallest, sum};
+use contact_model::{Status, Stop};
+use std::sync::Arc;
+
+/// A sweep lowers the gaps left on the contact by this factor: less than the attraction changes by would be lost, more is gone after the
+/// next change of the attraction.
+const REDUCTION: f64 = 0.05;
+/// The same for the plain iteration, whose contact is solved before the attraction is changed.
+const PLAIN_REDUCTION: f64 = 1e-2;
+/// Steps of conjugate gradients in a sweep at most.
+const STEPS: usize = 40;
+/// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of the range.
+const SETTLED: f64 = 1e-3;
+/// With acceleration: by more than this share of what the attraction changes its gaps by ...
+const BALANCE: f64 = 0.1;
+/// ... and at most this.
+const SETTLED_FIRST: f64 = 0.05;
+/// Acceleration begins when no gap changes by more than this share of the range in a sweep: the attraction is then nearly linear in them.
+const ACCELERATED: f64 = 0.5;
+/// An accelerated step changes no attraction by more than this factor beyond that of the plain one, else it is not taken.
+const LONGEST: f64 = 2.0;
+/// Attractions below this share of the largest one do not limit an accelerated step.
+const FELT: f64 = 1e-6;
+/// Sweeps of the plain iteration for each outer iteration allowed: it contracts by the factor rho only.
+const PLAIN_SWEEPS: usize = 20;
+/// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
+const AHEAD: f64 = 0.5;
+/// A contact whose force changes by more than this factor is solved from coarse grids.
+const FAR: f64 = 2.0;
+/// Tolerance of the elastic contact that a first load begins with.
+const FIRST: f64 = 1e-2;
+
+/// What is prescribed, nondimensional; of either sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Control {
+    /// Sum of the net pressure.
+    Force(f64),
+    /// Approach.
+    Approach(f64),
+}
+
+/// A state: contact pressure, attraction and gap on the cells within reach.
+#[derive(Debug, Clone, Default)]
+pub struct Equilibrium {
+    /// Approach.
+    pub d: f64,
+    /// All cells that can touch or be attracted.
+    pub cells: CellSet,
+    /// They are those whose undeformed gap is below this.
+    reach: f64,
+    /// Contact pressure on them, >= 0.
+    pub pressure: Vec<f64>,
+    /// Attractive traction on them, >= 0.
+    pub attraction: Vec<f64>,
+    /// Gap on them, with the exact operator.
+    pub gap: Vec<f64>,
+    /// Residuals of the contact conditions.
+    pub residuals: Residuals,
+    /// Largest mismatch of attraction and gap.
+    pub mismatch: f64,
+    /// Steps of conjugate gradients.
+    pub steps: usize,
+    /// Sweeps.
+    pub sweeps: usize,
+}
+
+impl Equilibrium {
+    /// The same state with nothing done for it yet.
+    pub fn again(&self) -> Self {
+        Self { steps: 0, sweeps: 0, ..self.clone() }
+    }
+
+    /// Net pressure on the cells.
+    pub fn net(&self) -> Vec<f64> {
+        self.pressure.iter().zip(&self.attraction).map(|(p, s)| p - s).collect()
+    }
+
+    /// Net force.
+    pub fn force(&self) -> f64 {
+        sum(&self.pressure) - sum(&self.attraction)
+    }
+
+    /// The contact set.
+    pub fn contact(&self) -> CellSet {
+        self.cells.filter(&self.pressure, |p| p > 0.0)
+    }
+
+    /// Takes other cells, those below `reach`; values are carried over.
+    fn take_cells(&mut self, cells: CellSet, reach: f64) {
+        for values in [&mut self.pressure, &mut self.attraction, &mut self.gap] {
+            *values = cells.carry(&self.cells, values);
+        }
+        (self.cells, self.reach) = (cells, reach);
+    }
+}
+
+/// Energy of a state, elastic and of the attraction; `shift` is the constant in the kernel, which stores none.
+pub fn energy(problem: &Problem, law: Law, state: &Equilibrium) -> f64 {
+    let z = problem.candidates.gaps(&state.cells);
+    let force = state.force();
+    let net = state.net();
+    let u: Vec<f64> = state.gap.iter().zip(&z).map(|(g, z)| g - z + state.d).collect();
+    let elastic = 0.5 * (dot(&net, &u) - problem.operators.table().shift() * force * force);
+    elastic + state.gap.iter().map(|&g| law.energy(g)).sum::<f64>()
+}
+
+/// Why there is no state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// As the elastic solver.
+    Status(Status),
+    /// The attraction cannot hold the force.
+    PulledOff,
+}
+
+/// A search for the equilibrium at one load.
+#[derive(Debug)]
+pub struct Search<'a> {
+    /// The surface.
+    pub problem: &'a mut Problem,
+    /// The attraction.
+    pub law: Law,
+    /// The load.
+    pub control: Control,
+    /// Tolerance and length of the certificate.
+    pub limits: Limits,
+    /// Whether the plain iteration alone may be used.
+    pub plain: bool,
+}
+
+impl Search<'_> {
+    /// The elastic state of the load without attraction, where the load presses: where a first load begins.
+    pub fn first(&mut self, stop: Stop<'_>) -> Equilibrium {
+        let first = self.problem.candidates.range().first;
+        let target = match self.control {
+            Control::Force(f) if f > 0.0 => Target::Force(f),
+            Control::Approach(d) if d > first => Target::Approach(d),
+            Control::Force(_) => return Equilibrium { d: first, ..Equilibrium::default() },
+            Control::Approach(d) => return Equilibrium { d, ..Equilibrium::default() },
+        };
+        let limits = Limits { tolerance: FIRST, ..self.limits };
+        let guess = active_set::cold_start(self.problem, target, limits, stop);
+        let solved = active_set::solve(self.problem, target, guess, limits, stop);
+        let reach = solved.d + self.law.reach();
+        let cells = self.problem.candidates.below(reach).union(&solved.contact);
+        let pressure = cells.carry(&solved.contact, &solved.p);
+        let zeros = vec![0.0; cells.len()];
+        let (attraction, gap) = (zeros.clone(), zeros);
+        let steps = solved.steps;
+        Equilibrium { d: solved.d, cells, reach, pressure, attraction, gap, steps, ..Equilibrium::default() }
+    }
+
+    /// Iterates from a state to the equilibrium of the load.
+    ///
+    /// # Errors
+    /// Why it ended without one, with the state reached.
+    pub fn from(
+        &mut self,
+        mut state: Equilibrium,
+        stop: Stop<'_>,
+    ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
+        let tolerance = self.limits.tolerance;
+        let most = self.limits.outer_iterations * if self.plain { PLAIN_SWEEPS } else { 1 };
+        let mut mixing = Mixing::default();
+        let mut last = f64::INFINITY;
+        if let Control::Approach(d) = self.control {
+            state.d = d;
+        }
+        self.evaluate(&mut state, &mut mixing);
+        if self.is_far(&state) {
+            self.contact_afresh(&mut state, stop);
+            self.evaluate(&mut state, &mut mixing);
+        }
+        for _ in 0..most {
+            let worst = state.residuals.worst().max(state.mismatch).max(self.load_error(&state));
+            if worst <= tolerance {
+                return Ok(state);
+            }
+            if stop() {
+                return Err(Box::new((Ended::Status(Status::Stopped), state)));
+            }
+            if worst > 2.0 * last {
+                mixing.clear();
+            }
+            last = worst;
+            if !self.sweep(&mut state, &mut mixing, stop) {
+                return Err(Box::new((Ended::PulledOff, state)));
+            }
+            self.evaluate(&mut state, &mut mixing);
+            state.sweeps += 1;
+        }
+        Err(Box::new((Ended::Status(Status::IterationLimit), state)))
+    }
+
+    /// Whether the contact of a state is of another load than the one asked for: then it is solved from coarse grids.
+    fn is_far(&self, state: &Equilibrium) -> bool {
+        let Control::Force(asked) = self.control else { return false };
+        let (held, wanted) = (sum(&state.pressure), asked + sum(&state.attraction));
+        held > 0.0 && wanted > 0.0 && !(1.0 / FAR..=FAR).contains(&(wanted / held))
+    }
+
+    /// The contact under the present attraction, by nested iteration: the elastic problem of the gaps `z - G s`.
+    fn contact_afresh(&mut self, state: &mut Equilibrium, stop: Stop<'_>) {
+        let Control::Force(asked) = self.control else { return };
+        let grid = self.problem.grid();
+        let mut lifted = Vec::new();
+        self.problem.operators.exact(&state.cells, &state.attraction, &CellSet::all(grid), &mut lifted);
+        lifted.iter_mut().zip(self.problem.candidates.z()).for_each(|(u, z)| *u = z - *u);
+        // The plane of first touch is that of these gaps.
+        let first = smallest(&lifted);
+        each(&mut lifted, |z| *z -= first);
+        let lifted = Candidates::new(grid, Arc::new(lifted));
+        let candidates = std::mem::replace(&mut self.problem.candidates, lifted);
+        let coarser = self.problem.coarser.take();
+        let target = Target::Force(asked + sum(&state.attraction));
+        let limits = Limits { tolerance: FIRST, ..self.limits };
+        let guess = active_set::cold_start(self.problem, target, limits, stop);
+        let solved = active_set::solve(self.problem, target, guess, limits, stop);
+        (self.problem.candidates, self.problem.coarser) = (candidates, coarser);
+        let cells = state.cells.union(&solved.contact);
+        state.take_cells(cells, state.reach);
+        state.pressure = state.cells.carry(&solved.contact, &solved.p);
+        state.d = solved.d + first;
+        state.steps += solved.steps;
+    }
+
+    /// How far the force of a state is from the one prescribed, relative to it; to the pressure of the contact where it is nothing.
+    pub fn load_error(&self, state: &Equilibrium) -> f64 {
+        let Control::Force(asked) = self.control else { return 0.0 };
+        let miss = (state.force() - asked).abs();
+        let scale = if asked.abs() > 0.0 { asked.abs() } else { sum(&state.pressure) };
+        if miss > 0.0 { miss / scale } else { 0.0 }
+    }
+
+    /// Evaluates the gap with the exact operator on all cells within reach.
+    fn evaluate(&mut self, state: &mut Equilibrium, mixing: &mut Mixing) {
+        let Self { problem, law, control, limits, .. } = self;
+        if state.reach < state.d + law.reach() {
+            let reach = state.d + law.reach() + AHEAD * law.range;
+            state.take_cells(problem.candidates.below(reach).union(&state.contact()), reach);
+            mixing.clear();
+        }
+        loop {
+            let net = state.net();
+            problem.operators.exact(&state.cells, &net, &state.cells, &mut state.gap);
+            let lowest = smallest(&state.gap).min(0.0);
+            problem.candidates.add_to(&state.cells, &mut state.gap);
+            if let Control::Force(_) = control {
+                let force = sum(&state.pressure);
+                if force > 0.0 {
+                    state.d = state.pressure.iter().zip(&state.gap).map(|(p, g)| p / force * g).sum();
+                } else if !state.gap.is_empty() {
+                    // Nothing touches yet: the flat comes down to the highest point.
+                    state.d = smallest(&state.gap);
+                }
+            }
+            let d = state.d;
+            each(&mut state.gap, |g| *g -= d);
+            // A cell outside is lifted by the attraction no farther than the one lifted most.
+            let reach = d + law.reach() - lowest;
+            if reach <= state.reach {
+                break;
+            }
+            let reach = reach + AHEAD * law.range;
+            let cells = problem.candidates.below(reach).union(&state.cells);
+            let before = state.cells.len();
+            state.take_cells(cells, reach);
+            if state.cells.len() == before {
+                break;
+            }
+            mixing.clear();
+        }
+        let contact = state.contact();
+        let (p, left) =
+            (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
+        let lowest = if state.gap.is_empty() { 0.0 } else { smallest(&state.gap) };
+        let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
+        state.residuals = Residuals::measure(&p, &left, lowest, length);
+        state.mismatch =
+            (state.attraction.iter().zip(&state.gap)).map(|(&s, &g)| law.mismatch(s, g)).fold(0.0, f64::max);
+    }
+
+    /// One sweep: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
+    /// hold the force.
+    fn sweep(&mut self, state: &mut Equilibrium, mixing: &mut Mixing, stop: Stop<'_>) -> bool {
+        let Self { problem, law, control, plain, limits } = self;
+        let tolerance = limits.tolerance;
+        let (law, plain) = (*law, *plain || law.kind == contact_model::AdhesionLaw::Dugdale);
+        let tuning = *problem.operators.tuning();
+        let held = sum(&state.pressure);
+        // Where the contact is not yet settled, the plain iteration waits with the attraction.
+        let off = (state.pressure.iter().zip(&state.gap))
+            .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
+            .fold(0.0, f64::max);
+        let next: Vec<f64> = state.gap.iter().map(|&g| law.traction(g)).collect();
+        let change = (next.iter().zip(&state.attraction))
+            .map(|(a, b)| (a - b).abs() / (a.max(*b) * law.peak).sqrt().max(f64::MIN_POSITIVE))
+            .fold(0.0, f64::max);
+        let settled = if plain { SETTLED } else { (BALANCE * change).clamp(0.5 * tolerance, SETTLED_FIRST) };
+        let waits = off > settled * law.range && held > 0.0;
+        let next = if waits { state.attraction.clone() } else { next };
+        let fixed_sum = matches!(control, Control::Force(_));
+        let mut factor = 1.0;
+        let mut pressure = state.pressure.clone();
+        if let Control::Force(force) = *control {
+            let wanted = force + sum(&next);
+            if wanted <= 0.0 {
+                return false;
+            }
+            if held > 0.0 {
+                factor = wanted / held;
+            } else if let Some(first) =
+                (0..pressure.len()).min_by(|&i, &j| state.gap[i].total_cmp(&state.gap[j]))
+            {
+                pressure[first] = wanted;
+            }
+        }
+        each(&mut pressure, |p| *p *= factor);
+        // The gap that follows.
+        let changed: Vec<f64> = (pressure.iter().zip(&state.pressure))
+            .zip(next.iter().zip(&state.attraction))
+            .map(|((p, p0), (s, s0))| (p - p0) - (s - s0))
+            .collect();
+        let mut gap = Vec::new();
+        if largest(&changed) > 0.0 {
+            problem.operators.rough(&state.cells, &changed, &state.cells, &mut gap);
+            gap.iter_mut().zip(&state.gap).for_each(|(g, g0)| *g += g0);
+        } else {
+            gap.clone_from(&state.gap);
+        }
+        if fixed_sum {
+            let force = sum(&pressure);
+            let offset: f64 = pressure.iter().zip(&gap).map(|(p, g)| p / force * g).sum();
+            each(&mut gap, |g| *g -= offset);
+        }
+        let (square, count) = (pressure.iter().zip(&gap))
+            .filter(|(p, _)| **p > 0.0)
+            .fold((0.0, 0usize), |(square, count), (_, g)| (square + g * g, count + 1));
+        let noise = if count > 0 { tuning.noise * (square / count as f64).sqrt() } else { 0.0 };
+        let marked: Vec<f64> = (pressure.iter().zip(&gap))
+            .map(|(&p, &g)| if p > 0.0 || g < -noise { 1.0 } else { 0.0 })
+            .collect();
+        let set = state.cells.filter(&marked, |m| m > 0.0);
+        if let Some(recipe) = problem.operators.planner().system(&set, count, false) {
+            let mut right: Vec<f64> = set.carry(&state.cells, &gap);
+            each(&mut right, |r| *r = -*r);
+            let reduction = if plain { PLAIN_REDUCTION } else { REDUCTION };
+            let criteria = StoppingCriteria { reduction, energy: None, floor: 0.0, steps: STEPS };
+            let Problem { operators, workspace, .. } = &mut **problem;
+            workspace.begin_load();
+            workspace.take(operators, set, recipe);
+            let outcome = workspace.solve(operators, &mut right, fixed_sum, criteria, stop);
+            state.steps += outcome.steps;
+            let correction = state.cells.carry(workspace.set(), &right);
+            pressure.iter_mut().zip(&correction).for_each(|(p, x)| *p = (*p + x).max(0.0));
+        }
+        let mut attraction = next;
+        if waits {
+            // The contact alone.
+        } else if plain || change > ACCELERATED {
+            mixing.clear();
+        } else {
+            let own = problem.operators.table().own();
+            accelerate(law, own, state, mixing, (&mut pressure, &mut attraction));
+        }
+        if let Control::Force(force) = *control {
+            let (wanted, sum) = (force + sum(&attraction), sum(&pressure));
+            if wanted <= 0.0 {
+                return false;
+            }
+            if sum > 0.0 {
+                each(&mut pressure, |p| *p *= wanted / sum);
+            }
+        }
+        (state.pressure, state.attraction) = (pressure, attraction);
+        true
+    }
+}
+
+/// Replaces what a sweep made of a state by the combination of the last sweeps, unless that would change an attraction too much.
+fn accelerate(
+    law: Law,
+    own: f64,
+    state: &Equilibrium,
+    mixing: &mut Mixing,
+    (pressure, attraction): (&mut Vec<f64>, &mut Vec<f64>),
+) {
+    // Both parts as roots of energies: of the gaps left on the contact, and of the changes of open gaps.
+    let residual: Vec<f64> = (state.pressure.iter().zip(&state.gap))
+        .zip(attraction.iter().zip(&state.attraction))
+        .map(|((&p, &g), (&s, &s0))| {
+            if p > 0.0 {
+                g / own.sqrt()
+            } else {
+                (s - s0) / (s.max(s0) / law.range).sqrt().max(f64::MIN_POSITIVE)
+            }
+        })
+        .collect();
+    let (mut p, mut s) = (pressure.clone(), attraction.clone());
+    mixing.combine(&mut p, &mut s, residual);
+    let allowed = |(new, plain): (&f64, &f64)| {
+        *plain < FELT * law.peak || (*new <= LONGEST * plain && *new * LONGEST >= *plain)
+    };
+    if s.iter().zip(&*attraction).all(allowed) {
+        each(&mut p, |p| *p = p.max(0.0));
+        each(&mut s, |s| *s = s.clamp(0.0, law.peak));
+        (*pressure, *attraction) = (p, s);
+    } else {
+        mixing.clear();
+    }
+}

@@ -1,0 +1,13 @@
+//! Adhesion of finite range: an attractive traction across open gaps, beside the contact conditions.
+
+mod equilibrium;
+mod law;
+mod linearised;
+mod mixing;
+
+pub use equilibrium::{Control, Ended, Equilibrium, Search, energy};
+pub use law::Law;
+pub use linearised::{Response, respond};
+
+#[cfg(test)]
+mod tests;

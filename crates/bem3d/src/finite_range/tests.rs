@@ -1,0 +1,310 @@
+//! Small surfaces against a dense reference that shares the influence matrix with the solver and nothing else.
+
+#![allow(clippy::needless_range_loop)] // Indices as in the formulas.
+
+use super::*;
+use crate::active_set::{Limits, Problem};
+use crate::geometry::Grid;
+use crate::kernel::KernelTable;
+use crate::tuning::Tuning;
+use contact_model::{AdhesionLaw, Boundary, never};
+use std::sync::Arc;
+
+/// Residuals of the solver in these tests.
+const TOLERANCE: f64 = 1e-9;
+/// Gaps of the solver and of the reference, in ranges: the tolerance over the smallest distance of an eigenvalue from 1 met here.
+const SAME: f64 = 1e-6;
+
+const LIMITS: Limits =
+    Limits { tolerance: TOLERANCE, height: Some(1.0), outer_iterations: 300, factor: true };
+
+/// Numbers in [0, 1) from a fixed sequence.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A rough surface whose highest point is 0.
+fn heights(grid: Grid, seed: u64) -> Vec<f64> {
+    let mut numbers = Numbers(seed);
+    for _ in 0..8 {
+        numbers.next();
+    }
+    let waves: Vec<[f64; 4]> = (0..6)
+        .map(|k| [numbers.next(), numbers.next(), 1.0 / f64::from(k + 1), 6.3 * numbers.next()])
+        .collect();
+    let height = |i: usize| -> f64 {
+        let (x, y) = ((i % grid.columns) as f64, (i / grid.columns) as f64);
+        waves.iter().map(|[a, b, size, phase]| size * (1.3 * a * x + 1.3 * b * y + phase).cos()).sum()
+    };
+    let heights: Vec<f64> = (0..grid.count()).map(height).collect();
+    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    heights.iter().map(|h| highest - h).collect()
+}
+
+fn problem(grid: Grid, z: &[f64], boundary: Boundary) -> Problem {
+    Problem::new(grid, Arc::new(z.to_vec()), boundary, &Tuning::DEFAULT)
+}
+
+fn dense(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
+    let table = KernelTable::shared(grid, boundary);
+    let place = |i: usize| (i % grid.columns, i / grid.columns);
+    (0..grid.count())
+        .map(|i| {
+            let (x, y) = place(i);
+            (0..grid.count())
+                .map(|j| {
+                    let (a, b) = place(j);
+                    table.row(y.abs_diff(b))[x.abs_diff(a)]
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// `matrix x = right` by Gauss's elimination with pivots.
+fn eliminated(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+    let n = right.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| matrix[i][k].abs().total_cmp(&matrix[j][k].abs())).unwrap();
+        matrix.swap(k, pivot);
+        right.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = matrix[i][k] / matrix[k][k];
+            if factor != 0.0 {
+                for j in k..n {
+                    matrix[i][j] -= factor * matrix[k][j];
+                }
+                right[i] -= factor * right[k];
+            }
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| matrix[k][j] * right[j]).sum();
+        right[k] = (right[k] - known) / matrix[k][k];
+    }
+    right
+}
+
+/// The equilibrium near given gaps at an approach, by Newton's method with the contact set changed between steps; `None` where it does not
+/// settle. Returns the gaps, and whether the energy has a minimum there.
+fn newton(g: &[Vec<f64>], z: &[f64], d: f64, law: Law, start: &[f64]) -> Option<(Vec<f64>, bool)> {
+    let n = z.len();
+    let mut gap = start.to_vec();
+    let mut contact: Vec<bool> = gap.iter().map(|&g| g <= 0.0).collect();
+    for _ in 0..200 {
+        // Unknown net pressure p: on the contact (G p)_i = d - z_i; elsewhere p_i = -s(g_i), with g = G p + z - d.
+        let slopes: Vec<f64> = gap.iter().map(|&g| law.slope(g)).collect();
+        let mut matrix = g.to_vec();
+        let mut right = vec![0.0; n];
+        for i in 0..n {
+            if contact[i] {
+                right[i] = d - z[i];
+            } else {
+                // p_i = -s(g0) + slope (g - g0): p_i - slope (G p)_i = -s - slope g0 + slope (z - d).
+                for j in 0..n {
+                    matrix[i][j] = -slopes[i] * g[i][j] + if i == j { 1.0 } else { 0.0 };
+                }
+                right[i] = -law.traction(gap[i]) - slopes[i] * gap[i] + slopes[i] * (z[i] - d);
+            }
+        }
+        let p = eliminated(matrix, right);
+        let full: Vec<f64> =
+            (0..n).map(|i| g[i].iter().zip(&p).map(|(g, p)| g * p).sum::<f64>() + z[i] - d).collect();
+        // No gap changes by more than half a range in a step.
+        let longest = full.iter().zip(&gap).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+        let share = (0.5 * law.range / longest).min(1.0);
+        let mut same = share >= 1.0 && longest < 1e-13 * law.range;
+        for i in 0..n {
+            gap[i] += share * (full[i] - gap[i]);
+            let touches = if contact[i] { p[i] + law.peak > 0.0 } else { gap[i] < 0.0 };
+            same &= touches == contact[i];
+            contact[i] = touches;
+            if touches {
+                gap[i] = 0.0;
+            }
+        }
+        if same {
+            let slopes: Vec<f64> = gap.iter().map(|&g| law.slope(g)).collect();
+            return Some((gap.clone(), is_minimum(g, &contact, &slopes)));
+        }
+    }
+    None
+}
+
+/// Whether `G^-1 - D` is positive definite on the open cells.
+fn is_minimum(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> bool {
+    let n = contact.len();
+    let inverse: Vec<Vec<f64>> = (0..n)
+        .map(|k| eliminated(g.to_vec(), (0..n).map(|i| if i == k { 1.0 } else { 0.0 }).collect()))
+        .collect();
+    let open: Vec<usize> = (0..n).filter(|&i| !contact[i]).collect();
+    let mut hessian: Vec<Vec<f64>> = open
+        .iter()
+        .map(|&i| open.iter().map(|&j| inverse[j][i] - if i == j { slopes[i] } else { 0.0 }).collect())
+        .collect();
+    // Pivots of the elimination without exchange.
+    for k in 0..hessian.len() {
+        if hessian[k][k] <= 0.0 {
+            return false;
+        }
+        for i in k + 1..hessian.len() {
+            let factor = hessian[i][k] / hessian[k][k];
+            for j in k..hessian.len() {
+                hessian[i][j] -= factor * hessian[k][j];
+            }
+        }
+    }
+    true
+}
+
+fn search(problem: &mut Problem, law: Law, control: Control, plain: bool) -> Search<'_> {
+    Search { problem, law, control, limits: LIMITS, plain }
+}
+
+/// Gaps of all cells.
+fn gaps(grid: Grid, state: &Equilibrium) -> Vec<f64> {
+    crate::geometry::CellSet::all(grid).carry(&state.cells, &state.gap)
+}
+
+/// Law as strong as cells allow.
+fn law(range: f64, share: f64) -> Law {
+    Law { peak: share * range / 3.525_494, range, kind: AdhesionLaw::Exponential }
+}
+
+#[test]
+fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
+    let mut jumps = 0;
+    for (seed, grid, boundary) in [
+        (1, Grid::square(7, 6), Boundary::Free),
+        (2, Grid { columns: 6, rows: 7, stretch: 1.3 }, Boundary::Free),
+        (3, Grid::square(6, 6), Boundary::Periodic),
+    ] {
+        let z = heights(grid, seed);
+        let g = dense(grid, boundary);
+        for (range, share) in [(0.5, 0.15), (0.3, 0.2), (0.1, 0.2)] {
+            let law = law(range, share);
+            let mut problem = problem(grid, &z, boundary);
+            let mut last: Option<Equilibrium> = None;
+            for d in [-0.6, -0.2, 0.1, 0.4, 1.0, 0.5, 0.1, -0.1, -0.3, -0.6, -1.5] {
+                let mut search = search(&mut problem, law, Control::Approach(d), false);
+                let start = last.take().unwrap_or_else(|| search.first(&never));
+                let before = gaps(grid, &start);
+                let state = search.from(start, &never).unwrap();
+                let found = gaps(grid, &state);
+                let control = Control::Approach(d);
+                let response = respond(&mut problem, law, control, &state, Some(1e-6), &never);
+                // Beyond the reach of the attraction gaps are not known to the solver.
+                let all: Vec<f64> = found
+                    .iter()
+                    .zip(&z)
+                    .map(|(&g, z)| if g == 0.0 && z - d > law.reach() { z - d } else { g })
+                    .collect();
+                let (exact, minimum) = newton(&g, &z, d, law, &all).unwrap();
+                assert!(minimum && response.stability > 0.0, "{seed} {range} {d}");
+                for (a, b) in all.iter().zip(&exact) {
+                    assert!(
+                        (a - b).abs() < SAME * range || a.min(*b) > law.reach(),
+                        "{seed} {range} {d}: {a} {b}"
+                    );
+                }
+                let moved = before.iter().zip(&found).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+                jumps += usize::from(moved > 2.0 * range);
+                last = Some(state);
+            }
+        }
+    }
+    assert!(jumps > 0, "some of these paths are unstable somewhere");
+}
+
+#[test]
+fn acceleration_finds_the_states_of_the_plain_iteration() {
+    for seed in 1..6 {
+        let grid = Grid::square(16, 12);
+        let z = heights(grid, seed);
+        for (range, share) in [(0.4, 0.2), (0.1, 0.2)] {
+            let law = law(range, share);
+            let mut problem = problem(grid, &z, Boundary::Free);
+            let mut last: [Option<Equilibrium>; 2] = [None, None];
+            for d in [-0.3, 0.0, 0.3, 0.8, 0.2, -0.1, -0.2, -0.3, -0.5, -0.8, -2.0] {
+                let mut found = Vec::new();
+                for (plain, last) in [false, true].into_iter().zip(&mut last) {
+                    let mut search = search(&mut problem, law, Control::Approach(d), plain);
+                    let start = last.take().unwrap_or_else(|| search.first(&never));
+                    let state = search.from(start, &never).unwrap();
+                    found.push((gaps(grid, &state), energy(&problem, law, &state), state.force()));
+                    *last = Some(state);
+                }
+                let apart =
+                    found[0].0.iter().zip(&found[1].0).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+                assert!(
+                    apart < 1e-5 * range,
+                    "{seed} {range} {d}: {apart} {:?} {:?}",
+                    found[0].1,
+                    found[1].1
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_stiffness_is_the_difference_of_forces_and_goes_with_the_dense_response() {
+    let grid = Grid::square(12, 10);
+    let z = heights(grid, 4);
+    let law = law(0.3, 0.15);
+    let mut problem = problem(grid, &z, Boundary::Free);
+    let at = |problem: &mut Problem, d: f64| {
+        let mut search = search(problem, law, Control::Approach(d), false);
+        let start = search.first(&never);
+        search.from(start, &never).unwrap()
+    };
+    for d in [-0.4, 0.6] {
+        let state = at(&mut problem, d);
+        let response = respond(&mut problem, law, Control::Approach(d), &state, Some(1e-6), &never);
+        let step = 1e-4;
+        let (above, below) = (at(&mut problem, d + step).force(), at(&mut problem, d - step).force());
+        let expected = (above - below) / (2.0 * step);
+        // The difference quotient is off by its second order and by cells that join.
+        approx::assert_relative_eq!(response.stiffness, expected, max_relative = 1e-3);
+        assert!(response.error <= 1e-6 * response.stiffness.abs());
+    }
+}
+
+#[test]
+fn a_force_that_nothing_holds_is_told() {
+    let grid = Grid::square(9, 9);
+    let z = heights(grid, 2);
+    let law = law(0.3, 0.2);
+    let mut problem = problem(grid, &z, Boundary::Free);
+    let mut search = search(&mut problem, law, Control::Force(0.0), false);
+    let start = search.first(&never);
+    let state = search.from(start, &never).unwrap();
+    assert!(state.force().abs() < 1e-12 && !state.contact().is_empty());
+    search.control = Control::Force(-1e3);
+    assert!(matches!(search.from(state, &never), Err(ended) if ended.0 == Ended::PulledOff));
+}
+
+#[test]
+fn a_law_is_its_energy_differentiated() {
+    for kind in [AdhesionLaw::Exponential, AdhesionLaw::Dugdale] {
+        let law = Law { peak: 2.0, range: 0.5, kind };
+        for gap in [0.1, 0.3, 0.49, 0.6, 3.0] {
+            let h = 1e-6;
+            let slope = (law.energy(gap + h) - law.energy(gap - h)) / (2.0 * h);
+            approx::assert_relative_eq!(slope, law.traction(gap), epsilon = 1e-8);
+            let slope = (law.traction(gap + h) - law.traction(gap - h)) / (2.0 * h);
+            approx::assert_relative_eq!(-slope, law.slope(gap), epsilon = 1e-6);
+            assert!(law.mismatch(law.traction(gap), gap) <= 0.0);
+        }
+        approx::assert_relative_eq!(law.energy(0.0), -1.0);
+    }
+    // Next to the jump a traction of either side is right.
+    let dugdale = Law { peak: 2.0, range: 0.5, kind: AdhesionLaw::Dugdale };
+    approx::assert_relative_eq!(dugdale.mismatch(2.0, 0.55), 0.1, epsilon = 1e-12);
+    approx::assert_relative_eq!(dugdale.mismatch(0.0, 0.0), 1.0);
+}

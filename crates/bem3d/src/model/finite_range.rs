@@ -1,0 +1,422 @@
+//! Contacts with adhesion of finite range: a path of loads on one surface.
+
+use super::options::Bem3d;
+use super::prepared::{NAME, PreparedBem3d};
+use crate::finite_range::{Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
+use crate::geometry::CellSet;
+use crate::kernel::love::influence_of_rectangle;
+use crate::tuning::{GAP_LOADS, Tuning};
+use contact_model::{
+    Adhesion, AdhesionLaw, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, History,
+    HistoryState, Load, Normalisation, PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
+};
+use std::f64::consts::PI;
+
+/// Largest product of the slope of the law and the own compliance of a cell. At 1 a single open cell would be unstable alone, whatever the
+/// surface does; at a fifth of it the cohesive zone, about `E* range^2/work` long, is five cells long.
+const RESOLVED: f64 = 0.2;
+/// A gap that has moved against the load by more than this, in ranges, has left the branch.
+const ON_BRANCH: f64 = 1e-3;
+
+/// One surface with adhesion of finite range, on its path.
+#[derive(Debug)]
+pub struct FiniteRangeContact {
+    inner: PreparedBem3d,
+    law: Law,
+    time: f64,
+    last: Option<Last>,
+    plain: bool,
+}
+
+/// The end of the last step.
+#[derive(Debug, Clone)]
+struct Last {
+    equilibrium: Equilibrium,
+    branch: Branch,
+    state: ContactState,
+}
+
+/// An equilibrium that was found at a load.
+struct Found {
+    equilibrium: Equilibrium,
+    response: Response,
+    control: Control,
+    status: Status,
+    load_error: f64,
+}
+
+impl FiniteRangeContact {
+    pub(super) fn new(
+        model: &Bem3d,
+        scene: &Scene,
+        seed: u64,
+        (work, range, kind): (f64, f64, AdhesionLaw),
+        tuning: &Tuning,
+    ) -> Result<Self> {
+        let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
+        let elastic = Scene { effects, ..scene.clone() };
+        let inner = model.prepared(&elastic, seed, tuning)?;
+        let units = inner.nondimensional;
+        let reach = units.approach_in(range);
+        // Tractions are counted in pi E* times the height over the side of a cell: `u = sum I p`.
+        let unit = PI * units.pressure(1.0)?;
+        let peak = work / range / unit;
+        let law = Law { peak, range: reach, kind };
+        let own = peak / reach * influence_of_rectangle(0, 0, inner.problem.grid().stretch);
+        if !(own.is_finite() && own > 0.0) {
+            return Err(Error::domain(
+                "range of adhesion",
+                range,
+                "a length nearer to the scales of the surface",
+            ));
+        }
+        if own > RESOLVED {
+            let (dx, dy) = inner.cell();
+            let most = dx.max(dy) * RESOLVED / own;
+            let expected =
+                format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
+            return Err(Error::domain("side of a cell", dx.max(dy), expected));
+        }
+        Ok(Self { inner, law, time: 0.0, last: None, plain: false })
+    }
+
+    /// The nondimensional load.
+    fn control(&self, load: Load) -> Result<Goal> {
+        let units = self.inner.nondimensional;
+        let held = |name, value: f64, result: f64| {
+            let kept = result.is_finite() && (value == 0.0 || result != 0.0);
+            let expected = "a load nearer to the scales of the surface";
+            if kept { Ok(result) } else { Err(Error::domain(name, value, expected)) }
+        };
+        Ok(match load.validated_with_adhesion()? {
+            Load::Force(f) => {
+                Goal::Load(Control::Force(held("force", f, (units.force_in(f.abs()) / PI).copysign(f))?))
+            }
+            Load::Approach(d) if !self.inner.is_periodic() => {
+                Goal::Load(Control::Approach(held("approach", d, units.approach_in(d))?))
+            }
+            Load::MeanGap(gap) if self.inner.is_periodic() => {
+                Goal::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
+            }
+            Load::Approach(_) => {
+                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
+                return Err(Error::unsupported(NAME, what));
+            }
+            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
+        })
+    }
+
+    /// The next state from the last one.
+    fn next(&mut self, load: Load, stop: Stop<'_>) -> Result<Last> {
+        match self.control(load)? {
+            Goal::Load(Control::Force(f)) if f < 0.0 && self.untouched() => {
+                // The segment begins without force: there the surfaces already hold each other.
+                let before = self.last.take();
+                let touched = self.at(Control::Force(0.0), stop);
+                let held = touched.and_then(|touched| {
+                    self.last = Some(touched);
+                    self.at(Control::Force(f), stop)
+                });
+                self.last = before;
+                held
+            }
+            Goal::Load(control) => self.at(control, stop),
+            Goal::MeanGap(gap) => self.at_mean_gap(gap, stop),
+        }
+    }
+
+    fn untouched(&self) -> bool {
+        self.last.as_ref().is_none_or(|last| last.equilibrium.contact().is_empty())
+    }
+
+    fn at(&mut self, control: Control, stop: Stop<'_>) -> Result<Last> {
+        self.inner.begin_count();
+        let found = self.search(control, stop)?;
+        self.finish(found, stop)
+    }
+
+    /// Whether the load has risen since the last state.
+    fn rises(&self, control: Control) -> Option<bool> {
+        let last = &self.last.as_ref()?.equilibrium;
+        Some(match control {
+            Control::Force(f) => f > last.force(),
+            Control::Approach(d) => d > last.d,
+        })
+    }
+
+    /// The equilibrium of a load, from the last one.
+    fn search(&mut self, control: Control, stop: Stop<'_>) -> Result<Found> {
+        let rises = self.rises(control);
+        let mut plain = self.plain;
+        let mut spent = (0, 0);
+        loop {
+            let (limits, law) = (self.inner.limits(), self.law);
+            let mut search = Search { problem: &mut self.inner.problem, law, control, limits, plain };
+            let start = match &self.last {
+                Some(last) => last.equilibrium.again(),
+                None => search.first(stop),
+            };
+            let ended = search.from(start, stop).map_err(|ended| *ended);
+            let search_error = match &ended {
+                Ok(equilibrium) | Err((_, equilibrium)) => search.load_error(equilibrium),
+            };
+            let again = !plain && !stop();
+            let (mut equilibrium, status) = match ended {
+                Ok(equilibrium) => (equilibrium, Status::Converged),
+                Err((Ended::PulledOff, equilibrium)) if again => {
+                    spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.sweeps);
+                    plain = true;
+                    continue;
+                }
+                Err((Ended::PulledOff, _)) => return Err(self.pulled_off(control)?),
+                Err((Ended::Status(status), equilibrium)) => (equilibrium, status),
+            };
+            let left = self.left_branch(&equilibrium, rises.unwrap_or(true));
+            let tolerance = self.inner.outputs.needs_stiffness().then_some(self.inner.options.tolerance);
+            let mut response = Response::default();
+            let sound = status == Status::Converged && !left;
+            if sound || !again {
+                response = respond(&mut self.inner.problem, law, control, &equilibrium, tolerance, stop);
+            }
+            if again && !(sound && response.stability > 0.0) {
+                spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.sweeps);
+                plain = true;
+                continue;
+            }
+            equilibrium.steps += spent.0;
+            equilibrium.sweeps += spent.1;
+            let stable = response.stability > 0.0;
+            let status = if status == Status::Converged && !stable { Status::Stagnated } else { status };
+            let load_error = search_error;
+            return Ok(Found { equilibrium, response, control, status, load_error });
+        }
+    }
+
+    /// Whether a gap has moved against the load: then an accelerated step has gone beyond an equilibrium.
+    fn left_branch(&self, now: &Equilibrium, rises: bool) -> bool {
+        let Some(last) = &self.last else { return false };
+        let before = now.cells.carry(&last.equilibrium.cells, &last.equilibrium.attraction);
+        let known = now.cells.carry(&last.equilibrium.cells, &vec![1.0; last.equilibrium.cells.len()]);
+        now.attraction.iter().zip(&before).zip(&known).any(|((now, before), known)| {
+            let change = if rises { before - now } else { now - before };
+            *known > 0.0 && change > ON_BRANCH * self.law.peak
+        })
+    }
+
+    /// The error of a force that nothing holds, with the last stable state.
+    fn pulled_off(&self, control: Control) -> Result<Error> {
+        let force = if let Control::Force(f) = control { f } else { 0.0 };
+        let value = self.inner.nondimensional.force(PI * force.abs())?.copysign(force);
+        Ok(match &self.last {
+            Some(last) => {
+                let mut best = last.state.clone();
+                best.report.status = Status::Stagnated;
+                best.report.strategy = format!("pull-off before the force {value:e}; the last stable state");
+                Error::NotConverged { best: Box::new(best) }
+            }
+            None => Error::OutOfRange { name: "force".into(), value, min: 0.0, max: f64::INFINITY },
+        })
+    }
+
+    /// The state at a mean gap, by secants in the approach, each time from the last state.
+    fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<Last> {
+        self.inner.begin_count();
+        let shift = self.inner.problem.operators.table().shift();
+        let length = self.inner.limits().height.unwrap_or(self.law.range);
+        let gap_of = |e: &Equilibrium, mean: f64| mean - (e.d - shift * e.force());
+        let mean = self.inner.mean;
+        let mut d = self
+            .last
+            .as_ref()
+            .map_or(mean - asked, |last| last.equilibrium.d + (gap_of(&last.equilibrium, mean) - asked));
+        let mut before: Option<(f64, f64)> =
+            self.last.as_ref().map(|last| (last.equilibrium.d, gap_of(&last.equilibrium, mean) - asked));
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for _ in 0..GAP_LOADS {
+            let mut found = self.search(Control::Approach(d), stop)?;
+            let miss = gap_of(&found.equilibrium, mean) - asked;
+            found.load_error = miss.abs() / length;
+            if found.load_error <= self.inner.options.tolerance || found.status != Status::Converged {
+                return self.finish(found, stop);
+            }
+            if miss > 0.0 {
+                low = low.max(d);
+            } else {
+                high = high.min(d);
+            }
+            let slope = before.map_or(-1.0, |(d0, miss0)| (miss - miss0) / (d - d0));
+            before = Some((d, miss));
+            let next = d - miss / if slope < 0.0 { slope } else { -1.0 };
+            d = if next > low && next < high {
+                next
+            } else if low.is_finite() && high.is_finite() {
+                f64::midpoint(low, high)
+            } else {
+                d + miss
+            };
+        }
+        let units = self.inner.nondimensional;
+        let name = "mean gap".into();
+        Err(Error::OutOfRange { name, value: units.approach(asked)?, min: 0.0, max: units.approach(mean)? })
+    }
+
+    /// The state that is returned.
+    fn finish(&mut self, found: Found, stop: Stop<'_>) -> Result<Last> {
+        let Found { equilibrium, response, control, status, load_error } = found;
+        let branch = match (self.rises(control), &self.last) {
+            (Some(true) | None, _) => Branch::Approach,
+            (Some(false), Some(last)) if self.same_load(control) => last.branch,
+            _ => Branch::Withdrawal,
+        };
+        let inner = &mut self.inner;
+        let units = inner.nondimensional;
+        let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));
+        let net = equilibrium.force();
+        let stiffness = inner.outputs.needs_stiffness().then(|| {
+            let rest = 1.0 - inner.problem.operators.table().shift() * response.stiffness;
+            let scale = response.stiffness.abs() * rest.abs();
+            (response.stiffness / rest, if response.error > 0.0 { response.error / scale } else { 0.0 })
+        });
+        let stiffness_error = stiffness.map(|(_, error)| error);
+        let residuals = equilibrium.residuals;
+        let certificate = Certificate {
+            duality_gap: residuals.duality_gap,
+            penetration: residuals.penetration,
+            complementarity: residuals.complementarity,
+            load_error,
+            stiffness_error,
+            equilibrium: Some(equilibrium.mismatch),
+        };
+        let status = match status {
+            Status::Converged if certificate.meets(inner.options.tolerance) => Status::Converged,
+            Status::Converged if stop() => Status::Stopped,
+            Status::Converged => Status::Stagnated,
+            other => other,
+        };
+        let stored = PI * energy(&inner.problem, self.law, &equilibrium);
+        // A force times a length.
+        let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
+        let contact = equilibrium.contact();
+        let fields = inner.fields(
+            (&equilibrium.cells, &equilibrium.net()),
+            equilibrium.d,
+            (&CellSet::default(), &[]),
+        )?;
+        let mut report = SolveReport::new(
+            status,
+            format!("attraction on {} cells, {} sweeps", equilibrium.cells.len(), equilibrium.sweeps),
+        );
+        report.work = Work::of(std::mem::take(&mut inner.problem.operators.solves), fields.as_ref());
+        report.iterations = equilibrium.steps + response.steps;
+        report.applications = std::mem::take(&mut inner.problem.operators.applications);
+        report.contact_cells = Some(contact.len());
+        report.certificate = certificate;
+        let length = |value: f64| signed(value, &|v| units.approach(v));
+        let plane = equilibrium.d - inner.problem.operators.table().shift() * net;
+        let approach = (!inner.is_periodic()).then(|| length(equilibrium.d)).transpose()?;
+        let mean_gap = inner.outputs.mean_gap.then(|| length(inner.mean - plane)).transpose()?;
+        let stiffness = stiffness.map(|(k, _)| signed(PI * k, &|v| units.stiffness(v))).transpose()?;
+        let area = inner.outputs.area.then(|| units.area(contact.len() as f64)).transpose()?;
+        let state = ContactState::new(signed(PI * net, &|v| units.force(v))?, report)
+            .with_approach(approach)
+            .with_mean_gap(mean_gap)
+            .with_stiffness(stiffness)
+            .with_area(area)
+            .with_patches(inner.patches(&contact)?)
+            .with_adhesive(AdhesiveState::new(branch, stored, response.stability))
+            .with_fields(fields)
+            .completed(&inner.outputs, inner.normalisation.modulus)?;
+        match status {
+            Status::Converged => Ok(Last { equilibrium, branch, state }),
+            Status::Stopped => Err(Error::Stopped { best: Some(Box::new(state)) }),
+            _ => Err(Error::NotConverged { best: Box::new(state) }),
+        }
+    }
+
+    fn same_load(&self, control: Control) -> bool {
+        let Some(last) = &self.last else { return false };
+        let (a, b) = match control {
+            Control::Force(f) => (f, last.equilibrium.force()),
+            Control::Approach(d) => (d, last.equilibrium.d),
+        };
+        (a - b).abs() <= self.inner.options.tolerance * a.abs().max(b.abs())
+    }
+}
+
+/// What is asked for.
+enum Goal {
+    Load(Control),
+    MeanGap(f64),
+}
+
+impl History for FiniteRangeContact {
+    fn normalisation(&self) -> Normalisation {
+        self.inner.normalisation
+    }
+
+    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+        self.advance_until(step, &contact_model::never)
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+        let step = step.validated_with_adhesion(self.time)?;
+        super::history::without_tangential(step)?;
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
+        let next = self.next(step.normal, stop)?;
+        let state = HistoryState::new(step.time, next.state.clone());
+        (self.last, self.time) = (Some(next), step.time);
+        Ok(state)
+    }
+
+    fn restart(&mut self) {
+        (self.last, self.time) = (None, 0.0);
+    }
+}
+
+/// A single load: from no contact on the branch of approach.
+impl PreparedContact for FiniteRangeContact {
+    fn normalisation(&self) -> Normalisation {
+        self.inner.normalisation
+    }
+
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        Ok(self.next(load, stop)?.state)
+    }
+}
+
+/// A path without adhesion: the elastic states of its loads.
+pub struct WithoutAdhesion {
+    contact: Box<dyn PreparedContact>,
+    time: f64,
+}
+
+impl WithoutAdhesion {
+    pub(super) fn new(contact: Box<dyn PreparedContact>) -> Self {
+        Self { contact, time: 0.0 }
+    }
+}
+
+impl History for WithoutAdhesion {
+    fn normalisation(&self) -> Normalisation {
+        self.contact.normalisation()
+    }
+
+    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+        self.advance_until(step, &contact_model::never)
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+        let step = step.validated(self.time)?;
+        super::history::without_tangential(step)?;
+        let state = HistoryState::new(step.time, self.contact.solve_until(step.normal, stop)?);
+        self.time = step.time;
+        Ok(state)
+    }
+
+    fn restart(&mut self) {
+        self.time = 0.0;
+    }
+}

@@ -1,0 +1,292 @@
+//! Adhesion of finite range behind the common traits: closed forms, paths, energies and refusals.
+
+#![allow(clippy::unwrap_used, clippy::float_cmp)] // Tests.
+
+use bem3d::{
+    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, Branch, ContactModel, ContactState, Effects, Error,
+    Hardness, HeightMap, History, HistoryModel, Load, Scene, SelfAffine, Step, Surface, Tangential,
+};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+const EXPONENTIAL: AdhesionLaw = AdhesionLaw::Exponential;
+const DUGDALE: AdhesionLaw = AdhesionLaw::Dugdale;
+
+fn with(surface: Surface, work: f64, range: f64, law: AdhesionLaw) -> Scene {
+    let mut scene = Scene::new(surface, 1.0);
+    scene.effects.adhesion = Adhesion::FiniteRange { work, range, law };
+    scene.outputs.area = true;
+    scene
+}
+
+fn map(cells: usize, side: f64, height: impl Fn(usize, usize) -> f64) -> Surface {
+    Surface::Heights(Arc::new(HeightMap::from_fn(cells, side, height).unwrap()))
+}
+
+fn history(model: Bem3d, scene: &Scene) -> Box<dyn History> {
+    HistoryModel::prepare(&Bem3dPath(model), scene, 1).unwrap()
+}
+
+fn at(history: &mut dyn History, load: Load) -> Result<ContactState, Error> {
+    history.advance(Step::normal(0.0, load)).map(|state| state.normal)
+}
+
+/// A sphere with R = E* = 1 and the range 1e-4 under Tabor's parameter mu = (R w^2/(E*^2 range^3))^(1/3). `half`: half of the side, in
+/// `(pi w R^2/K)^(1/3)` with K = 4/3 E*, Maugis's unit of the contact radius. Returns the scene, the unit of approaches and pi w R.
+fn sphere(law: AdhesionLaw, mu: f64, half: f64) -> (Scene, f64, f64) {
+    let range = 1e-4f64;
+    let work = (mu * range).powf(1.5);
+    let unit = (PI * work * 0.75).cbrt();
+    let surface = Surface::Sphere { radius: 1.0, size: (2.0 * half * unit).into() };
+    let mut scene = with(surface, work, range, law);
+    scene.outputs.stiffness = false;
+    (scene, unit * unit, PI * work)
+}
+
+/// Pull-off force over pi w R, drawn apart in these approaches.
+fn pull_off(
+    law: AdhesionLaw,
+    mu: f64,
+    (cells, half): (usize, f64),
+    approaches: impl Iterator<Item = f64>,
+) -> f64 {
+    let (scene, unit, force) = sphere(law, mu, half);
+    let mut history = history(Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() }, &scene);
+    approaches
+        .map(|d| at(&mut *history, Load::Approach(d * unit)).unwrap().force / force)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Smallest force of Maugis's solution in pi w R, and the force at an approach `(force, approach)` along contact radii in
+/// `(pi w R^2/K)^(1/3)`: his Eqs. 6.15 to 6.17 of J. Colloid Interface Sci. 150, 243 (1992). His lambda is `2 s0 (R/(pi w K^2))^(1/3)`, with
+/// K = 4/3 E* and s0 = w/range: 1.127 mu. (1.157 mu belongs to the largest traction of Lennard-Jones's law.)
+fn maugis(mu: f64) -> f64 {
+    let lambda = 2.0 * (9.0 / (16.0 * PI)).cbrt() * mu;
+    let force = |a: f64| {
+        let condition = |m: f64| {
+            let (s, sec) = ((m * m - 1.0).sqrt(), m.recip().acos());
+            0.5 * lambda * a * a * (s + (m * m - 2.0) * sec)
+                + 4.0 / 3.0 * lambda * lambda * a * (s * sec - m + 1.0)
+                - 1.0
+        };
+        let (mut low, mut high) = (1.0f64, 1e9f64);
+        for _ in 0..200 {
+            let middle = (low * high).sqrt();
+            if condition(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        let m = low;
+        a.powi(3) - lambda * a * a * ((m * m - 1.0).sqrt() + m * m * m.recip().acos())
+    };
+    (1..2000).map(|i| force(1e-3 * f64::from(i))).fold(f64::INFINITY, f64::min)
+}
+
+fn down(from: f64, to: f64, steps: u32) -> impl Iterator<Item = f64> {
+    (0..=steps).map(move |i| from + (to - from) * f64::from(i) / f64::from(steps))
+}
+
+#[test]
+fn a_hard_sphere_is_pulled_off_by_two_pi_w_r() {
+    let found = pull_off(EXPONENTIAL, 0.02, (128, 24.0), down(0.3, -0.3, 12));
+    assert!((found + 2.0).abs() < 0.02, "{found}");
+}
+
+#[test]
+fn dugdale_spheres_are_those_of_maugis() {
+    assert!((maugis(1e-3) + 2.0).abs() < 2e-3 && (maugis(20.0) + 1.5).abs() < 2e-3);
+    for (mu, grid) in [(0.1, (128, 4.0)), (0.3, (192, 2.5))] {
+        let (found, exact) = (pull_off(DUGDALE, mu, grid, down(0.5, -0.8, 39)), maugis(mu));
+        assert!((found / exact - 1.0).abs() < 0.01, "{mu}: {found} {exact}");
+    }
+}
+
+#[test]
+#[ignore = "20 s; measured 2026-11: -1.5943 beside -1.5854"]
+fn a_softer_dugdale_sphere_too() {
+    let (found, exact) = (pull_off(DUGDALE, 1.0, (512, 1.9), down(1.0, -1.0, 40)), maugis(1.0));
+    assert!((found / exact - 1.0).abs() < 0.01, "{found} {exact}");
+}
+
+#[test]
+fn nothing_attracts_without_work() {
+    let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
+    let elastic = Scene::new(surface.clone(), 1.0);
+    let without = Scene { outputs: elastic.outputs, ..with(surface, 0.0, 0.1, EXPONENTIAL) };
+    let model = Bem3d { cells: 32, ..Bem3d::default() };
+    let load = Load::Force(0.5);
+    let expected = ContactModel::prepare(&model, &elastic, 3).unwrap().solve(load).unwrap();
+    assert_eq!(ContactModel::prepare(&model, &without, 3).unwrap().solve(load).unwrap(), expected);
+    let mut history = HistoryModel::prepare(&Bem3dPath(model), &without, 3).unwrap();
+    assert_eq!(at(&mut *history, load).unwrap(), expected);
+    assert!(at(&mut *history, Load::Force(-0.1)).is_err());
+}
+
+/// And hardly anything with little of it.
+#[test]
+fn little_work_changes_little() {
+    let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
+    let model = Bem3d { cells: 32, tolerance: 1e-8, ..Bem3d::default() };
+    let load = Load::Force(0.5);
+    let solve = |scene: &Scene| ContactModel::prepare(&model, scene, 3).unwrap().solve(load).unwrap();
+    let elastic = solve(&Scene::new(surface.clone(), 1.0)).approach.unwrap();
+    let shifts =
+        [1e-3, 1e-4].map(|w| solve(&with(surface.clone(), w, 0.5, EXPONENTIAL)).approach.unwrap() - elastic);
+    assert!(shifts[0] > 0.0 && (shifts[0] / shifts[1] - 10.0).abs() < 0.2, "{shifts:?}");
+}
+
+#[test]
+fn a_flat_holds_its_area_times_the_largest_traction_at_most() {
+    let (work, range) = (1e-3, 0.1);
+    let scene = with(Surface::Flat { size: 1.0.into() }, work, range, EXPONENTIAL);
+    let mut history = history(Bem3d { cells: 12, ..Bem3d::default() }, &scene);
+    let touching = at(&mut *history, Load::Force(1e-3)).unwrap();
+    assert_eq!(touching.report.contact_cells, Some(144));
+    let adhesive = touching.adhesive.unwrap();
+    assert!((adhesive.energy + work).abs() < 0.02 * work, "{adhesive:?}");
+    let pulled = at(&mut *history, Load::Force(-0.9 * work / range)).unwrap();
+    assert_eq!(pulled.adhesive.unwrap().branch, Branch::Withdrawal);
+    // The history stays where it was.
+    let Err(Error::NotConverged { best }) = at(&mut *history, Load::Force(-1.1 * work / range)) else {
+        panic!()
+    };
+    assert_eq!(best.force, pulled.force);
+    let again = at(&mut *history, Load::Force(pulled.force)).unwrap();
+    assert!((again.approach.unwrap() / pulled.approach.unwrap() - 1.0).abs() < 1e-6);
+}
+
+/// A plateau on a compliant half-space: it snaps in at a smaller approach than that at which it snaps off.
+#[test]
+fn a_plateau_snaps_in_and_off_and_loses_energy() {
+    let plateau = map(24, 1.0, |x, y| if (6..18).contains(&x) && (6..18).contains(&y) { 0.0 } else { -5.0 });
+    let scene = with(plateau, 0.04, 0.1, EXPONENTIAL);
+    let mut history = history(Bem3d { cells: 24, ..Bem3d::default() }, &scene);
+    let path = |low: f64, high: f64, n: usize| -> Vec<f64> {
+        (0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect()
+    };
+    let states = |history: &mut dyn History, path: &[f64]| -> Vec<ContactState> {
+        path.iter().map(|&d| at(history, Load::Approach(d)).unwrap()).collect()
+    };
+    let (up, back) = (path(-0.8, 0.1, 90), path(0.1, -0.8, 90));
+    let (rising, falling) = (states(&mut *history, &up), states(&mut *history, &back));
+    let first = rising.iter().position(|s| s.report.contact_cells > Some(0)).unwrap();
+    let last = falling.iter().position(|s| s.report.contact_cells == Some(0)).unwrap();
+    // A rigid punch on a spring: beta = (A w/range^2)/k, k = 1.1419 E* L; in at -d = range (1 + ln beta), off at range beta. The edge of a
+    // punch gives way before its middle does, and a step is 0.01.
+    let beta: f64 = 0.25 * 0.04 / 0.01 / (1.1419 * 0.5);
+    assert!((up[first] + 0.1 * (1.0 + beta.ln())).abs() < 0.015, "{}", up[first]);
+    assert!((back[last] + 0.1 * beta).abs() < 0.015, "{}", back[last]);
+    assert!(up[first] > back[last] + 0.015, "{} {}", up[first], back[last]);
+    let work = |states: &[ContactState], path: &[f64]| -> f64 {
+        let pairs = states.windows(2).zip(path.windows(2));
+        pairs.map(|(s, d)| 0.5 * (s[0].force + s[1].force) * (d[1] - d[0])).sum()
+    };
+    let lost = work(&rising, &up) + work(&falling, &back);
+    assert!(lost > 0.0, "{lost}");
+    // Without a jump the work of the load is what is stored.
+    let before = first - 1;
+    let stored = rising[before].adhesive.unwrap().energy - rising[0].adhesive.unwrap().energy;
+    let done = work(&rising[..=before], &up[..=before]);
+    assert!((stored / done - 1.0).abs() < 0.01, "{stored} {done}");
+    for state in rising.iter().chain(&falling) {
+        assert!(state.adhesive.unwrap().stability > 0.0 && state.report.certificate.meets(1e-6));
+    }
+}
+
+#[test]
+fn a_single_summit_and_a_strong_attraction() {
+    let summit = map(21, 1.0, |x, y| if (x, y) == (10, 10) { 0.0 } else { -10.0 });
+    let scene = with(summit, 0.01, 0.1, EXPONENTIAL);
+    let state = ContactModel::prepare(&Bem3d::default(), &scene, 0).unwrap().solve(Load::Force(0.0)).unwrap();
+    assert_eq!(state.report.contact_cells, Some(1));
+    // All of a gentle surface jumps in.
+    let gentle = map(24, 1.0, |x, y| 1e-3 * ((x as f64).sin() + (y as f64).cos()));
+    let scene = with(gentle, 0.02, 0.1, EXPONENTIAL);
+    let state = ContactModel::prepare(&Bem3d::default(), &scene, 0).unwrap().solve(Load::Force(0.0)).unwrap();
+    assert_eq!(state.report.contact_cells, Some(24 * 24));
+}
+
+#[test]
+fn a_periodic_surface_in_full_contact_carries_tension() {
+    let waves = map(24, 1.0, |x, _| 1e-3 * (2.0 * PI * x as f64 / 24.0).cos());
+    let mut scene = with(waves, 0.01, 0.1, EXPONENTIAL);
+    scene.effects.boundary = Boundary::Periodic;
+    (scene.outputs.stiffness, scene.outputs.pressure, scene.outputs.mean_gap) = (false, true, true);
+    let mut history = history(Bem3d::default(), &scene);
+    assert_eq!(at(&mut *history, Load::Force(0.1)).unwrap().report.contact_cells, Some(576));
+    let state = at(&mut *history, Load::Force(-0.05)).unwrap();
+    assert_eq!(state.report.contact_cells, Some(576));
+    // The pressure of a flat wave: mean -0.05 and pi E* h/lambda cos.
+    let p = state.pressure().unwrap().values();
+    let (mean, most) = (p.iter().sum::<f64>() / 576.0, p.iter().copied().fold(f64::MIN, f64::max));
+    assert!(
+        (mean + 0.05).abs() < 1e-9 && (most - mean - PI * 1e-3).abs() < 0.02 * PI * 1e-3,
+        "{mean} {most}"
+    );
+}
+
+#[test]
+fn a_mean_gap_is_met_along_a_path() {
+    let surface = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.05).unwrap());
+    let mut scene = with(surface, 0.01, 0.1, EXPONENTIAL);
+    scene.effects.boundary = Boundary::Periodic;
+    (scene.outputs.stiffness, scene.outputs.mean_gap) = (false, true);
+    let mut history = history(Bem3d { cells: 32, ..Bem3d::default() }, &scene);
+    for gap in [0.3, 0.15, 0.1, 0.05, 0.1, 0.15, 0.3] {
+        let state = at(&mut *history, Load::MeanGap(gap)).unwrap();
+        assert!((state.mean_gap.unwrap() - gap).abs() < 1e-6, "{gap} {:?}", state.mean_gap);
+    }
+}
+
+#[test]
+fn oblong_cells_agree_with_square_ones() {
+    let force = |cells: usize, rows: usize| {
+        let (mut scene, unit, force) = sphere(EXPONENTIAL, 0.3, 6.0);
+        scene.outputs.stiffness = false;
+        let model = Bem3d { cells, rows: Some(rows), ..Bem3d::default() };
+        let mut history = history(model, &scene);
+        at(&mut *history, Load::Approach(0.2 * unit)).unwrap().force / force
+    };
+    let (square, oblong) = (force(96, 96), force(96, 72));
+    assert!((square / oblong - 1.0).abs() < 0.01, "{square} {oblong}");
+}
+
+#[test]
+fn a_single_pull_begins_in_contact() {
+    let (scene, _, force) = sphere(EXPONENTIAL, 0.3, 6.0);
+    let model = Bem3d { cells: 96, ..Bem3d::default() };
+    let mut contact = ContactModel::prepare(&model, &scene, 0).unwrap();
+    let state = contact.solve(Load::Force(-force)).unwrap();
+    assert!((state.force / force + 1.0).abs() < 1e-6);
+    assert_eq!(state.adhesive.unwrap().branch, Branch::Withdrawal);
+    assert!(matches!(contact.solve(Load::Force(-2.1 * force)), Err(Error::NotConverged { .. })));
+    // Nothing is remembered.
+    assert_eq!(contact.solve(Load::Force(0.0)).unwrap().adhesive.unwrap().branch, Branch::Approach);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let flat = || Surface::Flat { size: 1.0.into() };
+    let prepared =
+        |scene: &Scene| HistoryModel::prepare(&Bem3dPath(Bem3d { cells: 8, ..Bem3d::default() }), scene, 0);
+    for (work, range) in [(f64::NAN, 0.1), (-1.0, 0.1), (0.1, 0.0), (0.1, f64::NAN), (f64::INFINITY, 0.1)] {
+        assert!(matches!(prepared(&with(flat(), work, range, DUGDALE)), Err(Error::Domain { .. })));
+    }
+    // Cells of 1/8 under a range of 1e-3: told with the side that would do.
+    let Err(Error::Domain { name, value, expected }) = prepared(&with(flat(), 0.01, 1e-3, EXPONENTIAL))
+    else {
+        panic!()
+    };
+    assert_eq!((&*name, value), ("side of a cell", 0.125));
+    assert!(expected.starts_with("at most 1.78"), "{expected}");
+    let mut scene = with(flat(), 0.01, 0.1, EXPONENTIAL);
+    scene.effects.hardness = Hardness::Limit { pressure: 1.0 };
+    assert!(matches!(prepared(&scene), Err(Error::Unsupported { .. })));
+    assert!(matches!(ContactModel::prepare(&Bem3d::default(), &scene, 0), Err(Error::Unsupported { .. })));
+    scene.effects = Effects::default();
+    assert!(matches!(prepared(&scene), Err(Error::Unsupported { .. })));
+    let mut history = prepared(&with(flat(), 0.01, 0.1, EXPONENTIAL)).unwrap();
+    for load in [Load::Force(f64::NAN), Load::Approach(f64::INFINITY), Load::MeanGap(0.1)] {
+        assert!(at(&mut *history, load).is_err(), "{load:?}");
+    }
+    let twisted = Step { tangential: Tangential::Force(1.0), ..Step::normal(0.0, Load::Force(0.0)) };
+    assert!(matches!(history.advance(twisted), Err(Error::Unsupported { .. })));
+}
