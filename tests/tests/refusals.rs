@@ -5,8 +5,8 @@ use analytic::{
 };
 use bem3d::Bem3d;
 use contact_model::{
-    Adhesion, Body, Boundary, Conductance, ContactModel, Effects, Error, Friction, HistoryModel, Line, Load,
-    Outputs, Pair, Rheology, Scene, Step, Surface,
+    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, Effects, Error, Friction, Hardness,
+    HistoryModel, Line, Load, Outputs, Pair, Rheology, Scene, Step, Surface,
 };
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 use std::sync::Arc;
@@ -88,17 +88,22 @@ fn surfaces_are_taken_or_refused() {
 fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     let round = !matches!(surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. });
     match effect {
-        "boundary" => model == "bem3d",
+        "boundary" | "hardness" => model == "bem3d",
         "adhesion" => model == "jkr" || (model == "mdr1d" && round),
+        // A range that the cells resolve.
+        "FiniteRange" => model == "bem3d",
         _ => false,
     }
 }
 
 /// One of each effect, by a word of its refusal.
-fn each_effect() -> [(&'static str, Effects); 4] {
+fn each_effect() -> [(&'static str, Effects); 6] {
+    let range = Adhesion::FiniteRange { work: 1e-3, range: 0.5, law: AdhesionLaw::Exponential };
     [
         ("boundary", Effects { boundary: Boundary::Periodic, ..Effects::default() }),
         ("adhesion", Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() }),
+        ("hardness", Effects { hardness: Hardness::Limit { pressure: 0.1 }, ..Effects::default() }),
+        ("FiniteRange", Effects { adhesion: range, ..Effects::default() }),
         ("friction", Effects { friction: Friction::Coulomb { coefficient: 0.3 }, ..Effects::default() }),
         ("rheology", Effects { rheology: Rheology::KelvinVoigt { viscosity: 1.0 }, ..Effects::default() }),
     ]

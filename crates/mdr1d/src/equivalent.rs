@@ -10,8 +10,8 @@ use crate::relaxation::{Relaxation, check_pair};
 use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
-    ContactModel, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Normalisation,
-    Outputs, Result, Rheology, Scene, Source, Step, Stop, Tangential, TangentialState, never,
+    Adhesion, ContactModel, Effects, Error, Friction, Hardness, History, HistoryModel, HistoryState, Load,
+    Normalisation, Outputs, Result, Rheology, Scene, Source, Step, Stop, Tangential, TangentialState, never,
 };
 use std::sync::Arc;
 
@@ -140,6 +140,10 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
         scene.validate()?;
         let Effects { friction, rheology, .. } = scene.effects;
+        if scene.effects.hardness != Hardness::Off || scene.effects.adhesion != Adhesion::Off {
+            let what = "hardness or adhesion: an equivalent profile has one k(d), and with them k depends on the path";
+            return Err(Error::unsupported(NAME, what));
+        }
         Effects { friction: Friction::Off, rheology: Rheology::Elastic, ..scene.effects }.refuse(NAME)?;
         let effect = match (friction, Material::new(&rheology, scene.modulus, NAME)?) {
             (Friction::Coulomb { coefficient }, None) => {

@@ -343,6 +343,9 @@ fn what_the_wrapper_lacks_is_refused() {
     scene = sliding(sphere());
     scene.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
     assert!(refused(&scene));
+    scene = sliding(sphere());
+    scene.effects.hardness = Hardness::Limit { pressure: 0.1 };
+    assert!(refused(&scene));
     scene = creeping(sphere(), SOLID);
     scene.outputs.stiffness = true;
     assert!(refused(&scene));
