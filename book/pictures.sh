@@ -24,6 +24,9 @@ scene contact-conductance curve-conductance.svg
 scene periodic-theories curve-stiffness.svg curve-area.svg
 scene rough-friction curve-tangential_force.svg
 scene rough-creep curve-approach.svg
+scene rough-plastic plastic_depth-bem3d-0-003.png
+scene plastic-path curve-force.svg
+scene sticky-ball curve-force.svg
 
 fractal-contact info data/measured/uncd-afm.001 --channel 0 --detrend plane --tip-radius "26 nm" --out out/uncd
 for picture in spectrum.svg slope.svg; do

@@ -88,7 +88,7 @@
 //!
 //! # What it does not do
 //!
-//! Adhesion of short range, friction and rheology are refused at `prepare`.
+//! Adhesion of short range, hardness together with adhesion, friction and rheology are refused at `prepare`.
 
 mod active_set;
 mod finite_range;

@@ -17,7 +17,7 @@ pub fn viridis() -> [[u8; 3]; 256] {
 }
 
 /// A PNG with a pixel for each value, the last row on top: viridis from the lowest to the highest of the range, undefined points grey, and
-/// white at 0 and below where `above_zero`.
+/// white at 0 where `zero_is_white`.
 ///
 /// # Errors
 /// [`crate::Error::Content`] where the encoder refuses.
@@ -25,12 +25,12 @@ pub fn encode_viridis(
     columns: usize,
     values: &[f32],
     [low, high]: [f32; 2],
-    above_zero: bool,
+    zero_is_white: bool,
 ) -> Result<Vec<u8>> {
     let colours = viridis();
     let colour = |v: &f32| match *v {
         v if !v.is_finite() => UNDEFINED,
-        v if above_zero && v <= 0.0 => [255; 3],
+        v if zero_is_white && v.abs() <= 0.0 => [255; 3],
         v if high > low => colours[(256.0 * ((v - low) / (high - low)).clamp(0.0, 1.0)).min(255.0) as usize],
         _ => colours[128],
     };

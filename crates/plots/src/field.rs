@@ -93,7 +93,7 @@ impl FieldPicture<'_> {
         let (low, high) = (low - room, high + room);
         let color = |v: f64| match v {
             v if !v.is_finite() => UNDEFINED,
-            v if self.shown == Shown::Largest && v <= 0.0 => [255; 3],
+            v if self.shown == Shown::Largest && v.abs() <= 0.0 => [255; 3],
             // Halves, because the range of finite numbers may overflow.
             v => colorous::VIRIDIS
                 .eval_continuous((0.5 * v - 0.5 * low) / (0.5 * high - 0.5 * low))

@@ -18,7 +18,7 @@ document.querySelectorAll("figure.field").forEach((figure) => {
   values.forEach((v, i) => {
     const at = 4 * ((f.down - 1 - Math.floor(i / f.across)) * f.across + (i % f.across));
     const shade = f.high > f.low ? Math.min(255, Math.floor((256 * (v - f.low)) / (f.high - f.low))) : 128;
-    const colour = !Number.isFinite(v) ? [205, 205, 205] : f.zero && v <= 0 ? [255, 255, 255] : palette.subarray(3 * shade, 3 * shade + 3);
+    const colour = !Number.isFinite(v) ? [205, 205, 205] : f.zero && v === 0 ? [255, 255, 255] : palette.subarray(3 * shade, 3 * shade + 3);
     image.data.set(colour, at);
     image.data[at + 3] = 255;
   });
