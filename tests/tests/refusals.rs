@@ -88,10 +88,9 @@ fn surfaces_are_taken_or_refused() {
 fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     let round = !matches!(surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. });
     match effect {
-        "boundary" | "hardness" => model == "bem3d",
-        "adhesion" => model == "jkr" || (model == "mdr1d" && round),
         // A range that the cells resolve.
-        "FiniteRange" => model == "bem3d",
+        "boundary" | "hardness" | "FiniteRange" => model == "bem3d",
+        "adhesion" => model == "jkr" || (model == "mdr1d" && round),
         _ => false,
     }
 }

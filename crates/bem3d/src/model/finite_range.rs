@@ -1,7 +1,7 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
 use super::options::Bem3d;
-use super::prepared::{NAME, PreparedBem3d};
+use super::prepared::{NAME, PreparedBem3d, without_tangential};
 use crate::finite_range::{Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
@@ -360,7 +360,7 @@ impl History for FiniteRangeContact {
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
         let step = step.validated_with_adhesion(self.time)?;
-        super::history::without_tangential(step)?;
+        without_tangential(step)?;
         if stop() {
             return Err(Error::Stopped { best: None });
         }
@@ -410,7 +410,7 @@ impl History for WithoutAdhesion {
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
         let step = step.validated(self.time)?;
-        super::history::without_tangential(step)?;
+        without_tangential(step)?;
         let state = HistoryState::new(step.time, self.contact.solve_until(step.normal, stop)?);
         self.time = step.time;
         Ok(state)

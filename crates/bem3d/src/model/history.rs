@@ -3,11 +3,10 @@
 use super::Bem3d;
 use super::finite_range::{FiniteRangeContact, WithoutAdhesion};
 use super::plastic_path::PlasticPath;
-use super::prepared::NAME;
+use super::prepared::{NAME, refuse_together};
 use crate::tuning::Tuning;
 use contact_model::{
-    Adhesion, ContactModel, Effects, Error, Hardness, History, HistoryModel, Result, Scene, Source, Step,
-    Tangential,
+    Adhesion, ContactModel, Effects, Error, Hardness, History, HistoryModel, Result, Scene, Source,
 };
 
 /// The boundary-element model along a path of loads, for effects that remember it: hardness and adhesion.
@@ -53,27 +52,4 @@ impl HistoryModel for Bem3dPath {
             _ => Ok(Box::new(PlasticPath::new(self.0.prepared(scene, seed, &Tuning::DEFAULT)?))),
         }
     }
-}
-
-/// Hardness and adhesion together: attraction that indents is solved by neither.
-///
-/// # Errors
-/// [`Error::Unsupported`] where both are on.
-pub(super) fn refuse_together(effects: &Effects) -> Result<()> {
-    if effects.hardness == Hardness::Off || effects.adhesion == Adhesion::Off {
-        return Ok(());
-    }
-    let what = "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made";
-    Err(Error::unsupported(NAME, what))
-}
-
-/// A step whose tangential load is nothing: there is no friction.
-///
-/// # Errors
-/// [`Error::Unsupported`] for any other.
-pub(super) fn without_tangential(step: Step) -> Result<()> {
-    let (Tangential::Force(value) | Tangential::Displacement(value)) = step.tangential else {
-        return Err(Error::unsupported(NAME, "a tangential load"));
-    };
-    if value.abs() > 0.0 { Err(Error::unsupported(NAME, "a tangential load")) } else { Ok(()) }
 }

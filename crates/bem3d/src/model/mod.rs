@@ -18,8 +18,7 @@ use contact_model::{
     Surface,
 };
 use finite_range::FiniteRangeContact;
-use history::refuse_together;
-use prepared::{NAME, PreparedBem3d};
+use prepared::{NAME, PreparedBem3d, refuse_together};
 use std::sync::Arc;
 
 impl ContactModel for Bem3d {

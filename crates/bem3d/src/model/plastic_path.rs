@@ -1,7 +1,6 @@
 //! A path with a hardness: the indentation stays, and what is unloaded is elastic until the old pressures are reached again.
 
-use super::history::without_tangential;
-use super::prepared::PreparedBem3d;
+use super::prepared::{PreparedBem3d, without_tangential};
 use crate::active_set::Candidates;
 use contact_model::{
     Error, History, HistoryState, Normalisation, PreparedContact, Result, Step, Stop, never,

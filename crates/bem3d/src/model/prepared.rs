@@ -7,8 +7,8 @@ use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
-    Boundary, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size,
-    Stop,
+    Adhesion, Boundary, Effects, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs,
+    Result, Scene, Size, Step, Stop, Tangential,
 };
 use std::borrow::Cow;
 use std::f64::consts::PI;
@@ -176,4 +176,27 @@ impl PreparedBem3d {
         self.problem.operators.applications = 0;
         self.problem.operators.solves = 0;
     }
+}
+
+/// Hardness and adhesion together: attraction that indents is solved by neither.
+///
+/// # Errors
+/// [`Error::Unsupported`] where both are on.
+pub(super) fn refuse_together(effects: &Effects) -> Result<()> {
+    if effects.hardness == Hardness::Off || effects.adhesion == Adhesion::Off {
+        return Ok(());
+    }
+    let what = "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made";
+    Err(Error::unsupported(NAME, what))
+}
+
+/// A step whose tangential load is nothing: there is no friction.
+///
+/// # Errors
+/// [`Error::Unsupported`] for any other.
+pub(super) fn without_tangential(step: Step) -> Result<()> {
+    let (Tangential::Force(value) | Tangential::Displacement(value)) = step.tangential else {
+        return Err(Error::unsupported(NAME, "a tangential load"));
+    };
+    if value.abs() > 0.0 { Err(Error::unsupported(NAME, "a tangential load")) } else { Ok(()) }
 }

@@ -1,5 +1,6 @@
 //! The registry.
 
+mod adhesion;
 mod chance;
 mod few;
 mod hardness;
@@ -31,6 +32,7 @@ pub fn cases() -> Vec<Case> {
         &rectangles::CASES,
         &limits::CASES,
         &hardness::CASES,
+        &adhesion::CASES,
         &chance::CASES,
     ]
     .concat()
