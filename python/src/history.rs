@@ -34,15 +34,15 @@ impl History {
     /// ----------
     /// time : float
     ///     At the end of the step; it never decreases. Friction alone does not look at it.
-    /// force, approach, mean_pressure : float
-    ///     Exactly one of them.
+    /// force, approach, mean_pressure, mean_gap : float
+    ///     Exactly one of them. Force and approach may be negative with adhesion.
     /// tangential_force, tangential_displacement : float, optional
     ///     At most one of them; no tangential force otherwise.
     ///
     /// Returns
     /// -------
     /// HistoryState
-    #[pyo3(signature = (time=0.0, *, force=None, approach=None, mean_pressure=None, tangential_force=None,
+    #[pyo3(signature = (time=0.0, *, force=None, approach=None, mean_pressure=None, mean_gap=None, tangential_force=None,
                         tangential_displacement=None))]
     #[allow(clippy::too_many_arguments)] // One for each keyword.
     fn advance(
@@ -52,10 +52,11 @@ impl History {
         force: Option<f64>,
         approach: Option<f64>,
         mean_pressure: Option<f64>,
+        mean_gap: Option<f64>,
         tangential_force: Option<f64>,
         tangential_displacement: Option<f64>,
     ) -> PyResult<Py<HistoryState>> {
-        let normal = load(&self.normalisation, force, approach, mean_pressure, None)?;
+        let normal = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
         let tangential = match (tangential_force, tangential_displacement) {
             (None, None) => Tangential::default(),
             (Some(force), None) => Tangential::Force(force),

@@ -9,7 +9,7 @@ use fractal_contact::analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody,
     Westergaard, greenwood_williamson::SummitHeights,
 };
-use fractal_contact::bem3d::Method;
+use fractal_contact::bem3d::{Bem3dPath, Method};
 use fractal_contact::mdr1d::{PartialSlip, Viscoelastic};
 use fractal_contact::{
     Bem3d, ContactModel, Equivalent, Error, HistoryModel, Mdr1d, PreparedContact, Scene as RustScene, Source,
@@ -66,6 +66,7 @@ pub fn model(
     let shared = |model: Arc<dyn ContactModel>| Kind::Loads(Shared(model));
     let kind = match name {
         "bem3d" => shared(Arc::new(bem3d(py, options)?)),
+        "bem3d_path" => Kind::Path(Arc::new(Bem3dPath(bem3d(py, options)?))),
         "mdr1d" => {
             let elements = optional(options, "elements")?.unwrap_or(Mdr1d::default().elements);
             shared(Arc::new(Mdr1d { elements }))
@@ -108,7 +109,7 @@ pub fn model(
         "viscoelastic" => Kind::Path(Arc::new(Viscoelastic)),
         other => return Err(PyValueError::new_err(format!("no model is called {other:?}"))),
     };
-    Ok(Model { kind, long: matches!(name, "bem3d" | "mdr1d" | "equivalent" | "viscoelastic") })
+    Ok(Model { kind, long: matches!(name, "bem3d" | "bem3d_path" | "mdr1d" | "equivalent" | "viscoelastic") })
 }
 
 fn bem3d(py: Python<'_>, options: &Bound<'_, PyDict>) -> PyResult<Bem3d> {

@@ -3,8 +3,8 @@
 use crate::errors::of_model;
 use crate::height_map::{HeightMap, OneOrTwo};
 use fractal_contact::{
-    Adhesion, Amplitude, Body, Boundary, Conductance, Effects, Friction, Line, Outputs, Pair, PronySeries,
-    Relaxing, Rheology, Scene as RustScene, SelfAffine, Surface as RustSurface,
+    Adhesion, AdhesionLaw, Amplitude, Body, Boundary, Conductance, Effects, Friction, Hardness, Line,
+    Outputs, Pair, PronySeries, Relaxing, Rheology, Scene as RustScene, SelfAffine, Surface as RustSurface,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -143,11 +143,12 @@ pub fn scene(
             "pressure" => &mut scene.outputs.pressure,
             "displacement" => &mut scene.outputs.displacement,
             "gap" => &mut scene.outputs.gap,
+            "plastic_depth" => &mut scene.outputs.plastic_depth,
             "contact_patches" => &mut scene.outputs.contact_patches,
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "no output is called {other:?}: there are stiffness, area, mean_gap, pressure, displacement, gap and \
-                     contact_patches"
+                    "no output is called {other:?}: there are stiffness, area, mean_gap, pressure, displacement, gap, \
+                     plastic_depth and contact_patches"
                 )));
             }
         };
@@ -177,7 +178,8 @@ fn read_effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Effects> {
             )));
         }
     };
-    let adhesion = optional::<f64>(of, "adhesion")?;
+    let hardness = optional::<f64>(of, "hardness")?;
+    let adhesion = optional::<Bound<'_, PyDict>>(of, "adhesion")?;
     let friction = optional::<f64>(of, "friction")?;
     let rheology = match optional::<Bound<'_, PyDict>>(of, "rheology")? {
         None => Rheology::Elastic,
@@ -185,10 +187,42 @@ fn read_effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Effects> {
     };
     Ok(Effects {
         boundary,
-        adhesion: adhesion.map_or(Adhesion::Off, |work| Adhesion::ShortRange { work }),
+        hardness: hardness.map_or(Hardness::Off, |pressure| Hardness::Limit { pressure }),
+        adhesion: adhesion.map_or(Ok(Adhesion::Off), |adhesion| read_adhesion(&adhesion))?,
         friction: friction.map_or(Friction::Off, |coefficient| Friction::Coulomb { coefficient }),
         rheology,
     })
+}
+
+fn read_adhesion(of: &Bound<'_, PyDict>) -> PyResult<Adhesion> {
+    for key in of.keys() {
+        let key: String = key.extract()?;
+        if !["work", "range", "law"].contains(&key.as_str()) {
+            return Err(PyValueError::new_err(format!(
+                "adhesion has no {key:?}: there are work, range and law"
+            )));
+        }
+    }
+    let work = required(of, "work")?;
+    let law = optional::<String>(of, "law")?;
+    let Some(range) = optional(of, "range")? else {
+        return match law {
+            None => Ok(Adhesion::ShortRange { work }),
+            Some(law) => Err(PyValueError::new_err(format!(
+                "law is {law:?} without a range: give both, or neither for short-range adhesion"
+            ))),
+        };
+    };
+    let law = match law.as_deref() {
+        None | Some("exponential") => AdhesionLaw::Exponential,
+        Some("dugdale") => AdhesionLaw::Dugdale,
+        Some(other) => {
+            return Err(PyValueError::new_err(format!(
+                "law is {other:?}: expected \"exponential\" or \"dugdale\""
+            )));
+        }
+    };
+    Ok(Adhesion::FiniteRange { work, range, law })
 }
 
 fn read_rheology(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Rheology> {

@@ -58,6 +58,12 @@ impl Certificate {
         self.0.worst()
     }
 
+    /// float or None: how far tractions are from the law of adhesion, over work/range.
+    #[getter]
+    fn equilibrium(&self) -> Option<f64> {
+        self.0.equilibrium
+    }
+
     /// Whether every number is at most `tolerance`.
     fn meets(&self, tolerance: f64) -> bool {
         self.0.meets(tolerance)
@@ -71,6 +77,7 @@ impl Certificate {
         dict.set_item("complementarity", self.0.complementarity)?;
         dict.set_item("load_error", self.0.load_error)?;
         dict.set_item("stiffness_error", self.0.stiffness_error)?;
+        dict.set_item("equilibrium", self.0.equilibrium)?;
         Ok(dict)
     }
 
@@ -86,15 +93,16 @@ pub struct ContactState {
     pressure: Option<Py<PyArray2<f64>>>,
     displacement: Option<Py<PyArray2<f64>>>,
     gap: Option<Py<PyArray2<f64>>>,
+    plastic_depth: Option<Py<PyArray2<f64>>>,
 }
 
 /// Moves a state into Python.
 pub fn of(py: Python<'_>, mut state: RustState) -> PyResult<Py<ContactState>> {
     let fields = state.fields.take().unwrap_or_default();
     let array = |field: Option<Field>| field.map(|field| array(py, field)).transpose();
-    let (pressure, displacement, gap) =
-        (array(fields.pressure)?, array(fields.displacement)?, array(fields.gap)?);
-    Py::new(py, ContactState { state, pressure, displacement, gap })
+    let (pressure, displacement) = (array(fields.pressure)?, array(fields.displacement)?);
+    let (gap, plastic_depth) = (array(fields.gap)?, array(fields.plastic_depth)?);
+    Py::new(py, ContactState { state, pressure, displacement, gap, plastic_depth })
 }
 
 #[pymethods]
@@ -177,6 +185,48 @@ impl ContactState {
         self.gap.as_ref().map(|field| field.clone_ref(py))
     }
 
+    /// numpy.ndarray or None: depth of the plastic indentation, [row, column].
+    #[getter]
+    fn plastic_depth(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
+        self.plastic_depth.as_ref().map(|field| field.clone_ref(py))
+    }
+
+    /// float or None: area under the hardness.
+    #[getter]
+    fn plastic_area(&self) -> Option<f64> {
+        self.state.plastic.map(|plastic| plastic.area)
+    }
+
+    /// float or None: volume of the plastic indentation.
+    #[getter]
+    fn plastic_volume(&self) -> Option<f64> {
+        self.state.plastic.map(|plastic| plastic.volume)
+    }
+
+    /// float or None: energy dissipated in the indentation.
+    #[getter]
+    fn plastic_work(&self) -> Option<f64> {
+        self.state.plastic.map(|plastic| plastic.dissipated)
+    }
+
+    /// str or None: ``approach`` or ``withdrawal``, with adhesion.
+    #[getter]
+    fn branch(&self) -> Option<&'static str> {
+        self.state.adhesive.map(|adhesive| adhesive.branch.as_str())
+    }
+
+    /// float or None: elastic energy less the work of adhesion done.
+    #[getter]
+    fn energy(&self) -> Option<f64> {
+        self.state.adhesive.map(|adhesive| adhesive.energy)
+    }
+
+    /// float or None: smallest curvature of the energy, over that without adhesion; > 0 for a minimum.
+    #[getter]
+    fn stability(&self) -> Option<f64> {
+        self.state.adhesive.map(|adhesive| adhesive.stability)
+    }
+
     /// Certificate: how exactly the contact conditions hold.
     #[getter]
     fn certificate(&self) -> Certificate {
@@ -231,6 +281,12 @@ impl ContactState {
         dict.set_item("area_corrected", self.area_corrected())?;
         dict.set_item("largest_pressure", self.largest_pressure())?;
         dict.set_item("conductance", self.conductance())?;
+        dict.set_item("plastic_area", self.plastic_area())?;
+        dict.set_item("plastic_volume", self.plastic_volume())?;
+        dict.set_item("plastic_work", self.plastic_work())?;
+        dict.set_item("branch", self.branch())?;
+        dict.set_item("energy", self.energy())?;
+        dict.set_item("stability", self.stability())?;
         dict.set_item("contact_cells", self.contact_cells())?;
         dict.set_item("status", self.status())?;
         dict.set_item("iterations", self.iterations())?;
@@ -240,6 +296,7 @@ impl ContactState {
             dict.set_item("pressure", self.pressure(py))?;
             dict.set_item("displacement", self.displacement(py))?;
             dict.set_item("gap", self.gap(py))?;
+            dict.set_item("plastic_depth", self.plastic_depth(py))?;
             dict.set_item("patches", self.patches(py))?;
         }
         Ok(dict)

@@ -204,3 +204,45 @@ def test_lines_stand_for_rectangles():
     assert state.stiffness > 0 and line == fc.Surface.line(heights.tolist(), length=2 / np.sqrt(np.pi), size=1.0)
     with pytest.raises(ValueError, match="2 dimensions"):
         fc.Surface.line(np.zeros((2, 2)), length=1.0, size=1.0)
+
+
+def test_a_hardness_limits_the_pressure():
+    outputs = ["pressure", "plastic_depth", "area"]
+    scene = fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, outputs=outputs)
+    state = fc.Bem3d().prepare(scene).solve(force=1e-3)
+    assert state.pressure.max() == pytest.approx(0.02) and 0 < state.plastic_area <= state.area
+    assert state.plastic_depth.sum() > 0 and state.plastic_work == pytest.approx(0.02 * state.plastic_volume)
+    # A hardness that nothing reaches changes no bit.
+    elastic = fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, outputs=["pressure"])).solve(force=1e-3)
+    high = fc.Scene(rough(), modulus=1.0, effects={"hardness": 1e6}, outputs=["pressure"])
+    assert np.array_equal(fc.Bem3d().prepare(high).solve(force=1e-3).pressure, elastic.pressure)
+    assert elastic.plastic_area is None and elastic.branch is None
+
+
+def test_paths_of_boundary_elements():
+    path = fc.Bem3dPath().history(fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}))
+    loaded, unloaded = (path.advance(force=force).normal for force in (1e-3, 2e-4))
+    assert unloaded.plastic_volume == loaded.plastic_volume > 0
+    adhesion = {"work": 1e-3, "range": 0.05, "law": "exponential"}
+    sphere = fc.Surface.sphere(radius=1.0, size=1.0)
+    scene = fc.Scene(sphere, modulus=1.0, effects={"adhesion": adhesion}, outputs=["pressure"])
+    path = fc.Bem3dPath(cells=64).history(scene)
+    pressed, pulled = (path.advance(force=force).normal for force in (1e-3, -3e-3))
+    assert (pressed.branch, pulled.branch) == ("approach", "withdrawal")
+    assert pulled.force == pytest.approx(-3e-3) and pulled.pressure.min() < 0
+    assert pulled.stability > 0 and pulled.certificate.equilibrium < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("effects", "error", "match"),
+    [
+        ({"hardness": -1.0}, fc.DomainError, "hardness"),
+        ({"hardness": 1.0, "adhesion": 0.1}, fc.Unsupported, "together"),
+        ({"adhesion": {"work": 0.1, "law": "dugdale"}}, ValueError, "without a range"),
+        ({"adhesion": {"work": 0.1, "reach": 1.0}}, ValueError, "reach"),
+        ({"adhesion": {"work": 0.1, "range": 1.0, "law": "cubic"}}, ValueError, "cubic"),
+    ],
+)
+def test_effects_that_make_no_sense(effects, error, match):
+    with pytest.raises(error, match=match):
+        fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, effects=effects))

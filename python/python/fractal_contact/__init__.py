@@ -46,6 +46,7 @@ from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene
 from ._inputs import Body, Effects, Scene, Surface
 from ._models import (
     Bem3d,
+    Bem3dPath,
     CattaneoMindlin,
     Equivalent,
     FlatPunch,
@@ -68,6 +69,7 @@ from ._models import (
 
 __all__ = [
     "Bem3d",
+    "Bem3dPath",
     "Body",
     "CattaneoMindlin",
     "Certificate",

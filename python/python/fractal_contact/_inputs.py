@@ -163,8 +163,10 @@ class Effects:
     ----------
     boundary : {"free", "periodic"}
         What lies outside of the rectangle.
-    adhesion : float, optional
-        Work of adhesion (short range).
+    hardness : float, optional
+        Largest pressure of a cell.
+    adhesion : float or mapping, optional
+        Work of adhesion (short range), or ``{"work": ..., "range": ..., "law": "exponential" or "dugdale"}``.
     friction : float, optional
         Coefficient of Coulomb's friction.
     rheology : mapping, optional
@@ -174,7 +176,8 @@ class Effects:
     """
 
     boundary: str = "free"
-    adhesion: float | None = None
+    hardness: float | None = None
+    adhesion: float | Mapping[str, Any] | None = None
     friction: float | None = None
     rheology: Mapping[str, Any] | None = None
 
@@ -195,7 +198,7 @@ class Scene:
         Off unless named.
     outputs : iterable of str
         What is computed besides force and approach: "stiffness", "area", "mean_gap", "pressure", "displacement", "gap",
-        "contact_patches".
+        "plastic_depth" (with a hardness), "contact_patches".
     conductance : (str, float, float), optional
         ("electrical", resistivity, resistivity) or ("thermal", conductivity, conductivity).
 
@@ -245,6 +248,10 @@ class Scene:
         surface = self.surface._core() if isinstance(self.surface, Surface) else self.surface
         bodies = self.bodies and [body and (body.young, body.poisson) for body in self.bodies]
         effects = asdict(self.effects)
+        if isinstance(self.effects.adhesion, Mapping):
+            effects["adhesion"] = dict(self.effects.adhesion)
+        elif self.effects.adhesion is not None:
+            effects["adhesion"] = {"work": self.effects.adhesion}
         if self.effects.rheology is not None:
             effects["rheology"] = dict(self.effects.rheology)
         return _core.scene(surface, self.modulus, bodies, effects, list(self.outputs), self.conductance)

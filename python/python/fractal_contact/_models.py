@@ -236,6 +236,50 @@ class Equivalent(HistoryModel):
         return f"Equivalent({self.model!r}{options})"
 
 
+class Bem3dPath(HistoryModel):
+    """Boundary elements along a path: the indentation of a hardness stays, and adhesion has two branches.
+
+    Parameters
+    ----------
+    cells, rows, tolerance, max_outer_iterations, method
+        As of `Bem3d`.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> sphere = fc.Surface.sphere(radius=1.0, size=1.0)
+    >>> scene = fc.Scene(sphere, modulus=1.0, effects={"hardness": 0.1})
+    >>> path = fc.Bem3dPath(cells=32).history(scene)
+    >>> loaded, unloaded = (path.advance(force=f).normal for f in (0.02, 0.0))
+    >>> loaded.plastic_area > 0.0, unloaded.plastic_area, unloaded.plastic_volume == loaded.plastic_volume
+    (True, 0.0, True)
+    """
+
+    _name = "bem3d_path"
+
+    def __init__(
+        self,
+        *,
+        cells: int | None = None,
+        rows: int | None = None,
+        tolerance: float | None = None,
+        max_outer_iterations: int | None = None,
+        method: str | None = None,
+    ) -> None:
+        super().__init__(
+            cells=cells,
+            rows=rows,
+            tolerance=tolerance,
+            max_outer_iterations=max_outer_iterations,
+            method=method,
+        )
+
+    @property
+    def name(self) -> str:
+        """Name of the model, the same in scenes and tables."""
+        return "bem3d"
+
+
 class CattaneoMindlin(_NoOptions, HistoryModel):
     """Partial slip of a sphere in closed form."""
 
