@@ -8,6 +8,7 @@
 //! | [`FlatPunch`] | flat circle, flat square | F, d, k, area |
 //! | [`Jkr`] | sphere, [`contact_model::Adhesion::ShortRange`] | F, d (of either sign), k, area, pull-off |
 //! | [`Westergaard`] | sine, periodic | F, mean gap, k, area |
+//! | [`AdhesiveWave`] | sine, periodic, [`contact_model::Adhesion::ShortRange`] | F (of either sign), mean gap, k, area, pull-off and snap-in |
 //! | [`Persson`] | self-affine with cut-off or map, periodic | F, mean gap, k, area |
 //! | [`GreenwoodWilliamson`] | self-affine with cut-off or map, periodic | F, mean gap, k, area up to half of the summits |
 //! | [`CattaneoMindlin`] (a history) | sphere, [`contact_model::Friction::Coulomb`] | tangential force and displacement, stick radius, dissipated energy |
@@ -42,6 +43,7 @@
 //! No fields: a closed form has no cells. Where the pressure is a formula it is a function of r
 //! ([`hertz::pressure`], [`flat_punch::pressure`]). Effects that the table does not name are refused.
 
+pub mod adhesive_wave;
 pub mod cattaneo_mindlin;
 mod closed;
 pub mod flat_punch;
@@ -63,6 +65,7 @@ pub mod spectrum;
 mod testing;
 pub mod westergaard;
 
+pub use adhesive_wave::AdhesiveWave;
 pub use cattaneo_mindlin::CattaneoMindlin;
 // All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
 #[doc(no_inline)]

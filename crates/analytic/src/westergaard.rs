@@ -5,7 +5,7 @@ use crate::closed::ROUNDED_UP;
 use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::root;
 use contact_model::{
-    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Source,
+    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Size, Source,
     Surface,
 };
 use std::f64::consts::{PI, SQRT_2};
@@ -58,20 +58,7 @@ impl ContactModel for Westergaard {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         periodic::check(scene, NAME)?;
-        let Surface::Sine { amplitude, wavelength, size } = scene.surface else {
-            return Err(Error::unsupported(NAME, scene.surface.kind()));
-        };
-        // A wave of negative amplitude is the same wave, shifted.
-        let height = amplitude.abs();
-        let waves = size.x / wavelength;
-        let whole = waves.round();
-        if !(whole >= 1.0 && (waves - whole).abs() <= WHOLE_WAVES * whole) {
-            return Err(Error::domain(
-                "side along x over wavelength",
-                waves,
-                "a whole number of waves with periodic boundaries",
-            ));
-        }
+        let (height, whole, size) = whole_waves(scene, NAME)?;
         let (modulus, length) = (scene.modulus, size.length());
         Ok(Box::new(Periodic {
             model: NAME,
@@ -82,6 +69,27 @@ impl ContactModel for Westergaard {
             strategy: "closed form (Westergaard)",
         }))
     }
+}
+
+/// Amplitude, number of waves and sides of a periodic sine.
+///
+/// # Errors
+/// [`Error::Unsupported`] for another surface, [`Error::Domain`] where the side along x is no whole number of waves.
+pub(crate) fn whole_waves(scene: &Scene, model: &'static str) -> Result<(f64, f64, Size)> {
+    let Surface::Sine { amplitude, wavelength, size } = scene.surface else {
+        return Err(Error::unsupported(model, scene.surface.kind()));
+    };
+    let waves = size.x / wavelength;
+    let whole = waves.round();
+    if !(whole >= 1.0 && (waves - whole).abs() <= WHOLE_WAVES * whole) {
+        return Err(Error::domain(
+            "side along x over wavelength",
+            waves,
+            "a whole number of waves with periodic boundaries",
+        ));
+    }
+    // A wave of negative amplitude is the same wave, shifted.
+    Ok((amplitude.abs(), whole, size))
 }
 
 /// Heights in D, pressures in E* D/L.
@@ -97,7 +105,7 @@ impl Wave {
 }
 
 /// `1 - r + r ln r` for r in [0, 1], without cancellation near r = 1.
-fn gap_over_amplitude(r: f64) -> f64 {
+pub(crate) fn gap_over_amplitude(r: f64) -> f64 {
     if r <= 0.0 {
         return 1.0;
     }
