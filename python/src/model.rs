@@ -6,8 +6,8 @@ use crate::history::History;
 use crate::pool;
 use crate::scene::{Scene, optional};
 use fractal_contact::analytic::{
-    CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody,
-    Westergaard, greenwood_williamson::SummitHeights,
+    AdhesiveWave, CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, MaugisDugdale, Persson,
+    PowerLaw, PowerLawBody, Westergaard, greenwood_williamson::SummitHeights,
 };
 use fractal_contact::bem3d::{Bem3dPath, Method};
 use fractal_contact::mdr1d::{PartialSlip, Viscoelastic};
@@ -77,6 +77,8 @@ pub fn model(
         "power_law" => shared(Arc::new(PowerLaw)),
         "jkr" => shared(Arc::new(Jkr)),
         "westergaard" => shared(Arc::new(Westergaard)),
+        "adhesive_wave" => shared(Arc::new(AdhesiveWave)),
+        "maugis_dugdale" => shared(Arc::new(MaugisDugdale)),
         "persson" => {
             let gamma = optional(options, "gamma")?.unwrap_or(Persson::default().gamma);
             shared(Arc::new(Persson { gamma }))

@@ -45,6 +45,7 @@ from ._errors import (
 from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, si, write_surface
 from ._inputs import Body, Effects, Scene, Surface
 from ._models import (
+    AdhesiveWave,
     Bem3d,
     Bem3dPath,
     CattaneoMindlin,
@@ -54,6 +55,7 @@ from ._models import (
     Hertz,
     HistoryModel,
     Jkr,
+    MaugisDugdale,
     Mdr1d,
     Model,
     PartialSlip,
@@ -68,6 +70,7 @@ from ._models import (
 )
 
 __all__ = [
+    "AdhesiveWave",
     "Bem3d",
     "Bem3dPath",
     "Body",
@@ -87,6 +90,7 @@ __all__ = [
     "HistoryModel",
     "HistoryState",
     "Jkr",
+    "MaugisDugdale",
     "Mdr1d",
     "Model",
     "Normalisation",

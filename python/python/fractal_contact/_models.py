@@ -167,6 +167,18 @@ class Jkr(_NoOptions, Model):
     _name = "jkr"
 
 
+class MaugisDugdale(_NoOptions, Model):
+    """A sphere with a constant attraction up to a range, between JKR and DMT."""
+
+    _name = "maugis_dugdale"
+
+
+class AdhesiveWave(_NoOptions, Model):
+    """Johnson's periodic wave with short-range adhesion."""
+
+    _name = "adhesive_wave"
+
+
 class Westergaard(_NoOptions, Model):
     """Periodic contact of a wave."""
 

@@ -4,7 +4,8 @@ use crate::scenes::any_model::{AnyModel, RegisteredModel};
 use crate::scenes::entries::{Entries, Entry, Read, suggestion};
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{
-    CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
+    AdhesiveWave, CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, MaugisDugdale, Persson,
+    PowerLaw, PowerLawBody, Westergaard,
 };
 use bem3d::{Bem3d, Bem3dPath, Method};
 use contact_model::{Cells, Size};
@@ -37,10 +38,14 @@ pub enum Numerics {
     FlatPunch,
     /// A sphere with adhesion.
     Jkr,
+    /// A sphere with adhesion of finite range.
+    MaugisDugdale,
     /// The paper's fit.
     PowerLaw,
     /// Waves.
     Westergaard,
+    /// Waves with adhesion.
+    AdhesiveWave,
     /// Persson's theory.
     Persson(Persson),
     /// Independent summits.
@@ -74,15 +79,17 @@ const BEM3D: Bem3d =
 
 impl Numerics {
     /// Every model with its defaults.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Bem3d(BEM3D),
         Self::Mdr1d(Mdr1d { elements: 1 << 16 }),
         Self::Hertz,
         Self::PowerLawBody,
         Self::FlatPunch,
         Self::Jkr,
+        Self::MaugisDugdale,
         Self::PowerLaw,
         Self::Westergaard,
+        Self::AdhesiveWave,
         Self::Persson(Persson { gamma: 0.45 }),
         Self::GreenwoodWilliamson(GreenwoodWilliamson { heights: SummitHeights::Gaussian }),
         Self::CattaneoMindlin,
@@ -102,8 +109,10 @@ impl Numerics {
             Self::PowerLawBody => AnyModel::Contact(Arc::new(PowerLawBody)),
             Self::FlatPunch => AnyModel::Contact(Arc::new(FlatPunch)),
             Self::Jkr => AnyModel::Contact(Arc::new(Jkr)),
+            Self::MaugisDugdale => AnyModel::Contact(Arc::new(MaugisDugdale)),
             Self::PowerLaw => AnyModel::Contact(Arc::new(PowerLaw)),
             Self::Westergaard => AnyModel::Contact(Arc::new(Westergaard)),
+            Self::AdhesiveWave => AnyModel::Contact(Arc::new(AdhesiveWave)),
             Self::Persson(model) => AnyModel::Contact(Arc::new(model)),
             Self::GreenwoodWilliamson(model) => AnyModel::Contact(Arc::new(model)),
             Self::CattaneoMindlin => AnyModel::History(Arc::new(CattaneoMindlin)),
@@ -214,7 +223,7 @@ impl Numerics {
                 numerics.tolerance
             ),
             Self::Mdr1d(_) if rough => "exact for its line; against three dimensions 7 to 18 % too stiff near F_bar = 1, exponents as 1/(1+H)".into(),
-            Self::Mdr1d(_) | Self::Hertz | Self::PowerLawBody | Self::Westergaard | Self::Jkr => "exact, to about 1e-13".into(),
+            Self::Mdr1d(_) | Self::Hertz | Self::PowerLawBody | Self::Westergaard | Self::Jkr | Self::MaugisDugdale | Self::AdhesiveWave => "exact, to about 1e-13".into(),
             Self::FlatPunch => "exact for the circle; the square's constant to 1e-6".into(),
             Self::PowerLaw => "a fit: within the scatter of surfaces, 8 to 28 % at F_bar = 0.086".into(),
             Self::Persson(_) => "a theory of an infinite random surface: beside the solved one of data/scenes/periodic-theories.toml its stiffness is up \

@@ -252,6 +252,8 @@ pub(crate) fn model_name(name: &str) -> &str {
         "persson" => "Persson",
         "greenwood_williamson" => "Greenwood and Williamson",
         "westergaard" => "Westergaard",
+        "adhesive_wave" => "Johnson",
+        "maugis_dugdale" => "Maugis-Dugdale",
         "cattaneo_mindlin" => "Cattaneo and Mindlin",
         "power_law" => "power law of the paper",
         "power_law_body" => "Galin",
