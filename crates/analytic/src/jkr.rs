@@ -288,7 +288,7 @@ impl AdhesiveSphere {
 }
 
 /// A conversion of magnitudes, for numbers of either sign.
-fn signed(value: f64, convert: impl Fn(f64) -> Result<f64>) -> Result<f64> {
+pub(crate) fn signed(value: f64, convert: impl Fn(f64) -> Result<f64>) -> Result<f64> {
     Ok(convert(value.abs())?.copysign(value))
 }
 

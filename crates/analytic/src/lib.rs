@@ -7,6 +7,7 @@
 //! | [`PowerLawBody`] | power law, cone, sphere | F, d, k, area |
 //! | [`FlatPunch`] | flat circle, flat square | F, d, k, area |
 //! | [`Jkr`] | sphere, [`contact_model::Adhesion::ShortRange`] | F, d (of either sign), k, area, pull-off |
+//! | [`MaugisDugdale`] | sphere, [`contact_model::Adhesion::FiniteRange`] of Dugdale's law | F, d (of either sign), k, area, pull-off; no attraction without contact |
 //! | [`Westergaard`] | sine, periodic | F, mean gap, k, area |
 //! | [`AdhesiveWave`] | sine, periodic, [`contact_model::Adhesion::ShortRange`] | F (of either sign), mean gap, k, area, pull-off and snap-in |
 //! | [`Persson`] | self-affine with cut-off or map, periodic | F, mean gap, k, area |
@@ -34,9 +35,9 @@
 //!
 //! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the
 //! constant of the flat square is known to 1e-6 and says so in the report. A state costs well under a
-//! microsecond; of [`GreenwoodWilliamson`] and [`Persson`] tens of microseconds (quadratures to 1e-11), with
-//! the mean gap a few hundred. How good theories of rough surfaces are is another matter. [`PowerLaw`] is as
-//! good as the fit it is.
+//! microsecond; of [`MaugisDugdale`] (a root) one or two, of [`GreenwoodWilliamson`] and [`Persson`] tens of
+//! microseconds (quadratures to 1e-11), with the mean gap a few hundred. How good theories of rough surfaces
+//! are is another matter. [`PowerLaw`] is as good as the fit it is.
 //!
 //! # What it does not do
 //!
@@ -51,6 +52,7 @@ mod gamma;
 pub mod greenwood_williamson;
 pub mod hertz;
 pub mod jkr;
+pub mod maugis_dugdale;
 mod memory;
 mod periodic;
 pub mod persson;
@@ -74,6 +76,7 @@ pub use flat_punch::FlatPunch;
 pub use greenwood_williamson::GreenwoodWilliamson;
 pub use hertz::Hertz;
 pub use jkr::Jkr;
+pub use maugis_dugdale::MaugisDugdale;
 pub use persson::Persson;
 pub use power_law::{
     F_BAR_UL, K_BAR_UL, PowerLaw, conductance_fit, exponent_fit, exponent_scaling, force_tilde, zeta_fit,

@@ -1,0 +1,677 @@
+//! Maugis: a sphere with a constant attraction up to a range (Dugdale's law), between JKR and DMT.
+
+mod curve;
+
+use crate::jkr::{PullOff, signed};
+use crate::{Hertz, closed, root};
+use contact_model::{
+    Adhesion, AdhesionLaw, ContactModel, ContactState, Effects, Error, Load, Nondimensionalisation,
+    Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface,
+};
+use curve::{Curve, Point};
+use std::f64::consts::PI;
+
+const NAME: &str = "maugis_dugdale";
+
+/// The contact of a sphere with [`Adhesion::FiniteRange`] of [`AdhesionLaw::Dugdale`]: traction `s0 = work/range`
+/// wherever the gap is below the range, that is between the contact radius a and the radius c of the cohesive zone.
+///
+/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be negative,
+/// and no load means the adhered contact. A force below that of the pull-off (between `-2 pi w R` of a hard sphere
+/// and `-3/2 pi w R` of a soft one) is [`Error::OutOfRange`], and so is an approach below the smallest of a stable
+/// contact. Hard spheres (lambda below 0.938) come down to a contact of radius 0 there; what attracts them beyond it,
+/// without contact, is not part of this model. A cohesive zone beyond half the shorter side is out of range too.
+///
+/// The stiffness is that of the contact set, `k = 2 E* a`, as in [`crate::Jkr`]: a and c held, the attraction is
+/// constant. The slope of the equilibrium curve, where both move, is [`MaugisSphere::slope`]. Takes
+/// [`Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs one to two microseconds.
+///
+/// ```
+/// use analytic::MaugisDugdale;
+/// use contact_model::{Adhesion, AdhesionLaw, ContactModel, Load, Scene, Surface};
+/// let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 4.0.into() }, 1.0);
+/// // Tabor's parameter work^(2/3)/range is 1.
+/// scene.effects.adhesion = Adhesion::FiniteRange { work: 1e-3, range: 0.01, law: AdhesionLaw::Dugdale };
+/// let mut contact = MaugisDugdale.prepare(&scene, 0)?;
+/// // The pull-off force is 1.5854 pi w R = 0.0049807.
+/// assert!(contact.solve(Load::Force(-0.00498)).is_ok() && contact.solve(Load::Force(-0.00499)).is_err());
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MaugisDugdale;
+
+impl ContactModel for MaugisDugdale {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn sources(&self) -> &'static [Source] {
+        &[Source {
+            citation: "D. Maugis, J. Colloid Interface Sci. 150, 243 (1992)",
+            what: "sphere with Dugdale's law of adhesion: Eqs. 6.15 to 6.17",
+        }]
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
+        scene.validate()?;
+        let elastic = Effects { adhesion: Adhesion::Off, ..scene.effects };
+        elastic.refuse(NAME)?;
+        closed::refuse_fields(scene, NAME)?;
+        let Surface::Sphere { radius, size } = scene.surface else {
+            return Err(Error::unsupported(NAME, scene.surface.kind()));
+        };
+        let sphere = match scene.effects.adhesion {
+            Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale } if work > 0.0 => {
+                MaugisSphere::new(radius, scene.modulus, work, range)?
+            }
+            Adhesion::Off | Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => {
+                return Hertz.prepare(&Scene { effects: elastic, ..scene.clone() }, seed);
+            }
+            other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
+        };
+        let (_, normalisation) = closed::of_body(scene)?;
+        Ok(Box::new(Prepared { sphere, size, normalisation, outputs: scene.outputs }))
+    }
+}
+
+/// A sphere with Dugdale's law of adhesion, outside the common trait: the equilibrium curve through its contact
+/// radius, and where it ends.
+///
+/// ```
+/// use analytic::maugis_dugdale::MaugisSphere;
+/// let sphere = MaugisSphere::new(1.0, 1.0, 1e-3, 0.01)?;
+/// assert!((sphere.lambda() - 1.1272).abs() < 1e-4);
+/// let pulled = sphere.pull_off_at_force()?;
+/// assert!((pulled.force / (std::f64::consts::PI * 1e-3) + 1.5854).abs() < 1e-4);
+/// assert!(sphere.slope(pulled.radius)?.abs() < 1e-9);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaugisSphere {
+    /// Lengths in R, moduli in E*.
+    nondimensional: Nondimensionalisation,
+    curve: Curve,
+    /// `(3 pi w R^2/(4 E*))^(1/3)` over R.
+    unit: f64,
+    /// `pi w/(E* R)`.
+    force_unit: f64,
+    /// ln s where the force is smallest.
+    force_fold: f64,
+    /// ln s where the approach is smallest; `None` where that is the contact of radius 0.
+    approach_fold: Option<f64>,
+}
+
+impl MaugisSphere {
+    /// lambda for which the curve is tested. Far beyond 1 it is that of JKR but for `0.3/lambda^2` of forces, radii and approaches;
+    /// far below 1 the pull-off force is `2 - 1.72 lambda^(3/2)` times `pi w R`, and at 0 that of DMT.
+    pub const LAMBDA: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+
+    /// Radius of curvature R > 0, modulus E* > 0, work of adhesion w > 0 (energy per area), range > 0 (a length).
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a number that makes no sense, numbers that no `f64` holds, or a lambda outside
+    /// [`MaugisSphere::LAMBDA`].
+    pub fn new(radius: f64, modulus: f64, work: f64, range: f64) -> Result<Self> {
+        let nondimensional = Nondimensionalisation::new(modulus, radius, radius)?;
+        let scaled = work / modulus / radius;
+        if !(scaled.is_finite() && scaled > 0.0) {
+            let expected = "a finite number > 0, within the range of f64 over E* R";
+            return Err(Error::domain("work of adhesion", work, expected));
+        }
+        if !(range.is_finite() && range > 0.0) {
+            return Err(Error::domain("range of adhesion", range, "a finite number > 0"));
+        }
+        let lambda = 2.0 * (9.0 / (16.0 * PI) * scaled).cbrt() * (scaled.cbrt() / (range / radius));
+        if !Self::LAMBDA.contains(&lambda) {
+            return Err(Error::domain("Maugis's parameter lambda", lambda, "from 1e-6 to 1e6"));
+        }
+        let curve = Curve { lambda };
+        Ok(Self {
+            nondimensional,
+            curve,
+            unit: (0.75 * PI * scaled).cbrt(),
+            force_unit: PI * scaled,
+            force_fold: root::between(Curve::LEAST, Curve::MOST, |x| curve.at(x).rates(lambda).0),
+            approach_fold: (curve.end().rates(lambda).1 < 0.0)
+                .then(|| root::between(Curve::LEAST, Curve::MOST, |x| curve.at(x).rates(lambda).1)),
+        })
+    }
+
+    /// Maugis's parameter `lambda = 2 s0 (R/(pi w K^2))^(1/3)` with `s0 = w/range` and `K = 4/3 E*`: 1.1272 times
+    /// Tabor's parameter `(R w^2/(E*^2 range^3))^(1/3)`.
+    pub fn lambda(&self) -> f64 {
+        self.curve.lambda
+    }
+
+    /// Force at a contact radius a, which may be 0.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a radius that is negative or not finite, or numbers that no `f64` holds.
+    pub fn force(&self, contact_radius: f64) -> Result<f64> {
+        self.force_of(&self.point(contact_radius)?)
+    }
+
+    /// Approach at a contact radius a, which may be 0.
+    ///
+    /// # Errors
+    /// As [`MaugisSphere::force`].
+    pub fn approach(&self, contact_radius: f64) -> Result<f64> {
+        self.approach_of(&self.point(contact_radius)?)
+    }
+
+    /// Outer radius c of the cohesive zone, where the gap is the range, at a contact radius a, which may be 0.
+    ///
+    /// # Errors
+    /// As [`MaugisSphere::force`].
+    pub fn cohesive_radius(&self, contact_radius: f64) -> Result<f64> {
+        self.nondimensional.approach(self.unit * self.point(contact_radius)?.c)
+    }
+
+    /// `dF/dd` along the equilibrium curve, on which a and c both move: positive where a prescribed force holds the
+    /// contact, negative where only a prescribed approach does. Without adhesion it would be 2 E* a.
+    ///
+    /// It is `(dF/da)/(dd/da)`, each with the derivative of c that the implicit equation between a and c gives.
+    ///
+    /// # Errors
+    /// As [`MaugisSphere::force`], and [`Error::Domain`] for a radius at or below that of the pull-off under prescribed
+    /// approach where that is not 0: the slope has no bound there.
+    pub fn slope(&self, contact_radius: f64) -> Result<f64> {
+        let (force, approach) = self.point(contact_radius)?.rates(self.curve.lambda);
+        if approach > 0.0 {
+            signed(4.0 / 3.0 * self.unit * force / approach, |slope| self.nondimensional.stiffness(slope))
+        } else {
+            let expected = "beyond that of the pull-off under prescribed approach";
+            Err(Error::domain("contact radius", contact_radius, expected))
+        }
+    }
+
+    /// Contact radius at a force, on the branch that is stable under a prescribed force.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a force that is not finite or a state that no `f64` holds, [`Error::OutOfRange`] below
+    /// the pull-off force.
+    pub fn radius_at_force(&self, force: f64) -> Result<f64> {
+        self.radius_of(&self.at_force(force)?)
+    }
+
+    /// Contact radius at an approach, on the branch that is stable under a prescribed approach.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for an approach that is not finite or a state that no `f64` holds, [`Error::OutOfRange`]
+    /// below that of [`MaugisSphere::pull_off_at_approach`].
+    pub fn radius_at_approach(&self, approach: f64) -> Result<f64> {
+        self.radius_of(&self.at_approach(approach)?)
+    }
+
+    /// Pull-off under a prescribed force: the smallest force of the curve.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for numbers that no `f64` holds.
+    pub fn pull_off_at_force(&self) -> Result<PullOff> {
+        self.pull_off(&self.curve.at(self.force_fold))
+    }
+
+    /// The smallest approach of the curve. Above `lambda = 0.93795` the contact pulls off there; below it the contact
+    /// radius is 0 there, and bodies that are drawn further apart attract each other without contact.
+    ///
+    /// # Errors
+    /// As [`MaugisSphere::pull_off_at_force`].
+    pub fn pull_off_at_approach(&self) -> Result<PullOff> {
+        self.pull_off(&self.least_approach())
+    }
+
+    fn pull_off(&self, point: &Point) -> Result<PullOff> {
+        Ok(PullOff {
+            force: self.force_of(point)?,
+            approach: self.approach_of(point)?,
+            radius: self.radius_of(point)?,
+        })
+    }
+
+    fn least_approach(&self) -> Point {
+        self.approach_fold.map_or_else(|| self.curve.end(), |x| self.curve.at(x))
+    }
+
+    fn force_of(&self, point: &Point) -> Result<f64> {
+        signed(self.force_unit * point.force(self.curve.lambda), |force| self.nondimensional.force(force))
+    }
+
+    fn approach_of(&self, point: &Point) -> Result<f64> {
+        let approach = self.unit * (self.unit * point.approach(self.curve.lambda));
+        signed(approach, |approach| self.nondimensional.approach(approach))
+    }
+
+    fn radius_of(&self, point: &Point) -> Result<f64> {
+        self.nondimensional.approach(self.unit * point.a)
+    }
+
+    fn point(&self, contact_radius: f64) -> Result<Point> {
+        let a = self.nondimensional.length_in(contact_radius) / self.unit;
+        if contact_radius.is_finite() && contact_radius >= 0.0 && a <= self.curve.at(Curve::LEAST).a {
+            Ok(self.curve.at_radius(a))
+        } else {
+            let expected = "a finite number >= 0, within the range of f64";
+            Err(Error::domain("contact radius", contact_radius, expected))
+        }
+    }
+
+    fn at_force(&self, force: f64) -> Result<Point> {
+        let wanted = self.nondimensional.force_in(force.abs()).copysign(force) / self.force_unit;
+        let lambda = self.curve.lambda;
+        let fold = self.curve.at(self.force_fold);
+        let least = fold.force(lambda);
+        if wanted < least * closed::ROUNDED_UP {
+            return Err(Error::OutOfRange {
+                name: "force (the contact pulls off under a prescribed force)".into(),
+                value: force,
+                min: self.force_of(&fold)?,
+                max: f64::INFINITY,
+            });
+        }
+        if wanted <= least {
+            return Ok(fold);
+        }
+        self.curve.above(self.force_fold, |point| point.force(lambda) - wanted).ok_or_else(|| {
+            Error::domain("force", force, "a finite number, with a contact radius within the range of f64")
+        })
+    }
+
+    fn at_approach(&self, approach: f64) -> Result<Point> {
+        let wanted = self.nondimensional.approach_in(approach) / self.unit / self.unit;
+        let lambda = self.curve.lambda;
+        let end = self.least_approach();
+        let least = end.approach(lambda);
+        if wanted < least * closed::ROUNDED_UP {
+            let name = if self.approach_fold.is_some() {
+                "approach (the contact pulls off under a prescribed approach)"
+            } else {
+                "approach (the contact radius is 0; attraction without contact is not part of the model)"
+            };
+            let (value, min) = (approach, self.approach_of(&end)?);
+            return Err(Error::OutOfRange { name: name.into(), value, min, max: f64::INFINITY });
+        }
+        if wanted <= least {
+            return Ok(end);
+        }
+        let from = self.approach_fold.unwrap_or(Curve::MOST);
+        self.curve.above(from, |point| point.approach(lambda) - wanted).ok_or_else(|| {
+            Error::domain(
+                "approach",
+                approach,
+                "a finite number, with a contact radius within the range of f64",
+            )
+        })
+    }
+}
+
+struct Prepared {
+    sphere: MaugisSphere,
+    size: Size,
+    normalisation: Normalisation,
+    outputs: Outputs,
+}
+
+impl PreparedContact for Prepared {
+    fn normalisation(&self) -> Normalisation {
+        self.normalisation
+    }
+
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
+        let (sphere, nondimensional) = (&self.sphere, self.sphere.nondimensional);
+        let (point, force, approach) = match load.validated_with_adhesion()? {
+            Load::Force(force) => {
+                let point = sphere.at_force(force)?;
+                (point, force, sphere.approach_of(&point)?)
+            }
+            Load::Approach(approach) => {
+                let point = sphere.at_approach(approach)?;
+                (point, sphere.force_of(&point)?, approach)
+            }
+            _ => return Err(Error::unsupported(NAME, format!("the load {load:?}"))),
+        };
+        let (value, max) = (nondimensional.approach(sphere.unit * point.c)?, 0.5 * self.size.shorter());
+        if value > max * closed::ROUNDED_UP {
+            let name = "outer radius of the cohesive zone".into();
+            return Err(Error::OutOfRange { name, value, min: 0.0, max });
+        }
+        let a = sphere.unit * point.a;
+        let stiffness =
+            self.outputs.needs_stiffness().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
+        let area = self.outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
+        let mut report = SolveReport::exact("closed form (Maugis-Dugdale)");
+        report.certificate.stiffness_error = stiffness.map(|_| 0.0);
+        ContactState::new(force, report)
+            .with_approach(approach)
+            .with_stiffness(stiffness)
+            .with_area(area)
+            .completed(&self.outputs, self.normalisation.modulus)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jkr::AdhesiveSphere;
+    use crate::testing::pressed;
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+
+    /// Roots in ln s, |ln s| < 20, and the cancellation of a^3 with the attraction.
+    const ROOTS: f64 = 1e-12;
+    const DUGDALE: AdhesionLaw = AdhesionLaw::Dugdale;
+
+    fn scene(side: f64, (modulus, radius): (f64, f64), work: f64, range: f64) -> Scene {
+        let mut scene = Scene::new(Surface::Sphere { radius, size: side.into() }, modulus);
+        scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: DUGDALE };
+        scene
+    }
+
+    /// R = E* = 1 and this work, with the range that makes this lambda.
+    fn with_lambda(work: f64, lambda: f64) -> MaugisSphere {
+        let range = 2.0 * (9.0 / (16.0 * PI)).cbrt() * work.powf(2.0 / 3.0) / lambda;
+        MaugisSphere::new(1.0, 1.0, work, range).unwrap()
+    }
+
+    fn lambdas() -> impl Iterator<Item = f64> {
+        (-24..=24).map(|i| 10.0_f64.powf(0.2499 * f64::from(i)))
+    }
+
+    /// The equations as printed, m by bisection: `(m, F, d)`.
+    fn printed(lambda: f64, a: f64) -> (f64, f64, f64) {
+        let condition = |m: f64| {
+            let (s, sec) = ((m * m - 1.0).sqrt(), m.recip().acos());
+            0.5 * lambda * a * a * (s + (m * m - 2.0) * sec)
+                + 4.0 / 3.0 * lambda * lambda * a * (s * sec - m + 1.0)
+                - 1.0
+        };
+        let (mut low, mut high) = (1.0f64, 1e9f64);
+        for _ in 0..200 {
+            let middle = (low * high).sqrt();
+            if condition(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        let (m, s) = (low, (low * low - 1.0).sqrt());
+        let force = a.powi(3) - lambda * a * a * (s + m * m * m.recip().acos());
+        (m, force, a * a - 4.0 / 3.0 * lambda * a * s)
+    }
+
+    #[test]
+    fn the_curve_is_that_of_the_printed_equations() {
+        for lambda in [1e-3, 0.03, 0.3, 1.0, 3.0, 30.0] {
+            let curve = Curve { lambda };
+            for a in [0.01, 0.1, 0.5, 1.0, 2.0, 5.0] {
+                let (m, force, approach) = printed(lambda, a);
+                let point = curve.at_radius(a);
+                // The printed terms cancel to 1e-16/(m - 1) in the condition.
+                let lost = 1e-12 + 1e-14 / (m - 1.0);
+                assert_relative_eq!(point.c / point.a, m, max_relative = lost);
+                assert_abs_diff_eq!(point.force(lambda), force, epsilon = 10.0 * lost * (1.0 + a.powi(3)));
+                assert_abs_diff_eq!(point.approach(lambda), approach, epsilon = 10.0 * lost * (1.0 + a * a));
+            }
+        }
+    }
+
+    /// Without Maugis's units: the displacement of a round contact from its line of springs (Popov, Hess, 2015), where the
+    /// cohesive zone pulls with `2 s0 sqrt(c^2 - x^2)`.
+    #[test]
+    fn the_gap_at_the_end_of_the_cohesive_zone_is_the_range() {
+        let (modulus, radius, work) = (2.0, 3.0, 1e-3);
+        for range in [3e-4, 3e-3, 0.03] {
+            let sphere = MaugisSphere::new(radius, modulus, work, range).unwrap();
+            for a in [0.03, 0.1, 0.3, 0.5] {
+                let (c, d) = (sphere.cohesive_radius(a).unwrap(), sphere.approach(a).unwrap());
+                let (q, pull) = ((c * c - a * a).sqrt(), 2.0 * work / range / modulus);
+                assert_relative_eq!(d, a * a / radius - pull * q, epsilon = 1e-13);
+                let asin = (a / c).asin();
+                let inside = d * asin - (c * c * asin - a * q) / (2.0 * radius);
+                let displacement = 2.0 / PI * (inside - pull * (c - a));
+                assert_relative_eq!(c * c / (2.0 * radius) - d + displacement, range, epsilon = 1e-12);
+                let springs = 2.0 * (d * a - a.powi(3) / (3.0 * radius));
+                let zone = pull * (c * c * (a / c).acos() - a * q);
+                assert_relative_eq!(sphere.force(a).unwrap(), modulus * (springs - zone), epsilon = 1e-12);
+            }
+        }
+    }
+
+    /// `(lambda, a, [c, F, d])` of the printed equations in Maugis's units, in 60-digit arithmetic.
+    const TABLE: [(f64, f64, [f64; 3]); 11] = [
+        (1e-3, 0.01, [35.682_000_621_589_1, -1.999_945_001_696_05, -0.047_475_998_960_429_9]),
+        (1e-3, 2.0, [35.791_272_967_877_4, 5.987_935_148_755_69, 3.952_352_867_020_4]),
+        (0.1, 0.5, [3.586_640_401_544_41, -1.893_333_598_940_18, -0.223_549_046_996_132]),
+        (1.0, 0.02, [0.744_104_489_367_624, -0.869_721_391_386_69, -0.991_380_881_800_95]),
+        (1.0, 1.0, [1.415_961_783_533_66, -1.579_627_020_601_83, -0.336_627_778_272_424]),
+        (10.0, 100.0, [100.006_720_934_29, 997_681.075_686_877, 9_984.541_197_234_49]),
+        (30.0, 1.0, [1.000_832_432_023_93, -1.450_033_181_474_23, -0.632_449_443_476_237]),
+        (1e3, 1e-3, [0.001_000_750_187_452_17, -7.752_162_860_418_09e-5, -0.051_654_916_052_184_1]),
+        (1e3, 0.7, [0.700_000_749_999_499, -1.091_574_037_362_9, -0.876_260_012_065_204]),
+        (1e3, 1e3, [1_000.000_000_749_97, 999_922_541.832_94, 999_948.361_221_986]),
+        (1e-3, 1e4, [10_003.041_123_583_1, 999_999_995_066.182, 99_999_999.671_145_5]),
+    ];
+
+    #[test]
+    fn states_are_those_of_long_arithmetic() {
+        for (lambda, a, [c, force, approach]) in TABLE {
+            let point = Curve { lambda }.at_radius(a);
+            // 15 digits are printed; a root in ln s, |ln s| < 20, leaves a few more roundings.
+            let near = 3e-14;
+            assert_relative_eq!(point.c, c, max_relative = near);
+            assert_relative_eq!(point.force(lambda), force, max_relative = near);
+            assert_relative_eq!(point.approach(lambda), approach, max_relative = near);
+        }
+        for (lambda, force) in [
+            (1e-3, -1.999_945_692_184_31),
+            (0.1, -1.950_594_892_123_43),
+            (1.0, -1.600_734_911_254_09),
+            (10.0, -1.501_624_860_426_36),
+        ] {
+            let pulled = with_lambda(1e-4, lambda).pull_off_at_force().unwrap();
+            assert_relative_eq!(pulled.force / (PI * 1e-4), force, max_relative = 3e-14);
+        }
+    }
+
+    #[test]
+    fn reference_numbers() {
+        let pull_off = |mu: f64| {
+            let sphere = MaugisSphere::new(1.0, 1.0, 1e-6, 1e-4 / mu).unwrap();
+            sphere.pull_off_at_force().unwrap().force / (PI * 1e-6)
+        };
+        // Those of `bem3d`'s test, from a table of a by 1e-3.
+        assert_abs_diff_eq!(pull_off(0.1), -1.941_92, epsilon = 1e-5);
+        assert_abs_diff_eq!(pull_off(0.3), -1.7936, epsilon = 1e-4);
+        assert_abs_diff_eq!(pull_off(1.0), -1.5854, epsilon = 1e-4);
+    }
+
+    #[test]
+    fn a_soft_sphere_is_jkr_and_a_hard_one_dmt() {
+        let work = 1e-4;
+        let jkr = AdhesiveSphere::new(1.0, 1.0, work).unwrap();
+        let hertz = AdhesiveSphere::new(1.0, 1.0, 0.0).unwrap();
+        for lambda in [10.0, 1e2, 1e3, 1e4, 1e5, 9e5] {
+            let sphere = with_lambda(work, lambda);
+            // Measured: 0.26/lambda^2 at most, ten times that of the slope near its zero; and a fold's rounding.
+            let near = 0.3 / (lambda * lambda) + 1e-11;
+            let (here, there) = (sphere.pull_off_at_force().unwrap(), jkr.pull_off_at_force().unwrap());
+            assert_relative_eq!(here.force, there.force, max_relative = near);
+            let (here, there) = (sphere.pull_off_at_approach().unwrap(), jkr.pull_off_at_approach().unwrap());
+            assert_relative_eq!(here.approach, there.approach, max_relative = near);
+            for force in [-4e-4, 0.0, 1e-3] {
+                let (here, there) = (sphere.radius_at_force(force), jkr.radius_at_force(force));
+                assert_relative_eq!(here.unwrap(), there.unwrap(), max_relative = near);
+            }
+            let (here, there) = (sphere.slope(0.08).unwrap(), jkr.slope(0.08).unwrap());
+            assert_relative_eq!(here, there, max_relative = 10.0 * near);
+        }
+        for lambda in [1e-3, 1e-4, 1e-5, 1.1e-6] {
+            let sphere = with_lambda(work, lambda);
+            let force_unit = PI * work;
+            // c^2 = 4/(pi lambda) in the condition's second term leaves F = -2 + 16/3 (pi/2 - 1) lambda^(3/2)/sqrt(pi).
+            let pull_off = sphere.pull_off_at_force().unwrap().force / force_unit;
+            let first = 16.0 / 3.0 * (0.5 * PI - 1.0) / PI.sqrt() * lambda.powf(1.5);
+            assert_relative_eq!(pull_off + 2.0, first, max_relative = 2.0 * lambda + 1e-6);
+            assert!(sphere.approach_fold.is_none() && sphere.pull_off_at_approach().unwrap().radius <= 0.0);
+            // DMT, and the widening of the cohesive zone, c^2 = 4/(pi lambda) + 2 a^2: a^3 - 2 - pi lambda a^2.
+            for a in [0.1, 0.5, 1.0, 5.0] {
+                let attraction = (hertz.force(a * sphere.unit).unwrap()
+                    - sphere.force(a * sphere.unit).unwrap())
+                    / force_unit;
+                let next = 2.0 * lambda.powf(1.5) * (1.0 + a.powi(3)) + 1e-12;
+                assert_abs_diff_eq!(attraction, 2.0 + PI * lambda * a * a, epsilon = next);
+            }
+        }
+    }
+
+    /// On each branch force and approach have one fold at most: what the brackets of loads rest on.
+    #[test]
+    fn folds_are_unique() {
+        for lambda in lambdas() {
+            let sphere = with_lambda(1e-4, lambda);
+            let (mut force, mut approach) = (0, 0);
+            let mut last = sphere.curve.end().rates(lambda);
+            assert!(last.0 < 0.0);
+            for i in 0..=20_000 {
+                let x = Curve::MOST + (Curve::LEAST - Curve::MOST) * f64::from(i) / 20_000.0;
+                let rates = sphere.curve.at(x).rates(lambda);
+                force += i32::from((rates.0 > 0.0) != (last.0 > 0.0));
+                approach += i32::from((rates.1 > 0.0) != (last.1 > 0.0));
+                last = rates;
+            }
+            assert!(last.0 > 0.0 && last.1 > 0.0);
+            assert_eq!((force, approach), (1, i32::from(sphere.approach_fold.is_some())), "{lambda}");
+            assert_eq!(lambda > 0.937_95, sphere.approach_fold.is_some(), "{lambda}");
+        }
+    }
+
+    #[test]
+    fn the_slope_is_that_of_differences() {
+        for lambda in lambdas() {
+            let sphere = with_lambda(1e-4, lambda);
+            for scale in [0.3, 0.8, 1.2, 2.0, 5.0, 30.0] {
+                let a = scale * sphere.unit;
+                let Ok(slope) = sphere.slope(a) else { continue };
+                // Central differences in a: their error is e^2 times moderate numbers, and rounding over e.
+                let e = 1e-4;
+                let (low, high) = (a * (1.0 - e), a * (1.0 + e));
+                let force = sphere.force(high).unwrap() - sphere.force(low).unwrap();
+                let approach = sphere.approach(high).unwrap() - sphere.approach(low).unwrap();
+                assert_relative_eq!(force / approach, slope, max_relative = 1e-5, epsilon = 1e-6 * a);
+            }
+        }
+    }
+
+    #[test]
+    fn both_loads_go_back_to_the_contact_radius() {
+        for lambda in lambdas() {
+            let sphere = with_lambda(1e-4, lambda);
+            let [by_force, by_approach] =
+                [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(|p| p.unwrap().radius);
+            for scale in [0.1, 0.5, 0.9, 1.0, 1.5, 3.0, 10.0, 1e3] {
+                let a = scale * sphere.unit;
+                // At a fold a root loses half its digits; a tenth away from it the loss is one digit. Far from the end of a hard
+                // sphere the rounding of the constant attraction counts.
+                let lost = |ratio: f64| 1e-12 + 1e-14 * ratio;
+                if a > 1.1 * by_force {
+                    let back = sphere.radius_at_force(sphere.force(a).unwrap()).unwrap();
+                    assert_relative_eq!(back, a, max_relative = lost(scale.powi(-3)));
+                    assert!(sphere.slope(a).unwrap() > 0.0);
+                }
+                if a > 1.1 * by_approach {
+                    let back = sphere.radius_at_approach(sphere.approach(a).unwrap()).unwrap();
+                    assert_relative_eq!(back, a, max_relative = lost(scale.powi(-2)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn states_are_points_of_the_curve() {
+        let scene = scene(4.0, (1.0, 1.0), 1e-3, 0.01);
+        let sphere = MaugisSphere::new(1.0, 1.0, 1e-3, 0.01).unwrap();
+        for load in [Load::Force(-0.004), Load::Force(0.0), Load::Force(0.1), Load::Approach(0.0)] {
+            let state = pressed(&MaugisDugdale, &scene, load).unwrap();
+            let a = (state.area.unwrap() / PI).sqrt();
+            assert_abs_diff_eq!(sphere.force(a).unwrap(), state.force, epsilon = ROOTS);
+            assert_abs_diff_eq!(sphere.approach(a).unwrap(), state.approach.unwrap(), epsilon = ROOTS);
+            assert_relative_eq!(state.stiffness.unwrap(), 2.0 * a, max_relative = ROOTS);
+        }
+    }
+
+    #[test]
+    fn beyond_the_ends_is_an_error_that_names_them() {
+        // lambda = 1.13 pulls off; 0.011 comes down to a contact of radius 0.
+        for (range, said) in [(0.01, "pulls off"), (1.0, "without contact")] {
+            let scene = scene(40.0, (1.0, 1.0), 1e-3, range);
+            let sphere = MaugisSphere::new(1.0, 1.0, 1e-3, range).unwrap();
+            let (by_force, by_approach) =
+                (sphere.pull_off_at_force().unwrap(), sphere.pull_off_at_approach().unwrap());
+            assert!(pressed(&MaugisDugdale, &scene, Load::Force(by_force.force)).is_ok());
+            let end = pressed(&MaugisDugdale, &scene, Load::Approach(by_approach.approach)).unwrap();
+            assert_relative_eq!(end.force, by_approach.force, max_relative = ROOTS);
+            let error =
+                pressed(&MaugisDugdale, &scene, Load::Approach(by_approach.approach * 1.001)).unwrap_err();
+            assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains(said), "{error}");
+            let error = pressed(&MaugisDugdale, &scene, Load::Force(by_force.force * 1.001)).unwrap_err();
+            assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("pulls off"));
+            for load in [Load::Force(f64::NAN), Load::Approach(f64::INFINITY), Load::MeanGap(1.0)] {
+                assert!(pressed(&MaugisDugdale, &scene, load).is_err());
+            }
+        }
+        // The cohesive zone leaves the rectangle.
+        let narrow = scene(0.4, (1.0, 1.0), 1e-3, 0.01);
+        let error = pressed(&MaugisDugdale, &narrow, Load::Approach(0.1)).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("cohesive"));
+        let sphere = with_lambda(1e-3, 3.0);
+        assert!(sphere.slope(0.0).is_err() && sphere.force(-1.0).is_err() && sphere.force(f64::NAN).is_err());
+        for (work, range) in [(0.0, 1.0), (-1.0, 1.0), (1.0, 0.0), (1.0, f64::NAN), (1.0, 1e9), (1.0, 1e-9)] {
+            assert!(matches!(MaugisSphere::new(1.0, 1.0, work, range), Err(Error::Domain { .. })));
+        }
+    }
+
+    #[test]
+    fn other_laws_effects_and_surfaces_are_refused() {
+        let good = scene(4.0, (1.0, 1.0), 1e-3, 0.01);
+        let mut periodic = good.clone();
+        periodic.effects.boundary = contact_model::Boundary::Periodic;
+        let mut exponential = good.clone();
+        exponential.effects.adhesion =
+            Adhesion::FiniteRange { work: 1e-3, range: 0.01, law: AdhesionLaw::Exponential };
+        let mut short = good.clone();
+        short.effects.adhesion = Adhesion::ShortRange { work: 1e-3 };
+        let mut hard = good.clone();
+        hard.effects.hardness = contact_model::Hardness::Limit { pressure: 1.0 };
+        let cone = Scene { surface: Surface::Cone { slope: 1.0, size: 1.0.into() }, ..good.clone() };
+        let mut field = good.clone();
+        field.outputs.pressure = true;
+        for scene in [periodic, exponential, short, hard, cone, field] {
+            assert!(matches!(MaugisDugdale.prepare(&scene, 0), Err(Error::Unsupported { .. })), "{scene:?}");
+        }
+    }
+
+    #[test]
+    fn without_work_it_is_hertz() {
+        let bare = Scene::new(Surface::Sphere { radius: 1.3, size: 1.0.into() }, 2.0);
+        for load in [Load::Force(1e-3), Load::Approach(0.01)] {
+            let hertz = pressed(&Hertz, &bare, load).unwrap();
+            let idle = scene(1.0, (2.0, 1.3), 0.0, 0.01);
+            assert_eq!(pressed(&MaugisDugdale, &idle, load).unwrap(), hertz);
+            assert_eq!(pressed(&MaugisDugdale, &bare, load).unwrap(), hertz);
+        }
+    }
+
+    #[test]
+    fn one_contact_in_any_units() {
+        let at = |modulus: f64, length: f64| {
+            let scene = scene(4.0 * length, (modulus, length), 1e-3 * (modulus * length), 0.01 * length);
+            let force = Nondimensionalisation::new(modulus, length, length).unwrap().force(0.004).unwrap();
+            pressed(&MaugisDugdale, &scene, Load::Force(-force)).unwrap()
+        };
+        let one = at(1.0, 1.0);
+        for (modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+            let here = at(modulus, length);
+            let approach = here.approach.unwrap() / length;
+            assert_relative_eq!(approach, one.approach.unwrap(), max_relative = ROOTS);
+            let stiffness = here.stiffness.unwrap() / (modulus * length);
+            assert_relative_eq!(stiffness, one.stiffness.unwrap(), max_relative = ROOTS);
+        }
+    }
+}
