@@ -36,8 +36,8 @@
 //! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the
 //! constant of the flat square is known to 1e-6 and says so in the report. A state costs well under a
 //! microsecond; of [`MaugisDugdale`] (a root) one or two, of [`GreenwoodWilliamson`] and [`Persson`] tens of
-//! microseconds (quadratures to 1e-11), with the mean gap a few hundred. How good theories of rough surfaces are is another matter. [`PowerLaw`] is as
-//! good as the fit it is.
+//! microseconds (quadratures to 1e-11), with the mean gap a few hundred. How good theories of rough surfaces
+//! are is another matter. [`PowerLaw`] is as good as the fit it is.
 //!
 //! # What it does not do
 //!

@@ -434,6 +434,42 @@ mod tests {
         }
     }
 
+    /// `(lambda, a, [c, F, d])` of the printed equations in Maugis's units, in 60-digit arithmetic.
+    const TABLE: [(f64, f64, [f64; 3]); 11] = [
+        (1e-3, 0.01, [35.682_000_621_589_1, -1.999_945_001_696_05, -0.047_475_998_960_429_9]),
+        (1e-3, 2.0, [35.791_272_967_877_4, 5.987_935_148_755_69, 3.952_352_867_020_4]),
+        (0.1, 0.5, [3.586_640_401_544_41, -1.893_333_598_940_18, -0.223_549_046_996_132]),
+        (1.0, 0.02, [0.744_104_489_367_624, -0.869_721_391_386_69, -0.991_380_881_800_95]),
+        (1.0, 1.0, [1.415_961_783_533_66, -1.579_627_020_601_83, -0.336_627_778_272_424]),
+        (10.0, 100.0, [100.006_720_934_29, 997_681.075_686_877, 9_984.541_197_234_49]),
+        (30.0, 1.0, [1.000_832_432_023_93, -1.450_033_181_474_23, -0.632_449_443_476_237]),
+        (1e3, 1e-3, [0.001_000_750_187_452_17, -7.752_162_860_418_09e-5, -0.051_654_916_052_184_1]),
+        (1e3, 0.7, [0.700_000_749_999_499, -1.091_574_037_362_9, -0.876_260_012_065_204]),
+        (1e3, 1e3, [1_000.000_000_749_97, 999_922_541.832_94, 999_948.361_221_986]),
+        (1e-3, 1e4, [10_003.041_123_583_1, 999_999_995_066.182, 99_999_999.671_145_5]),
+    ];
+
+    #[test]
+    fn states_are_those_of_long_arithmetic() {
+        for (lambda, a, [c, force, approach]) in TABLE {
+            let point = Curve { lambda }.at_radius(a);
+            // 15 digits are printed; a root in ln s, |ln s| < 20, leaves a few more roundings.
+            let near = 3e-14;
+            assert_relative_eq!(point.c, c, max_relative = near);
+            assert_relative_eq!(point.force(lambda), force, max_relative = near);
+            assert_relative_eq!(point.approach(lambda), approach, max_relative = near);
+        }
+        for (lambda, force) in [
+            (1e-3, -1.999_945_692_184_31),
+            (0.1, -1.950_594_892_123_43),
+            (1.0, -1.600_734_911_254_09),
+            (10.0, -1.501_624_860_426_36),
+        ] {
+            let pulled = with_lambda(1e-4, lambda).pull_off_at_force().unwrap();
+            assert_relative_eq!(pulled.force / (PI * 1e-4), force, max_relative = 3e-14);
+        }
+    }
+
     #[test]
     fn reference_numbers() {
         let pull_off = |mu: f64| {
