@@ -91,7 +91,7 @@
 //! Adhesion of short range, hardness together with adhesion, friction and rheology are refused at `prepare`.
 
 mod active_set;
-mod finite_range;
+mod adhesion;
 mod geometry;
 mod kernel;
 mod linear;

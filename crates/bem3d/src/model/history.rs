@@ -1,7 +1,7 @@
 //! Paths of loads: what the contact remembers.
 
 use super::Bem3d;
-use super::finite_range::{FiniteRangeContact, WithoutAdhesion};
+use super::adhesive::{AdhesiveContact, WithoutAdhesion};
 use super::plastic_path::PlasticPath;
 use super::prepared::{NAME, refuse_together};
 use crate::tuning::Tuning;
@@ -38,9 +38,13 @@ impl HistoryModel for Bem3dPath {
         scene.validate()?;
         refuse_together(&scene.effects)?;
         match scene.effects.adhesion {
-            Adhesion::FiniteRange { work, range, law } if work > 0.0 => Ok(Box::new(
-                FiniteRangeContact::new(&self.0, scene, seed, (work, range, law), &Tuning::DEFAULT)?,
-            )),
+            Adhesion::FiniteRange { work, range, law } if work > 0.0 => Ok(Box::new(AdhesiveContact::new(
+                &self.0,
+                scene,
+                seed,
+                (work, range, law),
+                &Tuning::DEFAULT,
+            )?)),
             Adhesion::FiniteRange { .. } => {
                 let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
                 let scene = Scene { effects, ..scene.clone() };

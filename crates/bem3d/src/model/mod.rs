@@ -1,7 +1,7 @@
 //! The boundary-element model behind the common traits.
 
+mod adhesive;
 mod contact;
-mod finite_range;
 mod history;
 mod mean_gap;
 mod options;
@@ -13,11 +13,11 @@ pub use history::Bem3dPath;
 pub use options::{Bem3d, Method};
 
 use crate::tuning::Tuning;
+use adhesive::AdhesiveContact;
 use contact_model::{
     Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, Result, Scene, Source,
     Surface,
 };
-use finite_range::FiniteRangeContact;
 use prepared::{NAME, PreparedBem3d, refuse_together};
 use std::sync::Arc;
 
@@ -57,7 +57,7 @@ impl Bem3d {
             scene.validate()?;
             if work > 0.0 {
                 let adhesion = (work, range, law);
-                return Ok(Box::new(FiniteRangeContact::new(self, scene, seed, adhesion, tuning)?));
+                return Ok(Box::new(AdhesiveContact::new(self, scene, seed, adhesion, tuning)?));
             }
             // Without work the elastic states, bit by bit.
             let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };

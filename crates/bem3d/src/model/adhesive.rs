@@ -2,7 +2,7 @@
 
 use super::options::Bem3d;
 use super::prepared::{NAME, PreparedBem3d, without_tangential};
-use crate::finite_range::{Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
+use crate::adhesion::{Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
 use crate::tuning::{GAP_LOADS, Tuning};
@@ -20,7 +20,7 @@ const ON_BRANCH: f64 = 1e-3;
 
 /// One surface with adhesion of finite range, on its path.
 #[derive(Debug)]
-pub struct FiniteRangeContact {
+pub struct AdhesiveContact {
     inner: PreparedBem3d,
     law: Law,
     time: f64,
@@ -45,7 +45,7 @@ struct Found {
     load_error: f64,
 }
 
-impl FiniteRangeContact {
+impl AdhesiveContact {
     pub(super) fn new(
         model: &Bem3d,
         scene: &Scene,
@@ -349,7 +349,7 @@ enum Goal {
     MeanGap(f64),
 }
 
-impl History for FiniteRangeContact {
+impl History for AdhesiveContact {
     fn normalisation(&self) -> Normalisation {
         self.inner.normalisation
     }
@@ -376,7 +376,7 @@ impl History for FiniteRangeContact {
 }
 
 /// A single load: from no contact on the branch of approach.
-impl PreparedContact for FiniteRangeContact {
+impl PreparedContact for AdhesiveContact {
     fn normalisation(&self) -> Normalisation {
         self.inner.normalisation
     }
