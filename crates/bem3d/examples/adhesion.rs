@@ -20,6 +20,7 @@ fn main() -> Result<(), Box<dyn StdError>> {
         ["sphere", law, mu, cells, half, steps] => {
             sphere(law_of(law)?, mu.parse()?, cells.parse()?, half.parse()?, steps.parse()?)
         }
+        ["jkr", cells, off, steps] => jkr(cells.parse()?, off.parse()?, steps.parse()?),
         ["heights", cells, hurst, seed, file] => {
             let surface = SelfAffine { hurst: hurst.parse()?, ..SelfAffine::new(2.5, 1.0, 1.0)? };
             let cells = Bem3d { cells: cells.parse()?, ..Bem3d::default() }.grid(surface.size);
@@ -34,6 +35,59 @@ fn main() -> Result<(), Box<dyn StdError>> {
         }
         _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,...".into()),
     }
+}
+
+/// A sphere (R = E* = 1) with short-range adhesion, CELLS in the contact radius without load, its centre OFF cells beside a corner.
+fn jkr(cells: f64, off: f64, steps: usize) -> Result<(), Box<dyn StdError>> {
+    let work = 1e-4f64;
+    let radius = (4.5 * PI * work).cbrt();
+    let cell = radius / cells;
+    let n = (2.6 * cells).ceil() as usize;
+    let middle = 0.5 * n as f64 + off;
+    let map = bem3d::HeightMap::from_fn(n, n as f64 * cell, |i, j| {
+        let (x, y) = (cell * (i as f64 + 0.5 - middle), cell * (j as f64 + 0.5 - middle));
+        -0.5 * (x * x + y * y)
+    })?;
+    let mut scene = Scene::new(Surface::Heights(map.into()), 1.0);
+    scene.outputs.area = true;
+    scene.outputs.stiffness = false;
+    scene.effects.adhesion = Adhesion::ShortRange { work };
+    let mut history =
+        HistoryModel::prepare(&Bem3dPath(Bem3d { tolerance: 1e-6, ..Bem3d::default() }), &scene, 0)?;
+    let (d0, d1) =
+        (radius * radius - (2.0 * PI * work * radius).sqrt(), -0.75 * (PI * PI * work * work).cbrt());
+    let mut lowest = f64::INFINITY;
+    let start = Instant::now();
+    let mut applications = 0;
+    for i in 0..=steps {
+        let clock = Instant::now();
+        let approach = d0 + (1.05 * d1 - d0) * i as f64 / steps as f64;
+        let state = match history.advance(Step::normal(i as f64, Load::Approach(approach))) {
+            Ok(state) => state.normal,
+            Err(Error::NotConverged { best }) => {
+                println!("NOT CONVERGED {}", best.report.certificate);
+                break;
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let force = state.force / (1.5 * PI * work);
+        applications += state.report.applications;
+        lowest = lowest.min(force);
+        println!(
+            "{:.3} {force:.5} {:.4} {}",
+            approach / d0,
+            (state.area.unwrap_or(0.0) / PI).sqrt() / cell,
+            line(&state, clock)
+        );
+        if state.area == Some(0.0) {
+            break;
+        }
+    }
+    println!(
+        "pull-off {lowest:.5} of 1.5 pi w R, {applications} applications, {:.1} s",
+        start.elapsed().as_secs_f64()
+    );
+    Ok(())
 }
 
 fn law_of(word: &str) -> Result<AdhesionLaw, Box<dyn StdError>> {

@@ -35,7 +35,7 @@
 //! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is `p - s(g)`, p >= 0 still with
 //! p g = 0. Approach and withdrawal differ, so that such a scene is a path ([`HistoryModel`]); a single load is the path from no contact to it.
 //! Each state says on which branch it lies, its energy, and how stable it is ([`AdhesiveState::stability`]: `1 - rho` for the exponential
-//! law, see `finite_range`; for Dugdale's law, whose states are stable between the jumps of single cells, the smallest distance of the gap of a
+//! law, see `adhesion`; for Dugdale's law, whose states are stable between the jumps of single cells, the smallest distance of the gap of a
 //! cell from the range, in ranges). Forces that nothing holds end the path with an error that has the last stable state. Cells too
 //! large for the range are refused with the side that would do; results with Dugdale's law are of first order in the cell.
 //!

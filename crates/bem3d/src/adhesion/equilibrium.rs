@@ -6,7 +6,8 @@
 //! branches of approach and withdrawal. Its derivative is `D^(1/2) G^ D^(1/2)` up to similarity, D the slopes of the law on open cells and G^
 //! the compliance of the open cells with the contact kept closed, so that it contracts exactly where the energy has a minimum.
 
-use super::law::Law;
+use super::attraction::Attraction;
+use super::law::Shape;
 use super::mixing::Mixing;
 use crate::active_set::{self, Candidates, Limits, Problem, Residuals, Target};
 use crate::geometry::CellSet;
@@ -108,13 +109,13 @@ impl Equilibrium {
 }
 
 /// Energy of a state, elastic and of the attraction; `shift` is the constant in the kernel, which stores none.
-pub fn energy(problem: &Problem, law: Law, state: &Equilibrium) -> f64 {
+pub fn energy(problem: &Problem, attraction: &Attraction, state: &Equilibrium) -> f64 {
     let z = problem.candidates.gaps(&state.cells);
     let force = state.force();
     let net = state.net();
     let u: Vec<f64> = state.gap.iter().zip(&z).map(|(g, z)| g - z + state.d).collect();
     let elastic = 0.5 * (dot(&net, &u) - problem.operators.table().shift() * force * force);
-    elastic + state.gap.iter().map(|&g| law.energy(g)).sum::<f64>()
+    elastic + attraction.energy(&state.cells, &state.gap)
 }
 
 /// Why there is no state.
@@ -132,7 +133,7 @@ pub struct Search<'a> {
     /// The surface.
     pub problem: &'a mut Problem,
     /// The attraction.
-    pub law: Law,
+    pub attraction: &'a Attraction,
     /// The load.
     pub control: Control,
     /// Tolerance and length of the certificate.
@@ -154,7 +155,7 @@ impl Search<'_> {
         let limits = Limits { tolerance: FIRST, ..self.limits };
         let guess = active_set::cold_start(self.problem, target, limits, stop);
         let solved = active_set::solve(self.problem, target, guess, limits, stop);
-        let reach = solved.d + self.law.reach();
+        let reach = solved.d + self.attraction.law.reach();
         let cells = self.problem.candidates.below(reach).union(&solved.contact);
         let pressure = cells.carry(&solved.contact, &solved.p);
         let zeros = vec![0.0; cells.len()];
@@ -247,7 +248,8 @@ impl Search<'_> {
 
     /// Evaluates the gap with the exact operator on all cells within reach.
     fn evaluate(&mut self, state: &mut Equilibrium, mixing: &mut Mixing) {
-        let Self { problem, law, control, limits, .. } = self;
+        let Self { problem, attraction, control, limits, .. } = self;
+        let law = attraction.law;
         if state.reach < state.d + law.reach() {
             let reach = state.d + law.reach() + AHEAD * law.range;
             state.take_cells(problem.candidates.below(reach).union(&state.contact()), reach);
@@ -289,23 +291,23 @@ impl Search<'_> {
         let lowest = if state.gap.is_empty() { 0.0 } else { smallest(&state.gap) };
         let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
         state.residuals = Residuals::measure(&p, &left, lowest, length);
-        state.mismatch =
-            (state.attraction.iter().zip(&state.gap)).map(|(&s, &g)| law.mismatch(s, g)).fold(0.0, f64::max);
+        state.mismatch = attraction.mismatch(&state.cells, &state.attraction, &state.gap);
     }
 
     /// One sweep: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
     /// hold the force.
     fn sweep(&mut self, state: &mut Equilibrium, mixing: &mut Mixing, stop: Stop<'_>) -> bool {
-        let Self { problem, law, control, plain, limits } = self;
+        let Self { problem, attraction, control, plain, limits } = self;
         let tolerance = limits.tolerance;
-        let (law, plain) = (*law, *plain || law.kind == contact_model::AdhesionLaw::Dugdale);
+        let law = attraction.law;
+        let plain = *plain || law.shape == Shape::Uniform;
         let tuning = *problem.operators.tuning();
         let held = sum(&state.pressure);
         // Where the contact is not yet settled, the plain iteration waits with the attraction.
         let off = (state.pressure.iter().zip(&state.gap))
             .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
             .fold(0.0, f64::max);
-        let next: Vec<f64> = state.gap.iter().map(|&g| law.traction(g)).collect();
+        let next = attraction.tractions(&state.cells, &state.gap);
         let change = (next.iter().zip(&state.attraction))
             .map(|(a, b)| (a - b).abs() / (a.max(*b) * law.peak).sqrt().max(f64::MIN_POSITIVE))
             .fold(0.0, f64::max);
@@ -367,17 +369,17 @@ impl Search<'_> {
             let correction = state.cells.carry(workspace.set(), &right);
             pressure.iter_mut().zip(&correction).for_each(|(p, x)| *p = (*p + x).max(0.0));
         }
-        let mut attraction = next;
+        let mut pull = next;
         if waits {
             // The contact alone.
         } else if plain || change > ACCELERATED {
             mixing.clear();
         } else {
             let own = problem.operators.table().own();
-            accelerate(law, own, state, mixing, (&mut pressure, &mut attraction));
+            accelerate(attraction, own, state, mixing, (&mut pressure, &mut pull));
         }
         if let Control::Force(force) = *control {
-            let (wanted, sum) = (force + sum(&attraction), sum(&pressure));
+            let (wanted, sum) = (force + sum(&pull), sum(&pressure));
             if wanted <= 0.0 {
                 return false;
             }
@@ -385,22 +387,23 @@ impl Search<'_> {
                 each(&mut pressure, |p| *p *= wanted / sum);
             }
         }
-        (state.pressure, state.attraction) = (pressure, attraction);
+        (state.pressure, state.attraction) = (pressure, pull);
         true
     }
 }
 
 /// Replaces what a sweep made of a state by the combination of the last sweeps, unless that would change an attraction too much.
 fn accelerate(
-    law: Law,
+    attraction: &Attraction,
     own: f64,
     state: &Equilibrium,
     mixing: &mut Mixing,
-    (pressure, attraction): (&mut Vec<f64>, &mut Vec<f64>),
+    (pressure, pull): (&mut Vec<f64>, &mut Vec<f64>),
 ) {
+    let law = attraction.law;
     // Both parts as roots of energies: of the gaps left on the contact, and of the changes of open gaps.
     let residual: Vec<f64> = (state.pressure.iter().zip(&state.gap))
-        .zip(attraction.iter().zip(&state.attraction))
+        .zip(pull.iter().zip(&state.attraction))
         .map(|((&p, &g), (&s, &s0))| {
             if p > 0.0 {
                 g / own.sqrt()
@@ -409,15 +412,15 @@ fn accelerate(
             }
         })
         .collect();
-    let (mut p, mut s) = (pressure.clone(), attraction.clone());
+    let (mut p, mut s) = (pressure.clone(), pull.clone());
     mixing.combine(&mut p, &mut s, residual);
     let allowed = |(new, plain): (&f64, &f64)| {
         *plain < FELT * law.peak || (*new <= LONGEST * plain && *new * LONGEST >= *plain)
     };
-    if s.iter().zip(&*attraction).all(allowed) {
+    if s.iter().zip(&*pull).all(allowed) {
         each(&mut p, |p| *p = p.max(0.0));
-        each(&mut s, |s| *s = s.clamp(0.0, law.peak));
-        (*pressure, *attraction) = (p, s);
+        each(&mut s, |s| *s = s.clamp(0.0, attraction.strongest()));
+        (*pressure, *pull) = (p, s);
     } else {
         mixing.clear();
     }

@@ -1,49 +1,75 @@
 //! How the attraction falls with the gap.
 
 use contact_model::AdhesionLaw;
+use std::f64::consts::PI;
 
 /// Gaps beyond so many ranges feel no exponential attraction: below the rounding of the largest traction, `exp(-36.7) = 2^-53`.
 const FARTHEST: f64 = 36.7;
 
+/// Traction in contact of a short range, in `sqrt(E* w/a)` with the longer side a of a cell; see [`super::attraction`]. Larger ones trap
+/// fronts between the rows of cells, smaller ones draw them apart.
+const FRONT_TRACTION: f64 = 0.7;
+
+/// How the attraction falls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// `peak exp(-g/range)`.
+    Exponential,
+    /// `peak` below the range.
+    Uniform,
+    /// `peak (1 - g/range)` below the range.
+    Linear,
+}
+
+impl From<AdhesionLaw> for Shape {
+    fn from(law: AdhesionLaw) -> Self {
+        if law == AdhesionLaw::Dugdale { Self::Uniform } else { Self::Exponential }
+    }
+}
+
 /// The attractive traction of a gap, nondimensional.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
-    /// Traction in contact, work over range.
+    /// Traction in contact.
     pub peak: f64,
     /// Range.
     pub range: f64,
     /// How it falls.
-    pub kind: AdhesionLaw,
+    pub shape: Shape,
 }
 
 impl Law {
+    /// The law of a short range, of this work of adhesion over `pi E*` times the height on cells with this longer side.
+    pub fn short(work: f64, side: f64) -> Self {
+        let peak = FRONT_TRACTION * (work / (PI * side)).sqrt();
+        Self { peak, range: 2.0 * work / peak, shape: Shape::Linear }
+    }
+
     /// Traction of a gap; penetrations count as contact.
     pub fn traction(self, gap: f64) -> f64 {
-        match self.kind {
-            AdhesionLaw::Dugdale => {
-                if gap < self.range {
-                    self.peak
-                } else {
-                    0.0
-                }
-            }
-            _ => self.peak * (-gap.max(0.0) / self.range).exp(),
+        match self.shape {
+            Shape::Uniform if gap < self.range => self.peak,
+            Shape::Uniform => 0.0,
+            Shape::Linear => self.peak * (1.0 - gap / self.range).clamp(0.0, 1.0),
+            Shape::Exponential => self.peak * (-gap.max(0.0) / self.range).exp(),
         }
     }
 
     /// Magnitude of the derivative of the traction; 0 for Dugdale's law away from its jump.
     pub fn slope(self, gap: f64) -> f64 {
-        match self.kind {
-            AdhesionLaw::Dugdale => 0.0,
-            _ => self.traction(gap) / self.range,
+        match self.shape {
+            Shape::Linear if gap < self.range => self.peak / self.range,
+            Shape::Uniform | Shape::Linear => 0.0,
+            Shape::Exponential => self.traction(gap) / self.range,
         }
     }
 
     /// Energy per area, which is the work of adhesion below zero in contact and 0 far apart.
     pub fn energy(self, gap: f64) -> f64 {
-        match self.kind {
-            AdhesionLaw::Dugdale => self.peak * (gap.max(0.0) - self.range).min(0.0),
-            _ => -self.range * self.traction(gap),
+        match self.shape {
+            Shape::Uniform => self.peak * (gap.max(0.0) - self.range).min(0.0),
+            Shape::Linear => -0.5 * self.peak * self.range * (1.0 - gap / self.range).clamp(0.0, 1.0).powi(2),
+            Shape::Exponential => -self.range * self.traction(gap),
         }
     }
 
@@ -52,17 +78,22 @@ impl Law {
     /// less.
     pub fn mismatch(self, traction: f64, gap: f64) -> f64 {
         let difference = (traction - self.traction(gap)).abs() / self.peak;
-        match self.kind {
-            AdhesionLaw::Dugdale => difference.min((gap / self.range - 1.0).abs()),
+        match self.shape {
+            Shape::Uniform => difference.min((gap / self.range - 1.0).abs()),
             _ => difference,
         }
     }
 
+    /// The share of its work that a cell with this gap still holds: 1 in contact.
+    pub fn attached(self, gap: f64) -> f64 {
+        self.energy(gap) / self.energy(0.0)
+    }
+
     /// The gap from which on there is no attraction.
     pub fn reach(self) -> f64 {
-        match self.kind {
-            AdhesionLaw::Dugdale => self.range,
-            _ => FARTHEST * self.range,
+        match self.shape {
+            Shape::Uniform | Shape::Linear => self.range,
+            Shape::Exponential => FARTHEST * self.range,
         }
     }
 }

@@ -4,14 +4,18 @@
 //! x with `A x = 1`, where A is G with `-1/D` added on the diagonal of Z: then `k = 1'x`. Eliminating C leaves `(G^ - 1/D) x_Z = ...` with
 //! the Schur complement G^; with `S = D^(1/2) G^ D^(1/2)` and `x_Z = -D^(1/2) v` it is `(1 - S) v = b`, positive definite where the energy
 //! has a minimum. Conjugate gradients on it find v and, with the coefficients of Lanczos, the largest eigenvalue rho of S.
+//!
+//! Where the attraction of a cell depends on its neighbours, `D + C` stands for D, `N = 1 + D^(-1/2) C D^(-1/2)`: then `(1 - S N) v = b` with
+//! `x_Z = -D^(1/2) N v`, which is positive definite in the scalar product `u'N v`.
 
+use super::attraction::Attraction;
 use super::equilibrium::{Control, Equilibrium};
-use super::law::Law;
+use super::law::Shape;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
 use crate::linear::StoppingCriteria;
 use crate::real::{dot, each, sum};
-use contact_model::{AdhesionLaw, Stop};
+use contact_model::Stop;
 
 /// Slopes below this share of the largest one are left out: what they change is below the rounding of the sums.
 const FLAT: f64 = 1e-12;
@@ -48,6 +52,9 @@ struct Linearised<'a> {
     both: CellSet,
     /// Roots of the slopes on the open cells.
     root: Vec<f64>,
+    /// Their gaps.
+    gap: Vec<f64>,
+    attraction: &'a Attraction,
     steps: usize,
     stop: Stop<'a>,
 }
@@ -91,13 +98,23 @@ impl Linearised<'_> {
         direct
     }
 
-    /// Solves `(1 - S) v = b` until the energy of the residual is below `wanted` or, without it, until the smallest eigenvalue has settled.
+    /// `N v`.
+    fn with_neighbours(&self, v: &[f64]) -> Vec<f64> {
+        let mut sum = v.to_vec();
+        if let Some(coupled) = self.attraction.coupling(&self.open, &self.gap, &self.root) {
+            sum.iter_mut().zip(coupled(v)).for_each(|(sum, more)| *sum += more);
+        }
+        sum
+    }
+
+    /// Solves `(1 - S N) v = b` in the scalar product of N until the energy of the residual is below `wanted` or, without it, until the smallest eigenvalue has settled.
     /// `held` is the stiffness of the contact alone where the force is fixed.
     fn reduce(&mut self, b: &[f64], wanted: Option<f64>, held: f64) -> Reduced {
         let mut v = vec![0.0; b.len()];
         let mut r = b.to_vec();
-        let mut t = r.clone();
-        let start = dot(&r, &r);
+        let mut nr = self.with_neighbours(&r);
+        let (mut t, mut nt) = (r.clone(), nr.clone());
+        let start = dot(&r, &nr);
         let mut rr = start;
         let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
         let mut last = (0.0, 0.0);
@@ -107,9 +124,9 @@ impl Linearised<'_> {
             if rr <= 0.0 || (self.stop)() {
                 break;
             }
-            let st = self.apply(&t);
-            let at: Vec<f64> = t.iter().zip(&st).map(|(t, st)| t - st).collect();
-            let curvature = dot(&t, &at);
+            let snt = self.apply(&nt);
+            let at: Vec<f64> = t.iter().zip(&snt).map(|(t, snt)| t - snt).collect();
+            let curvature = dot(&nt, &at);
             let alpha = rr / curvature;
             let (alpha0, beta0): (f64, f64) = last;
             diagonal.push(alpha.recip() + if alpha0 == 0.0 { 0.0 } else { beta0 / alpha0 });
@@ -126,7 +143,8 @@ impl Linearised<'_> {
                 *v += alpha * t;
                 *r -= alpha * at;
             }
-            let next = dot(&r, &r);
+            nr = self.with_neighbours(&r);
+            let next = dot(&r, &nr);
             let beta = next / rr;
             let least = found.smallest.min(found.smallest_at_force);
             let done = match wanted {
@@ -138,8 +156,8 @@ impl Linearised<'_> {
                 break;
             }
             beside.push(beta.sqrt() / alpha);
-            for (t, r) in t.iter_mut().zip(&r) {
-                *t = r + beta * *t;
+            for (t, r) in [(&mut t, &r), (&mut nt, &nr)] {
+                t.iter_mut().zip(r).for_each(|(t, r)| *t = r + beta * *t);
             }
             last = (alpha, beta);
             rr = next;
@@ -154,23 +172,24 @@ impl Linearised<'_> {
 /// Cost: some ten steps, each one solve on the contact and two applications of G.
 pub fn respond(
     problem: &mut Problem,
-    law: Law,
+    attraction: &Attraction,
     control: Control,
     state: &Equilibrium,
     tolerance: Option<f64>,
     stop: Stop<'_>,
 ) -> Response {
+    let law = attraction.law;
     let contact = state.contact();
     let least = FLAT * law.peak / law.range;
-    let slopes: Vec<f64> = (state.pressure.iter().zip(&state.gap))
-        .map(|(&p, &g)| if p > 0.0 { 0.0 } else { law.slope(g) })
-        .collect();
+    let mut slopes = attraction.slopes(&state.cells, &state.gap);
+    slopes.iter_mut().zip(&state.pressure).filter(|(_, p)| **p > 0.0).for_each(|(s, _)| *s = 0.0);
     let open = state.cells.filter(&slopes, |s| s > least);
     let root: Vec<f64> = open.carry(&state.cells, &slopes).iter().map(|s| s.sqrt()).collect();
+    let gap = open.carry(&state.cells, &state.gap);
     let both = contact.union(&open);
-    let mut linearised = Linearised { problem, contact, open, both, root, steps: 0, stop };
+    let mut linearised = Linearised { problem, contact, open, both, root, gap, attraction, steps: 0, stop };
     let mut response = linearised.response(control, tolerance);
-    if law.kind == AdhesionLaw::Dugdale {
+    if law.shape == Shape::Uniform {
         response.stability = (state.pressure.iter().zip(&state.gap))
             .filter(|(p, _)| **p <= 0.0)
             .map(|(_, g)| (g / law.range - 1.0).abs())
@@ -189,6 +208,7 @@ impl Linearised<'_> {
         }
         // The net pressure per approach, and what is left of its equation.
         let mut x = vec![0.0; self.both.len()];
+        let mut opening = vec![0.0; self.open.len()];
         let mut r = vec![1.0; self.both.len()];
         for round in 0..ROUNDS {
             let mut on_contact = self.contact.carry(&self.both, &r);
@@ -200,7 +220,8 @@ impl Linearised<'_> {
                 left.iter().zip(&through).zip(&self.root).map(|((l, t), d)| d * (l - t)).collect();
             if round > 0 {
                 let value = sum(&x) + dot(&r, &x);
-                let error = energy.abs() + dot(&b, &b) / response.stability.max(f64::MIN_POSITIVE);
+                let error = energy.abs()
+                    + dot(&b, &self.with_neighbours(&b)) / response.stability.max(f64::MIN_POSITIVE);
                 if error < response.error {
                     (response.stiffness, response.error) = (value, error);
                 }
@@ -224,7 +245,9 @@ impl Linearised<'_> {
                     return response;
                 }
             }
-            let on_open: Vec<f64> = found.v.iter().zip(&self.root).map(|(v, d)| -v * d).collect();
+            let on_open: Vec<f64> =
+                self.with_neighbours(&found.v).iter().zip(&self.root).map(|(v, d)| -v * d).collect();
+            opening.iter_mut().zip(found.v.iter().zip(&self.root)).for_each(|(g, (v, d))| *g += v / d);
             let mut u = Vec::new();
             self.problem.operators.rough(&self.open, &on_open, &self.contact, &mut u);
             let mut more = self.contact.carry(&self.both, &r);
@@ -234,9 +257,7 @@ impl Linearised<'_> {
             self.both.add_carried(&self.open, &on_open, &mut x);
             // What is left, with the exact operator.
             self.problem.operators.exact(&self.both, &x, &self.both, &mut r);
-            let mut own = self.open.carry(&self.both, &x);
-            own.iter_mut().zip(&self.root).for_each(|(x, d)| *x = -*x / (d * d));
-            self.both.add_carried(&self.open, &own, &mut r);
+            self.both.add_carried(&self.open, &opening, &mut r);
             each(&mut r, |r| *r = 1.0 - *r);
         }
         response

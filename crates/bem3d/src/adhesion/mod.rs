@@ -1,10 +1,12 @@
 //! Adhesion of finite range: an attractive traction across open gaps, beside the contact conditions.
 
+mod attraction;
 mod equilibrium;
 mod law;
 mod linearised;
 mod mixing;
 
+pub use attraction::Attraction;
 pub use equilibrium::{Control, Ended, Equilibrium, Search, energy};
 pub use law::Law;
 pub use linearised::{Response, respond};

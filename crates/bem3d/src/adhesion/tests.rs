@@ -2,12 +2,14 @@
 
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
 
+use super::law::Shape;
 use super::*;
 use crate::active_set::{Limits, Problem};
-use crate::geometry::Grid;
+use crate::geometry::{CellSet, Grid};
 use crate::kernel::KernelTable;
 use crate::tuning::Tuning;
-use contact_model::{AdhesionLaw, Boundary, never};
+use contact_model::{Boundary, never};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Residuals of the solver in these tests.
@@ -92,24 +94,35 @@ fn eliminated(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
 
 /// The equilibrium near given gaps at an approach, by Newton's method with the contact set changed between steps; `None` where it does not
 /// settle. Returns the gaps, and whether the energy has a minimum there.
-fn newton(g: &[Vec<f64>], z: &[f64], d: f64, law: Law, start: &[f64]) -> Option<(Vec<f64>, bool)> {
+fn newton(
+    grid: Grid,
+    g: &[Vec<f64>],
+    z: &[f64],
+    d: f64,
+    attraction: &Attraction,
+    start: &[f64],
+) -> Option<(Vec<f64>, bool)> {
     let n = z.len();
+    let law = attraction.law;
+    let all = CellSet::all(grid);
     let mut gap = start.to_vec();
     let mut contact: Vec<bool> = gap.iter().map(|&g| g <= 0.0).collect();
     for _ in 0..200 {
         // Unknown net pressure p: on the contact (G p)_i = d - z_i; elsewhere p_i = -s(g_i), with g = G p + z - d.
-        let slopes: Vec<f64> = gap.iter().map(|&g| law.slope(g)).collect();
+        let tractions = attraction.tractions(&all, &gap);
+        let slopes = slopes(attraction, &all, &gap);
         let mut matrix = g.to_vec();
         let mut right = vec![0.0; n];
         for i in 0..n {
             if contact[i] {
                 right[i] = d - z[i];
             } else {
-                // p_i = -s(g0) + slope (g - g0): p_i - slope (G p)_i = -s - slope g0 + slope (z - d).
+                // p_i = -s_i + sum m_ik (g - g0)_k: p_i - sum m_ik (G p)_k = -s_i + sum m_ik (z - d - g0)_k.
                 for j in 0..n {
-                    matrix[i][j] = -slopes[i] * g[i][j] + if i == j { 1.0 } else { 0.0 };
+                    let through: f64 = (0..n).map(|k| slopes[i][k] * g[k][j]).sum();
+                    matrix[i][j] = if i == j { 1.0 } else { 0.0 } - through;
                 }
-                right[i] = -law.traction(gap[i]) - slopes[i] * gap[i] + slopes[i] * (z[i] - d);
+                right[i] = (0..n).map(|k| slopes[i][k] * (z[k] - d - gap[k])).sum::<f64>() - tractions[i];
             }
         }
         let p = eliminated(matrix, right);
@@ -121,7 +134,7 @@ fn newton(g: &[Vec<f64>], z: &[f64], d: f64, law: Law, start: &[f64]) -> Option<
         let mut same = share >= 1.0 && longest < 1e-13 * law.range;
         for i in 0..n {
             gap[i] += share * (full[i] - gap[i]);
-            let touches = if contact[i] { p[i] + law.peak > 0.0 } else { gap[i] < 0.0 };
+            let touches = if contact[i] { p[i] + tractions[i] > 0.0 } else { gap[i] < 0.0 };
             same &= touches == contact[i];
             contact[i] = touches;
             if touches {
@@ -129,24 +142,37 @@ fn newton(g: &[Vec<f64>], z: &[f64], d: f64, law: Law, start: &[f64]) -> Option<
             }
         }
         if same {
-            let slopes: Vec<f64> = gap.iter().map(|&g| law.slope(g)).collect();
             return Some((gap.clone(), is_minimum(g, &contact, &slopes)));
         }
     }
     None
 }
 
-/// Whether `G^-1 - D` is positive definite on the open cells.
-fn is_minimum(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> bool {
+/// The negative derivatives of the tractions, by differences in both directions.
+fn slopes(attraction: &Attraction, all: &CellSet, gap: &[f64]) -> Vec<Vec<f64>> {
+    let n = gap.len();
+    let step = 1e-5 * attraction.law.range;
+    let mut slopes = vec![vec![0.0; n]; n];
+    for k in 0..n {
+        let (mut above, mut below) = (gap.to_vec(), gap.to_vec());
+        (above[k], below[k]) = (above[k] + step, below[k] - step);
+        let (above, below) = (attraction.tractions(all, &above), attraction.tractions(all, &below));
+        for i in 0..n {
+            slopes[i][k] = (below[i] - above[i]) / (2.0 * step);
+        }
+    }
+    slopes
+}
+
+/// Whether the derivatives of the pressure less those of the attraction are positive definite on the open cells.
+fn is_minimum(g: &[Vec<f64>], contact: &[bool], slopes: &[Vec<f64>]) -> bool {
     let n = contact.len();
     let inverse: Vec<Vec<f64>> = (0..n)
         .map(|k| eliminated(g.to_vec(), (0..n).map(|i| if i == k { 1.0 } else { 0.0 }).collect()))
         .collect();
     let open: Vec<usize> = (0..n).filter(|&i| !contact[i]).collect();
-    let mut hessian: Vec<Vec<f64>> = open
-        .iter()
-        .map(|&i| open.iter().map(|&j| inverse[j][i] - if i == j { slopes[i] } else { 0.0 }).collect())
-        .collect();
+    let mut hessian: Vec<Vec<f64>> =
+        open.iter().map(|&i| open.iter().map(|&j| inverse[j][i] - slopes[i][j]).collect()).collect();
     // Pivots of the elimination without exchange.
     for k in 0..hessian.len() {
         if hessian[k][k] <= 0.0 {
@@ -162,18 +188,23 @@ fn is_minimum(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> bool {
     true
 }
 
-fn search(problem: &mut Problem, law: Law, control: Control, plain: bool) -> Search<'_> {
-    Search { problem, law, control, limits: LIMITS, plain }
+fn search<'a>(
+    problem: &'a mut Problem,
+    attraction: &'a Attraction,
+    control: Control,
+    plain: bool,
+) -> Search<'a> {
+    Search { problem, attraction, control, limits: LIMITS, plain }
 }
 
 /// Gaps of all cells.
 fn gaps(grid: Grid, state: &Equilibrium) -> Vec<f64> {
-    crate::geometry::CellSet::all(grid).carry(&state.cells, &state.gap)
+    CellSet::all(grid).carry(&state.cells, &state.gap)
 }
 
 /// Law as strong as cells allow.
-fn law(range: f64, share: f64) -> Law {
-    Law { peak: share * range / 3.525_494, range, kind: AdhesionLaw::Exponential }
+fn law(range: f64, share: f64) -> Attraction {
+    Attraction::of(Law { peak: share * range / 3.525_494, range, shape: Shape::Exponential })
 }
 
 #[test]
@@ -186,29 +217,30 @@ fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
     ] {
         let z = heights(grid, seed);
         let g = dense(grid, boundary);
-        for (range, share) in [(0.5, 0.15), (0.3, 0.2), (0.1, 0.2)] {
-            let law = law(range, share);
+        let short = |range: f64| Attraction::short((0.35 * range).powi(2) / PI, grid, boundary);
+        for law in [law(0.5, 0.15), law(0.3, 0.2), law(0.1, 0.2), short(0.5), short(0.2)] {
+            let range = law.law.range;
             let mut problem = problem(grid, &z, boundary);
             let mut last: Option<Equilibrium> = None;
             for d in [-0.6, -0.2, 0.1, 0.4, 1.0, 0.5, 0.1, -0.1, -0.3, -0.6, -1.5] {
-                let mut search = search(&mut problem, law, Control::Approach(d), false);
+                let mut search = search(&mut problem, &law, Control::Approach(d), false);
                 let start = last.take().unwrap_or_else(|| search.first(&never));
                 let before = gaps(grid, &start);
                 let state = search.from(start, &never).unwrap();
                 let found = gaps(grid, &state);
                 let control = Control::Approach(d);
-                let response = respond(&mut problem, law, control, &state, Some(1e-6), &never);
+                let response = respond(&mut problem, &law, control, &state, Some(1e-6), &never);
                 // Beyond the reach of the attraction gaps are not known to the solver.
                 let all: Vec<f64> = found
                     .iter()
                     .zip(&z)
-                    .map(|(&g, z)| if g == 0.0 && z - d > law.reach() { z - d } else { g })
+                    .map(|(&g, z)| if g == 0.0 && z - d > law.law.reach() { z - d } else { g })
                     .collect();
-                let (exact, minimum) = newton(&g, &z, d, law, &all).unwrap();
+                let (exact, minimum) = newton(grid, &g, &z, d, &law, &all).unwrap();
                 assert!(minimum && response.stability > 0.0, "{seed} {range} {d}");
                 for (a, b) in all.iter().zip(&exact) {
                     assert!(
-                        (a - b).abs() < SAME * range || a.min(*b) > law.reach(),
+                        (a - b).abs() < SAME * range || a.min(*b) > law.law.reach(),
                         "{seed} {range} {d}: {a} {b}"
                     );
                 }
@@ -226,17 +258,18 @@ fn acceleration_finds_the_states_of_the_plain_iteration() {
     for seed in 1..6 {
         let grid = Grid::square(16, 12);
         let z = heights(grid, seed);
-        for (range, share) in [(0.4, 0.2), (0.1, 0.2)] {
-            let law = law(range, share);
+        let short = Attraction::short((0.35 * 0.4f64).powi(2) / PI, grid, Boundary::Free);
+        for law in [law(0.4, 0.2), law(0.1, 0.2), short] {
+            let range = law.law.range;
             let mut problem = problem(grid, &z, Boundary::Free);
             let mut last: [Option<Equilibrium>; 2] = [None, None];
             for d in [-0.3, 0.0, 0.3, 0.8, 0.2, -0.1, -0.2, -0.3, -0.5, -0.8, -2.0] {
                 let mut found = Vec::new();
                 for (plain, last) in [false, true].into_iter().zip(&mut last) {
-                    let mut search = search(&mut problem, law, Control::Approach(d), plain);
+                    let mut search = search(&mut problem, &law, Control::Approach(d), plain);
                     let start = last.take().unwrap_or_else(|| search.first(&never));
                     let state = search.from(start, &never).unwrap();
-                    found.push((gaps(grid, &state), energy(&problem, law, &state), state.force()));
+                    found.push((gaps(grid, &state), energy(&problem, &law, &state), state.force()));
                     *last = Some(state);
                 }
                 let apart =
@@ -256,18 +289,19 @@ fn acceleration_finds_the_states_of_the_plain_iteration() {
 fn the_stiffness_is_the_difference_of_forces_and_goes_with_the_dense_response() {
     let grid = Grid::square(12, 10);
     let z = heights(grid, 4);
-    let law = law(0.3, 0.15);
+    let short = Attraction::short((0.35 * 0.3f64).powi(2) / PI, grid, Boundary::Free);
     let mut problem = problem(grid, &z, Boundary::Free);
-    let at = |problem: &mut Problem, d: f64| {
+    let at = |problem: &mut Problem, law: &Attraction, d: f64| {
         let mut search = search(problem, law, Control::Approach(d), false);
         let start = search.first(&never);
         search.from(start, &never).unwrap()
     };
-    for d in [-0.4, 0.6] {
-        let state = at(&mut problem, d);
+    for (law, d) in [(&law(0.3, 0.15), -0.4), (&law(0.3, 0.15), 0.6), (&short, -0.1), (&short, 0.6)] {
+        let state = at(&mut problem, law, d);
         let response = respond(&mut problem, law, Control::Approach(d), &state, Some(1e-6), &never);
         let step = 1e-4;
-        let (above, below) = (at(&mut problem, d + step).force(), at(&mut problem, d - step).force());
+        let (above, below) =
+            (at(&mut problem, law, d + step).force(), at(&mut problem, law, d - step).force());
         let expected = (above - below) / (2.0 * step);
         // The difference quotient is off by its second order and by cells that join.
         approx::assert_relative_eq!(response.stiffness, expected, max_relative = 1e-3);
@@ -281,7 +315,7 @@ fn a_force_that_nothing_holds_is_told() {
     let z = heights(grid, 2);
     let law = law(0.3, 0.2);
     let mut problem = problem(grid, &z, Boundary::Free);
-    let mut search = search(&mut problem, law, Control::Force(0.0), false);
+    let mut search = search(&mut problem, &law, Control::Force(0.0), false);
     let start = search.first(&never);
     let state = search.from(start, &never).unwrap();
     assert!(state.force().abs() < 1e-12 && !state.contact().is_empty());
@@ -291,8 +325,8 @@ fn a_force_that_nothing_holds_is_told() {
 
 #[test]
 fn a_law_is_its_energy_differentiated() {
-    for kind in [AdhesionLaw::Exponential, AdhesionLaw::Dugdale] {
-        let law = Law { peak: 2.0, range: 0.5, kind };
+    for shape in [Shape::Exponential, Shape::Uniform, Shape::Linear] {
+        let law = Law { peak: 2.0, range: 0.5, shape };
         for gap in [0.1, 0.3, 0.49, 0.6, 3.0] {
             let h = 1e-6;
             let slope = (law.energy(gap + h) - law.energy(gap - h)) / (2.0 * h);
@@ -301,10 +335,12 @@ fn a_law_is_its_energy_differentiated() {
             approx::assert_relative_eq!(-slope, law.slope(gap), epsilon = 1e-6);
             assert!(law.mismatch(law.traction(gap), gap) <= 0.0);
         }
-        approx::assert_relative_eq!(law.energy(0.0), -1.0);
+        let work = if shape == Shape::Linear { 0.5 } else { 1.0 };
+        approx::assert_relative_eq!(law.energy(0.0), -work);
+        approx::assert_relative_eq!(law.attached(0.0), 1.0);
     }
     // Next to the jump a traction of either side is right.
-    let dugdale = Law { peak: 2.0, range: 0.5, kind: AdhesionLaw::Dugdale };
+    let dugdale = Law { peak: 2.0, range: 0.5, shape: Shape::Uniform };
     approx::assert_relative_eq!(dugdale.mismatch(2.0, 0.55), 0.1, epsilon = 1e-12);
     approx::assert_relative_eq!(dugdale.mismatch(0.0, 0.0), 1.0);
 }

@@ -2,13 +2,13 @@
 
 use super::options::Bem3d;
 use super::prepared::{NAME, PreparedBem3d, without_tangential};
-use crate::adhesion::{Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
+use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
 use crate::tuning::{GAP_LOADS, Tuning};
 use contact_model::{
-    Adhesion, AdhesionLaw, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, History,
-    HistoryState, Load, Normalisation, PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
+    Adhesion, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, History, HistoryState, Load,
+    Normalisation, PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
 };
 use std::f64::consts::PI;
 
@@ -22,7 +22,7 @@ const ON_BRANCH: f64 = 1e-3;
 #[derive(Debug)]
 pub struct AdhesiveContact {
     inner: PreparedBem3d,
-    law: Law,
+    attraction: Attraction,
     time: f64,
     last: Option<Last>,
     plain: bool,
@@ -46,38 +46,10 @@ struct Found {
 }
 
 impl AdhesiveContact {
-    pub(super) fn new(
-        model: &Bem3d,
-        scene: &Scene,
-        seed: u64,
-        (work, range, kind): (f64, f64, AdhesionLaw),
-        tuning: &Tuning,
-    ) -> Result<Self> {
-        let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
-        let elastic = Scene { effects, ..scene.clone() };
-        let inner = model.prepared(&elastic, seed, tuning)?;
-        let units = inner.nondimensional;
-        let reach = units.approach_in(range);
-        // Tractions are counted in pi E* times the height over the side of a cell: `u = sum I p`.
-        let unit = PI * units.pressure(1.0)?;
-        let peak = work / range / unit;
-        let law = Law { peak, range: reach, kind };
-        let own = peak / reach * influence_of_rectangle(0, 0, inner.problem.grid().stretch);
-        if !(own.is_finite() && own > 0.0) {
-            return Err(Error::domain(
-                "range of adhesion",
-                range,
-                "a length nearer to the scales of the surface",
-            ));
-        }
-        if own > RESOLVED {
-            let (dx, dy) = inner.cell();
-            let most = dx.max(dy) * RESOLVED / own;
-            let expected =
-                format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
-            return Err(Error::domain("side of a cell", dx.max(dy), expected));
-        }
-        Ok(Self { inner, law, time: 0.0, last: None, plain: false })
+    pub(super) fn new(model: &Bem3d, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<Self> {
+        let inner = model.prepared(&without_adhesion(scene), seed, tuning)?;
+        let attraction = attraction(&inner, scene.effects.adhesion)?;
+        Ok(Self { inner, attraction, time: 0.0, last: None, plain: false })
     }
 
     /// The nondimensional load.
@@ -150,8 +122,8 @@ impl AdhesiveContact {
         let mut plain = self.plain;
         let mut spent = (0, 0);
         loop {
-            let (limits, law) = (self.inner.limits(), self.law);
-            let mut search = Search { problem: &mut self.inner.problem, law, control, limits, plain };
+            let (limits, attraction) = (self.inner.limits(), &self.attraction);
+            let mut search = Search { problem: &mut self.inner.problem, attraction, control, limits, plain };
             let start = match &self.last {
                 Some(last) => last.equilibrium.again(),
                 None => search.first(stop),
@@ -176,7 +148,8 @@ impl AdhesiveContact {
             let mut response = Response::default();
             let sound = status == Status::Converged && !left;
             if sound || !again {
-                response = respond(&mut self.inner.problem, law, control, &equilibrium, tolerance, stop);
+                response =
+                    respond(&mut self.inner.problem, attraction, control, &equilibrium, tolerance, stop);
             }
             if again && !(sound && response.stability > 0.0) {
                 spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.sweeps);
@@ -199,7 +172,7 @@ impl AdhesiveContact {
         let known = now.cells.carry(&last.equilibrium.cells, &vec![1.0; last.equilibrium.cells.len()]);
         now.attraction.iter().zip(&before).zip(&known).any(|((now, before), known)| {
             let change = if rises { before - now } else { now - before };
-            *known > 0.0 && change > ON_BRANCH * self.law.peak
+            *known > 0.0 && change > ON_BRANCH * self.attraction.law.peak
         })
     }
 
@@ -222,7 +195,7 @@ impl AdhesiveContact {
     fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<Last> {
         self.inner.begin_count();
         let shift = self.inner.problem.operators.table().shift();
-        let length = self.inner.limits().height.unwrap_or(self.law.range);
+        let length = self.inner.limits().height.unwrap_or(self.attraction.law.range);
         let gap_of = |e: &Equilibrium, mean: f64| mean - (e.d - shift * e.force());
         let mean = self.inner.mean;
         let mut d = self
@@ -293,7 +266,7 @@ impl AdhesiveContact {
             Status::Converged => Status::Stagnated,
             other => other,
         };
-        let stored = PI * energy(&inner.problem, self.law, &equilibrium);
+        let stored = PI * energy(&inner.problem, &self.attraction, &equilibrium);
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
         let contact = equilibrium.contact();
@@ -341,6 +314,44 @@ impl AdhesiveContact {
         };
         (a - b).abs() <= self.inner.options.tolerance * a.abs().max(b.abs())
     }
+}
+
+/// The scene without adhesion.
+pub(super) fn without_adhesion(scene: &Scene) -> Scene {
+    Scene { effects: Effects { adhesion: Adhesion::Off, ..scene.effects }, ..scene.clone() }
+}
+
+/// The attraction in the units of the surface: tractions over pi E* times the height over the side of a cell, so that `u = sum I p`.
+///
+/// # Errors
+/// Cells that do not resolve the range; numbers that overflow.
+fn attraction(inner: &PreparedBem3d, adhesion: Adhesion) -> Result<Attraction> {
+    let units = inner.nondimensional;
+    let unit = PI * units.pressure(1.0)?;
+    let (dx, dy) = inner.cell();
+    let (name, value, attraction) = match adhesion {
+        Adhesion::FiniteRange { work, range, law } => {
+            let law = Law { peak: work / range / unit, range: units.approach_in(range), shape: law.into() };
+            ("range of adhesion", range, Attraction::of(law))
+        }
+        Adhesion::ShortRange { work } => {
+            let table = inner.problem.operators.table();
+            let work_in = units.approach_in(work / unit);
+            ("work of adhesion", work, Attraction::short(work_in, inner.problem.grid(), table.boundary()))
+        }
+        other => return Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
+    };
+    let law = attraction.law;
+    let own = law.peak / law.range * influence_of_rectangle(0, 0, inner.problem.grid().stretch);
+    if !(own.is_finite() && own > 0.0) {
+        return Err(Error::domain(name, value, "a value nearer to the scales of the surface"));
+    }
+    if own > RESOLVED && matches!(adhesion, Adhesion::FiniteRange { .. }) {
+        let most = dx.max(dy) * RESOLVED / own;
+        let expected = format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
+        return Err(Error::domain("side of a cell", dx.max(dy), expected));
+    }
+    Ok(attraction)
 }
 
 /// What is asked for.

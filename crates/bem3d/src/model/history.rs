@@ -5,9 +5,7 @@ use super::adhesive::{AdhesiveContact, WithoutAdhesion};
 use super::plastic_path::PlasticPath;
 use super::prepared::{NAME, refuse_together};
 use crate::tuning::Tuning;
-use contact_model::{
-    Adhesion, ContactModel, Effects, Error, Hardness, History, HistoryModel, Result, Scene, Source,
-};
+use contact_model::{Adhesion, ContactModel, Error, Hardness, History, HistoryModel, Result, Scene, Source};
 
 /// The boundary-element model along a path of loads, for effects that remember it: hardness and adhesion.
 ///
@@ -38,22 +36,19 @@ impl HistoryModel for Bem3dPath {
         scene.validate()?;
         refuse_together(&scene.effects)?;
         match scene.effects.adhesion {
-            Adhesion::FiniteRange { work, range, law } if work > 0.0 => Ok(Box::new(AdhesiveContact::new(
-                &self.0,
-                scene,
-                seed,
-                (work, range, law),
-                &Tuning::DEFAULT,
-            )?)),
-            Adhesion::FiniteRange { .. } => {
-                let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
-                let scene = Scene { effects, ..scene.clone() };
-                Ok(Box::new(WithoutAdhesion::new(ContactModel::prepare(&self.0, &scene, seed)?)))
+            Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work > 0.0 => {
+                Ok(Box::new(AdhesiveContact::new(&self.0, scene, seed, &Tuning::DEFAULT)?))
+            }
+            Adhesion::ShortRange { .. } | Adhesion::FiniteRange { .. } => {
+                Ok(Box::new(WithoutAdhesion::new(ContactModel::prepare(&self.0, scene, seed)?)))
             }
             Adhesion::Off if scene.effects.hardness == Hardness::Off => {
                 Err(Error::unsupported(NAME, "a path without hardness or adhesion: nothing depends on it"))
             }
-            _ => Ok(Box::new(PlasticPath::new(self.0.prepared(scene, seed, &Tuning::DEFAULT)?))),
+            Adhesion::Off => {
+                Ok(Box::new(PlasticPath::new(self.0.prepared(scene, seed, &Tuning::DEFAULT)?)))
+            }
+            other => Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
         }
     }
 }

@@ -13,7 +13,7 @@ pub use history::Bem3dPath;
 pub use options::{Bem3d, Method};
 
 use crate::tuning::Tuning;
-use adhesive::AdhesiveContact;
+use adhesive::{AdhesiveContact, without_adhesion};
 use contact_model::{
     Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, Result, Scene, Source,
     Surface,
@@ -53,17 +53,18 @@ impl Bem3d {
         tuning: &Tuning,
     ) -> Result<Box<dyn PreparedContact>> {
         refuse_together(&scene.effects)?;
-        if let Adhesion::FiniteRange { work, range, law } = scene.effects.adhesion {
-            scene.validate()?;
-            if work > 0.0 {
-                let adhesion = (work, range, law);
-                return Ok(Box::new(AdhesiveContact::new(self, scene, seed, adhesion, tuning)?));
+        scene.validate()?;
+        Ok(match scene.effects.adhesion {
+            Adhesion::Off => Box::new(self.prepared(scene, seed, tuning)?),
+            Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work > 0.0 => {
+                Box::new(AdhesiveContact::new(self, scene, seed, tuning)?)
             }
             // Without work the elastic states, bit by bit.
-            let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
-            return self.prepare_tuned(&Scene { effects, ..scene.clone() }, seed, tuning);
-        }
-        Ok(Box::new(self.prepared(scene, seed, tuning)?))
+            Adhesion::ShortRange { .. } | Adhesion::FiniteRange { .. } => {
+                Box::new(self.prepared(&without_adhesion(scene), seed, tuning)?)
+            }
+            other => return Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
+        })
     }
 
     /// A surface without adhesion, ready to be loaded.

@@ -1,0 +1,307 @@
+//! The attraction between the cells of a grid: a law of each cell's gap and, for a short range, what its neighbours change.
+//!
+//! # A short range on cells
+//!
+//! JKR's limit has no length below which the attraction acts, a grid has its cell. Every work of adhesion w is put into the last cells of a
+//! contact by the law `s = s0 (1 - g/g0)`, `s0 = c sqrt(E* w/a)`, `g0 = 2 w/s0`, a the longer side of a cell. A straight front of cells that all
+//! open at once at `s = t` and are open by `g` releases `t g/2 = w` a cell exactly (virtual crack closure): `t/sqrt(E* w/a)` is 1.077 along
+//! the rows of cells, 1.266 along their diagonals and tends to 1.46, which is where Pohrt and Popov's criterion has it (1.4537), for
+//! directions that no small numbers tell. With c above 1.077 a front along the rows stays where it is until it is pulled harder than w (it is
+//! trapped); below, cells open one after the other while their neighbours already open, and the energy release rate at which a front moves
+//! differs from w by less than 1 % at c = 0.7, in every direction.
+//!
+//! What is left is a line tension: a front of length L has the energy `-w b a L` besides that of the area, so that a round contact of
+//! radius R acts as if w were `w (1 + b a/R)`. For c = 0.7 the energy of straight fronts gives b = 0.389, the same in all directions to
+//! 0.005. Counting the attached share x of a cell, `x = (1 - g/g0)^2`, the length of the front is `(2/m) sum x_i (1 - (J x)_i)` with the mean
+//! J over the neighbours within r = 4 a and m the mean of |x| over J; adding `w b a` times that to the energy takes the tension out, and the
+//! attraction of a cell becomes `(1 + B (2 (J x)_i - 1)) s(g)`, `B = 2 b a/m`: a cell of a straight front is attracted as before, one in a
+//! corner of the contact less. The error of pull-off forces is then of second order in `a/R`.
+
+use super::law::Law;
+use crate::geometry::{CellSet, Grid};
+use contact_model::Boundary;
+
+/// The length b by which the law of short range draws a front ahead of its elastic tip, in longer sides of a cell: the line tension of straight
+/// fronts without neighbours, zero with them.
+const FRONT_WIDTH: f64 = 0.389;
+/// Radius of the neighbourhood in longer sides of a cell: the smallest at which the length of a front depends on its direction by less than
+/// 2 %.
+const RADIUS: f64 = 4.0;
+
+/// The attraction between the cells of a grid.
+#[derive(Debug, Clone)]
+pub struct Attraction {
+    /// Of one cell by itself.
+    pub law: Law,
+    /// The neighbours that matter, for a short range.
+    neighbours: Option<Neighbours>,
+}
+
+/// The mean J over the neighbours of a cell.
+#[derive(Debug, Clone)]
+struct Neighbours {
+    grid: Grid,
+    periodic: bool,
+    /// Most columns and rows away.
+    reach: (usize, usize),
+    /// Weights of one row of neighbours after the other, all rows of the same length; their sum is 1.
+    weights: Vec<f64>,
+    /// How much stronger than a cell on a straight front one is that has all neighbours, relative.
+    strength: f64,
+}
+
+impl Attraction {
+    /// Of a finite range: no cell asks for its neighbours.
+    pub fn of(law: Law) -> Self {
+        Self { law, neighbours: None }
+    }
+
+    /// Of a short range, of this work of adhesion over `pi E*` times the height, on a grid.
+    pub fn short(work: f64, grid: Grid, boundary: Boundary) -> Self {
+        let (x, y) = grid.cell();
+        let side = x.max(y);
+        Self {
+            law: Law::short(work, side),
+            neighbours: Some(Neighbours::new(grid, boundary == Boundary::Periodic, side)),
+        }
+    }
+
+    /// The largest traction of all gaps.
+    pub fn strongest(&self) -> f64 {
+        self.law.peak * (1.0 + self.neighbours.as_ref().map_or(0.0, |n| n.strength))
+    }
+
+    /// By what the attraction of each cell is multiplied; `None`: 1.
+    fn factors(&self, cells: &CellSet, gap: &[f64]) -> Option<Vec<f64>> {
+        let neighbours = self.neighbours.as_ref()?;
+        let attached: Vec<f64> = gap.iter().map(|&g| self.law.attached(g)).collect();
+        let mut factors = neighbours.mean(cells, &attached);
+        factors.iter_mut().for_each(|f| *f = 1.0 + neighbours.strength * (2.0 * *f - 1.0));
+        Some(factors)
+    }
+
+    /// Tractions of gaps on cells; other cells are open.
+    pub fn tractions(&self, cells: &CellSet, gap: &[f64]) -> Vec<f64> {
+        self.times_factors(cells, gap, |g| self.law.traction(g))
+    }
+
+    /// Magnitudes of the derivatives of the tractions, each in the gap of its own cell and with the neighbours held.
+    pub fn slopes(&self, cells: &CellSet, gap: &[f64]) -> Vec<f64> {
+        self.times_factors(cells, gap, |g| self.law.slope(g))
+    }
+
+    fn times_factors(&self, cells: &CellSet, gap: &[f64], of: impl Fn(f64) -> f64) -> Vec<f64> {
+        match self.factors(cells, gap) {
+            Some(factors) => gap.iter().zip(factors).map(|(&g, f)| f * of(g)).collect(),
+            None => gap.iter().map(|&g| of(g)).collect(),
+        }
+    }
+
+    /// Energy, 0 far apart.
+    pub fn energy(&self, cells: &CellSet, gap: &[f64]) -> f64 {
+        let own = |g: &f64| self.law.energy(*g);
+        let Some(neighbours) = &self.neighbours else { return gap.iter().map(own).sum() };
+        let attached: Vec<f64> = gap.iter().map(|&g| self.law.attached(g)).collect();
+        let mean = neighbours.mean(cells, &attached);
+        gap.iter().zip(mean).map(|(g, mean)| own(g) * (1.0 - neighbours.strength * (1.0 - mean))).sum()
+    }
+
+    /// Largest distance of attractions from the law of their gaps, over that in contact.
+    pub fn mismatch(&self, cells: &CellSet, attraction: &[f64], gap: &[f64]) -> f64 {
+        let pairs = attraction.iter().zip(gap);
+        match self.factors(cells, gap) {
+            Some(factors) => (pairs.zip(factors))
+                .map(|((&s, &g), f)| (s - f * self.law.traction(g)).abs() / self.law.peak)
+                .fold(0.0, f64::max),
+            None => pairs.map(|(&s, &g)| self.law.mismatch(s, g)).fold(0.0, f64::max),
+        }
+    }
+
+    /// How the attraction of open cells with these gaps follows the gaps of the others: `coupled(v) = R^-1 C R^-1 v`, C the negative of those
+    /// derivatives and R the roots of the slopes. `None`: it does not.
+    pub fn coupling<'a>(
+        &'a self,
+        open: &'a CellSet,
+        gap: &[f64],
+        root: &[f64],
+    ) -> Option<impl Fn(&[f64]) -> Vec<f64> + 'a> {
+        let neighbours = self.neighbours.as_ref()?;
+        let work = -self.law.energy(0.0);
+        let share: Vec<f64> =
+            gap.iter().zip(root).map(|(&g, r)| self.law.traction(g) / (r * work.sqrt())).collect();
+        Some(move |v: &[f64]| {
+            let weighted: Vec<f64> = v.iter().zip(&share).map(|(v, s)| v * s).collect();
+            let mut mean = neighbours.mean(open, &weighted);
+            mean.iter_mut().zip(&share).for_each(|(m, s)| *m *= 2.0 * neighbours.strength * s);
+            mean
+        })
+    }
+}
+
+impl Neighbours {
+    fn new(grid: Grid, periodic: bool, side: f64) -> Self {
+        let (dx, dy) = grid.cell();
+        let radius = RADIUS * side;
+        let reach = |cell: f64| (radius / cell).ceil() as usize - 1;
+        let (across, along) = (reach(dx), reach(dy));
+        let mut weights = Vec::with_capacity((2 * across + 1) * (2 * along + 1));
+        let (mut total, mut moment) = (0.0, 0.0);
+        for j in 0..=2 * along {
+            for i in 0..=2 * across {
+                let (x, y) = (dx * (i as f64 - across as f64), dy * (j as f64 - along as f64));
+                let weight = (1.0 - (x * x + y * y) / (radius * radius)).max(0.0);
+                total += weight;
+                moment += 0.5 * weight * (x.abs() + y.abs());
+                weights.push(weight);
+            }
+        }
+        weights.iter_mut().for_each(|w| *w /= total);
+        let strength = 2.0 * FRONT_WIDTH * side * total / moment;
+        Self { grid, periodic, reach: (across, along), weights, strength }
+    }
+
+    /// Means over the neighbours of the cells of a set; cells outside of it count 0.
+    fn mean(&self, cells: &CellSet, values: &[f64]) -> Vec<f64> {
+        let Some(window) = cells.window() else { return Vec::new() };
+        let (across, along) = self.reach;
+        let (width, height) = (window.width + 2 * across, window.height + 2 * along);
+        let mut around = vec![0.0; width * height];
+        // Images of a periodic map that the margin can reach, in periods.
+        let images =
+            |reach: usize, period: usize| if self.periodic { reach.div_ceil(period) as isize } else { 0 };
+        let (kx, ky) = (images(across, self.grid.columns), images(along, self.grid.rows));
+        let place = |at: usize, first: usize, reach: usize, k: isize, period: usize, length: usize| {
+            let at = (at + reach) as isize - first as isize + k * period as isize;
+            usize::try_from(at).ok().filter(|&at| at < length)
+        };
+        for ((x, y), &value) in cells.places().zip(values) {
+            for j in -ky..=ky {
+                let Some(row) = place(y, window.y, along, j, self.grid.rows, height) else { continue };
+                for i in -kx..=kx {
+                    if let Some(column) = place(x, window.x, across, i, self.grid.columns, width) {
+                        around[row * width + column] = value;
+                    }
+                }
+            }
+        }
+        let row = 2 * across + 1;
+        let mean = |(x, y): (usize, usize)| {
+            let (left, top) = (x - window.x, y - window.y);
+            (self.weights.chunks_exact(row).enumerate())
+                .map(|(j, weights)| {
+                    let from = (top + j) * width + left;
+                    weights.iter().zip(&around[from..from + row]).map(|(w, v)| w * v).sum::<f64>()
+                })
+                .sum()
+        };
+        cells.places().map(mean).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn neighbours(attraction: &Attraction) -> &Neighbours {
+        attraction.neighbours.as_ref().unwrap()
+    }
+
+    #[test]
+    fn the_mean_is_the_sum_over_all_pairs() {
+        for (grid, boundary) in [
+            (Grid::square(9, 7), Boundary::Free),
+            (Grid::square(5, 3), Boundary::Periodic),
+            (Grid { columns: 4, rows: 14, stretch: 1.7 }, Boundary::Periodic),
+        ] {
+            let attraction = Attraction::short(1.0, grid, boundary);
+            let n = neighbours(&attraction);
+            let cells = CellSet::numbered(grid, |i| i % 4 != 1);
+            let values: Vec<f64> = (0..cells.len()).map(|i| (i as f64).sin()).collect();
+            let places: Vec<(usize, usize)> = cells.places().collect();
+            let (across, along) = n.reach;
+            for (found, &(x, y)) in n.mean(&cells, &values).iter().zip(&places) {
+                let mut expected = 0.0;
+                for (k, weight) in n.weights.iter().enumerate() {
+                    let i = (x + k % (2 * across + 1)) as isize - across as isize;
+                    let j = (y + k / (2 * across + 1)) as isize - along as isize;
+                    let at = if boundary == Boundary::Periodic {
+                        (i.rem_euclid(grid.columns as isize), j.rem_euclid(grid.rows as isize))
+                    } else {
+                        (i, j)
+                    };
+                    for (value, &(a, b)) in values.iter().zip(&places) {
+                        if at == (a as isize, b as isize) {
+                            expected += weight * value;
+                        }
+                    }
+                }
+                approx::assert_relative_eq!(*found, expected, epsilon = 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn tractions_slopes_and_couplings_are_derivatives_of_the_energy() {
+        let grid = Grid { columns: 8, rows: 6, stretch: 1.2 };
+        for boundary in [Boundary::Free, Boundary::Periodic] {
+            let attraction = Attraction::short(0.3, grid, boundary);
+            let cells = CellSet::numbered(grid, |i| i % 5 != 2);
+            let range = attraction.law.range;
+            let gap: Vec<f64> =
+                (0..cells.len()).map(|i| range * (0.5 + 0.6 * (1.3 * i as f64).sin())).collect();
+            let h = 1e-6 * range;
+            let moved = |i: usize, by: f64| {
+                let mut gap = gap.clone();
+                gap[i] += by;
+                gap
+            };
+            let tractions = attraction.tractions(&cells, &gap);
+            let open = cells.filter(&gap, |g| g > 0.0 && g < range);
+            let on_open = open.carry(&cells, &gap);
+            let root: Vec<f64> =
+                open.carry(&cells, &attraction.slopes(&cells, &gap)).iter().map(|s| s.sqrt()).collect();
+            let coupled = attraction.coupling(&open, &on_open, &root).unwrap();
+            let places: Vec<(usize, usize)> = cells.places().collect();
+            for (k, place) in open.places().enumerate() {
+                let i = places.iter().position(|p| *p == place).unwrap();
+                let slope = (attraction.energy(&cells, &moved(i, h))
+                    - attraction.energy(&cells, &moved(i, -h)))
+                    / (2.0 * h);
+                approx::assert_relative_eq!(slope, tractions[i], epsilon = 1e-7 * attraction.law.peak);
+                let (above, below) =
+                    (attraction.tractions(&cells, &moved(i, h)), attraction.tractions(&cells, &moved(i, -h)));
+                let expected: Vec<f64> = above.iter().zip(&below).map(|(a, b)| (b - a) / (2.0 * h)).collect();
+                let unit: Vec<f64> = (0..open.len()).map(|j| if j == k { root[k] } else { 0.0 }).collect();
+                let found: Vec<f64> =
+                    (coupled(&unit).iter().zip(&unit).zip(&root)).map(|((c, u), r)| r * (c + u)).collect();
+                for (found, expected) in found.iter().zip(open.carry(&cells, &expected)) {
+                    approx::assert_relative_eq!(
+                        *found,
+                        expected,
+                        epsilon = 1e-6 * attraction.law.peak / range
+                    );
+                }
+            }
+            assert!(attraction.mismatch(&cells, &tractions, &gap) <= 0.0);
+            assert!(tractions.iter().all(|&t| t <= attraction.strongest()));
+        }
+    }
+
+    #[test]
+    fn full_contact_has_the_work_of_adhesion_and_a_straight_front_too() {
+        let grid = Grid::square(24, 24);
+        let attraction = Attraction::short(0.3, grid, Boundary::Periodic);
+        let all = CellSet::all(grid);
+        let gap = vec![0.0; all.len()];
+        approx::assert_relative_eq!(attraction.energy(&all, &gap), -0.3 * 576.0, max_relative = 1e-12);
+        approx::assert_relative_eq!(
+            attraction.tractions(&all, &gap)[7],
+            attraction.strongest(),
+            max_relative = 1e-12
+        );
+        // A strip has two fronts, each with the line tension b of the correction.
+        let strip: Vec<f64> = (0..all.len()).map(|i| if i % 24 < 12 { 0.0 } else { 1e3 }).collect();
+        let expected = -0.3 * (288.0 - FRONT_WIDTH * 48.0);
+        approx::assert_relative_eq!(attraction.energy(&all, &strip), expected, max_relative = 1e-12);
+    }
+}
