@@ -13,9 +13,9 @@ use std::f64::consts::PI;
 
 const NAME: &str = "maugis_dugdale";
 
-/// The contact of a sphere with [`Adhesion::FiniteRange`] of [`AdhesionLaw::Dugdale`]: traction `s0 =
-/// work/range` wherever the gap is below the range, that is between the contact radius a and the radius c of
-/// the cohesive zone.
+/// The contact of a sphere with [`Adhesion::FiniteRange`] of [`AdhesionLaw::Dugdale`]: traction
+/// `s0 = work/range` wherever the gap is below the range, that is between the contact radius a and the radius
+/// c of the cohesive zone.
 ///
 /// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be
 /// negative, and no load means the adhered contact. A force below that of the pull-off (between `-2 pi w R`

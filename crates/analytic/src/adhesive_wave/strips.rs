@@ -4,8 +4,8 @@ use crate::root;
 use crate::westergaard::gap_of_fractions;
 use std::f64::consts::FRAC_PI_2;
 
-/// The alpha from which on the pressure only falls with psi: twice the largest `2 sin^(3/2) psi cos^(5/2)
-/// psi`.
+/// The alpha from which on the pressure only falls with psi: twice the largest
+/// `2 sin^(3/2) psi cos^(5/2) psi`.
 pub(super) const CRITICAL: f64 = 1.065_205_656_063_280_7;
 
 /// Strips in contact, through tan psi: it keeps its digits towards no contact and towards full contact.
@@ -152,8 +152,8 @@ mod tests {
         assert_eq!(state, (Some(0.0), Some(1.0), Some(0.0)));
     }
 
-    /// `(alpha, [psi, p/p*] at the pull-off, [psi, p/p*, mean gap over D, stiffness times w/E*] at the
-    /// snap-in)` in 60-digit arithmetic.
+    /// alpha, `[psi, p/p*]` at the pull-off, and `[psi, p/p*, mean gap over D, stiffness times w/E*]` at the
+    /// snap-in, in 60-digit arithmetic.
     const LIMITS: [(f64, [f64; 2], [f64; 4]); 7] = [
         (
             1e-12,
