@@ -376,10 +376,16 @@ mod tests {
     use approx::{assert_abs_diff_eq, assert_relative_eq};
     use contact_model::{Boundary, Size, Surface};
 
-    /// Step of differences, relative; their error is its square.
+    /// Step of differences.
     const STEP: f64 = 1e-5;
+    /// Square of that step, times derivatives of up to a hundred.
+    const DIFFERENCES: f64 = 1e-8;
     /// A root and a handful of products.
     const ROUNDING: f64 = 1e-13;
+    /// Rounding of a force over its distance from full contact, at most a fiftieth of p*, or from a limit.
+    const CONDITIONED: f64 = 1e-12;
+    /// Far more than the rounding at which a load still counts as that of a limit.
+    const BEYOND: f64 = 1e-9;
     /// Half the digits: what is left of psi at an extremum of the pressure.
     const AT_EXTREMUM: f64 = 1e-6;
 
@@ -411,7 +417,7 @@ mod tests {
             let load = Load::Force(share * full);
             let (a, b) = (found.solve(load).unwrap(), expected.solve(load).unwrap());
             for (a, b) in [(a.area, b.area), (a.mean_gap, b.mean_gap), (a.stiffness, b.stiffness)] {
-                assert_relative_eq!(a.unwrap(), b.unwrap(), max_relative = ROUNDING);
+                assert_relative_eq!(a.unwrap(), b.unwrap(), max_relative = ROUNDING, epsilon = 0.0);
             }
         }
         let apart = found.solve(Load::Force(0.0)).unwrap();
@@ -439,7 +445,11 @@ mod tests {
             let compliance = |psi: f64| 1.0 / wave.stiffness(psi).unwrap();
             let by_psi = (compliance(psi + STEP) - compliance(psi - STEP)) / (2.0 * STEP);
             // Energy per nominal area, over the change of the area fraction 2 psi/pi.
-            assert_relative_eq!(-0.5 * tension * tension * by_psi * FRAC_PI_2, 3e-4, max_relative = 1e-8);
+            assert_relative_eq!(
+                -0.5 * tension * tension * by_psi * FRAC_PI_2,
+                3e-4,
+                max_relative = DIFFERENCES
+            );
         }
     }
 
@@ -452,12 +462,14 @@ mod tests {
         for psi in [0.3, 0.9, 1.4] {
             let pressure = wave.pressure(psi).unwrap() - elastic.pressure(psi).unwrap();
             let gap = wave.mean_gap(psi).unwrap() - elastic.mean_gap(psi).unwrap();
-            assert_relative_eq!(-pressure / gap, wave.stiffness(psi).unwrap(), max_relative = 1e-12);
+            assert_relative_eq!(-pressure / gap, wave.stiffness(psi).unwrap(), max_relative = ROUNDING);
         }
     }
 
     #[test]
     fn johnsons_numbers() {
+        /// Ten times the square of the pi a/w of a strip, 1e-3.
+        const NARROW: f64 = 1e-4;
         // Zero mean pressure closes the surfaces from alpha = 0.57 on.
         let snap_in = |alpha: f64| with_alpha(alpha).snap_in().unwrap().unwrap().1;
         assert!(snap_in(0.56) > 0.0 && snap_in(0.58) < 0.0);
@@ -471,11 +483,10 @@ mod tests {
         let a = 1e-3;
         let radius = wavelength * wavelength / (4.0 * PI * PI * amplitude);
         let line = PI * modulus * a * a / (4.0 * radius) - (2.0 * PI * a * modulus * work).sqrt();
-        // The square of pi a/w.
         assert_relative_eq!(
             narrow.pressure(PI * a / wavelength).unwrap() * wavelength,
             line,
-            max_relative = 1e-4
+            max_relative = NARROW
         );
     }
 
@@ -494,12 +505,9 @@ mod tests {
     fn states_are_those_of_long_arithmetic() {
         for (work, force, [area, gap, stiffness]) in STATES {
             let state = AdhesiveWave.prepare(&scene(work), 0).unwrap().solve(Load::Force(force)).unwrap();
-            // Rounding of the force over the distance from full contact, at most a fiftieth here, and from
-            // the limits.
-            let near = 1e-12;
-            assert_relative_eq!(state.area.unwrap(), area, max_relative = near);
-            assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = near);
-            assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = near);
+            assert_relative_eq!(state.area.unwrap(), area, max_relative = CONDITIONED);
+            assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = CONDITIONED);
+            assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = CONDITIONED);
         }
     }
 
@@ -511,8 +519,8 @@ mod tests {
         let mut contact = AdhesiveWave.prepare(&wave_scene(1.0, 1.0, 1.0.into(), (1.0, work)), 0).unwrap();
         let snap_in = with_alpha(1e-6).snap_in().unwrap().unwrap().1;
         let state = contact.solve(Load::Force(snap_in)).unwrap();
-        assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = 1e-12);
-        assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = 1e-12);
+        assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = ROUNDING, epsilon = 0.0);
+        assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = ROUNDING, epsilon = 0.0);
     }
 
     #[test]
@@ -571,12 +579,26 @@ mod tests {
     }
 
     #[test]
+    fn the_load_of_full_contact_closes_the_gap() {
+        for (_, size, mut scene) in waves() {
+            scene.effects.adhesion = Adhesion::ShortRange { work: 0.0 };
+            scene.outputs.stiffness = false;
+            let Surface::Sine { amplitude, wavelength, .. } = scene.surface else { panic!("no wave") };
+            let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
+            for force in around(PI * scene.modulus * amplitude / wavelength * (size.x * size.y)) {
+                let state = contact.solve(Load::Force(force)).unwrap();
+                assert_eq!(state.mean_gap, Some(0.0));
+            }
+        }
+    }
+
+    #[test]
     fn errors_are_in_what_was_asked() {
         for (wave, size, mut scene) in waves() {
             let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
             let [first, last] =
                 [wave.pull_off(), wave.snap_in()].map(|limit| limit.unwrap().unwrap().1 * (size.x * size.y));
-            let beyond = first * (1.0 + 1e-9);
+            let beyond = first * (1.0 + BEYOND);
             let error = contact.solve(Load::Force(beyond)).unwrap_err();
             assert!(error.to_string().starts_with("force (the contact pulls off"), "{error}");
             let Error::OutOfRange { value, min, max, .. } = error else { panic!("{error}") };
@@ -584,7 +606,7 @@ mod tests {
             assert_relative_eq!(min, first, max_relative = ROUNDING);
             // The smallest force that the error names is one.
             assert!(contact.solve(Load::Force(min)).is_ok());
-            let beyond = last + 1e-9 * last.abs();
+            let beyond = last + BEYOND * last.abs();
             let error = contact.solve(Load::Force(beyond)).unwrap_err();
             assert!(error.to_string().starts_with("force (full contact"), "{error}");
             let Error::OutOfRange { value, min, max, .. } = error else { panic!("{error}") };
@@ -670,9 +692,9 @@ mod tests {
         assert_relative_eq!(state.area.unwrap(), 0.5 * one.area.unwrap(), max_relative = ROUNDING);
         // Parts of alpha that are no numbers: work over E* is 1e-400, and E* D is 1e350.
         let wave = WavyContact::new(1e-150, 1e-150, 1e200, 1e-200).unwrap();
-        assert_relative_eq!(wave.alpha(), SQRT_2 / PI * 1e-125, max_relative = ROUNDING);
+        assert_relative_eq!(wave.alpha(), SQRT_2 / PI * 1e-125, max_relative = ROUNDING, epsilon = 0.0);
         let wave = WavyContact::new(1e150, 1e152, 1e200, 1e300).unwrap();
-        assert_relative_eq!(wave.alpha(), SQRT_2 / PI * 1e-24, max_relative = ROUNDING);
+        assert_relative_eq!(wave.alpha(), SQRT_2 / PI * 1e-24, max_relative = ROUNDING, epsilon = 0.0);
     }
 
     /// Any outcome at any mixture of magnitudes is a finite state or an error about a number.

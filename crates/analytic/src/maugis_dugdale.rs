@@ -699,6 +699,8 @@ mod tests {
     fn a_load_at_the_pull_off_is_the_state_there() {
         /// Half the digits: what is left of a radius at an extremum of the load.
         const AT_EXTREMUM: f64 = 1e-6;
+        /// Far more than the rounding at which a load still counts as that of the pull-off.
+        const BEYOND: f64 = 1e-9;
         for i in 0..200 {
             let i = f64::from(i);
             let (radius, modulus) = (0.31 + 0.0013 * i, 1.7 + 0.01 * i);
@@ -719,11 +721,11 @@ mod tests {
                 assert_abs_diff_eq!(found, by_approach.radius, epsilon = near);
                 assert!(pressed(&MaugisDugdale, &scene, Load::Approach(approach)).is_ok());
             }
-            let beyond = by_force.force * (1.0 + 1e-9);
+            let beyond = by_force.force * (1.0 + BEYOND);
             let error = pressed(&MaugisDugdale, &scene, Load::Force(beyond)).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { value, min, .. }
                 if value.to_bits() == beyond.to_bits() && min.to_bits() == by_force.force.to_bits()));
-            let beyond = by_approach.approach * (1.0 + 1e-9);
+            let beyond = by_approach.approach * (1.0 + BEYOND);
             let error = pressed(&MaugisDugdale, &scene, Load::Approach(beyond)).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { value, min, .. }
                 if value.to_bits() == beyond.to_bits() && min.to_bits() == by_approach.approach.to_bits()));

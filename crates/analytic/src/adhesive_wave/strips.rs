@@ -109,7 +109,8 @@ mod tests {
     use approx::{assert_abs_diff_eq, assert_relative_eq};
     use std::f64::consts::{FRAC_PI_4, PI};
 
-    /// A handful of functions, and `e + r ln r`, which takes one digit where its series ends.
+    /// Every comparison here is relative at all magnitudes: `epsilon = 0.0` takes away the absolute one of
+    /// `approx`. A handful of functions, and `e + r ln r`, which takes one digit where its series ends.
     const ROUNDING: f64 = 1e-14;
     /// Relative step of differences; their error is its square.
     const STEP: f64 = 1e-5;
@@ -144,8 +145,8 @@ mod tests {
                 pressure,
                 epsilon = ROUNDING * pressure.abs().min(1.0)
             );
-            assert_relative_eq!(strips.gap(alpha), gap, max_relative = ROUNDING);
-            assert_relative_eq!(PI / strips.less_log(), stiffness, max_relative = ROUNDING);
+            assert_relative_eq!(strips.gap(alpha), gap, max_relative = ROUNDING, epsilon = 0.0);
+            assert_relative_eq!(PI / strips.less_log(), stiffness, max_relative = ROUNDING, epsilon = 0.0);
         }
         let apart = Strips { tangent: 0.0 };
         let state = (Some(apart.pressure(0.3)), Some(apart.gap(0.3)), Some(1.0 / apart.less_log()));
@@ -226,12 +227,12 @@ mod tests {
     fn limits_are_those_of_long_arithmetic() {
         for (alpha, [first_psi, least], [last_psi, largest, gap, stiffness]) in LIMITS {
             let [first, last] = limits(alpha).unwrap();
-            assert_relative_eq!(first.tangent.atan(), first_psi, max_relative = ROUNDING);
-            assert_relative_eq!(first.pressure(alpha), least, max_relative = ROUNDING);
-            assert_relative_eq!(last.tangent.atan(), last_psi, max_relative = ROUNDING);
+            assert_relative_eq!(first.tangent.atan(), first_psi, max_relative = ROUNDING, epsilon = 0.0);
+            assert_relative_eq!(first.pressure(alpha), least, max_relative = ROUNDING, epsilon = 0.0);
+            assert_relative_eq!(last.tangent.atan(), last_psi, max_relative = ROUNDING, epsilon = 0.0);
             assert_abs_diff_eq!(last.pressure(alpha), largest, epsilon = ROUNDING);
-            assert_relative_eq!(last.gap(alpha), gap, max_relative = ROUNDING);
-            assert_relative_eq!(PI / last.less_log(), stiffness, max_relative = ROUNDING);
+            assert_relative_eq!(last.gap(alpha), gap, max_relative = ROUNDING, epsilon = 0.0);
+            assert_relative_eq!(PI / last.less_log(), stiffness, max_relative = ROUNDING, epsilon = 0.0);
         }
     }
 
@@ -265,7 +266,7 @@ mod tests {
     fn strips_of_a_pressure() {
         for alpha in [1e-100, 1e-12, 1e-3, 0.3, 1.0, 1.0652] {
             let [first, last] = limits(alpha).unwrap();
-            for share in [0.01, 0.2, 0.5, 0.8, 0.99] {
+            for share in (1..100).map(|percent| 0.01 * f64::from(percent)) {
                 let tangent = first.tangent.powf(1.0 - share) * last.tangent.powf(share);
                 let strips = Strips { tangent };
                 let ratio = strips.pressure(alpha);
@@ -273,7 +274,12 @@ mod tests {
                 // Rounding of the pressure over its slope in ln t.
                 let rounding = f64::EPSILON * ratio.abs().max(strips.sine_squared());
                 let lost = rounding / (strips.rise(alpha) * tangent);
-                assert_relative_eq!(found.tangent, tangent, max_relative = ROUNDING + 4.0 * lost);
+                assert_relative_eq!(
+                    found.tangent,
+                    tangent,
+                    max_relative = 4.0 * (f64::EPSILON + lost),
+                    epsilon = 0.0
+                );
             }
         }
     }
