@@ -1,145 +1,238 @@
 //! Johnson: a sinusoidal wave with short-range adhesion, periodic.
 
-use crate::westergaard::{gap_over_amplitude, whole_waves};
-use crate::{periodic, root};
+mod strips;
+
+use crate::jkr::signed;
+use crate::westergaard::whole_waves;
+use crate::{closed, periodic};
 use contact_model::{
-    Adhesion, ContactModel, ContactState, Effects, Error, Load, Normalisation, Outputs, PreparedContact,
-    Result, Scene, Size, SolveReport, Source, Stop,
+    Adhesion, ContactModel, ContactState, Effects, Error, Load, Nondimensionalisation, Normalisation,
+    Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop,
 };
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+use strips::{Strips, between, limits};
 
 const NAME: &str = "adhesive_wave";
 
-/// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat under short-range adhesion ([`Adhesion::ShortRange`]), through the
-/// half-width a of a contact strip.
+/// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat under short-range adhesion
+/// ([`Adhesion::ShortRange`]), through the half-width a of a contact strip.
 ///
-/// Westergaard's strips carry the mean pressure `p* sin^2 psi`, `psi = pi a/w`, `p* = pi E* D/w`. A uniform mean tension s on bonded strips
-/// adds the traction `s cos(pi x/w)/sqrt(sin^2 psi - sin^2(pi x/w))`, whose stress intensity is `K = s sqrt(w cot psi)`. With
-/// `K^2/(2 E*)` = the work of adhesion:
+/// Westergaard's strips carry the mean pressure `p* sin^2 psi`, `psi = pi a/w`, `p* = pi E* D/w`. A uniform
+/// mean tension s on bonded strips adds the traction `s cos(pi x/w)/sqrt(sin^2 psi - sin^2(pi x/w))`, whose
+/// stress intensity is `K = s sqrt(w cot psi)`. With `K^2/(2 E*)` = the work of adhesion:
 ///
 /// `p/p* = sin^2 psi - alpha sqrt(tan psi)`, `alpha^2 = 2 work E*/(w p*^2)`,
 ///
 /// and a mean gap of `D (1 - r + r ln r) - D alpha sqrt(tan psi) ln r`, `r = sin^2 psi`.
 ///
-/// Stable where p rises with a: from the minimum, where the strips are pulled off, to the maximum, where they snap into full contact. For
-/// alpha above [`WavyContact::CRITICAL`] there is neither, and surfaces that touch close at once. Full contact stays under any tension in
-/// this limit, because nothing begins to open it.
+/// Stable where p rises with a: from the minimum, where the strips are pulled off, to the maximum, where they
+/// snap into full contact; both limits belong to the stable branch. From the alpha of
+/// [`WavyContact::CRITICAL`] on there is neither, and surfaces that touch close at once. Full contact stays
+/// under any tension in this limit, because nothing begins to open it.
+///
+/// `psi` is a number in [0, pi/2]. An `f64` near pi/2 has few digits of `pi/2 - psi`: values at a given psi
+/// are exact to rounding, but a psi that is returned there is rounded. [`AdhesiveWave`] works with tan psi
+/// instead.
 ///
 /// ```
 /// use analytic::adhesive_wave::WavyContact;
 /// let wave = WavyContact::new(0.01, 1.0, 1.0, 1e-5)?;
-/// let (psi, pull_off) = wave.pull_off().unwrap();
-/// assert!(pull_off < 0.0 && wave.pressure(psi + 0.01) > pull_off && wave.pressure(psi - 0.01) > pull_off);
-/// assert!(wave.snap_in().unwrap().1 > 0.0);
+/// let (psi, pull_off) = wave.pull_off()?.unwrap();
+/// assert!(pull_off < 0.0 && wave.pressure(psi + 0.01)? > pull_off && wave.pressure(psi - 0.01)? > pull_off);
+/// assert!(wave.snap_in()?.unwrap().1 > 0.0);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavyContact {
-    amplitude: f64,
-    full: f64,
+    /// Moduli in E*, horizontal lengths in w, vertical ones in D: p* is pi.
+    nondimensional: Nondimensionalisation,
+    /// The same with heights in the caller's unit: pressures of it are stiffnesses per area.
+    per_height: Nondimensionalisation,
     alpha: f64,
+    /// Where p has its minimum and its maximum; `None` without adhesion and from the critical alpha on.
+    limits: Option<[Strips; 2]>,
+}
+
+/// What a mean pressure makes of surfaces that are in contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Branch {
+    /// It is below the pull-off.
+    PulledOff,
+    Partial(Strips),
+    Full,
 }
 
 impl WavyContact {
-    /// Largest alpha with a stable partial contact: twice the largest `2 sin^(3/2) psi cos^(5/2) psi`.
-    pub const CRITICAL: f64 = 1.065_205_656_063_280_8;
+    /// Smallest alpha without a stable partial contact: twice the largest `2 sin^(3/2) psi cos^(5/2) psi`.
+    pub const CRITICAL: f64 = strips::CRITICAL;
 
-    /// Amplitude D, wavelength, E*, work of adhesion >= 0.
+    /// Amplitude D > 0 and wavelength w > 0 (lengths), E* > 0 (a pressure), work of adhesion >= 0 (energy per
+    /// area).
     ///
     /// # Errors
-    /// [`Error::Domain`] for a value that makes no sense, or p* or alpha that no f64 holds.
+    /// [`Error::Domain`] for a value that makes no sense, and for a D/w, a p* or a work over `E* D^2/w` that
+    /// no `f64` holds.
     pub fn new(amplitude: f64, wavelength: f64, modulus: f64, work: f64) -> Result<Self> {
-        for (name, value) in [("amplitude", amplitude), ("wavelength", wavelength), ("modulus", modulus)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(Error::domain(name, value, "a finite number > 0"));
+        let slope = amplitude / wavelength;
+        for (name, value) in [
+            ("amplitude", amplitude),
+            ("wavelength", wavelength),
+            ("modulus", modulus),
+            ("amplitude over wavelength", slope),
+        ] {
+            if !(value.is_finite() && value > 0.0 && value.recip().is_finite()) {
+                return Err(Error::domain(name, value, "a finite number > 0 with a finite reciprocal"));
             }
         }
         if !(work.is_finite() && work >= 0.0) {
             return Err(Error::domain("work of adhesion", work, "a finite number >= 0"));
         }
-        let slope = amplitude / wavelength;
-        let full = PI * modulus * slope;
-        let alpha = (2.0 * (work / modulus / wavelength)).sqrt() / (PI * slope);
-        for (name, value) in [("mean pressure", full), ("work of adhesion over E* D^2/w", alpha)] {
-            if !(value.is_finite() && (value > 0.0 || work <= 0.0)) {
-                return Err(Error::domain(name, value, "a number within the range of f64"));
-            }
+        let nondimensional = Nondimensionalisation::new(modulus, wavelength, amplitude)?;
+        nondimensional.pressure(PI)?;
+        let per_height = Nondimensionalisation::new(modulus, wavelength, 1.0)?;
+        // Balanced products, so that no part of them leaves the range of f64: E* D^2/w = E* D (D/w).
+        let share = Nondimensionalisation::new(modulus, amplitude, slope)?.force_in(work);
+        if !(share.is_normal() || work <= 0.0) {
+            let expected = "a number within the range of f64";
+            return Err(Error::domain("work of adhesion over E* D^2/w", share, expected));
         }
-        Ok(Self { amplitude, full, alpha })
+        let alpha = (2.0 * share).sqrt() / PI;
+        Ok(Self { nondimensional, per_height, alpha, limits: limits(alpha) })
     }
 
-    /// `alpha`, the share of adhesion.
+    /// `alpha`, the share of adhesion, dimensionless.
     pub fn alpha(&self) -> f64 {
         self.alpha
     }
 
-    /// Mean pressure at `psi = pi a/w` in [0, pi/2).
-    pub fn pressure(&self, psi: f64) -> f64 {
-        self.full * (psi.sin().powi(2) - self.alpha * psi.tan().sqrt())
+    /// Mean pressure at `psi = pi a/w` in [0, pi/2].
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for another psi, or a pressure that no `f64` holds.
+    pub fn pressure(&self, psi: f64) -> Result<f64> {
+        self.pressure_of(strips_at(psi)?)
     }
 
-    /// Mean gap at `psi` in (0, pi/2).
-    pub fn mean_gap(&self, psi: f64) -> f64 {
-        let r = psi.sin().powi(2);
-        self.amplitude * (gap_over_amplitude(r) - self.alpha * psi.tan().sqrt() * r.ln())
+    /// Mean gap, a length, at `psi` in [0, pi/2]: D without contact, and larger where strips are pulled.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for another psi, or a gap that no `f64` holds.
+    pub fn mean_gap(&self, psi: f64) -> Result<f64> {
+        gap_in(self.nondimensional, strips_at(psi)?.gap(self.alpha))
     }
 
-    /// `-dp/d(mean gap)` of the bonded strips at `psi` in (0, pi/2).
-    pub fn stiffness(&self, psi: f64) -> f64 {
-        -self.full / self.amplitude / psi.sin().powi(2).ln()
+    /// `-dp/d(mean gap)` of the bonded strips (a pressure over a length) at `psi` in [0, pi/2]: 0 without
+    /// contact.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for another psi, or a stiffness that no `f64` holds.
+    pub fn stiffness(&self, psi: f64) -> Result<f64> {
+        // p* over D is pi E*/w.
+        let value = PI / strips_at(psi)?.less_log();
+        self.per_height.pressure(value).map_err(|_| {
+            let name = "stiffness per area in units of E* over the wavelength";
+            Error::domain(name, value, "a stiffness within the range of f64")
+        })
     }
 
-    /// Where the mean pressure has its minimum, and the minimum: the pull-off under a prescribed force. `None` without adhesion and above
-    /// the critical alpha.
-    pub fn pull_off(&self) -> Option<(f64, f64)> {
-        self.turn(0.0)
+    /// `(psi, p)` where the mean pressure p has its minimum: the pull-off under a prescribed force. `None`
+    /// without adhesion and from the critical alpha on.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a pressure that no `f64` holds.
+    pub fn pull_off(&self) -> Result<Option<(f64, f64)>> {
+        self.limits.map(|[first, _]| self.limit(first)).transpose()
     }
 
-    /// Where the mean pressure has its maximum, and the maximum: there the surfaces snap into full contact.
-    pub fn snap_in(&self) -> Option<(f64, f64)> {
-        self.turn(FRAC_PI_2)
-    }
-
-    /// The turn between the steepest rise and one end: roots of dp/dpsi, `2 sin^(3/2) cos^(5/2) = alpha/2`.
-    fn turn(&self, end: f64) -> Option<(f64, f64)> {
-        let rise = |psi: f64| 2.0 * psi.sin().abs().powf(1.5) * psi.cos().abs().powf(2.5) - 0.5 * self.alpha;
-        let steepest = 0.6_f64.sqrt().atan();
-        if self.alpha <= 0.0 || rise(steepest) <= 0.0 {
-            return None;
-        }
-        let psi = root::between(end, steepest, rise);
-        Some((psi, self.pressure(psi)))
+    /// `(psi, p)` where the mean pressure p has its maximum: beyond it the surfaces snap into full contact.
+    /// `None` without adhesion and from the critical alpha on.
+    ///
+    /// # Errors
+    /// As [`WavyContact::pull_off`].
+    pub fn snap_in(&self) -> Result<Option<(f64, f64)>> {
+        self.limits.map(|[_, last]| self.limit(last)).transpose()
     }
 
     /// `psi` of the stable partial contact under a mean pressure; `None` where the contact is full.
     ///
+    /// At the pull-off and at the snap-in, each within rounding, it is the psi of that limit.
+    ///
     /// # Errors
-    /// [`Error::OutOfRange`] below the pull-off.
+    /// [`Error::Domain`] for a pressure that is not finite, [`Error::OutOfRange`] below the pull-off.
     pub fn stable(&self, pressure: f64) -> Result<Option<f64>> {
-        let (first, last) = match (self.pull_off(), self.snap_in()) {
-            (Some(first), Some(last)) => (first, last),
-            _ if self.alpha > 0.0 => return Ok(None),
-            _ => ((0.0, 0.0), (FRAC_PI_2, self.full)),
-        };
-        if pressure < first.1 {
-            let (name, max) = ("mean pressure".into(), f64::INFINITY);
-            return Err(Error::OutOfRange { name, value: pressure, min: first.1, max });
+        if !pressure.is_finite() {
+            return Err(Error::domain("mean pressure", pressure, "a finite number"));
         }
-        if pressure >= last.1 {
-            return Ok(None);
+        match self.branch(self.nondimensional.pressure_in(pressure.abs()).copysign(pressure) / PI) {
+            Branch::PulledOff => Err(Error::OutOfRange {
+                name: "mean pressure (the contact pulls off under a prescribed force)".into(),
+                value: pressure,
+                min: self.pull_off()?.map_or(0.0, |limit| limit.1),
+                max: f64::INFINITY,
+            }),
+            Branch::Partial(strips) => Ok(Some(strips.tangent.atan())),
+            Branch::Full => Ok(None),
         }
-        Ok(Some(if self.alpha <= 0.0 {
-            (pressure / self.full).sqrt().asin()
-        } else {
-            root::between(first.0, last.0, |psi| self.pressure(psi) - pressure)
-        }))
     }
+
+    fn pressure_of(&self, strips: Strips) -> Result<f64> {
+        signed(PI * strips.pressure(self.alpha), |pressure| self.nondimensional.pressure(pressure))
+    }
+
+    fn limit(&self, strips: Strips) -> Result<(f64, f64)> {
+        Ok((strips.tangent.atan(), self.pressure_of(strips)?))
+    }
+
+    /// The contact under a mean pressure over p*, which may be infinite.
+    fn branch(&self, ratio: f64) -> Branch {
+        let alpha = self.alpha;
+        let Some([first, last]) = self.limits else {
+            return match ratio {
+                _ if alpha > 0.0 => Branch::Full,
+                _ if ratio < 0.0 => Branch::PulledOff,
+                _ if ratio * closed::ROUNDED_UP >= 1.0 => Branch::Full,
+                _ => Branch::Partial(Strips { tangent: (ratio / (1.0 - ratio)).sqrt() }),
+            };
+        };
+        let [least, largest] = [first, last].map(|strips| strips.pressure(alpha));
+        let rounding = closed::ROUNDED_UP - 1.0;
+        if ratio < least - rounding * least.abs() {
+            Branch::PulledOff
+        } else if ratio > largest + rounding * largest.abs() {
+            Branch::Full
+        } else if ratio <= least {
+            Branch::Partial(first)
+        } else if ratio >= largest {
+            Branch::Partial(last)
+        } else {
+            Branch::Partial(between(first, last, alpha, ratio))
+        }
+    }
+}
+
+/// The strips at an angle.
+fn strips_at(psi: f64) -> Result<Strips> {
+    if (0.0..=FRAC_PI_2).contains(&psi) {
+        Ok(Strips { tangent: psi.tan() })
+    } else {
+        Err(Error::domain("psi", psi, "a number in [0, pi/2]"))
+    }
+}
+
+/// Mean gap in the units of heights.
+fn gap_in(nondimensional: Nondimensionalisation, gap: f64) -> Result<f64> {
+    nondimensional
+        .approach(gap)
+        .map_err(|_| Error::domain("mean gap over the amplitude", gap, "a gap within the range of f64"))
 }
 
 /// The wave of [`WavyContact`] behind the common trait: forces, of either sign down to the pull-off.
 ///
-/// It takes [`contact_model::Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves along x. Without adhesion it is
-/// [`crate::Westergaard`]. A mean gap is not taken: between snap-in and pull-off it has more than one state.
+/// It takes [`contact_model::Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of
+/// waves along x. Without adhesion it is [`crate::Westergaard`]. A force at the pull-off or at the snap-in,
+/// each within rounding, gives the contact at that limit. A force beyond the pull-off is
+/// [`Error::OutOfRange`], and so is one of full contact where a stiffness is asked for, which is not finite
+/// there. A mean gap is not taken: above D it is that of a pulled contact as well as of surfaces apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AdhesiveWave;
 
@@ -166,18 +259,72 @@ impl ContactModel for AdhesiveWave {
         scene.effects.validate()?;
         let (amplitude, waves, size) = whole_waves(scene, NAME)?;
         let wave = WavyContact::new(amplitude, size.x / waves, scene.modulus, work)?;
-        let length = size.length();
-        let normalisation =
-            Normalisation { modulus: scene.modulus, length, height: Some(amplitude / SQRT_2) };
-        Ok(Box::new(Prepared { wave, size, normalisation, outputs: scene.outputs }))
+        let (modulus, length) = (scene.modulus, size.length());
+        let full = PI * waves * (length / size.x);
+        if !full.is_normal() {
+            let name = "number of waves times the root of side along y over side along x";
+            return Err(Error::domain(name, full / PI, "a number within the range of f64"));
+        }
+        let nondimensional = Nondimensionalisation::new(modulus, length, amplitude)?;
+        let normalisation = Normalisation { modulus, length, height: Some(amplitude / SQRT_2) };
+        Ok(Box::new(Prepared { wave, full, nondimensional, normalisation, outputs: scene.outputs }))
     }
 }
 
 struct Prepared {
     wave: WavyContact,
-    size: Size,
+    /// p* in `E* D/L`.
+    full: f64,
+    /// Moduli in E*, horizontal lengths in L, vertical ones in D.
+    nondimensional: Nondimensionalisation,
     normalisation: Normalisation,
     outputs: Outputs,
+}
+
+impl Prepared {
+    /// Force at a mean pressure over p*.
+    fn force(&self, ratio: f64) -> Result<f64> {
+        signed(ratio * self.full, |force| self.nondimensional.force(force))
+    }
+
+    /// Force at the pull-off or the snap-in of adhesion, or at p* without it.
+    fn force_of(&self, limit: Option<Strips>, without_adhesion: f64) -> Result<f64> {
+        self.force(limit.map_or(without_adhesion, |strips| strips.pressure(self.wave.alpha)))
+    }
+
+    /// Mean pressure over p* of a force; infinite where no `f64` holds it.
+    fn ratio(&self, force: f64) -> f64 {
+        self.nondimensional.force_in(force.abs()).copysign(force) / self.full
+    }
+
+    /// What is wrong with asking for a stiffness of full contact.
+    fn no_stiffness(&self, force: f64) -> Error {
+        let alpha = self.wave.alpha;
+        if alpha > 0.0 && self.wave.limits.is_none() {
+            let name = "alpha (beyond the range any contact is full and has no finite stiffness)".into();
+            return Error::OutOfRange { name, value: alpha, min: 0.0, max: WavyContact::CRITICAL };
+        }
+        let [first, last] = self.wave.limits.map_or([None; 2], |limits| limits.map(Some));
+        match (self.force_of(first, 0.0), self.force_of(last, 1.0)) {
+            (Ok(min), Ok(max)) => {
+                let name = "force (full contact has no finite stiffness)".into();
+                Error::OutOfRange { name, value: force, min, max }
+            }
+            (Err(error), _) | (_, Err(error)) => error,
+        }
+    }
+
+    /// What is wrong with a force below the pull-off.
+    fn pulled_off(&self, force: f64) -> Error {
+        let limit = self.wave.limits.map(|[first, _]| first);
+        self.force_of(limit, 0.0).map_or_else(
+            |error| error,
+            |min| {
+                let name = "force (the contact pulls off under a prescribed force)".into();
+                Error::OutOfRange { name, value: force, min, max: f64::INFINITY }
+            },
+        )
+    }
 }
 
 impl PreparedContact for Prepared {
@@ -193,36 +340,31 @@ impl PreparedContact for Prepared {
             Load::Force(force) => force,
             other => return Err(Error::unsupported(NAME, format!("the load {other:?} (it takes a force)"))),
         };
-        let nominal = self.size.x * self.size.y;
-        let pressure = force / nominal;
-        if !pressure.is_finite() {
-            return Err(Error::domain("mean pressure", pressure, "a number within the range of f64"));
+        let ratio = self.ratio(force);
+        if self.wave.alpha <= 0.0 && ratio <= 0.0 && force > 0.0 {
+            return Err(Error::domain("force over E* D L", ratio, "a number within the range of f64"));
         }
-        let psi = self.wave.stable(pressure)?;
-        // Without adhesion and load the crests do not touch yet.
-        let untouched = psi.is_some_and(|psi| psi <= 0.0);
-        let stiffness = match psi {
+        let strips = match self.wave.branch(ratio) {
+            Branch::PulledOff => return Err(self.pulled_off(force)),
+            Branch::Partial(strips) => Some(strips),
+            Branch::Full => None,
+        };
+        let nondimensional = self.nondimensional;
+        let stiffness = match strips {
             _ if !self.outputs.needs_stiffness() => None,
-            _ if untouched => Some(0.0),
-            Some(psi) => Some(self.wave.stiffness(psi) * nominal),
-            None => {
-                let name = "mean pressure (full contact has no finite stiffness)".into();
-                let max = self.wave.snap_in().map_or(self.wave.full, |turn| turn.1);
-                return Err(Error::OutOfRange { name, value: pressure, min: f64::NEG_INFINITY, max });
-            }
+            Some(strips) => Some(nondimensional.stiffness(self.full / strips.less_log())?),
+            None => return Err(self.no_stiffness(force)),
         };
-        let gap = match psi {
-            Some(_) if untouched => self.wave.amplitude,
-            Some(psi) => self.wave.mean_gap(psi),
-            None => 0.0,
-        };
-        let area = nominal * psi.map_or(1.0, |psi| psi / FRAC_PI_2);
+        let gap = strips.map_or(0.0, |strips| strips.gap(self.wave.alpha));
+        let gap = self.outputs.mean_gap.then(|| gap_in(nondimensional, gap)).transpose()?;
+        let fraction = strips.map_or(1.0, Strips::fraction);
+        let area = self.outputs.area.then(|| nondimensional.area(fraction)).transpose()?;
         let mut report = SolveReport::exact("closed form (Johnson)");
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
         ContactState::new(force, report)
-            .with_mean_gap(self.outputs.mean_gap.then_some(gap))
+            .with_mean_gap(gap)
             .with_stiffness(stiffness)
-            .with_area(self.outputs.area.then_some(area))
+            .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }
 }
@@ -231,19 +373,37 @@ impl PreparedContact for Prepared {
 mod tests {
     use super::*;
     use crate::Westergaard;
-    use approx::assert_relative_eq;
-    use contact_model::{Boundary, Surface};
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use contact_model::{Boundary, Size, Surface};
 
-    /// Step of differences, relative; their error is its square.
+    /// Step of differences.
     const STEP: f64 = 1e-5;
+    /// Square of that step, times derivatives of up to a hundred.
+    const DIFFERENCES: f64 = 1e-8;
+    /// A root and a handful of products.
+    const ROUNDING: f64 = 1e-13;
+    /// Rounding of a force over its distance from full contact, at most a fiftieth of p*, or from a limit.
+    const CONDITIONED: f64 = 1e-12;
+    /// Far more than the rounding at which a load still counts as that of a limit.
+    const BEYOND: f64 = 1e-9;
+    /// Half the digits: what is left of psi at an extremum of the pressure.
+    const AT_EXTREMUM: f64 = 1e-6;
 
     fn scene(work: f64) -> Scene {
-        let surface = Surface::Sine { amplitude: 0.01, wavelength: 0.5, size: [1.0, 2.0].into() };
-        let mut scene = Scene::new(surface, 3.0);
+        wave_scene(0.01, 0.5, [1.0, 2.0].into(), (3.0, work))
+    }
+
+    fn wave_scene(amplitude: f64, wavelength: f64, size: Size, (modulus, work): (f64, f64)) -> Scene {
+        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size }, modulus);
         scene.effects.boundary = Boundary::Periodic;
         scene.effects.adhesion = Adhesion::ShortRange { work };
         (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
         scene
+    }
+
+    /// D = w = E* = 1 and the work of this alpha: p* is pi.
+    fn with_alpha(alpha: f64) -> WavyContact {
+        WavyContact::new(1.0, 1.0, 1.0, 0.5 * (PI * alpha).powi(2)).unwrap()
     }
 
     #[test]
@@ -252,14 +412,28 @@ mod tests {
         elastic.effects.adhesion = Adhesion::Off;
         let mut expected = Westergaard.prepare(&elastic, 0).unwrap();
         let mut found = AdhesiveWave.prepare(&scene(0.0), 0).unwrap();
-        for share in [1e-6, 0.1, 0.5, 0.99] {
-            let load = Load::Force(share * 2.0 * PI * 3.0 * 0.02);
+        let full = 2.0 * PI * 3.0 * 0.02;
+        for share in [1e-300, 1e-6, 0.1, 0.5, 0.99] {
+            let load = Load::Force(share * full);
             let (a, b) = (found.solve(load).unwrap(), expected.solve(load).unwrap());
             for (a, b) in [(a.area, b.area), (a.mean_gap, b.mean_gap), (a.stiffness, b.stiffness)] {
-                assert_relative_eq!(a.unwrap(), b.unwrap(), max_relative = 1e-12);
+                assert_relative_eq!(a.unwrap(), b.unwrap(), max_relative = ROUNDING, epsilon = 0.0);
             }
         }
-        assert_relative_eq!(found.solve(Load::Force(0.0)).unwrap().mean_gap.unwrap(), 0.01);
+        let apart = found.solve(Load::Force(0.0)).unwrap();
+        assert_eq!((apart.area, apart.mean_gap, apart.stiffness), (Some(0.0), Some(0.01), Some(0.0)));
+        // p* itself is full contact, which has no finite stiffness.
+        let error = found.solve(Load::Force(full)).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { value, max, .. }
+            if value.to_bits() == full.to_bits() && (max / full - 1.0).abs() < ROUNDING));
+        let mut silent = scene(0.0);
+        silent.outputs.stiffness = false;
+        let state = AdhesiveWave.prepare(&silent, 0).unwrap().solve(Load::Force(full)).unwrap();
+        assert_relative_eq!(state.area.unwrap(), 2.0, max_relative = ROUNDING);
+        assert_eq!((state.mean_gap, state.stiffness), (Some(0.0), None));
+        // Nothing holds the surfaces.
+        let error = found.solve(Load::Force(-1e-300)).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { min: 0.0, .. }), "{error}");
     }
 
     /// The stress intensity of the bonded strips and their compliance release the same energy.
@@ -267,68 +441,297 @@ mod tests {
     fn the_compliance_releases_the_work() {
         let wave = WavyContact::new(0.02, 0.7, 2.0, 3e-4).unwrap();
         for psi in [0.2_f64, 0.7, 1.3] {
-            let tension = wave.full * wave.alpha * psi.tan().sqrt();
-            let compliance = |psi: f64| 1.0 / wave.stiffness(psi);
+            let tension = PI * 2.0 * 0.02 / 0.7 * wave.alpha() * psi.tan().sqrt();
+            let compliance = |psi: f64| 1.0 / wave.stiffness(psi).unwrap();
             let by_psi = (compliance(psi + STEP) - compliance(psi - STEP)) / (2.0 * STEP);
             // Energy per nominal area, over the change of the area fraction 2 psi/pi.
-            assert_relative_eq!(-0.5 * tension * tension * by_psi * FRAC_PI_2, 3e-4, max_relative = 1e-8);
+            assert_relative_eq!(
+                -0.5 * tension * tension * by_psi * FRAC_PI_2,
+                3e-4,
+                max_relative = DIFFERENCES
+            );
         }
     }
 
-    /// Along the curve the work of the mean pressure is the change of the energy: its second derivatives agree (Maxwell).
+    /// At fixed psi the bonded contact is linear with its stiffness, so that p and the gap follow from the
+    /// same strips.
     #[test]
     fn pressure_and_gap_belong_to_one_energy() {
-        // At fixed psi the bonded contact is linear with its stiffness, so that p and the gap follow from the same strips.
         let wave = WavyContact::new(0.02, 0.7, 2.0, 3e-4).unwrap();
         let elastic = WavyContact::new(0.02, 0.7, 2.0, 0.0).unwrap();
         for psi in [0.3, 0.9, 1.4] {
-            let (pressure, gap) =
-                (wave.pressure(psi) - elastic.pressure(psi), wave.mean_gap(psi) - elastic.mean_gap(psi));
-            assert_relative_eq!(-pressure / gap, wave.stiffness(psi), max_relative = 1e-12);
+            let pressure = wave.pressure(psi).unwrap() - elastic.pressure(psi).unwrap();
+            let gap = wave.mean_gap(psi).unwrap() - elastic.mean_gap(psi).unwrap();
+            assert_relative_eq!(-pressure / gap, wave.stiffness(psi).unwrap(), max_relative = ROUNDING);
         }
     }
 
     #[test]
-    fn turns_of_the_pressure() {
-        // Johnson: zero mean pressure closes the surfaces from alpha = 0.57 on.
-        let at = |alpha: f64| WavyContact { amplitude: 1.0, full: 1.0, alpha };
-        assert!(at(0.56).snap_in().unwrap().1 > 0.0 && at(0.58).snap_in().unwrap().1 < 0.0);
-        let wave = at(0.3);
-        for (psi, pressure) in [wave.pull_off().unwrap(), wave.snap_in().unwrap()] {
-            let slope = (wave.pressure(psi + STEP) - wave.pressure(psi - STEP)) / (2.0 * STEP);
-            assert!(slope.abs() < 1e-8, "{slope}");
-            assert_relative_eq!(wave.pressure(psi), pressure);
-        }
-        let critical = WavyContact::CRITICAL;
-        assert!(at(critical * (1.0 - 1e-6)).pull_off().is_some());
-        assert!(at(critical * (1.0 + 1e-6)).pull_off().is_none());
-        assert_eq!(at(2.0).stable(0.0), Ok(None));
+    fn johnsons_numbers() {
+        /// Ten times the square of the pi a/w of a strip, 1e-3.
+        const NARROW: f64 = 1e-4;
+        // Zero mean pressure closes the surfaces from alpha = 0.57 on.
+        let snap_in = |alpha: f64| with_alpha(alpha).snap_in().unwrap().unwrap().1;
+        assert!(snap_in(0.56) > 0.0 && snap_in(0.58) < 0.0);
+        assert_relative_eq!(with_alpha(0.3).alpha(), 0.3, max_relative = ROUNDING);
+        assert!(with_alpha(WavyContact::CRITICAL * (1.0 - AT_EXTREMUM)).pull_off().unwrap().is_some());
+        assert!(with_alpha(WavyContact::CRITICAL * (1.0 + AT_EXTREMUM)).pull_off().unwrap().is_none());
+        assert_eq!(with_alpha(2.0).stable(0.0), Ok(None));
         // Narrow strips are cylinders of radius w^2/(4 pi^2 D): p w = pi E* a^2/(4 R) - sqrt(2 pi a E* work).
         let (amplitude, wavelength, modulus, work) = (1e-3, 1.0, 2.0, 1e-12);
         let narrow = WavyContact::new(amplitude, wavelength, modulus, work).unwrap();
         let a = 1e-3;
         let radius = wavelength * wavelength / (4.0 * PI * PI * amplitude);
         let line = PI * modulus * a * a / (4.0 * radius) - (2.0 * PI * a * modulus * work).sqrt();
-        assert_relative_eq!(narrow.pressure(PI * a / wavelength) * wavelength, line, max_relative = 1e-4);
+        assert_relative_eq!(
+            narrow.pressure(PI * a / wavelength).unwrap() * wavelength,
+            line,
+            max_relative = NARROW
+        );
+    }
+
+    /// `(work, force, [area, mean gap, stiffness])` of the scene above in 60-digit arithmetic.
+    const STATES: [(f64, f64, [f64; 3]); 7] = [
+        (1e-4, -0.018, [0.213_616_796_913_213_2, 0.011_430_312_680_253_597, 10.531_467_840_359_56]),
+        (1e-4, 0.0, [0.427_509_719_016_673_95, 0.008_914_351_035_199_496, 16.978_467_964_163_21]),
+        (1e-4, 0.2, [1.385_006_507_387_766_3, 0.000_868_085_767_159_878_2, 155.151_462_787_479_9]),
+        (1e-6, -1e-4, [0.085_475_106_933_934_8, 0.009_969_334_354_250_855, 6.976_547_638_641_496]),
+        (1e-6, 0.3, [1.446_701_269_826_199_3, 0.000_219_920_653_759_357_5, 193.226_343_161_815_3]),
+        (1e-8, 0.35, [1.663_942_636_582_675, 2.619_747_415_918_501e-5, 534.830_977_925_329_3]),
+        (1e-12, 0.37, [1.826_306_257_122_849, 1.730_211_869_638_499_6e-6, 2_019.441_835_514_922]),
+    ];
+
+    #[test]
+    fn states_are_those_of_long_arithmetic() {
+        for (work, force, [area, gap, stiffness]) in STATES {
+            let state = AdhesiveWave.prepare(&scene(work), 0).unwrap().solve(Load::Force(force)).unwrap();
+            assert_relative_eq!(state.area.unwrap(), area, max_relative = CONDITIONED);
+            assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = CONDITIONED);
+            assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = CONDITIONED);
+        }
     }
 
     #[test]
-    fn the_stable_branch_and_its_ends() {
+    fn states_at_the_snap_in_keep_their_digits() {
+        // Mean gap over D and stiffness times w/E* at the snap-in of alpha = 1e-6, in 60-digit arithmetic.
+        let (gap, stiffness) = (1.230_037_430_271_653_4e-10, 600_890.541_755_351_2);
+        let work = 0.5 * (PI * 1e-6_f64).powi(2);
+        let mut contact = AdhesiveWave.prepare(&wave_scene(1.0, 1.0, 1.0.into(), (1.0, work)), 0).unwrap();
+        let snap_in = with_alpha(1e-6).snap_in().unwrap().unwrap().1;
+        let state = contact.solve(Load::Force(snap_in)).unwrap();
+        assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = ROUNDING, epsilon = 0.0);
+        assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = ROUNDING, epsilon = 0.0);
+    }
+
+    #[test]
+    fn the_stable_branch_between_its_limits() {
         let wave = WavyContact::new(0.01, 0.5, 3.0, 1e-4).unwrap();
-        let (first, last) = (wave.pull_off().unwrap(), wave.snap_in().unwrap());
-        for share in [0.0, 0.3, 0.9] {
+        let [first, last] = [wave.pull_off(), wave.snap_in()].map(|limit| limit.unwrap().unwrap());
+        for share in [0.0, 0.3, 0.9, 1.0] {
             let pressure = first.1 + share * (last.1 - first.1);
             let psi = wave.stable(pressure).unwrap().unwrap();
             assert!((first.0..=last.0).contains(&psi));
-            assert_relative_eq!(wave.pressure(psi), pressure, max_relative = 1e-9, epsilon = 1e-12);
+            assert_abs_diff_eq!(wave.pressure(psi).unwrap(), pressure, epsilon = ROUNDING * last.1);
         }
-        assert_eq!(wave.stable(last.1), Ok(None));
-        assert!(matches!(wave.stable(1.01 * first.1), Err(Error::OutOfRange { .. })));
+        assert_eq!(wave.stable(1.01 * last.1), Ok(None));
+        assert!(matches!(wave.stable(1.01 * first.1), Err(Error::OutOfRange { min, .. })
+            if min.to_bits() == first.1.to_bits()));
         let mut contact = AdhesiveWave.prepare(&scene(1e-4), 0).unwrap();
         let pulled = contact.solve(Load::Force(0.9 * 2.0 * first.1)).unwrap();
         assert!(pulled.area.unwrap() > 0.0 && pulled.stiffness.unwrap() > 0.0);
-        assert!(contact.solve(Load::Force(2.1 * first.1)).is_err());
         assert!(contact.solve(Load::MeanGap(0.005)).is_err());
+    }
+
+    /// Waves of all kinds of roundings, of alpha from 0.02 to 0.7.
+    fn waves() -> impl Iterator<Item = (WavyContact, Size, Scene)> {
+        (0..200).map(|i| {
+            let i = f64::from(i);
+            let (amplitude, wavelength, modulus) = (0.011 + 1e-4 * i, 0.31 + 0.0013 * i, 1.7 + 0.03 * i);
+            let size = Size { x: 3.0 * wavelength, y: 0.73 + 0.01 * i };
+            let work = 1e-6 * (1.0 + 0.2 * i * i);
+            let wave = WavyContact::new(amplitude, wavelength, modulus, work).unwrap();
+            (wave, size, wave_scene(amplitude, wavelength, size, (modulus, work)))
+        })
+    }
+
+    /// The number itself, its neighbours, and itself after a multiplication and a division that are rounded.
+    fn around(limit: f64) -> [f64; 4] {
+        [limit, limit.next_down(), limit.next_up(), limit / 3.0 * 3.0]
+    }
+
+    #[test]
+    fn a_load_at_a_limit_is_the_state_there() {
+        for (wave, size, scene) in waves() {
+            let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
+            for (psi, pressure) in [wave.pull_off(), wave.snap_in()].map(|limit| limit.unwrap().unwrap()) {
+                for pressure in around(pressure) {
+                    let found = wave.stable(pressure).unwrap().unwrap();
+                    assert_relative_eq!(found, psi, max_relative = AT_EXTREMUM);
+                }
+                for force in around(pressure * (size.x * size.y)) {
+                    let state = contact.solve(Load::Force(force)).unwrap();
+                    let fraction = state.area.unwrap() / (size.x * size.y);
+                    assert_relative_eq!(fraction * FRAC_PI_2, psi, max_relative = AT_EXTREMUM);
+                    assert_eq!(state.force.to_bits(), force.to_bits());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_load_of_full_contact_closes_the_gap() {
+        for (_, size, mut scene) in waves() {
+            scene.effects.adhesion = Adhesion::ShortRange { work: 0.0 };
+            scene.outputs.stiffness = false;
+            let Surface::Sine { amplitude, wavelength, .. } = scene.surface else { panic!("no wave") };
+            let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
+            for force in around(PI * scene.modulus * amplitude / wavelength * (size.x * size.y)) {
+                let state = contact.solve(Load::Force(force)).unwrap();
+                assert_eq!(state.mean_gap, Some(0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn errors_are_in_what_was_asked() {
+        for (wave, size, mut scene) in waves() {
+            let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
+            let [first, last] =
+                [wave.pull_off(), wave.snap_in()].map(|limit| limit.unwrap().unwrap().1 * (size.x * size.y));
+            let beyond = first * (1.0 + BEYOND);
+            let error = contact.solve(Load::Force(beyond)).unwrap_err();
+            assert!(error.to_string().starts_with("force (the contact pulls off"), "{error}");
+            let Error::OutOfRange { value, min, max, .. } = error else { panic!("{error}") };
+            assert_eq!((value.to_bits(), max), (beyond.to_bits(), f64::INFINITY));
+            assert_relative_eq!(min, first, max_relative = ROUNDING);
+            // The smallest force that the error names is one.
+            assert!(contact.solve(Load::Force(min)).is_ok());
+            let beyond = last + BEYOND * last.abs();
+            let error = contact.solve(Load::Force(beyond)).unwrap_err();
+            assert!(error.to_string().starts_with("force (full contact"), "{error}");
+            let Error::OutOfRange { value, min, max, .. } = error else { panic!("{error}") };
+            assert_eq!(value.to_bits(), beyond.to_bits());
+            assert_relative_eq!(min, first, max_relative = ROUNDING);
+            assert_relative_eq!(max, last, max_relative = ROUNDING);
+            assert!(contact.solve(Load::Force(max)).is_ok());
+            scene.outputs.stiffness = false;
+            let state = AdhesiveWave.prepare(&scene, 0).unwrap().solve(Load::Force(beyond)).unwrap();
+            assert_eq!(state.mean_gap, Some(0.0));
+            assert_relative_eq!(state.area.unwrap(), size.x * size.y, max_relative = ROUNDING);
+        }
+        // Where only full contact is stable no force has a stiffness.
+        let mut closed = AdhesiveWave.prepare(&scene(0.1), 0).unwrap();
+        let error = closed.solve(Load::Force(0.0)).unwrap_err();
+        assert!(error.to_string().starts_with("alpha (beyond the range"), "{error}");
+    }
+
+    #[test]
+    fn numbers_that_make_no_sense() {
+        let wave = WavyContact::new(0.01, 0.5, 3.0, 1e-4).unwrap();
+        for psi in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -5e-324, FRAC_PI_2.next_up(), 2.0] {
+            for outcome in [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness(psi)] {
+                assert!(matches!(outcome, Err(Error::Domain { name, .. }) if name == "psi"));
+            }
+        }
+        for psi in [0.0, -0.0] {
+            let state = [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness(psi)];
+            assert_eq!(state, [Ok(0.0), Ok(0.01), Ok(0.0)]);
+        }
+        for psi in [5e-324, 1e-310, 1e-200, 1e-100, FRAC_PI_2.next_down(), FRAC_PI_2] {
+            let state = [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness(psi)].map(Result::unwrap);
+            assert!(state.iter().all(|value| value.is_finite()) && state[0] < 0.0 && state[1] > 0.0);
+            assert!(state[2] > 0.0, "{psi:e}");
+        }
+        for pressure in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(matches!(wave.stable(pressure), Err(Error::Domain { .. })));
+        }
+        for pressure in [0.0, -0.0, 5e-324, -5e-324] {
+            assert_eq!(wave.stable(pressure).unwrap(), wave.stable(0.0).unwrap());
+        }
+        assert_eq!(wave.stable(f64::MAX), Ok(None));
+        assert!(matches!(wave.stable(f64::MIN), Err(Error::OutOfRange { .. })));
+        let mut contact = AdhesiveWave.prepare(&scene(1e-4), 0).unwrap();
+        for force in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(matches!(contact.solve(Load::Force(force)), Err(Error::Domain { .. })));
+        }
+        assert!(matches!(contact.solve(Load::Force(f64::MIN)), Err(Error::OutOfRange { .. })));
+    }
+
+    /// In units of any length the same contact, where an `f64` holds what is asked.
+    #[test]
+    fn one_contact_in_any_units() {
+        let solved = |length: f64, (modulus, area): (f64, bool), force: f64| {
+            let size = Size { x: length, y: 2.0 * length };
+            let work = 1e-4 * (modulus * length);
+            let mut scene = wave_scene(0.01 * length, 0.5 * length, size, (modulus, work));
+            scene.outputs.area = area;
+            AdhesiveWave.prepare(&scene, 0).unwrap().solve(Load::Force(force))
+        };
+        let one = solved(1.0, (1.0, true), 0.0).unwrap();
+        let pulled = solved(1.0, (1.0, true), -0.01).unwrap();
+        for length in [1e-200_f64, 1e160, 1e200] {
+            let modulus = length.recip();
+            let state = solved(length, (modulus, false), 0.0).unwrap();
+            assert_relative_eq!(
+                state.mean_gap.unwrap() / length,
+                one.mean_gap.unwrap(),
+                max_relative = ROUNDING
+            );
+            assert_relative_eq!(state.stiffness.unwrap(), one.stiffness.unwrap(), max_relative = ROUNDING);
+            // E* L^2 is L.
+            let state = solved(length, (modulus, false), -0.01 * length).unwrap();
+            assert_relative_eq!(state.stiffness.unwrap(), pulled.stiffness.unwrap(), max_relative = ROUNDING);
+            // An area of 1e-400 or 1e320 is no number.
+            let error = solved(length, (modulus, true), 0.0).unwrap_err();
+            assert!(error.to_string().starts_with("area ="), "{error}");
+        }
+        // Sides whose product is a number, though not their ratio's square.
+        let size = Size { x: 1e-160, y: 1e160 };
+        let mut thin = AdhesiveWave.prepare(&wave_scene(1e-162, 0.5e-160, size, (1.0, 1e-164)), 0).unwrap();
+        let state = thin.solve(Load::Force(0.0)).unwrap();
+        assert_relative_eq!(state.area.unwrap(), 0.5 * one.area.unwrap(), max_relative = ROUNDING);
+        // Parts of alpha that are no numbers: work over E* is 1e-400, and E* D is 1e350.
+        let wave = WavyContact::new(1e-150, 1e-150, 1e200, 1e-200).unwrap();
+        assert_relative_eq!(wave.alpha(), SQRT_2 / PI * 1e-125, max_relative = ROUNDING, epsilon = 0.0);
+        let wave = WavyContact::new(1e150, 1e152, 1e200, 1e300).unwrap();
+        assert_relative_eq!(wave.alpha(), SQRT_2 / PI * 1e-24, max_relative = ROUNDING, epsilon = 0.0);
+    }
+
+    /// Any outcome at any mixture of magnitudes is a finite state or an error about a number.
+    #[test]
+    fn extreme_magnitudes() {
+        const MAGNITUDES: [f64; 9] = [5e-324, 1e-300, 1e-200, 1e-160, 1.0, 1e160, 1e200, 1e300, f64::MAX];
+        let mut solved = 0;
+        for (i, length) in MAGNITUDES.into_iter().enumerate() {
+            for y in MAGNITUDES {
+                for modulus in MAGNITUDES {
+                    for work in MAGNITUDES.into_iter().chain([0.0]) {
+                        let amplitude = if i % 2 == 0 { 0.01 * length } else { 1e-9 * length };
+                        let size = Size { x: length, y };
+                        let mut scene = wave_scene(amplitude, 0.5 * length, size, (modulus, work));
+                        for (area, stiffness) in [(true, true), (false, true), (true, false)] {
+                            (scene.outputs.area, scene.outputs.stiffness) = (area, stiffness);
+                            let Ok(mut contact) = AdhesiveWave.prepare(&scene, 0) else { continue };
+                            for force in [0.0, -1e-300, 1e-300, 1e-20, 1.0, -1.0, 1e300] {
+                                match contact.solve(Load::Force(force)) {
+                                    Ok(state) => {
+                                        let values = [state.area, state.mean_gap, state.stiffness];
+                                        let sensible = |value: &f64| value.is_finite() && *value >= 0.0;
+                                        assert!(values.iter().flatten().all(sensible), "{scene:?} {state:?}");
+                                        solved += 1;
+                                    }
+                                    Err(Error::Domain { value, .. } | Error::OutOfRange { value, .. }) => {
+                                        assert!(!value.is_nan());
+                                    }
+                                    Err(other) => panic!("{other}"),
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        assert!(solved > 1000, "{solved}");
     }
 
     #[test]
@@ -339,11 +742,22 @@ mod tests {
         assert!(AdhesiveWave.prepare(&scene(f64::NAN), 0).is_err());
         let flat = Surface::Flat { size: 1.0.into() };
         assert!(AdhesiveWave.prepare(&Scene { surface: flat, ..scene(1e-4) }, 0).is_err());
-        for values in
-            [[0.0, 1.0, 1.0, 0.0], [1.0, f64::NAN, 1.0, 0.0], [1.0, 1.0, -1.0, 0.0], [1.0, 1.0, 1.0, -1.0]]
-        {
+        for values in [
+            [0.0, 1.0, 1.0, 0.0],
+            [1e-310, 1.0, 1.0, 0.0],
+            [1.0, f64::NAN, 1.0, 0.0],
+            [1.0, 1.0, -1.0, 0.0],
+            [1.0, 1.0, f64::INFINITY, 0.0],
+            [1.0, 1.0, 1.0, -1.0],
+            [1.0, 1.0, 1.0, f64::INFINITY],
+            // D/w, p* and alpha^2 that no f64 holds.
+            [1e-200, 1e200, 1.0, 0.0],
+            [1e200, 1.0, 1e200, 0.0],
+            [1e100, 1.0, 1e100, 1e-200],
+        ] {
             let [amplitude, wavelength, modulus, work] = values;
-            assert!(WavyContact::new(amplitude, wavelength, modulus, work).is_err());
+            let outcome = WavyContact::new(amplitude, wavelength, modulus, work);
+            assert!(matches!(outcome, Err(Error::Domain { .. })), "{values:?}");
         }
     }
 }

@@ -13,18 +13,21 @@ use std::f64::consts::PI;
 
 const NAME: &str = "maugis_dugdale";
 
-/// The contact of a sphere with [`Adhesion::FiniteRange`] of [`AdhesionLaw::Dugdale`]: traction `s0 = work/range`
-/// wherever the gap is below the range, that is between the contact radius a and the radius c of the cohesive zone.
+/// The contact of a sphere with [`Adhesion::FiniteRange`] of [`AdhesionLaw::Dugdale`]: traction
+/// `s0 = work/range` wherever the gap is below the range, that is between the contact radius a and the radius
+/// c of the cohesive zone.
 ///
-/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be negative,
-/// and no load means the adhered contact. A force below that of the pull-off (between `-2 pi w R` of a hard sphere
-/// and `-3/2 pi w R` of a soft one) is [`Error::OutOfRange`], and so is an approach below the smallest of a stable
-/// contact. Hard spheres (lambda below 0.938) come down to a contact of radius 0 there; what attracts them beyond it,
-/// without contact, is not part of this model. A cohesive zone beyond half the shorter side is out of range too.
+/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be
+/// negative, and no load means the adhered contact. A force below that of the pull-off (between `-2 pi w R`
+/// of a hard sphere and `-3/2 pi w R` of a soft one) is [`Error::OutOfRange`], and so is an approach below
+/// the smallest of a stable contact. Hard spheres (lambda below 0.938) come down to a contact of radius 0
+/// there; what attracts them beyond it, without contact, is not part of this model. A cohesive zone beyond
+/// half the shorter side is out of range too.
 ///
-/// The stiffness is that of the contact set, `k = 2 E* a`, as in [`crate::Jkr`]: a and c held, the attraction is
-/// constant. The slope of the equilibrium curve, where both move, is [`MaugisSphere::slope`]. Takes
-/// [`Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs one to two microseconds.
+/// The stiffness is that of the contact set, `k = 2 E* a`, as in [`crate::Jkr`]: a and c held, the attraction
+/// is constant. The slope of the equilibrium curve, where both move, is [`MaugisSphere::slope`]. Takes
+/// [`Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs one to two
+/// microseconds.
 ///
 /// ```
 /// use analytic::MaugisDugdale;
@@ -74,8 +77,8 @@ impl ContactModel for MaugisDugdale {
     }
 }
 
-/// A sphere with Dugdale's law of adhesion, outside the common trait: the equilibrium curve through its contact
-/// radius, and where it ends.
+/// A sphere with Dugdale's law of adhesion, outside the common trait: the equilibrium curve through its
+/// contact radius, and where it ends.
 ///
 /// ```
 /// use analytic::maugis_dugdale::MaugisSphere;
@@ -102,24 +105,28 @@ pub struct MaugisSphere {
 }
 
 impl MaugisSphere {
-    /// lambda for which the curve is tested. Far beyond 1 it is that of JKR but for `0.3/lambda^2` of forces, radii and approaches;
-    /// far below 1 the pull-off force is `2 - 1.72 lambda^(3/2)` times `pi w R`, and at 0 that of DMT.
+    /// lambda for which the curve is tested. Far beyond 1 it is that of JKR but for `0.3/lambda^2` of forces,
+    /// radii and approaches; far below 1 the pull-off force is `2 - 1.72 lambda^(3/2)` times `pi w R`, and at
+    /// 0 that of DMT.
     pub const LAMBDA: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-    /// Radius of curvature R > 0, modulus E* > 0, work of adhesion w > 0 (energy per area), range > 0 (a length).
+    /// Radius of curvature R > 0, modulus E* > 0, work of adhesion w > 0 (energy per area), range > 0 (a
+    /// length).
     ///
     /// # Errors
     /// [`Error::Domain`] for a number that makes no sense, numbers that no `f64` holds, or a lambda outside
     /// [`MaugisSphere::LAMBDA`].
     pub fn new(radius: f64, modulus: f64, work: f64, range: f64) -> Result<Self> {
         let nondimensional = Nondimensionalisation::new(modulus, radius, radius)?;
-        let scaled = work / modulus / radius;
-        if !(scaled.is_finite() && scaled > 0.0) {
+        // A balanced product: work over E* alone may be out of the range of f64.
+        let scaled = Nondimensionalisation::new(modulus, radius, 1.0)?.force_in(work.max(0.0));
+        if !(work.is_finite() && scaled.is_normal()) {
             let expected = "a finite number > 0, within the range of f64 over E* R";
             return Err(Error::domain("work of adhesion", work, expected));
         }
-        if !(range.is_finite() && range > 0.0) {
-            return Err(Error::domain("range of adhesion", range, "a finite number > 0"));
+        if !(range > 0.0 && (range / radius).is_normal()) {
+            let expected = "a finite number > 0, within the range of f64 over R";
+            return Err(Error::domain("range of adhesion", range, expected));
         }
         let lambda = 2.0 * (9.0 / (16.0 * PI) * scaled).cbrt() * (scaled.cbrt() / (range / radius));
         if !Self::LAMBDA.contains(&lambda) {
@@ -137,8 +144,8 @@ impl MaugisSphere {
         })
     }
 
-    /// Maugis's parameter `lambda = 2 s0 (R/(pi w K^2))^(1/3)` with `s0 = w/range` and `K = 4/3 E*`: 1.1272 times
-    /// Tabor's parameter `(R w^2/(E*^2 range^3))^(1/3)`.
+    /// Maugis's parameter `lambda = 2 s0 (R/(pi w K^2))^(1/3)` with `s0 = w/range` and `K = 4/3 E*`: 1.1272
+    /// times Tabor's parameter `(R w^2/(E*^2 range^3))^(1/3)`.
     pub fn lambda(&self) -> f64 {
         self.curve.lambda
     }
@@ -159,7 +166,8 @@ impl MaugisSphere {
         self.approach_of(&self.point(contact_radius)?)
     }
 
-    /// Outer radius c of the cohesive zone, where the gap is the range, at a contact radius a, which may be 0.
+    /// Outer radius c of the cohesive zone, where the gap is the range, at a contact radius a, which may be
+    /// 0.
     ///
     /// # Errors
     /// As [`MaugisSphere::force`].
@@ -167,14 +175,16 @@ impl MaugisSphere {
         self.nondimensional.approach(self.unit * self.point(contact_radius)?.c)
     }
 
-    /// `dF/dd` along the equilibrium curve, on which a and c both move: positive where a prescribed force holds the
-    /// contact, negative where only a prescribed approach does. Without adhesion it would be 2 E* a.
+    /// `dF/dd` along the equilibrium curve, on which a and c both move: positive where a prescribed force
+    /// holds the contact, negative where only a prescribed approach does. Without adhesion it would be 2 E*
+    /// a.
     ///
-    /// It is `(dF/da)/(dd/da)`, each with the derivative of c that the implicit equation between a and c gives.
+    /// It is `(dF/da)/(dd/da)`, each with the derivative of c that the implicit equation between a and c
+    /// gives.
     ///
     /// # Errors
-    /// As [`MaugisSphere::force`], and [`Error::Domain`] for a radius at or below that of the pull-off under prescribed
-    /// approach where that is not 0: the slope has no bound there.
+    /// As [`MaugisSphere::force`], and [`Error::Domain`] for a radius at or below that of the pull-off under
+    /// prescribed approach where that is not 0: the slope has no bound there.
     pub fn slope(&self, contact_radius: f64) -> Result<f64> {
         let (force, approach) = self.point(contact_radius)?.rates(self.curve.lambda);
         if approach > 0.0 {
@@ -188,8 +198,8 @@ impl MaugisSphere {
     /// Contact radius at a force, on the branch that is stable under a prescribed force.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a force that is not finite or a state that no `f64` holds, [`Error::OutOfRange`] below
-    /// the pull-off force.
+    /// [`Error::Domain`] for a force that is not finite or a state that no `f64` holds, [`Error::OutOfRange`]
+    /// below the pull-off force.
     pub fn radius_at_force(&self, force: f64) -> Result<f64> {
         self.radius_of(&self.at_force(force)?)
     }
@@ -197,8 +207,8 @@ impl MaugisSphere {
     /// Contact radius at an approach, on the branch that is stable under a prescribed approach.
     ///
     /// # Errors
-    /// [`Error::Domain`] for an approach that is not finite or a state that no `f64` holds, [`Error::OutOfRange`]
-    /// below that of [`MaugisSphere::pull_off_at_approach`].
+    /// [`Error::Domain`] for an approach that is not finite or a state that no `f64` holds,
+    /// [`Error::OutOfRange`] below that of [`MaugisSphere::pull_off_at_approach`].
     pub fn radius_at_approach(&self, approach: f64) -> Result<f64> {
         self.radius_of(&self.at_approach(approach)?)
     }
@@ -211,8 +221,8 @@ impl MaugisSphere {
         self.pull_off(&self.curve.at(self.force_fold))
     }
 
-    /// The smallest approach of the curve. Above `lambda = 0.93795` the contact pulls off there; below it the contact
-    /// radius is 0 there, and bodies that are drawn further apart attract each other without contact.
+    /// The smallest approach of the curve. Above `lambda = 0.93795` the contact pulls off there; below it the
+    /// contact radius is 0 there, and bodies that are drawn further apart attract each other without contact.
     ///
     /// # Errors
     /// As [`MaugisSphere::pull_off_at_force`].
@@ -256,6 +266,9 @@ impl MaugisSphere {
     }
 
     fn at_force(&self, force: f64) -> Result<Point> {
+        if !force.is_finite() {
+            return Err(Error::domain("force", force, "a finite number"));
+        }
         let wanted = self.nondimensional.force_in(force.abs()).copysign(force) / self.force_unit;
         let lambda = self.curve.lambda;
         let fold = self.curve.at(self.force_fold);
@@ -272,11 +285,14 @@ impl MaugisSphere {
             return Ok(fold);
         }
         self.curve.above(self.force_fold, |point| point.force(lambda) - wanted).ok_or_else(|| {
-            Error::domain("force", force, "a finite number, with a contact radius within the range of f64")
+            Error::domain("force", force, "a force whose contact radius is within the range of f64")
         })
     }
 
     fn at_approach(&self, approach: f64) -> Result<Point> {
+        if !approach.is_finite() {
+            return Err(Error::domain("approach", approach, "a finite number"));
+        }
         let wanted = self.nondimensional.approach_in(approach) / self.unit / self.unit;
         let lambda = self.curve.lambda;
         let end = self.least_approach();
@@ -295,11 +311,7 @@ impl MaugisSphere {
         }
         let from = self.approach_fold.unwrap_or(Curve::MOST);
         self.curve.above(from, |point| point.approach(lambda) - wanted).ok_or_else(|| {
-            Error::domain(
-                "approach",
-                approach,
-                "a finite number, with a contact radius within the range of f64",
-            )
+            Error::domain("approach", approach, "an approach whose contact radius is within the range of f64")
         })
     }
 }
@@ -412,8 +424,8 @@ mod tests {
         }
     }
 
-    /// Without Maugis's units: the displacement of a round contact from its line of springs (Popov, Hess, 2015), where the
-    /// cohesive zone pulls with `2 s0 sqrt(c^2 - x^2)`.
+    /// Without Maugis's units: the displacement of a round contact from its line of springs (Popov, Hess,
+    /// 2015), where the cohesive zone pulls with `2 s0 sqrt(c^2 - x^2)`.
     #[test]
     fn the_gap_at_the_end_of_the_cohesive_zone_is_the_range() {
         let (modulus, radius, work) = (2.0, 3.0, 1e-3);
@@ -489,7 +501,8 @@ mod tests {
         let hertz = AdhesiveSphere::new(1.0, 1.0, 0.0).unwrap();
         for lambda in [10.0, 1e2, 1e3, 1e4, 1e5, 9e5] {
             let sphere = with_lambda(work, lambda);
-            // Measured: 0.26/lambda^2 at most, ten times that of the slope near its zero; and a fold's rounding.
+            // Measured: 0.26/lambda^2 at most, ten times that of the slope near its zero; and a fold's
+            // rounding.
             let near = 0.3 / (lambda * lambda) + 1e-11;
             let (here, there) = (sphere.pull_off_at_force().unwrap(), jkr.pull_off_at_force().unwrap());
             assert_relative_eq!(here.force, there.force, max_relative = near);
@@ -505,12 +518,14 @@ mod tests {
         for lambda in [1e-3, 1e-4, 1e-5, 1.1e-6] {
             let sphere = with_lambda(work, lambda);
             let force_unit = PI * work;
-            // c^2 = 4/(pi lambda) in the condition's second term leaves F = -2 + 16/3 (pi/2 - 1) lambda^(3/2)/sqrt(pi).
+            // c^2 = 4/(pi lambda) in the condition's second term leaves F = -2 + 16/3 (pi/2 - 1)
+            // lambda^(3/2)/sqrt(pi).
             let pull_off = sphere.pull_off_at_force().unwrap().force / force_unit;
             let first = 16.0 / 3.0 * (0.5 * PI - 1.0) / PI.sqrt() * lambda.powf(1.5);
             assert_relative_eq!(pull_off + 2.0, first, max_relative = 2.0 * lambda + 1e-6);
             assert!(sphere.approach_fold.is_none() && sphere.pull_off_at_approach().unwrap().radius <= 0.0);
-            // DMT, and the widening of the cohesive zone, c^2 = 4/(pi lambda) + 2 a^2: a^3 - 2 - pi lambda a^2.
+            // DMT, and the widening of the cohesive zone, c^2 = 4/(pi lambda) + 2 a^2: a^3 - 2 - pi lambda
+            // a^2.
             for a in [0.1, 0.5, 1.0, 5.0] {
                 let attraction = (hertz.force(a * sphere.unit).unwrap()
                     - sphere.force(a * sphere.unit).unwrap())
@@ -567,8 +582,8 @@ mod tests {
                 [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(|p| p.unwrap().radius);
             for scale in [0.1, 0.5, 0.9, 1.0, 1.5, 3.0, 10.0, 1e3] {
                 let a = scale * sphere.unit;
-                // At a fold a root loses half its digits; a tenth away from it the loss is one digit. Far from the end of a hard
-                // sphere the rounding of the constant attraction counts.
+                // At a fold a root loses half its digits; a tenth away from it the loss is one digit. Far
+                // from the end of a hard sphere the rounding of the constant attraction counts.
                 let lost = |ratio: f64| 1e-12 + 1e-14 * ratio;
                 if a > 1.1 * by_force {
                     let back = sphere.radius_at_force(sphere.force(a).unwrap()).unwrap();
@@ -673,5 +688,149 @@ mod tests {
             let stiffness = here.stiffness.unwrap() / (modulus * length);
             assert_relative_eq!(stiffness, one.stiffness.unwrap(), max_relative = ROOTS);
         }
+    }
+
+    /// The number itself, its neighbours, and itself after a multiplication and a division that are rounded.
+    fn around(limit: f64) -> [f64; 4] {
+        [limit, limit.next_down(), limit.next_up(), limit / 3.0 * 3.0]
+    }
+
+    #[test]
+    fn a_load_at_the_pull_off_is_the_state_there() {
+        /// Half the digits: what is left of a radius at an extremum of the load.
+        const AT_EXTREMUM: f64 = 1e-6;
+        /// Far more than the rounding at which a load still counts as that of the pull-off.
+        const BEYOND: f64 = 1e-9;
+        for i in 0..200 {
+            let i = f64::from(i);
+            let (radius, modulus) = (0.31 + 0.0013 * i, 1.7 + 0.01 * i);
+            let (work, range) = (1e-3 * (1.0 + 0.1 * i), 0.003 + 0.0026 * i);
+            let sphere = MaugisSphere::new(radius, modulus, work, range).unwrap();
+            let scene = scene(40.0, (modulus, radius), work, range);
+            let [by_force, by_approach] =
+                [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(Result::unwrap);
+            // Hard spheres come down to a radius of 0: what is left of it is a share of the cohesive zone.
+            let near = AT_EXTREMUM * sphere.cohesive_radius(by_force.radius).unwrap();
+            for force in around(by_force.force) {
+                let found = sphere.radius_at_force(force).unwrap();
+                assert_abs_diff_eq!(found, by_force.radius, epsilon = near);
+                assert!(pressed(&MaugisDugdale, &scene, Load::Force(force)).is_ok());
+            }
+            for approach in around(by_approach.approach) {
+                let found = sphere.radius_at_approach(approach).unwrap();
+                assert_abs_diff_eq!(found, by_approach.radius, epsilon = near);
+                assert!(pressed(&MaugisDugdale, &scene, Load::Approach(approach)).is_ok());
+            }
+            let beyond = by_force.force * (1.0 + BEYOND);
+            let error = pressed(&MaugisDugdale, &scene, Load::Force(beyond)).unwrap_err();
+            assert!(matches!(error, Error::OutOfRange { value, min, .. }
+                if value.to_bits() == beyond.to_bits() && min.to_bits() == by_force.force.to_bits()));
+            let beyond = by_approach.approach * (1.0 + BEYOND);
+            let error = pressed(&MaugisDugdale, &scene, Load::Approach(beyond)).unwrap_err();
+            assert!(matches!(error, Error::OutOfRange { value, min, .. }
+                if value.to_bits() == beyond.to_bits() && min.to_bits() == by_approach.approach.to_bits()));
+        }
+    }
+
+    #[test]
+    fn numbers_that_make_no_sense() {
+        for lambda in [1e-3, 1.0, 1e3] {
+            let sphere = with_lambda(1e-3, lambda);
+            for a in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -5e-324, f64::MAX] {
+                for outcome in
+                    [sphere.force(a), sphere.approach(a), sphere.cohesive_radius(a), sphere.slope(a)]
+                {
+                    assert!(matches!(outcome, Err(Error::Domain { value, .. })
+                        if value.to_bits() == a.to_bits()));
+                }
+            }
+            // Radii from 0 to far below all lengths: one state.
+            for a in [0.0, -0.0, 5e-324, 1e-310, 1e-200] {
+                assert_eq!(sphere.force(a), sphere.force(0.0));
+                assert_eq!(sphere.approach(a), sphere.approach(0.0));
+                assert_eq!(sphere.cohesive_radius(a), sphere.cohesive_radius(0.0));
+                assert_eq!(sphere.slope(a).is_ok(), sphere.approach_fold.is_none());
+            }
+            for load in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                for outcome in [sphere.radius_at_force(load), sphere.radius_at_approach(load)] {
+                    assert!(matches!(outcome, Err(Error::Domain { value, .. })
+                        if value.to_bits() == load.to_bits()));
+                }
+            }
+            for load in [-0.0, 5e-324, -5e-324] {
+                assert_eq!(sphere.radius_at_force(load), sphere.radius_at_force(0.0));
+                assert_eq!(sphere.radius_at_approach(load), sphere.radius_at_approach(0.0));
+            }
+            for outcome in [sphere.radius_at_force(f64::MIN), sphere.radius_at_approach(f64::MIN)] {
+                assert!(matches!(outcome, Err(Error::OutOfRange { value: f64::MIN, .. })));
+            }
+            for outcome in [sphere.radius_at_force(f64::MAX), sphere.radius_at_approach(f64::MAX)] {
+                assert!(matches!(outcome, Err(Error::Domain { value: f64::MAX, .. })));
+            }
+        }
+    }
+
+    /// The product counts, not its parts: work over E* is 1e-400 or 1e310 here.
+    #[test]
+    fn work_over_modulus_may_leave_the_range_of_f64() {
+        for (radius, modulus, work, range, share) in
+            [(1e-100, 1e200, 1e-200, 1e-299, 0.1), (1e304, 1e-155, 1e155, 1e307, 10.0)]
+        {
+            let sphere = MaugisSphere::new(radius, modulus, work, range).unwrap();
+            let lambda = 2.0 * (9.0 / (16.0 * PI)).cbrt() * share;
+            assert_relative_eq!(sphere.lambda(), lambda, max_relative = ROOTS);
+        }
+        // A work over E* R, or a range over R, of few digits.
+        for (work, range) in [(1e-310, 1e-206), (1e-3, 1e-310), (5e-324, 1.0), (f64::INFINITY, 1.0)] {
+            assert!(matches!(MaugisSphere::new(1.0, 1.0, work, range), Err(Error::Domain { .. })));
+        }
+    }
+
+    /// Any outcome at any mixture of magnitudes is a finite state or an error about a number.
+    #[test]
+    fn extreme_magnitudes() {
+        const MAGNITUDES: [f64; 9] = [5e-324, 1e-300, 1e-200, 1e-160, 1.0, 1e160, 1e200, 1e300, f64::MAX];
+        let mut solved = 0;
+        let check = |outcome: Result<f64>| match outcome {
+            Ok(value) => assert!(value.is_finite()),
+            Err(Error::Domain { value, .. } | Error::OutOfRange { value, .. }) => assert!(!value.is_nan()),
+            Err(other) => panic!("{other}"),
+        };
+        for radius in MAGNITUDES {
+            for modulus in MAGNITUDES {
+                for work in MAGNITUDES {
+                    // Ranges of lambda = 1e-4, 1 and 1e4, where a number holds them.
+                    let scaled = work.log10() - modulus.log10() - radius.log10();
+                    for lambda in [-4.0, 0.0, 4.0] {
+                        let range = 10.0_f64.powf(scaled / 1.5 - lambda + radius.log10());
+                        let Ok(sphere) = MaugisSphere::new(radius, modulus, work, range) else { continue };
+                        for value in MAGNITUDES.into_iter().flat_map(|value| [value, -value]).chain([0.0]) {
+                            check(sphere.force(value));
+                            check(sphere.approach(value));
+                            check(sphere.cohesive_radius(value));
+                            check(sphere.slope(value));
+                            check(sphere.radius_at_force(value));
+                            check(sphere.radius_at_approach(value));
+                            let mut scene = scene(20.0 * radius, (modulus, radius), work, range);
+                            for area in [true, false] {
+                                scene.outputs.area = area;
+                                let Ok(mut contact) = MaugisDugdale.prepare(&scene, 0) else { continue };
+                                for load in [Load::Force(value), Load::Approach(value)] {
+                                    match contact.solve(load) {
+                                        Ok(state) => {
+                                            solved += 1;
+                                            let values = [state.approach, state.stiffness, state.area];
+                                            assert!(values.iter().flatten().all(|value| value.is_finite()));
+                                        }
+                                        Err(error) => check(Err(error)),
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        assert!(solved > 1000, "{solved}");
     }
 }

@@ -105,11 +105,15 @@ impl Wave {
 }
 
 /// `1 - r + r ln r` for r in [0, 1], without cancellation near r = 1.
-pub(crate) fn gap_over_amplitude(r: f64) -> f64 {
+fn gap_over_amplitude(r: f64) -> f64 {
+    gap_of_fractions(r, 1.0 - r)
+}
+
+/// `e + r ln r` for r in [0, 1] and `e = 1 - r`, which near r = 1 has digits that r has not.
+pub(crate) fn gap_of_fractions(r: f64, e: f64) -> f64 {
     if r <= 0.0 {
         return 1.0;
     }
-    let e = 1.0 - r;
     if e > 0.1 {
         return e + r * r.ln();
     }

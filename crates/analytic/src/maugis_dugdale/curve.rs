@@ -3,11 +3,12 @@
 use crate::root;
 use std::f64::consts::PI;
 
-/// Equilibrium states of one lambda, in Maugis's units: contact radius in `(pi w R^2/K)^(1/3)`, force in `pi w R`, approach in
-/// `(pi^2 w^2 R/K^2)^(1/3)`.
+/// Equilibrium states of one lambda, in Maugis's units: contact radius in `(pi w R^2/K)^(1/3)`, force in
+/// `pi w R`, approach in `(pi^2 w^2 R/K^2)^(1/3)`.
 ///
-/// The parameter is x = ln s with `s = sqrt(m^2 - 1)`, `m = c/a`, because the condition that the gap at c is the range,
-/// `lambda a^2/2 A(s) + 4/3 lambda^2 a B(s) = 1`, is quadratic in a at a given s. A and B grow with s, and a falls.
+/// The parameter is x = ln s with `s = sqrt(m^2 - 1)`, `m = c/a`, because the condition that the gap at c is
+/// the range, `lambda a^2/2 A(s) + 4/3 lambda^2 a B(s) = 1`, is quadratic in a at a given s. A and B grow
+/// with s, and a falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Curve {
     pub lambda: f64,
@@ -60,8 +61,8 @@ impl Curve {
         self.at(root::between(Self::LEAST, Self::MOST, |x| (self.at(x).a / a).ln()))
     }
 
-    /// The state where a function that is negative at `from` and grows with the contact radius vanishes; `None` beyond
-    /// [`Curve::LEAST`], and for functions without a value.
+    /// The state where a function that is negative at `from` and grows with the contact radius vanishes;
+    /// `None` beyond [`Curve::LEAST`], and for functions without a value.
     pub fn above(self, from: f64, function: impl Fn(&Point) -> f64) -> Option<Point> {
         let (mut low, mut step) = (from, 1.0);
         while low > Self::LEAST {
@@ -89,8 +90,9 @@ impl Point {
 
     /// `(dF/da, dd/da)` along the curve, both over a: they are finite at a = 0.
     ///
-    /// As functions of a and q the terms of the condition are `a^2 A = a q + (q^2 - a^2) theta` and `a B = q theta - c + a`, those
-    /// of the force `a q + c^2 theta`, with `dtheta/da = -q/c^2` and `dtheta/dq = a/c^2`.
+    /// As functions of a and q the terms of the condition are `a^2 A = a q + (q^2 - a^2) theta` and
+    /// `a B = q theta - c + a`, those of the force `a q + c^2 theta`, with `dtheta/da = -q/c^2` and
+    /// `dtheta/dq = a/c^2`.
     pub fn rates(&self, lambda: f64) -> (f64, f64) {
         let Self { a, q, c, theta, rest } = *self;
         let (sine, cosine) = (q / c, a / c);
@@ -106,7 +108,8 @@ impl Point {
     }
 }
 
-/// Below this s the series of `s - atan s` takes the place of the difference, which has lost a tenth of s there.
+/// Below this s the series of `s - atan s` takes the place of the difference, which has lost a tenth of s
+/// there.
 const SERIES: f64 = 0.5;
 
 /// `s - atan s = s^3/3 - s^5/5 + ...`, s >= 0, to rounding.
