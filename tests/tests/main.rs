@@ -21,6 +21,7 @@ mod refusals;
 mod rheology;
 mod rough;
 mod sequences;
+mod short_range;
 mod small_sets;
 mod stability;
 mod symmetry;

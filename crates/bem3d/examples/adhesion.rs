@@ -21,6 +21,7 @@ fn main() -> Result<(), Box<dyn StdError>> {
             sphere(law_of(law)?, mu.parse()?, cells.parse()?, half.parse()?, steps.parse()?)
         }
         ["jkr", cells, off, steps] => jkr(cells.parse()?, off.parse()?, steps.parse()?),
+        ["punch", cells] => punch(cells.parse()?),
         ["heights", cells, hurst, seed, file] => {
             let surface = SelfAffine { hurst: hurst.parse()?, ..SelfAffine::new(2.5, 1.0, 1.0)? };
             let cells = Bem3d { cells: cells.parse()?, ..Bem3d::default() }.grid(surface.size);
@@ -87,6 +88,37 @@ fn jkr(cells: f64, off: f64, steps: usize) -> Result<(), Box<dyn StdError>> {
         "pull-off {lowest:.5} of 1.5 pi w R, {applications} applications, {:.1} s",
         start.elapsed().as_secs_f64()
     );
+    Ok(())
+}
+
+fn punch(cells: usize) -> Result<(), Box<dyn StdError>> {
+    let work = 1e-4f64;
+    let n = 2 * cells + 8;
+    let r = cells as f64;
+    let middle = 0.5 * n as f64 - 0.1;
+    let inside = |i: usize, j: usize| (i as f64 + 0.5 - middle).hypot(j as f64 + 0.5 - middle - 0.2) < r;
+    let map = bem3d::HeightMap::from_fn(n, n as f64 / r, |i, j| if inside(i, j) { 0.0 } else { -1.0 })?;
+    let count = (0..n * n).filter(|k| inside(k % n, k / n)).count() as f64;
+    let a = (count / PI).sqrt() / r;
+    let kendall = (8.0 * PI * work * a.powi(3)).sqrt();
+    let mut scene = Scene::new(Surface::Heights(map.into()), 1.0);
+    scene.outputs.area = true;
+    scene.outputs.stiffness = false;
+    scene.effects.adhesion = Adhesion::ShortRange { work };
+    let mut history =
+        HistoryModel::prepare(&Bem3dPath(Bem3d { tolerance: 1e-6, ..Bem3d::default() }), &scene, 0)?;
+    history.advance(Step::normal(0.0, Load::Approach(0.0)))?;
+    for i in 0..120 {
+        let d = -kendall / (2.0 * a) * (0.5 + 0.005 * f64::from(i));
+        let state = history.advance(Step::normal(f64::from(i), Load::Approach(d)))?.normal;
+        println!(
+            "{:.3} {:.5} {:.5} {}",
+            0.5 + 0.005 * f64::from(i),
+            -state.force / kendall,
+            state.area.unwrap() / (PI * a * a),
+            state.adhesive.unwrap().stability
+        );
+    }
     Ok(())
 }
 

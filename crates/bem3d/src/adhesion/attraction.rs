@@ -71,6 +71,15 @@ impl Attraction {
         self.law.peak * (1.0 + self.neighbours.as_ref().map_or(0.0, |n| n.strength))
     }
 
+    /// Area of a contact, in cells: with a short range the attached shares of all cells, which is where fronts have their elastic tips to a
+    /// tenth of a cell; otherwise the closed cells.
+    pub fn area(&self, closed: &CellSet, gap: &[f64]) -> f64 {
+        match &self.neighbours {
+            Some(_) => gap.iter().map(|&g| self.law.attached(g)).sum(),
+            None => closed.len() as f64,
+        }
+    }
+
     /// By what the attraction of each cell is multiplied; `None`: 1.
     fn factors(&self, cells: &CellSet, gap: &[f64]) -> Option<Vec<f64>> {
         let neighbours = self.neighbours.as_ref()?;

@@ -289,7 +289,8 @@ impl AdhesiveContact {
         let approach = (!inner.is_periodic()).then(|| length(equilibrium.d)).transpose()?;
         let mean_gap = inner.outputs.mean_gap.then(|| length(inner.mean - plane)).transpose()?;
         let stiffness = stiffness.map(|(k, _)| signed(PI * k, &|v| units.stiffness(v))).transpose()?;
-        let area = inner.outputs.area.then(|| units.area(contact.len() as f64)).transpose()?;
+        let area = self.attraction.area(&contact, &equilibrium.gap);
+        let area = inner.outputs.area.then(|| units.area(area)).transpose()?;
         let state = ContactState::new(signed(PI * net, &|v| units.force(v))?, report)
             .with_approach(approach)
             .with_mean_gap(mean_gap)
