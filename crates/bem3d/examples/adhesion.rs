@@ -1,13 +1,14 @@
-//! Paths with adhesion of finite range.
+//! Paths with adhesion.
 //!
 //! `adhesion sphere LAW MU CELLS HALF_SIDE STEPS` draws a sphere (R = E* = 1) of Tabor's parameter MU from contact, and prints its path in
 //! Maugis's units and the pull-off force over pi w R; HALF_SIDE is half of the side in units of `(pi w R^2/K)^(1/3)`, K = 4/3.
+//! `adhesion jkr CELLS OFF STEPS` draws a sphere with short-range adhesion from its contact without load, CELLS in its radius.
 //! `adhesion heights CELLS HURST SEED FILE` writes the heights of that map, one a line.
 //! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* = h = 1) along these forces.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactState, Error, HistoryModel, Load, Scene,
-    SelfAffine, Step, Surface,
+    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactState, Error, HeightMap, HistoryModel, Load,
+    Scene, SelfAffine, Step, Surface,
 };
 use std::error::Error as StdError;
 use std::f64::consts::PI;
@@ -21,7 +22,6 @@ fn main() -> Result<(), Box<dyn StdError>> {
             sphere(law_of(law)?, mu.parse()?, cells.parse()?, half.parse()?, steps.parse()?)
         }
         ["jkr", cells, off, steps] => jkr(cells.parse()?, off.parse()?, steps.parse()?),
-        ["punch", cells] => punch(cells.parse()?),
         ["heights", cells, hurst, seed, file] => {
             let surface = SelfAffine { hurst: hurst.parse()?, ..SelfAffine::new(2.5, 1.0, 1.0)? };
             let cells = Bem3d { cells: cells.parse()?, ..Bem3d::default() }.grid(surface.size);
@@ -34,91 +34,46 @@ fn main() -> Result<(), Box<dyn StdError>> {
             let adhesion = (work.parse()?, range.parse()?);
             map(cells.parse()?, hurst.parse()?, seed.parse()?, adhesion, tolerance.parse()?, &forces)
         }
-        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,...".into()),
+        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | jkr CELLS OFF STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,...".into()),
     }
 }
 
-/// A sphere (R = E* = 1) with short-range adhesion, CELLS in the contact radius without load, its centre OFF cells beside a corner.
-fn jkr(cells: f64, off: f64, steps: usize) -> Result<(), Box<dyn StdError>> {
+/// A sphere (R = E* = 1) with short-range adhesion, drawn off its contact without load. Its radius then is CELLS cells, its centre OFF cells
+/// beside the middle of the map.
+fn jkr(cells: f64, off: f64, steps: u32) -> Result<(), Box<dyn StdError>> {
     let work = 1e-4f64;
     let radius = (4.5 * PI * work).cbrt();
     let cell = radius / cells;
     let n = (2.6 * cells).ceil() as usize;
     let middle = 0.5 * n as f64 + off;
-    let map = bem3d::HeightMap::from_fn(n, n as f64 * cell, |i, j| {
-        let (x, y) = (cell * (i as f64 + 0.5 - middle), cell * (j as f64 + 0.5 - middle));
-        -0.5 * (x * x + y * y)
-    })?;
+    let place = |i: usize| cell * (i as f64 + 0.5 - middle);
+    let map = HeightMap::from_fn(n, n as f64 * cell, |i, j| -0.5 * (place(i).powi(2) + place(j).powi(2)))?;
     let mut scene = Scene::new(Surface::Heights(map.into()), 1.0);
-    scene.outputs.area = true;
-    scene.outputs.stiffness = false;
+    (scene.outputs.area, scene.outputs.stiffness) = (true, false);
     scene.effects.adhesion = Adhesion::ShortRange { work };
-    let mut history =
-        HistoryModel::prepare(&Bem3dPath(Bem3d { tolerance: 1e-6, ..Bem3d::default() }), &scene, 0)?;
-    let (d0, d1) =
-        (radius * radius - (2.0 * PI * work * radius).sqrt(), -0.75 * (PI * PI * work * work).cbrt());
-    let mut lowest = f64::INFINITY;
+    let model = Bem3d { tolerance: 1e-6, ..Bem3d::default() };
+    let mut history = HistoryModel::prepare(&Bem3dPath(model), &scene, 0)?;
+    let (first, last) = (radius * radius / 3.0, -0.75 * (PI * PI * work * work).cbrt());
+    let (mut lowest, mut applications) = (0.0f64, 0);
     let start = Instant::now();
-    let mut applications = 0;
+    println!(
+        "approach force cells-in-radius stiffness branch stability energy cells steps applications seconds"
+    );
     for i in 0..=steps {
         let clock = Instant::now();
-        let approach = d0 + (1.05 * d1 - d0) * i as f64 / steps as f64;
-        let state = match history.advance(Step::normal(i as f64, Load::Approach(approach))) {
-            Ok(state) => state.normal,
-            Err(Error::NotConverged { best }) => {
-                println!("NOT CONVERGED {}", best.report.certificate);
-                break;
-            }
-            Err(error) => return Err(error.into()),
-        };
+        let approach = first + (1.05 * last - first) * f64::from(i) / f64::from(steps);
+        let state = history.advance(Step::normal(0.0, Load::Approach(approach)))?.normal;
         let force = state.force / (1.5 * PI * work);
-        applications += state.report.applications;
+        let in_radius = (state.area.unwrap_or(0.0) / PI).sqrt() / cell;
         lowest = lowest.min(force);
-        println!(
-            "{:.3} {force:.5} {:.4} {}",
-            approach / d0,
-            (state.area.unwrap_or(0.0) / PI).sqrt() / cell,
-            line(&state, clock)
-        );
-        if state.area == Some(0.0) {
+        applications += state.report.applications;
+        println!("{:.3} {force:.5} {in_radius:.3} {}", approach / first, line(&state, clock));
+        if in_radius <= 0.0 {
             break;
         }
     }
-    println!(
-        "pull-off {lowest:.5} of 1.5 pi w R, {applications} applications, {:.1} s",
-        start.elapsed().as_secs_f64()
-    );
-    Ok(())
-}
-
-fn punch(cells: usize) -> Result<(), Box<dyn StdError>> {
-    let work = 1e-4f64;
-    let n = 2 * cells + 8;
-    let r = cells as f64;
-    let middle = 0.5 * n as f64 - 0.1;
-    let inside = |i: usize, j: usize| (i as f64 + 0.5 - middle).hypot(j as f64 + 0.5 - middle - 0.2) < r;
-    let map = bem3d::HeightMap::from_fn(n, n as f64 / r, |i, j| if inside(i, j) { 0.0 } else { -1.0 })?;
-    let count = (0..n * n).filter(|k| inside(k % n, k / n)).count() as f64;
-    let a = (count / PI).sqrt() / r;
-    let kendall = (8.0 * PI * work * a.powi(3)).sqrt();
-    let mut scene = Scene::new(Surface::Heights(map.into()), 1.0);
-    scene.outputs.area = true;
-    scene.outputs.stiffness = false;
-    scene.effects.adhesion = Adhesion::ShortRange { work };
-    let mut history =
-        HistoryModel::prepare(&Bem3dPath(Bem3d { tolerance: 1e-6, ..Bem3d::default() }), &scene, 0)?;
-    history.advance(Step::normal(0.0, Load::Approach(0.0)))?;
-    for i in 0..120 {
-        let d = -kendall / (2.0 * a) * (0.5 + 0.005 * f64::from(i));
-        let state = history.advance(Step::normal(f64::from(i), Load::Approach(d)))?.normal;
-        println!(
-            "{:.3} {:.5} {:.5} {}",
-            0.5 + 0.005 * f64::from(i),
-            -state.force / kendall,
-            state.area.unwrap() / (PI * a * a),
-            state.adhesive.unwrap().stability
-        );
-    }
+    let seconds = start.elapsed().as_secs_f64();
+    println!("pull-off {lowest:.5} of 1.5 pi w R; {applications} applications, {seconds:.1} s");
     Ok(())
 }
 

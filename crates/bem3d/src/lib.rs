@@ -32,6 +32,13 @@
 //! ([`contact_model::ContactState::mean_gap`]), which can also be prescribed, and `k = -dF/d(mean gap)`. Full contact has
 //! no finite stiffness: it stays `None` there. Every number of cells is solved on its own period.
 //!
+//! With [`Adhesion::ShortRange`], JKR's limit, the work of adhesion is put into the last cells of a contact, by a law of the cell's own gap
+//! whose range is a share of the cell and by a factor of its neighbours that takes the line tension of fronts out (`adhesion`): pull-off
+//! forces of smooth bodies are of second order in the cell over the radius of the contact and within half a percent that fronts are trapped
+//! by; a contact that ends at a vertical edge is pulled off at a force of first order. The area is that of the attached shares of all cells,
+//! the stiffness that of the cells that hold more than half of their work, where fronts stay (`2 E* a` of a round contact). A cell that
+//! touches nothing attracts over `g0 = 2.9 sqrt(w a/E*)`, a the longer side of a cell, which is how far from touch a contact snaps in.
+//!
 //! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is `p - s(g)`, p >= 0 still with
 //! p g = 0. Approach and withdrawal differ, so that such a scene is a path ([`HistoryModel`]); a single load is the path from no contact to it.
 //! Each state says on which branch it lies, its energy, and how stable it is ([`AdhesiveState::stability`]: `1 - rho` for the exponential

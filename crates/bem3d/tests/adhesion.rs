@@ -1,4 +1,4 @@
-//! Adhesion of finite range behind the common traits: closed forms, paths, energies and refusals.
+//! Adhesion behind the common traits: closed forms, paths, energies and refusals.
 
 #![allow(clippy::unwrap_used, clippy::float_cmp)] // Tests.
 
@@ -111,13 +111,17 @@ fn nothing_attracts_without_work() {
     let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
     let elastic = Scene::new(surface.clone(), 1.0);
     let without = Scene { outputs: elastic.outputs, ..with(surface, 0.0, 0.1, EXPONENTIAL) };
+    let mut short = without.clone();
+    short.effects.adhesion = Adhesion::ShortRange { work: 0.0 };
     let model = Bem3d { cells: 32, ..Bem3d::default() };
     let load = Load::Force(0.5);
     let expected = ContactModel::prepare(&model, &elastic, 3).unwrap().solve(load).unwrap();
-    assert_eq!(ContactModel::prepare(&model, &without, 3).unwrap().solve(load).unwrap(), expected);
-    let mut history = HistoryModel::prepare(&Bem3dPath(model), &without, 3).unwrap();
-    assert_eq!(at(&mut *history, load).unwrap(), expected);
-    assert!(at(&mut *history, Load::Force(-0.1)).is_err());
+    for without in [without, short] {
+        assert_eq!(ContactModel::prepare(&model, &without, 3).unwrap().solve(load).unwrap(), expected);
+        let mut history = HistoryModel::prepare(&Bem3dPath(model), &without, 3).unwrap();
+        assert_eq!(at(&mut *history, load).unwrap(), expected);
+        assert!(at(&mut *history, Load::Force(-0.1)).is_err());
+    }
 }
 
 /// And hardly anything with little of it.
@@ -269,6 +273,12 @@ fn what_makes_no_sense_is_refused() {
         |scene: &Scene| HistoryModel::prepare(&Bem3dPath(Bem3d { cells: 8, ..Bem3d::default() }), scene, 0);
     for (work, range) in [(f64::NAN, 0.1), (-1.0, 0.1), (0.1, 0.0), (0.1, f64::NAN), (f64::INFINITY, 0.1)] {
         assert!(matches!(prepared(&with(flat(), work, range, DUGDALE)), Err(Error::Domain { .. })));
+    }
+    for work in [f64::NAN, -1.0, f64::INFINITY, 1e-320, 1e300] {
+        let mut scene = with(flat(), 0.1, 0.1, DUGDALE);
+        scene.effects.adhesion = Adhesion::ShortRange { work };
+        scene.modulus = if work > 1.0 { 1e-300 } else { 1.0 };
+        assert!(matches!(prepared(&scene), Err(Error::Domain { .. })), "{work}");
     }
     // Cells of 1/8 under a range of 1e-3: told with the side that would do.
     let Err(Error::Domain { name, value, expected }) = prepared(&with(flat(), 0.01, 1e-3, EXPONENTIAL))

@@ -397,7 +397,8 @@ pub enum Adhesion {
     /// None.
     #[default]
     Off,
-    /// Short-range adhesion (JKR) with this work of adhesion (energy per area).
+    /// Short-range adhesion (JKR) with this work of adhesion (energy per area): the limit in which nothing attracts across a gap and the
+    /// edges of a contact bear any tension.
     ShortRange {
         /// Work of adhesion Delta gamma.
         work: f64,

@@ -162,8 +162,8 @@ pub struct AdhesiveState {
     pub energy: f64,
     /// How stable the state is, > 0 for a minimum of the energy.
     ///
-    /// With [`crate::Adhesion::ShortRange`] the smallest energy that the attachment or detachment of a single cell would cost, over that of
-    /// the adhesion of a cell. With [`crate::Adhesion::FiniteRange`] the smallest curvature of the energy, over that without adhesion.
+    /// The smallest curvature of the energy, over that without adhesion. With Dugdale's law, whose states are stable between the jumps of
+    /// single cells, the smallest distance of the gap of a cell from the range, in ranges.
     pub stability: f64,
 }
 

@@ -80,6 +80,12 @@ impl Attraction {
         }
     }
 
+    /// The cells that a small change of the load finds attached, where fronts stay: with a short range those that hold more than half of
+    /// their work. `None`: the attraction moves with the gaps.
+    pub fn held(&self, cells: &CellSet, gap: &[f64]) -> Option<CellSet> {
+        self.neighbours.as_ref().map(|_| cells.filter(gap, |g| self.law.attached(g) > 0.5))
+    }
+
     /// By what the attraction of each cell is multiplied; `None`: 1.
     fn factors(&self, cells: &CellSet, gap: &[f64]) -> Option<Vec<f64>> {
         let neighbours = self.neighbours.as_ref()?;
@@ -143,6 +149,24 @@ impl Attraction {
             let mut mean = neighbours.mean(open, &weighted);
             mean.iter_mut().zip(&share).for_each(|(m, s)| *m *= 2.0 * neighbours.strength * s);
             mean
+        })
+    }
+}
+
+#[cfg(test)]
+impl Attraction {
+    /// How much stronger than on a straight front a cell is that has all neighbours.
+    pub fn strength(&self) -> f64 {
+        self.neighbours.as_ref().map_or(0.0, |n| n.strength)
+    }
+
+    /// Columns, rows and weights of the neighbours.
+    pub fn weights(&self) -> impl Iterator<Item = (i64, i64, f64)> + '_ {
+        self.neighbours.iter().flat_map(|n| {
+            let (across, along) = (n.reach.0 as i64, n.reach.1 as i64);
+            let row = 2 * across + 1;
+            (n.weights.iter().enumerate())
+                .map(move |(k, &w)| (k as i64 % row - across, k as i64 / row - along, w))
         })
     }
 }

@@ -36,7 +36,7 @@ pub struct Response {
     /// `1 - rho` for the exponential law, with the approach or the force held as the control says; for Dugdale's law the smallest distance
     /// of the gap of a cell from the range, in ranges.
     pub stability: f64,
-    /// `dF/dd` of the net force, nondimensional, of the kernel with its constant.
+    /// `dF/dd` of the net force, nondimensional, of the kernel with its constant; with a short range that of the attached cells.
     pub stiffness: f64,
     /// Its absolute error, estimated from above.
     pub error: f64,
@@ -188,7 +188,14 @@ pub fn respond(
     let gap = open.carry(&state.cells, &state.gap);
     let both = contact.union(&open);
     let mut linearised = Linearised { problem, contact, open, both, root, gap, attraction, steps: 0, stop };
-    let mut response = linearised.response(control, tolerance);
+    let held = attraction.held(&state.cells, &state.gap);
+    let mut response = linearised.response(control, if held.is_some() { None } else { tolerance });
+    if let (Some(held), Some(_)) = (held, tolerance) {
+        (linearised.both, linearised.contact) = (held.clone(), held);
+        (linearised.open, linearised.root, linearised.gap) = Default::default();
+        let Response { stiffness, error, .. } = linearised.response(Control::Approach(state.d), tolerance);
+        (response.stiffness, response.error) = (stiffness, error);
+    }
     if law.shape == Shape::Uniform {
         response.stability = (state.pressure.iter().zip(&state.gap))
             .filter(|(p, _)| **p <= 0.0)

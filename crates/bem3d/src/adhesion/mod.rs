@@ -12,4 +12,6 @@ pub use law::Law;
 pub use linearised::{Response, respond};
 
 #[cfg(test)]
+mod fronts;
+#[cfg(test)]
 mod tests;

@@ -69,7 +69,7 @@ fn dense(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
 }
 
 /// `matrix x = right` by Gauss's elimination with pivots.
-fn eliminated(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+pub fn eliminated(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
     for k in 0..n {
         let pivot = (k..n).max_by(|&i, &j| matrix[i][k].abs().total_cmp(&matrix[j][k].abs())).unwrap();
@@ -289,14 +289,13 @@ fn acceleration_finds_the_states_of_the_plain_iteration() {
 fn the_stiffness_is_the_difference_of_forces_and_goes_with_the_dense_response() {
     let grid = Grid::square(12, 10);
     let z = heights(grid, 4);
-    let short = Attraction::short((0.35 * 0.3f64).powi(2) / PI, grid, Boundary::Free);
     let mut problem = problem(grid, &z, Boundary::Free);
     let at = |problem: &mut Problem, law: &Attraction, d: f64| {
         let mut search = search(problem, law, Control::Approach(d), false);
         let start = search.first(&never);
         search.from(start, &never).unwrap()
     };
-    for (law, d) in [(&law(0.3, 0.15), -0.4), (&law(0.3, 0.15), 0.6), (&short, -0.1), (&short, 0.6)] {
+    for (law, d) in [(&law(0.3, 0.15), -0.4), (&law(0.3, 0.15), 0.6)] {
         let state = at(&mut problem, law, d);
         let response = respond(&mut problem, law, Control::Approach(d), &state, Some(1e-6), &never);
         let step = 1e-4;
@@ -343,4 +342,54 @@ fn a_law_is_its_energy_differentiated() {
     let dugdale = Law { peak: 2.0, range: 0.5, shape: Shape::Uniform };
     approx::assert_relative_eq!(dugdale.mismatch(2.0, 0.55), 0.1, epsilon = 1e-12);
     approx::assert_relative_eq!(dugdale.mismatch(0.0, 0.0), 1.0);
+}
+
+/// While the gaps of all others stay, the energy is convex in that of one cell: the stiffness of a cell among held ones is at least the
+/// reciprocal of its own influence, and the attraction falls less steeply.
+#[test]
+fn no_attachment_or_detachment_of_a_single_cell_lowers_the_energy_of_a_short_range() {
+    let mut least = f64::INFINITY;
+    for (seed, boundary) in [(1, Boundary::Free), (2, Boundary::Free), (3, Boundary::Periodic)] {
+        let grid = Grid::square(10, 9);
+        let z = heights(grid, seed);
+        let g = dense(grid, boundary);
+        let all = CellSet::all(grid);
+        let short = Attraction::short((0.35 * 0.3f64).powi(2) / PI, grid, boundary);
+        let range = short.law.range;
+        let mut problem = problem(grid, &z, boundary);
+        // At a fixed approach the constant of a periodic kernel is a spring.
+        let shift = problem.operators.table().shift();
+        let mut last: Option<Equilibrium> = None;
+        for d in [-0.2, 0.2, 0.8, 0.3, -0.1, -0.3] {
+            let mut search = search(&mut problem, &short, Control::Approach(d), false);
+            let start = last.take().unwrap_or_else(|| search.first(&never));
+            let state = search.from(start, &never).unwrap();
+            let u = |p: &[f64]| -> Vec<f64> { g.iter().map(|row| crate::real::dot(row, p)).collect() };
+            let net = all.carry(&state.cells, &state.net());
+            let gap: Vec<f64> = u(&net).iter().zip(&z).map(|(u, z)| u + z - d).collect();
+            let total = |gap: &[f64]| {
+                let u: Vec<f64> = gap.iter().zip(&z).map(|(g, z)| g + d - z).collect();
+                let p = eliminated(g.clone(), u.clone());
+                0.5 * crate::real::dot(&p, &u) + short.energy(&all, gap)
+            };
+            let before = total(&gap);
+            let spring = 0.5 * shift * state.force() * state.force();
+            approx::assert_relative_eq!(
+                before - spring,
+                energy(&problem, &short, &state),
+                max_relative = 1e-9
+            );
+            for i in 0..gap.len() {
+                let closed = gap[i] < 1e-6 * range;
+                for change in if closed { [0.1 * range, range] } else { [-0.5 * gap[i], -gap[i]] } {
+                    let mut moved = gap.clone();
+                    moved[i] += change;
+                    // Over what the elastic energy of the cell alone would be.
+                    least = least.min((total(&moved) - before) / (0.5 * change * change / g[i][i]));
+                }
+            }
+            last = Some(state);
+        }
+    }
+    assert!(least > 0.5, "{least}");
 }
