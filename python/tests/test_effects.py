@@ -554,3 +554,13 @@ def test_a_range_that_cells_do_not_resolve_is_refused_with_the_cell_that_would()
 def test_a_plastic_depth_needs_a_hardness():
     with pytest.raises(fc.Unsupported, match="hardness"):
         fc.Scene(rough(17), modulus=1.0, outputs=["plastic_depth"])
+
+
+def test_the_page_of_the_book_runs():
+    page = ROOT / "book/src/python.md"
+    if not page.exists():
+        pytest.skip("outside of the repository")
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(block, {})
