@@ -176,9 +176,20 @@ impl Contact {
     /// Yields
     /// ------
     /// ContactState
-    #[pyo3(signature = (**loads))]
-    fn sweep<'py>(slf: &Bound<'py, Self>, loads: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), loads)
+    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None))]
+    fn sweep<'py>(
+        slf: &Bound<'py, Self>,
+        force: Option<Bound<'py, PyAny>>,
+        approach: Option<Bound<'py, PyAny>>,
+        mean_pressure: Option<Bound<'py, PyAny>>,
+        mean_gap: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let loads = PyDict::new(slf.py());
+        loads.set_item("force", force)?;
+        loads.set_item("approach", approach)?;
+        loads.set_item("mean_pressure", mean_pressure)?;
+        loads.set_item("mean_gap", mean_gap)?;
+        slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), Some(&loads))
     }
 
     /// Normalisation: of this very surface.

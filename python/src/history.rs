@@ -1,13 +1,14 @@
 //! Planned contacts that remember their path.
 
 use crate::contact::{Normalisation, load, solved};
-use crate::state::{self, HistoryState};
+use crate::history_state::{self, HistoryState};
 use fractal_contact::{
     History as RustHistory, HistoryState as RustHistoryState, Normalisation as RustNormalisation, Step,
     Tangential,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 
 /// A planned contact that remembers its path.
@@ -16,13 +17,20 @@ pub struct History {
     inner: Mutex<Box<dyn RustHistory>>,
     normalisation: RustNormalisation,
     long: bool,
+    last: Mutex<Option<Py<HistoryState>>>,
 }
 
 impl History {
     /// A history whose steps are long, or not.
     pub fn new(history: Box<dyn RustHistory>, long: bool) -> Self {
         let normalisation = history.normalisation();
-        Self { inner: Mutex::new(history), normalisation, long }
+        Self { inner: Mutex::new(history), normalisation, long, last: Mutex::new(None) }
+    }
+
+    fn set_last(&self, last: Option<Py<HistoryState>>) {
+        let before = std::mem::replace(&mut *self.last.lock().unwrap_or_else(PoisonError::into_inner), last);
+        // Outside of the lock: the end of an array may call Python, which may ask for `last`.
+        drop(before);
     }
 }
 
@@ -35,13 +43,21 @@ impl History {
     /// time : float
     ///     At the end of the step; it never decreases. Friction alone does not look at it.
     /// force, approach, mean_pressure, mean_gap : float
-    ///     Exactly one of them. Force and approach may be negative with adhesion.
+    ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first three may be negative
+    ///     with adhesion.
     /// tangential_force, tangential_displacement : float, optional
     ///     At most one of them; no tangential force otherwise.
     ///
     /// Returns
     /// -------
     /// HistoryState
+    ///
+    /// Raises
+    /// ------
+    /// DomainError, OutOfRange, Unsupported
+    ///     For a load that makes no sense or that the model does not hold for.
+    /// NotConverged
+    ///     With the state that was reached as ``best``; beyond pull-off that is the last stable state.
     #[pyo3(signature = (time=0.0, *, force=None, approach=None, mean_pressure=None, mean_gap=None, tangential_force=None,
                         tangential_displacement=None))]
     #[allow(clippy::too_many_arguments)] // One for each keyword.
@@ -69,19 +85,75 @@ impl History {
         };
         let step = Step { time, normal, tangential };
         let inner = &self.inner;
-        let state: RustHistoryState = solved(
+        let mut reached = None;
+        let result: PyResult<RustHistoryState> = solved(
             py,
             self.long,
-            |_| (),
+            // A step that was complete before it heard of the signal counts.
+            |found| reached = found.ok(),
             |stop| inner.lock().unwrap_or_else(PoisonError::into_inner).advance_until(step, &|| stop()),
-        )?;
-        state::of_history(py, state)
+        );
+        if let Some(reached) = reached {
+            self.set_last(Some(history_state::of(py, reached)?));
+        }
+        let state = history_state::of(py, result?)?;
+        self.set_last(Some(state.clone_ref(py)));
+        Ok(state)
+    }
+
+    /// Goes along a path: an iterator that yields the state at the end of each step as soon as it is there.
+    ///
+    /// What was yielded stays where a later step raises; the history then stands at the end of the step before that one.
+    ///
+    /// Parameters
+    /// ----------
+    /// time : float or iterable of float
+    ///     At the end of each step.
+    /// force, approach, mean_pressure, mean_gap : float or iterable of float
+    ///     Exactly one of them, as in `advance`.
+    /// tangential_force, tangential_displacement : float or iterable of float, optional
+    ///     At most one of them. Iterables have one number for each step; a number alone is that of every step.
+    ///
+    /// Yields
+    /// ------
+    /// HistoryState
+    #[pyo3(signature = (time=None, *, force=None, approach=None, mean_pressure=None, mean_gap=None, tangential_force=None,
+                        tangential_displacement=None))]
+    #[allow(clippy::too_many_arguments)] // One for each keyword.
+    fn follow<'py>(
+        slf: &Bound<'py, Self>,
+        time: Option<Bound<'py, PyAny>>,
+        force: Option<Bound<'py, PyAny>>,
+        approach: Option<Bound<'py, PyAny>>,
+        mean_pressure: Option<Bound<'py, PyAny>>,
+        mean_gap: Option<Bound<'py, PyAny>>,
+        tangential_force: Option<Bound<'py, PyAny>>,
+        tangential_displacement: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let steps = PyDict::new(slf.py());
+        steps.set_item("time", time)?;
+        steps.set_item("force", force)?;
+        steps.set_item("approach", approach)?;
+        steps.set_item("mean_pressure", mean_pressure)?;
+        steps.set_item("mean_gap", mean_gap)?;
+        steps.set_item("tangential_force", tangential_force)?;
+        steps.set_item("tangential_displacement", tangential_displacement)?;
+        slf.py().import("fractal_contact._models")?.call_method("follow", (slf,), Some(&steps))
     }
 
     /// Forgets the path: back to no contact at time 0.
     fn restart(&self, py: Python<'_>) {
         let inner = &self.inner;
         py.detach(|| inner.lock().unwrap_or_else(PoisonError::into_inner).restart());
+        self.set_last(None);
+    }
+
+    /// HistoryState or None: the state at the end of the last step that was complete, where the next one begins; None before the first.
+    ///
+    /// It says where the history stands after a step that failed, or that a signal such as Ctrl-C interrupted.
+    #[getter]
+    fn last(&self, py: Python<'_>) -> Option<Py<HistoryState>> {
+        self.last.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|last| last.clone_ref(py))
     }
 
     /// Normalisation: of this very surface.

@@ -6,10 +6,12 @@
 #![allow(clippy::unnecessary_wraps)]
 
 mod contact;
+mod effect_states;
 mod ensemble;
 mod errors;
 mod height_map;
 mod history;
+mod history_state;
 mod io;
 mod model;
 mod pool;
@@ -25,11 +27,15 @@ mod _core {
     #[pymodule_export]
     use crate::contact::{Contact, Normalisation};
     #[pymodule_export]
+    use crate::effect_states::{AdhesiveState, PlasticState};
+    #[pymodule_export]
     use crate::ensemble::ensemble;
     #[pymodule_export]
     use crate::height_map::HeightMap;
     #[pymodule_export]
     use crate::history::History;
+    #[pymodule_export]
+    use crate::history_state::HistoryState;
     #[pymodule_export]
     use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]
@@ -37,11 +43,11 @@ mod _core {
     #[pymodule_export]
     use crate::pool::{set_threads, threads};
     #[pymodule_export]
-    use crate::scene::{Scene, Surface, height_map, scene, surface};
+    use crate::scene::{Scene, Surface, check_effects, height_map, scene, surface};
     #[pymodule_export]
     use crate::scenes::{SceneFile, run_scene};
     #[pymodule_export]
-    use crate::state::{Certificate, ContactState, HistoryState};
+    use crate::state::{Certificate, ContactState};
     #[pymodule_export]
     use crate::statistics::{fit_spectrum, height_difference, parameters, power_spectrum, scale_dependence};
     #[pymodule_export]

@@ -168,6 +168,12 @@ pub fn scene(
     Ok(Scene(scene))
 }
 
+/// Errors for effects whose numbers or words make no sense.
+#[pyfunction]
+pub fn check_effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<()> {
+    read_effects(py, of)?.validate().map_err(|error| of_model(py, error))
+}
+
 fn read_effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Effects> {
     let boundary = match optional::<String>(of, "boundary")?.as_deref() {
         None | Some("free") => Boundary::Free,

@@ -1,8 +1,7 @@
 //! States of a contact.
 
-use fractal_contact::{
-    Certificate as RustCertificate, ContactState as RustState, Field, HistoryState as RustHistoryState,
-};
+use crate::effect_states::{AdhesiveState, PlasticState};
+use fractal_contact::{Certificate as RustCertificate, ContactState as RustState, Field};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -52,16 +51,17 @@ impl Certificate {
         self.0.stiffness_error
     }
 
+    /// float or None: largest difference between the traction of a cell and what the law of adhesion says of its gap, over work/range; None
+    /// without adhesion of finite range.
+    #[getter]
+    fn equilibrium(&self) -> Option<f64> {
+        self.0.equilibrium
+    }
+
     /// float: the largest of the numbers.
     #[getter]
     fn worst(&self) -> f64 {
         self.0.worst()
-    }
-
-    /// float or None: how far tractions are from the law of adhesion, over work/range.
-    #[getter]
-    fn equilibrium(&self) -> Option<f64> {
-        self.0.equilibrium
     }
 
     /// Whether every number is at most `tolerance`.
@@ -109,19 +109,19 @@ pub fn of(py: Python<'_>, mut state: RustState) -> PyResult<Py<ContactState>> {
 impl ContactState {
     /// float: normal force; negative where adhesion holds against a pull.
     #[getter]
-    fn force(&self) -> f64 {
+    pub fn force(&self) -> f64 {
         self.state.force
     }
 
     /// float or None: approach from first touch; None with periodic boundaries.
     #[getter]
-    fn approach(&self) -> Option<f64> {
+    pub fn approach(&self) -> Option<f64> {
         self.state.approach
     }
 
     /// float or None: distance of the mean planes.
     #[getter]
-    fn mean_gap(&self) -> Option<f64> {
+    pub fn mean_gap(&self) -> Option<f64> {
         self.state.mean_gap
     }
 
@@ -161,70 +161,46 @@ impl ContactState {
         self.state.conductance
     }
 
-    /// numpy.ndarray or None: areas of the connected contacts, the largest first.
+    /// numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape (patches,).
     #[getter]
     fn patches<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.state.patches.as_ref().map(|patches| PyArray1::from_slice(py, patches.areas()))
     }
 
-    /// numpy.ndarray or None: pressure of each cell, [row, column].
+    /// numpy.ndarray or None: pressure of each cell (force/length^2), shape (rows, columns); negative, a tension, with adhesion only.
     #[getter]
     fn pressure(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
         self.pressure.as_ref().map(|field| field.clone_ref(py))
     }
 
-    /// numpy.ndarray or None: displacement of the elastic surface, [row, column].
+    /// numpy.ndarray or None: displacement of the elastic surface (length), shape (rows, columns).
     #[getter]
     fn displacement(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
         self.displacement.as_ref().map(|field| field.clone_ref(py))
     }
 
-    /// numpy.ndarray or None: gap, [row, column]; infinite at undefined points.
+    /// numpy.ndarray or None: gap to the indented surface (length), shape (rows, columns); infinite at undefined points.
     #[getter]
     fn gap(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
         self.gap.as_ref().map(|field| field.clone_ref(py))
     }
 
-    /// numpy.ndarray or None: depth of the plastic indentation, [row, column].
+    /// numpy.ndarray or None: depth of the plastic indentation >= 0 (length), shape (rows, columns).
     #[getter]
     fn plastic_depth(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
         self.plastic_depth.as_ref().map(|field| field.clone_ref(py))
     }
 
-    /// float or None: area under the hardness.
+    /// PlasticState or None: what has yielded, of contacts with a hardness.
     #[getter]
-    fn plastic_area(&self) -> Option<f64> {
-        self.state.plastic.map(|plastic| plastic.area)
+    fn plastic(&self) -> Option<PlasticState> {
+        self.state.plastic.map(PlasticState)
     }
 
-    /// float or None: volume of the plastic indentation.
+    /// AdhesiveState or None: the adhesive part, of contacts with adhesion that are solved cell by cell.
     #[getter]
-    fn plastic_volume(&self) -> Option<f64> {
-        self.state.plastic.map(|plastic| plastic.volume)
-    }
-
-    /// float or None: energy dissipated in the indentation.
-    #[getter]
-    fn plastic_work(&self) -> Option<f64> {
-        self.state.plastic.map(|plastic| plastic.dissipated)
-    }
-
-    /// str or None: ``approach`` or ``withdrawal``, with adhesion.
-    #[getter]
-    fn branch(&self) -> Option<&'static str> {
-        self.state.adhesive.map(|adhesive| adhesive.branch.as_str())
-    }
-
-    /// float or None: elastic energy less the work of adhesion done.
-    #[getter]
-    fn energy(&self) -> Option<f64> {
-        self.state.adhesive.map(|adhesive| adhesive.energy)
-    }
-
-    /// float or None: smallest curvature of the energy, over that without adhesion; > 0 for a minimum.
-    #[getter]
-    fn stability(&self) -> Option<f64> {
-        self.state.adhesive.map(|adhesive| adhesive.stability)
+    fn adhesive(&self) -> Option<AdhesiveState> {
+        self.state.adhesive.map(AdhesiveState)
     }
 
     /// Certificate: how exactly the contact conditions hold.
@@ -269,9 +245,12 @@ impl ContactState {
         self.state.report.contact_cells
     }
 
-    /// All numbers by their names; arrays only with ``fields=True``.
+    /// All numbers by the names of the columns of scenes; arrays only with ``fields=True``.
+    ///
+    /// Those of `plastic` (``plastic_area``, ``plastic_volume``, ``plastic_work``) and of `adhesive` (``branch``, ``energy``,
+    /// ``stability``) are there where the state has them; any other that it lacks is None.
     #[pyo3(signature = (*, fields=false))]
-    fn to_dict<'py>(&self, py: Python<'py>, fields: bool) -> PyResult<Bound<'py, PyDict>> {
+    pub fn to_dict<'py>(&self, py: Python<'py>, fields: bool) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         dict.set_item("force", self.force())?;
         dict.set_item("approach", self.approach())?;
@@ -281,12 +260,16 @@ impl ContactState {
         dict.set_item("area_corrected", self.area_corrected())?;
         dict.set_item("largest_pressure", self.largest_pressure())?;
         dict.set_item("conductance", self.conductance())?;
-        dict.set_item("plastic_area", self.plastic_area())?;
-        dict.set_item("plastic_volume", self.plastic_volume())?;
-        dict.set_item("plastic_work", self.plastic_work())?;
-        dict.set_item("branch", self.branch())?;
-        dict.set_item("energy", self.energy())?;
-        dict.set_item("stability", self.stability())?;
+        if let Some(plastic) = &self.state.plastic {
+            dict.set_item("plastic_area", plastic.area)?;
+            dict.set_item("plastic_volume", plastic.volume)?;
+            dict.set_item("plastic_work", plastic.dissipated)?;
+        }
+        if let Some(adhesive) = &self.state.adhesive {
+            dict.set_item("branch", adhesive.branch.as_str())?;
+            dict.set_item("energy", adhesive.energy)?;
+            dict.set_item("stability", adhesive.stability)?;
+        }
         dict.set_item("contact_cells", self.contact_cells())?;
         dict.set_item("status", self.status())?;
         dict.set_item("iterations", self.iterations())?;
@@ -302,7 +285,7 @@ impl ContactState {
         Ok(dict)
     }
 
-    fn __repr__(&self) -> String {
+    pub fn __repr__(&self) -> String {
         let mut text = format!("<ContactState: force={:.6e}", self.state.force);
         let known = [
             ("approach", self.approach()),
@@ -316,95 +299,12 @@ impl ContactState {
                 text += &format!(", {name}={value:.6e}");
             }
         }
+        if let Some(plastic) = self.plastic() {
+            text += &format!(", plastic={}", plastic.__repr__());
+        }
+        if let Some(adhesive) = self.adhesive() {
+            text += &format!(", adhesive={}", adhesive.__repr__());
+        }
         text + &format!(", {}, {}>", self.status(), self.state.report.certificate)
-    }
-}
-
-/// The state at the end of a step of a path.
-#[pyclass(frozen, module = "fractal_contact")]
-pub struct HistoryState {
-    time: f64,
-    normal: Py<ContactState>,
-    contact_radius: Option<f64>,
-    tangential: Option<fractal_contact::TangentialState>,
-}
-
-/// Moves a state of a path into Python.
-pub fn of_history(py: Python<'_>, state: RustHistoryState) -> PyResult<Py<HistoryState>> {
-    let RustHistoryState { time, normal, contact_radius, tangential, .. } = state;
-    Py::new(py, HistoryState { time, normal: of(py, normal)?, contact_radius, tangential })
-}
-
-#[pymethods]
-impl HistoryState {
-    /// float: time at the end of the step.
-    #[getter]
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    /// ContactState: the normal part.
-    #[getter]
-    fn normal(&self, py: Python<'_>) -> Py<ContactState> {
-        self.normal.clone_ref(py)
-    }
-
-    /// float: normal force.
-    #[getter]
-    fn force(&self) -> f64 {
-        self.normal.get().force()
-    }
-
-    /// float or None: approach.
-    #[getter]
-    fn approach(&self) -> Option<f64> {
-        self.normal.get().approach()
-    }
-
-    /// float or None: radius of a round contact, or of the round contact of the same stiffness.
-    #[getter]
-    fn contact_radius(&self) -> Option<f64> {
-        self.contact_radius
-    }
-
-    /// float or None: tangential force.
-    #[getter]
-    fn tangential_force(&self) -> Option<f64> {
-        self.tangential.map(|of| of.force)
-    }
-
-    /// float or None: tangential displacement of the bodies relative to each other.
-    #[getter]
-    fn tangential_displacement(&self) -> Option<f64> {
-        self.tangential.map(|of| of.displacement)
-    }
-
-    /// float or None: radius inside which nothing slips.
-    #[getter]
-    fn stick_radius(&self) -> Option<f64> {
-        self.tangential.and_then(|of| of.stick_radius)
-    }
-
-    /// float or None: energy that friction has dissipated since the first step.
-    #[getter]
-    fn dissipated(&self) -> Option<f64> {
-        self.tangential.map(|of| of.dissipated)
-    }
-
-    /// All numbers by their names.
-    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let dict = PyDict::new(py);
-        dict.set_item("time", self.time)?;
-        dict.update(self.normal.get().to_dict(py, false)?.as_mapping())?;
-        dict.set_item("contact_radius", self.contact_radius)?;
-        dict.set_item("tangential_force", self.tangential_force())?;
-        dict.set_item("tangential_displacement", self.tangential_displacement())?;
-        dict.set_item("stick_radius", self.stick_radius())?;
-        dict.set_item("dissipated", self.dissipated())?;
-        Ok(dict)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<HistoryState: time={:e}, {}>", self.time, self.normal.get().__repr__())
     }
 }

@@ -20,6 +20,7 @@ from ._core import (
     VERSION as __version__,
 )
 from ._core import (
+    AdhesiveState,
     Certificate,
     Contact,
     ContactState,
@@ -27,6 +28,7 @@ from ._core import (
     History,
     HistoryState,
     Normalisation,
+    PlasticState,
     SceneFile,
     set_threads,
     threads,
@@ -65,11 +67,13 @@ from ._models import (
     Viscoelastic,
     Westergaard,
     ensemble,
+    follow,
     sweep,
     table,
 )
 
 __all__ = [
+    "AdhesiveState",
     "AdhesiveWave",
     "Bem3d",
     "Bem3dPath",
@@ -98,6 +102,7 @@ __all__ = [
     "OutOfRange",
     "PartialSlip",
     "Persson",
+    "PlasticState",
     "PowerLaw",
     "PowerLawBody",
     "ReadError",
@@ -115,6 +120,7 @@ __all__ = [
     "__version__",
     "channels",
     "ensemble",
+    "follow",
     "read_surface",
     "run_scene",
     "set_threads",

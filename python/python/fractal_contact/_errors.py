@@ -76,7 +76,8 @@ class NotConverged(Error):
     Attributes
     ----------
     best : ContactState
-        The best state reached, with its certificate: evidence, not an answer.
+        The best state reached, with its certificate: evidence, not an answer. Beyond pull-off the last stable state of
+        the path, whose ``adhesive.branch`` says on which branch it lies.
     """
 
     best: ContactState

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -164,15 +164,25 @@ class Effects:
     boundary : {"free", "periodic"}
         What lies outside of the rectangle.
     hardness : float, optional
-        Largest pressure of a cell.
+        Largest pressure that the bodies carry (force/length^2), perfect plasticity.
     adhesion : float or mapping, optional
-        Work of adhesion (short range), or ``{"work": ..., "range": ..., "law": "exponential" or "dugdale"}``.
+        Work of adhesion (energy/length^2), of short range (JKR); or of a finite range (length), across open gaps,
+        ``{"work": ..., "range": ..., "law": "exponential" or "dugdale"}``, by the exponential law if none is named.
     friction : float, optional
         Coefficient of Coulomb's friction.
     rheology : mapping, optional
         ``{"kind": "kelvin_voigt" or "maxwell", "viscosity": ...}``,
         ``{"kind": "standard_solid", "weight": ..., "time": ...}`` or
         ``{"kind": "prony", "weights": [...], "times": [...]}``.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> fc.Effects(adhesion={"work": 0.05, "range": 1e-9, "law": "dugdale"}).adhesion["law"]
+    'dugdale'
+    >>> fc.Effects(hardness=-1.0)  # doctest: +IGNORE_EXCEPTION_DETAIL
+    Traceback (most recent call last):
+    DomainError: hardness = -1: expected a finite number > 0
     """
 
     boundary: str = "free"
@@ -180,6 +190,27 @@ class Effects:
     adhesion: float | Mapping[str, Any] | None = None
     friction: float | None = None
     rheology: Mapping[str, Any] | None = None
+
+    def __post_init__(self) -> None:
+        # Copies: a change of the caller's mapping is none of the effect.
+        for name in ("adhesion", "rheology"):
+            value = getattr(self, name)
+            if isinstance(value, Mapping):
+                object.__setattr__(self, name, dict(value))
+        # Mistakes are told where they are made.
+        _core.check_effects(self._values())
+
+    def _values(self) -> dict[str, Any]:
+        """The effects as the compiled part takes them."""
+        values = {one.name: getattr(self, one.name) for one in fields(self)}
+        if values["adhesion"] is not None and not isinstance(values["adhesion"], dict):
+            values["adhesion"] = {"work": values["adhesion"]}
+        numbers = {"hardness": values["hardness"], "friction": values["friction"], **(values["adhesion"] or {})}
+        for name, value in numbers.items():
+            if isinstance(value, bool | np.bool_):
+                of = "" if name in values else " of adhesion"
+                raise TypeError(f"{name}{of} is {value!r}: expected a number")
+        return values
 
 
 @dataclass(frozen=True)
@@ -197,8 +228,8 @@ class Scene:
     effects : Effects or mapping
         Off unless named.
     outputs : iterable of str
-        What is computed besides force and approach: "stiffness", "area", "mean_gap", "pressure", "displacement", "gap",
-        "plastic_depth" (with a hardness), "contact_patches".
+        What is computed besides force and approach: "stiffness", "area", "mean_gap" (with periodic boundaries),
+        "pressure", "displacement", "gap", "plastic_depth" (with a hardness), "contact_patches".
     conductance : (str, float, float), optional
         ("electrical", resistivity, resistivity) or ("thermal", conductivity, conductivity).
 
@@ -247,14 +278,7 @@ class Scene:
     def _core(self) -> _core.Scene:
         surface = self.surface._core() if isinstance(self.surface, Surface) else self.surface
         bodies = self.bodies and [body and (body.young, body.poisson) for body in self.bodies]
-        effects = asdict(self.effects)
-        if isinstance(self.effects.adhesion, Mapping):
-            effects["adhesion"] = dict(self.effects.adhesion)
-        elif self.effects.adhesion is not None:
-            effects["adhesion"] = {"work": self.effects.adhesion}
-        if self.effects.rheology is not None:
-            effects["rheology"] = dict(self.effects.rheology)
-        return _core.scene(surface, self.modulus, bodies, effects, list(self.outputs), self.conductance)
+        return _core.scene(surface, self.modulus, bodies, self.effects._values(), list(self.outputs), self.conductance)
 
     @staticmethod
     def from_toml(text: str, *, directory: str | Path = ".") -> SceneFile:

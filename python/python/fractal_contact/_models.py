@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._core import Contact, ContactState, History
+from ._core import Contact, ContactState, History, HistoryState
 from ._errors import Error
 from ._inputs import Scene
 
@@ -162,19 +162,37 @@ class PowerLaw(_NoOptions, Model):
 
 
 class Jkr(_NoOptions, Model):
-    """Adhesive contact of a sphere (Johnson, Kendall, Roberts)."""
+    """Short-range adhesion of a sphere (Johnson, Kendall, Roberts): ``effects={"adhesion": work}``."""
 
     _name = "jkr"
 
 
 class MaugisDugdale(_NoOptions, Model):
-    """A sphere with a constant attraction up to a range, between JKR and DMT."""
+    """A sphere with Dugdale's law of adhesion, between JKR and DMT, in closed form (Maugis).
+
+    Loads may be negative down to the pull-off force, 1.5 to 2 times pi * work * radius.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> adhesion = {"work": 1e-3, "range": 0.01, "law": "dugdale"}
+    >>> scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=4.0), modulus=1.0, effects={"adhesion": adhesion})
+    >>> contact = fc.MaugisDugdale().prepare(scene)
+    >>> contact.solve(force=-0.00498).force
+    -0.00498
+    >>> contact.solve(force=-0.00499)  # doctest: +IGNORE_EXCEPTION_DETAIL
+    Traceback (most recent call last):
+    OutOfRange: force = -0.00499 is outside [-0.00498063, inf], the range in which the model holds
+    """
 
     _name = "maugis_dugdale"
 
 
 class AdhesiveWave(_NoOptions, Model):
-    """Johnson's periodic wave with short-range adhesion."""
+    """Short-range adhesion of a periodic wave in closed form (Johnson).
+
+    For ``effects={"boundary": "periodic", "adhesion": work}``; the mean pressure may be negative.
+    """
 
     _name = "adhesive_wave"
 
@@ -216,7 +234,7 @@ class GreenwoodWilliamson(Model):
 
 
 class HistoryModel(_Options):
-    """A way to answer what happens along a path: friction, rheology."""
+    """A way to answer what happens along a path of loads: friction, rheology, hardness, adhesion."""
 
     def history(self, scene: Scene, seed: int = 0) -> History:
         """Checks the scene and plans: no contact at time 0."""
@@ -249,47 +267,47 @@ class Equivalent(HistoryModel):
 
 
 class Bem3dPath(HistoryModel):
-    """Boundary elements along a path: the indentation of a hardness stays, and adhesion has two branches.
+    """Boundary elements along a path of loads, for effects that remember it: hardness and adhesion.
+
+    The indentation of a hardness stays from step to step; adhesion has a branch of approach and one of withdrawal, and
+    forces may be negative. A force below that of pull-off is `NotConverged` with the last stable state as ``best``.
 
     Parameters
     ----------
-    cells, rows, tolerance, max_outer_iterations, method
-        As of `Bem3d`.
+    model : Bem3d, optional
+        The model that solves each step; ``Bem3d()`` by default.
 
     Examples
     --------
     >>> import fractal_contact as fc
     >>> sphere = fc.Surface.sphere(radius=1.0, size=1.0)
     >>> scene = fc.Scene(sphere, modulus=1.0, effects={"hardness": 0.1})
-    >>> path = fc.Bem3dPath(cells=32).history(scene)
-    >>> loaded, unloaded = (path.advance(force=f).normal for f in (0.02, 0.0))
-    >>> loaded.plastic_area > 0.0, unloaded.plastic_area, unloaded.plastic_volume == loaded.plastic_volume
+    >>> path = fc.Bem3dPath(fc.Bem3d(cells=32)).history(scene)
+    >>> loaded, unloaded = (state.normal.plastic for state in path.follow(force=[0.02, 0.0]))
+    >>> loaded.area > 0.0, unloaded.area, unloaded.volume == loaded.volume
     (True, 0.0, True)
     """
 
     _name = "bem3d_path"
 
-    def __init__(
-        self,
-        *,
-        cells: int | None = None,
-        rows: int | None = None,
-        tolerance: float | None = None,
-        max_outer_iterations: int | None = None,
-        method: str | None = None,
-    ) -> None:
-        super().__init__(
-            cells=cells,
-            rows=rows,
-            tolerance=tolerance,
-            max_outer_iterations=max_outer_iterations,
-            method=method,
-        )
+    def __init__(self, model: Bem3d | None = None) -> None:
+        if model is None:
+            model = Bem3d()
+        if not isinstance(model, Bem3d):
+            raise TypeError(f"model is {model!r}: expected a Bem3d")
+        self.model = model
+        super().__init__()
+
+    def _core(self) -> _core.Model:
+        return _core.model(self._name, self.model._options)
 
     @property
     def name(self) -> str:
         """Name of the model, the same in scenes and tables."""
-        return "bem3d"
+        return self.model.name
+
+    def __repr__(self) -> str:
+        return f"Bem3dPath({self.model!r})"
 
 
 class CattaneoMindlin(_NoOptions, HistoryModel):
@@ -352,6 +370,67 @@ def sweep(
     return (contact.solve(**{name: value}) for value in values)
 
 
+def follow(
+    history: History,
+    time: float | Iterable[float] | None = None,
+    *,
+    force: float | Iterable[float] | None = None,
+    approach: float | Iterable[float] | None = None,
+    mean_pressure: float | Iterable[float] | None = None,
+    mean_gap: float | Iterable[float] | None = None,
+    tangential_force: float | Iterable[float] | None = None,
+    tangential_displacement: float | Iterable[float] | None = None,
+) -> Iterator[HistoryState]:
+    """Goes along a path; the state at the end of each step as soon as it is there.
+
+    Parameters
+    ----------
+    history : History
+        A planned contact that remembers its path; it goes on from where it is.
+    time : float or iterable of float
+        At the end of each step, 0 by default.
+    force, approach, mean_pressure, mean_gap : float or iterable of float
+        Exactly one of them, as in `History.advance`.
+    tangential_force, tangential_displacement : float or iterable of float, optional
+        At most one of them. Iterables have one number for each step; a number alone is that of every step.
+
+    Yields
+    ------
+    HistoryState
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> solid = {"kind": "standard_solid", "weight": 1.0, "time": 1.0}
+    >>> sphere = fc.Surface.sphere(radius=1.0, size=2.0)
+    >>> scene = fc.Scene(sphere, modulus=1.0, effects={"rheology": solid}, outputs=[])
+    >>> creep = fc.Viscoelastic().history(scene)
+    >>> [round(state.approach, 4) for state in fc.follow(creep, time=[0.0, 1.0, 10.0], force=0.01)]
+    [0.0241, 0.0301, 0.0382]
+    """
+    normal = {"force": force, "approach": approach, "mean_pressure": mean_pressure, "mean_gap": mean_gap}
+    if sum(value is not None for value in normal.values()) != 1:
+        raise TypeError(f"give exactly one of {', '.join(normal)}")
+    if tangential_force is not None and tangential_displacement is not None:
+        raise TypeError("give at most one of tangential_force and tangential_displacement")
+    given = {"time": time, **normal, "tangential_force": tangential_force}
+    given["tangential_displacement"] = tangential_displacement
+    named = {
+        name: values if isinstance(values, np.ndarray) or not isinstance(values, Iterable) else list(values)
+        for name, values in given.items()
+        if values is not None
+    }
+    arrays = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
+    lengths = {name: array.size for name, array in arrays.items() if array.ndim > 0}
+    if any(array.ndim > 1 for array in arrays.values()) or len(set(lengths.values())) > 1:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise ValueError(f"expected one number for each step, or one for all: shapes are {shapes}")
+    columns = np.broadcast_arrays(*(np.atleast_1d(array) for array in arrays.values()))
+    steps = np.stack(columns, axis=-1).tolist()
+    # Checked at the call, not at the first state.
+    return (history.advance(**dict(zip(arrays, step, strict=True))) for step in steps)
+
+
 def ensemble(
     model: Model,
     scene: Scene,
@@ -400,22 +479,39 @@ def ensemble(
     return _core.ensemble(model._core(), scene._core(), loads, seed, surfaces, progress)
 
 
-def table(states: Sequence[ContactState]) -> NDArray[np.void]:
+def table(states: Iterable[ContactState | HistoryState]) -> NDArray[np.void]:
     """States as a structured array, a row each: what pandas and xarray read.
 
-    Numbers that a state has not are NaN.
+    Columns are the names of ``to_dict()``, which are those of the tables of scenes. Columns of an effect
+    (``plastic_area``, ``plastic_volume``, ``plastic_work`` of a hardness; ``branch``, ``energy``, ``stability`` of
+    adhesion; those of friction) are there where a state has them. Numbers that a state has not are NaN, texts empty.
+
+    Parameters
+    ----------
+    states : iterable of ContactState or HistoryState
+        A sweep, the states of a path.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (states,), with the names as fields.
 
     Examples
     --------
     >>> import fractal_contact as fc
     >>> contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0))
-    >>> rows = fc.table(list(contact.sweep(force=[0.5, 1.0])))
+    >>> rows = fc.table(contact.sweep(force=[0.5, 1.0]))
     >>> rows["force"].tolist()
     [0.5, 1.0]
     """
     rows = [state.to_dict() for state in states]
     texts = {name for row in rows for name, value in row.items() if isinstance(value, str)}
-    names = list(rows[0]) if rows else ["force"]
+    # Of the state with the most columns the order; what only others have comes last.
+    names = list(dict.fromkeys(name for row in sorted(rows, key=len, reverse=True) for name in row)) or ["force"]
     kinds = [(name, "U24" if name in texts else "f8") for name in names]
-    absent = [tuple(np.nan if row[name] is None and name not in texts else row[name] for name in names) for row in rows]
-    return np.array(absent, dtype=kinds)
+
+    def value(row: Mapping[str, Any], name: str) -> Any:
+        found = row.get(name)
+        return found if found is not None else "" if name in texts else np.nan
+
+    return np.array([tuple(value(row, name) for name in names) for row in rows], dtype=kinds)

@@ -1,0 +1,566 @@
+"""Hardness and adhesion: states, paths, errors."""
+
+import os
+import pickle
+import re
+import signal
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fractal_contact as fc
+
+ROOT = Path(__file__).resolve().parents[2]
+WORK, RANGE = 1e-3, 0.01
+EXPONENTIAL = {"work": WORK, "range": RANGE, "law": "exponential"}
+DUGDALE = {"work": WORK, "range": RANGE, "law": "dugdale"}
+SPHERE = fc.Surface.sphere(radius=1.0, size=1.0)
+# Tabor's parameter is 1: 64 cells a side resolve the range.
+COARSE = fc.Bem3d(cells=64, tolerance=1e-5)
+
+
+def rough(cells=65, seed=1):
+    surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
+    return fc.surface_gen.self_affine_map(surface, cells, seed)
+
+
+def smooth(cells=64):
+    surface = fc.Surface.self_affine(
+        hurst=0.8, size=1.0, rms_height=0.01, roll_off_wavelength=0.5, shortest_wavelength=0.25
+    )
+    return surface.height_map(cells, seed=1)
+
+
+def plastic_path(**scene):
+    return fc.Bem3dPath().history(fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, **scene))
+
+
+def adhesive_path(law=EXPONENTIAL, **scene):
+    return fc.Bem3dPath(COARSE).history(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": law}, **scene))
+
+
+# States
+
+
+def test_a_hardness_limits_the_pressure():
+    outputs = ["pressure", "plastic_depth", "area", "gap"]
+    scene = fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, outputs=outputs)
+    state = fc.Bem3d().prepare(scene).solve(force=1e-3)
+    assert state.pressure.max() == pytest.approx(0.02) and 0 < state.plastic.area <= state.area
+    assert state.plastic.volume == pytest.approx(state.plastic_depth.sum() / state.plastic_depth.size)
+    assert state.plastic.dissipated == pytest.approx(0.02 * state.plastic.volume, rel=1e-14)
+    assert state.adhesive is None and state.certificate.equilibrium is None
+    # Fields are not copied, and the gap is that to the indented surface.
+    assert state.plastic_depth.shape == state.gap.shape == (65, 65) and state.plastic_depth is state.plastic_depth
+    assert state.gap.min() > -1e-7 and (state.plastic_depth[state.pressure < 0.019] == 0).all()
+
+
+def test_a_hardness_that_nothing_reaches_changes_no_bit():
+    elastic = fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, outputs=["pressure"])).solve(force=1e-3)
+    high = fc.Scene(rough(), modulus=1.0, effects={"hardness": 1e6}, outputs=["pressure"])
+    hard = fc.Bem3d().prepare(high).solve(force=1e-3)
+    assert np.array_equal(hard.pressure, elastic.pressure)
+    assert elastic.plastic is None and elastic.plastic_depth is None
+    assert hard.plastic.to_dict() == {"area": 0.0, "volume": 0.0, "dissipated": 0.0}
+
+
+def test_states_of_effects_are_values():
+    loaded, unloaded, again = (state.normal for state in plastic_path().follow(force=[1e-3, 2e-4, 2e-4]))
+    assert unloaded.plastic == again.plastic and unloaded.plastic != loaded.plastic
+    assert type(loaded.plastic) is fc.PlasticState and re.match(r"<PlasticState: area=\d", repr(loaded.plastic))
+    assert "plastic=<PlasticState: area=" in repr(loaded)
+    state = adhesive_path().advance(force=0.0).normal
+    assert type(state.adhesive) is fc.AdhesiveState and state.adhesive == state.adhesive
+    assert state.adhesive.to_dict() == {
+        "branch": "approach",
+        "energy": state.adhesive.energy,
+        "stability": state.adhesive.stability,
+    }
+    assert "adhesive=<AdhesiveState: approach, energy=-" in repr(state)
+    with pytest.raises(AttributeError):
+        state.adhesive.energy = 1.0
+    # One way to each number.
+    assert not any(hasattr(state, name) for name in ("plastic_area", "plastic_work", "branch", "energy", "stability"))
+
+
+def test_what_attracts_is_a_tension():
+    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": EXPONENTIAL}, outputs=["pressure", "gap", "area"])
+    state = fc.Bem3d(cells=64, tolerance=1e-7).prepare(scene).solve(approach=0.01)
+    open_, cell = state.gap > 1e-6, 1.0 / 64**2
+    assert state.pressure.sum() * cell == pytest.approx(state.force)
+    attraction = WORK / RANGE * np.exp(-state.gap[open_] / RANGE)
+    assert np.abs(state.pressure[open_] + attraction).max() < 1e-5 * WORK / RANGE
+    assert state.area == pytest.approx((~open_).sum() * cell) and state.certificate.equilibrium < 1e-7
+    assert state.plastic is None and state.certificate.worst >= state.certificate.equilibrium
+
+
+def test_without_work_states_are_elastic():
+    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": {"work": 0.0, "range": 0.01}})
+    state = fc.Bem3dPath(COARSE).history(scene).advance(force=1e-3).normal
+    elastic = COARSE.prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-3)
+    assert state.adhesive is None and (state.approach, state.stiffness) == (elastic.approach, elastic.stiffness)
+
+
+def test_surfaces_of_an_ensemble_yield():
+    surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
+    scene = fc.Scene(surface, modulus=1.0, effects=fc.Effects(hardness=0.02))
+    found = fc.ensemble(fc.Bem3d(cells=33), scene, seed=5, surfaces=3, mean_pressure=[1e-3, 0.5])
+    for index, (state, refused) in enumerate(found):
+        contact = fc.Bem3d(cells=33).prepare(scene, seed=fc.surface_gen.surface_seed(5, index))
+        assert contact.solve(mean_pressure=1e-3).plastic == state.plastic and state.plastic.area > 0
+        # Beyond what all cells at the hardness carry.
+        assert isinstance(refused, fc.OutOfRange) and refused.high == pytest.approx(0.02)
+
+
+# Paths
+
+
+def test_an_indentation_stays():
+    path = plastic_path(outputs=["area", "plastic_depth"])
+    loads = np.array([5e-4, 1e-3, 5e-4, 0.0, 1e-3, 2e-3])
+    first, loaded, half, unloaded, again, further = (state.normal for state in path.follow(force=loads))
+    assert first.plastic.volume < loaded.plastic.volume < further.plastic.volume
+    # The same to the rounding of a sum.
+    kept = pytest.approx(loaded.plastic.volume, rel=1e-14)
+    assert half.plastic.volume == kept and unloaded.plastic.volume == kept
+    assert unloaded.plastic.area == 0.0 and np.array_equal(unloaded.plastic_depth, loaded.plastic_depth)
+    # Unloading follows another curve, reloading comes back.
+    assert half.approach > first.approach and again.approach == pytest.approx(loaded.approach, rel=1e-5)
+    path.restart()
+    assert path.advance(force=0.0).normal.plastic.volume == 0.0
+    # The bits of one step after the other.
+    path.restart()
+    assert [path.advance(force=f).approach for f in (5e-4, 1e-3)] == [first.approach, loaded.approach]
+
+
+@pytest.mark.parametrize("effects", [{"hardness": 0.05}, {"adhesion": {"work": 1e-5, "range": 0.005}}])
+def test_steps_by_mean_pressure_and_mean_gap(effects):
+    scene = fc.Scene(smooth(), modulus=1.0, effects={"boundary": "periodic", **effects}, outputs=["mean_gap"])
+    path = fc.Bem3dPath().history(scene)
+    pressed = path.advance(mean_pressure=2e-3)
+    assert pressed.force == pytest.approx(2e-3) and pressed.approach is None
+    assert pressed.mean_gap == pressed.normal.mean_gap > 0
+    path.restart()
+    closed = path.advance(mean_gap=pressed.mean_gap)
+    assert closed.force == pytest.approx(2e-3, rel=1e-3) and closed.mean_gap == pytest.approx(pressed.mean_gap)
+    with pytest.raises(fc.Unsupported, match="approach"):
+        path.advance(approach=0.01)
+    with pytest.raises(fc.DomainError, match="mean_gap"):
+        path.advance(mean_gap=-1.0)
+
+
+def test_steps_by_approach_and_mean_pressure_may_pull():
+    path = adhesive_path()
+    away, near, back = path.follow(approach=[-0.05, 0.01, -0.005])
+    assert [state.normal.adhesive.branch for state in (away, near, back)] == ["approach", "approach", "withdrawal"]
+    assert away.force < 0 and back.force < 0 and back.approach == -0.005
+    pulled = path.advance(mean_pressure=-4e-3)
+    assert pulled.force == pytest.approx(-4e-3) and pulled.normal.adhesive.stability > 0
+    # Without adhesion nothing pulls, and the history stays where it is.
+    hard = plastic_path()
+    loaded = hard.advance(force=1e-3)
+    for negative in ({"force": -1e-3}, {"approach": -1e-3}, {"mean_pressure": -1e-3}):
+        with pytest.raises(fc.DomainError, match="a finite number >= 0"):
+            hard.advance(**negative)
+    assert hard.last is loaded
+    again = hard.advance(force=1e-3).normal
+    assert again.plastic.volume == pytest.approx(loaded.normal.plastic.volume, rel=1e-6)
+
+
+def test_a_sphere_jumps_into_contact_and_off():
+    # Tabor's parameter is 1.7: between a jump in and a jump off both branches are stable.
+    law = {"work": WORK, "range": 0.006}
+    scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=0.8), modulus=1.0, effects={"adhesion": law}, outputs=["area"])
+    path = fc.Bem3dPath(fc.Bem3d(cells=128, tolerance=1e-5)).history(scene)
+    approach = np.linspace(-0.04, 0.02, 25)
+    nearer, apart = (fc.table(path.follow(approach=steps)) for steps in (approach, approach[::-1]))
+    assert set(nearer["branch"]) == {"approach"} and set(apart["branch"][1:]) == {"withdrawal"}
+    lost = apart["force"][::-1] - nearer["force"]
+    assert lost.min() < -3 * WORK and np.abs(lost[approach > 0]).max() < 1e-4 * WORK
+    # Between 1.5 (JKR) and 2 (DMT) times pi w R.
+    assert 1.5 < -apart["force"].min() / (np.pi * WORK) < 1.7
+    assert (nearer["stability"] > 0).all() and (apart["area"][::-1] >= nearer["area"]).all()
+
+
+def test_pull_off_is_that_of_maugis():
+    contact = fc.MaugisDugdale().prepare(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": DUGDALE}))
+    with pytest.raises(fc.OutOfRange) as caught:
+        contact.solve(force=-10 * WORK)
+    errors = []
+    for cells in (64, 128):
+        path = fc.Bem3dPath(fc.Bem3d(cells=cells, tolerance=1e-5))
+        path = path.history(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": DUGDALE}))
+        found = [state.force for state in path.follow(approach=np.linspace(0.01, -0.02, 31))]
+        errors.append(min(found) / caught.value.low - 1.0)
+    # Of first order in the cell: whole cells enter the zone.
+    assert 0.0 < errors[1] < 0.08 and errors[1] < 0.7 * errors[0], errors
+
+
+def test_a_path_ends_at_pull_off_with_its_last_stable_state():
+    path, held = adhesive_path(outputs=["area", "pressure"]), []
+    with pytest.raises(fc.NotConverged, match="pull-off before the force") as caught:
+        for state in path.follow(force=[1e-3, 0.0, -4e-3, -1.0, 1e-3]):
+            held.append(state.normal)
+    best = caught.value.best
+    assert len(held) == 3 and best.force == held[-1].force == pytest.approx(-4e-3)
+    assert best.adhesive == held[-1].adhesive and best.adhesive.branch == "withdrawal" and best.adhesive.stability > 0
+    assert best.status == "stagnated" and held[-1].status == "converged"
+    assert np.array_equal(best.pressure, held[-1].pressure) and best.pressure.min() < 0
+    # The history stands where it was.
+    assert path.advance(force=-4e-3).normal.area == held[-1].area
+    # A pull without a step before it: the bodies hold each other at first.
+    assert adhesive_path().advance(force=-4e-3).normal.adhesive.branch == "withdrawal"
+    with pytest.raises(fc.NotConverged) as caught:
+        adhesive_path().advance(force=-1.0)
+    assert caught.value.best.force == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_single_load_is_the_path_from_no_contact():
+    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": EXPONENTIAL})
+    contact, path = COARSE.prepare(scene), fc.Bem3dPath(COARSE).history(scene)
+    for force in (1e-3, -3e-3):
+        path.restart()
+        one, step = contact.solve(force=force), path.advance(force=force).normal
+        assert (one.approach, one.stiffness, one.adhesive) == (step.approach, step.stiffness, step.adhesive)
+
+
+def test_follow_is_one_step_for_each_number():
+    body = fc.Body(young=2.0, poisson=0.3)
+    scene = fc.Scene(SPHERE, bodies=(body, body), effects={"friction": 0.5})
+    path = fc.CattaneoMindlin().history(scene)
+    # A number alone is that of every step; any iterable will do.
+    loop = list(path.follow(force=0.01, tangential_force=iter([0.002, -0.002, 0.002])))
+    assert [state.tangential_force for state in loop] == [0.002, -0.002, 0.002]
+    assert loop[2].dissipated > loop[1].dissipated and [state.force for state in loop] == [0.01] * 3
+    path.restart()
+    times = [state.time for state in fc.follow(path, np.array([1.0, 2.0]), approach=np.float32(0.01))]
+    assert times == [1.0, 2.0] and list(path.follow(2.0, force=[])) == []
+    assert next(path.follow(3.0, force=0.01)).time == 3.0
+    for wrong in ({}, {"force": [1.0], "approach": [1.0]}):
+        with pytest.raises(TypeError, match="exactly one of"):
+            path.follow(**wrong)
+    with pytest.raises(TypeError, match="at most one of"):
+        path.follow(force=[1.0], tangential_force=[0.0], tangential_displacement=[0.0])
+    with pytest.raises(ValueError, match=r"time \(3,\), force \(2,\)"):
+        path.follow([1.0, 2.0, 3.0], force=[1.0, 2.0])
+    with pytest.raises(ValueError, match=r"force \(2, 1\)"):
+        path.follow(force=[[1.0], [2.0]])
+    # Checked at the call; a load that the model refuses raises at its place.
+    steps = path.follow(3.0, force=[0.01, -0.01])
+    assert next(steps).force == pytest.approx(0.01)
+    with pytest.raises(fc.DomainError):
+        next(steps)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_ctrl_c_in_a_path_keeps_what_was_done():
+    # Waves on all scales: many outer iterations a step.
+    surface = fc.Surface.self_affine(hurst=0.3, size=1.0, rms_height=0.01).height_map(513, seed=1)
+    path = fc.Bem3dPath().history(fc.Scene(surface, modulus=1.0, effects={"hardness": 0.1}))
+    assert path.last is None
+    loads, done = np.geomspace(1e-4, 1e-2, 4000), []
+    threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        for state in path.follow(force=loads):
+            done.append(state)
+    assert 0 < len(done) < len(loads) and all(state.normal.status == "converged" for state in done)
+    # A step that was complete before the signal was heard is not lost.
+    last = path.last
+    assert last is done[-1] or last.force == pytest.approx(loads[len(done)])
+    unloaded = path.advance(force=0.0)
+    assert unloaded.normal.plastic.volume == pytest.approx(last.normal.plastic.volume, rel=1e-14)
+    assert path.last is unloaded
+    path.restart()
+    assert path.last is None
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_ctrl_c_inside_of_a_step_leaves_the_history_as_it_was():
+    surface = fc.Surface.self_affine(hurst=0.3, size=1.0, rms_height=0.01).height_map(1025, seed=1)
+    scene = fc.Scene(surface, modulus=1.0, effects={"hardness": 0.1})
+    path = fc.Bem3dPath(fc.Bem3d(tolerance=1e-10)).history(scene)
+    loaded = path.advance(force=1e-4)
+    threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        path.advance(force=0.05)
+    assert path.last is loaded
+    unloaded = path.advance(force=0.0).normal
+    assert unloaded.plastic.volume == pytest.approx(loaded.normal.plastic.volume, rel=1e-14)
+
+
+# The same as by the scene runner
+
+
+SCENE = """[scene]
+models = ["bem3d"]
+modulus = {modulus}
+
+{surface}
+{path}
+[effects]
+{effects}
+
+[outputs]
+stiffness = true
+area = true
+{fields}
+
+[models.bem3d]
+cells = 48
+tolerance = 1e-5
+
+[sampling]
+seed = 3
+"""
+
+
+def test_a_plastic_path_has_the_bits_of_the_scene_runner(tmp_path):
+    forces = [100.0, 200.0, 0.0, 300.0]
+    text = SCENE.format(
+        modulus='"115 GPa"',
+        surface='[scene.surface]\nkind = "self_affine"\nside = "1 mm"\nhurst = 0.8\nrms_height = "1 um"\n',
+        path="".join(f'[[scene.path]]\nforce = "{force} N"\n' for force in forces),
+        effects='hardness = { pressure = "1 GPa" }',
+        fields='plastic_depth = ["npy"]',
+    )
+    outcome = fc.run_scene(fc.Scene.from_toml(text), tmp_path)
+    surface = fc.Surface.self_affine(hurst=0.8, size=1e-3, rms_height=1e-6)
+    effects = fc.Effects(hardness=fc.si("1 GPa"))
+    outputs = ["stiffness", "area", "plastic_depth"]
+    scene = fc.Scene(surface, modulus=fc.si("115 GPa"), effects=effects, outputs=outputs)
+    path = fc.Bem3dPath(fc.Bem3d(cells=48, tolerance=1e-5)).history(scene, fc.surface_gen.surface_seed(3, 0))
+    states = list(path.follow(force=forces))
+    rows = fc.table(states)
+    for name in ("force", "approach", "stiffness", "area", "plastic_area", "plastic_volume", "plastic_work"):
+        assert np.array_equal(rows[name], outcome.results[name], equal_nan=True), name
+    assert rows["plastic_volume"][3] > 1.1 * rows["plastic_volume"][2] > 0
+    depth = np.load(tmp_path / "plastic_depth-bem3d-0-003.npy")
+    assert np.array_equal(depth, states[3].normal.plastic_depth)
+
+
+def test_an_adhesive_path_has_the_bits_of_the_scene_runner(tmp_path):
+    approach = ["-0.9", "-0.5", "0.4", "-0.5", "-0.8", "-1.2"]
+    text = SCENE.format(
+        modulus='"1 MPa"',
+        surface='[scene.body]\nkind = "sphere"\nradius = "50 um"\nside = "36 um"\n',
+        path="".join(f'[[scene.path]]\napproach = "{step} um"\n' for step in approach),
+        effects='adhesion = { work = "50 mJ/m^2", range = "0.5 um", law = "exponential" }',
+        fields="",
+    )
+    outcome = fc.run_scene(fc.Scene.from_toml(text), tmp_path)
+    law = {"work": fc.si("50 mJ/m^2"), "range": fc.si("0.5 um"), "law": "exponential"}
+    sphere = fc.Surface.sphere(radius=fc.si("50 um"), size=fc.si("36 um"))
+    scene = fc.Scene(sphere, modulus=fc.si("1 MPa"), effects={"adhesion": law}, outputs=["stiffness", "area"])
+    path = fc.Bem3dPath(fc.Bem3d(cells=48, tolerance=1e-5)).history(scene)
+    rows = fc.table(path.follow(approach=[fc.si(f"{step} um") for step in approach]))
+    for name in ("force", "approach", "stiffness", "area", "energy", "stability"):
+        assert np.array_equal(rows[name], outcome.results[name], equal_nan=True), name
+    assert rows["branch"].tolist() == list(outcome.results["branch"]) == ["approach"] * 3 + ["withdrawal"] * 3
+
+
+# Dictionaries and tables
+
+
+def test_dictionaries_have_the_columns_of_scenes():
+    plastic = ["plastic_area", "plastic_volume", "plastic_work"]
+    adhesive = ["branch", "energy", "stability"]
+    path = plastic_path(outputs=["pressure", "plastic_depth", "contact_patches"])
+    hard, soft = path.advance(force=1e-3), adhesive_path().advance(force=1e-3)
+    told = hard.to_dict()
+    assert [told[name] for name in plastic] == list(hard.normal.plastic.to_dict().values())
+    assert not told.keys() & {*adhesive, "pressure", "tangential_force"} and told["time"] == 0.0
+    fields = hard.to_dict(fields=True)
+    assert fields["plastic_depth"] is hard.normal.plastic_depth and fields["pressure"].shape == (65, 65)
+    assert fields["patches"].ndim == 1 and fields["gap"] is None and fields.keys() > told.keys()
+    told = soft.normal.to_dict()
+    assert [told[name] for name in adhesive] == list(soft.normal.adhesive.to_dict().values())
+    assert not told.keys() & set(plastic)
+
+
+def test_tables_have_the_columns_that_states_have():
+    elastic = fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-3)
+    plain = fc.table([elastic])
+    assert not {"plastic_area", "branch", "energy", "tangential_force"} & set(plain.dtype.names)
+    hard, soft = plastic_path().advance(force=1e-3).normal, adhesive_path().advance(force=1e-3).normal
+    rows = fc.table([elastic, hard, soft])
+    assert set(plain.dtype.names) | {"plastic_work", "energy", "stability"} < set(rows.dtype.names)
+    assert rows["branch"].tolist() == ["", "", "approach"] and rows.dtype["branch"].kind == "U"
+    assert np.isnan(rows["plastic_work"][[0, 2]]).all() and rows["plastic_work"][1] == hard.plastic.dissipated
+    assert np.isnan(rows["energy"][:2]).all() and rows["energy"][2] == soft.adhesive.energy
+    assert rows["status"].tolist() == ["converged"] * 3
+    # Columns come in one order, whatever the first state is.
+    assert fc.table([hard, elastic]).dtype.names == fc.table([elastic, hard]).dtype.names
+    assert fc.table([]).shape == (0,)
+
+
+# Inputs
+
+
+def test_a_path_model_is_made_of_a_model():
+    model = fc.Bem3d(cells=33, tolerance=1e-8)
+    path = fc.Bem3dPath(model)
+    assert path.model is model and path.name == "bem3d" and path.sources == model.sources
+    assert eval(repr(path), vars(fc)) == path == pickle.loads(pickle.dumps(path)) and hash(path) == hash(path)
+    assert fc.Bem3dPath() == fc.Bem3dPath(fc.Bem3d()) != path
+    with pytest.raises(TypeError, match=r"model is Hertz\(\): expected a Bem3d"):
+        fc.Bem3dPath(fc.Hertz())
+    with pytest.raises(TypeError):
+        fc.Bem3dPath(cells=33)
+    with pytest.raises(fc.Unsupported, match="without hardness or adhesion"):
+        path.history(fc.Scene(SPHERE, modulus=1.0))
+    with pytest.raises(fc.Unsupported, match="tangential"):
+        plastic_path().advance(force=1e-3, tangential_force=1e-4)
+
+
+@pytest.mark.parametrize("number", [np.float64, np.float32, np.int64, int, np.array])
+def test_numbers_of_numpy_are_numbers(number):
+    one = number(1)
+    hard = fc.Scene(rough(17), modulus=1.0, effects={"hardness": one})
+    assert fc.Bem3d().prepare(hard).solve(force=0.01).plastic.area == 0.0
+    sticky = fc.Scene(SPHERE, modulus=1e3, effects={"adhesion": {"work": one, "range": one}})
+    assert fc.Bem3d(cells=8).prepare(sticky).solve(force=one).adhesive.branch == "approach"
+    short = fc.Scene(SPHERE, modulus=1e3, effects={"adhesion": one})
+    assert fc.Jkr().prepare(short).solve(force=one).force == 1.0
+
+
+def test_effects_are_values():
+    law = dict(EXPONENTIAL)
+    effects = fc.Effects(adhesion=law)
+    assert pickle.loads(pickle.dumps(effects)) == effects == fc.Effects(adhesion=EXPONENTIAL)
+    law["work"] = 2.0
+    assert effects.adhesion == EXPONENTIAL and fc.Effects(hardness=1.0) != fc.Effects(hardness=2.0)
+    scene = fc.Scene(SPHERE, modulus=1.0, effects=effects)
+    assert (
+        pickle.loads(pickle.dumps(scene)) == scene == fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": EXPONENTIAL})
+    )
+
+
+def test_the_exponential_law_is_taken_where_none_is_named():
+    forces = [
+        adhesive_path({"work": WORK, "range": RANGE, **law}).advance(approach=0.0).force
+        for law in ({}, {"law": None}, {"law": "exponential"}, {"law": "dugdale"})
+    ]
+    assert forces[0] == forces[1] == forces[2] != forces[3]
+
+
+# No work is no adhesion.
+WRONG = [(name, value) for name in ("hardness", "work", "range") for value in (-1.0, np.nan, np.inf, -np.inf)]
+
+
+@pytest.mark.parametrize(("name", "value"), [*WRONG, ("hardness", 0.0), ("range", 0.0)])
+def test_numbers_that_make_no_sense(name, value):
+    given = {"hardness": value} if name == "hardness" else {"adhesion": {"work": 1.0, "range": 1.0, name: value}}
+    # Where the mistake is made, and in a scene.
+    for make in (lambda: fc.Effects(**given), lambda: fc.Scene(SPHERE, modulus=1.0, effects=given)):
+        with pytest.raises(fc.DomainError, match=name) as caught:
+            make()
+        assert name in caught.value.quantity and np.array_equal(caught.value.value, value, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("effects", "error", "words"),
+    [
+        ({"hardness": True}, TypeError, "hardness is True: expected a number"),
+        ({"hardness": "1 GPa"}, TypeError, "hardness = '1 GPa'"),
+        ({"hardness": [1.0]}, TypeError, "hardness"),
+        ({"hardness": {"pressure": 1.0}}, TypeError, "hardness"),
+        ({"hardness": 10**400}, ValueError, "hardness"),
+        ({"friction": True}, TypeError, "friction is True"),
+        ({"adhesion": -0.1}, fc.DomainError, "work of adhesion"),
+        ({"adhesion": np.nan}, fc.DomainError, "work of adhesion"),
+        ({"adhesion": True}, TypeError, "work of adhesion is True"),
+        ({"adhesion": np.True_}, TypeError, "work of adhesion is"),
+        ({"adhesion": "strong"}, TypeError, "work = 'strong'"),
+        ({"adhesion": {}}, TypeError, "work is missing"),
+        ({"adhesion": {"range": 1.0}}, TypeError, "work is missing"),
+        ({"adhesion": {"work": 0.1, "range": True}}, TypeError, "range of adhesion is True"),
+        ({"adhesion": {"work": 0.1, "range": "1 nm"}}, TypeError, "range = '1 nm'"),
+        ({"adhesion": {"work": 0.1, "law": "dugdale"}}, ValueError, "without a range"),
+        ({"adhesion": {"work": 0.1, "reach": 1.0}}, ValueError, 'no "reach": there are work, range and law'),
+        ({"adhesion": {"work": 0.1, "range": 1.0, "law": "cubic"}}, ValueError, '"exponential" or "dugdale"'),
+        ({"adhesion": {"work": 0.1, "range": 1.0, "law": 3}}, TypeError, "law = 3"),
+        ({"adhesion": {1: 2}}, TypeError, "."),
+    ],
+)
+def test_effects_that_make_no_sense(effects, error, words):
+    with pytest.raises(error, match=words):
+        fc.Effects(**effects)
+
+
+# What a model lacks
+
+
+@pytest.mark.parametrize(
+    ("model", "surface", "effects"),
+    [
+        (fc.Hertz(), SPHERE, {"hardness": 1.0}),
+        (fc.Hertz(), SPHERE, {"adhesion": 1e-3}),
+        (fc.Hertz(), SPHERE, {"adhesion": EXPONENTIAL}),
+        (fc.Jkr(), SPHERE, {"adhesion": EXPONENTIAL}),
+        (fc.MaugisDugdale(), SPHERE, {"adhesion": 1e-3}),
+        (fc.MaugisDugdale(), SPHERE, {"adhesion": EXPONENTIAL}),
+        (fc.FlatPunch(), fc.Surface.flat_circle(radius=0.1, size=1.0), {"adhesion": DUGDALE}),
+        (fc.Mdr1d(), SPHERE, {"adhesion": EXPONENTIAL}),
+        (fc.Mdr1d(), SPHERE, {"hardness": 1.0}),
+    ],
+)
+def test_models_refuse_effects_that_they_lack(model, surface, effects):
+    with pytest.raises(fc.Unsupported, match=r"hardness|adhesion") as caught:
+        model.prepare(fc.Scene(surface, modulus=1.0, effects=effects))
+    assert caught.value.model == model.name
+
+
+@pytest.mark.parametrize("adhesion", [EXPONENTIAL, DUGDALE])
+def test_hardness_and_adhesion_together_are_refused(adhesion):
+    scene = fc.Scene(SPHERE, modulus=1.0, effects={"hardness": 1.0, "adhesion": adhesion})
+    for plan in (COARSE.prepare, fc.Bem3dPath(COARSE).history):
+        with pytest.raises(fc.Unsupported, match="hardness and adhesion together"):
+            plan(scene)
+
+
+def test_a_number_alone_is_adhesion_of_short_range():
+    forces = []
+    for adhesion in (WORK, {"work": WORK}):
+        scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": adhesion})
+        for model in (fc.Jkr(), fc.Mdr1d()):
+            contact = model.prepare(scene)
+            assert contact.solve(force=-1.49 * np.pi * WORK).force < 0
+            with pytest.raises(fc.OutOfRange):
+                contact.solve(force=-1.51 * np.pi * WORK)
+            forces.append(contact.solve(approach=0.01).force)
+    assert forces[:2] == forces[2:]
+
+
+def test_closed_forms_of_adhesion():
+    wave = fc.Surface.sine(amplitude=0.01, wavelength=1.0, size=1.0)
+    effects = {"boundary": "periodic", "adhesion": 1e-4}
+    state = fc.AdhesiveWave().prepare(fc.Scene(wave, modulus=1.0, effects=effects)).solve(mean_pressure=-1e-4)
+    assert state.force == pytest.approx(-1e-4) and state.adhesive is None
+    dry = fc.Westergaard().prepare(fc.Scene(wave, modulus=1.0, effects={"boundary": "periodic"}, outputs=["area"]))
+    sticky = fc.AdhesiveWave().prepare(fc.Scene(wave, modulus=1.0, effects=effects, outputs=["area"]))
+    assert sticky.solve(mean_pressure=1e-3).area > dry.solve(mean_pressure=1e-3).area
+
+
+def test_a_range_that_cells_do_not_resolve_is_refused_with_the_cell_that_would():
+    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": {"work": WORK, "range": 1e-4}})
+    for plan in (COARSE.prepare, fc.Bem3dPath(COARSE).history):
+        with pytest.raises(fc.DomainError, match="at most") as caught:
+            plan(scene)
+        assert caught.value.quantity == "side of a cell" and caught.value.value == 1 / 64
+
+
+def test_a_plastic_depth_needs_a_hardness():
+    with pytest.raises(fc.Unsupported, match="hardness"):
+        fc.Scene(rough(17), modulus=1.0, outputs=["plastic_depth"])
+
+
+def test_the_page_of_the_book_runs():
+    page = ROOT / "book/src/python.md"
+    if not page.exists():
+        pytest.skip("outside of the repository")
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(block, {})
