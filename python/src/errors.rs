@@ -34,11 +34,7 @@ pub fn plain(py: Python<'_>, name: &str, message: &str) -> PyErr {
 /// An error of a model.
 pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
     let attributes = PyDict::new(py);
-    let mut message = error.to_string();
-    if let Error::NotConverged { best } = &error {
-        // Where a path ends at pull-off, the strategy says so.
-        message += &format!("; {}", best.report.strategy);
-    }
+    let message = error.to_string();
     let fill = || -> PyResult<&str> {
         Ok(match error {
             Error::Domain { name, value, expected } => {

@@ -4,7 +4,8 @@
 //! Maugis's units and the pull-off force over pi w R; HALF_SIDE is half of the side in units of `(pi w R^2/K)^(1/3)`, K = 4/3.
 //! `adhesion jkr CELLS OFF STEPS` draws a sphere with short-range adhesion from its contact without load, CELLS in its radius.
 //! `adhesion heights CELLS HURST SEED FILE` writes the heights of that map, one a line.
-//! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* = h = 1) along these forces.
+//! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* = h = 1) along these
+//! forces; WORK 0: without adhesion, RANGE 0: of short range.
 
 use bem3d::{
     Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactState, Error, HeightMap, HistoryModel, Load,
@@ -134,7 +135,11 @@ fn map(
     let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
     (scene.outputs.area, scene.outputs.stiffness) = (true, false);
     scene.effects.boundary = Boundary::Periodic;
-    scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential };
+    scene.effects.adhesion = if range > 0.0 {
+        Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential }
+    } else {
+        Adhesion::ShortRange { work }
+    };
     let model = Bem3d { cells, tolerance, ..Bem3d::default() };
     let mut history = HistoryModel::prepare(&Bem3dPath(model), &scene, seed)?;
     println!("force stiffness branch stability energy cells steps applications seconds");
@@ -149,13 +154,12 @@ fn map(
 }
 
 fn line(state: &ContactState, start: Instant) -> String {
-    let Some(adhesive) = state.adhesive else { return "no adhesion".into() };
+    let adhesive = state.adhesive.map_or("elastic 1 0".into(), |adhesive| {
+        format!("{} {:.4e} {:.8e}", adhesive.branch.as_str(), adhesive.stability, adhesive.energy)
+    });
     format!(
-        "{:.6e} {} {:.4e} {:.8e} {} {} {} {:.3} [{}] {}",
+        "{:.6e} {adhesive} {} {} {} {:.3} [{}] {}",
         state.stiffness.unwrap_or(f64::NAN),
-        adhesive.branch.as_str(),
-        adhesive.stability,
-        adhesive.energy,
         state.report.contact_cells.unwrap_or(0),
         state.report.iterations,
         state.report.applications,

@@ -110,7 +110,12 @@ impl fmt::Display for Error {
             }
             Self::NotConverged { best } => {
                 let r = &best.report;
-                write!(f, "not converged after {} iterations: {}", r.iterations, r.certificate)
+                // Where a path ends at pull-off, the strategy says so.
+                write!(
+                    f,
+                    "not converged after {} iterations: {}; {}",
+                    r.iterations, r.certificate, r.strategy
+                )
             }
             Self::Stopped { .. } => write!(f, "stopped by the caller before the solve was complete"),
         }

@@ -2,27 +2,28 @@
 //!
 //! # A short range on cells
 //!
-//! JKR's limit has no length below which the attraction acts, a grid has its cell. Every work of adhesion w is put into the last cells of a
-//! contact by the law `s = s0 (1 - g/g0)`, `s0 = c sqrt(E* w/a)`, `g0 = 2 w/s0`, a the longer side of a cell. A straight front of cells that all
-//! open at once at `s = t` and are open by `g` releases `t g/2 = w` a cell exactly (virtual crack closure): `t/sqrt(E* w/a)` is 1.077 along
-//! the rows of cells, 1.266 along their diagonals and tends to 1.46, which is where Pohrt and Popov's criterion has it (1.4537), for
-//! directions that no small numbers tell. With c above 1.077 a front along the rows stays where it is until it is pulled harder than w (it is
-//! trapped); below, cells open one after the other while their neighbours already open, and the energy release rate at which a front moves
-//! differs from w by less than 1 % at c = 0.7, in every direction.
+//! JKR's limit has no length below which the attraction acts, a grid has its cell. The work of adhesion w is put into the last cells of a
+//! contact, by the law `s = s0 (1 - g/g0)` with `s0 = c sqrt(E* w/a)` and `g0 = 2 w/s0`, a the longer side of a cell.
 //!
-//! What is left is a line tension: a front of length L has the energy `-w b a L` besides that of the area, so that a round contact of
-//! radius R acts as if w were `w (1 + b a/R)`. For c = 0.7 the energy of straight fronts gives b = 0.389, the same in all directions to
-//! 0.005. Counting the attached share x of a cell, `x = (1 - g/g0)^2`, the length of the front is `(2/m) sum x_i (1 - (J x)_i)` with the mean
-//! J over the neighbours within r = 4 a and m the mean of |x| over J; adding `w b a` times that to the energy takes the tension out, and the
-//! attraction of a cell becomes `(1 + B (2 (J x)_i - 1)) s(g)`, `B = 2 b a/m`: a cell of a straight front is attracted as before, one in a
-//! corner of the contact less. The error of pull-off forces is then of second order in `a/R`.
+//! Where a straight front bears the tension t on its last closed cells and the next are open by g, `t g/2` is the energy release rate, exactly
+//! (virtual crack closure). At the rate w, `t/sqrt(E* w/a)` is 1.077 along the rows of cells, 1.266 along their diagonals and tends to 1.46
+//! for directions of large numbers; Pohrt and Popov's criterion has 1.4537. With c = 1.077 the law is the line between both states of a
+//! front along the rows: it moves through the cells without a barrier. With a larger c it is trapped; with a smaller one cells begin to open
+//! while those before them still do, and fronts of all directions move at nearly w, within about 1 % at c = 0.7.
+//!
+//! What is left is a line tension. At c = 0.7 a front of length L has the energy `-0.44 a w L` beside that of the area, in all directions, so
+//! that a round contact of radius R acts as if w were `w (1 + 0.44 a/R)`. With the attached share of a cell `x = (1 - g/g0)^2`, the mean J
+//! over the neighbours within 4 a and the mean m of |x| over J, a front has the length `(2/m) sum x_i (1 - (J x)_i)`. Adding `b a w` times
+//! that to the energy makes the attraction of a cell `(1 + B (2 (J x)_i - 1)) s(g)`, `B = 2 b a/m`: as before on a straight front, less in a
+//! corner of the contact. Fronts become sharper too, and their tension vanishes at b = 0.389. The error of pull-off forces is then of second
+//! order in `a/R`. `fronts` repeats the calibration.
 
 use super::law::Law;
 use crate::geometry::{CellSet, Grid};
+use crate::real::each;
 use contact_model::Boundary;
 
-/// The length b by which the law of short range draws a front ahead of its elastic tip, in longer sides of a cell: the line tension of straight
-/// fronts without neighbours, zero with them.
+/// The factor b of the length of fronts in the energy, in longer sides of a cell times the work of adhesion: their line tension then is zero.
 const FRONT_WIDTH: f64 = 0.389;
 /// Radius of the neighbourhood in longer sides of a cell: the smallest at which the length of a front depends on its direction by less than
 /// 2 %.
@@ -91,7 +92,7 @@ impl Attraction {
         let neighbours = self.neighbours.as_ref()?;
         let attached: Vec<f64> = gap.iter().map(|&g| self.law.attached(g)).collect();
         let mut factors = neighbours.mean(cells, &attached);
-        factors.iter_mut().for_each(|f| *f = 1.0 + neighbours.strength * (2.0 * *f - 1.0));
+        each(&mut factors, |f| *f = 1.0 + neighbours.strength * (2.0 * *f - 1.0));
         Some(factors)
     }
 
@@ -154,6 +155,7 @@ impl Attraction {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_possible_wrap)] // Small numbers.
 impl Attraction {
     /// How much stronger than on a straight front a cell is that has all neighbours.
     pub fn strength(&self) -> f64 {
@@ -188,7 +190,7 @@ impl Neighbours {
                 weights.push(weight);
             }
         }
-        weights.iter_mut().for_each(|w| *w /= total);
+        each(&mut weights, |w| *w /= total);
         let strength = 2.0 * FRONT_WIDTH * side * total / moment;
         Self { grid, periodic, reach: (across, along), weights, strength }
     }
@@ -199,21 +201,15 @@ impl Neighbours {
         let (across, along) = self.reach;
         let (width, height) = (window.width + 2 * across, window.height + 2 * along);
         let mut around = vec![0.0; width * height];
-        // Images of a periodic map that the margin can reach, in periods.
-        let images =
-            |reach: usize, period: usize| if self.periodic { reach.div_ceil(period) as isize } else { 0 };
-        let (kx, ky) = (images(across, self.grid.columns), images(along, self.grid.rows));
-        let place = |at: usize, first: usize, reach: usize, k: isize, period: usize, length: usize| {
-            let at = (at + reach) as isize - first as isize + k * period as isize;
-            usize::try_from(at).ok().filter(|&at| at < length)
+        // A periodic map has all cells of the window that are whole periods apart.
+        let images = |at: usize, period: usize, length: usize| {
+            let (first, end) = if self.periodic { (at % period, length) } else { (at, at + 1) };
+            (first..end).step_by(period)
         };
         for ((x, y), &value) in cells.places().zip(values) {
-            for j in -ky..=ky {
-                let Some(row) = place(y, window.y, along, j, self.grid.rows, height) else { continue };
-                for i in -kx..=kx {
-                    if let Some(column) = place(x, window.x, across, i, self.grid.columns, width) {
-                        around[row * width + column] = value;
-                    }
+            for row in images(y + along - window.y, self.grid.rows, height) {
+                for column in images(x + across - window.x, self.grid.columns, width) {
+                    around[row * width + column] = value;
                 }
             }
         }
@@ -232,6 +228,7 @@ impl Neighbours {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_possible_wrap)] // Small numbers.
 mod tests {
     use super::*;
 

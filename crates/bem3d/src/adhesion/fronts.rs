@@ -4,6 +4,7 @@
 //! front do the same, so that rows are the unknowns. `cargo test --release -p bem3d fronts -- --nocapture` prints the table.
 
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
+#![allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // Small numbers.
 
 use super::attraction::Attraction;
 use super::law::Law;
@@ -148,7 +149,9 @@ impl Direction {
                     if wrong.is_empty() {
                         break next;
                     }
-                    wrong.into_iter().for_each(|i| closed[i] = !closed[i]);
+                    for i in wrong {
+                        closed[i] = !closed[i];
+                    }
                 };
                 let change = next.iter().zip(&gap).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
                 gap = next;
