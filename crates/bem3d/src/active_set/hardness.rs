@@ -125,7 +125,8 @@ pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whol
         }
     }
     let share = first / (first - last);
-    if !(first < 0.0 && share < whole) {
+    // The energy is convex. Errors of the gaps can make it look concave: the share is then negative, and the step would go back.
+    if !(first < 0.0 && last > 0.0 && share < whole) {
         return false;
     }
     for i in 0..p.len() {

@@ -73,7 +73,7 @@ impl OuterProgress {
         if best {
             (self.best, self.since_best) = (error, 0);
         } else {
-            self.since_best += usize::from(!self.rough);
+            self.since_best += usize::from(complete && !self.rough);
         }
         Decision::Continue { best }
     }
@@ -165,6 +165,11 @@ mod tests {
         });
         let end = Decision::End(Status::IterationLimit);
         assert_eq!(decisions.into_iter().position(|d| d == end), Some(TIGHT.outer_iterations));
+        // Nor do those of shortened steps, whose gaps are not evaluated.
+        let mut progress = OuterProgress::new(TIGHT, false);
+        let shortened = Evaluated { complete: false, ..seen(1e-5) };
+        let mut decisions = (0..2 * TUNING.patience).map(|_| progress.judge(shortened, 1.0, &TUNING, &never));
+        assert!(decisions.all(|d| d == Decision::Continue { best: false }));
         // Better residuals begin anew.
         let errors: Vec<f64> =
             (0..5 * TUNING.patience).map(|i| 1e-3 * 0.8f64.powf((i / 10) as f64)).collect();

@@ -104,10 +104,12 @@ impl<'a> Solver<'a> {
         let mut progress = OuterProgress::new(self.limits, rough);
         let (mut steps, tolerance) = (0, self.limits.tolerance);
         let (status, last) = loop {
-            let mut evaluate = |rough| timed(Part::Residuals, || self.evaluate(rough));
-            let mut evaluated = known.take().unwrap_or_else(|| evaluate(progress.rough));
-            if progress.rough && evaluated.residuals.worst() <= tolerance {
-                evaluated = evaluate(false); // Better than expected.
+            let mut evaluated =
+                (known.take()).unwrap_or_else(|| timed(Part::Residuals, || self.evaluate(progress.rough)));
+            let within = evaluated.residuals.worst() <= tolerance;
+            if within && (progress.rough || self.is_saturated() && !evaluated.complete) {
+                // Better than expected; a step that was shortened has not been evaluated.
+                evaluated = timed(Part::Residuals, || self.evaluate(false));
             }
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
                 Decision::End(status) => break (status, evaluated),

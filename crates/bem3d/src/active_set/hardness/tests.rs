@@ -162,3 +162,20 @@ fn the_factored_way_ends_where_cells_saturate() {
     assert_eq!((solved.status, solved.p.len()), (Status::Converged, 2));
     assert!(solved.p[0] >= 0.5 && (solved.p[1] - 0.3).abs() < 1e-12 && solved.q.is_none(), "{:?}", solved.p);
 }
+
+#[test]
+fn a_step_is_shortened_to_the_minimum_on_its_way_and_never_turned_back() {
+    // One cell whose pressure rises by 1: slopes of the energy from -1 to `last`, with d = 0.
+    let shortened = |last: f64| {
+        let (mut p, mut displaced) = ([2.0], [last]);
+        let was = shorten((vec![1.0], &[-1.0], 0.0), (&mut p, &mut displaced), 0.9);
+        (was, p[0], displaced[0])
+    };
+    // Half of the way, where the slope is zero.
+    assert_eq!(shortened(1.0), (true, 1.5, 0.0));
+    // The minimum lies beyond nine tenths of the step, or beyond all of it.
+    assert_eq!(shortened(0.1), (false, 2.0, 0.1));
+    assert_eq!(shortened(-0.5), (false, 2.0, -0.5));
+    // A gap with an error in it can make the energy look concave: the share would be negative.
+    assert_eq!(shortened(-1.5), (false, 2.0, -1.5));
+}
