@@ -104,9 +104,9 @@ def test_models_refuse_what_they_lack():
     with pytest.raises(fc.Unsupported) as caught:
         fc.Hertz().prepare(fc.Scene(rough(), modulus=1.0))
     assert caught.value.model == "hertz" and "height map" in caught.value.what
-    sticky = fc.Scene(rough(), modulus=1.0, effects=fc.Effects(adhesion=0.1))
-    with pytest.raises(fc.Unsupported, match="adhesion"):
-        fc.Bem3d().prepare(sticky)
+    both = fc.Scene(rough(), modulus=1.0, effects=fc.Effects(hardness=1.0, adhesion=0.1))
+    with pytest.raises(fc.Unsupported, match="together"):
+        fc.Bem3d().prepare(both)
 
 
 def test_maps_are_added_and_turned():

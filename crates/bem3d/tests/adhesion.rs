@@ -274,7 +274,7 @@ fn what_makes_no_sense_is_refused() {
     for (work, range) in [(f64::NAN, 0.1), (-1.0, 0.1), (0.1, 0.0), (0.1, f64::NAN), (f64::INFINITY, 0.1)] {
         assert!(matches!(prepared(&with(flat(), work, range, DUGDALE)), Err(Error::Domain { .. })));
     }
-    for work in [f64::NAN, -1.0, f64::INFINITY, 1e-320, 1e300] {
+    for work in [f64::NAN, -1.0, f64::INFINITY, 1e300] {
         let mut scene = with(flat(), 0.1, 0.1, DUGDALE);
         scene.effects.adhesion = Adhesion::ShortRange { work };
         scene.modulus = if work > 1.0 { 1e-300 } else { 1.0 };

@@ -35,7 +35,7 @@ const ACCELERATED: f64 = 0.5;
 const LONGEST: f64 = 2.0;
 /// Attractions below this share of the largest one do not limit an accelerated step.
 const FELT: f64 = 1e-6;
-/// Sweeps of the plain iteration for each outer iteration allowed: it contracts by the factor rho only.
+/// Sweeps of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by the factor rho only.
 const PLAIN_SWEEPS: usize = 20;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
 const AHEAD: f64 = 0.5;
@@ -174,7 +174,9 @@ impl Search<'_> {
         stop: Stop<'_>,
     ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
         let tolerance = self.limits.tolerance;
-        let most = self.limits.outer_iterations * if self.plain { PLAIN_SWEEPS } else { 1 };
+        // Fronts of a short range move by a cell or so in a sweep.
+        let many = self.plain || self.attraction.law.shape == Shape::Linear;
+        let most = self.limits.outer_iterations * if many { PLAIN_SWEEPS } else { 1 };
         let mut mixing = Mixing::default();
         let mut last = f64::INFINITY;
         if let Control::Approach(d) = self.control {
