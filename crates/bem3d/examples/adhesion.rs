@@ -119,8 +119,8 @@ fn map(
 
 /// E*, work of adhesion and shortest wave of the challenge, SI; its rms gradient is 1.
 const CHALLENGE: (f64, f64, f64) = (25e6, 0.05, 1e-7);
-/// Width and number of the bins of pressure over E* times the rms gradient, and where the first one begins. The first and the last hold the
-/// rest; cells without pressure are in none.
+/// Width and number of the bins of pressure over E* times the rms gradient, and where the first one begins. The
+/// first and the last hold the rest; cells without pressure are in none.
 const BINS: (f64, usize, f64) = (0.1, 42, -1.0);
 
 fn challenge(

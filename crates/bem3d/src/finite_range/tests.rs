@@ -308,3 +308,18 @@ fn a_law_is_its_energy_differentiated() {
     approx::assert_relative_eq!(dugdale.mismatch(2.0, 0.55), 0.1, epsilon = 1e-12);
     approx::assert_relative_eq!(dugdale.mismatch(0.0, 0.0), 1.0);
 }
+
+#[test]
+fn a_law_at_its_ends() {
+    let law = |kind| Law { peak: 2.0, range: 0.5, kind };
+    let (exponential, dugdale) = (law(AdhesionLaw::Exponential), law(AdhesionLaw::Dugdale));
+    for law in [exponential, dugdale] {
+        // A penetration counts as contact.
+        assert!(law.traction(-0.1) >= 2.0 && law.traction(-0.1) <= 2.0);
+        approx::assert_relative_eq!(law.energy(-0.1), -1.0);
+    }
+    assert!(dugdale.traction(0.5) <= 0.0 && dugdale.traction(0.499) >= 2.0 && dugdale.reach() <= 0.5);
+    // Beyond the reach tractions are below the rounding of the largest one, and not by far.
+    let least = exponential.traction(exponential.reach()) / 2.0 / f64::EPSILON;
+    assert!(least <= 0.51 && least > 0.4, "{least}");
+}
