@@ -1,9 +1,15 @@
-//! Adhesion: two independent codes for the sphere.
+//! Adhesion: two independent codes for the sphere with short range, boundary elements against Maugis's sphere
+//! with a finite one.
 
 use analytic::Jkr;
+use analytic::maugis_dugdale::MaugisSphere;
 use approx::assert_relative_eq;
-use contact_model::{Adhesion, ContactModel, ContactState, Load, Scene, Surface};
+use bem3d::{Bem3d, Bem3dPath};
+use contact_model::{
+    Adhesion, AdhesionLaw, ContactModel, ContactState, History, HistoryModel, Load, Scene, Step, Surface,
+};
 use mdr1d::Mdr1d;
+use std::f64::consts::PI;
 
 /// Both are closed or iterated to rounding; a tenth away from a fold a root loses one digit.
 const EXACT: f64 = 1e-12;
@@ -53,7 +59,8 @@ fn elastic_energy(d: f64, a: f64) -> f64 {
 
 #[test]
 fn force_is_the_slope_of_elastic_and_surface_energy() {
-    // U = U_el - w A along the equilibrium, F = dU/dd: the whole of JKR in one sentence. A central difference of second order.
+    // U = U_el - w A along the equilibrium, F = dU/dd: the whole of JKR in one sentence. A central difference
+    // of second order.
     let work = 1e-3;
     for (model, name) in models() {
         let energy = |d: f64| {
@@ -73,8 +80,8 @@ fn force_is_the_slope_of_elastic_and_surface_energy() {
 
 #[test]
 fn without_work_of_adhesion_it_is_hertz() {
-    // a^3 = (3R/4E*) (F + 3 pi w R + sqrt(6 pi w R F + ...)): the difference falls as sqrt(w). The approach is the slope of an energy
-    // that a itself leaves stationary: there it is w dA/dF, of first order.
+    // a^3 = (3R/4E*) (F + 3 pi w R + sqrt(6 pi w R F + ...)): the difference falls as sqrt(w). The approach
+    // is the slope of an energy that a itself leaves stationary: there it is w dA/dF, of first order.
     let force = 0.01;
     let elastic = press(&Jkr, 0.0, Load::Force(force));
     for (model, name) in models() {
@@ -110,5 +117,90 @@ fn adhesion_draws_in_and_holds_more_the_stronger_it_is() {
         }
         let states = [0.0, 1e-6, 1e-4, 1e-2].map(|work| press(model, work, Load::Approach(0.01)));
         assert!(states.windows(2).all(|pair| pair[1].force < pair[0].force), "{name}");
+    }
+}
+
+/// Dugdale's law on a sphere with R = E* = 1, on cells.
+struct OnCells {
+    exact: MaugisSphere,
+    path: Box<dyn History>,
+    /// Maugis's unit of radii, `(3 pi w R^2/(4 E*))^(1/3)`; its square is that of approaches.
+    unit: f64,
+    /// pi w R.
+    force: f64,
+    /// Side of a cell in units.
+    cell: f64,
+}
+
+impl OnCells {
+    /// Maugis's lambda; `half`: half of the side in units.
+    fn new(lambda: f64, cells: usize, half: f64) -> Self {
+        let range = 1e-4;
+        let work = (lambda * range / 2.0 * (16.0 * PI / 9.0).cbrt()).powf(1.5);
+        let unit = (0.75 * PI * work).cbrt();
+        let exact = MaugisSphere::new(1.0, 1.0, work, range).unwrap();
+        assert_relative_eq!(exact.lambda(), lambda, max_relative = EXACT);
+        let surface = Surface::Sphere { radius: 1.0, size: (2.0 * half * unit).into() };
+        let mut scene = Scene::new(surface, 1.0);
+        scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale };
+        (scene.outputs.area, scene.outputs.stiffness) = (true, false);
+        let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
+        let path = HistoryModel::prepare(&Bem3dPath(model), &scene, 0).unwrap();
+        Self { exact, path, unit, force: PI * work, cell: 2.0 * half / cells as f64 }
+    }
+
+    /// Force over pi w R and contact radius in units at an approach in units, the next one of a path.
+    fn at(&mut self, approach: f64) -> (f64, f64) {
+        let load = Load::Approach(approach * self.unit * self.unit);
+        let state = self.path.advance(Step::normal(0.0, load)).unwrap().normal;
+        (state.force / self.force, (state.area.unwrap() / PI).sqrt() / self.unit)
+    }
+
+    /// The same in closed form.
+    fn exactly_at(&self, approach: f64) -> (f64, f64) {
+        let radius = self.exact.radius_at_approach(approach * self.unit * self.unit).unwrap();
+        (self.exact.force(radius).unwrap() / self.force, radius / self.unit)
+    }
+}
+
+/// lambda, half of the side in units, cells a side, and by how much a force over pi w R and a radius may
+/// differ, in cells.
+///
+/// Whole cells enter the cohesive zone, so that both branches lie apart and each beside the closed form by a
+/// share of a cell. A force is wrong by the traction on that share along the edge: measured 0.2, 1.2 and 4
+/// cells, the radius by 0.3, 0.4 and 1.3; rounded up.
+type Case = (f64, f64, [usize; 2], (f64, f64));
+const SPHERES: [Case; 3] = [
+    (0.3, 3.2, [64, 128], (0.3, 0.5)),
+    (1.0, 2.4, [96, 192], (1.5, 0.6)),
+    (2.0, 2.2, [160, 320], (5.0, 1.7)),
+];
+/// Of the pull-off force extrapolated to cells of size zero; what is left is how the cells lie under the
+/// edge.
+const PULL_OFF: f64 = 0.01;
+
+#[test]
+fn cells_follow_maugis_on_both_branches() {
+    for (lambda, half, grids, (in_force, in_radius)) in SPHERES {
+        let pulled = grids.map(|cells| {
+            let mut sphere = OnCells::new(lambda, cells, half);
+            let fold = sphere.exact.pull_off_at_force().unwrap();
+            let fold = fold.approach / (sphere.unit * sphere.unit);
+            // Approach and withdrawal.
+            for d in [0.1, 0.6, 1.0, 0.7, 0.2, -0.2] {
+                let ((force, radius), exact) = (sphere.at(d), sphere.exactly_at(d));
+                let errors = ((force - exact.0) / sphere.cell, (radius - exact.1) / sphere.cell);
+                let said = format!("{lambda} {cells} {d}: {errors:?} cells");
+                assert!(errors.0.abs() < in_force && errors.1.abs() < in_radius, "{said}");
+            }
+            let around = (-4..=4).rev().map(|i| fold + 0.03 * f64::from(i));
+            around.map(|d| sphere.at(d).0).fold(f64::INFINITY, f64::min)
+        });
+        // Between DMT and JKR, and of first order in the cell.
+        assert!(pulled.iter().all(|force| (-2.0..-1.5).contains(force)), "{lambda} {pulled:?}");
+        let extrapolated = 2.0 * pulled[1] - pulled[0];
+        let sphere = OnCells::new(lambda, 64 * 4, half);
+        let exact = sphere.exact.pull_off_at_force().unwrap().force / sphere.force;
+        assert!((extrapolated / exact - 1.0).abs() < PULL_OFF, "{lambda} {pulled:?} {extrapolated} {exact}");
     }
 }

@@ -6,13 +6,17 @@
 //! `adhesion heights CELLS HURST SEED FILE` writes the heights of that map, one a line.
 //! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* = h = 1) along these
 //! forces; WORK 0: without adhesion, RANGE 0: of short range.
+//! `adhesion challenge CELLS SIDE ROLL_OFF RANGE SEED P1,P2,...` presses a surface of the contact-mechanics
+//! challenge (Müser et al., Tribol. Lett. 65, 118 (2017)) at mean pressures over E* times the rms gradient,
+//! without and with adhesion; side, longest wave and range in nm.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactState, Error, HeightMap, HistoryModel, Load,
-    Scene, SelfAffine, Step, Surface,
+    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactModel, ContactState, Error, HeightMap,
+    HistoryModel, Load, Scene, SelfAffine, Step, Surface,
 };
 use std::error::Error as StdError;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn StdError>> {
@@ -35,7 +39,13 @@ fn main() -> Result<(), Box<dyn StdError>> {
             let adhesion = (work.parse()?, range.parse()?);
             map(cells.parse()?, hurst.parse()?, seed.parse()?, adhesion, tolerance.parse()?, &forces)
         }
-        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | jkr CELLS OFF STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,...".into()),
+        ["challenge", cells, side, roll_off, range, seed, pressures] => {
+            let pressures = pressures.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>()?;
+            let lengths = [side, roll_off, range].map(str::parse::<f64>);
+            let [side, roll_off, range] = lengths.map(|length| length.map(|nm| nm * 1e-9));
+            challenge(cells.parse()?, (side?, roll_off?, range?), seed.parse()?, &pressures)
+        }
+        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | jkr CELLS OFF STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,... | challenge CELLS SIDE ROLL_OFF RANGE SEED P1,...".into()),
     }
 }
 
@@ -151,6 +161,81 @@ fn map(
         }
     }
     Ok(())
+}
+
+/// E*, work of adhesion and shortest wave of the challenge, SI; its rms gradient is 1.
+const CHALLENGE: (f64, f64, f64) = (25e6, 0.05, 1e-7);
+/// Width and number of the bins of pressure over E* times the rms gradient, and where the first one begins. The
+/// first and the last hold the rest; cells without pressure are in none.
+const BINS: (f64, usize, f64) = (0.1, 42, -1.0);
+
+fn challenge(
+    cells: usize,
+    (side, roll_off, range): (f64, f64, f64),
+    seed: u64,
+    pressures: &[f64],
+) -> Result<(), Box<dyn StdError>> {
+    let (modulus, work, shortest) = CHALLENGE;
+    let mut surface = SelfAffine { hurst: 0.8, ..SelfAffine::new(2.2, side, side)? };
+    (surface.roll_off, surface.short_cutoff) = (Some(TAU / roll_off), Some(TAU / shortest));
+    let map = surface_gen::self_affine_map(&surface, cells, seed)?;
+    let scale = surface_gen::rms_slope(&map)?.recip();
+    let map = HeightMap::new(cells, side, map.heights().iter().map(|h| h * scale).collect())?;
+    println!(
+        "rms height {:.4e} m, cell {:.4e} m",
+        surface_gen::rms_height(map.heights()),
+        side / cells as f64
+    );
+    let mut scene = Scene::new(Surface::Heights(Arc::new(map)), modulus);
+    scene.effects.boundary = Boundary::Periodic;
+    (scene.outputs.stiffness, scene.outputs.area, scene.outputs.pressure) = (false, true, true);
+    scene.outputs.mean_gap = true;
+    let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
+    let mut elastic = ContactModel::prepare(&model, &scene, seed)?;
+    for &pressure in pressures {
+        let start = Instant::now();
+        let state = elastic.solve(Load::Force(pressure * modulus * side * side))?;
+        row("elastic", pressure, &state, &scene, start);
+    }
+    drop(elastic);
+    scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential };
+    // Each load from no contact: a path of rising loads leads to the same state of the branch of approach.
+    let mut adhesive = ContactModel::prepare(&model, &scene, seed)?;
+    for &pressure in pressures {
+        let start = Instant::now();
+        match adhesive.solve(Load::Force(pressure * modulus * side * side)) {
+            Ok(state) => row("adhesive", pressure, &state, &scene, start),
+            Err(Error::NotConverged { best }) => row("NOT CONVERGED", pressure, &best, &scene, start),
+            Err(error) => return Err(error.into()),
+        }
+    }
+    Ok(())
+}
+
+/// Relative area, mean gap, certificate, time, and the share of the cells in each bin of the pressure.
+fn row(what: &str, pressure: f64, state: &ContactState, scene: &Scene, start: Instant) {
+    let (width, count, first) = BINS;
+    let cells = state.pressure().map_or(&[][..], |p| p.values());
+    let mut bins = vec![0u64; count];
+    for p in cells.iter().filter(|p| p.abs() > 0.0) {
+        bins[(((p / scene.modulus - first) / width).max(0.0) as usize).min(count - 1)] += 1;
+    }
+    println!(
+        "{what} p {pressure} area {:.5} mean-gap {:.5e} m, {} applications, {:.1} s [{}] {}",
+        state.area.unwrap_or(f64::NAN) / scene.surface.size().area(),
+        state.mean_gap.unwrap_or(f64::NAN),
+        state.report.applications,
+        start.elapsed().as_secs_f64(),
+        state.report.strategy,
+        state.report.certificate
+    );
+    if let Some(adhesive) = state.adhesive {
+        println!("  branch {} stability {:.3e}", adhesive.branch.as_str(), adhesive.stability);
+    }
+    let shares: Vec<String> = (bins.iter().enumerate().filter(|(_, n)| **n > 0))
+        .map(|(i, n)| format!("({:.1}, {:.5})", first + width * i as f64, *n as f64 / cells.len() as f64))
+        .collect();
+    println!("  pressure/E* from, share: {}", shares.join(" "));
 }
 
 fn line(state: &ContactState, start: Instant) -> String {

@@ -9,15 +9,16 @@ use std::sync::Arc;
 
 /// Of the residuals. They are relative to the rms height, which is 1, and to the attraction of closed cells.
 const TOLERANCE: f64 = 1e-9;
-/// What they leave open in a force, an approach or a volume, relative: stiff cells multiply a gap by up to a hundred. The pressure of a cell
-/// is off by a gap over its side.
+/// What they leave open in a force, an approach or a volume, relative: stiff cells multiply a gap by up to a
+/// hundred. The pressure of a cell is off by a gap over its side.
 const SAME: f64 = 1e-7;
 /// Sums over at most 144 cells, relative.
 const ROUNDING: f64 = 1e-12;
-/// A step of approach along a smooth branch of adhesion, in ranges: the force is linear over it but for its square.
+/// A step of approach along a smooth branch of adhesion, in ranges: the force is linear over it but for its
+/// square.
 const SMALL_STEP: f64 = 1e-3;
-/// What is left of the difference of two energies and of its force, of their sizes: the energy is stationary, so that it is wrong by the
-/// rounding of its sums, over a step of at least 1e-4.
+/// What is left of the difference of two energies and of its force, of their sizes: the energy is stationary,
+/// so that it is wrong by the rounding of its sums, over a step of at least 1e-4.
 const ENERGY: f64 = 1e-8;
 /// Steps of a loop in each direction.
 const STEPS: usize = 12;
@@ -184,8 +185,8 @@ proptest! {
         }
     }
 
-    /// A hardness that no pressure reaches on the way to the solution leaves the bits of the elastic state; one above the pressures of the
-    /// solution leaves the solution.
+    /// A hardness that no pressure reaches on the way to the solution leaves the bits of the elastic state;
+    /// one above the pressures of the solution leaves the solution.
     #[test]
     fn a_hardness_that_is_not_reached_changes_nothing(
         map in any_map(), boundary in boundary(), exponent in -3.0_f64..1.5, above in 1e-6_f64..1.0,
@@ -205,8 +206,8 @@ proptest! {
         }
     }
 
-    /// Loading, unloading and loading again. In each step the work of the load lies between the lower and the higher force times the change
-    /// of approach, and it is what is stored and dissipated.
+    /// Loading, unloading and loading again. In each step the work of the load lies between the lower and the
+    /// higher force times the change of approach, and it is what is stored and dissipated.
     #[test]
     fn a_loop_stores_and_dissipates_the_work(map in any_map(), deepest in 0.1_f64..1.5, share in 0.05_f64..0.9) {
         let (scene, cell) = (elastic(&map, Boundary::Free), map.dx() * map.dx());
@@ -291,7 +292,8 @@ fn at(path: &mut dyn History, d: f64) -> ContactState {
 proptest! {
     #![proptest_config(config(64))]
 
-    /// The way back is at least as far in: more contact, more attraction, a lower force. Without hysteresis both are one.
+    /// The way back is at least as far in: more contact, more attraction, a lower force. Without hysteresis
+    /// both are one.
     #[test]
     fn withdrawal_lies_further_in(
         map in any_map(), range in 0.05_f64..1.0, strength in 0.1_f64..0.99, deepest in -0.2_f64..0.8,
@@ -317,8 +319,8 @@ proptest! {
         }
     }
 
-    /// At an approach the attraction lowers the force, by no more than the largest traction on all cells, and holds at least the elastic
-    /// contact: with the work both differences fall to zero.
+    /// At an approach the attraction lowers the force, by no more than the largest traction on all cells, and
+    /// holds at least the elastic contact: with the work both differences fall to zero.
     #[test]
     fn little_attraction_is_next_to_none(
         map in any_map(), range in 0.05_f64..1.0, exponent in -8.0_f64..0.0, d in 0.01_f64..1.0,
@@ -330,13 +332,15 @@ proptest! {
         let slack = SAME * without.force;
         prop_assert!(less >= -slack && less <= work / range + slack, "{} {}", less, work / range);
         prop_assert!(attracted.report.contact_cells >= without.report.contact_cells);
-        // The attraction raises no cell by more than the same traction on the whole square does in its middle.
+        // The attraction raises no cell by more than the same traction on the whole square does in its
+        // middle.
         let raised = 4.0 * (1.0 + 2_f64.sqrt()).ln() / std::f64::consts::PI * work / range;
         let closer = solved(&scene, Load::Approach(d + raised * (1.0 + SAME)));
         prop_assert!(attracted.report.contact_cells <= closer.report.contact_cells);
     }
 
-    /// Along a branch dE = F dd, of either direction; the energy of a step lies between those of its lower and its higher force.
+    /// Along a branch dE = F dd, of either direction; the energy of a step lies between those of its lower
+    /// and its higher force.
     #[test]
     fn the_energy_is_the_work_along_a_branch(
         map in any_map(), range in 0.1_f64..1.0, strength in 0.05_f64..0.9, from in -1.5_f64..1.0, falls in any::<bool>(),

@@ -106,4 +106,33 @@ mod tests {
         assert!(left < 1e-9, "{left}");
         assert!(solved(vec![vec![0.0, 1.0]]).is_none());
     }
+
+    #[test]
+    fn a_system_that_needs_its_rows_exchanged() {
+        let rows = vec![vec![0.0, 2.0, 1.0, 7.0], vec![2.0, 1.0, 3.0, 13.0], vec![1.0, 3.0, 4.0, 19.0]];
+        for (found, expected) in solved(rows).unwrap().iter().zip([1.0, 2.0, 3.0]) {
+            approx::assert_relative_eq!(*found, expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_first_sweep_after_a_clear_is_taken_as_it_is_and_few_are_kept() {
+        let mut mixing = Mixing::default();
+        for i in 0..3 * DEPTH {
+            let x = f64::from(i as u32);
+            mixing.combine(&mut [x.sin()], &mut [x.cos()], vec![(1.3 * x).sin(), x.cos()]);
+            assert_eq!(mixing.entries.len(), (i + 1).min(DEPTH + 1));
+        }
+        mixing.clear();
+        let (mut pressure, mut attraction) = ([3.0], [4.0]);
+        mixing.combine(&mut pressure, &mut attraction, vec![1.0, 0.5]);
+        assert_eq!((pressure, attraction), ([3.0], [4.0]));
+        // Residuals of 1 and -1: the combination of least residual is half of both, of pressure and attraction.
+        mixing.clear();
+        mixing.combine(&mut [1.0], &mut [2.0], vec![1.0]);
+        let (mut pressure, mut attraction) = ([3.0], [6.0]);
+        mixing.combine(&mut pressure, &mut attraction, vec![-1.0]);
+        approx::assert_relative_eq!(pressure[0], 2.0, max_relative = 1e-11);
+        approx::assert_relative_eq!(attraction[0], 4.0, max_relative = 1e-11);
+    }
 }

@@ -393,3 +393,18 @@ fn no_attachment_or_detachment_of_a_single_cell_lowers_the_energy_of_a_short_ran
     }
     assert!(least > 0.5, "{least}");
 }
+
+#[test]
+fn a_law_at_its_ends() {
+    let law = |shape| Law { peak: 2.0, range: 0.5, shape };
+    let (exponential, dugdale) = (law(Shape::Exponential), law(Shape::Uniform));
+    for law in [exponential, dugdale] {
+        // A penetration counts as contact.
+        assert!(law.traction(-0.1) >= 2.0 && law.traction(-0.1) <= 2.0);
+        approx::assert_relative_eq!(law.energy(-0.1), -1.0);
+    }
+    assert!(dugdale.traction(0.5) <= 0.0 && dugdale.traction(0.499) >= 2.0 && dugdale.reach() <= 0.5);
+    // Beyond the reach tractions are below the rounding of the largest one, and not by far.
+    let least = exponential.traction(exponential.reach()) / 2.0 / f64::EPSILON;
+    assert!(least <= 0.51 && least > 0.4, "{least}");
+}

@@ -179,3 +179,38 @@ fn a_step_is_shortened_to_the_minimum_on_its_way_and_never_turned_back() {
     // A gap with an error in it can make the energy look concave: the share would be negative.
     assert_eq!(shortened(-1.5), (false, 2.0, -1.5));
 }
+
+#[test]
+fn a_pressure_is_scaled_and_cut_by_hand() {
+    let scaled = |wanted: f64| {
+        let mut p = [1.0, 2.0, 3.0];
+        scale_to(&mut p, wanted, 1.5);
+        p.map(f64::to_bits)
+    };
+    assert_eq!(scaled(1.5), [0.25f64, 0.5, 0.75].map(f64::to_bits));
+    // The last cell saturates at two thirds, the one before it at 5/6.
+    assert_eq!(scaled(4.0), [1.0f64, 1.5, 1.5].map(f64::to_bits));
+    assert_eq!(scaled(10.0), [1.5f64; 3].map(f64::to_bits));
+    assert_eq!(scaled(-1.0), [0f64; 3].map(f64::to_bits));
+}
+
+#[test]
+fn saturated_and_elastic_cells_are_told_apart() {
+    let contact = CellSet::from_index(Grid::square(5, 1), &[0, 2, 3, 4]);
+    let index = |set: &CellSet| set.index(Grid::square(5, 1)).collect::<Vec<_>>();
+    let (p, gap) = ([1.0, 1.0, 0.5, 1.0], [-0.2, 0.3, -0.4, 0.1]);
+    assert_eq!(index(&elastic(&contact, &p, 1.0)), [3]);
+    assert_eq!(index(&elastic(&contact, &p, 1.5)), [0, 2, 3, 4]);
+    assert_eq!(of_elastic(&p, &gap, 1.0), [-0.4]);
+    // One gap is the noise, the other is larger.
+    assert_eq!(index(&kept(&contact, &p, &gap, 1.0, 0.1)), [0, 4]);
+    assert!(is_saturated(&p, 1.0) && !is_saturated(&p, 1.5) && !is_saturated(&p, f64::INFINITY));
+}
+
+#[test]
+fn the_approach_is_that_of_elastic_cells_or_of_the_lowest_saturated_ones() {
+    assert_relative_eq!(approach(&[1.0, 0.5, 0.25], &[9.0, 0.2, 0.5], &[], 1.0), 0.3, max_relative = 1e-14);
+    // One cell, then more than there are.
+    assert_eq!(approach(&[1.0], &[0.1], &[0.3, 0.1, 0.2], 1.0).to_bits(), 0.2_f64.to_bits());
+    assert_eq!(approach(&[1.0; 5], &[0.1; 5], &[0.3, 0.1, 0.2], 1.0).to_bits(), 0.3_f64.to_bits());
+}
