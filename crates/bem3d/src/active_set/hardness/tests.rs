@@ -185,7 +185,7 @@ fn a_pressure_is_scaled_and_cut_by_hand() {
     let scaled = |wanted: f64| {
         let mut p = [1.0, 2.0, 3.0];
         scale_to(&mut p, wanted, 1.5);
-        p
+        p.to_vec()
     };
     assert_eq!(scaled(1.5), [0.25, 0.5, 0.75]);
     // The last cell saturates at two thirds, the one before it at 5/6.
