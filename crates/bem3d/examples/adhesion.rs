@@ -166,7 +166,7 @@ fn map(
 /// E*, work of adhesion and shortest wave of the challenge, SI; its rms gradient is 1.
 const CHALLENGE: (f64, f64, f64) = (25e6, 0.05, 1e-7);
 /// Width and number of the bins of pressure over E* times the rms gradient, and where the first one begins. The
-/// first and the last hold the rest; cells without pressure are in none.
+/// first and the last hold the rest; cells below 1e-9 E* are in none.
 const BINS: (f64, usize, f64) = (0.1, 42, -1.0);
 
 fn challenge(
@@ -217,7 +217,7 @@ fn row(what: &str, pressure: f64, state: &ContactState, scene: &Scene, start: In
     let (width, count, first) = BINS;
     let cells = state.pressure().map_or(&[][..], |p| p.values());
     let mut bins = vec![0u64; count];
-    for p in cells.iter().filter(|p| p.abs() > 0.0) {
+    for p in cells.iter().filter(|p| p.abs() > 1e-9 * scene.modulus) {
         bins[(((p / scene.modulus - first) / width).max(0.0) as usize).min(count - 1)] += 1;
     }
     println!(
