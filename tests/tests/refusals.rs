@@ -90,7 +90,7 @@ fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     match effect {
         // A range that the cells resolve.
         "boundary" | "hardness" | "FiniteRange" => model == "bem3d",
-        "adhesion" => model == "jkr" || (model == "mdr1d" && round),
+        "adhesion" => model == "bem3d" || model == "jkr" || (model == "mdr1d" && round),
         _ => false,
     }
 }
