@@ -25,8 +25,7 @@ use contact_model::Boundary;
 
 /// The factor b of the length of fronts in the energy, in longer sides of a cell times the work of adhesion: their line tension then is zero.
 const FRONT_WIDTH: f64 = 0.389;
-/// Radius of the neighbourhood in longer sides of a cell: the smallest at which the length of a front depends on its direction by less than
-/// 2 %.
+/// Radius of the neighbourhood in longer sides of a cell. A larger one takes contacts that lie near each other for one.
 const RADIUS: f64 = 4.0;
 
 /// The attraction between the cells of a grid.

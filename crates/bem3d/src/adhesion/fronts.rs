@@ -83,6 +83,22 @@ impl Direction {
         rows
     }
 
+    /// Tension of the last cells of a strip that all hold on and opening of the next ones, where fronts release `w = 1`.
+    fn edge(&self) -> (f64, f64) {
+        const ROWS: usize = 300;
+        let length = self.period();
+        let influence: Vec<f64> = (0..=ROWS as i64).map(|k| self.influence(k) / PI).collect();
+        // Pressures of the same displacement everywhere.
+        let matrix: Vec<Vec<f64>> =
+            (0..ROWS).map(|i| (0..ROWS).map(|k| influence[i.abs_diff(k)]).collect()).collect();
+        let p = eliminated(matrix, vec![1.0; ROWS]);
+        let beside = dot(&p, &(0..ROWS).map(|k| influence[ROWS - k]).collect::<Vec<_>>());
+        // The stress intensity of a strip of half width h under the line load P is P/sqrt(pi h); at w it is sqrt(2).
+        let line = p.iter().sum::<f64>() / length;
+        let scale = 2f64.sqrt() / (line / (PI * 0.5 * ROWS as f64 / length).sqrt());
+        (scale * p[ROWS - 1], scale * (1.0 - beside))
+    }
+
     /// Equilibria of strips, in units of a and with `E* = w = 1`.
     fn front(&self, strength: f64, attraction: &Attraction) -> Front {
         let length = self.period();
@@ -179,7 +195,7 @@ impl Direction {
 fn fronts_have_no_line_tension_and_move_at_w_in_all_directions() {
     let attraction = Attraction::short(1.0 / PI, Grid::square(64, 64), Boundary::Free);
     println!("direction  tension  without neighbours  release rate");
-    for (p, q) in [(0, 1), (1, 1)] {
+    for (p, q) in [(0, 1), (1, 1), (1, 2)] {
         let direction = Direction { p, q };
         let alone = direction.front(0.0, &attraction);
         let front = direction.front(attraction.strength(), &attraction);
@@ -188,5 +204,25 @@ fn fronts_have_no_line_tension_and_move_at_w_in_all_directions() {
         assert!(front.tension.abs() < 0.02, "{}", front.tension);
         assert!((0.38..0.46).contains(&-alone.tension), "{}", alone.tension);
         assert!(least > 0.99 && most < 1.02, "{least} {most}");
+    }
+}
+
+/// The table of the book's page on adhesion of short range.
+#[test]
+fn half_of_tension_and_opening_is_the_release_rate_in_every_direction() {
+    // What the width of the strip and of the rows leave.
+    const NEAR: f64 = 6e-3;
+    for ((p, q), tension, opening) in [
+        ((0, 1), 1.077, 1.856),
+        ((1, 1), 1.266, 1.580),
+        ((1, 2), 1.389, 1.442),
+        ((1, 4), 1.442, 1.390),
+        ((3, 4), 1.449, 1.383),
+    ] {
+        let (t, g) = Direction { p, q }.edge();
+        println!("({p}, {q})  {t:.4}  {g:.4}  {:.4}", 0.5 * t * g);
+        approx::assert_relative_eq!(0.5 * t * g, 1.0, max_relative = 2.0 * NEAR);
+        approx::assert_relative_eq!(t, tension, max_relative = NEAR);
+        approx::assert_relative_eq!(g, opening, max_relative = NEAR);
     }
 }

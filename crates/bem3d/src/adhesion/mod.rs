@@ -1,4 +1,4 @@
-//! Adhesion of finite range: an attractive traction across open gaps, beside the contact conditions.
+//! Adhesion: an attractive traction across open gaps, beside the contact conditions. A short range is one below the size of a cell.
 
 mod attraction;
 mod equilibrium;
