@@ -196,8 +196,8 @@ fn a_wave_pulls_off_and_snaps_in_as_johnson_says() {
     let psi = wave.stable(0.97 * snap).unwrap().unwrap();
     approx::assert_relative_eq!(partial.area.unwrap() / side, 2.0 * psi / PI, max_relative = 0.03);
     let full = at(&mut *history, force(1.03 * snap)).unwrap();
-    approx::assert_relative_eq!(full.area.unwrap(), side, max_relative = 1e-12);
+    approx::assert_relative_eq!(full.area.unwrap(), side, max_relative = 1e-6);
     // Full contact stays full under tension: only what the cells can bear ends it.
     let held = at(&mut *history, force(0.5 * pull)).unwrap();
-    approx::assert_relative_eq!(held.area.unwrap(), side, max_relative = 1e-12);
+    approx::assert_relative_eq!(held.area.unwrap(), side, max_relative = 1e-6);
 }

@@ -7,6 +7,7 @@
 //! the compliance of the open cells with the contact kept closed, so that it contracts exactly where the energy has a minimum.
 
 use super::attraction::Attraction;
+use super::bottleneck::Bottleneck;
 use super::law::Shape;
 use super::mixing::Mixing;
 use crate::active_set::{self, Candidates, Limits, Problem, Residuals, Target};
@@ -177,7 +178,7 @@ impl Search<'_> {
         // Fronts of a short range move by a cell or so in a sweep.
         let many = self.plain || self.attraction.law.shape == Shape::Linear;
         let most = self.limits.outer_iterations * if many { PLAIN_SWEEPS } else { 1 };
-        let mut mixing = Mixing::default();
+        let (mut mixing, mut bottleneck) = (Mixing::default(), Bottleneck::default());
         let mut last = f64::INFINITY;
         if let Control::Approach(d) = self.control {
             state.d = d;
@@ -199,7 +200,7 @@ impl Search<'_> {
                 mixing.clear();
             }
             last = worst;
-            if !self.sweep(&mut state, &mut mixing, stop) {
+            if !self.sweep(&mut state, &mut mixing, &mut bottleneck, stop) {
                 return Err(Box::new((Ended::PulledOff, state)));
             }
             self.evaluate(&mut state, &mut mixing);
@@ -298,7 +299,13 @@ impl Search<'_> {
 
     /// One sweep: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
     /// hold the force.
-    fn sweep(&mut self, state: &mut Equilibrium, mixing: &mut Mixing, stop: Stop<'_>) -> bool {
+    fn sweep(
+        &mut self,
+        state: &mut Equilibrium,
+        mixing: &mut Mixing,
+        bottleneck: &mut Bottleneck,
+        stop: Stop<'_>,
+    ) -> bool {
         let Self { problem, attraction, control, plain, limits } = self;
         let tolerance = limits.tolerance;
         let law = attraction.law;
@@ -376,9 +383,17 @@ impl Search<'_> {
             // The contact alone.
         } else if plain || change > ACCELERATED {
             mixing.clear();
+            bottleneck.clear();
         } else {
-            let own = problem.operators.table().own();
-            accelerate(attraction, own, state, mixing, (&mut pressure, &mut pull));
+            let moved = pull.iter().zip(&state.attraction).map(|(s, s0)| (s - s0) / law.peak).collect();
+            if let Some(factor) = bottleneck.factor(change, moved) {
+                mixing.clear();
+                extrapolate(factor, &state.pressure, &mut pressure, f64::INFINITY);
+                extrapolate(factor, &state.attraction, &mut pull, attraction.strongest());
+            } else {
+                let own = problem.operators.table().own();
+                accelerate(attraction, own, state, mixing, (&mut pressure, &mut pull));
+            }
         }
         if let Control::Force(force) = *control {
             let (wanted, sum) = (force + sum(&pull), sum(&pressure));
@@ -392,6 +407,11 @@ impl Search<'_> {
         (state.pressure, state.attraction) = (pressure, pull);
         true
     }
+}
+
+/// Goes so many times from one state to the next, between zero and `most`.
+fn extrapolate(factor: f64, from: &[f64], to: &mut [f64], most: f64) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to = (from + factor * (*to - from)).clamp(0.0, most));
 }
 
 /// Replaces what a sweep made of a state by the combination of the last sweeps, unless that would change an attraction too much.

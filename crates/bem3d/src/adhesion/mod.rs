@@ -1,6 +1,7 @@
 //! Adhesion: an attractive traction across open gaps, beside the contact conditions. A short range is one below the size of a cell.
 
 mod attraction;
+mod bottleneck;
 mod equilibrium;
 mod law;
 mod linearised;

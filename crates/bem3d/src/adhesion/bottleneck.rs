@@ -1,0 +1,119 @@
+//! Passing a bottleneck: where a branch has just ended, or a jump is under way along an unstable direction.
+//!
+//! The plain iteration creeps there, each sweep changing little, until the jump has gone on; its change has a minimum above zero. Acceleration,
+//! which looks for the state of least change, stays at the minimum, or turns back to the unstable equilibrium. So the plain iteration goes on,
+//! and now and then far along its own change, until it contracts or turns.
+
+use crate::real::dot;
+
+/// Sweeps in which acceleration has to halve the residual.
+const PATIENCE: usize = 15;
+/// Plain sweeps between two extrapolations: what does not belong to the slow direction decays.
+const BETWEEN: usize = 3;
+/// The first extrapolation goes so many changes far; each one doubles it.
+const FIRST: f64 = 4.0;
+/// No attraction changes by more than this in an extrapolation, over the peak.
+const FARTHEST: f64 = 0.1;
+/// A plain iteration that reduces its change by this factor in a sweep contracts.
+const CONTRACTS: f64 = 0.9;
+
+/// Watches the residual of the sweeps, and leads through bottlenecks.
+#[derive(Debug, Default)]
+pub struct Bottleneck {
+    /// The residual that later ones are to halve, and sweeps since.
+    least: Option<f64>,
+    since: usize,
+    passage: Option<Passage>,
+}
+
+/// The way through.
+#[derive(Debug)]
+struct Passage {
+    /// Change of the attraction in the sweep before.
+    change: Vec<f64>,
+    sweeps: usize,
+    factor: f64,
+}
+
+impl Bottleneck {
+    /// Begins anew.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// How many times its change the iteration is to go, with this residual and this change of the attraction over its peak; `None`:
+    /// acceleration makes progress.
+    pub fn factor(&mut self, residual: f64, change: Vec<f64>) -> Option<f64> {
+        let Some(passage) = &mut self.passage else {
+            if self.least.is_none_or(|least| residual <= 0.5 * least) {
+                (self.least, self.since) = (Some(residual), 0);
+            }
+            self.since += 1;
+            if self.since > PATIENCE {
+                self.passage = Some(Passage { change, sweeps: 1, factor: FIRST });
+                return Some(1.0);
+            }
+            return None;
+        };
+        if passage.change.len() == change.len() {
+            let along = dot(&passage.change, &change);
+            let (before, now) = (dot(&passage.change, &passage.change), dot(&change, &change));
+            let turned = along <= 0.0;
+            // After an extrapolation the change has other parts too.
+            let contracts = passage.sweeps > 1 && now <= CONTRACTS * CONTRACTS * before;
+            if turned || contracts {
+                self.clear();
+                return None;
+            }
+        }
+        let largest = change.iter().fold(0.0f64, |most, c| most.max(c.abs()));
+        passage.change = change;
+        if passage.sweeps < BETWEEN {
+            passage.sweeps += 1;
+            return Some(1.0);
+        }
+        let factor = passage.factor.min(FARTHEST / largest).max(1.0);
+        (passage.sweeps, passage.factor) = (0, 2.0 * passage.factor);
+        Some(factor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sweeps of `x <- x + f(x)` that take x from -1 to 1.
+    fn sweeps(f: impl Fn(f64) -> f64, passed: bool) -> usize {
+        let (mut bottleneck, mut x, mut count) = (Bottleneck::default(), -1.0, 0);
+        while x < 1.0 {
+            let change = f(x);
+            let factor = if passed { bottleneck.factor(change, vec![change]) } else { Some(1.0) };
+            x += factor.unwrap_or(1.0) * change;
+            count += 1;
+        }
+        count
+    }
+
+    #[test]
+    fn a_bottleneck_is_passed_in_few_sweeps() {
+        // 1e-4 at its narrowest: the plain iteration takes about pi/sqrt(1e-4 0.1) sweeps.
+        let f = |x: f64| 1e-4 + 0.1 * x * x;
+        assert!(sweeps(f, false) > 900);
+        assert!(sweeps(f, true) < 150, "{}", sweeps(f, true));
+    }
+
+    #[test]
+    fn a_residual_that_falls_is_left_alone_and_one_that_turns_ends_the_passage() {
+        let mut bottleneck = Bottleneck::default();
+        for i in 0..100 {
+            assert_eq!(bottleneck.factor(0.9f64.powi(i), vec![1.0]), None);
+        }
+        bottleneck.clear();
+        let stuck = (0..PATIENCE).filter(|_| bottleneck.factor(1.0, vec![1.0]).is_some()).count();
+        assert_eq!(stuck, 0);
+        let factors: Vec<Option<f64>> = (0..5).map(|_| bottleneck.factor(1.0, vec![1e-3])).collect();
+        assert_eq!(factors, [1.0, 1.0, 1.0, FIRST, 1.0].map(Some));
+        assert_eq!(bottleneck.factor(1.0, vec![-1e-3]), None);
+        assert_eq!(bottleneck.factor(1.0, vec![1e-3]), None);
+    }
+}
