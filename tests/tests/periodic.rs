@@ -196,13 +196,34 @@ fn fields_obey_the_contact_conditions_everywhere() {
     assert_relative_eq!(mean(&gap), contact.solve(load).unwrap().mean_gap.unwrap(), max_relative = 1e-9);
 }
 
+/// As in closed form (`analytic::Westergaard`): no force, at the gap asked for.
+#[test]
+fn a_mean_gap_beyond_first_touch_is_a_state_apart() {
+    /// A gap goes into the units of the surface and back.
+    const ROUNDING: f64 = 1e-13;
+    let mut scene = periodic(rough(None));
+    scene.outputs.gap = true;
+    let mut contact = model(16, 1e-8).prepare(&scene, 0).unwrap();
+    let first = contact.solve(Load::Force(0.0)).unwrap().mean_gap.unwrap();
+    for beyond in [1.0, 1.5, 1e3, 1e150] {
+        let state = contact.solve(Load::MeanGap(beyond * first)).unwrap();
+        assert_eq!((state.force, state.area, state.stiffness), (0.0, Some(0.0), Some(0.0)), "{beyond}");
+        assert!(state.approach.is_none());
+        assert_relative_eq!(state.mean_gap.unwrap(), beyond * first, max_relative = ROUNDING);
+        let gap = state.gap().unwrap().values();
+        let mean = gap.iter().map(|g| g / gap.len() as f64).sum::<f64>();
+        assert_relative_eq!(mean, beyond * first, max_relative = ROUNDING);
+        let least = gap.iter().copied().fold(f64::INFINITY, f64::min);
+        assert_relative_eq!(least, (beyond - 1.0) * first, epsilon = ROUNDING * beyond * first);
+    }
+    assert!(contact.solve(Load::MeanGap(0.99 * first)).unwrap().force > 0.0);
+}
+
 #[test]
 fn what_a_periodic_square_takes_and_refuses() {
     let mut contact = model(16, 1e-8).prepare(&periodic(rough(None)), 0).unwrap();
     assert!(matches!(contact.solve(Load::Approach(0.1)), Err(Error::Unsupported { .. })));
     assert!(matches!(contact.solve(Load::MeanGap(0.0)), Err(Error::Domain { .. })));
-    let apart = contact.solve(Load::MeanGap(1e3)).unwrap();
-    assert!(apart.force == 0.0 && apart.approach.is_none());
     let first = contact.solve(Load::Force(0.0)).unwrap().mean_gap.unwrap();
     assert!(first > 1.0, "the mean depth below the highest point, in rms heights: {first}");
     let mut free = Scene::new(rough(None), 1.0);

@@ -166,6 +166,30 @@ fn a_path_remembers_its_indentation() {
     }
 }
 
+/// Drawn off an indented surface: no force, at the gap asked for, and the indentation stays.
+#[test]
+fn a_path_is_drawn_off_its_indentation() {
+    let mut scene = rough(Some(4.0), Boundary::Periodic);
+    scene.outputs.mean_gap = true;
+    let mut path = Bem3dPath(Bem3d { cells: 32, ..TIGHT }).prepare(&scene, 5).unwrap();
+    let mut go = |load: Load| path.advance(Step::normal(0.0, load)).unwrap().normal;
+    let virgin = go(Load::Force(0.0)).mean_gap.unwrap();
+    let pressed = go(Load::Force(2.0)).plastic.unwrap();
+    let touching = go(Load::Force(0.0)).mean_gap.unwrap();
+    assert!(touching < virgin, "{touching} {virgin}");
+    // The second lies beyond the first touch of the indented surface but not of the virgin one.
+    for gap in [touching, 0.5 * (touching + virgin), 3.0 * virgin] {
+        let state = go(Load::MeanGap(gap));
+        assert!(state.force <= 0.0 && state.area == Some(0.0), "{gap}: {state:?}");
+        // A gap goes into the units of the surface and back.
+        assert!((state.mean_gap.unwrap() / gap - 1.0).abs() < 1e-13, "{gap}: {:?}", state.mean_gap);
+        assert!((state.plastic.unwrap().volume / pressed.volume - 1.0).abs() < 1e-12);
+        let least = state.gap().unwrap().values().iter().copied().fold(f64::INFINITY, f64::min);
+        assert!((least - (gap - touching)).abs() < 1e-12 * virgin, "{gap}: {least}");
+    }
+    assert!(go(Load::MeanGap(0.99 * touching)).force > 0.0);
+}
+
 /// Steps of a loop in each direction.
 const STEPS: usize = 200;
 

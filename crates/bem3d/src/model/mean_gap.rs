@@ -20,7 +20,8 @@ impl PreparedBem3d {
     pub(super) fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
         let first = self.problem.candidates.range().first;
         if asked >= self.mean - first {
-            return self.no_contact(first);
+            // Apart, or touching: the gap is the one asked for.
+            return self.no_contact(self.mean - asked);
         }
         if asked <= 0.0 {
             let expected = "a number above 0, where every force from that of full contact on would do";
