@@ -204,3 +204,18 @@ fn cells_follow_maugis_on_both_branches() {
         assert!((extrapolated / least - 1.0).abs() < PULL_OFF, "{lambda} {pulled:?} {extrapolated} {least}");
     }
 }
+
+#[test]
+fn a_hard_sphere_is_drawn_off_beyond_its_contact() {
+    // Under lambda = 0.938 the contact shrinks to nothing while the surfaces still attract each other.
+    let mut sphere = OnCells::new(0.1, 128, 4.0);
+    let exact = sphere.exact.pull_off_at_force().unwrap().force / sphere.force;
+    let last = sphere.exact.pull_off_at_approach().unwrap();
+    assert!(last.radius <= 0.0);
+    let drawn: Vec<(f64, f64)> = (0..=39).map(|i| sphere.at(0.5 - f64::from(i) / 30.0)).collect();
+    let least = drawn.iter().map(|(force, _)| *force).fold(f64::INFINITY, f64::min);
+    assert!((least / exact - 1.0).abs() < PULL_OFF, "{least} {exact}");
+    let without: Vec<f64> =
+        drawn.iter().filter(|(_, radius)| *radius <= 0.0).map(|(force, _)| *force).collect();
+    assert!(without.len() > 5 && without.iter().all(|force| *force < 0.0), "{drawn:?}");
+}

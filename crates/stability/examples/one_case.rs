@@ -3,7 +3,7 @@
 //! `cargo run -p fractal-contact-stability --example one_case -- NAME` (without a name: a checkerboard)
 //!
 //! ```text
-//! a checkerboard (one of 50)
+//! a checkerboard (one of 61)
 //! hard because: all black cells touch together; the kernel is nearest to singular at this wave
 //! asserted: light loads: black cells only, F and k by relaxation and elimination; heavy: k of full contact
 //! passed: largest deviation 2.2e-12, bound 1e-8

@@ -11,7 +11,7 @@ use contact_model::{
 };
 
 /// Tolerance of the solves.
-const TOLERANCE: f64 = 1e-8;
+pub(super) const TOLERANCE: f64 = 1e-8;
 
 pub(super) const CASES: [Case; 5] = [
     Case {
@@ -59,11 +59,11 @@ fn attracted(map: &HeightMap, work: f64, range: f64) -> Scene {
     scene
 }
 
-fn path(scene: &Scene) -> Result<Box<dyn History>> {
+pub(super) fn path(scene: &Scene) -> Result<Box<dyn History>> {
     Bem3dPath(Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }).prepare(scene, 0)
 }
 
-fn go(history: &mut dyn History, load: Load) -> Result<ContactState> {
+pub(super) fn go(history: &mut dyn History, load: Load) -> Result<ContactState> {
     Ok(history.advance(Step::normal(0.0, load))?.normal)
 }
 

@@ -9,6 +9,7 @@ mod periodic;
 mod range;
 mod rectangles;
 mod shapes;
+mod short_range;
 mod surfaces;
 mod ties;
 mod units;
@@ -33,6 +34,7 @@ pub fn cases() -> Vec<Case> {
         &limits::CASES,
         &hardness::CASES,
         &adhesion::CASES,
+        &short_range::CASES,
         &chance::CASES,
     ]
     .concat()
