@@ -1,10 +1,13 @@
-//! What hardness and adhesion cost beside the elastic solve of the same load: `cargo run --release -p bem3d --example effects -- [CELLS ...]`.
+//! What hardness and adhesion cost beside the elastic solve of the same load:
+//! `cargo run --release -p bem3d --example effects -- [CELLS ...]`.
 //!
-//! A periodic self-affine surface of rms gradient 0.1 (H = 0.8, roll-off at a quarter of the side) at the mean pressure 0.01 E*: the elastic
-//! state; a hardness of 0.05 E*, about the rms pressure of the elastic contact, and one of 0.02 E*; a work of adhesion of 4e-4 and 1.6e-3 E*
-//! times the side of a cell, of short range and with the exponential law over a fifth of a cell. Each is solved from nothing on one thread and
-//! on two; below two seconds twice, and the shorter time counts. `effects CELLS EFFECT`, EFFECT from 0 to 6 in the order of the table, solves one of them once on one
-//! thread, to measure its memory from outside.
+//! A periodic self-affine surface of rms gradient 0.1 (H = 0.8, roll-off at a quarter of the side) at the mean
+//! pressure 0.01 E*: the elastic state; a hardness of 0.05 E*, about the rms pressure of the elastic contact, and one
+//! of 0.02 E*; a work of adhesion of 4e-4 and 1.6e-3 E* times the side of a cell, of short range and with the
+//! exponential law over a fifth of a cell. Each is solved from nothing on one thread and on two; below two seconds
+//! twice, and the shorter time counts. `effects CELLS EFFECT`, EFFECT from 0 to 6 in the order of the table, solves
+//! one of them once on one thread and prints area, applications and seconds, so that its memory can be measured from
+//! outside.
 
 use bem3d::{
     Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Effects, Error, Hardness, HeightMap,
@@ -30,26 +33,26 @@ fn surface(cells: usize) -> Result<HeightMap, Error> {
 /// Name and effects of each row for cells of side `cell`.
 fn effects(cell: f64) -> Vec<(String, Effects)> {
     let periodic = Effects { boundary: Boundary::Periodic, ..Effects::default() };
-    let mut rows = vec![("elastic".to_owned(), periodic.clone())];
+    let mut rows = vec![("elastic".to_owned(), periodic)];
     for pressure in [0.05, 0.02] {
         let hardness = Hardness::Limit { pressure };
-        rows.push((format!("hardness {pressure}"), Effects { hardness, ..periodic.clone() }));
+        rows.push((format!("hardness {pressure}"), Effects { hardness, ..periodic }));
     }
     let (law, range) = (AdhesionLaw::Exponential, 0.2 * cell);
     for share in [4e-4, 1.6e-3] {
         let work = share * cell;
         let adhesion = Adhesion::ShortRange { work };
-        rows.push((format!("short range {share:e}"), Effects { adhesion, ..periodic.clone() }));
+        rows.push((format!("short range {share:e}"), Effects { adhesion, ..periodic }));
         let adhesion = Adhesion::FiniteRange { work, range, law };
-        rows.push((format!("exponential {share:e}"), Effects { adhesion, ..periodic.clone() }));
+        rows.push((format!("exponential {share:e}"), Effects { adhesion, ..periodic }));
     }
     rows
 }
 
-fn solve(map: &Arc<HeightMap>, effects: Effects) -> Result<ContactState, Error> {
+fn solve(map: &Arc<HeightMap>, effects: &Effects) -> Result<ContactState, Error> {
     let mut scene = Scene::new(Surface::Heights(Arc::clone(map)), 1.0);
     scene.outputs = Outputs { area: true, ..Outputs::default() };
-    scene.effects = effects;
+    scene.effects = *effects;
     Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }.prepare(&scene, 0)?.solve(Load::Force(PRESSURE))
 }
 
@@ -59,8 +62,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let pool = ThreadPoolBuilder::new().num_threads(1).build()?;
         let map = Arc::new(surface(cells)?);
         let (name, effects) = effects(1.0 / cells as f64).swap_remove(effect);
-        let state = pool.install(|| solve(&map, effects))?;
-        println!("{cells}, {name}, {} applications", state.report.applications);
+        let start = Instant::now();
+        let state = pool.install(|| solve(&map, &effects))?;
+        let (area, applications) = (state.area.unwrap_or(f64::NAN), state.report.applications);
+        println!("{cells}, {name}, {area:.4}, {applications}, {:.3}", start.elapsed().as_secs_f64());
         return Ok(());
     }
     let sizes = if given.is_empty() { vec![257, 513, 1025, 2049] } else { given };
@@ -75,7 +80,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
                 let once = || -> Result<(f64, ContactState), Error> {
                     let start = Instant::now();
-                    let state = pool.install(|| solve(&map, effects.clone()))?;
+                    let state = pool.install(|| solve(&map, &effects))?;
                     Ok((start.elapsed().as_secs_f64(), state))
                 };
                 let (first, state) = once()?;
