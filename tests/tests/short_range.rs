@@ -1,4 +1,5 @@
-//! Adhesion of short range on a grid against closed forms: JKR's sphere, Kendall's punch, Johnson's wave.
+//! Adhesion of short range on a grid against closed forms: spheres of JKR and, with waves, of Guduru, Kendall's
+//! punch, Johnson's wave.
 
 use analytic::adhesive_wave::WavyContact;
 use analytic::jkr::AdhesiveSphere;
@@ -139,6 +140,103 @@ fn a_force_beyond_the_pull_off_is_an_error_with_the_last_state() {
     // The path stands where it stood.
     let again = at(&mut *history, Load::Force(0.9 * unit)).unwrap();
     assert!((again.area.unwrap() / held[3].area.unwrap() - 1.0).abs() < 0.03);
+}
+
+/// A sphere (R = E* = 1) with rings of waves, `z = r^2/2 + A (1 - cos(2 pi r/l))`, in contact within one circle:
+/// Guduru, J. Mech. Phys. Solids 55, 445 (2007), in the form of the reduction to one dimension.
+struct WavySphere {
+    amplitude: f64,
+    length: f64,
+}
+
+/// A contact circle in equilibrium.
+#[derive(Clone, Copy)]
+struct Circle {
+    radius: f64,
+    approach: f64,
+    force: f64,
+}
+
+impl WavySphere {
+    fn depth(&self, r: f64) -> f64 {
+        0.5 * r * r + self.amplitude * (1.0 - (2.0 * PI * r / self.length).cos())
+    }
+
+    /// The approach and the force with which each circle is in equilibrium: `d = g(a) - sqrt(2 pi a w)` and
+    /// `F = 2 (d a - int_0^a g)`, with `g(x) = x int_0^(pi/2) z'(x sin t) dt`.
+    fn circles(&self, largest: f64) -> Vec<Circle> {
+        const RADII: usize = 10_000;
+        const ANGLES: usize = 200;
+        let k = 2.0 * PI / self.length;
+        let slope = |r: f64| r + self.amplitude * k * (k * r).sin();
+        let (step, angle) = (largest / RADII as f64, 0.5 * PI / ANGLES as f64);
+        let (mut below, mut integral) = (0.0, 0.0);
+        (1..=RADII)
+            .map(|i| {
+                let radius = step * i as f64;
+                let sum: f64 = (0..ANGLES).map(|j| slope(radius * (angle * (j as f64 + 0.5)).sin())).sum();
+                let g = radius * angle * sum;
+                integral += 0.5 * (below + g) * step;
+                below = g;
+                let approach = g - (2.0 * PI * radius * WORK).sqrt();
+                Circle { radius, approach, force: 2.0 * (approach * radius - integral) }
+            })
+            .collect()
+    }
+}
+
+/// Waves make this sphere hold on by 1.7 times the pull-off force of the smooth one.
+#[test]
+fn a_wavy_sphere_sticks_and_comes_off_ring_by_ring() {
+    /// Cells in a wave, waves in the radius of the smooth sphere without load.
+    const WAVE: usize = 12;
+    const WAVES: f64 = 5.0;
+    /// Forces over the pull-off force of the smooth sphere, energies and radii relative.
+    const SAME: f64 = 0.02;
+    let length = unloaded_radius() / WAVES;
+    let wavy = WavySphere { amplitude: 4e-4, length };
+    let cell = length / WAVE as f64;
+    let n = (2.6 * WAVES * WAVE as f64) as usize;
+    let place = |i: usize, off: f64| cell * (i as f64 + off - 0.5 * n as f64);
+    let depth = |i, j| wavy.depth(place(i, 0.69).hypot(place(j, 0.87)));
+    let map = HeightMap::from_fn(n, n as f64 * cell, |i, j| -depth(i, j)).unwrap();
+    let mut history = path(&scene(map));
+    let circles = wavy.circles(0.5 * n as f64 * cell);
+    let unit = 1.5 * PI * WORK;
+    let step = 0.08 * unloaded_radius().powi(2) / 3.0;
+    let radius = |state: &ContactState| (state.area.unwrap() / PI).sqrt();
+    // It has snapped in at a smaller approach, to the ring that the closed form is followed from.
+    let state = at(&mut *history, Load::Approach(0.0)).unwrap();
+    let mut edge = circles.iter().position(|c| c.radius > radius(&state) - 0.5 * length);
+    let mut last: Option<(f64, f64, f64)> = None;
+    let (mut pull, mut loss) = ((0.0f64, 0.0f64), (0.0, 0.0));
+    for (i, inwards) in (0..=14).map(|i| (i, true)).chain((-14..14).rev().map(|i| (i, false))) {
+        let d = step * f64::from(i);
+        let state = at(&mut *history, Load::Approach(d)).unwrap();
+        // The edge advances to the first circle with so large an approach, and recedes to the first with so small
+        // a one.
+        edge = edge.and_then(|edge| {
+            if inwards {
+                (edge..circles.len()).find(|&k| circles[k].approach >= d)
+            } else {
+                (0..=edge).rfind(|&k| circles[k].approach <= d)
+            }
+        });
+        let none = Circle { radius: 0.0, approach: d, force: 0.0 };
+        let exact = edge.map_or(none, |k| circles[k]);
+        assert!((state.force - exact.force).abs() < SAME * unit, "{i}: {} {}", state.force, exact.force);
+        assert!((radius(&state) - exact.radius).abs() <= SAME * exact.radius, "{i}: {}", radius(&state));
+        pull = (pull.0.max(-state.force), pull.1.max(-exact.force));
+        if let Some((before, found, expected)) = last {
+            loss.0 += 0.5 * (state.force + found) * (d - before);
+            loss.1 += 0.5 * (exact.force + expected) * (d - before);
+        }
+        last = Some((d, state.force, exact.force));
+    }
+    assert!(last.unwrap().1.abs() < 1e-12 * unit);
+    assert!(pull.1 > 1.7 * unit);
+    approx::assert_relative_eq!(pull.0, pull.1, max_relative = SAME);
+    approx::assert_relative_eq!(loss.0, loss.1, max_relative = SAME);
 }
 
 /// Pull-off force of a flat punch over Kendall's `sqrt(8 pi w E* a^3)`, a the radius of the disc with its area.
