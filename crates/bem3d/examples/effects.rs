@@ -5,8 +5,8 @@
 //! pressure 0.01 E*: the elastic state; a hardness of 0.05 E*, about the rms pressure of the elastic contact, and one
 //! of 0.02 E*; a work of adhesion of 4e-4 and 1.6e-3 E* times the side of a cell, of short range and with the
 //! exponential law over a fifth of a cell. Each is solved from nothing on one thread and on two; below two seconds
-//! twice, and the shorter time counts. `effects CELLS EFFECT`, EFFECT from 0 to 6 in the order of the table, solves
-//! one of them once on one thread and prints area, applications and seconds, so that its memory can be measured from
+//! twice, and the shorter time counts. `effects CELLS EFFECT THREADS`, EFFECT from 0 to 6 in the order of the table,
+//! solves one of them once and prints area, applications and seconds, so that its memory can be measured from
 //! outside.
 
 use bem3d::{
@@ -58,8 +58,8 @@ fn solve(map: &Arc<HeightMap>, effects: &Effects) -> Result<ContactState, Error>
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let given: Vec<usize> = std::env::args().skip(1).map(|cells| cells.parse()).collect::<Result<_, _>>()?;
-    if let [cells, effect @ 0..7] = given[..] {
-        let pool = ThreadPoolBuilder::new().num_threads(1).build()?;
+    if let [cells, effect @ 0..7, threads @ 1..64] = given[..] {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
         let map = Arc::new(surface(cells)?);
         let (name, effects) = effects(1.0 / cells as f64).swap_remove(effect);
         let start = Instant::now();
