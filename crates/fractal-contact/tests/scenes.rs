@@ -13,6 +13,8 @@ const EXACT: f64 = 1e-9;
 /// Boundary elements of 129 cells a side against a smooth body that spans a third of them: second order of
 /// the cell over the contact.
 const CELLS: f64 = 0.02;
+/// The work of a plan is predicted within a factor of six.
+const PREDICTED: f64 = 6.0;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes")
@@ -29,6 +31,9 @@ fn solved(name: &str) -> (SceneOutcome, CsvFile, tempfile::TempDir) {
         .unwrap_or_else(|e| panic!("{name}: {e}"));
     let file = CsvFile::read(&dir.path().join("results.csv")).unwrap();
     assert!(!outcome.stopped && outcome.states > 0);
+    let predicted = plan.predicted().unwrap().applications;
+    let found: f64 = file.numbers("applications").unwrap().into_iter().flatten().sum();
+    assert!(found <= PREDICTED * predicted && predicted <= PREDICTED * found, "{name}: {predicted} {found}");
     (outcome, file, dir)
 }
 

@@ -8,7 +8,7 @@ use crate::scenes::numerics::Numerics;
 use crate::scenes::sampled::sampled;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
-use contact_model::{Cells, ContactState, Surface};
+use contact_model::{Adhesion, Cells, ContactState, Surface};
 use std::time::{Duration, Instant};
 
 /// Cells a side, and elements, of the solves that the cost is predicted from.
@@ -25,6 +25,10 @@ const CALIBRATION_TIME: Duration = Duration::from_secs(3);
 pub(crate) const TIME_EXPONENT: f64 = 2.3;
 /// Applications of the operator over cells a side, as measured by the same.
 const APPLICATIONS_EXPONENT: f64 = 0.3;
+/// The same two with adhesion of short range, whose fronts move about a cell in a sweep: N^2.5 to N^3.7 and
+/// N^0.5 to N^1.4 as measured by the example `effects` of `bem3d`.
+const FRONTS_TIME_EXPONENT: f64 = 3.1;
+const FRONTS_APPLICATIONS_EXPONENT: f64 = 1.0;
 /// Memory of one solve of bem3d, bytes per cell of the grid: what light loads take, and how much more contact
 /// that fills the grid takes; the box around a contact of a share `s` of the cells fills about `6 s` of it.
 /// Read off `peak_memory_bytes` in `data/bench/scaling.csv`.
@@ -33,6 +37,9 @@ const FILLED_BYTES: f64 = 150.0;
 /// Memory of drawing a line, bytes per element.
 const ELEMENT_BYTES: f64 = 40.0;
 const BOX_OVER_CONTACT: f64 = 6.0;
+/// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from outside
+/// on that example.
+const ADHESION_BYTES: f64 = 300.0;
 
 /// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
 pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
@@ -41,13 +48,13 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let small = numerics.clone().reduced(coarse, CALIBRATION_ELEMENTS, size);
     // Code and memory that are touched for the first time are no part of what grows with N.
     let warm = numerics.clone().reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
-    let _ = small_solves(scene, &warm, WARM_CELLS, &contact_model::never);
+    let _ = small_solves(scene, &warm, (WARM_CELLS, grid), &contact_model::never);
     let requested = scene.request.count();
     let surfaces = if scene.surface.is_random_for(numerics) { scene.sampling.surfaces as f64 } else { 1.0 };
     let total = requested as f64 * surfaces;
     let begin = Instant::now();
     let stop = || begin.elapsed() > CALIBRATION_TIME;
-    let timed = || small_solves(scene, &small, coarse, &stop);
+    let timed = || small_solves(scene, &small, (coarse, grid), &stop);
     let (solved, used) = runs::on_one_thread(timed).unwrap_or_default();
     let mut cost = solved.cost;
     let count = grid.columns as f64 * grid.rows as f64;
@@ -56,7 +63,11 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) if used > 0 => {
             // Cells a side of the squares of as many cells.
             let ratio = (count / used as f64).sqrt();
-            (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
+            if let Adhesion::ShortRange { .. } = scene.effects.adhesion {
+                (ratio.powf(FRONTS_TIME_EXPONENT), ratio.powf(FRONTS_APPLICATIONS_EXPONENT))
+            } else {
+                (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
+            }
         }
         // Sorted once, in the preparation.
         Numerics::Mdr1d(m) => {
@@ -82,7 +93,8 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         cost.fields = fields * total;
         cost.field_bytes = cost.fields * count * 8.0;
         let filled = (BOX_OVER_CONTACT * solved.filled).min(1.0);
-        cost.memory = count * (LIGHT_BYTES + FILLED_BYTES * filled + 8.0 * fields);
+        let adhesion = if scene.effects.adhesion == Adhesion::Off { 0.0 } else { ADHESION_BYTES };
+        cost.memory = count * (LIGHT_BYTES + FILLED_BYTES * filled + adhesion + 8.0 * fields);
     }
     cost
 }
@@ -135,12 +147,12 @@ impl PilotSolve {
     }
 }
 
-/// A few of the loads on a grid of at most `coarse` cells along its longer side; the second number is that of
-/// its cells.
+/// A few of the loads on a grid of at most `coarse` cells along its longer side, instead of `full`; the second
+/// number is that of its cells.
 fn small_solves(
     scene: &SceneFile,
     numerics: &Numerics,
-    coarse: usize,
+    (coarse, full): (usize, Cells),
     stop: &dyn Fn() -> bool,
 ) -> contact_model::Result<(PilotSolve, usize)> {
     let seed = scene.seed(0);
@@ -150,6 +162,13 @@ fn small_solves(
         let thin = sampled(map, coarse)?;
         grid = Some(thin.cells());
         physics.surface = Surface::Heights(std::sync::Arc::new(thin));
+    }
+    // Larger cells resolve an attraction as well whose range is larger by the root of that: so it costs as many
+    // sweeps, and is not refused.
+    if let (Adhesion::FiniteRange { work, range, law }, Some(grid)) = (physics.effects.adhesion, grid) {
+        let larger = (full.columns as f64 / grid.columns as f64).max(full.rows as f64 / grid.rows as f64);
+        let range = range * larger.sqrt().max(1.0);
+        physics.effects.adhesion = Adhesion::FiniteRange { work, range, law };
     }
     let size = grid.and_then(Cells::checked_count).unwrap_or(0);
     let (mut solved, begun) = (PilotSolve::default(), Instant::now());

@@ -61,7 +61,8 @@
 //!
 //! As the models are; the plan says so for each. Reading, planning and writing take milliseconds. The
 //! prediction of cost solves a few of the loads on a grid of a quarter of the cells (at most 257, at most 3
-//! s) and scales by measured exponents: within a factor of six on the scenes of `data/scenes`, files and pictures apart.
+//! s) and scales by measured exponents: within a factor of six on the scenes of `data/scenes`, files and
+//! pictures apart.
 //!
 //! # What it does not do
 //!

@@ -284,8 +284,7 @@ impl fmt::Display for Plan {
             }
             writeln!(
                 f,
-                " (from small solves on this machine, scaled as N^{}: within a factor of six; files and pictures come on top)",
-                calibration::TIME_EXPONENT
+                " (from small solves on this machine, scaled with the cells: within a factor of six; files and pictures come on top)"
             )?;
         }
         Ok(())
