@@ -80,6 +80,32 @@ fn nothing_attracts_without_work() {
     }
 }
 
+/// Rounding of the gaps would hide a smaller range, a larger one the surface.
+#[test]
+fn ranges_beyond_the_scales_of_the_surface_are_refused() {
+    let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
+    let prepared = |adhesion: Adhesion| {
+        let mut scene = Scene::new(surface.clone(), 1.0);
+        scene.effects.adhesion = adhesion;
+        ContactModel::prepare(&Bem3d { cells: 8, ..Bem3d::default() }, &scene, 3).map(|_| ())
+    };
+    assert!(prepared(Adhesion::ShortRange { work: 1e-6 }).is_ok());
+    // Of weak laws, which any cell resolves.
+    let weak = |range: f64| Adhesion::FiniteRange { work: 1e-6 * range * range, range, law: EXPONENTIAL };
+    for range in [2e-9, 5e8] {
+        assert!(prepared(weak(range)).is_ok(), "{range}");
+    }
+    for (adhesion, (name, expected)) in [
+        (weak(5e-10), ("range of adhesion", "1.0e-9 to 1.0e9")),
+        (weak(2e9), ("range of adhesion", "1.0e-9 to 1.0e9")),
+        (Adhesion::ShortRange { work: 1e-30 }, ("work of adhesion", "by the heights of the surface")),
+        (Adhesion::ShortRange { work: 1e30 }, ("work of adhesion", "by the heights of the surface")),
+    ] {
+        let message = prepared(adhesion).unwrap_err().to_string();
+        assert!(message.starts_with(name) && message.contains(expected), "{message}");
+    }
+}
+
 /// And hardly anything with little of it.
 #[test]
 fn little_work_changes_little() {

@@ -15,6 +15,8 @@ use std::f64::consts::PI;
 /// Largest product of the slope of the law and the own compliance of a cell. At 1 a single open cell would be unstable alone, whatever the
 /// surface does; at a fifth of it the cohesive zone, about `E* range^2/work` long, is five cells long.
 const RESOLVED: f64 = 0.2;
+/// Ranges over the height of the surface: rounding of the gaps hides smaller ones, and the surface in larger ones.
+const RANGES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// A gap that has moved against the load by more than this, in ranges, has left the branch.
 const ON_BRANCH: f64 = 1e-3;
 
@@ -346,6 +348,14 @@ fn attraction(inner: &PreparedBem3d, adhesion: Adhesion) -> Result<Attraction> {
     let own = law.peak / law.range * influence_of_rectangle(0, 0, inner.problem.grid().stretch);
     if !(own.is_finite() && own > 0.0) {
         return Err(Error::domain(name, value, "a value nearer to the scales of the surface"));
+    }
+    if !RANGES.contains(&law.range) {
+        // The range of a short one grows with the root of the work.
+        let power = if matches!(adhesion, Adhesion::ShortRange { .. }) { 2 } else { 1 };
+        let bound = |range: f64| value * (range / law.range).powi(power);
+        let (least, most) = (bound(*RANGES.start()), bound(*RANGES.end()));
+        let expected = format!("{least:.1e} to {most:.1e}, by the heights of the surface");
+        return Err(Error::domain(name, value, expected));
     }
     if own > RESOLVED && matches!(adhesion, Adhesion::FiniteRange { .. }) {
         let most = dx.max(dy) * RESOLVED / own;

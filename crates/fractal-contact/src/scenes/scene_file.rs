@@ -554,8 +554,10 @@ fn check_histories(
                 .with_help("write [[scene.path]] with `time`, `force` (or `approach`) and `tangential_force` for each step"));
         }
         if !numerics.is_history() && path {
-            let known: Vec<&str> =
-                Numerics::ALL.iter().filter(|m| m.is_history()).map(Numerics::name).collect();
+            let follows = |m: &&Numerics| {
+                m.is_history() || (depends_on_path(effects) && (*m).clone().along_path().is_history())
+            };
+            let known: Vec<&str> = Numerics::ALL.iter().filter(follows).map(Numerics::name).collect();
             return Err(model
                 .diagnostic(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
                 .with_help(format!("models that follow a path: {}", known.join(", "))));
