@@ -229,6 +229,7 @@ impl Neighbours {
 #[cfg(test)]
 #[allow(clippy::cast_possible_wrap)] // Small numbers.
 mod tests {
+    use super::super::law::Shape;
     use super::*;
 
     fn neighbours(attraction: &Attraction) -> &Neighbours {
@@ -314,6 +315,27 @@ mod tests {
             assert!(attraction.mismatch(&cells, &tractions, &gap) <= 0.0);
             assert!(tractions.iter().all(|&t| t <= attraction.strongest()));
         }
+    }
+
+    #[test]
+    fn mismatch_area_and_held_cells_by_hand() {
+        let grid = Grid::square(12, 12);
+        let attraction = Attraction::short(0.3, grid, Boundary::Periodic);
+        let all = CellSet::all(grid);
+        // Without any traction closed cells lack that of cells with all neighbours.
+        let (none, closed) = (vec![0.0; all.len()], vec![0.0; all.len()]);
+        let lacks = 1.0 + attraction.strength();
+        approx::assert_relative_eq!(attraction.mismatch(&all, &none, &closed), lacks, max_relative = 1e-12);
+        // Half open everywhere, a quarter of the work is held.
+        let half = vec![0.5 * attraction.law.range; all.len()];
+        approx::assert_relative_eq!(attraction.area(&CellSet::default(), &half), 36.0, max_relative = 1e-12);
+        let gap: Vec<f64> =
+            (0..all.len()).map(|i| attraction.law.range * if i < 5 { 0.29 } else { 0.3 }).collect();
+        assert_eq!(attraction.held(&all, &gap).unwrap().len(), 5);
+        // Across gaps: the closed cells, and nothing is held.
+        let across = Attraction::of(Law { shape: Shape::Exponential, ..attraction.law });
+        assert!((across.area(&all, &closed) - 144.0).abs() < 1e-12 && across.held(&all, &gap).is_none());
+        approx::assert_relative_eq!(across.mismatch(&all, &none, &closed), 1.0, max_relative = 1e-12);
     }
 
     #[test]

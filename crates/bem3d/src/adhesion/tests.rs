@@ -208,6 +208,15 @@ fn law(range: f64, share: f64) -> Attraction {
 }
 
 #[test]
+fn a_short_range_does_the_work_with_the_traction_of_its_longer_side() {
+    for (work, side) in [(0.3, 1.0), (0.3, 2.0), (0.02, 1.0)] {
+        let law = Law::short(work, side);
+        approx::assert_relative_eq!(law.peak.powi(2) * PI * side, 0.49 * work, max_relative = 1e-12);
+        approx::assert_relative_eq!(law.energy(0.0), -work, max_relative = 1e-12);
+    }
+}
+
+#[test]
 fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
     let mut jumps = 0;
     for (seed, grid, boundary) in [

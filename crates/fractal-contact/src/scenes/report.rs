@@ -239,12 +239,18 @@ impl Report<'_> {
         } }
     }
 
-    /// The map and the fields of the first surface, of the largest loads first as long as there is room.
+    /// The map and the fields of the first surface as long as there is room: of the largest loads first, or of
+    /// steps spread over a path.
     fn fields(&self, out: &Path) -> Result<Markup> {
         let mut views: Vec<(FieldView, &str, &str, usize)> = Vec::new();
         for &(model, surface, states) in self.solved.iter().filter(|of| of.1 == 0) {
-            for state in states.iter().rev() {
-                let named = ["heights", "pressure", "gap", "displacement"];
+            let order = if self.scene.is_history() {
+                spread(states.len())
+            } else {
+                (0..states.len()).rev().collect()
+            };
+            for state in order.into_iter().map(|i| &states[i]) {
+                let named = ["heights", "pressure", "gap", "plastic_depth", "displacement"];
                 views.extend(named.into_iter().filter_map(|field| {
                     let file = FieldFile { field, model, surface, state: state.index, extension: "" };
                     Some((field_pictures::view(out, file)?, field, model, state.index))
@@ -268,21 +274,40 @@ impl Report<'_> {
             if bytes > MOST_BYTES {
                 break;
             }
-            drawn.push(figure);
+            drawn.push((*state, figure));
         }
+        if self.scene.is_history() {
+            drawn.sort_by_key(|(state, _)| *state);
+        }
+        let which =
+            if self.scene.is_history() { "spread over the path" } else { "those of the largest loads" };
         Ok(html! {
             @if drawn.is_empty() {
                 p { "No field was asked for: name `pressure`, `gap` or `heights` in [outputs]." }
             } @else {
-                p { (page::READING) @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, those of the largest loads; the \
+                p { (page::READING) @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, " (which) "; the \
                      others are files beside this page." } }
-                div.fields { @for figure in &drawn { (PreEscaped(figure)) } }
+                div.fields { @for (_, figure) in &drawn { (PreEscaped(figure)) } }
             }
         })
     }
 }
 
-const CERTIFICATES: [(&str, &str); 5] = [
+/// The numbers below `count` in an order whose beginnings are spread over all of them: strides of falling powers of 2.
+fn spread(count: usize) -> Vec<usize> {
+    let mut order = Vec::with_capacity(count);
+    let mut stride = count.next_power_of_two();
+    while stride > 0 {
+        // Multiples of twice the stride are there.
+        let fresh = (0..count).step_by(stride).filter(|i| order.is_empty() || i % (2 * stride) != 0);
+        let fresh: Vec<usize> = fresh.collect();
+        order.extend(fresh);
+        stride /= 2;
+    }
+    order
+}
+
+const CERTIFICATES: [(&str, &str); 6] = [
     (
         "duality_gap",
         "the pressure minimises the elastic energy: by how much it could still fall, over force times rms height",
@@ -290,5 +315,24 @@ const CERTIFICATES: [(&str, &str); 5] = [
     ("penetration", "no cell penetrates the other body: the deepest, over the rms height"),
     ("complementarity", "where there is pressure there is no gap"),
     ("load_error", "the force is the one that was asked for"),
+    (
+        "equilibrium",
+        "the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction",
+    ),
     ("stiffness_error", "an estimate: the stiffness belongs to the contact set of the exact solution"),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::spread;
+
+    #[test]
+    fn beginnings_of_an_order_are_spread() {
+        assert_eq!(spread(0), [0usize; 0]);
+        assert_eq!(spread(1), [0]);
+        assert_eq!(spread(7), [0, 4, 2, 6, 1, 3, 5]);
+        let mut order = spread(61);
+        order.sort_unstable();
+        assert_eq!(order, (0..61).collect::<Vec<_>>());
+    }
+}

@@ -137,6 +137,36 @@ fn a_force_is_shared_by_hand() {
 }
 
 #[test]
+fn cells_join_saturate_and_stay_saturated_by_hand() {
+    let grid = Grid::square(5, 1);
+    let candidates = Candidates::new(grid, Arc::new(vec![0.0, 0.1, 0.3, f64::INFINITY, 0.2]));
+    let brought = |cells: &[u32], p: &[f64], force: f64, hardness: f64| {
+        let (mut set, mut p) = (CellSet::from_index(grid, cells), p.to_vec());
+        let grown = bring_to(&mut set, &mut p, force, hardness, &candidates);
+        (grown, set.index(grid).collect::<Vec<_>>(), p)
+    };
+    // As many cells join as the rest of the force needs, and share it.
+    assert_eq!(brought(&[0], &[2.0], 3.0, 2.0), (true, vec![0, 1], vec![2.0, 1.0]));
+    let (_, cells, p) = brought(&[0], &[2.0], 7.0, 2.0);
+    assert_eq!((cells, p[0]), (vec![0, 1, 2, 4], 2.0));
+    p[1..].iter().for_each(|p| assert_relative_eq!(*p, 5.0 / 3.0, max_relative = 1e-14));
+    // The rest of the cells falls, the saturated one does not.
+    assert_eq!(brought(&[0, 1], &[1.0, 0.8], 1.4, 1.0).2[0].to_bits(), 1f64.to_bits());
+    // One saturates on the way: the other takes what it leaves.
+    let (grown, _, p) = brought(&[0, 1, 2], &[1.0, 0.5, 0.25], 2.8, 1.0);
+    assert!(!grown && p[1] >= 1.0);
+    assert_relative_eq!(p[2], 0.8, max_relative = 1e-14);
+}
+
+#[test]
+fn a_step_of_two_cells_is_shortened_by_hand() {
+    // Changes of 1/2 and -1/2; the slope of the energy is -3/4 before and 1/4 after it: three quarters are left.
+    let (mut p, mut displaced) = ([1.5, 1.5], [1.0, 0.5]);
+    assert!(shorten((vec![1.0, 2.0], &[-1.0, 0.5], 0.5), (&mut p, &mut displaced), 0.9));
+    assert_eq!((p, displaced), ([1.375, 1.625], [0.625, 0.625]));
+}
+
+#[test]
 fn residuals_by_hand() {
     // p_s = 1: a saturated cell indented by 0.2, an elastic one with a gap of 0.1, one open by 0.4; F = 1.5, s = 2.
     let e = residuals(&[1.0, 0.5, 0.0], &[-0.2, 0.1, 0.4], 1.0, 2.0);
