@@ -76,6 +76,45 @@ fn every_scene_is_run_and_named_in_the_readme() {
     assert!(count >= 8);
 }
 
+/// Its table and its report have the residual of the attraction.
+#[test]
+fn a_sticky_ball_jumps_in_and_off_with_its_residuals() {
+    let (_, file, dir) = solved("sticky-ball.toml");
+    let all = |name: &str| column(&file, "bem3d", name);
+    assert!(all("equilibrium").iter().all(|e| (0.0..=1e-5).contains(e)) && all("equilibrium").len() == 33);
+    assert!(all("stability").iter().all(|s| *s > 0.0));
+    let (force, cells) = (all("force"), all("contact_cells"));
+    let touching: Vec<usize> = (0..33).filter(|&i| cells[i] > 0.0).collect();
+    // It touches from one step to another, jumps at both ends, and pulls between 1.5 and 2 pi w R.
+    let (first, last) = (touching[0], touching[touching.len() - 1]);
+    assert_eq!(touching.len(), last + 1 - first);
+    assert!(force[first] < 5.0 * force[first - 1] && force[last] < 2.0 * force[last + 1]);
+    let pull = force.iter().fold(0.0f64, |most, f| most.max(-f)) / (TAU * 0.5 * 0.05 * 50e-6);
+    assert!((1.5..2.0).contains(&pull), "{pull}");
+    let report = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
+    assert!(report.contains("equilibrium"));
+}
+
+/// A surface keeps the indentation of its largest load, and the report shows it.
+#[test]
+fn a_plastic_path_keeps_its_indentation() {
+    let (_, file, dir) = solved("plastic-path.toml");
+    let all = |name: &str| column(&file, "bem3d", name);
+    let (force, volume, work) = (all("force"), all("plastic_volume"), all("plastic_work"));
+    let largest = |i: usize| force[..=i].iter().copied().fold(0.0, f64::max);
+    for i in 1..force.len() {
+        if largest(i) > 1.001 * largest(i - 1) {
+            assert!(volume[i] > volume[i - 1]);
+        } else {
+            approx::assert_relative_eq!(volume[i], volume[i - 1], max_relative = 1e-5);
+        }
+        // The hardness times the volume.
+        approx::assert_relative_eq!(work[i], 1e9 * volume[i], max_relative = EXACT);
+    }
+    let report = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
+    assert!(report.contains("Plastic depth"));
+}
+
 #[test]
 fn a_ball_is_the_same_for_four_models() {
     let (_, file, _dir) = solved("ball-on-plate.toml");

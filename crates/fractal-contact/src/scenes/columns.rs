@@ -122,7 +122,7 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         }));
     }
     if scene.effects.adhesion != Adhesion::Off {
-        let at = "a minimum of the energy where > 0: least energy of one cell to attach or detach, or least curvature";
+        let at = "a minimum of the energy where > 0: its least curvature over that without adhesion";
         list.push(kind("branch", "-", "whether the bodies were brought nearer or drawn apart", |s| {
             normal(s, |n| n.adhesive.map(|a| a.branch.as_str()))
         }));
@@ -195,6 +195,11 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         }),
         kind("load_error", "1", "|F - F_asked|/F_asked", |s| normal(s, |n| n.report.certificate.load_error)),
     ]);
+    if scene.effects.adhesion != Adhesion::Off {
+        let what =
+            "largest difference of an attraction from the law of its gap, over the traction in contact";
+        list.push(kind("equilibrium", "1", what, |s| normal(s, |n| n.report.certificate.equilibrium)));
+    }
     if outputs.needs_stiffness() {
         list.push(kind("stiffness_error", "1", "estimated relative error of k", |s| {
             normal(s, |n| n.report.certificate.stiffness_error)
