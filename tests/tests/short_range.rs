@@ -271,6 +271,39 @@ fn a_flat_punch_comes_off_at_once() {
     assert!((2.0 * fine - coarse - 1.0).abs() < 0.02, "{coarse} {fine}");
 }
 
+/// Straight fronts are trapped between the cells, most along their rows: the pull-off pressure goes with w^(2/3), so
+/// that 4 % of it are 6 % of w.
+#[test]
+fn waves_in_other_directions_pull_off_and_snap_in_alike() {
+    const CELLS: usize = 128;
+    const AMPLITUDE: f64 = 0.02;
+    let wave = WavyContact::new(AMPLITUDE, 1.0, 1.0, WORK).unwrap();
+    let (_, pull) = wave.pull_off().unwrap().unwrap();
+    let (_, snap) = wave.snap_in().unwrap().unwrap();
+    for ((p, q), trapped) in [((1, 0), 0.04), ((1, 1), 0.02), ((1, 2), 0.01)] {
+        // p waves across and q down; a wave has the length 1.
+        let rows = if q == 0 { 4 } else { CELLS };
+        let cell = f64::from(p).hypot(f64::from(q)) / CELLS as f64;
+        let size = Size { x: CELLS as f64 * cell, y: rows as f64 * cell };
+        let map = HeightMap::from_fn(Cells { columns: CELLS, rows }, size, |i, j| {
+            let phase = (i as f64 * f64::from(p) + j as f64 * f64::from(q) + 0.23) / CELLS as f64;
+            AMPLITUDE * (2.0 * PI * phase).cos()
+        });
+        let mut scene = scene(map.unwrap());
+        scene.effects.boundary = Boundary::Periodic;
+        let force = |p: f64| Load::Force(p * size.x * size.y);
+        let share = |state: ContactState| state.area.unwrap() / (size.x * size.y);
+        let mut history = path(&scene);
+        at(&mut *history, force(0.0)).unwrap();
+        at(&mut *history, force(0.99 * pull)).unwrap();
+        let beyond = at(&mut *history, force((1.0 + trapped) * pull));
+        assert!(matches!(beyond, Err(Error::NotConverged { .. })), "{p} {q}");
+        let mut history = path(&scene);
+        assert!(share(at(&mut *history, force(0.99 * snap)).unwrap()) < 0.9, "{p} {q}");
+        assert!(share(at(&mut *history, force((1.0 + trapped) * snap)).unwrap()) > 0.99, "{p} {q}");
+    }
+}
+
 #[test]
 fn a_wave_pulls_off_and_snaps_in_as_johnson_says() {
     let (cells, rows, amplitude) = (128, 4, 0.02);
