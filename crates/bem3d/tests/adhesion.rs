@@ -80,6 +80,38 @@ fn nothing_attracts_without_work() {
     }
 }
 
+/// Whatever was solved before, a single load begins from no contact.
+#[test]
+fn a_single_load_is_on_the_branch_of_approach() {
+    let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
+    let scene = with(surface, 0.3, 0.3, EXPONENTIAL);
+    let model = Bem3d { cells: 32, tolerance: 1e-7, ..Bem3d::default() };
+    let mut contact = ContactModel::prepare(&model, &scene, 3).unwrap();
+    let first = contact.solve(Load::Approach(0.2)).unwrap();
+    contact.solve(Load::Approach(2.0)).unwrap();
+    let again = contact.solve(Load::Approach(0.2)).unwrap();
+    assert_eq!((again.force, again.adhesive.unwrap().branch), (first.force, Branch::Approach));
+    let mut history = HistoryModel::prepare(&Bem3dPath(model), &scene, 3).unwrap();
+    at(&mut *history, Load::Approach(2.0)).unwrap();
+    let withdrawn = at(&mut *history, Load::Approach(0.2)).unwrap();
+    assert_eq!(withdrawn.adhesive.unwrap().branch, Branch::Withdrawal);
+}
+
+/// `k = dF/dd` of a periodic contact, the mean gap lowered by d, with the motion of the attraction.
+#[test]
+fn stiffness_of_a_periodic_contact_is_the_slope_of_its_force() {
+    let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
+    let mut scene = with(surface, 0.05, 0.3, EXPONENTIAL);
+    scene.effects.boundary = Boundary::Periodic;
+    scene.outputs.mean_gap = true;
+    let model = Bem3d { cells: 32, tolerance: 1e-9, ..Bem3d::default() };
+    let mut history = HistoryModel::prepare(&Bem3dPath(model), &scene, 3).unwrap();
+    let [low, middle, high] = [0.999, 1.0, 1.001].map(|f| at(&mut *history, Load::Force(0.5 * f)).unwrap());
+    let slope = (high.force - low.force) / (low.mean_gap.unwrap() - high.mean_gap.unwrap());
+    let k = middle.stiffness.unwrap();
+    assert!((k / slope - 1.0).abs() < 5e-3, "{k} {slope}");
+}
+
 /// Rounding of the gaps would hide a smaller range, a larger one the surface.
 #[test]
 fn ranges_beyond_the_scales_of_the_surface_are_refused() {

@@ -188,6 +188,40 @@ fn is_minimum(g: &[Vec<f64>], contact: &[bool], slopes: &[Vec<f64>]) -> bool {
     true
 }
 
+/// One less the spectral radius of the attraction's answer to itself with the contact kept closed, by power
+/// iteration on the dense matrix.
+fn dense_stability(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> f64 {
+    let n = contact.len();
+    let open: Vec<usize> = (0..n).filter(|&i| !contact[i] && slopes[i] > 0.0).collect();
+    let mut v: Vec<f64> = open.iter().map(|&i| 1.0 + 0.1 * (i as f64).sin()).collect();
+    let mut largest = 0.0;
+    for _ in 0..3000 {
+        // Displacement under D^(1/2) v, where pressure keeps the contact closed.
+        let mut matrix = vec![vec![0.0; n]; n];
+        let mut right = vec![0.0; n];
+        for i in 0..n {
+            if contact[i] {
+                matrix[i].clone_from(&g[i]);
+            } else {
+                matrix[i][i] = 1.0;
+            }
+        }
+        open.iter().zip(&v).for_each(|(&i, v)| right[i] = slopes[i].sqrt() * v);
+        let p = eliminated(matrix, right);
+        let next: Vec<f64> = open
+            .iter()
+            .map(|&i| slopes[i].sqrt() * g[i].iter().zip(&p).map(|(g, p)| g * p).sum::<f64>())
+            .collect();
+        let norm = next.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let settled = (norm - largest).abs() < 1e-13 * norm;
+        (largest, v) = (norm, next.iter().map(|v| v / norm).collect());
+        if settled {
+            break;
+        }
+    }
+    1.0 - largest
+}
+
 fn search<'a>(
     problem: &'a mut Problem,
     attraction: &'a Attraction,
@@ -214,6 +248,42 @@ fn a_short_range_does_the_work_with_the_traction_of_its_longer_side() {
         approx::assert_relative_eq!(law.peak.powi(2) * PI * side, 0.49 * work, max_relative = 1e-12);
         approx::assert_relative_eq!(law.energy(0.0), -work, max_relative = 1e-12);
     }
+}
+
+/// Of a prescribed force that of a kernel with a very large constant, under which no force changes.
+#[test]
+fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
+    const NO_FORCE: f64 = 1e7;
+    // Ritz values approach the spectral radius from below.
+    const SETTLED: f64 = 1e-3;
+    let mut differ = 0;
+    for (seed, grid) in [(1, Grid::square(7, 6)), (2, Grid { columns: 6, rows: 7, stretch: 1.3 })] {
+        let z = heights(grid, seed);
+        let g = dense(grid, Boundary::Free);
+        let stiff: Vec<Vec<f64>> = g.iter().map(|row| row.iter().map(|g| g + NO_FORCE).collect()).collect();
+        let law = law(0.3, 0.2);
+        let mut problem = problem(grid, &z, Boundary::Free);
+        for d in [0.4, 0.8] {
+            let mut search = search(&mut problem, &law, Control::Approach(d), false);
+            let start = search.first(&never);
+            let state = search.from(start, &never).unwrap();
+            let all = CellSet::all(grid);
+            let (gap, pressure) = (gaps(grid, &state), all.carry(&state.cells, &state.pressure));
+            let contact: Vec<bool> = pressure.iter().map(|p| *p > 0.0).collect();
+            let slopes = law.slopes(&all, &gap);
+            let at = |problem: &mut Problem, control| {
+                respond(problem, &law, control, &state, Some(1e-10), &never).stability
+            };
+            let (approach, force) =
+                (at(&mut problem, Control::Approach(d)), at(&mut problem, Control::Force(state.force())));
+            let (exact, exact_force) =
+                (dense_stability(&g, &contact, &slopes), dense_stability(&stiff, &contact, &slopes));
+            approx::assert_relative_eq!(approach, exact, max_relative = SETTLED);
+            approx::assert_relative_eq!(force, exact_force, max_relative = SETTLED);
+            differ += usize::from(approach - force > 1e-2 * approach);
+        }
+    }
+    assert!(differ > 0);
 }
 
 #[test]
