@@ -326,7 +326,7 @@ fn waves_in_other_directions_pull_off_and_snap_in_alike() {
 /// The table of the book's page on adhesion of short range:
 /// `cargo test -p tests how_far_straight_fronts_are_trapped -- --ignored --nocapture`.
 #[test]
-#[ignore = "a table, half a minute"]
+#[ignore = "a table, two minutes"]
 fn how_far_straight_fronts_are_trapped() {
     for (cells, direction) in [(64, (1, 0)), (256, (1, 0)), (1024, (1, 0)), (256, (1, 1)), (256, (1, 2))] {
         let limit = |pressure: fn(usize, (u32, u32), f64) -> bool| {

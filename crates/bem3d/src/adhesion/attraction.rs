@@ -10,7 +10,7 @@
 //! for directions of large numbers; Pohrt and Popov's criterion has 1.4537. With c = 1.077 the law is the line between both states of a
 //! front along the rows: it moves through the cells without a barrier. With a larger c it is trapped; with a smaller one cells begin to open
 //! while those before them still do, and fronts of all directions move at nearly w. With c = 0.7 and the factor below, Johnson's wave on 256
-//! cells is drawn off at 1.034 of its pressure where its fronts lie along the rows, at 1.013 along the diagonals and at 1.000 along (1, 2); that
+//! cells is drawn off at 1.034 of its pressure where its fronts lie along the rows, at 1.013 along the diagonals and at 1.001 along (1, 2); that
 //! is 5, 2 and 0 % of w, and finer cells do not lower it. Curved fronts, whose directions vary, are trapped by half a percent.
 //!
 //! What is left is a line tension. At c = 0.7 a front of length L has the energy `-0.44 a w L` beside that of the area, in all directions, so
