@@ -103,7 +103,7 @@ impl<L: ClosedLaw> PreparedContact for Closed<L> {
         report.certificate.stiffness_error = stiffness.map(|_| self.stiffness_error);
         ContactState::new(force, report)
             .with_approach(approach)
-            .with_stiffness(stiffness)
+            .with_elastic_stiffness(stiffness)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }

@@ -95,7 +95,7 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
         };
         ContactState::new(force, report)
             .with_mean_gap(mean_gap)
-            .with_stiffness(stiffness)
+            .with_elastic_stiffness(stiffness)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }

@@ -229,7 +229,7 @@ impl PreparedContact for RoughLine {
         report.certificate.stiffness_error = self.outputs.needs_stiffness().then_some(0.0);
         ContactState::new(support.force, report)
             .with_approach(support.approach)
-            .with_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
+            .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
             .completed(&self.outputs, self.normalisation.modulus)
     }
 }
@@ -344,7 +344,7 @@ impl PreparedContact for RoundBody {
         report.certificate.stiffness_error = stiffness.map(|_| 0.0);
         ContactState::new(force, report)
             .with_approach(approach)
-            .with_stiffness(stiffness)
+            .with_elastic_stiffness(stiffness)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }

@@ -261,6 +261,7 @@ impl AdhesiveContact {
             load_error,
             stiffness_error,
             equilibrium: Some(equilibrium.mismatch),
+            ..Certificate::default()
         };
         let status = match status {
             Status::Converged if certificate.meets(inner.options.tolerance) => Status::Converged,

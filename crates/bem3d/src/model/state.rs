@@ -27,6 +27,7 @@ impl PreparedBem3d {
             load_error,
             stiffness_error: tangent.as_ref().map(|t| self.stiffness_error(t)),
             equilibrium: None,
+            ..Certificate::default()
         };
         let mut tangent = tangent;
         if self.indentation.is_some() && !certificate.meets(self.options.tolerance) {
@@ -62,7 +63,7 @@ impl PreparedBem3d {
         let state = ContactState::new(units.force(PI * force)?, report)
             .with_approach(approach)
             .with_mean_gap(mean_gap)
-            .with_stiffness(stiffness)
+            .with_elastic_stiffness(stiffness)
             .with_area(area)
             .with_plastic(plastic)
             .with_patches(self.patches(&solved.contact)?)
@@ -215,7 +216,7 @@ impl PreparedBem3d {
         ContactState::new(0.0, report)
             .with_approach((!self.is_periodic()).then(|| self.nondimensional.approach(d)).transpose()?)
             .with_mean_gap(mean_gap)
-            .with_stiffness(self.outputs.needs_stiffness().then_some(0.0))
+            .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(0.0))
             .with_area(self.outputs.area.then_some(0.0))
             .with_plastic(self.plastic(&CellSet::default(), &[])?)
             .with_patches(self.outputs.contact_patches.then(Patches::default))
