@@ -2,7 +2,7 @@
 
 use crate::active_set::{Problem, Solved};
 use crate::kernel::KernelTable;
-use crate::linear::{Energy, StoppingCriteria};
+use crate::linear::{Energy, Fixed, StoppingCriteria};
 use crate::operator::{Conditioning, Recipe};
 use crate::real::{dot, each, sum, update};
 use contact_model::Stop;
@@ -93,7 +93,7 @@ pub fn solve(
             floor: 0.0,
             steps: if last { 0 } else { tuning.stiffness_steps },
         };
-        let outcome = workspace.solve(operators, &mut r, false, criteria, stop);
+        let outcome = workspace.solve(operators, &mut r, Fixed::Approach, criteria, stop);
         let Some(q) = &mut q else {
             steps += outcome.steps;
             q = Some(r.clone());

@@ -174,7 +174,7 @@ impl PreparedBem3d {
     }
 
     /// A contact set as indices on its grid.
-    fn indexed(&self, contact: &CellSet) -> ([usize; 2], Vec<u32>, Boundary) {
+    pub(super) fn indexed(&self, contact: &CellSet) -> ([usize; 2], Vec<u32>, Boundary) {
         let grid = self.problem.grid();
         let index = contact.index(grid).map(|i| i as u32).collect();
         ([grid.columns, grid.rows], index, self.problem.operators.table().boundary())
