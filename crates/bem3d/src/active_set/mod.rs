@@ -14,4 +14,4 @@ pub use hardness::is_saturated;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;
 pub use solver::{resume, solve};
-pub use state::{Guess, Limits, Problem, Solved, Target};
+pub use state::{Continuation, Guess, Limits, Problem, Solved, Target};

@@ -329,7 +329,8 @@ impl Search<'_> {
         let change = (next.iter().zip(&state.attraction))
             .map(|(a, b)| (a - b).abs() / (a.max(*b) * law.peak).sqrt().max(f64::MIN_POSITIVE))
             .fold(0.0, f64::max);
-        let settled = if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
+        let settled =
+            if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
         let waits = off > settled * law.range && held > 0.0;
         let next = if waits { state.attraction.clone() } else { next };
         let shift = problem.operators.table().shift();

@@ -63,9 +63,7 @@ impl AdhesiveContact {
             if kept { Ok(result) } else { Err(Error::domain(name, value, expected)) }
         };
         Ok(match load.validated_with_adhesion()? {
-            Load::Force(f) => {
-                Control::Force(held("force", f, (units.force_in(f.abs()) / PI).copysign(f))?)
-            }
+            Load::Force(f) => Control::Force(held("force", f, (units.force_in(f.abs()) / PI).copysign(f))?),
             Load::Approach(d) if !self.inner.is_periodic() => {
                 Control::Plane(held("approach", d, units.approach_in(d))?)
             }
@@ -257,7 +255,9 @@ impl AdhesiveContact {
         let length = |value: f64| signed(value, &|v| units.approach(v));
         let plane = equilibrium.plane(inner.problem.operators.table().shift());
         let approach = (!inner.is_periodic()).then(|| length(equilibrium.d)).transpose()?;
-        let mean_gap = inner.outputs.mean_gap.then(|| length(inner.mean - plane)).transpose()?;
+        // Rounding where the contact is complete.
+        let gap = if inner.is_full(&contact) { 0.0 } else { inner.mean - plane };
+        let mean_gap = inner.outputs.mean_gap.then(|| length(gap)).transpose()?;
         let held = |k: Option<f64>| k.map(|k| signed(PI * k, &|v| units.stiffness(v))).transpose();
         let area = self.attraction.area(&contact, &equilibrium.gap);
         let area = inner.outputs.area.then(|| units.area(area)).transpose()?;

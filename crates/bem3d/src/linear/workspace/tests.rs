@@ -100,7 +100,8 @@ fn energy(operators: &mut Operators, set: &CellSet, recipe: Recipe, r: &[f64]) -
 fn path(grid: Grid, set: &CellSet, recipe: Recipe, right: &[f64]) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut operators = operators(grid);
     let after = |steps: usize| {
-        let Solution { x, outcome } = solve_on(&mut operators, set, recipe, right, Fixed::Approach, endless(steps));
+        let Solution { x, outcome } =
+            solve_on(&mut operators, set, recipe, right, Fixed::Approach, endless(steps));
         assert_eq!((outcome.steps, outcome.applications), (steps, steps));
         let mut u = Vec::new();
         operators.exact(set, &x, set, &mut u);
@@ -176,8 +177,9 @@ fn where_a_set_lies_in_its_grid_does_not_matter() {
     let (corner, inside) = (at(0, 0), at(13, 9));
     let r = right(corner.len(), 1.0);
     for (here, there) in both(&corner).into_iter().zip(both(&inside)) {
-        let [one, other] = [(&corner, here), (&inside, there)]
-            .map(|(set, recipe)| solve_on(&mut operators(grid), set, recipe, &r, Fixed::Approach, endless(4)).x);
+        let [one, other] = [(&corner, here), (&inside, there)].map(|(set, recipe)| {
+            solve_on(&mut operators(grid), set, recipe, &r, Fixed::Approach, endless(4)).x
+        });
         assert_eq!(one, other, "{here}");
     }
 }
@@ -263,7 +265,9 @@ fn the_energy_of_the_error_is_compared_with_the_value_gained() {
                     let bound = |n: usize| share * (base + dot(&path[n].0, &right));
                     let expected = if left[0] <= bound(0) { 0 } else { first_step(1, |n| left[n], bound) };
                     let criteria = StoppingCriteria { energy: Some(Energy { share, base }), ..endless(50) };
-                    let got = solve_on(&mut operators, &set, recipe, &right, Fixed::Approach, criteria).outcome.steps;
+                    let got = solve_on(&mut operators, &set, recipe, &right, Fixed::Approach, criteria)
+                        .outcome
+                        .steps;
                     assert_eq!(got, expected, "{unit} {recipe} {share} {base}");
                     found.push(got);
                 }
