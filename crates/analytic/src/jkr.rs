@@ -357,6 +357,7 @@ impl PreparedContact for PreparedJkr {
         let area = outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
         let mut report = SolveReport::exact("closed form (JKR)");
         report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
+        report.certificate.force_error = closed::force_error(load);
         ContactState::new(force, report)
             .with_approach(approach)
             .with_stiffness(stiffness)

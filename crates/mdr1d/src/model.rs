@@ -229,6 +229,7 @@ impl PreparedContact for RoughLine {
             SolveReport::exact(format!("order statistics of {} elements", self.bearing.elements()));
         report.contact_cells = Some(support.elements);
         report.certificate.stiffness_error = self.outputs.needs_stiffness().then_some(0.0);
+        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
         ContactState::new(support.force, report)
             .with_approach(support.approach)
             .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
@@ -351,6 +352,7 @@ impl PreparedContact for RoundBody {
         let area = outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("closed form of the profile g(x)");
         report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
+        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
         ContactState::new(force, report)
             .with_approach(approach)
             .with_stiffness(stiffness)
