@@ -11,4 +11,5 @@ mod rectangles;
 mod report;
 mod resume;
 mod scenes;
+mod stiffnesses;
 mod theories_on_maps;
