@@ -16,6 +16,7 @@ mod oracle;
 mod peers;
 mod periodic;
 mod properties;
+mod quantities;
 mod rectangles;
 mod refusals;
 mod rheology;

@@ -336,8 +336,8 @@ pub struct Certificate {
     /// Estimated relative error of a stiffness that is a difference quotient along the branch. The cells decide it, not the tolerance:
     /// it is no part of [`Certificate::worst`]. `None` where the stiffness is not such a quotient.
     pub quotient_error: Option<f64>,
-    /// Bound of the relative error of the force where an approach or a mean gap was prescribed, from the gaps left on the contact and the
-    /// largest stiffness that it can have; an estimate with adhesion. `None` where the force itself was prescribed. The tolerance bounds
+    /// Relative error of the force where an approach or a mean gap was prescribed, estimated from above by the gaps left on the contact
+    /// and the largest stiffness that it can have. `None` where the force itself was prescribed. The tolerance bounds
     /// the gaps, not this: no part of [`Certificate::worst`].
     pub force_error: Option<f64>,
     /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over `work/range`; `None` without

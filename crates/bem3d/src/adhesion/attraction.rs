@@ -146,6 +146,17 @@ impl Attraction {
         }
     }
 
+    /// By how much the attractions differ in all from the law of their gaps; at the jump of Dugdale's law none do.
+    pub fn imbalance(&self, cells: &CellSet, attraction: &[f64], gap: &[f64]) -> f64 {
+        let pairs = attraction.iter().zip(gap);
+        match self.factors(cells, gap) {
+            Some(factors) => {
+                pairs.zip(factors).map(|((&s, &g), f)| (s - f * self.law.traction(g)).abs()).sum()
+            }
+            None => pairs.map(|(&s, &g)| self.law.peak * self.law.mismatch(s, g)).sum(),
+        }
+    }
+
     /// How the attraction of open cells with these gaps follows the gaps of the others: `coupled(v) = R^-1 C R^-1 v`, C the negative of those
     /// derivatives and R the roots of the slopes. `None`: it does not.
     pub fn coupling<'a>(

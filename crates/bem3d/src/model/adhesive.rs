@@ -1,6 +1,7 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
 use super::options::Bem3d;
+use super::state::GROWTH;
 use super::prepared::{NAME, PreparedBem3d, without_tangential};
 use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
@@ -213,6 +214,7 @@ impl AdhesiveContact {
             _ => Branch::Approach,
         };
         let stiffness = self.stiffness(&equilibrium, &response, branch, stop);
+        let force_error = self.force_error(control, &equilibrium, &response);
         let inner = &mut self.inner;
         let units = inner.nondimensional;
         let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));
@@ -226,6 +228,7 @@ impl AdhesiveContact {
             stiffness_error: stiffness.solve_error,
             quotient_error: stiffness.quotient_error,
             equilibrium: Some(equilibrium.mismatch),
+            force_error,
             ..Certificate::default()
         };
         let status = match status {
@@ -276,6 +279,19 @@ impl AdhesiveContact {
             Status::Stopped => Err(Error::Stopped { best: Some(Box::new(state)) }),
             _ => Err(Error::NotConverged { best: Box::new(state) }),
         }
+    }
+
+    /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest
+    /// stiffness of a contact in this place makes of the gaps left, both more where the state is less stable. `None` without a force.
+    fn force_error(&self, control: Control, state: &Equilibrium, response: &Response) -> Option<f64> {
+        let (Control::Plane(_), force) = (control, state.force().abs()) else { return None };
+        let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);
+        let left = (state.pressure.iter().zip(&state.gap))
+            .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
+            .fold(0.0, f64::max);
+        let stiffest = self.inner.stiffest_on(&state.cells);
+        let error = GROWTH * (lack + stiffest * left) / response.stability.max(f64::MIN_POSITIVE);
+        (force > 0.0).then(|| error / force)
     }
 
     fn same_load(&self, control: Control, last: &Equilibrium) -> bool {

@@ -137,7 +137,7 @@ impl PreparedBem3d {
     }
 
     /// The stiffness of the cells that respond.
-    pub(super) fn stiffness(
+    fn stiffness(
         &mut self,
         solved: &Solved,
         responding: &Responding<'_>,
@@ -166,9 +166,21 @@ impl PreparedBem3d {
         }
     }
 
+    /// The stiffness to a few per cent, from above; infinite where the contact is complete.
+    pub(super) fn rough_stiffness(&mut self, solved: &Solved, stop: Stop<'_>) -> f64 {
+        const ROUGH: f64 = 0.02;
+        if self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness) {
+            return f64::INFINITY;
+        }
+        let responding = self.responding(solved);
+        let found = stiffness::solve(&mut self.problem, solved, &responding, None, ROUGH, stop);
+        let k = found.value * (1.0 + found.solve_error.min(1.0));
+        k * self.magnification(k)
+    }
+
     /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path, cells of the indentation that
     /// are at the hardness again flow when the load grows, and do not when it falls.
-    pub(super) fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
+    fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
         let hardness = self.problem.hardness;
         let mut responding = Responding::elastic(solved, hardness);
         let Some(memory) = &self.memory else { return responding };

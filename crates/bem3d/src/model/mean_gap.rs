@@ -55,16 +55,10 @@ impl PreparedBem3d {
             let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
             if met || solved.status != Status::Converged || stop() {
                 solved.steps = steps;
-                let force: f64 = solved.p.iter().sum();
-                let secant = before.filter(|&(_, miss0)| (miss0 - miss).abs() > 0.0);
-                let k = match (&tangent, secant) {
-                    (Some(tangent), _) => self.stiffest(&solved, Some(tangent)),
-                    (None, Some((x0, miss0))) => (force * (x - x0) / (miss0 - miss)).abs(),
-                    // A guess that was right at once.
-                    (None, None) => {
-                        let k = self.stiffness(&solved, &self.responding(&solved), None, None, stop);
-                        k.value * self.magnification(k.value)
-                    }
+                let k = match &tangent {
+                    Some(tangent) => self.stiffest(&solved, Some(tangent)),
+                    // A secant between the loads tried would be too small: the force is convex.
+                    None => self.rough_stiffness(&solved, stop),
                 };
                 let error = self.force_error(&solved, k, miss.abs());
                 let error = LoadError { load: miss.abs() / limits.height.unwrap_or(self.mean), ..error };

@@ -10,6 +10,10 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
+/// A stiffness may grow by this factor over what is left open of the load: by a sixth in the worst of 900 small states at a tolerance of
+/// 1e-3, near complete contact.
+pub(super) const GROWTH: f64 = 1.25;
+
 /// How far a state is from its load, and what that leaves open of the force.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LoadError {
@@ -118,9 +122,13 @@ impl PreparedBem3d {
         if let Some(Tangent { stiffness: t, .. }) = tangent {
             return t.value * self.magnification(t.value) * (1.0 + self.stiffness_error(t));
         }
-        let (Some(window), (dx, dy)) = (solved.contact.window(), self.problem.grid().cell()) else {
-            return 0.0;
-        };
+        self.stiffest_on(&solved.contact)
+    }
+
+    /// The stiffness of a circle around a set, nondimensional.
+    pub(super) fn stiffest_on(&self, set: &CellSet) -> f64 {
+        let Some(window) = set.window() else { return 0.0 };
+        let (dx, dy) = self.problem.grid().cell();
         (window.width as f64 * dx).hypot(window.height as f64 * dy) / PI
     }
 
@@ -142,7 +150,8 @@ impl PreparedBem3d {
             })
             .fold(0.0, f64::max);
         let force: f64 = solved.p.iter().sum();
-        LoadError { load: 0.0, force: (force > 0.0).then(|| k * (left + miss) / force) }
+        let known = force > 0.0 && k.is_finite();
+        LoadError { load: 0.0, force: known.then(|| GROWTH * k * (left + miss) / force) }
     }
 
     /// What has yielded, with a hardness: the number of cells at it, and the depths of new indentation.
