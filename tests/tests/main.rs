@@ -19,6 +19,7 @@ mod properties;
 mod quantities;
 mod rectangles;
 mod refusals;
+mod reported;
 mod rheology;
 mod rough;
 mod sequences;

@@ -9,8 +9,8 @@
 
 use bem3d::{Bem3d, Bem3dPath};
 use contact_model::{
-    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Error, Friction, Hardness,
-    HeightMap, HistoryModel, HistoryState, Load, Pair, Scene, Status, Step, Surface, Tangential,
+    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Error, Friction,
+    Hardness, HeightMap, HistoryModel, HistoryState, Load, Pair, Scene, Status, Step, Surface, Tangential,
 };
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -59,7 +59,9 @@ fn heights(draw: &mut Draw, cells: (usize, usize), noise: f64, holes: bool) -> H
     let sides = [1.0, 0.6, 1.7];
     let [dx, dy] = [0; 2].map(|_| sides[draw.count(0, 2)]);
     let waves: Vec<[f64; 4]> = (0..5)
-        .map(|k| [draw.count(0, 3) as f64, draw.count(0, 3) as f64, 1.0 / f64::from(k + 1), 6.3 * draw.unit()])
+        .map(|k| {
+            [draw.count(0, 3) as f64, draw.count(0, 3) as f64, 1.0 / f64::from(k + 1), 6.3 * draw.unit()]
+        })
         .collect();
     let share = if holes { draw.between(0.0, 0.25) } else { 0.0 };
     let mut heights = Vec::new();
@@ -68,7 +70,8 @@ fn heights(draw: &mut Draw, cells: (usize, usize), noise: f64, holes: bool) -> H
             let smooth: f64 = waves
                 .iter()
                 .map(|[a, b, size, phase]| {
-                    size * (2.0 * PI * (a * x as f64 / columns as f64 + b * y as f64 / rows as f64) + phase).cos()
+                    size * (2.0 * PI * (a * x as f64 / columns as f64 + b * y as f64 / rows as f64) + phase)
+                        .cos()
                 })
                 .sum();
             let height = 0.1 * ((1.0 - noise) * smooth + 2.0 * noise * draw.unit());
@@ -126,7 +129,13 @@ fn fields(scene: &Scene, state: &ContactState, depth: Option<&[f64]>, faults: &m
     let heights = map.heights();
     let defined: Vec<usize> = (0..p.len()).filter(|&i| heights[i].is_finite()).collect();
     let largest = p.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
-    check(faults, "force", state.force, cell * p.iter().sum::<f64>(), ROUNDING * cell * largest * p.len() as f64);
+    check(
+        faults,
+        "force",
+        state.force,
+        cell * p.iter().sum::<f64>(),
+        ROUNDING * cell * largest * p.len() as f64,
+    );
     let length = defined.iter().fold(0.0, |m: f64, &i| m.max(u[i].abs()).max(map.highest() - heights[i]));
     let mean = defined.iter().map(|&i| heights[i]).sum::<f64>() / defined.len() as f64;
     // Lengths are certified to the tolerance.
@@ -239,14 +248,23 @@ fn elastic(seed: u64) -> Result<Faults, Error> {
     // The same state by its plane, loosely: the force with its error.
     let at = load_at(&scene, plane(&state));
     for tolerance in [1e-3, 1e-6] {
-        let bare = Scene { outputs: contact_model::Outputs { mean_gap: scene.outputs.mean_gap, ..Default::default() }, ..scene.clone() };
+        let bare = Scene {
+            outputs: contact_model::Outputs { mean_gap: scene.outputs.mean_gap, ..Default::default() },
+            ..scene.clone()
+        };
         for (scene, what) in [(&scene, "with stiffness"), (&bare, "alone")] {
             let loose = model(tolerance).prepare(scene, 0)?.solve(at)?;
             let error = loose.report.certificate.force_error.unwrap_or(f64::NAN);
             // The reference has an error as well.
             let own = 100.0 * TOLERANCE * k / force;
             let allowed = error * loose.force + own * force;
-            check(&mut faults, &format!("force at {at:?} to {tolerance:e}, {what}"), loose.force, force, allowed);
+            check(
+                &mut faults,
+                &format!("force at {at:?} to {tolerance:e}, {what}"),
+                loose.force,
+                force,
+                allowed,
+            );
             if error > 1e3 * tolerance * k / force {
                 faults.push(format!("a useless error of the force: {error:e} at {tolerance:e}"));
             }
@@ -278,7 +296,8 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     let pressure = draw.between(0.2, 0.9) * elastic.resolution.unwrap().largest_pressure;
     scene.effects.hardness = Hardness::Limit { pressure };
     scene.outputs.plastic_depth = true;
-    let capacity = pressure * map_of(&scene).defined().count() as f64 * map_of(&scene).dx() * map_of(&scene).dy();
+    let capacity =
+        pressure * map_of(&scene).defined().count() as f64 * map_of(&scene).dx() * map_of(&scene).dy();
     let most = most.min(0.8 * capacity);
     let mut forces: Vec<f64> = vec![draw.between(0.3, 1.0) * most];
     for _ in 0..draw.count(0, 4) {
@@ -303,8 +322,15 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
         let p = state.pressure().unwrap().values();
         cell * p.iter().filter(|p| near(**p, share)).count() as f64
     };
-    if !(at(1e-12)..=at(1e-5)).contains(&(plastic.area * (1.0 - 1e-12))) && plastic.area > at(1e-5) * (1.0 + 1e-12) {
-        faults.push(format!("plastic area {:e}, at the hardness {:e} to {:e}", plastic.area, at(1e-12), at(1e-5)));
+    if !(at(1e-12)..=at(1e-5)).contains(&(plastic.area * (1.0 - 1e-12)))
+        && plastic.area > at(1e-5) * (1.0 + 1e-12)
+    {
+        faults.push(format!(
+            "plastic area {:e}, at the hardness {:e} to {:e}",
+            plastic.area,
+            at(1e-12),
+            at(1e-5)
+        ));
     }
     let force = *forces.last().unwrap();
     if force <= 0.0 {
@@ -330,7 +356,9 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     let error = state.report.certificate.stiffness_error.unwrap();
     let apart = |q: f64| (q / k - 1.0).abs();
     if apart(quotients[0]) > error + 1e-3 && apart(quotients[1]) > error + 1e-3 {
-        faults.push(format!("stiffness {k:e} +- {error:.1e}, quotients as the load goes on {quotients:?} {forces:?}"));
+        faults.push(format!(
+            "stiffness {k:e} +- {error:.1e}, quotients as the load goes on {quotients:?} {forces:?}"
+        ));
     }
     Ok(faults)
 }
@@ -347,7 +375,8 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::Force(most))?;
     let pressure = 0.5 * elastic.resolution.unwrap().largest_pressure;
     scene.effects.hardness = Hardness::Limit { pressure };
-    let capacity = pressure * map_of(&scene).heights().len() as f64 * map_of(&scene).dx() * map_of(&scene).dy();
+    let capacity =
+        pressure * map_of(&scene).heights().len() as f64 * map_of(&scene).dx() * map_of(&scene).dy();
     let most = most.min(0.7 * capacity);
     let mut history = Bem3dPath(model(1e-8)).prepare(&scene, 0)?;
     // First touch of the virgin surface, and that of the indented one, have no force.
@@ -475,12 +504,20 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
     let (Some(k), Some(error)) = (state.stiffness, state.report.certificate.quotient_error) else {
         return Ok((faults, None));
     };
-    if error <= 0.0 {
+    if error <= 0.0 || state.area.unwrap() <= 0.0 {
         return Ok((faults, None));
     }
     // A finer walk along the same branch, over the way on which the fronts move by some cells.
-    let direction = if state.adhesive.unwrap().branch == contact_model::Branch::Approach { 1.0 } else { -1.0 };
-    let bare = Scene { outputs: contact_model::Outputs { mean_gap: scene.outputs.mean_gap, area: true, ..Default::default() }, ..scene.clone() };
+    let direction =
+        if state.adhesive.unwrap().branch == contact_model::Branch::Approach { 1.0 } else { -1.0 };
+    let bare = Scene {
+        outputs: contact_model::Outputs {
+            mean_gap: scene.outputs.mean_gap,
+            area: true,
+            ..Default::default()
+        },
+        ..scene.clone()
+    };
     let mut history = Bem3dPath(model(1e-7)).prepare(&bare, 0)?;
     for (i, load) in loads(&planes).into_iter().enumerate() {
         history.advance(Step::normal(i as f64, load))?;
@@ -496,16 +533,51 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
         let moved = (next.normal.area.unwrap() - area).abs() / (0.12 * state.area.unwrap());
         area = next.normal.area.unwrap();
         advanced += moved;
-        step *= if moved > 0.0 { (0.2 / moved).clamp(0.5, 2.0) } else { 2.0 };
+        step *= if moved > 0.0 { (0.08 / moved).clamp(0.5, 2.0) } else { 2.0 };
         points.push((way, next.normal.force - state.force));
     }
-    // Secants over one cell of advance and over all of it: the parabola through both, and what is left open between them.
-    let secant = |(x, y): (f64, f64)| y / x;
-    let middle = points[points.len() / 2];
-    let end = *points.last().unwrap();
-    let slope = (secant(middle) * end.0 - secant(end) * middle.0) / (end.0 - middle.0);
-    let open = (secant(middle) - slope).abs();
+    if points.len() < 6 {
+        return Ok((faults, None));
+    }
+    let (slope, open) = parabola(&points);
     Ok((faults, Some((slope - k).abs() <= error * k.abs() + open)))
+}
+
+/// Slope at the first of some points of the parabola of least squares, with twice its standard error or the bias seen by halving the way.
+fn parabola(points: &[(f64, f64)]) -> (f64, f64) {
+    let fit = |points: &[(f64, f64)]| {
+        let unit = points.last().unwrap().0;
+        let mut rows = [[0.0; 5]; 3];
+        for &(x, y) in points {
+            let powers = [1.0, x / unit, (x / unit).powi(2)];
+            for i in 0..3 {
+                for j in 0..3 {
+                    rows[i][j] += powers[i] * powers[j];
+                }
+                rows[i][3] += powers[i] * y;
+            }
+        }
+        rows[1][4] = 1.0;
+        for k in 0..3 {
+            let pivot = rows[k];
+            for (i, row) in rows.iter_mut().enumerate() {
+                if i != k {
+                    let factor = row[k] / pivot[k];
+                    row.iter_mut().zip(pivot).for_each(|(v, p)| *v -= factor * p);
+                }
+            }
+        }
+        let c: Vec<f64> = (0..3).map(|i| rows[i][3] / rows[i][i]).collect();
+        let misfit: f64 = points
+            .iter()
+            .map(|&(x, y)| (y - c[0] - c[1] * x / unit - c[2] * (x / unit).powi(2)).powi(2))
+            .sum();
+        let spread = rows[1][4] / rows[1][1] * misfit / (points.len() as f64 - 3.0).max(1.0);
+        (c[1] / unit, 2.0 * spread.max(0.0).sqrt() / unit.abs())
+    };
+    let (slope, error) = fit(points);
+    let (near, error_near) = fit(&points[..points.len().div_ceil(2).max(4).min(points.len())]);
+    (slope, error + (near - slope).abs().min(error_near + (near - slope).abs()) * 0.5)
 }
 
 /// Friction of a sphere: the energy dissipated in a closed loop is the work of the tangential force around it.
@@ -564,7 +636,8 @@ fn of_kind(kind: &str, count: u64, check: impl Fn(u64) -> Result<Faults, Error> 
                 faults.extend(found.into_iter().map(|fault| format!("{kind} {seed}: {fault}")));
             }
             // A neck that breaks, a jump between states that differ by a step: no state to check.
-            Err(Error::NotConverged { best }) if kind.contains("adhesion") && best.report.status != Status::IterationLimit => {}
+            Err(Error::NotConverged { best })
+                if kind.contains("adhesion") && best.report.status != Status::IterationLimit => {}
             Err(error) => faults.push(format!("{kind} {seed}: {error}")),
         }
     }
@@ -573,7 +646,12 @@ fn of_kind(kind: &str, count: u64, check: impl Fn(u64) -> Result<Faults, Error> 
 }
 
 fn none(faults: &[String]) {
-    assert!(faults.is_empty(), "{} faults, such as\n{}", faults.len(), faults[..faults.len().min(25)].join("\n"));
+    assert!(
+        faults.is_empty(),
+        "{} faults, such as\n{}",
+        faults.len(),
+        faults[..faults.len().min(25)].join("\n")
+    );
 }
 
 #[test]
@@ -598,7 +676,7 @@ fn of_attraction_across_gaps() {
 fn of_fronts_that_move_by_cells() {
     for (kind, law) in [("adhesion, short range", None), ("adhesion, Dugdale", Some(AdhesionLaw::Dugdale))] {
         let claims = std::sync::Mutex::new((0_u32, 0_u32));
-        let (solved, faults) = of_kind(kind, 100, |seed| {
+        let (solved, faults) = of_kind(kind, 200, |seed| {
             let (faults, held) = moving_front(seed, law)?;
             if let Some(held) = held {
                 let mut claims = claims.lock().unwrap();
@@ -610,7 +688,10 @@ fn of_fronts_that_move_by_cells() {
         let (held, claimed) = claims.into_inner().unwrap();
         println!("{kind}: {held} of {claimed} stiffnesses within their claimed error");
         none(&faults);
-        assert!(solved as u64 > 60 * times() && f64::from(held) >= 0.8 * f64::from(claimed), "{held} of {claimed}");
+        assert!(
+            solved as u64 > 150 * times() && f64::from(held) >= 0.85 * f64::from(claimed),
+            "{held} of {claimed}"
+        );
     }
 }
 

@@ -42,7 +42,8 @@ pub struct Responding<'a> {
     pub cells: Cow<'a, CellSet>,
     /// A pressure at which they would no longer follow; infinite where nothing limits it.
     pub limit: f64,
-    /// Cells at that limit without a gap, on whose side the direction of the load decides: they cannot be on the wrong one.
+    /// Cells that cannot be on the wrong side, whatever is left of their gaps: saturated ones of a contact that is held as a whole; those at
+    /// the limit without a gap, where the direction of the load decides.
     pub decided: CellSet,
 }
 
@@ -53,8 +54,9 @@ impl<'a> Responding<'a> {
     }
 
     /// The whole contact, held.
-    pub fn whole(state: &'a Solved) -> Self {
-        Self { cells: Cow::Borrowed(&state.contact), limit: f64::INFINITY, decided: CellSet::default() }
+    pub fn whole(state: &'a Solved, hardness: f64) -> Self {
+        let decided = state.contact.without(&state.elastic(hardness));
+        Self { cells: Cow::Borrowed(&state.contact), limit: f64::INFINITY, decided }
     }
 }
 
@@ -88,7 +90,11 @@ pub fn solve(
     // A factored state needs no transform.
     let conditioning = if factored.is_some() { Conditioning::Identity } else { recipe.conditioning };
     let recipe = Recipe { conditioning, ..recipe };
-    let left = state.gap_on(contact);
+    let mut left = state.gap_on(contact);
+    if !responding.decided.is_empty() {
+        let known = contact.carry(&responding.decided, &vec![true; responding.decided.len()]);
+        left.iter_mut().zip(known).filter(|(_, known)| *known).for_each(|(left, _)| *left = 0.0);
+    }
     let mut room = state.room(contact, responding.limit).into_owned();
     let mut undecided = state.undecided(grid, contact, &left, &tuning);
     if !responding.decided.is_empty() {

@@ -38,6 +38,10 @@ const LONGEST: f64 = 2.0;
 const FELT: f64 = 1e-6;
 /// Sweeps of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by the factor rho only.
 const PLAIN_SWEEPS: usize = 20;
+/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many sweeps on the attraction changes
+/// by a share only.
+const PATIENT: usize = 100;
+const DAMPED: f64 = 0.3;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
 const AHEAD: f64 = 0.5;
 /// A contact whose force changes by more than this factor is solved from coarse grids.
@@ -325,7 +329,12 @@ impl Search<'_> {
         let off = (state.pressure.iter().zip(&state.gap))
             .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
             .fold(0.0, f64::max);
-        let next = attraction.tractions(&state.cells, &state.gap);
+        let mut next = attraction.tractions(&state.cells, &state.gap);
+        if fixed_plane(control, problem) && state.sweeps > PATIENT {
+            next.iter_mut()
+                .zip(&state.attraction)
+                .for_each(|(next, now)| *next = now + DAMPED * (*next - now));
+        }
         let change = (next.iter().zip(&state.attraction))
             .map(|(a, b)| (a - b).abs() / (a.max(*b) * law.peak).sqrt().max(f64::MIN_POSITIVE))
             .fold(0.0, f64::max);
@@ -426,6 +435,11 @@ impl Search<'_> {
         (state.pressure, state.attraction) = (pressure, pull);
         true
     }
+}
+
+/// Whether the mean plane of a periodic surface is held.
+fn fixed_plane(control: &Control, problem: &Problem) -> bool {
+    matches!(control, Control::Plane(_)) && problem.operators.table().shift() > 0.0
 }
 
 /// Goes so many times from one state to the next, between zero and `most`.

@@ -1,8 +1,8 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
 use super::options::Bem3d;
-use super::state::GROWTH;
 use super::prepared::{NAME, PreparedBem3d, without_tangential};
+use super::state::GROWTH;
 use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
@@ -282,7 +282,7 @@ impl AdhesiveContact {
     }
 
     /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest
-    /// stiffness of a contact in this place makes of the gaps left, both more where the state is less stable. `None` without a force.
+    /// stiffness of a contact in this place makes of the gaps left, both more where the state is less stable. `None` without a force, and for a state that is not stable.
     fn force_error(&self, control: Control, state: &Equilibrium, response: &Response) -> Option<f64> {
         let (Control::Plane(_), force) = (control, state.force().abs()) else { return None };
         let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);
@@ -290,8 +290,8 @@ impl AdhesiveContact {
             .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
             .fold(0.0, f64::max);
         let stiffest = self.inner.stiffest_on(&state.cells);
-        let error = GROWTH * (lack + stiffest * left) / response.stability.max(f64::MIN_POSITIVE);
-        (force > 0.0).then(|| error / force)
+        let error = GROWTH * (lack + stiffest * left) / response.stability;
+        (force > 0.0 && response.stability > 0.0).then(|| error / force)
     }
 
     fn same_load(&self, control: Control, last: &Equilibrium) -> bool {

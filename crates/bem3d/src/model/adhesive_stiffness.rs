@@ -55,6 +55,9 @@ impl AdhesiveContact {
         stop: Stop<'_>,
     ) -> Stiffnesses {
         let mut found = Stiffnesses::default();
+        if self.inner.is_full(&state.contact()) {
+            return found;
+        }
         let mut solved = |error: f64| found.solve_error = Some(found.solve_error.unwrap_or(0.0).max(error));
         if self.inner.outputs.needs_fixed_area() {
             let (problem, tolerance) = (&mut self.inner.problem, self.inner.options.tolerance);
@@ -107,7 +110,8 @@ impl AdhesiveContact {
             let (next, _) = self.extent(&found.equilibrium);
             // Where a zone stays, the contact may move in it.
             let (before, after) = (at.contact().len() as f64, found.equilibrium.contact().len() as f64);
-            let advance = ((next - size).abs() / front).max((after - before).abs() / (NARROW * before).max(1.0));
+            let advance =
+                ((next - size).abs() / front).max((after - before).abs() / (NARROW * before).max(1.0));
             if found.status != Status::Converged || advance > JUMP {
                 break;
             }
@@ -182,6 +186,10 @@ impl Fit {
         let misfit = (&matrix * &coefficients - &values).norm_l2();
         let freedom = (points.len() - n).max(1) as f64;
         let (slope, spread) = (coefficients[(1, 0)] / unit, inverse[(1, 1)].max(0.0).sqrt() / unit);
-        (slope.is_finite() && spread.is_finite()).then_some(Self { slope, spread, scatter: misfit / freedom.sqrt() })
+        (slope.is_finite() && spread.is_finite()).then_some(Self {
+            slope,
+            spread,
+            scatter: misfit / freedom.sqrt(),
+        })
     }
 }

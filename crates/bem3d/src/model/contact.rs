@@ -132,7 +132,10 @@ impl PreparedBem3d {
         let stiffness = self.stiffness(solved, &responding, q, k, stop);
         let another = responding.cells.len() != solved.contact.len();
         let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
-        let whole = wanted.then(|| self.stiffness(solved, &Responding::whole(solved), of_whole, None, stop));
+        let whole = wanted.then(|| {
+            let whole = Responding::whole(solved, self.problem.hardness);
+            self.stiffness(solved, &whole, of_whole, None, stop)
+        });
         Tangent { stiffness, cells: responding.cells.into_owned(), whole }
     }
 

@@ -37,8 +37,14 @@ mod tangent {
                 let guess = Guess { set, p, d: 4.0 * force, far: false };
                 let solved = solve(&mut problem, Target::Force(force), guess, limits, &never);
                 assert_eq!(solved.status, Status::Converged);
-                let k =
-                    stiffness::solve(&mut problem, &solved, &Responding::whole(&solved), None, 1e-9, &never);
+                let k = stiffness::solve(
+                    &mut problem,
+                    &solved,
+                    &Responding::whole(&solved, f64::INFINITY),
+                    None,
+                    1e-9,
+                    &never,
+                );
                 (solved, k.q)
             })
             .collect();
@@ -67,7 +73,7 @@ mod tangent {
                 let k = stiffness::solve(
                     &mut problem,
                     solved,
-                    &Responding::whole(solved),
+                    &Responding::whole(solved, f64::INFINITY),
                     Some(q),
                     100.0,
                     &never,
