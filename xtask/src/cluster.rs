@@ -132,6 +132,9 @@ pub fn submit(options: &SubmitArguments) -> Result<()> {
     Ok(())
 }
 
+/// A job that is ended more often than this before it is done would be begun for ever.
+const MOST_FAILURES: f64 = 5.0;
+
 /// Replays the measured times of a study on many cores.
 ///
 /// # Errors
@@ -165,8 +168,6 @@ pub fn makespan(options: &MakespanArguments) -> Result<()> {
         ..cluster::Cluster::default()
     };
     let seconds = evaluation::replayed_seconds(&units, &Store::view(&options.measured)?)?;
-    // A job that is ended more often than this before it is done would be begun for ever.
-    const MOST_FAILURES: f64 = 5.0;
     let longest = seconds.iter().copied().fold(0.0, f64::max) / options.speed_up * options.slowness.max(1.0);
     let most = 3600.0 * MOST_FAILURES / longest;
     if options.failures > most {

@@ -113,7 +113,7 @@ mod tests {
             assert!(error.starts_with("forces = ") && error.contains("expected"), "{bad}: {error}");
         }
         assert!(Forces::parse("1:2:99999999999").is_err());
-        let many = vec!["1:2:9999"; 3].join(",");
+        let many = ["1:2:9999"; 3].join(",");
         assert!(Forces::parse(&many).unwrap_err().to_string().contains("at most 10000 loads in all"));
     }
 }

@@ -280,20 +280,8 @@ impl Scan {
             HeightMap::new(coarse, size, heights)
         };
         let map = turned(map.map_err(ContentError::Map)?, preprocessing, &mut steps);
-        let mut rms = None;
-        let map = match preprocessing.window {
-            None => map,
-            Some(Window::Hann) => {
-                let tapered = hann(&map).map_err(ContentError::Map)?;
-                let [before, after] = [&map, &tapered].map(|map| rms_height(map.heights()));
-                steps.push(format!(
-                    "deviations from the mean tapered by Hann's window over its rms: rms height {before:.4e} before, {after:.4e} after"
-                ));
-                rms = Some([before, after]);
-                tapered
-            }
-        };
-        Ok(Preprocessed { map, steps, reliable_from, tapered: rms })
+        let (map, tapered) = windowed(map, preprocessing, &mut steps)?;
+        Ok(Preprocessed { map, steps, reliable_from, tapered })
     }
 
     /// From which distance on a tip lets the surface be seen.
@@ -429,6 +417,23 @@ fn turned(mut map: HeightMap, preprocessing: &Preprocessing, steps: &mut Vec<Str
         steps.push(format!("turned by {} degrees", 90 * u32::from(turns)));
     }
     map
+}
+
+/// The map under its window, with the rms heights before and after.
+fn windowed(
+    map: HeightMap,
+    preprocessing: &Preprocessing,
+    steps: &mut Vec<String>,
+) -> Result<(HeightMap, Option<[f64; 2]>), ContentError> {
+    let tapered = match preprocessing.window {
+        None => return Ok((map, None)),
+        Some(Window::Hann) => hann(&map).map_err(ContentError::Map)?,
+    };
+    let [before, after] = [&map, &tapered].map(|map| rms_height(map.heights()));
+    steps.push(format!(
+        "deviations from the mean tapered by Hann's window over its rms: rms height {before:.4e} before, {after:.4e} after"
+    ));
+    Ok((tapered, Some([before, after])))
 }
 
 /// Deviations from the mean height tapered to the edges, over the rms of the taper at the defined points.

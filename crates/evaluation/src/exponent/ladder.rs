@@ -73,14 +73,12 @@ impl Ladder {
             let expected = format!("{} numbers, one for each size", self.sizes.len());
             return Err(Error::parameter(surfaces, format!("{} numbers", self.surfaces.len()), expected));
         }
-        match self.surfaces.iter().find(|&&count| count < 2) {
-            Some(count) => Err(Error::parameter(surfaces, count, "at least 2 on each grid")),
-            None => {
-                // Each on its own grid and on the next coarser one.
-                let all = self.surfaces.iter().fold(0, |sum: usize, &count| sum.saturating_add(count));
-                limits::jobs(surfaces, all, 2 * dimensions)
-            }
+        if let Some(count) = self.surfaces.iter().find(|&&count| count < 2) {
+            return Err(Error::parameter(surfaces, count, "at least 2 on each grid"));
         }
+        // Each on its own grid and on the next coarser one.
+        let all = self.surfaces.iter().fold(0, |sum: usize, &count| sum.saturating_add(count));
+        limits::jobs(surfaces, all, 2 * dimensions)
     }
 
     /// Loads on the grid of this size.

@@ -49,7 +49,9 @@ pub(super) fn fill_small(heights: &mut [f64], cells: Cells) -> Vec<Point> {
             (false, true) => Point::Outside,
             (false, false) => Point::Hole,
         };
-        patch.iter().for_each(|&i| points[i] = of);
+        for &i in &patch {
+            points[i] = of;
+        }
         if of == Point::Filled {
             fill(heights, cells, &patch);
         }
@@ -63,7 +65,9 @@ fn fill(heights: &mut [f64], cells: Cells, patch: &[usize]) {
     measured.sort_unstable();
     measured.dedup();
     let mean = measured.iter().map(|&j| heights[j]).sum::<f64>() / measured.len() as f64;
-    patch.iter().for_each(|&i| heights[i] = mean);
+    for &i in patch {
+        heights[i] = mean;
+    }
     for _ in 0..SWEEPS {
         for &i in patch {
             let (sum, count) = around(i, cells).fold((0.0, 0), |(sum, n), j| (sum + heights[j], n + 1));
