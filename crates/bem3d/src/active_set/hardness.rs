@@ -17,10 +17,11 @@ const ROUNDING: f64 = 1e-13;
 /// The same of a sum of pressures.
 const SUM_ROUNDING: f64 = 1e-14;
 
-/// Pressures that are at the hardness up to rounding become exactly that; all of them where the rounding of their sum leaves no more.
+/// Pressures that are at the hardness up to rounding become exactly that; all of them where the rounding of their sum leaves no more. Where
+/// it leaves nothing to the cells below the hardness, they open.
 ///
-/// Near a force of all cells, the rounding of the force would otherwise decide which of them counts as elastic.
-pub fn saturate(p: &mut [f64], hardness: f64) {
+/// At a force that whole cells carry, rounding would otherwise decide which cells count as elastic.
+pub fn saturate(contact: &mut CellSet, p: &mut Vec<f64>, hardness: f64) {
     if hardness.is_infinite() || largest(p) < hardness * (1.0 - ROUNDING) {
         return;
     }
@@ -31,6 +32,11 @@ pub fn saturate(p: &mut [f64], hardness: f64) {
             *p = hardness;
         }
     });
+    let elastic = sum_of_pairs(p, p, |p, _| if p < hardness { p } else { 0.0 });
+    if elastic > 0.0 && elastic <= SUM_ROUNDING * sum(p) {
+        *contact = contact.filter(p, |p| p >= hardness);
+        p.retain(|&p| p >= hardness);
+    }
 }
 
 /// Whether any cell is saturated.
@@ -99,7 +105,7 @@ pub fn bring_to(
         let total = sum(p);
         let rest = if saturated == 0 { total } else { total - saturated as f64 * hardness };
         let wanted = force - saturated as f64 * hardness;
-        if wanted <= 0.0 && total - force <= ROUNDING * force {
+        if wanted.abs() <= SUM_ROUNDING * force && total - force <= SUM_ROUNDING * force {
             return grown;
         }
         if wanted <= 0.0 {
