@@ -1,6 +1,7 @@
 //! The complementarity problem at one load.
 
 mod candidates;
+mod descent;
 mod hardness;
 mod initial_guess;
 mod progress;
