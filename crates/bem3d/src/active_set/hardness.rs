@@ -12,10 +12,9 @@ use std::borrow::Cow;
 /// Rounds of scaling at most: each saturates a cell or is the last one.
 const ROUNDS: usize = 100;
 
-/// Pressures and forces that differ by less than this share differ by rounding.
+/// Pressures and sums of pressures that differ by less than this share differ by rounding. One number for both: sums of pressures that were
+/// rounded are off by as much.
 const ROUNDING: f64 = 1e-13;
-/// The same of a sum of pressures.
-const SUM_ROUNDING: f64 = 1e-14;
 
 /// Pressures that are at the hardness up to rounding become exactly that; all of them where the rounding of their sum leaves no more. Where
 /// it leaves nothing to the cells below the hardness, they open.
@@ -26,14 +25,14 @@ pub fn saturate(contact: &mut CellSet, p: &mut Vec<f64>, hardness: f64) {
         return;
     }
     let missing = sum_of_pairs(p, p, |p, _| (hardness - p).abs());
-    let share = if missing <= SUM_ROUNDING * p.len() as f64 * hardness { 1.0 } else { ROUNDING };
+    let share = if missing <= ROUNDING * p.len() as f64 * hardness { 1.0 } else { ROUNDING };
     each(p, |p| {
         if (*p - hardness).abs() <= share * hardness {
             *p = hardness;
         }
     });
     let elastic = sum_of_pairs(p, p, |p, _| if p < hardness { p } else { 0.0 });
-    if elastic > 0.0 && elastic <= SUM_ROUNDING * sum(p) {
+    if elastic > 0.0 && elastic <= ROUNDING * sum(p) {
         *contact = contact.filter(p, |p| p >= hardness);
         p.retain(|&p| p >= hardness);
     }
@@ -105,7 +104,7 @@ pub fn bring_to(
         let total = sum(p);
         let rest = if saturated == 0 { total } else { total - saturated as f64 * hardness };
         let wanted = force - saturated as f64 * hardness;
-        if wanted.abs() <= SUM_ROUNDING * force && total - force <= SUM_ROUNDING * force {
+        if wanted.abs() <= ROUNDING * force && total - force <= ROUNDING * force {
             return grown;
         }
         if wanted <= 0.0 {
