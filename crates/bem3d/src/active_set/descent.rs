@@ -2,7 +2,7 @@
 
 use crate::geometry::CellSet;
 use crate::operator::Operators;
-use crate::real::{dot, each, update};
+use crate::real::{dot, each, sum, update};
 use contact_model::Stop;
 
 /// Passes over the cells in a projection at most; a dozen are the rule.
@@ -62,6 +62,17 @@ impl Feasible {
             shift = next;
         }
         each(y, |y| *y = (*y + shift).clamp(0.0, hardness));
+        // Where y is large and p_s small, the shift has fewer digits than the pressures.
+        let between = |y: f64| y > 0.0 && y < hardness;
+        let count = y.iter().filter(|&&y| between(y)).count();
+        let missing = (force - sum(y)) / count as f64;
+        if count > 0 {
+            each(y, |y| {
+                if between(*y) {
+                    *y = (*y + missing).clamp(0.0, hardness);
+                }
+            });
+        }
     }
 }
 

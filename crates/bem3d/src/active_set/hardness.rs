@@ -12,10 +12,12 @@ use std::borrow::Cow;
 /// Rounds of scaling at most: each saturates a cell or is the last one.
 const ROUNDS: usize = 100;
 
-/// Pressures and forces that differ by less than this share differ by rounding.
+/// Sums of pressures that differ by less than this share differ by rounding ...
 const ROUNDING: f64 = 1e-13;
-/// The same of a sum of pressures.
-const SUM_ROUNDING: f64 = 1e-14;
+/// ... and pressures by less than this one: rounding many of them leaves their sum within the other.
+const CELL_ROUNDING: f64 = 2e-15;
+/// Where saturated cells carry more than the force by at most this share, one of them gives way; by more, all of the contact does.
+const SMALL: f64 = 1e-6;
 
 /// Pressures that are at the hardness up to rounding become exactly that; all of them where the rounding of their sum leaves no more. Where
 /// it leaves nothing to the cells below the hardness, they open.
@@ -26,14 +28,14 @@ pub fn saturate(contact: &mut CellSet, p: &mut Vec<f64>, hardness: f64) {
         return;
     }
     let missing = sum_of_pairs(p, p, |p, _| (hardness - p).abs());
-    let share = if missing <= SUM_ROUNDING * p.len() as f64 * hardness { 1.0 } else { ROUNDING };
+    let share = if missing <= ROUNDING * p.len() as f64 * hardness { 1.0 } else { CELL_ROUNDING };
     each(p, |p| {
         if (*p - hardness).abs() <= share * hardness {
             *p = hardness;
         }
     });
     let elastic = sum_of_pairs(p, p, |p, _| if p < hardness { p } else { 0.0 });
-    if elastic > 0.0 && elastic <= SUM_ROUNDING * sum(p) {
+    if elastic > 0.0 && elastic <= ROUNDING * sum(p) {
         *contact = contact.filter(p, |p| p >= hardness);
         p.retain(|&p| p >= hardness);
     }
@@ -89,7 +91,8 @@ pub fn scale_to(p: &mut [f64], wanted: f64, hardness: f64) {
 }
 
 /// Brings a pressure to a force: the cells below the hardness are scaled, those that pass it saturate. Where the contact set cannot carry
-/// the force, the next lowest cells join it. Whether any did.
+/// the force, the next lowest cells join it. Whether any did. Where the saturated cells alone carry a little more than the force, the one
+/// with the largest undeformed gap gives way.
 ///
 /// Cost: a few passes over the contact set; the whole grid where cells join.
 pub fn bring_to(
@@ -105,7 +108,19 @@ pub fn bring_to(
         let total = sum(p);
         let rest = if saturated == 0 { total } else { total - saturated as f64 * hardness };
         let wanted = force - saturated as f64 * hardness;
-        if wanted.abs() <= SUM_ROUNDING * force && total - force <= SUM_ROUNDING * force {
+        if wanted.abs() <= ROUNDING * force && total - force <= ROUNDING * force {
+            return grown;
+        }
+        if wanted <= 0.0 && -wanted <= SMALL * force {
+            // Scaled down, no cell would stay saturated.
+            let z = candidates.gaps(contact);
+            let above = |a: &usize, b: &usize| z[*a].total_cmp(&z[*b]);
+            if let Some(highest) = (0..p.len()).filter(|&i| p[i] >= hardness).max_by(above) {
+                each(p, |p| *p = if *p < hardness { 0.0 } else { *p });
+                p[highest] = (hardness + wanted).max(0.0);
+                *contact = contact.filter(p, |p| p > 0.0);
+                p.retain(|&p| p > 0.0);
+            }
             return grown;
         }
         if wanted <= 0.0 {

@@ -3,7 +3,6 @@
 use super::*;
 use crate::geometry::Grid;
 use crate::kernel::KernelTable;
-use crate::real::sum;
 use crate::tuning::Tuning;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
