@@ -113,7 +113,7 @@ pub fn bring_to(
         let total = sum(p);
         let rest = if saturated == 0 { total } else { total - saturated as f64 * hardness };
         let wanted = force - saturated as f64 * hardness;
-        if wanted.abs() <= ROUNDING * force && total - force <= ROUNDING * force {
+        if wanted.abs() <= 2.0 * ROUNDING * force && total - force <= 2.0 * ROUNDING * force {
             return grown;
         }
         if wanted <= 0.0 && -wanted <= SMALL * force {
