@@ -16,28 +16,33 @@ const ROUNDS: usize = 100;
 const ROUNDING: f64 = 1e-13;
 /// ... and pressures by less than this one: rounding many of them leaves their sum within the other.
 const CELL_ROUNDING: f64 = 2e-15;
+/// A pressure is that of whole saturated cells where its cells are off by this share of the force in all.
+const WHOLE: f64 = 1e-12;
 /// Where saturated cells carry more than the force by at most this share, one of them gives way; by more, all of the contact does.
 const SMALL: f64 = 1e-6;
 
-/// Pressures that are at the hardness up to rounding become exactly that; all of them where the rounding of their sum leaves no more. Where
-/// it leaves nothing to the cells below the hardness, they open.
-///
-/// At a force that whole cells carry, rounding would otherwise decide which cells count as elastic.
-pub fn saturate(contact: &mut CellSet, p: &mut Vec<f64>, hardness: f64) {
-    if hardness.is_infinite() || largest(p) < hardness * (1.0 - ROUNDING) {
+/// Pressures that are at the hardness up to rounding become exactly that. Where rounding alone tells the force from that of k saturated
+/// cells, and k cells carry it so, they saturate and the others open: rounding would otherwise decide which cells count as elastic.
+pub fn saturate(contact: &mut CellSet, p: &mut Vec<f64>, force: Option<f64>, hardness: f64) {
+    if hardness.is_infinite() || largest(p) < hardness * (1.0 - WHOLE) {
         return;
     }
-    let missing = sum_of_pairs(p, p, |p, _| (hardness - p).abs());
-    let share = if missing <= ROUNDING * p.len() as f64 * hardness { 1.0 } else { CELL_ROUNDING };
     each(p, |p| {
-        if (*p - hardness).abs() <= share * hardness {
+        if (*p - hardness).abs() <= CELL_ROUNDING * hardness {
             *p = hardness;
         }
     });
-    let elastic = sum_of_pairs(p, p, |p, _| if p < hardness { p } else { 0.0 });
-    if elastic > 0.0 && elastic <= ROUNDING * sum(p) {
-        *contact = contact.filter(p, |p| p >= hardness);
-        p.retain(|&p| p >= hardness);
+    let Some(force) = force else { return };
+    let cells = (force / hardness).round();
+    if (cells * hardness - force).abs() > ROUNDING * force {
+        return;
+    }
+    let carries = |p: f64| p >= 0.5 * hardness;
+    let away = sum_of_pairs(p, p, |p, _| if carries(p) { (hardness - p).abs() } else { p });
+    let count = p.iter().filter(|&&p| carries(p)).count();
+    if away > 0.0 && away <= WHOLE * force && (count as f64 - cells).abs() < 0.5 {
+        *contact = contact.filter(p, carries);
+        *p = vec![hardness; count];
     }
 }
 
@@ -108,7 +113,7 @@ pub fn bring_to(
         let total = sum(p);
         let rest = if saturated == 0 { total } else { total - saturated as f64 * hardness };
         let wanted = force - saturated as f64 * hardness;
-        if wanted.abs() <= ROUNDING * force && total - force <= ROUNDING * force {
+        if wanted.abs() <= 2.0 * ROUNDING * force && total - force <= 2.0 * ROUNDING * force {
             return grown;
         }
         if wanted <= 0.0 && -wanted <= SMALL * force {

@@ -157,7 +157,7 @@ impl<'a> Solver<'a> {
             Target::Force(force) => Some(force),
             Target::Approach(_) => None,
         };
-        hardness::saturate(&mut now.contact, &mut now.p, hardness);
+        hardness::saturate(&mut now.contact, &mut now.p, force, hardness);
         if let Some(force) = force
             && !hardness::is_saturated(&now.p, hardness)
         {
