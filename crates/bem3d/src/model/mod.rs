@@ -10,13 +10,13 @@ mod prepared;
 mod state;
 
 pub use history::Bem3dPath;
-pub use options::{Bem3d, Method};
+pub use options::{BYTES_PER_CELL, Bem3d, Method, bytes_per_cell};
 
 use crate::tuning::Tuning;
 use adhesive::{AdhesiveContact, without_adhesion};
 use contact_model::{
-    Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, Result, Scene, Source,
-    Surface,
+    Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, RequiredMemory, Result,
+    Scene, Source, Surface,
 };
 use prepared::{NAME, PreparedBem3d, refuse_together};
 use std::sync::Arc;
@@ -41,6 +41,10 @@ impl ContactModel for Bem3d {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.prepare_tuned(scene, seed, &Tuning::DEFAULT)
+    }
+
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        Some(self.memory(scene))
     }
 }
 
