@@ -37,13 +37,10 @@ pub fn wave_map_memory(cells: impl Into<Cells>, prescribed: bool) -> f64 {
 /// own part of them first.
 pub(crate) fn check(cells: Cells, bytes: f64) -> Result<()> {
     // A number beyond those of `usize` becomes the largest, which is refused.
-    match Vec::<u8>::new().try_reserve_exact(bytes as usize) {
-        Ok(()) => Ok(()),
-        Err(_) => {
-            let Cells { columns, rows } = cells;
-            Err(Error::out_of_memory(format!("a map of {columns} columns x {rows} rows"), bytes))
-        }
-    }
+    Vec::<u8>::new().try_reserve_exact(bytes as usize).map_err(|_| {
+        let Cells { columns, rows } = cells;
+        Error::out_of_memory(format!("a map of {columns} columns x {rows} rows"), bytes)
+    })
 }
 
 /// [`check`] for a map whose amplitudes are kept.
