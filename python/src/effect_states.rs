@@ -65,8 +65,8 @@ impl AdhesiveState {
 
     /// float: how stable the state is, dimensionless; > 0 for a minimum of the energy.
     ///
-    /// With short-range adhesion the smallest energy that the attachment or detachment of a single cell would cost, over that of the
-    /// adhesion of a cell; with a finite range the smallest curvature of the energy, over that without adhesion.
+    /// The smallest curvature of the energy, over that without adhesion. With Dugdale's law, whose states are stable between the jumps of
+    /// single cells, the smallest distance of the gap of a cell from the range, in ranges.
     #[getter]
     fn stability(&self) -> f64 {
         self.0.stability

@@ -140,6 +140,7 @@ pub fn scene(
     for name in &outputs {
         let place = match name.as_str() {
             "stiffness" => &mut scene.outputs.stiffness,
+            "stiffness_fixed_area" => &mut scene.outputs.stiffness_fixed_area,
             "area" => &mut scene.outputs.area,
             "mean_gap" => &mut scene.outputs.mean_gap,
             "pressure" => &mut scene.outputs.pressure,
@@ -149,8 +150,8 @@ pub fn scene(
             "contact_patches" => &mut scene.outputs.contact_patches,
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "no output is called {other:?}: there are stiffness, area, mean_gap, pressure, displacement, gap, \
-                     plastic_depth and contact_patches"
+                    "no output is called {other:?}: there are stiffness, stiffness_fixed_area, area, mean_gap, pressure, \
+                     displacement, gap, plastic_depth and contact_patches"
                 )));
             }
         };

@@ -50,16 +50,36 @@ impl Certificate {
         self.0.complementarity
     }
 
-    /// float: relative difference of the force from the one asked for.
+    /// float: relative difference of the force from the one asked for; of a mean gap its miss over the rms height.
     #[getter]
     fn load_error(&self) -> f64 {
         self.0.load_error
     }
 
-    /// float or None: estimated relative error of the stiffness.
+    /// float or None: estimated relative error of the stiffness; None where it is a difference quotient (`quotient_error`).
     #[getter]
     fn stiffness_error(&self) -> Option<f64> {
         self.0.stiffness_error
+    }
+
+    /// float or None: estimated relative error of a stiffness that is a difference quotient, with adhesion of short range and Dugdale's law.
+    /// The cells decide it, not the tolerance: no part of `worst`.
+    #[getter]
+    fn quotient_error(&self) -> Option<f64> {
+        self.0.quotient_error
+    }
+
+    /// float or None: bound of the relative error of the force under a prescribed approach or mean gap, an estimate with adhesion; no part
+    /// of `worst`.
+    #[getter]
+    fn force_error(&self) -> Option<f64> {
+        self.0.force_error
+    }
+
+    /// float or None: estimated relative error of the stiffness, however it was found; ``stiffness_error`` in tables.
+    #[getter]
+    fn error_of_stiffness(&self) -> Option<f64> {
+        self.0.error_of_stiffness()
     }
 
     /// float or None: largest difference between the traction of a cell and what the law of adhesion says of its gap, over work/range; None
@@ -69,25 +89,26 @@ impl Certificate {
         self.0.equilibrium
     }
 
-    /// float: the largest of the numbers.
+    /// float: the largest of the numbers that the tolerance bounds.
     #[getter]
     fn worst(&self) -> f64 {
         self.0.worst()
     }
 
-    /// Whether every number is at most `tolerance`.
+    /// Whether every number that the tolerance bounds is at most `tolerance`.
     fn meets(&self, tolerance: f64) -> bool {
         self.0.meets(tolerance)
     }
 
-    /// The numbers by their names.
+    /// The numbers by the names of the columns of scenes; ``stiffness_error`` is `error_of_stiffness`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         dict.set_item("duality_gap", self.0.duality_gap)?;
         dict.set_item("penetration", self.0.penetration)?;
         dict.set_item("complementarity", self.0.complementarity)?;
         dict.set_item("load_error", self.0.load_error)?;
-        dict.set_item("stiffness_error", self.0.stiffness_error)?;
+        dict.set_item("force_error", self.0.force_error)?;
+        dict.set_item("stiffness_error", self.0.error_of_stiffness())?;
         dict.set_item("equilibrium", self.0.equilibrium)?;
         Ok(dict)
     }
@@ -130,16 +151,24 @@ impl ContactState {
         self.state.approach
     }
 
-    /// float or None: distance of the mean planes.
+    /// float or None: distance between the mean plane of the defined heights and that of the deformed half-space. Without undefined points
+    /// it is the mean of the gap field; with them it may be negative.
     #[getter]
     pub fn mean_gap(&self) -> Option<f64> {
         self.state.mean_gap
     }
 
-    /// float or None: incremental stiffness dF/dd.
+    /// float or None: dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an adhesive contact move, saturated cells
+    /// flow.
     #[getter]
     fn stiffness(&self) -> Option<f64> {
         self.state.stiffness
+    }
+
+    /// float or None: stiffness of the whole contact area, held; the conductance follows from it.
+    #[getter]
+    fn stiffness_fixed_area(&self) -> Option<f64> {
+        self.state.stiffness_fixed_area
     }
 
     /// float or None: real contact area.
@@ -267,6 +296,7 @@ impl ContactState {
         dict.set_item("approach", self.approach())?;
         dict.set_item("mean_gap", self.mean_gap())?;
         dict.set_item("stiffness", self.stiffness())?;
+        dict.set_item("stiffness_fixed_area", self.stiffness_fixed_area())?;
         dict.set_item("area", self.area())?;
         dict.set_item("area_corrected", self.area_corrected())?;
         dict.set_item("largest_pressure", self.largest_pressure())?;
@@ -302,6 +332,7 @@ impl ContactState {
             ("approach", self.approach()),
             ("mean_gap", self.mean_gap()),
             ("stiffness", self.stiffness()),
+            ("stiffness_fixed_area", self.stiffness_fixed_area()),
             ("area", self.area()),
             ("conductance", self.conductance()),
         ];

@@ -197,6 +197,28 @@ def test_conductance_and_patches():
     assert state.conductance > 0 and state.stiffness is None
 
 
+def test_an_adhesive_contact_has_two_stiffnesses():
+    sphere = fc.Surface.sphere(radius=1.0, size=4.0)
+    outputs = ["stiffness", "stiffness_fixed_area", "area"]
+    scene = fc.Scene(
+        sphere, modulus=2.0, effects={"adhesion": 0.02}, outputs=outputs, conductance=("electrical", 1.0, 3.0)
+    )
+    contact = fc.Jkr().prepare(scene)
+    state = contact.solve(force=0.0)
+    # Without load 3/5 of 2 E* a; 2 k/(E* (1 + 3)) of the held area.
+    held = 4.0 * np.sqrt(state.area / np.pi)
+    assert state.stiffness_fixed_area == pytest.approx(held, rel=1e-12)
+    assert state.stiffness == pytest.approx(0.6 * held, rel=1e-12)
+    assert state.conductance == pytest.approx(0.25 * held, rel=1e-12)
+    assert "stiffness_fixed_area=" in repr(state)
+    told = state.to_dict()
+    assert told["stiffness_fixed_area"] == state.stiffness_fixed_area and told["stiffness_error"] == 0.0
+    # A force has an error where it is a result.
+    certificate = state.certificate
+    assert (certificate.force_error, certificate.quotient_error, certificate.error_of_stiffness) == (None, None, 0.0)
+    assert contact.solve(approach=0.1).certificate.force_error == told["load_error"] == 0.0
+
+
 def test_lines_stand_for_rectangles():
     heights = 0.01 * np.cos(2 * np.pi * np.arange(256) / 64)
     line = fc.Surface.line(heights, length=2 / np.sqrt(np.pi), size=1.0)

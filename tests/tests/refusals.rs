@@ -147,7 +147,7 @@ fn periodic_theories() {
             let what = unsupported(model, &Scene { effects, ..scene.clone() });
             assert!(what.contains(name), "{}: {what}", model.name());
         }
-        let [_, _, _, cells @ ..] = each_output();
+        let [_, _, _, _, cells @ ..] = each_output();
         for outputs in cells {
             unsupported(model, &Scene { outputs, ..scene.clone() });
         }
@@ -222,10 +222,11 @@ fn histories() {
 const COPPER: Conductance = Conductance::Electrical { first: 1.7e-8, second: 1.7e-8 };
 
 /// The outputs that every model gives, those that only some have, and those that need cells: one at a time.
-fn each_output() -> [Outputs; 7] {
+fn each_output() -> [Outputs; 8] {
     let none = Outputs::default();
     [
         Outputs { stiffness: true, ..none },
+        Outputs { stiffness_fixed_area: true, ..none },
         Outputs { conductance: COPPER, ..none },
         Outputs { area: true, ..none },
         Outputs { contact_patches: true, ..none },
@@ -257,6 +258,7 @@ fn outputs_are_those_asked_for() {
                     let fields = state.fields.unwrap_or_default();
                     let given = Outputs {
                         stiffness: state.stiffness.is_some(),
+                        stiffness_fixed_area: state.stiffness_fixed_area.is_some(),
                         area: state.area.is_some(),
                         pressure: fields.pressure.is_some(),
                         displacement: fields.displacement.is_some(),
@@ -276,7 +278,7 @@ fn outputs_are_those_asked_for() {
 /// A line has no area and closed forms have no cells.
 #[test]
 fn which_outputs_are_refused() {
-    let [_, _, area, cells @ ..] = each_output();
+    let [_, _, _, area, cells @ ..] = each_output();
     for (model, scenes) in accepted().into_iter().filter(|(model, _)| model.name() != "bem3d") {
         for scene in scenes {
             for outputs in cells {

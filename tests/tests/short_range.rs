@@ -86,14 +86,14 @@ fn both_branches_of_a_sphere_are_jkr() {
     let unit = exact.pull_off_at_force().unwrap().force.abs();
     let unloaded = unloaded_radius().powi(2) / 3.0;
     let mut scene = sphere(20.0, 1);
-    scene.outputs.stiffness = true;
+    scene.outputs.stiffness_fixed_area = true;
     let mut history = path(&scene);
     let compare = |state: &ContactState, d: f64| {
         let radius = exact.radius_at_approach(d).unwrap();
         let force = exact.force(radius).unwrap();
         assert!((state.force - force).abs() < SAME * unit, "{d}: {} {force}", state.force);
         approx::assert_relative_eq!((state.area.unwrap() / PI).sqrt(), radius, max_relative = SAME);
-        approx::assert_relative_eq!(state.stiffness.unwrap(), 2.0 * radius, max_relative = SAME);
+        approx::assert_relative_eq!(state.stiffness_fixed_area.unwrap(), 2.0 * radius, max_relative = SAME);
         let adhesive = state.adhesive.unwrap();
         assert!(adhesive.stability > 0.0 && state.report.certificate.meets(1e-6));
         adhesive.branch

@@ -132,6 +132,9 @@ pub fn submit(options: &SubmitArguments) -> Result<()> {
     Ok(())
 }
 
+/// A job that is ended more often than this before it is done would be begun for ever.
+const MOST_FAILURES: f64 = 5.0;
+
 /// Replays the measured times of a study on many cores.
 ///
 /// # Errors
@@ -140,20 +143,19 @@ pub fn makespan(options: &MakespanArguments) -> Result<()> {
     let command = parsed(&options.command)?;
     let refused = || Error::parameter("command", options.command.join(" "), "a study of surfaces or lines");
     let units = units(&command)?.ok_or_else(refused)?;
-    let positive =
-        [("speed-up", options.speed_up), ("slowness", options.slowness), ("operations", options.operations)];
-    if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite()))
-    {
-        return Err(Error::parameter(name, value, "a number above 0"));
-    }
-    let others = [
-        ("start", options.start),
-        ("slow-share", options.slow_share),
-        ("failures", options.failures),
-        ("merge", options.merge),
-    ];
-    if let Some((name, value)) = others.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite())) {
-        return Err(Error::parameter(name, value, "a number from 0"));
+    // Seconds are counted in 64 bits as millionths.
+    for (name, value, least, most) in [
+        ("speed-up", options.speed_up, 1e-3, 1e6),
+        ("slowness", options.slowness, 1e-3, 1e6),
+        ("operations", options.operations, 1e-6, 1e12),
+        ("start", options.start, 0.0, 1e6),
+        ("slow-share", options.slow_share, 0.0, 1.0),
+        ("failures", options.failures, 0.0, 1e6),
+        ("merge", options.merge, 0.0, 1e6),
+    ] {
+        if !(least..=most).contains(&value) {
+            return Err(Error::parameter(name, value, format!("a number from {least} to {most}")));
+        }
     }
     let machines = cluster::Cluster {
         start: options.start,
@@ -166,6 +168,13 @@ pub fn makespan(options: &MakespanArguments) -> Result<()> {
         ..cluster::Cluster::default()
     };
     let seconds = evaluation::replayed_seconds(&units, &Store::view(&options.measured)?)?;
+    let longest = seconds.iter().copied().fold(0.0, f64::max) / options.speed_up * options.slowness.max(1.0);
+    let most = 3600.0 * MOST_FAILURES / longest;
+    if options.failures > most {
+        let expected =
+            format!("at most {most:.2} in an hour: the longest job takes {longest:.0} s on a slow core");
+        return Err(Error::parameter("failures", options.failures, expected));
+    }
     let of_task = (options.cores_of_task, options.speed_up);
     let found = evaluation::simulate(&units, &seconds, &options.cores, of_task, &machines);
     runs::out!("{:>8} {:>7} {:>12} {:>10}  limited by", "cores", "tasks", "makespan", "efficiency");

@@ -24,7 +24,10 @@ fn main() -> ExitCode {
     // A path that is no UTF-8 is one all the same.
     let typed: Vec<String> =
         std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-    match execute(Arguments::parse().command, &typed) {
+    let command = Arguments::parse().command;
+    let asked = std::env::var_os(runs::THREADS_VARIABLE);
+    let done = runs::with_threads(asked.as_deref(), || execute(command, &typed));
+    match done.map_err(Failure::from).and_then(|done| done) {
         Ok(code) => code,
         Err(error) => {
             runs::err!("error: {error}");
@@ -153,7 +156,8 @@ fn redraw(options: &Redraw) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Ctrl-C, SIGTERM and SIGHUP end the process at once: what is finished is kept, and nothing else was begun that would be lost.
+/// Ctrl-C, SIGTERM and SIGHUP end the process at once: what is finished is kept, and nothing else was begun that would be lost. Where the
+/// system grants no thread to tell of it, they do the same without a word.
 fn tell_what_an_interruption_leaves(out: PathBuf) -> Result<()> {
     let tell = move || {
         let (count, units) = (Store::count(&out), out.join(".units"));
@@ -163,6 +167,11 @@ fn tell_what_an_interruption_leaves(out: PathBuf) -> Result<()> {
         );
         std::process::exit(130);
     };
+    // A handler without its thread would swallow the signals.
+    if !runs::grants_a_thread() {
+        runs::err!("note: the system grants no thread: Ctrl-C ends the command without a message");
+        return Ok(());
+    }
     ctrlc::set_handler(tell).map_err(|e| Error::parameter("Ctrl-C", e, "a signal that can be handled"))
 }
 

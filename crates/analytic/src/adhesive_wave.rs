@@ -121,14 +121,31 @@ impl WavyContact {
         gap_in(self.nondimensional, strips_at(psi)?.gap(self.alpha))
     }
 
-    /// `-dp/d(mean gap)` of the bonded strips (a pressure over a length) at `psi` in [0, pi/2]: 0 without
-    /// contact.
+    /// `-dp/d(mean gap)` of the bonded strips, whose width is held (a pressure over a length), at `psi` in
+    /// [0, pi/2]: 0 without contact.
     ///
     /// # Errors
     /// [`Error::Domain`] for another psi, or a stiffness that no `f64` holds.
-    pub fn stiffness(&self, psi: f64) -> Result<f64> {
+    pub fn stiffness_fixed_area(&self, psi: f64) -> Result<f64> {
         // p* over D is pi E*/w.
-        let value = PI / strips_at(psi)?.less_log();
+        self.stiffness_in(PI / strips_at(psi)?.less_log())
+    }
+
+    /// `-dp/d(mean gap)` along the equilibrium curve, on which the strips grow with the pressure (a pressure
+    /// over a length), at `psi` in [0, pi/2]: 0 at the pull-off and at the snap-in, without adhesion that of
+    /// [`WavyContact::stiffness_fixed_area`].
+    ///
+    /// With `L = -ln r` and `q = d(p/p*)/d tan psi` it is `p*/D` times
+    /// `q/(q L + 2 alpha cos^2 psi/sqrt(tan psi))`.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for another psi, or a slope that no `f64` holds: the unstable part has a psi at which
+    /// the mean gap turns.
+    pub fn slope(&self, psi: f64) -> Result<f64> {
+        signed(PI * strips_at(psi)?.slope(self.alpha), |slope| self.stiffness_in(slope))
+    }
+
+    fn stiffness_in(&self, value: f64) -> Result<f64> {
         self.per_height.pressure(value).map_err(|_| {
             let name = "stiffness per area in units of E* over the wavelength";
             Error::domain(name, value, "a stiffness within the range of f64")
@@ -231,8 +248,12 @@ fn gap_in(nondimensional: Nondimensionalisation, gap: f64) -> Result<f64> {
 /// It takes [`contact_model::Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of
 /// waves along x. Without adhesion it is [`crate::Westergaard`]. A force at the pull-off or at the snap-in,
 /// each within rounding, gives the contact at that limit. A force beyond the pull-off is
-/// [`Error::OutOfRange`], and so is one of full contact where a stiffness is asked for, which is not finite
-/// there. A mean gap is not taken: above D it is that of a pulled contact as well as of surfaces apart.
+/// [`Error::OutOfRange`]. A mean gap is not taken: above D it is that of a pulled contact as well as of surfaces
+/// apart.
+///
+/// The stiffness is the slope of the equilibrium curve ([`WavyContact::slope`]), 0 at both limits. That of the
+/// held contact area, which the conductance follows from, is that of the bonded strips
+/// ([`WavyContact::stiffness_fixed_area`]). A full contact has neither: its mean gap stays 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AdhesiveWave;
 
@@ -287,37 +308,15 @@ impl Prepared {
         signed(ratio * self.full, |force| self.nondimensional.force(force))
     }
 
-    /// Force at the pull-off or the snap-in of adhesion, or at p* without it.
-    fn force_of(&self, limit: Option<Strips>, without_adhesion: f64) -> Result<f64> {
-        self.force(limit.map_or(without_adhesion, |strips| strips.pressure(self.wave.alpha)))
-    }
-
     /// Mean pressure over p* of a force; infinite where no `f64` holds it.
     fn ratio(&self, force: f64) -> f64 {
         self.nondimensional.force_in(force.abs()).copysign(force) / self.full
     }
 
-    /// What is wrong with asking for a stiffness of full contact.
-    fn no_stiffness(&self, force: f64) -> Error {
-        let alpha = self.wave.alpha;
-        if alpha > 0.0 && self.wave.limits.is_none() {
-            let name = "alpha (beyond the range any contact is full and has no finite stiffness)".into();
-            return Error::OutOfRange { name, value: alpha, min: 0.0, max: WavyContact::CRITICAL };
-        }
-        let [first, last] = self.wave.limits.map_or([None; 2], |limits| limits.map(Some));
-        match (self.force_of(first, 0.0), self.force_of(last, 1.0)) {
-            (Ok(min), Ok(max)) => {
-                let name = "force (full contact has no finite stiffness)".into();
-                Error::OutOfRange { name, value: force, min, max }
-            }
-            (Err(error), _) | (_, Err(error)) => error,
-        }
-    }
-
     /// What is wrong with a force below the pull-off.
     fn pulled_off(&self, force: f64) -> Error {
-        let limit = self.wave.limits.map(|[first, _]| first);
-        self.force_of(limit, 0.0).map_or_else(
+        let least = self.wave.limits.map_or(0.0, |[first, _]| first.pressure(self.wave.alpha));
+        self.force(least).map_or_else(
             |error| error,
             |min| {
                 let name = "force (the contact pulls off under a prescribed force)".into();
@@ -350,20 +349,26 @@ impl PreparedContact for Prepared {
             Branch::Full => None,
         };
         let nondimensional = self.nondimensional;
-        let stiffness = match strips {
-            _ if !self.outputs.needs_stiffness() => None,
-            Some(strips) => Some(nondimensional.stiffness(self.full / strips.less_log())?),
-            None => return Err(self.no_stiffness(force)),
-        };
-        let gap = strips.map_or(0.0, |strips| strips.gap(self.wave.alpha));
+        let alpha = self.wave.alpha;
+        let stiffness = strips
+            .filter(|_| self.outputs.needs_stiffness())
+            // At a limit the slope is 0 within rounding.
+            .map(|strips| nondimensional.stiffness(self.full * strips.slope(alpha).max(0.0)))
+            .transpose()?;
+        let held = strips
+            .filter(|_| self.outputs.needs_fixed_area())
+            .map(|strips| nondimensional.stiffness(self.full / strips.less_log()))
+            .transpose()?;
+        let gap = strips.map_or(0.0, |strips| strips.gap(alpha));
         let gap = self.outputs.mean_gap.then(|| gap_in(nondimensional, gap)).transpose()?;
         let fraction = strips.map_or(1.0, Strips::fraction);
         let area = self.outputs.area.then(|| nondimensional.area(fraction)).transpose()?;
         let mut report = SolveReport::exact("closed form (Johnson)");
-        report.certificate.stiffness_error = stiffness.map(|_| 0.0);
+        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
         ContactState::new(force, report)
             .with_mean_gap(gap)
             .with_stiffness(stiffness)
+            .with_stiffness_fixed_area(held)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }
@@ -374,7 +379,7 @@ mod tests {
     use super::*;
     use crate::Westergaard;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::{Boundary, Size, Surface};
+    use contact_model::{Boundary, Conductance, Size, Surface};
 
     /// Step of differences.
     const STEP: f64 = 1e-5;
@@ -397,7 +402,7 @@ mod tests {
         let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size }, modulus);
         scene.effects.boundary = Boundary::Periodic;
         scene.effects.adhesion = Adhesion::ShortRange { work };
-        (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
+        (scene.outputs.area, scene.outputs.mean_gap, scene.outputs.stiffness_fixed_area) = (true, true, true);
         scene
     }
 
@@ -416,21 +421,24 @@ mod tests {
         for share in [1e-300, 1e-6, 0.1, 0.5, 0.99] {
             let load = Load::Force(share * full);
             let (a, b) = (found.solve(load).unwrap(), expected.solve(load).unwrap());
+            assert_relative_eq!(
+                a.stiffness.unwrap(),
+                a.stiffness_fixed_area.unwrap(),
+                max_relative = ROUNDING
+            );
             for (a, b) in [(a.area, b.area), (a.mean_gap, b.mean_gap), (a.stiffness, b.stiffness)] {
                 assert_relative_eq!(a.unwrap(), b.unwrap(), max_relative = ROUNDING, epsilon = 0.0);
             }
         }
         let apart = found.solve(Load::Force(0.0)).unwrap();
         assert_eq!((apart.area, apart.mean_gap, apart.stiffness), (Some(0.0), Some(0.01), Some(0.0)));
-        // p* itself is full contact, which has no finite stiffness.
-        let error = found.solve(Load::Force(full)).unwrap_err();
-        assert!(matches!(error, Error::OutOfRange { value, max, .. }
-            if value.to_bits() == full.to_bits() && (max / full - 1.0).abs() < ROUNDING));
-        let mut silent = scene(0.0);
-        silent.outputs.stiffness = false;
-        let state = AdhesiveWave.prepare(&silent, 0).unwrap().solve(Load::Force(full)).unwrap();
-        assert_relative_eq!(state.area.unwrap(), 2.0, max_relative = ROUNDING);
-        assert_eq!((state.mean_gap, state.stiffness), (Some(0.0), None));
+        // p* itself is full contact, whose gap stays 0.
+        for contact in [&mut found, &mut expected] {
+            let state = contact.solve(Load::Force(full)).unwrap();
+            assert_relative_eq!(state.area.unwrap(), 2.0, max_relative = ROUNDING);
+            assert_eq!(state.mean_gap, Some(0.0));
+            assert_eq!((state.stiffness, state.stiffness_fixed_area), (None, None));
+        }
         // Nothing holds the surfaces.
         let error = found.solve(Load::Force(-1e-300)).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { min: 0.0, .. }), "{error}");
@@ -442,7 +450,7 @@ mod tests {
         let wave = WavyContact::new(0.02, 0.7, 2.0, 3e-4).unwrap();
         for psi in [0.2_f64, 0.7, 1.3] {
             let tension = PI * 2.0 * 0.02 / 0.7 * wave.alpha() * psi.tan().sqrt();
-            let compliance = |psi: f64| 1.0 / wave.stiffness(psi).unwrap();
+            let compliance = |psi: f64| 1.0 / wave.stiffness_fixed_area(psi).unwrap();
             let by_psi = (compliance(psi + STEP) - compliance(psi - STEP)) / (2.0 * STEP);
             // Energy per nominal area, over the change of the area fraction 2 psi/pi.
             assert_relative_eq!(
@@ -462,7 +470,11 @@ mod tests {
         for psi in [0.3, 0.9, 1.4] {
             let pressure = wave.pressure(psi).unwrap() - elastic.pressure(psi).unwrap();
             let gap = wave.mean_gap(psi).unwrap() - elastic.mean_gap(psi).unwrap();
-            assert_relative_eq!(-pressure / gap, wave.stiffness(psi).unwrap(), max_relative = ROUNDING);
+            assert_relative_eq!(
+                -pressure / gap,
+                wave.stiffness_fixed_area(psi).unwrap(),
+                max_relative = ROUNDING
+            );
         }
     }
 
@@ -507,7 +519,7 @@ mod tests {
             let state = AdhesiveWave.prepare(&scene(work), 0).unwrap().solve(Load::Force(force)).unwrap();
             assert_relative_eq!(state.area.unwrap(), area, max_relative = CONDITIONED);
             assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = CONDITIONED);
-            assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = CONDITIONED);
+            assert_relative_eq!(state.stiffness_fixed_area.unwrap(), stiffness, max_relative = CONDITIONED);
         }
     }
 
@@ -520,7 +532,8 @@ mod tests {
         let snap_in = with_alpha(1e-6).snap_in().unwrap().unwrap().1;
         let state = contact.solve(Load::Force(snap_in)).unwrap();
         assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = ROUNDING, epsilon = 0.0);
-        assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = ROUNDING, epsilon = 0.0);
+        let held = state.stiffness_fixed_area.unwrap();
+        assert_relative_eq!(held, stiffness, max_relative = ROUNDING, epsilon = 0.0);
     }
 
     #[test]
@@ -582,19 +595,18 @@ mod tests {
     fn the_load_of_full_contact_closes_the_gap() {
         for (_, size, mut scene) in waves() {
             scene.effects.adhesion = Adhesion::ShortRange { work: 0.0 };
-            scene.outputs.stiffness = false;
             let Surface::Sine { amplitude, wavelength, .. } = scene.surface else { panic!("no wave") };
             let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
             for force in around(PI * scene.modulus * amplitude / wavelength * (size.x * size.y)) {
                 let state = contact.solve(Load::Force(force)).unwrap();
-                assert_eq!(state.mean_gap, Some(0.0));
+                assert_eq!((state.mean_gap, state.stiffness), (Some(0.0), None));
             }
         }
     }
 
     #[test]
     fn errors_are_in_what_was_asked() {
-        for (wave, size, mut scene) in waves() {
+        for (wave, size, scene) in waves() {
             let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
             let [first, last] =
                 [wave.pull_off(), wave.snap_in()].map(|limit| limit.unwrap().unwrap().1 * (size.x * size.y));
@@ -606,39 +618,76 @@ mod tests {
             assert_relative_eq!(min, first, max_relative = ROUNDING);
             // The smallest force that the error names is one.
             assert!(contact.solve(Load::Force(min)).is_ok());
+            // Beyond the snap-in the contact is full.
             let beyond = last + BEYOND * last.abs();
-            let error = contact.solve(Load::Force(beyond)).unwrap_err();
-            assert!(error.to_string().starts_with("force (full contact"), "{error}");
-            let Error::OutOfRange { value, min, max, .. } = error else { panic!("{error}") };
-            assert_eq!(value.to_bits(), beyond.to_bits());
-            assert_relative_eq!(min, first, max_relative = ROUNDING);
-            assert_relative_eq!(max, last, max_relative = ROUNDING);
-            assert!(contact.solve(Load::Force(max)).is_ok());
-            scene.outputs.stiffness = false;
-            let state = AdhesiveWave.prepare(&scene, 0).unwrap().solve(Load::Force(beyond)).unwrap();
-            assert_eq!(state.mean_gap, Some(0.0));
+            let state = contact.solve(Load::Force(beyond)).unwrap();
+            assert_eq!(
+                (state.mean_gap, state.stiffness, state.stiffness_fixed_area),
+                (Some(0.0), None, None)
+            );
             assert_relative_eq!(state.area.unwrap(), size.x * size.y, max_relative = ROUNDING);
         }
-        // Where only full contact is stable no force has a stiffness.
-        let mut closed = AdhesiveWave.prepare(&scene(0.1), 0).unwrap();
-        let error = closed.solve(Load::Force(0.0)).unwrap_err();
-        assert!(error.to_string().starts_with("alpha (beyond the range"), "{error}");
+    }
+
+    #[test]
+    fn the_stiffness_is_the_slope_of_the_branch() {
+        let size: Size = [1.0, 2.0].into();
+        for alpha in [1e-4, 0.02, 0.3, 0.9, 1.05] {
+            let work = 0.5 * (PI * alpha).powi(2);
+            let mut scene = wave_scene(1.0, 1.0, size, (1.0, work));
+            scene.outputs.conductance = Conductance::Electrical { first: 1.0, second: 2.0 };
+            let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
+            let wave = with_alpha(alpha);
+            let [first, last] = [wave.pull_off(), wave.snap_in()].map(|limit| limit.unwrap().unwrap());
+            for share in [0.1, 0.4, 0.8, 0.97] {
+                let pressure = first.1 + share * (last.1 - first.1);
+                let step = STEP * (last.1 - first.1);
+                let mut at = |pressure: f64| contact.solve(Load::Force(pressure * size.x * size.y)).unwrap();
+                let (low, here, high) = (at(pressure - step), at(pressure), at(pressure + step));
+                let slope = (high.force - low.force) / (low.mean_gap.unwrap() - high.mean_gap.unwrap());
+                // The curve bends most near the snap-in.
+                assert_relative_eq!(here.stiffness.unwrap(), slope, max_relative = 1e3 * DIFFERENCES);
+                let psi = wave.stable(pressure).unwrap().unwrap();
+                let [along, held] =
+                    [wave.slope(psi), wave.stiffness_fixed_area(psi)].map(|k| k.unwrap() * 2.0);
+                assert_relative_eq!(here.stiffness.unwrap(), along, max_relative = AT_EXTREMUM);
+                assert_relative_eq!(here.stiffness_fixed_area.unwrap(), held, max_relative = AT_EXTREMUM);
+                assert!(along < held);
+                // Through both bodies, of modulus 1 and resistivities 1 and 2.
+                let through = 2.0 / 3.0 * here.stiffness_fixed_area.unwrap();
+                assert_relative_eq!(here.conductance.unwrap(), through, max_relative = ROUNDING);
+            }
+            for (_, pressure) in [first, last] {
+                let state = contact.solve(Load::Force(pressure * size.x * size.y)).unwrap();
+                let ratio = state.stiffness.unwrap() / state.stiffness_fixed_area.unwrap();
+                assert_abs_diff_eq!(ratio, 0.0, epsilon = AT_EXTREMUM);
+            }
+        }
+        // On the unstable part too, up to the psi where the mean gap turns.
+        let wave = with_alpha(0.3);
+        for psi in [0.05, 0.1, 0.15, 1.3, 1.45] {
+            let [low, high] = [psi - STEP, psi + STEP];
+            let pressure = wave.pressure(high).unwrap() - wave.pressure(low).unwrap();
+            let gap = wave.mean_gap(high).unwrap() - wave.mean_gap(low).unwrap();
+            assert_relative_eq!(wave.slope(psi).unwrap(), -pressure / gap, max_relative = 1e2 * DIFFERENCES);
+        }
     }
 
     #[test]
     fn numbers_that_make_no_sense() {
         let wave = WavyContact::new(0.01, 0.5, 3.0, 1e-4).unwrap();
         for psi in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -5e-324, FRAC_PI_2.next_up(), 2.0] {
-            for outcome in [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness(psi)] {
+            for outcome in [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness_fixed_area(psi)] {
                 assert!(matches!(outcome, Err(Error::Domain { name, .. }) if name == "psi"));
             }
         }
         for psi in [0.0, -0.0] {
-            let state = [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness(psi)];
+            let state = [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness_fixed_area(psi)];
             assert_eq!(state, [Ok(0.0), Ok(0.01), Ok(0.0)]);
         }
         for psi in [5e-324, 1e-310, 1e-200, 1e-100, FRAC_PI_2.next_down(), FRAC_PI_2] {
-            let state = [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness(psi)].map(Result::unwrap);
+            let state =
+                [wave.pressure(psi), wave.mean_gap(psi), wave.stiffness_fixed_area(psi)].map(Result::unwrap);
             assert!(state.iter().all(|value| value.is_finite()) && state[0] < 0.0 && state[1] > 0.0);
             assert!(state[2] > 0.0, "{psi:e}");
         }
@@ -715,7 +764,12 @@ mod tests {
                             for force in [0.0, -1e-300, 1e-300, 1e-20, 1.0, -1.0, 1e300] {
                                 match contact.solve(Load::Force(force)) {
                                     Ok(state) => {
-                                        let values = [state.area, state.mean_gap, state.stiffness];
+                                        let values = [
+                                            state.area,
+                                            state.mean_gap,
+                                            state.stiffness,
+                                            state.stiffness_fixed_area,
+                                        ];
                                         let sensible = |value: &f64| value.is_finite() && *value >= 0.0;
                                         assert!(values.iter().flatten().all(sensible), "{scene:?} {state:?}");
                                         solved += 1;

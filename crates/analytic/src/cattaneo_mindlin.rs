@@ -79,7 +79,7 @@ impl HistoryModel for CattaneoMindlin {
         };
         let elastic = Scene {
             effects: Effects::default(),
-            outputs: Outputs { stiffness: true, ..scene.outputs },
+            outputs: Outputs { stiffness_fixed_area: true, ..scene.outputs },
             ..scene.clone()
         };
         Ok(Box::new(PreparedCattaneoMindlin {
@@ -218,9 +218,10 @@ impl PreparedCattaneoMindlin {
     /// The state under the normal load, with its contact radius.
     fn press(&mut self, step: &Step) -> Result<(ContactState, Option<SlidingSphere>)> {
         let mut state = self.normal.solve(step.normal)?;
-        let radius = 0.5 * state.stiffness.unwrap_or(0.0) / self.normal.normalisation().modulus;
-        if !self.outputs.stiffness {
-            state.stiffness = None;
+        // k = 2 E* a of the round area.
+        let radius = 0.5 * state.stiffness_fixed_area.unwrap_or(0.0) / self.normal.normalisation().modulus;
+        state.stiffness_fixed_area = state.stiffness_fixed_area.filter(|_| self.outputs.stiffness_fixed_area);
+        if !self.outputs.needs_stiffness() {
             state.report.certificate.stiffness_error = None;
         }
         let sphere = if state.force > 0.0 {

@@ -259,10 +259,10 @@ impl PeriodicLaw for AsperityModel {
         Ok(PI * density * radius * scatter * self.logarithm(2, self.separation(pressure)?).exp())
     }
 
-    fn stiffness(&self, pressure: f64) -> Result<f64> {
+    fn stiffness(&self, pressure: f64) -> Result<Option<f64>> {
         let Summits { density, radius, scatter, .. } = self.summits;
         let t = self.separation(pressure)?;
-        Ok(2.0 * density * (radius * scatter).sqrt() * self.logarithm(1, t).exp())
+        Ok(Some(2.0 * density * (radius * scatter).sqrt() * self.logarithm(1, t).exp()))
     }
 
     fn gap(&self, pressure: f64) -> Result<f64> {

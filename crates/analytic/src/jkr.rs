@@ -18,9 +18,10 @@ const NAME: &str = "jkr";
 /// [`Error::OutOfRange`], named a pull-off: the smallest admissible load is in the error. So is a contact
 /// radius beyond half the shorter side.
 ///
-/// The stiffness is that of the contact set, `k = 2 E* a`: what an oscillation too small to move the edge
-/// sees, and what a conductance follows from. The slope of the equilibrium curve, where the edge moves, is
-/// [`AdhesiveSphere::slope`]. Takes [`Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
+/// The stiffness is the slope of the equilibrium curve, on which the edge moves ([`AdhesiveSphere::slope`]): 0
+/// at the pull-off under prescribed force, negative beyond it, absent at the pull-off under prescribed approach,
+/// where it has no bound. That of the held contact area, which the conductance follows from, is `2 E* a`. Takes
+/// [`Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
 ///
 /// ```
 /// use analytic::Jkr;
@@ -31,6 +32,8 @@ const NAME: &str = "jkr";
 /// // At no load a^3 = 9 pi w R^2 / (2 E*): a = 0.5209397, d = a^2/(3 R).
 /// let state = contact.solve(Load::Force(0.0))?;
 /// assert!((state.approach.unwrap_or(0.0) - 0.5209397_f64.powi(2) / 3.0).abs() < 1e-7);
+/// // The stiffness is 3/5 of the 2 E* a of the held area.
+/// assert!((state.stiffness.unwrap_or(0.0) - 1.2 * 0.5209397).abs() < 1e-7);
 /// // 3/2 pi w R = 0.0471239.
 /// assert!(contact.solve(Load::Force(-0.0471)).is_ok() && contact.solve(Load::Force(-0.0472)).is_err());
 /// # Ok::<(), contact_model::Error>(())
@@ -151,12 +154,12 @@ impl AdhesiveSphere {
     /// approach, where the slope has no bound.
     pub fn slope(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
-        let b = 0.75 * (2.0 * PI * self.work / a).sqrt() / a;
+        let b = self.b(a);
         if !(a > 0.0 && b < 3.0) {
             let expected = "beyond that of the pull-off under prescribed approach";
             return Err(Error::domain("contact radius", contact_radius, expected));
         }
-        signed(2.0 * a * (1.0 - b) / (1.0 - b / 3.0), |slope| self.nondimensional.stiffness(slope))
+        self.slope_of(a, b)
     }
 
     /// Contact radius at a force: `a^3 = 3 R/(4 E*) (sqrt(F + F_a) + sqrt(F_a))^2` with `F_a = 3/2 pi w R`.
@@ -217,7 +220,26 @@ impl AdhesiveSphere {
         }
     }
 
-    // From here on in units of R and E*.
+    // From here on radii in R, forces in E* R^2.
+
+    /// `(3/4) sqrt(2 pi w/(E* a^3))`: 1 at the pull-off under prescribed force, 3 at that under prescribed approach.
+    fn b(&self, a: f64) -> f64 {
+        0.75 * (2.0 * PI * self.work / a).sqrt() / a
+    }
+
+    /// `dF/dd` along the curve, in the caller's units.
+    fn slope_of(&self, a: f64, b: f64) -> Result<f64> {
+        signed(2.0 * a * (1.0 - b) / (1.0 - b / 3.0), |slope| self.nondimensional.stiffness(slope))
+    }
+
+    /// The slope of a state; `None` at the pull-off under prescribed approach.
+    fn slope_of_state(&self, a: f64) -> Result<Option<f64>> {
+        if self.work <= 0.0 {
+            return self.nondimensional.stiffness(2.0 * a).map(Some);
+        }
+        let b = self.b(a);
+        (1.0 - b / 3.0 > closed::AT_FOLD).then(|| self.slope_of(a, b)).transpose()
+    }
 
     fn force_of(&self, a: f64) -> f64 {
         a * (4.0 / 3.0 * a * a - (8.0 * PI * self.work * a).sqrt())
@@ -329,14 +351,17 @@ impl PreparedContact for PreparedJkr {
             }
             _ => (signed(sphere.force_of(a), |force| nondimensional.force(force))?, asked),
         };
-        let stiffness =
-            self.outputs.needs_stiffness().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
-        let area = self.outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
+        let outputs = &self.outputs;
+        let stiffness = if outputs.needs_stiffness() { sphere.slope_of_state(a)? } else { None };
+        let held = outputs.needs_fixed_area().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
+        let area = outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
         let mut report = SolveReport::exact("closed form (JKR)");
-        report.certificate.stiffness_error = stiffness.map(|_| 0.0);
+        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
+        report.certificate.force_error = closed::force_error(load);
         ContactState::new(force, report)
             .with_approach(approach)
             .with_stiffness(stiffness)
+            .with_stiffness_fixed_area(held)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }
@@ -345,7 +370,7 @@ impl PreparedContact for PreparedJkr {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{PRINTED, ROUNDING, pressed};
+    use crate::testing::{PRINTED, ROUNDING, check_slope, pressed};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
@@ -420,9 +445,46 @@ mod tests {
         // And towards it as the root of the work: a^(3/2) = a_H^(3/2) + sqrt(9 pi w R^2/(8 E*)) + O(w).
         let gap = |work: f64| {
             let a = pressed(&Jkr, &scene(1.0, 1.0, 1.0, work), Load::Force(1e-3)).unwrap();
-            a.stiffness.unwrap() / (2.0 * 0.090_856_029_642) - 1.0
+            a.stiffness_fixed_area.unwrap() / (2.0 * 0.090_856_029_642) - 1.0
         };
         assert_relative_eq!(gap(1e-10) / gap(1e-12), 10.0, max_relative = 1e-2);
+    }
+
+    #[test]
+    fn the_stiffness_is_the_slope_of_the_branch() {
+        for work in [1e-6, 1e-3, 0.01] {
+            let (scene, sphere) =
+                (scene(4.0, 2.0, 1.0, 2.0 * work), AdhesiveSphere::new(1.0, 2.0, 2.0 * work).unwrap());
+            let [by_force, by_approach] =
+                [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(Result::unwrap);
+            for share in [-0.9, -0.5, -0.1, 0.1, 1.0, 30.0] {
+                check_slope(&Jkr, &scene, Load::Force(share * by_force.force.abs()));
+            }
+            for share in [-0.9, -0.5, -0.1, 0.3, 5.0] {
+                check_slope(&Jkr, &scene, Load::Approach(share * by_approach.approach.abs()));
+            }
+            // Where an approach alone holds the contact, the force rises as the bodies are drawn apart.
+            let state = pressed(&Jkr, &scene, Load::Approach(0.9 * by_approach.approach)).unwrap();
+            assert!(state.stiffness.unwrap() < 0.0);
+            // Without load a^3 = 9 pi w R^2/(2 E*), b = 1/2 and the slope 3/5 of 2 E* a.
+            let state = pressed(&Jkr, &scene, Load::Force(0.0)).unwrap();
+            let ratio = state.stiffness.unwrap() / state.stiffness_fixed_area.unwrap();
+            assert_relative_eq!(ratio, 0.6, max_relative = 1e-13);
+            // The folds: no slope, and one without bound.
+            let state = pressed(&Jkr, &scene, Load::Force(by_force.force)).unwrap();
+            assert_abs_diff_eq!(
+                state.stiffness.unwrap() / state.stiffness_fixed_area.unwrap(),
+                0.0,
+                epsilon = ROUNDING
+            );
+            for approach in
+                [by_approach.approach, by_approach.approach.next_down(), by_approach.approach.next_up()]
+            {
+                let state = pressed(&Jkr, &scene, Load::Approach(approach)).unwrap();
+                assert_eq!((state.stiffness, state.report.certificate.stiffness_error), (None, Some(0.0)));
+                assert!(state.stiffness_fixed_area.unwrap() > 0.0);
+            }
+        }
     }
 
     #[test]

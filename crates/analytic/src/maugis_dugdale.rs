@@ -24,10 +24,11 @@ const NAME: &str = "maugis_dugdale";
 /// there; what attracts them beyond it, without contact, is not part of this model. A cohesive zone beyond
 /// half the shorter side is out of range too.
 ///
-/// The stiffness is that of the contact set, `k = 2 E* a`, as in [`crate::Jkr`]: a and c held, the attraction
-/// is constant. The slope of the equilibrium curve, where both move, is [`MaugisSphere::slope`]. Takes
-/// [`Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs one to two
-/// microseconds.
+/// The stiffness is the slope of the equilibrium curve, on which a and c both move ([`MaugisSphere::slope`]),
+/// absent at the pull-off under prescribed approach, where it has no bound. That of the held contact area, which
+/// the conductance follows from, is `2 E* a` as in [`crate::Jkr`]: the attraction is constant and bridges no
+/// current. Takes [`Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs
+/// one to two microseconds.
 ///
 /// ```
 /// use analytic::MaugisDugdale;
@@ -188,7 +189,7 @@ impl MaugisSphere {
     pub fn slope(&self, contact_radius: f64) -> Result<f64> {
         let (force, approach) = self.point(contact_radius)?.rates(self.curve.lambda);
         if approach > 0.0 {
-            signed(4.0 / 3.0 * self.unit * force / approach, |slope| self.nondimensional.stiffness(slope))
+            self.slope_of(force, approach)
         } else {
             let expected = "beyond that of the pull-off under prescribed approach";
             Err(Error::domain("contact radius", contact_radius, expected))
@@ -249,6 +250,19 @@ impl MaugisSphere {
     fn approach_of(&self, point: &Point) -> Result<f64> {
         let approach = self.unit * (self.unit * point.approach(self.curve.lambda));
         signed(approach, |approach| self.nondimensional.approach(approach))
+    }
+
+    /// `dF/dd` from [`Point::rates`].
+    fn slope_of(&self, force: f64, approach: f64) -> Result<f64> {
+        signed(4.0 / 3.0 * self.unit * force / approach, |slope| self.nondimensional.stiffness(slope))
+    }
+
+    /// The slope of a state; `None` at the pull-off under prescribed approach.
+    fn slope_of_state(&self, point: &Point) -> Result<Option<f64>> {
+        /// `(dd/da)/a` without adhesion.
+        const ELASTIC: f64 = 2.0;
+        let (force, approach) = point.rates(self.curve.lambda);
+        (approach > ELASTIC * closed::AT_FOLD).then(|| self.slope_of(force, approach)).transpose()
     }
 
     fn radius_of(&self, point: &Point) -> Result<f64> {
@@ -350,14 +364,17 @@ impl PreparedContact for Prepared {
             return Err(Error::OutOfRange { name, value, min: 0.0, max });
         }
         let a = sphere.unit * point.a;
-        let stiffness =
-            self.outputs.needs_stiffness().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
-        let area = self.outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
+        let outputs = &self.outputs;
+        let stiffness = if outputs.needs_stiffness() { sphere.slope_of_state(&point)? } else { None };
+        let held = outputs.needs_fixed_area().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
+        let area = outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
         let mut report = SolveReport::exact("closed form (Maugis-Dugdale)");
-        report.certificate.stiffness_error = stiffness.map(|_| 0.0);
+        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
+        report.certificate.force_error = closed::force_error(load);
         ContactState::new(force, report)
             .with_approach(approach)
             .with_stiffness(stiffness)
+            .with_stiffness_fixed_area(held)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }
@@ -367,7 +384,7 @@ impl PreparedContact for Prepared {
 mod tests {
     use super::*;
     use crate::jkr::AdhesiveSphere;
-    use crate::testing::pressed;
+    use crate::testing::{check_slope, pressed};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
 
     /// Roots in ln s, |ln s| < 20, and the cancellation of a^3 with the attraction.
@@ -607,7 +624,46 @@ mod tests {
             let a = (state.area.unwrap() / PI).sqrt();
             assert_abs_diff_eq!(sphere.force(a).unwrap(), state.force, epsilon = ROOTS);
             assert_abs_diff_eq!(sphere.approach(a).unwrap(), state.approach.unwrap(), epsilon = ROOTS);
-            assert_relative_eq!(state.stiffness.unwrap(), 2.0 * a, max_relative = ROOTS);
+            assert_relative_eq!(state.stiffness.unwrap(), sphere.slope(a).unwrap(), max_relative = ROOTS);
+            assert_relative_eq!(state.stiffness_fixed_area.unwrap(), 2.0 * a, max_relative = ROOTS);
+        }
+    }
+
+    #[test]
+    fn the_stiffness_is_the_slope_of_the_branch() {
+        let work = 1e-4;
+        for lambda in [1e-3, 0.1, 0.5, 0.9, 0.95, 1.5, 5.0, 100.0] {
+            let sphere = with_lambda(work, lambda);
+            let range = 2.0 * (9.0 / (16.0 * PI)).cbrt() * work.powf(2.0 / 3.0) / lambda;
+            let scene = scene(200.0, (1.0, 1.0), work, range);
+            let [by_force, by_approach] =
+                [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(Result::unwrap);
+            for share in [-0.9, -0.5, 0.1, 1.0, 30.0] {
+                check_slope(&MaugisDugdale, &scene, Load::Force(share * by_force.force.abs()));
+            }
+            let start = by_approach.approach;
+            for share in [0.05, 0.3, 0.9, 5.0] {
+                check_slope(&MaugisDugdale, &scene, Load::Approach(start + share * start.abs()));
+            }
+            let fold = pressed(&MaugisDugdale, &scene, Load::Force(by_force.force)).unwrap();
+            // Of hard spheres the radius there is a small part of the unit.
+            assert_abs_diff_eq!(fold.stiffness.unwrap(), 0.0, epsilon = 1e-5 * sphere.unit);
+            // A soft sphere pulls off at a slope without bound, a hard one comes down to its cohesive zone.
+            let end = pressed(&MaugisDugdale, &scene, Load::Approach(start)).unwrap();
+            if sphere.approach_fold.is_some() {
+                assert_eq!(end.stiffness, None);
+                assert!(end.stiffness_fixed_area.unwrap() > 0.0);
+            } else {
+                assert_eq!((end.area, end.stiffness_fixed_area), (Some(0.0), Some(0.0)));
+                // To the first order in the radius, which grows with the root of the approach.
+                let quotient = |by: f64| {
+                    let load = Load::Approach(start + by * start.abs());
+                    let next = pressed(&MaugisDugdale, &scene, load).unwrap();
+                    (next.force - end.force) / (by * start.abs())
+                };
+                let slope = 2.0 * quotient(1e-8) - quotient(4e-8);
+                assert_relative_eq!(end.stiffness.unwrap(), slope, max_relative = 1e-3);
+            }
         }
     }
 
@@ -813,13 +869,18 @@ mod tests {
                             check(sphere.radius_at_approach(value));
                             let mut scene = scene(20.0 * radius, (modulus, radius), work, range);
                             for area in [true, false] {
-                                scene.outputs.area = area;
+                                (scene.outputs.area, scene.outputs.stiffness_fixed_area) = (area, area);
                                 let Ok(mut contact) = MaugisDugdale.prepare(&scene, 0) else { continue };
                                 for load in [Load::Force(value), Load::Approach(value)] {
                                     match contact.solve(load) {
                                         Ok(state) => {
                                             solved += 1;
-                                            let values = [state.approach, state.stiffness, state.area];
+                                            let values = [
+                                                state.approach,
+                                                state.stiffness,
+                                                state.stiffness_fixed_area,
+                                                state.area,
+                                            ];
                                             assert!(values.iter().flatten().all(|value| value.is_finite()));
                                         }
                                         Err(error) => check(Err(error)),

@@ -12,8 +12,8 @@ pub(crate) trait PeriodicLaw: Send {
     fn admit(&self, pressure: f64) -> Result<()>;
     /// `A/A0` at p > 0.
     fn fraction(&self, pressure: f64) -> Result<f64>;
-    /// `-dp/d(mean gap)` at p > 0, in `E* / L`.
-    fn stiffness(&self, pressure: f64) -> Result<f64>;
+    /// `-dp/d(mean gap)` at p > 0, in `E* / L`; `None` where the contact is full and the gap does not change.
+    fn stiffness(&self, pressure: f64) -> Result<Option<f64>>;
     /// Mean gap at p >= 0, in h.
     fn gap(&self, pressure: f64) -> Result<f64>;
     /// The pressure at a mean gap >= 0, 0 where the surfaces are apart.
@@ -74,11 +74,11 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
             Load::Force(force) => force,
             _ => nondimensional.force(pressure)?,
         };
-        let stiffness = self
-            .outputs
-            .needs_stiffness()
-            .then(|| nondimensional.stiffness(or_none(&|p| self.law.stiffness(p))?))
-            .transpose()?;
+        let stiffness = match self.outputs.needs_stiffness() {
+            true if pressure > 0.0 => self.law.stiffness(pressure)?,
+            asked => asked.then_some(0.0),
+        };
+        let stiffness = stiffness.map(|stiffness| nondimensional.stiffness(stiffness)).transpose()?;
         let area = self
             .outputs
             .area
@@ -95,7 +95,7 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
         };
         ContactState::new(force, report)
             .with_mean_gap(mean_gap)
-            .with_stiffness(stiffness)
+            .with_elastic_stiffness(stiffness)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }

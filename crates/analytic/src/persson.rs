@@ -258,8 +258,8 @@ impl PeriodicLaw for PressureDiffusion {
         Ok(erf(pressure / self.slope))
     }
 
-    fn stiffness(&self, pressure: f64) -> Result<f64> {
-        Ok(pressure / self.decay(pressure))
+    fn stiffness(&self, pressure: f64) -> Result<Option<f64>> {
+        Ok(Some(pressure / self.decay(pressure)))
     }
 
     fn gap(&self, pressure: f64) -> Result<f64> {
@@ -342,7 +342,11 @@ mod tests {
         for (roll_off, range) in [(None, 64.0), (Some(8.0), 128.0)] {
             let law = law(0.7, roll_off, range, 0.45);
             let p = 1e-9 * law.slope;
-            assert_relative_eq!(law.stiffness(p).unwrap() / p, law.light().recip(), max_relative = 1e-5);
+            assert_relative_eq!(
+                law.stiffness(p).unwrap().unwrap() / p,
+                law.light().recip(),
+                max_relative = 1e-5
+            );
             // The exponential law, one decade of load: u falls by u_0 ln 10.
             let fall = law.gap(p).unwrap() - law.gap(10.0 * p).unwrap();
             assert_relative_eq!(fall, law.light() * 10.0_f64.ln(), max_relative = 1e-5);

@@ -1,16 +1,19 @@
 //! Checks that every closed form passes (tests only).
 
-use approx::assert_relative_eq;
-use contact_model::{ContactModel, ContactState, Load, Nondimensionalisation, Result, Scene, Surface};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use contact_model::{
+    Conductance, ContactModel, ContactState, Load, Nondimensionalisation, Result, Scene, Surface,
+};
 
 /// Digits to which the reference values are printed.
 pub(crate) const PRINTED: f64 = 1e-10;
 /// A root and a handful of products.
 pub(crate) const ROUNDING: f64 = 1e-14;
 
-/// One state, with the area where the model has one.
+/// One state, with the stiffness of the held area, and the area where the model has one.
 pub(crate) fn pressed(model: &dyn ContactModel, scene: &Scene, load: Load) -> Result<ContactState> {
     let mut scene = scene.clone();
+    scene.outputs.stiffness_fixed_area = true;
     scene.outputs.area = !matches!(scene.surface, Surface::SelfAffine(_));
     model.prepare(&scene, 0)?.solve(load)
 }
@@ -33,6 +36,7 @@ pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
     );
     assert!(2.0 * here.force <= (low.force + high.force) * (1.0 + ROUNDING));
     assert!(low.stiffness.unwrap() <= high.stiffness.unwrap());
+    assert_eq!(here.stiffness, here.stiffness_fixed_area);
     let stiffer = Scene { modulus: 2.0 * scene.modulus, ..scene.clone() };
     let doubled = pressed(model, &stiffer, Load::Approach(d)).unwrap();
     assert_relative_eq!(doubled.force, 2.0 * here.force, max_relative = ROUNDING);
@@ -41,6 +45,31 @@ pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
         assert!(zero.force <= 0.0 && zero.approach.unwrap() <= 0.0 && zero.stiffness.unwrap() <= 0.0);
         assert!(zero.area.is_none_or(|a| a <= 0.0));
     }
+}
+
+/// Of an adhesive sphere: dF/dd of a state is that of its neighbours under loads of the same kind, by central differences; the held
+/// area has 2 E* a, and the conductance follows from it.
+pub(crate) fn check_slope(model: &dyn ContactModel, scene: &Scene, load: Load) {
+    /// Relative step of the load; its square times third derivatives that grow towards a fold is the error of a difference.
+    const STEP: f64 = 1e-5;
+    const DIFFERENCES: f64 = 1e-6;
+    let mut scene = scene.clone();
+    scene.outputs.conductance = Conductance::Electrical { first: 1.0, second: 3.0 };
+    let here = pressed(model, &scene, load).unwrap();
+    let [low, high] = [1.0 - STEP, 1.0 + STEP].map(|by| {
+        let load = match load {
+            Load::Force(force) => Load::Force(by * force),
+            Load::Approach(approach) => Load::Approach(by * approach),
+            other => panic!("{other:?}"),
+        };
+        pressed(model, &scene, load).unwrap()
+    });
+    let slope = (high.force - low.force) / (high.approach.unwrap() - low.approach.unwrap());
+    let held = 2.0 * scene.modulus * (here.area.unwrap() / std::f64::consts::PI).sqrt();
+    assert_abs_diff_eq!(here.stiffness.unwrap(), slope, epsilon = DIFFERENCES * slope.abs().max(held));
+    assert_relative_eq!(here.stiffness_fixed_area.unwrap(), held, max_relative = ROUNDING);
+    let conductance = scene.outputs.conductance.of(held, scene.modulus).unwrap().unwrap();
+    assert_relative_eq!(here.conductance.unwrap(), conductance, max_relative = ROUNDING);
 }
 
 /// F and k follow E* and the unit of length to both ends of f64.

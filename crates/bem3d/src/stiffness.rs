@@ -1,11 +1,13 @@
 //! The incremental stiffness on a given contact set: one linear solve with two-sided bounds.
 
 use crate::active_set::{Problem, Solved};
+use crate::geometry::CellSet;
 use crate::kernel::KernelTable;
-use crate::linear::{Energy, StoppingCriteria};
+use crate::linear::{Energy, Fixed, StoppingCriteria};
 use crate::operator::{Conditioning, Recipe};
 use crate::real::{dot, each, sum, update};
 use contact_model::Stop;
+use std::borrow::Cow;
 
 /// Nondimensional stiffness with its evidence.
 #[derive(Debug, Clone)]
@@ -16,7 +18,7 @@ pub struct Stiffness {
     pub solve_error: f64,
     /// Estimated relative error from cells that may be on the wrong side of the set.
     pub set_error: f64,
-    /// `G q = 1` on the contact set.
+    /// `G q = 1` on the cells that respond.
     pub q: Vec<f64>,
     /// Conjugate gradient steps.
     pub steps: usize,
@@ -33,7 +35,32 @@ impl Stiffness {
     }
 }
 
-/// Solves `G q = 1` on the contact set of a state until the relative error of k is estimated below half of `tolerance`.
+/// The cells of a contact that follow a small change of the approach.
+#[derive(Debug, Clone)]
+pub struct Responding<'a> {
+    /// The cells.
+    pub cells: Cow<'a, CellSet>,
+    /// A pressure at which they would no longer follow; infinite where nothing limits it.
+    pub limit: f64,
+    /// Cells that cannot be on the wrong side, whatever is left of their gaps: saturated ones of a contact that is held as a whole; those at
+    /// the limit without a gap, where the direction of the load decides.
+    pub decided: CellSet,
+}
+
+impl<'a> Responding<'a> {
+    /// The cells below the hardness.
+    pub fn elastic(state: &'a Solved, hardness: f64) -> Self {
+        Self { cells: state.elastic(hardness), limit: hardness, decided: CellSet::default() }
+    }
+
+    /// The whole contact, held.
+    pub fn whole(state: &'a Solved, hardness: f64) -> Self {
+        let decided = state.contact.without(&state.elastic(hardness));
+        Self { cells: Cow::Borrowed(&state.contact), limit: f64::INFINITY, decided }
+    }
+}
+
+/// Solves `G q = 1` on the cells that respond until the relative error of k is estimated below half of `tolerance`.
 ///
 /// For any q with residual `r = 1 - G q` the true k lies between the Ritz value `(1'q)^2 / (q'Gq)` and
 /// `1'q + r'q + r'G^-1 r`; both errors are quadratic in that of q. `guess` may be the q of a similar set; that of a factored state is
@@ -44,14 +71,16 @@ impl Stiffness {
 pub fn solve(
     problem: &mut Problem,
     state: &Solved,
+    responding: &Responding<'_>,
     guess: Option<Vec<f64>>,
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Stiffness {
     let grid = problem.grid();
-    let Problem { operators, workspace, hardness, .. } = problem;
-    // Saturated cells keep their pressure: the rest of the contact is what is stiff.
-    let (contact, tuning) = (&*state.elastic(*hardness), *operators.tuning());
+    let Problem { operators, workspace, .. } = problem;
+    let (contact, tuning) = (&*responding.cells, *operators.tuning());
+    // The q of a factored state is that of its whole contact.
+    let factored = state.q.as_ref().filter(|q| q.len() == contact.len());
     if contact.is_empty() && !state.contact.is_empty() {
         return Stiffness { solve_error: 0.0, ..Stiffness::unknown() };
     }
@@ -59,20 +88,28 @@ pub fn solve(
         return Stiffness::unknown();
     };
     // A factored state needs no transform.
-    let conditioning = if state.q.is_some() { Conditioning::Identity } else { recipe.conditioning };
+    let conditioning = if factored.is_some() { Conditioning::Identity } else { recipe.conditioning };
     let recipe = Recipe { conditioning, ..recipe };
-    let left = state.gap_on(contact);
-    let room = state.room(contact, *hardness);
-    let undecided = state.undecided(grid, contact, &left, &tuning);
+    let mut left = state.gap_on(contact);
+    if !responding.decided.is_empty() {
+        let known = contact.carry(&responding.decided, &vec![true; responding.decided.len()]);
+        left.iter_mut().zip(known).filter(|(_, known)| *known).for_each(|(left, _)| *left = 0.0);
+    }
+    let mut room = state.room(contact, responding.limit).into_owned();
+    let mut undecided = state.undecided(grid, contact, &left, &tuning);
+    if !responding.decided.is_empty() {
+        undecided = undecided.without(&responding.decided);
+        contact.add_carried(&responding.decided, &vec![f64::INFINITY; responding.decided.len()], &mut room);
+    }
     let targets = contact.union(&undecided);
     let mut started = false;
-    let mut q = guess.or_else(|| state.q.clone());
+    let mut q = guess.or_else(|| factored.cloned());
     let (mut r, mut v) = (vec![1.0; contact.len()], Vec::new());
     let mut best = Stiffness::unknown();
     let (mut steps, mut unimproved) = (0, 0);
     for round in 0..tuning.stiffness_rounds {
         // A guess will be corrected.
-        let rough = round == 0 && state.q.is_none() && tolerance >= tuning.stiffness_single;
+        let rough = round == 0 && factored.is_none() && tolerance >= tuning.stiffness_single;
         if let Some(q) = &q {
             if rough {
                 operators.rough(contact, q, &targets, &mut v);
@@ -93,7 +130,7 @@ pub fn solve(
             floor: 0.0,
             steps: if last { 0 } else { tuning.stiffness_steps },
         };
-        let outcome = workspace.solve(operators, &mut r, false, criteria, stop);
+        let outcome = workspace.solve(operators, &mut r, Fixed::Approach, criteria, stop);
         let Some(q) = &mut q else {
             steps += outcome.steps;
             q = Some(r.clone());

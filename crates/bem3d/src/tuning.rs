@@ -87,6 +87,16 @@ pub struct Tuning {
     /// ... and steps of the next inner solve at most after one that was not: long ones change the sets too much at once. 2 solved every
     /// load of N = 257 and 1025, periodic and free, p_s = 1 to 0.01 of E* times the rms gradient (2026-11); without a limit some stagnated.
     pub short_steps: usize,
+    /// With a hardness: share of a step below which it is nothing, and the fall-back takes over.
+    pub jammed: f64,
+    /// Outer iterations without better residuals, shortened ones among them, after which the fall-back takes over ...
+    pub stalled: usize,
+    /// ... for this many steps between two evaluations ...
+    pub fall_back_steps: usize,
+    /// ... until the residuals have fallen by this factor, by its square the second time, and so on.
+    pub fall_back: f64,
+    /// Gaps below this share of the approach may be those of rounding: no fall-back is begun for them.
+    pub rounding: f64,
     /// Candidates reach up to this multiple of the approach; a plane that ends higher costs one more outer iteration.
     pub candidates: f64,
     /// Candidates up to one approach serve another of at least this share of it. Chosen without a measurement.
@@ -178,6 +188,11 @@ impl Tuning {
         noise: 1.0,
         whole_step: 0.9,
         short_steps: 2,
+        jammed: 1e-6,
+        stalled: 30,
+        fall_back_steps: 20,
+        fall_back: 0.1,
+        rounding: 1e-11,
         candidates: 1.05,
         kept_candidates: 0.9,
         factor_rounding: 1e-12,
@@ -219,7 +234,7 @@ macro_rules! constants {
 }
 
 /// Every constant of `Tuning`, for a study of what each is worth.
-pub const CONSTANTS: [Constant; 61] = constants![
+pub const CONSTANTS: [Constant; 66] = constants![
     pair_ns,
     point_ns,
     single,
@@ -255,6 +270,11 @@ pub const CONSTANTS: [Constant; 61] = constants![
     noise,
     whole_step,
     short_steps,
+    jammed,
+    stalled,
+    fall_back_steps,
+    fall_back,
+    rounding,
     candidates,
     kept_candidates,
     factor_rounding,

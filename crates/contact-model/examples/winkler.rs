@@ -75,7 +75,7 @@ impl PreparedContact for Layer {
         let count = touching.len() as f64;
         ContactState::new(self.spring * touching.iter().map(|z| approach - z).sum::<f64>(), report)
             .with_approach(approach)
-            .with_stiffness(self.outputs.needs_stiffness().then_some(self.spring * count))
+            .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(self.spring * count))
             .with_area(self.outputs.area.then_some(self.cell * count))
             .completed(&self.outputs, self.normalisation.modulus)
     }

@@ -7,8 +7,10 @@ use crate::state::ContactState;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[allow(clippy::struct_excessive_bools)] // A set of names, each either asked for or not.
 pub struct Outputs {
-    /// Incremental stiffness k = dF/dd.
+    /// Stiffness k = dF/dd along the branch.
     pub stiffness: bool,
+    /// Stiffness of the whole contact area, held.
+    pub stiffness_fixed_area: bool,
     /// Real contact area.
     pub area: bool,
     /// Mean gap; with periodic boundaries only, where a state has no approach.
@@ -33,16 +35,23 @@ impl Outputs {
         self.pressure || self.displacement || self.gap || self.plastic_depth
     }
 
-    /// Whether the stiffness has to be computed: for itself or for what follows from it.
+    /// Whether a stiffness has to be computed, of either kind: all that an elastic model has to know.
     pub fn needs_stiffness(&self) -> bool {
-        self.stiffness || self.conductance != Conductance::Off
+        self.stiffness || self.needs_fixed_area()
+    }
+
+    /// Whether the stiffness of the held contact area has to be computed: for itself or for the conductance.
+    pub fn needs_fixed_area(&self) -> bool {
+        self.stiffness_fixed_area || self.conductance != Conductance::Off
     }
 }
 
-/// Conductance through the contact of two half-spaces: `Lambda = 2 k/(E* (rho_1 + rho_2))` (Barber 2003; Eq. 13 of the paper).
+/// Conductance through the contact of two half-spaces: `Lambda = 2 k/(E* (rho_1 + rho_2))` (Barber 2003; Eq. 13 of the paper), with the
+/// stiffness k of the whole contact area, held ([`ContactState::stiffness_fixed_area`]).
 ///
-/// Exact for any contact set, periodic or not: potential and normal displacement are the same harmonic function. The bodies conduct
-/// through the real contact only, films and radiation apart. It costs nothing beyond the stiffness.
+/// Exact for any contact area, periodic or not: potential and normal displacement are the same harmonic function. The bodies conduct
+/// through the real contact only, films and radiation apart; cells at the hardness conduct, and an attraction across a gap does not. It
+/// costs nothing beyond that stiffness.
 ///
 /// ```
 /// use contact_model::Conductance;
@@ -119,17 +128,19 @@ impl Conductance {
 }
 
 impl ContactState {
-    /// The state with what follows from its stiffness, and without the stiffness where that was not asked for itself.
+    /// The state with what follows from the stiffness of its contact area, and without a stiffness that was not asked for itself.
     ///
-    /// The last thing that a model does: it computes the stiffness where [`Outputs::needs_stiffness`] says so.
+    /// The last thing that a model does: it computes the stiffnesses where [`Outputs::needs_stiffness`] and
+    /// [`Outputs::needs_fixed_area`] say so.
     ///
     /// # Errors
     /// As [`Conductance::of`].
     pub fn completed(mut self, outputs: &Outputs, modulus: f64) -> Result<Self> {
-        if let Some(stiffness) = self.stiffness {
+        if let Some(stiffness) = self.stiffness_fixed_area {
             self.conductance = outputs.conductance.of(stiffness, modulus)?;
         }
         self.stiffness = self.stiffness.filter(|_| outputs.stiffness);
+        self.stiffness_fixed_area = self.stiffness_fixed_area.filter(|_| outputs.stiffness_fixed_area);
         Ok(self)
     }
 }

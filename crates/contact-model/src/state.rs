@@ -21,11 +21,17 @@ pub struct ContactState {
     pub force: f64,
     /// Approach d from first touch; `None` with periodic boundaries.
     pub approach: Option<f64>,
-    /// Mean gap, where asked for: the distance of the mean planes, `mean(u + z) - d` over the defined points. `None` also where a theory has
-    /// none (without load).
+    /// Mean gap, where asked for: the distance between the mean plane of the defined heights and that of the deformed half-space. Without
+    /// undefined points it is the mean of the gap field; with them it may be negative. `None` also where a theory has none (without load).
     pub mean_gap: Option<f64>,
-    /// Incremental stiffness k = dF/dd on the contact set of this state. With periodic boundaries -dF/d(mean gap).
+    /// Stiffness k = dF/dd along the branch of the states, with periodic boundaries -dF/d(mean gap): the slope of the force as the load
+    /// goes on in the direction of its last change, a first load growing. What moves with the load moves: cells at the hardness flow, the
+    /// fronts of an adhesive contact advance or recede. At a kink, such as an old load that a plastic path reaches again, the slope in the
+    /// other direction differs.
     pub stiffness: Option<f64>,
+    /// Stiffness of the whole contact area of this state, held: bonded cells at the hardness or at a front included. The conductance follows
+    /// from it. Equal to the stiffness without hardness and adhesion.
+    pub stiffness_fixed_area: Option<f64>,
     /// Real contact area.
     pub area: Option<f64>,
     /// Conductance through the contact ([`crate::Conductance`]).
@@ -52,6 +58,7 @@ impl ContactState {
             approach: None,
             mean_gap: None,
             stiffness: None,
+            stiffness_fixed_area: None,
             area: None,
             conductance: None,
             patches: None,
@@ -79,6 +86,20 @@ impl ContactState {
     #[must_use]
     pub fn with_stiffness(self, stiffness: impl Into<Option<f64>>) -> Self {
         Self { stiffness: stiffness.into(), ..self }
+    }
+
+    /// With a stiffness of the held contact area.
+    #[must_use]
+    pub fn with_stiffness_fixed_area(self, stiffness: impl Into<Option<f64>>) -> Self {
+        Self { stiffness_fixed_area: stiffness.into(), ..self }
+    }
+
+    /// With the stiffness of an elastic contact, which is the same along the branch and with its area held: to first order a small
+    /// change of the load does not change the contact area's force.
+    #[must_use]
+    pub fn with_elastic_stiffness(self, stiffness: impl Into<Option<f64>>) -> Self {
+        let stiffness = stiffness.into();
+        Self { stiffness, stiffness_fixed_area: stiffness, ..self }
     }
 
     /// With a real contact area.
@@ -297,7 +318,7 @@ impl Status {
 /// How exactly the contact conditions hold, measured with the exact operator in double precision.
 ///
 /// All are relative and dimensionless; `s` is the measured rms height (the approach for a body without one). A tolerance `t` is
-/// met when every one of them is at most `t` ([`Certificate::meets`]).
+/// met when every one of them that it bounds is at most `t` ([`Certificate::meets`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
     /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form. With a hardness p_s the minimum of
@@ -307,22 +328,35 @@ pub struct Certificate {
     pub penetration: f64,
     /// `sum p |g| / (F s)`; of cells at the hardness p_s only a positive gap counts.
     pub complementarity: f64,
-    /// `|F - F_asked| / F_asked`; 0 when the approach was prescribed.
+    /// `|F - F_asked| / F_asked`; of a mean gap its miss over s; 0 when the approach was prescribed.
     pub load_error: f64,
-    /// Estimated relative error of the stiffness; `None` when it was not asked for.
+    /// Estimated relative error of the stiffness, and of that of the held contact area where both are computed; `None` where none is,
+    /// or where the stiffness is a difference quotient ([`Certificate::quotient_error`]).
     pub stiffness_error: Option<f64>,
+    /// Estimated relative error of a stiffness that is a difference quotient along the branch. The cells decide it, not the tolerance:
+    /// it is no part of [`Certificate::worst`]. `None` where the stiffness is not such a quotient.
+    pub quotient_error: Option<f64>,
+    /// Relative error of the force where an approach or a mean gap was prescribed, estimated from above by the gaps left on the contact
+    /// and the largest stiffness that it can have. `None` where the force itself was prescribed. The tolerance bounds
+    /// the gaps, not this: no part of [`Certificate::worst`].
+    pub force_error: Option<f64>,
     /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over `work/range`; `None` without
     /// adhesion of finite range.
     pub equilibrium: Option<f64>,
 }
 
 impl Certificate {
-    /// Whether every number is at most `tolerance` (NaN never is).
+    /// Whether every number of [`Certificate::worst`] is at most `tolerance` (NaN never is).
     pub fn meets(&self, tolerance: f64) -> bool {
         self.worst() <= tolerance
     }
 
-    /// The largest of the numbers; NaN if one of them is.
+    /// Estimated relative error of the stiffness, however it was found.
+    pub fn error_of_stiffness(&self) -> Option<f64> {
+        self.stiffness_error.or(self.quotient_error)
+    }
+
+    /// The largest of the numbers that the tolerance bounds; NaN if one of them is.
     pub fn worst(&self) -> f64 {
         [
             self.duality_gap,
@@ -350,6 +384,12 @@ impl fmt::Display for Certificate {
         if let Some(e) = self.equilibrium {
             write!(f, ", equilibrium {e:.1e}")?;
         }
+        if let Some(e) = self.quotient_error {
+            write!(f, ", quotient_error {e:.1e}")?;
+        }
+        if let Some(e) = self.force_error {
+            write!(f, ", force_error {e:.1e}")?;
+        }
         Ok(())
     }
 }
@@ -361,13 +401,20 @@ mod tests {
 
     #[test]
     fn completed_states_have_what_was_asked_for() {
-        let state = ContactState::new(1.0, SolveReport::exact("test")).with_approach(1.0).with_stiffness(2.0);
+        let state =
+            ContactState::new(1.0, SolveReport::exact("test")).with_approach(1.0).with_elastic_stiffness(2.0);
         let conductance = crate::Conductance::Electrical { first: 1.0, second: 0.0 };
         let outputs = Outputs { conductance, ..Outputs::default() };
         let done = state.clone().completed(&outputs, 0.5).unwrap();
         assert_eq!((done.stiffness, done.conductance), (None, Some(8.0)));
-        let done = state.completed(&Outputs { stiffness: true, ..Outputs::default() }, 0.5).unwrap();
-        assert_eq!((done.stiffness, done.conductance), (Some(2.0), None));
+        let done = state.clone().completed(&Outputs { stiffness: true, ..Outputs::default() }, 0.5).unwrap();
+        assert_eq!((done.stiffness, done.stiffness_fixed_area, done.conductance), (Some(2.0), None, None));
+        // The whole contact conducts, whatever of it is stiff.
+        let outputs =
+            Outputs { conductance, stiffness: true, stiffness_fixed_area: true, ..Outputs::default() };
+        let done = state.with_stiffness(-1.0).completed(&outputs, 0.5).unwrap();
+        assert_eq!((done.stiffness, done.stiffness_fixed_area), (Some(-1.0), Some(2.0)));
+        assert_eq!(done.conductance, Some(8.0));
     }
 
     #[test]

@@ -64,7 +64,7 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
         let pair = again(units[u], j, tolerance, stop)?;
         progress.advance(1, false);
         Ok(pair)
-    })?;
+    });
     progress.end();
     let pairs: Vec<SolvePair> = collect(done)?.into_iter().flatten().collect();
     let largest = pairs.iter().map(SolvePair::difference).fold(0.0, f64::max);

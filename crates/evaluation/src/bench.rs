@@ -1,6 +1,7 @@
 //! What an answer costs: one row per surface, tolerance and load, with the work, the time, the memory and the certificate.
 
 use crate::forces::Forces;
+use crate::limits::{self, within};
 use crate::realisation::Discretisation;
 use crate::table_of::{maybe, names};
 use bem3d::benchmarks::{Part, Spent, take_parts};
@@ -206,8 +207,10 @@ struct BenchSeries {
 /// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model
 /// refuses; whatever `found` says. The first of them stops everything.
 pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) -> Result<Vec<BenchRow>> {
-    if bench.threads == 0 {
-        return Err(Error::parameter("threads", 0, "at least one thread"));
+    within("threads", bench.threads, &(1..=runs::MOST_THREADS))?;
+    if let Surfaces::SelfAffine { cells, rows, .. } = &bench.surfaces {
+        cells.iter().try_for_each(|&cells| within("cells", cells, &limits::CELLS).map(drop))?;
+        rows.iter().try_for_each(|&rows| within("rows", rows, &(1..=*limits::CELLS.end())).map(drop))?;
     }
     if let Some(tolerance) = bench.tolerances.iter().find(|t| !(**t > 0.0 && **t < 1.0)) {
         return Err(Error::parameter(
@@ -228,7 +231,7 @@ pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) ->
     }
     let order: Vec<usize> = (0..series.len()).collect();
     let done =
-        run_jobs(Threads::all(bench.threads), &order, &never, |i, stop| series[i].run(bench, stop, found))?;
+        run_jobs(Threads::all(bench.threads), &order, &never, |i, stop| series[i].run(bench, stop, found));
     Ok(collect(done)?.into_iter().flatten().collect())
 }
 

@@ -1,5 +1,6 @@
 //! Lists of loads, as written on the command line.
 
+use crate::limits::MOST_LOADS;
 use runs::{Error, Result};
 use std::collections::HashSet;
 
@@ -14,9 +15,6 @@ pub struct Forces {
 
 const EXPECTED: &str = "positive numbers and logarithmic ranges MIN:MAX:COUNT, separated by commas \
                         (1e-2,1,20 or 1e-6:20:23)";
-
-/// Ranges longer than this are a slip of the finger.
-const MOST: usize = 10_000;
 
 impl Forces {
     /// Reads a list such as `1e-2,1,20`, a range `MIN:MAX:COUNT` (logarithmic, both ends in, exactly), or several of both.
@@ -40,6 +38,10 @@ impl Forces {
                 [value] => values.push(positive(value)?),
                 [min, max, count] => values.extend(range(item, positive(min)?, positive(max)?, count)?),
                 _ => return Err(Error::parameter("forces", item, EXPECTED)),
+            }
+            if values.len() > MOST_LOADS {
+                let expected = format!("at most {MOST_LOADS} loads in all, there are {}", values.len());
+                return Err(Error::parameter("forces", item, expected));
             }
         }
         let mut seen = HashSet::new();
@@ -74,8 +76,8 @@ fn positive(text: &str) -> Result<f64> {
 
 fn range(item: &str, min: f64, max: f64, count: &str) -> Result<Vec<f64>> {
     let count: usize = count.trim().parse().map_err(|_| Error::parameter("forces", item, EXPECTED))?;
-    if min >= max || !(2..=MOST).contains(&count) {
-        let expected = format!("MIN < MAX and a COUNT of 2 to {MOST} in MIN:MAX:COUNT");
+    if min >= max || !(2..=MOST_LOADS).contains(&count) {
+        let expected = format!("MIN < MAX and a COUNT of 2 to {MOST_LOADS} in MIN:MAX:COUNT");
         return Err(Error::parameter("forces", item, expected));
     }
     let (low, high) = (min.log10(), max.log10());
@@ -111,5 +113,7 @@ mod tests {
             assert!(error.starts_with("forces = ") && error.contains("expected"), "{bad}: {error}");
         }
         assert!(Forces::parse("1:2:99999999999").is_err());
+        let many = ["1:2:9999"; 3].join(",");
+        assert!(Forces::parse(&many).unwrap_err().to_string().contains("at most 10000 loads in all"));
     }
 }

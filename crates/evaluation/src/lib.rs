@@ -35,6 +35,7 @@ mod forces;
 mod grid_error;
 mod hard_cases;
 mod header;
+pub mod limits;
 mod makespans;
 mod manifest;
 mod measured;

@@ -209,7 +209,8 @@ impl Realisation {
             // One sort and one transform; the loads cost nothing beside them.
             Discretisation::Mdr1d { .. } => 1e-9 * n * n.log2(),
         };
-        1 + (1e3 * seconds) as u64
+        // Costs are added up.
+        1 + (1e3 * seconds).min(1e15) as u64
     }
 
     /// Solves the unit from the smallest load upwards with one prepared contact. A solve that does not converge is recorded with

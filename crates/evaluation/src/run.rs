@@ -1,6 +1,7 @@
 //! One run: plain parameters, checked.
 
 use crate::forces::Forces;
+use crate::limits::{self, within};
 use runs::{Error, Result};
 use std::path::PathBuf;
 
@@ -174,14 +175,19 @@ impl Run {
         if !(1e-12..=0.1).contains(&tolerance) {
             return Err(Error::parameter("tolerance", tolerance, "a number from 1e-12 to 0.1"));
         }
+        let fractal_dimensions = request.fractal_dimensions.as_deref().map(dimensions).transpose()?;
+        // Each fractal dimension is solved on every surface and line.
+        let of_each = fractal_dimensions.as_ref().map_or(FRACTAL_DIMENSIONS.len(), Vec::len);
+        let counted =
+            |name, count| limits::jobs(name, within(name, count, &limits::COUNT)?, of_each).map(|()| count);
         Ok(Self {
             preset: request.preset,
             // Fewer than 3 cells a side hold no wave besides the Nyquist one, which has no phase: no relief.
-            cells: within("cells", request.cells.unwrap_or(sizes.cells), 3, 1 << 16)?,
-            surfaces: within("surfaces", request.surfaces.unwrap_or(sizes.surfaces), 1, 1_000_000)?,
-            elements: within("elements", request.elements.unwrap_or(sizes.elements), 3, 1 << 31)?,
-            lines: within("lines", request.lines.unwrap_or(sizes.lines), 1, 10_000_000)?,
-            fractal_dimensions: request.fractal_dimensions.as_deref().map(dimensions).transpose()?,
+            cells: within("cells", request.cells.unwrap_or(sizes.cells), &limits::CELLS)?,
+            surfaces: counted("surfaces", request.surfaces.unwrap_or(sizes.surfaces))?,
+            elements: within("elements", request.elements.unwrap_or(sizes.elements), &limits::ELEMENTS)?,
+            lines: counted("lines", request.lines.unwrap_or(sizes.lines))?,
+            fractal_dimensions,
             forces_3d: forces(sizes.forces_3d)?,
             forces_1d: forces(sizes.forces_1d)?,
             forces_given: request.forces.is_some(),
@@ -262,14 +268,6 @@ pub fn list(values: &[f64]) -> String {
     values.iter().map(|v| format!("{v:?}")).collect::<Vec<_>>().join(",")
 }
 
-fn within(name: &'static str, value: usize, min: usize, max: usize) -> Result<usize> {
-    if (min..=max).contains(&value) {
-        Ok(value)
-    } else {
-        Err(Error::parameter(name, value, format!("a whole number from {min} to {max}")))
-    }
-}
-
 fn dimensions(asked: &[f64]) -> Result<Vec<f64>> {
     let name = "fractal-dimensions";
     if asked.is_empty() {
@@ -289,7 +287,7 @@ fn dimensions(asked: &[f64]) -> Result<Vec<f64>> {
 fn threads(asked: Option<usize>) -> Result<usize> {
     match asked {
         None | Some(0) => Ok(std::thread::available_parallelism().map_or(1, usize::from)),
-        Some(n) => within("threads", n, 1, 4096),
+        Some(n) => within("threads", n, &(1..=runs::MOST_THREADS)),
     }
 }
 

@@ -132,7 +132,7 @@ impl Sample {
                 complementarity: real(13)?,
                 load_error: real(14)?,
                 stiffness_error: maybe(15)?,
-                equilibrium: None,
+                ..Certificate::default()
             },
         })
     }

@@ -30,7 +30,7 @@ pub fn sweep(
     })?;
     let jobs = realisation_jobs(units.to_vec());
     let threads = Threads { total: threads, jobs: in_flight };
-    collect(run_stored(what, &jobs, store, threads, progress, &never)?)
+    collect(run_stored(what, &jobs, store, threads, progress, &never))
 }
 
 /// Units as jobs that share what a line's ensemble plans once.

@@ -4,7 +4,7 @@ use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
 use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list};
 use plots::{Axis, LineStyle, Panels, Picture, extent};
-use runs::{CsvFile, Error, Progress, Result, write_npy};
+use runs::{CsvFile, Error, Progress, Result, threads_for_memory, write_npy};
 use std::path::{Path, PathBuf};
 
 /// Flags that decide what Fig. 5 holds.
@@ -16,6 +16,9 @@ const DIMENSIONS: [f64; 3] = [3.0, 2.5, 2.0];
 /// Bins of the CSV: two extremes each, more than a picture has pixels.
 const BINS: usize = 1000;
 
+/// Memory of drawing a line, bytes per element.
+const BYTES: f64 = 40.0;
+
 /// Draws line number 0 of each fractal dimension (3, 2.5 and 2 by default): `fig5.csv` with the lowest and the highest element of
 /// each of 1000 bins, so that no peak is lost, `fig5.svg`, `fig5.png`, and whole as `fig5-df2.0.npy`, ...
 ///
@@ -24,6 +27,7 @@ const BINS: usize = 1000;
 /// # Errors
 /// Files that cannot be written, lines that do not fit in memory.
 pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    threads_for_memory(1, BYTES * run.elements as f64, "elements", run.elements)?;
     let session = Session::open(run)?;
     let dimensions: Vec<f64> = run
         .fractal_dimensions

@@ -69,7 +69,7 @@ impl PreparedContact for Springs {
         let force = self.foundation * self.cell * touching.iter().map(|z| approach - z).sum::<f64>();
         ContactState::new(force, SolveReport::exact("independent springs"))
             .with_approach(approach)
-            .with_stiffness(outputs.needs_stiffness().then_some(self.foundation * area))
+            .with_elastic_stiffness(outputs.needs_stiffness().then_some(self.foundation * area))
             .with_area(outputs.area.then_some(area))
             .completed(outputs, self.normalisation.modulus)
     }

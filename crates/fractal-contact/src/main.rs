@@ -7,7 +7,8 @@ mod start;
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
 use fractal_contact::scenes::{
-    GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run, write_twin,
+    Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run,
+    write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use start::{read_scene, stopped_by_signals};
@@ -16,7 +17,10 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 fn main() -> ExitCode {
-    match execute(Arguments::parse()) {
+    let arguments = Arguments::parse();
+    let asked = std::env::var_os(runs::THREADS_VARIABLE);
+    let done = runs::with_threads(asked.as_deref(), || execute(arguments));
+    match done.map_err(Error::from).and_then(|done| done) {
         Ok(code) => code,
         Err(error) => {
             runs::err!("{error}");
@@ -84,6 +88,9 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             weibull,
             seed,
         } => {
+            if let Some(hurst) = hurst.filter(|hurst| !(0.0..=1.0).contains(hurst)) {
+                return Err(runs::Error::parameter("hurst", hurst, "a number in [0, 1]").into());
+            }
             let fractal_dimension = fractal_dimension.or_else(|| Some(3.0 - hurst?)).unwrap_or(2.4);
             let make = GeneratedSurface {
                 cells,

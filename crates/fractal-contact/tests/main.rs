@@ -4,6 +4,7 @@
 
 mod answers;
 mod bad_scenes;
+mod limits;
 mod measured_maps;
 mod own_models;
 mod program;
@@ -11,4 +12,5 @@ mod rectangles;
 mod report;
 mod resume;
 mod scenes;
+mod stiffnesses;
 mod theories_on_maps;

@@ -36,6 +36,27 @@ const FREE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\", \
     force_bar = [0.01, 0.05]\n[scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nsize = 1\nunit = \"none\"\n\
     [models.mdr1d]\nelements = 4096\n[sampling]\nseed = 1\nsurfaces = 3\n[outputs]\nstiffness = true\n";
 
+/// Mean squares of a map under a window, over those of the map: of 8 to 32 waves a side, and of the window itself.
+const UNDER_WINDOW: f64 = 0.03;
+
+#[test]
+fn a_window_keeps_the_contact_fraction_of_theories_and_is_told() {
+    let map = drawn(128);
+    let windowed = PERIODIC.replace("[effects]", "window = \"hann\"\n[effects]");
+    let [plain, tapered] = [PERIODIC, &windowed].map(|text| solved(&map, text));
+    for model in ["persson", "greenwood_williamson"] {
+        let [plain, tapered] = [&plain.1, &tapered.1].map(|file| column(file, model, "area"));
+        for (plain, tapered) in plain.iter().zip(&tapered) {
+            assert!((tapered / plain - 1.0).abs() < UNDER_WINDOW, "{model}: {tapered} for {plain}");
+        }
+    }
+    let told = tapered.0.to_string();
+    let step = "deviations from the mean tapered by Hann's window over its rms: rms height ";
+    assert!(told.contains(step) && told.contains("note: the map is tapered to its edges"), "{told}");
+    assert!(told.contains("`bem3d` presses the tapered map"), "{told}");
+    assert!(!plain.0.to_string().contains("tapered"));
+}
+
 fn read(dir: &Path, text: &str) -> fractal_contact::scenes::Result<SceneFile> {
     SceneFile::parse(&dir.join("a.toml"), text.to_owned())
 }

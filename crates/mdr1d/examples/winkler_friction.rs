@@ -60,7 +60,7 @@ impl PreparedContact for Layer {
             other => return Err(Error::unsupported("winkler", format!("the load {other:?}"))),
         };
         let state = ContactState::new(self.0 * d * d, SolveReport::exact("closed form"));
-        Ok(state.with_approach(d).with_stiffness(2.0 * self.0 * d))
+        Ok(state.with_approach(d).with_elastic_stiffness(2.0 * self.0 * d))
     }
 }
 

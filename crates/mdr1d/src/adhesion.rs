@@ -13,6 +13,10 @@ use std::f64::consts::PI;
 /// Exponents at and below this one have no stable contact with adhesion that grows with the load.
 const SHARPEST: f64 = 0.5;
 
+/// Slope `dd/da` over that without adhesion, below which a state is the pull-off under prescribed approach: a radius that is found
+/// from an approach has half its digits there, and its `dF/dd` none.
+const AT_FOLD: f64 = 1e-7;
+
 /// A load exactly at the fold may come out a few roundings beyond it.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
@@ -73,6 +77,22 @@ impl Adhesive {
                 Ok(RoundContact { force, approach, radius })
             }
             Profile::Flat { radius } => self.flat(radius, force, 2.0 * radius),
+        }
+    }
+
+    /// `dF/dd` along the branch, on which the edge moves, over E* L: `2 a (1 - b)/(1 - b/3)` with `b = (3/2) c sqrt(a)/(n s a^n)`.
+    ///
+    /// 0 at the pull-off under prescribed force, `None` at that under prescribed approach, where it has no bound. The edge of a flat
+    /// punch does not move: 2 a.
+    pub fn slope(self, radius: f64) -> Option<f64> {
+        let held = 2.0 * radius;
+        match self.profile {
+            Profile::Power { exponent, slope } if self.attracts() => {
+                let b = 1.5 * self.tear * radius.sqrt() / (exponent * slope * radius.powf(exponent));
+                let approach = 1.0 - b / 3.0;
+                (approach > AT_FOLD).then(|| held * (1.0 - b) / approach)
+            }
+            _ => Some(held),
         }
     }
 

@@ -37,7 +37,7 @@ pub(crate) struct RoundContact {
 impl RoundContact {
     pub const NONE: Self = Self { force: 0.0, approach: 0.0, radius: 0.0 };
 
-    /// k = 2 E* a: the length in contact.
+    /// k = 2 E* a of the contact area, held: the length in contact. Without adhesion it is dF/dd too.
     pub fn stiffness(self) -> f64 {
         2.0 * self.radius
     }

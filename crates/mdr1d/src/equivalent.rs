@@ -94,6 +94,7 @@ impl<M: ContactModel> Equivalent<M> {
         let outputs = scene.outputs;
         let lean = Outputs {
             stiffness: true,
+            stiffness_fixed_area: outputs.stiffness_fixed_area,
             area: outputs.area,
             conductance: outputs.conductance,
             ..Outputs::default()
@@ -168,7 +169,7 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
                 if scene.outputs.pressure {
                     return Err(Error::unsupported(NAME, "a pressure field with rheology (M's is elastic)"));
                 }
-                if scene.outputs.stiffness {
+                if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
                     let what = "the stiffness with rheology (it depends on how fast one pushes)";
                     return Err(Error::unsupported(NAME, what));
                 }

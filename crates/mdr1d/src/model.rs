@@ -23,9 +23,11 @@ pub const BYTES_PER_ELEMENT: f64 = 40.0;
 /// isotropic), a [`Surface::Line`], and the bodies of [`Profile`]. For rough lines it claims force, approach and stiffness; for axisymmetric bodies also the area, `pi a^2`, which is exact there.
 ///
 /// The bodies of [`Profile`] may adhere ([`Adhesion::ShortRange`]): their loads may then be negative, down to the pull-off, which is
-/// [`Error::OutOfRange`] with the smallest admissible load; no load means the adhered contact. The stiffness stays that of the
-/// contact set, `2 E* a`. Power-law bodies with exponents up to 1/2 have no such contact and are refused. So is adhesion of rough
-/// lines: the rule that tears a spring needs the radius of a round contact.
+/// [`Error::OutOfRange`] with the smallest admissible load; no load means the adhered contact. The stiffness is then the slope along
+/// the branch, on which the edge moves: 0 at the pull-off under prescribed force, negative beyond it, absent at the pull-off under
+/// prescribed approach, where it has no bound. That of the held contact area, which the conductance follows from, is `2 E* a`. Power-law
+/// bodies with exponents up to 1/2 have no such contact and are refused. So is adhesion of rough lines: the rule that tears a spring
+/// needs the radius of a round contact.
 ///
 /// An ensemble over one spectrum is faster with one [`surface_gen::LineGenerator`] and its lines as [`Surface::Line`]: the plan
 /// and the amplitudes are then made once. The states are the same.
@@ -244,9 +246,10 @@ impl PreparedContact for RoughLine {
             SolveReport::exact(format!("order statistics of {} elements", self.bearing.elements()));
         report.contact_cells = Some(support.elements);
         report.certificate.stiffness_error = self.outputs.needs_stiffness().then_some(0.0);
+        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
         ContactState::new(support.force, report)
             .with_approach(support.approach)
-            .with_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
+            .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
             .completed(&self.outputs, self.normalisation.modulus)
     }
 }
@@ -351,17 +354,26 @@ impl PreparedContact for RoundBody {
             Load::Force(force) => force,
             _ => nondimensional.force(contact.force.abs())?.copysign(contact.force),
         };
-        let stiffness = self
-            .outputs
-            .needs_stiffness()
-            .then(|| nondimensional.stiffness(contact.stiffness()))
+        let outputs = &self.outputs;
+        // Along the branch the edge of an adhesive contact moves.
+        let slope = match self.adhesive {
+            Some(adhesive) => adhesive.slope(contact.radius),
+            None => Some(contact.stiffness()),
+        };
+        let stiffness = slope
+            .filter(|_| outputs.needs_stiffness())
+            .map(|slope| Ok::<_, Error>(nondimensional.stiffness(slope.abs())?.copysign(slope)))
             .transpose()?;
-        let area = self.outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
+        let held =
+            outputs.needs_fixed_area().then(|| nondimensional.stiffness(contact.stiffness())).transpose()?;
+        let area = outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
         let mut report = SolveReport::exact("closed form of the profile g(x)");
-        report.certificate.stiffness_error = stiffness.map(|_| 0.0);
+        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
+        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
         ContactState::new(force, report)
             .with_approach(approach)
             .with_stiffness(stiffness)
+            .with_stiffness_fixed_area(held)
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }

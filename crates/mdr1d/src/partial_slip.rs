@@ -162,7 +162,7 @@ impl History for PreparedPartialSlip {
             report,
         )
         .with_approach(nondimensional.approach(contact.approach)?)
-        .with_stiffness(stiffness)
+        .with_elastic_stiffness(stiffness)
         .with_area(area)
         .completed(&self.outputs, self.normalisation.modulus)?;
         let displacement = springs.displacement();

@@ -78,7 +78,7 @@ impl HistoryModel for Viscoelastic {
         if scene.outputs.contact_patches {
             return Err(Error::unsupported(NAME, "contact patches (a profile has no cells)"));
         }
-        if scene.outputs.stiffness {
+        if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
             return Err(Error::unsupported(NAME, "the stiffness (it depends on how fast one pushes)"));
         }
         let Some(profile) = Profile::new(&scene.surface)? else {

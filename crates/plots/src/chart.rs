@@ -95,6 +95,7 @@ const MOST_MARKS: usize = 60;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn curves_become_a_picture_whatever_they_hold() {
@@ -112,5 +113,53 @@ mod tests {
             let files = chart.save(dir.path(), &format!("c{i}")).unwrap();
             assert!(std::fs::read_to_string(&files[0]).unwrap().contains("</svg>"));
         }
+    }
+
+    /// Any bits, so that exponents are spread evenly from subnormal numbers to 1e308; infinities and NaN among them.
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            any::<u64>().prop_map(f64::from_bits),
+            prop_oneof![
+                Just(0.0),
+                Just(5e-324),
+                Just(1e-310),
+                Just(1e-308),
+                Just(1.0),
+                Just(f64::MAX),
+                Just(-f64::MAX)
+            ],
+        ]
+    }
+
+    proptest! {
+        // Each case draws two pictures.
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn charts_of_any_numbers_have_finite_coordinates(
+            points in prop::collection::vec((number(), number()), 0..5),
+            band in prop::collection::vec((number(), number(), number()), 0..4),
+            logarithmic in any::<bool>(),
+        ) {
+            let errors: Vec<(f64, f64, Option<f64>)> = band.iter().map(|&(x, y, e)| (x, y, Some(e))).collect();
+            let curve = Curve { label: "a".into(), points, band };
+            let chart = Chart { curves: vec![curve], logarithmic, ..Chart::default() };
+            let mut picture = chart.picture();
+            picture.errors(&errors, "#000000");
+            let fonts = crate::text::Fonts::load().unwrap();
+            let path = Path::new("a picture");
+            let drawing = Panels { columns: 1, pictures: vec![picture], ..Panels::default() }.drawing(&fonts);
+            let svg = drawing.svg(&fonts, path).unwrap();
+            prop_assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+            prop_assert!(drawing.png(&fonts, path).is_ok());
+        }
+    }
+
+    #[test]
+    fn numbers_below_the_normal_ones_are_drawn() {
+        let points = vec![(1e-320, 1e-310), (1e-315, 3e-309), (5e-324, 2e-308)];
+        let curve = Curve { label: "a".into(), points, band: Vec::new() };
+        let chart = Chart { curves: vec![curve], logarithmic: true, ..Chart::default() };
+        let svg = chart.svg().unwrap();
+        assert!(svg.contains("aria-label=\"10^\u{2212}310\""), "{svg}");
     }
 }

@@ -278,7 +278,11 @@ fn glyph_name(italic: bool, id: u16) -> String {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+    // XML has no place for control characters.
+    text.replace(char::is_control, "\u{fffd}")
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('"', "&quot;")
 }
 
 fn svg_path(pieces: &[Piece], sx: f64, sy: f64) -> String {

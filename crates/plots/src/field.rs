@@ -7,7 +7,7 @@ use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
 use crate::unit_prefix::prefixed;
 use contact_model::{Cells, Size};
-use runs::{Result, files};
+use runs::{Error, Result, files};
 use std::ops::Range;
 use std::path::Path;
 
@@ -78,8 +78,19 @@ impl FieldPicture<'_> {
     /// Cost: linear in the number of cells.
     ///
     /// # Errors
+    /// [`crate::Error::Content`] for another number of values or cells in contact than cells, no cells or a size that is not positive,
     /// [`crate::Error::File`] when it cannot be written.
     pub fn save(&self, path: &Path) -> Result<()> {
+        let count = self.cells.checked_count().filter(|count| *count > 0);
+        if count != Some(self.values.len()) || !self.contact.is_empty() && count != Some(self.contact.len()) {
+            let (values, contact, Cells { columns, rows }) =
+                (self.values.len(), self.contact.len(), self.cells);
+            let message = format!(
+                "{values} values and {contact} cells in contact are no field of {rows} rows x {columns} columns"
+            );
+            return Err(Error::content(path, message));
+        }
+        self.cells.validate(self.size).map_err(|e| Error::content(path, e.to_string()))?;
         let fonts = Fonts::load()?;
         let size = self.size;
         let longer = size.x.max(size.y);
@@ -90,7 +101,7 @@ impl FieldPicture<'_> {
         let low = if self.shown == Shown::Largest { low.min(0.0) } else { low };
         // A constant has a scale around it.
         let room = if high > low { 0.0 } else { high.abs().max(f64::MIN_POSITIVE) };
-        let (low, high) = (low - room, high + room);
+        let (low, high) = ((low - room).max(-f64::MAX), (high + room).min(f64::MAX));
         let color = |v: f64| match v {
             v if !v.is_finite() => UNDEFINED,
             v if self.shown == Shown::Largest && v.abs() <= 0.0 => [255; 3],
@@ -128,7 +139,10 @@ impl FieldPicture<'_> {
         // The bar is at least as high as its labels need.
         let bar = [LEFT + w + 24.0, TOP, BAR, h.max(160.0)];
         let steps = (bar[3] * PIXELS) as usize;
-        let ramp = |i: usize| color(low + (high - low) * (1.0 - (i as f64 + 0.5) / steps as f64));
+        let ramp = |i: usize| {
+            let t = (i as f64 + 0.5) / steps as f64;
+            color(low * t + high * (1.0 - t))
+        };
         drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
         let (unit, per_unit) = prefixed(self.unit, low.abs().max(high.abs()));
         ticks(&fonts, &mut drawing, bar, Side::Right, (per_unit * low, per_unit * high));

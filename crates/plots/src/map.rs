@@ -76,7 +76,9 @@ pub fn grey(heights: &[f64]) -> Vec<u8> {
     let at = |share: f64| sorted.get((share * (sorted.len().saturating_sub(1)) as f64) as usize).copied();
     let (low, high) = (at(0.005).unwrap_or(0.0), at(0.995).unwrap_or(0.0));
     let shade = |h: &f64| {
-        let t = if high > low { ((h - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
+        // Halves, because the range of finite numbers may overflow.
+        let t = if high > low { (0.5 * h - 0.5 * low) / (0.5 * high - 0.5 * low) } else { 0.0 };
+        let t = t.clamp(0.0, 1.0);
         (255.0 * (1.0 - t)).round() as u8
     };
     heights.iter().map(shade).collect()
@@ -140,6 +142,7 @@ mod tests {
         assert!(g[0] > g[1] && g[1] >= g[2]);
         assert_eq!(grey(&[1.0, 1.0]), [255, 255]);
         assert_eq!(grey(&[]), [0_u8; 0]);
+        assert_eq!(grey(&[-1.7e308, 0.0, 1.7e308, 1.7e308]), [255, 128, 0, 0]);
     }
 
     #[test]

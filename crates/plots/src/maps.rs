@@ -3,7 +3,7 @@
 use crate::drawing::{Anchor, Drawing, Paint, rectangle};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
-use runs::Result;
+use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// A square map of grey values.
@@ -26,7 +26,7 @@ const TITLE: f64 = 54.0;
 /// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title and a line below it.
 ///
 /// # Errors
-/// [`crate::Error::File`] when they cannot be written.
+/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::File`] when they cannot be written.
 pub fn save_maps(
     maps: Vec<GreyMap>,
     title: &str,
@@ -34,6 +34,11 @@ pub fn save_maps(
     directory: &Path,
     name: &str,
 ) -> Result<Vec<PathBuf>> {
+    let square = |map: &GreyMap| map.side > 0 && map.side.checked_mul(map.side) == Some(map.shades.len());
+    if let Some(map) = maps.iter().find(|map| !square(map)) {
+        let message = format!("{} values are no map of {} rows and columns", map.shades.len(), map.side);
+        return Err(Error::content(&directory.join(name), message));
+    }
     let fonts = Fonts::load()?;
     let columns = maps.len().clamp(1, 3);
     let rows = maps.len().div_ceil(columns);
@@ -66,5 +71,9 @@ mod tests {
         assert_eq!(svg.matches("<image").count(), 2);
         assert!(svg.contains("aria-label=\"D_f = 3\"") && svg.contains("data:image/png;base64,"));
         assert!(std::fs::metadata(&files[1]).unwrap().len() > 1000);
+        for side in [0, 1, usize::MAX] {
+            let wrong = GreyMap { side, ..map("m") };
+            assert!(save_maps(vec![wrong], "t", "s", dir.path(), "n").is_err(), "{side}");
+        }
     }
 }

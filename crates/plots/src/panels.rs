@@ -40,7 +40,7 @@ impl Panels {
         self.drawing(&fonts).svg(&fonts, Path::new("a picture"))
     }
 
-    fn drawing(mut self, fonts: &Fonts) -> Drawing {
+    pub(crate) fn drawing(mut self, fonts: &Fonts) -> Drawing {
         let (width, height) = self.pictures.first().map_or(SIZE, |p| p.size);
         let columns = self.columns.max(1);
         let rows = self.pictures.len().div_ceil(columns);

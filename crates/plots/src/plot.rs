@@ -17,6 +17,8 @@ pub(crate) const TITLE: f64 = 19.0;
 /// Lengths of ticks, which point inwards.
 const LONG: f64 = 8.0;
 const SHORT: f64 = 4.5;
+/// Farthest coordinate, in sides of the frame.
+const FAR: f64 = 1e4;
 /// From the frame to the legend in it.
 const MARGIN: f64 = 14.0;
 
@@ -201,7 +203,8 @@ impl Picture {
     }
 
     fn place(&self, frame: Rectangle, p: (f64, f64)) -> Option<(f64, f64)> {
-        let (x, y) = (self.axes[0].place(p.0)?, self.axes[1].place(p.1)?);
+        // What is drawn so far from the frame looks the same nearer to it; coordinates stay finite in single precision.
+        let (x, y) = (self.axes[0].place(p.0)?.clamp(-FAR, FAR), self.axes[1].place(p.1)?.clamp(-FAR, FAR));
         Some((frame[0] + x * frame[2], frame[1] + (1.0 - y) * frame[3]))
     }
 
@@ -241,7 +244,10 @@ impl Picture {
                 // What lies below a logarithmic axis ends on it.
                 let floor = self.axes[1].ends().0;
                 for &(x, low, high) in points {
-                    let (Some(a), Some(b)) = (place((x, low.max(floor))), place((x, high))) else { continue };
+                    let (Some(a), Some(b)) = (place((x, low.max(floor))), place((x, high.min(f64::MAX))))
+                    else {
+                        continue;
+                    };
                     taken.extend(along(a, b));
                     for ends in
                         [[a, b], [(a.0 - END, a.1), (a.0 + END, a.1)], [(b.0 - END, b.1), (b.0 + END, b.1)]]

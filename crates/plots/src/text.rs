@@ -265,7 +265,9 @@ pub fn number(value: f64) -> String {
     if (-3.0..5.0).contains(&exponent) {
         return format!("{value}").replace('-', "\u{2212}");
     }
-    let digits = value / 10_f64.powf(exponent);
+    // In halves: the powers of ten of subnormal numbers have few digits or none.
+    let half = 10_f64.powf(0.5 * exponent);
+    let digits = if exponent.abs() < 300.0 { value / 10_f64.powf(exponent) } else { value / half / half };
     let digits = (digits * 100.0).round() / 100.0;
     let power = format!("10^{{{exponent:.0}}}");
     if (digits - 1.0).abs() < 1e-9 { format!("${power}$") } else { format!("${digits}×{power}$") }
@@ -317,5 +319,8 @@ mod tests {
         assert_eq!([1.0, 0.01, 2049.0].map(number), ["1", "0.01", "2049"]);
         assert_eq!(number(1e-6), "$10^{-6}$");
         assert_eq!(number(2.148e-5), "$2.15×10^{-5}$");
+        assert_eq!(number(1e308), "$10^{308}$");
+        assert_eq!(number(-2e-310), "$-2×10^{-310}$");
+        assert_eq!(number(5e-324), "$4.94×10^{-324}$");
     }
 }

@@ -64,11 +64,11 @@ fn main() -> Result<()> {
 
     // Stopped after three jobs, as by Ctrl-C.
     let enough = || solved.load(Ordering::Relaxed) >= 3;
-    let interrupted = run_stored("summits", &jobs, &store, Threads::all(1), &Silent, &enough)?;
+    let interrupted = run_stored("summits", &jobs, &store, Threads::all(1), &Silent, &enough);
     println!("first run: {} results, {} solved", interrupted.iter().flatten().count(), count());
-    let resumed = collect(run_stored("summits", &jobs, &store, Threads::all(1), &Silent, &|| false)?)?;
+    let resumed = collect(run_stored("summits", &jobs, &store, Threads::all(1), &Silent, &|| false))?;
     println!("second run: {} results, {} solved", resumed.len(), count());
-    let again = collect(run_stored("summits", &jobs, &store, Threads::all(2), &Silent, &|| false)?)?;
+    let again = collect(run_stored("summits", &jobs, &store, Threads::all(2), &Silent, &|| false))?;
     println!("third run: {} results, {} solved", again.len(), count());
     println!("summits at {:.3}, {:.3}, {:.3}, ... rms heights", again[0], again[1], again[2]);
     assert_eq!(resumed, again); // to the bit

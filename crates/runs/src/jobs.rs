@@ -4,6 +4,7 @@ use crate::error::Error;
 use crate::progress::Progress;
 use crate::shard::largest_first;
 use crate::store::Store;
+use crate::threads::granted_pool;
 use contact_model::Stop;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -29,10 +30,10 @@ impl Threads {
 
 /// Does some work on one thread, whatever the pool around: for what is timed and compared.
 pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
-        Ok(pool) => pool.install(work),
+    match granted_pool(1, 0) {
+        Some(pool) => pool.install(work),
         // A system that grants no thread has one, this one.
-        Err(_) => work(),
+        None => work(),
     }
 }
 
@@ -41,30 +42,21 @@ pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 /// After a failure, or when `stop` says so, no further job begins, and those in flight are told by their own closure.
 ///
 /// One loop per thread rather than a parallel iterator: a thread that waits inside a job then never begins another one (whose time
-/// would contain the first), and those without a job help the others.
-///
-/// # Errors
-/// [`Error::Parameter`] where the system does not grant the threads.
+/// would contain the first), and those without a job help the others. Where the system grants fewer threads there are fewer, at worst the
+/// calling one.
 pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
     threads: Threads,
     order: &[usize],
     stop: &(dyn Fn() -> bool + Sync),
     job: impl Fn(usize, Stop<'_>) -> Result<T, E> + Sync,
-) -> Result<Vec<Option<Result<T, E>>>, Error> {
+) -> Vec<Option<Result<T, E>>> {
     let results: Vec<OnceLock<Result<T, E>>> = order.iter().map(|_| OnceLock::new()).collect();
     let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
     let halt = || failed.load(Ordering::Relaxed) || stop();
     // More threads than jobs only help where there are processors for them.
     let useful = order.len().max(std::thread::available_parallelism().map_or(1, usize::from));
     let Threads { total, jobs } = threads;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(total.clamp(1, useful))
-        .build()
-        .map_err(|e| Error::parameter("threads", total, format!("threads that the system grants ({e})")))?;
-    pool.broadcast(|worker| {
-        if worker.index() >= jobs.max(1) {
-            return;
-        }
+    let run = || {
         while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             if halt() {
                 return;
@@ -74,8 +66,18 @@ pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
             // Each number is taken once.
             let _ = results[i].set(result);
         }
-    });
-    Ok(results.into_iter().map(OnceLock::into_inner).collect())
+    };
+    match granted_pool(total.clamp(1, useful), 0) {
+        Some(pool) => {
+            pool.broadcast(|worker| {
+                if worker.index() < jobs.max(1) {
+                    run();
+                }
+            });
+        }
+        None => run(),
+    }
+    results.into_iter().map(OnceLock::into_inner).collect()
 }
 
 /// All results in their places, or why some are missing.
@@ -166,8 +168,7 @@ pub trait Job: Sync {
 ///
 /// Each finished job is stored at once: an interruption loses those in flight.
 ///
-/// # Errors
-/// [`Error::Parameter`] where the system does not grant the threads; errors of single jobs are in their places.
+/// Errors of single jobs are in their places.
 #[allow(clippy::type_complexity)] // A list of what became of each job.
 pub fn run_stored<J: Job>(
     what: &str,
@@ -176,12 +177,12 @@ pub fn run_stored<J: Job>(
     threads: Threads,
     progress: &dyn Progress,
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Vec<Option<Result<J::Output, J::Error>>>, Error> {
+) -> Vec<Option<Result<J::Output, J::Error>>> {
     progress.begin(what, jobs.iter().map(Job::cost).sum());
     let order = largest_first(jobs.len(), |i| jobs[i].cost());
-    let done = run_jobs(threads, &order, stop, |i, stop| solve_stored(&jobs[i], store, progress, stop))?;
+    let done = run_jobs(threads, &order, stop, |i, stop| solve_stored(&jobs[i], store, progress, stop));
     progress.end();
-    Ok(done)
+    done
 }
 
 /// The output of a job, from the store where it is there.
@@ -288,7 +289,7 @@ where
         let order = largest_first(which.len(), |i| self[which[i]].cost());
         let done = run_jobs(threads, &order, stop, |i, stop| {
             solve_stored(&self[which[i]], store, progress, stop).map(drop)
-        })?;
+        });
         let mut failures: Vec<Failure> =
             done.into_iter().flatten().filter_map(Result::err).map(Into::into).collect();
         // Others that were in flight were told to stop: their reason is not the reason.
@@ -315,7 +316,7 @@ mod tests {
         let order = largest_first(7, |i| i % 3);
         assert_eq!(order, [2, 5, 1, 4, 0, 3, 6]);
         for threads in [0, 1, 2, 4] {
-            let squares = run_jobs::<_, ()>(Threads::all(threads), &order, &never, |i, _| Ok(i * i)).unwrap();
+            let squares = run_jobs::<_, ()>(Threads::all(threads), &order, &never, |i, _| Ok(i * i));
             assert_eq!(squares.into_iter().flatten().flatten().collect::<Vec<_>>(), [0, 1, 4, 9, 16, 25, 36]);
         }
     }
@@ -332,7 +333,7 @@ mod tests {
         });
         let threads = 4.min(order.len().max(std::thread::available_parallelism().map_or(1, usize::from)));
         let expected: Vec<_> = (0..12).map(|i| (i, threads)).collect();
-        assert_eq!(done.unwrap().into_iter().flatten().flatten().collect::<Vec<_>>(), expected);
+        assert_eq!(done.into_iter().flatten().flatten().collect::<Vec<_>>(), expected);
         assert!(most.into_inner() <= 2);
         assert_eq!(on_one_thread(rayon::current_num_threads), 1);
     }
@@ -407,8 +408,7 @@ mod tests {
         let run = || {
             let counter = Counter::default();
             let done =
-                collect(run_stored("doubles", &jobs, &store, Threads::all(2), &counter, &never).unwrap())
-                    .unwrap();
+                collect(run_stored("doubles", &jobs, &store, Threads::all(2), &counter, &never)).unwrap();
             assert_eq!(done, [0, 2, 4]);
             (counter.0.into_inner(), counter.1.into_inner())
         };
@@ -424,8 +424,8 @@ mod tests {
             assert!(!halt());
             if i == 1 { Err("no") } else { Ok(i) }
         });
-        assert_eq!(failing.unwrap(), [Some(Ok(0)), Some(Err("no")), None]);
-        let stopped = run_jobs::<usize, ()>(Threads::all(1), &order, &|| true, |i, _| Ok(i)).unwrap();
+        assert_eq!(failing, [Some(Ok(0)), Some(Err("no")), None]);
+        let stopped = run_jobs::<usize, ()>(Threads::all(1), &order, &|| true, |i, _| Ok(i));
         assert_eq!(stopped, [None, None, None]);
     }
 }

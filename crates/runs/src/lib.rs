@@ -38,6 +38,7 @@ mod reporter;
 mod shard;
 mod store;
 mod terminal;
+mod threads;
 
 pub use csv_file::{CsvFile, Header, number, write_csv};
 pub use error::{Error, Result};
@@ -53,3 +54,4 @@ pub use reporter::Reporter;
 pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign, largest_first};
 pub use store::{Pack, PackHead, Store, fnv1a_128};
 pub use terminal::{print, print_error};
+pub use threads::{MOST_THREADS, THREADS_VARIABLE, granted_pool, grants_a_thread, with_threads};

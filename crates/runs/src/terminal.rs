@@ -1,7 +1,8 @@
-//! Text for standard output and standard error that never ends in a panic.
+//! Text for standard output and standard error that never ends in a panic, and commands no terminal.
 
-use std::fmt::Arguments;
-use std::io::{ErrorKind, Write as _};
+use std::fmt::{self, Arguments, Write as _};
+use std::io::{ErrorKind, Write};
+use surface_io::Escaping;
 
 /// What a shell reports of a program that SIGPIPE has ended.
 const BROKEN_PIPE: i32 = 141;
@@ -24,7 +25,7 @@ macro_rules! err {
 /// [`out!`](crate::out) without the end of the line.
 pub fn print(text: Arguments<'_>) {
     let mut out = std::io::stdout().lock();
-    if let Err(error) = out.write_fmt(text).and_then(|()| out.flush()) {
+    if let Err(error) = write(&mut out, text).and_then(|()| out.flush()) {
         if error.kind() != ErrorKind::BrokenPipe {
             print_error(format_args!("error: cannot write to standard output: {error}\n"));
             std::process::exit(1);
@@ -35,5 +36,46 @@ pub fn print(text: Arguments<'_>) {
 
 /// [`err!`](crate::err) without the end of the line.
 pub fn print_error(text: Arguments<'_>) {
-    let _ = std::io::stderr().lock().write_fmt(text);
+    let _ = write(&mut std::io::stderr().lock(), text);
+}
+
+/// Writes text whose control characters, but for ends of lines and tabs, are written out: names in files, tokens that an error quotes and
+/// paths may hold commands of a terminal.
+fn write(into: &mut dyn Write, text: Arguments<'_>) -> std::io::Result<()> {
+    let mut target = Target { into, failed: None };
+    match (Escaping::of_lines(&mut target).write_fmt(text), target.failed) {
+        (Ok(()), _) => Ok(()),
+        (Err(_), failed) => Err(failed.unwrap_or_else(|| std::io::Error::other("text that cannot be shown"))),
+    }
+}
+
+/// Bytes as a target of text, which keeps the reason of a failure.
+struct Target<'a> {
+    into: &'a mut dyn Write,
+    failed: Option<std::io::Error>,
+}
+
+impl fmt::Write for Target<'_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.into.write_all(text.as_bytes()).map_err(|error| {
+            self.failed = Some(error);
+            fmt::Error
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_printed_commands_no_terminal() {
+        let mut bytes = Vec::new();
+        let name = "Height\u{1b}]0;title\u{7}";
+        write(&mut bytes, format_args!("channel\t{name}\n{name:?}\r\n")).unwrap();
+        let shown = String::from_utf8(bytes).unwrap();
+        assert_eq!(shown, "channel\tHeight\\u{1b}]0;title\\u{7}\n\"Height\\u{1b}]0;title\\u{7}\"\\r\n");
+        let full = write(&mut [0_u8; 2].as_mut_slice(), format_args!("abc")).unwrap_err();
+        assert_eq!(full.kind(), ErrorKind::WriteZero);
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::choice::ChannelChoice;
 use crate::error::{ContentError, Place, Result};
+use crate::escape::escaped;
 use crate::extent::Extent;
 use crate::format::Format;
 use crate::number_type::NumberType;
@@ -356,6 +357,15 @@ impl StoredChannel {
         raw.check(source, rows, columns)?;
         let details = raw.details();
         Ok(Self { name: None, details, rows, columns, unit, extent, heights: StoredHeights::Raw(raw) })
+    }
+
+    /// Escapes the control characters of all that is the file's own text: what is shown is what a channel is chosen by.
+    pub(crate) fn escape(&mut self) {
+        let Self { name, details, unit, .. } = self;
+        let unit = if let StoredUnit::NoHeights(unit) = unit { unit.as_mut() } else { None };
+        for text in [name.as_mut(), Some(details), unit].into_iter().flatten() {
+            *text = escaped(text);
+        }
     }
 
     /// The heights, row-major, NaN where undefined.

@@ -1,9 +1,11 @@
 //! The one error type of this crate: which file, where in it, which value, what to do.
 
+use crate::escape::Escaping;
 use crate::format::Format;
 use crate::quantity::{Quantity, QuantityError};
+use std::fmt::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
-use std::{fmt, io};
 
 /// Result of everything that reads or writes.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -543,7 +545,9 @@ impl fmt::Display for NumberKind {
 }
 
 impl fmt::Display for Error {
+    /// On one line: paths and what is quoted of a file are shown with their control characters escaped.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut f = Escaping::of_line(f);
         match self {
             Self::System { action, path, source } => {
                 write!(f, "cannot {action} {}: {source}", path.display())

@@ -6,46 +6,76 @@ use crate::number_type::NumberType;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What files and byte arrays can both do.
 pub(crate) trait Input: Read + Seek {
     /// The same bytes without a lifetime, for readers of other crates that keep what they read from: a second handle of a file, a copy of
     /// bytes.
-    fn detached(&self) -> std::io::Result<Detached>;
+    fn detached(&self) -> std::io::Result<OwnInput>;
 }
 
 impl Input for BufReader<File> {
-    fn detached(&self) -> std::io::Result<Detached> {
-        self.get_ref().try_clone().map(|file| Detached::File(BufReader::new(file)))
+    fn detached(&self) -> std::io::Result<OwnInput> {
+        self.get_ref().try_clone().map(|file| OwnInput::File(BufReader::new(file)))
     }
 }
 
 impl Input for Cursor<&[u8]> {
-    fn detached(&self) -> std::io::Result<Detached> {
-        Ok(Detached::Bytes(Cursor::new(self.get_ref().to_vec())))
+    fn detached(&self) -> std::io::Result<OwnInput> {
+        Ok(OwnInput::Bytes(Cursor::new(self.get_ref().to_vec())))
     }
 }
 
 /// An input of its own; the place in a file is shared with the one that it comes from, so that both go to an offset before they read.
-pub(crate) enum Detached {
+pub(crate) enum OwnInput {
     File(BufReader<File>),
     Bytes(Cursor<Vec<u8>>),
 }
 
+/// An input of its own that gives so many bytes in all: a file may name the same bytes a thousand times, and what is read is held.
+pub(crate) struct Detached {
+    input: OwnInput,
+    budget: Budget,
+}
+
+/// Bytes that may still be read; none is left once more was asked for.
+#[derive(Debug, Clone)]
+pub(crate) struct Budget(Arc<AtomicU64>);
+
+impl Budget {
+    pub(crate) fn new(bytes: u64) -> Self {
+        Self(Arc::new(AtomicU64::new(bytes)))
+    }
+
+    /// Whether more was asked for.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == 0
+    }
+}
+
 impl Read for Detached {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        match self {
-            Self::File(file) => file.read(buffer),
-            Self::Bytes(bytes) => bytes.read(buffer),
+        let left = self.budget.0.load(Ordering::Relaxed);
+        if buffer.len() as u64 >= left {
+            self.budget.0.store(0, Ordering::Relaxed);
+            return Err(std::io::Error::other("more is read than the file can mean"));
         }
+        let read = match &mut self.input {
+            OwnInput::File(file) => file.read(buffer),
+            OwnInput::Bytes(bytes) => bytes.read(buffer),
+        }?;
+        self.budget.0.store(left - read as u64, Ordering::Relaxed);
+        Ok(read)
     }
 }
 
 impl Seek for Detached {
     fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
-        match self {
-            Self::File(file) => file.seek(to),
-            Self::Bytes(bytes) => bytes.seek(to),
+        match &mut self.input {
+            OwnInput::File(file) => file.seek(to),
+            OwnInput::Bytes(bytes) => bytes.seek(to),
         }
     }
 }
@@ -114,8 +144,9 @@ impl<'a> Source<'a> {
     }
 
     /// The input without its lifetime, for readers of other crates that keep it.
-    pub(crate) fn detached(&self) -> Result<Detached> {
-        self.input.detached().map_err(Error::system("read", &self.path))
+    pub(crate) fn detached(&self, budget: &Budget) -> Result<Detached> {
+        let input = self.input.detached().map_err(Error::system("read", &self.path))?;
+        Ok(Detached { input, budget: budget.clone() })
     }
 
     /// A part of the input, for readers of other crates; the caller has compared its end with [`Source::length`].

@@ -61,7 +61,7 @@ impl<'a> SurfaceFile<'a> {
 
     fn new(path: &Path, input: impl Input + 'a, length: u64, declared: &ReadOptions) -> Result<Self> {
         let (mut source, format) = told(path, input, length, declared)?;
-        let (format, channels) = match format {
+        let (format, mut channels) = match format {
             None | Some(Format::Text | Format::Xyz) => {
                 let (format, channel) = of_text(&mut source, format, declared)?;
                 (format, vec![channel])
@@ -76,6 +76,7 @@ impl<'a> SurfaceFile<'a> {
         if channels.is_empty() {
             return Err(source.wrong(format, 0, "one map at least"));
         }
+        channels.iter_mut().for_each(StoredChannel::escape);
         Ok(Self { source, format, channels, declared: declared.clone() })
     }
 

@@ -114,6 +114,16 @@ impl Member {
         Ok(packed)
     }
 
+    /// Its text, whose checksum is right: what is no UTF-8 is a question mark. An error where it is longer than `most` bytes, before it is
+    /// unpacked.
+    pub(crate) fn unpack_text(&self, source: &mut Source<'_>, format: Format, most: u64) -> Result<String> {
+        if self.unpacked > most {
+            let expected = format!("{} of at most {most} bytes, it has {}", self.name, self.unpacked);
+            return Err(source.wrong(format, self.offset, expected));
+        }
+        Ok(text_in_place(self.unpack(source, format)?))
+    }
+
     /// Its bytes, whose checksum is right.
     pub(crate) fn unpack(&self, source: &mut Source<'_>, format: Format) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
@@ -126,6 +136,19 @@ impl Member {
         }
         Ok(bytes)
     }
+}
+
+/// Bytes as text without a copy of them.
+fn text_in_place(mut bytes: Vec<u8>) -> String {
+    let mut right = 0;
+    while let Err(error) = std::str::from_utf8(&bytes[right..]) {
+        right += error.valid_up_to();
+        let wrong = error.error_len().unwrap_or(bytes.len() - right);
+        bytes[right..right + wrong].fill(b'?');
+        right += wrong;
+    }
+    // Now it is.
+    String::from_utf8(bytes).unwrap_or_default()
 }
 
 /// The error for an archive without a file of heights that is known.
@@ -170,4 +193,17 @@ pub(crate) fn archive(members: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
     archive.extend([size, offset].map(u32::to_le_bytes).concat());
     archive.extend([0; 2]);
     Some(archive)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_become_text_where_they_are() {
+        let text = |bytes: &[u8]| text_in_place(bytes.to_vec());
+        assert_eq!(text("µm".as_bytes()), "µm");
+        assert_eq!(text(b"a\xb5m\xff\xfe \xe2\x82"), "a?m?? ??");
+        assert_eq!(text(b""), "");
+    }
 }

@@ -192,6 +192,78 @@ fn valid(which: usize) -> Vec<u8> {
     }
 }
 
+/// Thousands of strings of an attribute that are all one long string of the file.
+#[test]
+fn strings_that_share_their_bytes_are_not_copied_without_end() {
+    const COUNT: usize = 3000;
+    const LONG: usize = 60_000;
+    let mut strings = vec!["s".to_owned(); COUNT];
+    strings[0] = "long ".repeat(LONG / 5);
+    let mut file = hdf5_pure::FileBuilder::new();
+    let labels = hdf5_pure::AttrValue::VarLenAsciiStringArray(strings);
+    file.create_dataset("heights").with_f64_data(&[1.0; 4]).with_shape(&[2, 2]).set_attr("labels", labels);
+    let mut bytes = file.finish().unwrap();
+    // An element is the length, the address of the collection and the number of the object in it.
+    let element = |bytes: &[u8], at: usize| bytes.get(at..at + 16).map(<[u8]>::to_vec);
+    let length = (LONG as u32).to_le_bytes();
+    let next =
+        |bytes: &[u8], at: usize| element(bytes, at + 16).is_some_and(|e| e[..4] == 1_u32.to_le_bytes());
+    let first = (0..bytes.len() - 32).find(|&at| bytes[at..at + 4] == length && next(&bytes, at)).unwrap();
+    let long = element(&bytes, first).unwrap();
+    for i in 1..COUNT {
+        bytes[first + 16 * i..][..16].copy_from_slice(&long);
+    }
+    // The error of the header tells which checksum it has and which one it should have.
+    let said = Scan::from_bytes("a.h5", &bytes, &ReadOptions::default()).unwrap_err().to_string();
+    let sums: Vec<[u8; 4]> = said
+        .split("0x")
+        .skip(1)
+        .map(|sum| u32::from_str_radix(&sum[..8], 16).unwrap().to_le_bytes())
+        .collect();
+    let at = bytes.windows(4).position(|window| window == sums[0]).unwrap();
+    bytes[at..at + 4].copy_from_slice(&sums[1]);
+    let (found, held) = most_held(|| Scan::from_bytes("a.h5", &bytes, &ReadOptions::default()));
+    let said = found.unwrap_err().to_string();
+    assert!(said.contains("the same bytes again and again"), "{said}");
+    assert!(held < 100 * bytes.len(), "{held} of {}", bytes.len());
+}
+
+/// A description that packs into little and unpacks to much: refused by its size, or read in place.
+#[test]
+fn long_descriptions_are_refused_or_held_once() {
+    let of = |filler: &[u8], most: usize| {
+        let [description, _] = files::x3p::descriptions();
+        let (head, tail) = description.split_at(description.find("<p:ISO5436_2").unwrap());
+        let mut main = [head.as_bytes(), b"<!-- "].concat();
+        main.extend(filler.iter().copied().cycle().take(most));
+        main.extend([b" -->", tail.as_bytes()].concat());
+        files::x3p::described(&main, true)
+    };
+    let read = |bytes: &[u8]| most_held(|| Scan::from_bytes("a.x3p", bytes, &ReadOptions::default()));
+    // No UTF-8, 100 MB.
+    let bytes = of(b"\xff\xfe", 100_000_000);
+    assert!(bytes.len() < 500_000, "{}", bytes.len());
+    let (found, held) = read(&bytes);
+    let said = found.unwrap_err().to_string();
+    assert!(said.contains("main.xml of at most 16777216 bytes, it has 1000"), "{said}");
+    assert!(held < bytes.len() + CONSTANT, "{held} bytes");
+    for filler in [&b"\xff\xfe"[..], b"\xc3\xa9", b"a"] {
+        let (found, held) = read(&of(filler, 15_000_000));
+        assert_eq!(found.unwrap().metadata().columns, 3);
+        assert!(held < 18_000_000, "{held} bytes");
+    }
+    // Elements in elements, and one long text.
+    for filler in [&b"<a>"[..], b"x", b"<b/>"] {
+        let [description, _] = files::x3p::descriptions();
+        let (head, tail) = description.split_at(description.find("<Record1>").unwrap());
+        let mut main = [head.as_bytes(), b"<c>"].concat();
+        main.extend(filler.iter().copied().cycle().take(15_000_000));
+        main.extend([b"</c>", tail.as_bytes()].concat());
+        let (_, held) = read(&files::x3p::described(&main, true));
+        assert!(held < 18_000_000, "{held} bytes");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: 1000,

@@ -5,6 +5,7 @@
 //! lower case; ratios are not in per cent.
 
 mod hills;
+mod holes;
 
 use crate::difference::DifferenceMap;
 use crate::relative::{Relative, defined_everywhere, finite};
@@ -16,6 +17,8 @@ use surface_gen::{periodogram, rms_slope_differences};
 const DECAYED: f64 = 0.2;
 /// Pruning of hills in shares of Sz (ISO 25178-3).
 const PRUNING: f64 = 0.05;
+/// Largest share of hills that holes may make incomplete.
+const CUT: f64 = 0.1;
 /// Sectors of directions over half a turn.
 const SECTORS: usize = 90;
 
@@ -266,28 +269,34 @@ pub fn texture_direction(map: &HeightMap) -> Result<f64> {
     Ok((sector as f64 + 0.5) * 180.0 / SECTORS as f64)
 }
 
-/// Feature parameters of hills (ISO 25178-2, 4.8), of maps with undefined points too.
+/// Feature parameters of hills (ISO 25178-2, 4.8), of maps with scattered undefined points too.
 ///
 /// Hills are the parts of the map that lead upwards to one peak, by the steepest of eight neighbours. The
 /// hill whose peak rises least above the highest saddle to a neighbour is united with that, as long as that
 /// is less than 5 % of Sz (pruning after Wolf). Hills that touch the edge of the map or an undefined point
 /// are incomplete: they do not count.
+///
+/// Patches of up to 16 undefined points have the mean height of their neighbours first, because each of them
+/// would take a hill away. Larger ones stay: one that touches the edge of the map is outside of it, and those inside
+/// may make a tenth of the hills incomplete.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FeatureParameters {
     /// Number of hills that count.
     pub hills: usize,
-    /// Density of peaks, hills that count over `Lx Ly`, in 1/length^2.
+    /// Density of peaks, hills that count over the area that is not outside, in 1/length^2.
     pub spd: f64,
     /// Arithmetic mean peak curvature, mean of half the Laplacian of -z at the peaks by second differences,
-    /// in 1/length; `None` without a hill.
+    /// in 1/length, over the peaks whose four neighbours were measured; `None` without one.
     pub spc: Option<f64>,
+    /// Number of undefined points that were filled.
+    pub filled: usize,
 }
 
 impl FeatureParameters {
     /// Measures a map. Cost O(N log N).
     ///
     /// # Errors
-    /// [`Error::Domain`] for curvatures beyond the range of f64.
+    /// [`Error::Domain`] where holes make more than a tenth of the hills incomplete, and for curvatures beyond the range of f64.
     ///
     /// ```
     /// use contact_model::HeightMap;
@@ -301,24 +310,40 @@ impl FeatureParameters {
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn new(map: &HeightMap) -> Result<Self> {
-        let Relative { heights, unit } = Relative::new(map);
+        let Relative { mut heights, unit } = Relative::new(map);
         let cells = map.cells();
+        let points = holes::fill_small(&mut heights, cells);
         // Sz is 2 of these units.
-        let peaks = hills::peaks(&heights, cells, 2.0 * PRUNING);
+        let hills::Hills { peaks, cut } = hills::hills(&heights, &points, cells, 2.0 * PRUNING);
+        if cut as f64 > CUT * (peaks.len() + cut) as f64 {
+            let expected =
+                format!("at most a tenth of all {}: fill undefined points first", peaks.len() + cut);
+            return Err(Error::domain("hills that touch undefined points", cut as f64, expected));
+        }
         let columns = cells.columns;
-        let mut sum = 0.0;
+        let (mut sum, mut whole) = (0.0, 0_usize);
         for &i in &peaks {
-            // A complete hill has all neighbours of its peak.
+            // A complete hill has all neighbours of its peak. Filled ones are lower or higher than what was there.
+            if [i - columns, i - 1, i, i + 1, i + columns]
+                .iter()
+                .any(|&j| points[j] != holes::Point::Measured)
+            {
+                continue;
+            }
             let x = (2.0 * heights[i] - heights[i - 1] - heights[i + 1]) * (map.dy() / map.dx());
             let y = (2.0 * heights[i] - heights[i - columns] - heights[i + columns]) * (map.dx() / map.dy());
             sum += 0.5 * (x + y);
+            whole += 1;
         }
-        let count = peaks.len() as f64;
-        let spc = if peaks.is_empty() {
+        let spc = if whole == 0 {
             None
         } else {
-            Some(finite("Spc", sum / count * unit / map.dx() / map.dy())?)
+            Some(finite("Spc", sum / whole as f64 * unit / map.dx() / map.dy())?)
         };
-        Ok(Self { hills: peaks.len(), spd: count / map.size().x / map.size().y, spc })
+        let count = |of: holes::Point| points.iter().filter(|point| **point == of).count();
+        let seen = 1.0 - count(holes::Point::Outside) as f64 / points.len() as f64;
+        let spd =
+            if peaks.is_empty() { 0.0 } else { peaks.len() as f64 / map.size().x / map.size().y / seen };
+        Ok(Self { hills: peaks.len(), spd, spc, filled: count(holes::Point::Filled) })
     }
 }

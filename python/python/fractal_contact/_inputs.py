@@ -234,7 +234,8 @@ class Scene:
     effects : Effects or mapping
         Off unless named.
     outputs : iterable of str
-        What is computed besides force and approach: "stiffness", "area", "mean_gap" (with periodic boundaries),
+        What is computed besides force and approach: "stiffness" (along the branch of states),
+        "stiffness_fixed_area" (of the whole contact area, held), "area", "mean_gap" (with periodic boundaries),
         "pressure", "displacement", "gap", "plastic_depth" (with a hardness), "contact_patches".
     conductance : (str, float, float), optional
         ("electrical", resistivity, resistivity) or ("thermal", conductivity, conductivity).

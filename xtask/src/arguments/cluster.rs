@@ -26,7 +26,7 @@ pub struct PlanArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub node_cores: Option<u16>,
     /// Memory of a node in megabytes [default: enough].
-    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     pub node_memory: Option<u64>,
     /// The command, such as reproduce-fig2 --preset paper.
     #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true)]

@@ -98,6 +98,9 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Ten years, in seconds.
+const LONGEST: f64 = 3.2e8;
+
 /// A time: `90s`, `10min`, `2h`; a bare number is seconds.
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
     let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
@@ -105,10 +108,10 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
         .find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))
         .unwrap_or((text, 1.0));
     let value = unit * digits.trim().parse::<f64>().map_err(|e| e.to_string())?;
-    if value > 0.0 && value.is_finite() {
+    if value > 0.0 && value <= LONGEST {
         Ok(value)
     } else {
-        Err("expected a time such as 90s, 10min or 2h".into())
+        Err("expected a time such as 90s, 10min or 2h, at most ten years".into())
     }
 }
 

@@ -57,6 +57,19 @@ impl Strips {
         2.0 * self.tangent * self.cosine_squared().powi(2) - 0.5 * alpha / self.tangent.sqrt()
     }
 
+    /// `-d(p/p*)/d(mean gap over D)` along the curve; `1/less_log` of it is that of bonded strips.
+    ///
+    /// With `q = d(p/p*)/dt` of t = tan psi the gap falls by `-q ln r + 2 alpha cos^2 psi/sqrt t`: that of the
+    /// bonded strips, and that of the tension on strips that grow.
+    pub fn slope(self, alpha: f64) -> f64 {
+        if alpha <= 0.0 || self.tangent <= 0.0 {
+            return self.less_log().recip();
+        }
+        let rise = self.rise(alpha);
+        let grown = 2.0 * alpha * self.cosine_squared() / self.tangent.sqrt();
+        rise / (self.less_log() * rise + grown)
+    }
+
     /// Mean gap over D.
     pub fn gap(self, alpha: f64) -> f64 {
         if self.tangent <= 0.0 {

@@ -6,11 +6,38 @@
 use super::candidates::Candidates;
 use super::residuals::Residuals;
 use crate::geometry::CellSet;
-use crate::real::{each, largest, sum};
+use crate::real::{each, largest, sum, sum_of_pairs};
 use std::borrow::Cow;
 
 /// Rounds of scaling at most: each saturates a cell or is the last one.
 const ROUNDS: usize = 100;
+
+/// Pressures and forces that differ by less than this share differ by rounding.
+const ROUNDING: f64 = 1e-13;
+/// The same of a sum of pressures.
+const SUM_ROUNDING: f64 = 1e-14;
+
+/// Pressures that are at the hardness up to rounding become exactly that; all of them where the rounding of their sum leaves no more. Where
+/// it leaves nothing to the cells below the hardness, they open.
+///
+/// At a force that whole cells carry, rounding would otherwise decide which cells count as elastic.
+pub fn saturate(contact: &mut CellSet, p: &mut Vec<f64>, hardness: f64) {
+    if hardness.is_infinite() || largest(p) < hardness * (1.0 - ROUNDING) {
+        return;
+    }
+    let missing = sum_of_pairs(p, p, |p, _| (hardness - p).abs());
+    let share = if missing <= SUM_ROUNDING * p.len() as f64 * hardness { 1.0 } else { ROUNDING };
+    each(p, |p| {
+        if (*p - hardness).abs() <= share * hardness {
+            *p = hardness;
+        }
+    });
+    let elastic = sum_of_pairs(p, p, |p, _| if p < hardness { p } else { 0.0 });
+    if elastic > 0.0 && elastic <= SUM_ROUNDING * sum(p) {
+        *contact = contact.filter(p, |p| p >= hardness);
+        p.retain(|&p| p >= hardness);
+    }
+}
 
 /// Whether any cell is saturated.
 pub fn is_saturated(p: &[f64], hardness: f64) -> bool {
@@ -78,6 +105,9 @@ pub fn bring_to(
         let total = sum(p);
         let rest = if saturated == 0 { total } else { total - saturated as f64 * hardness };
         let wanted = force - saturated as f64 * hardness;
+        if wanted.abs() <= SUM_ROUNDING * force && total - force <= SUM_ROUNDING * force {
+            return grown;
+        }
         if wanted <= 0.0 {
             let factor = force / total;
             each(p, |p| *p *= factor);
@@ -110,11 +140,12 @@ pub fn bring_to(
 }
 
 /// Shortens a step where the energy `p (u/2 + z)` passes its minimum on the way, before the share `whole` of it: the new pressure and its u + z become those of the minimum.
-/// The old ones are a pressure, the gap under it and its approach, all on the same cells. Whether it was shortened.
+/// The old ones are a pressure, the gap under it and its approach, all on the same cells. The share that is left, if it was shortened.
 ///
 /// Sets that follow from each other may alternate for ever without it. Both pressures obey the bounds and have the same force, and so has
-/// every pressure between them; u is linear.
-pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whole: f64) -> bool {
+/// every pressure between them; u is linear. A step that was cut at the bounds need not begin downhill, though: nothing is left of a step
+/// that begins at its minimum, and the next one is the same again. See [`super::descent`].
+pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whole: f64) -> Option<f64> {
     let ((before, gap, d), (p, displaced)) = (old, new);
     let (mut first, mut last) = (0.0, 0.0);
     for i in 0..p.len() {
@@ -127,13 +158,13 @@ pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whol
     let share = first / (first - last);
     // The energy is convex. Errors of the gaps can make it look concave: the share is then negative, and the step would go back.
     if !(first < 0.0 && last > 0.0 && share < whole) {
-        return false;
+        return None;
     }
     for i in 0..p.len() {
         p[i] = before[i] + share * (p[i] - before[i]);
         displaced[i] = gap[i] + d + share * (displaced[i] - (gap[i] + d));
     }
-    true
+    Some(share)
 }
 
 /// The approach under which the gaps of the cells below the hardness vanish on average, weighted by their pressure. Without such cells the

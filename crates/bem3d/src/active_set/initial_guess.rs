@@ -35,16 +35,16 @@ impl LastState {
         }
     }
 
-    /// A guess of q at a state from the last one and the secant between them; on the way down the last q alone.
-    pub fn tangent_at(self, solved: &Solved, hardness: f64, tuning: &Tuning) -> Option<Vec<f64>> {
-        let elastic = solved.elastic(hardness);
-        let mut q = elastic.carry(&self.contact, &self.tangent.as_ref()?.0);
+    /// A guess of q on cells of a state from the last one and the secant between them; on the way down the last q alone.
+    pub fn tangent_at(self, solved: &Solved, cells: &CellSet, tuning: &Tuning) -> Option<Vec<f64>> {
+        let mut q = cells.carry(&self.contact, &self.tangent.as_ref()?.0);
         let way = solved.d - self.d;
         if way > 0.0 {
-            let before = elastic.carry(&self.contact, &self.p);
-            let now = match &elastic {
-                Cow::Borrowed(_) => Cow::Borrowed(&solved.p),
-                Cow::Owned(elastic) => Cow::Owned(elastic.carry(&solved.contact, &solved.p)),
+            let before = cells.carry(&self.contact, &self.p);
+            let now = if cells.len() == solved.contact.len() {
+                Cow::Borrowed(&solved.p)
+            } else {
+                Cow::Owned(cells.carry(&solved.contact, &solved.p))
             };
             for ((q, p), before) in q.iter_mut().zip(&*now).zip(&before) {
                 *q += tuning.extrapolation * ((p - before) / way - *q);

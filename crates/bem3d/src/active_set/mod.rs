@@ -1,6 +1,7 @@
 //! The complementarity problem at one load.
 
 mod candidates;
+mod descent;
 mod hardness;
 mod initial_guess;
 mod progress;
@@ -14,4 +15,4 @@ pub use hardness::is_saturated;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;
 pub use solver::{resume, solve};
-pub use state::{Guess, Limits, Problem, Solved, Target};
+pub use state::{Continuation, Guess, Limits, Problem, Solved, Target};

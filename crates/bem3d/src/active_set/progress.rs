@@ -15,6 +15,8 @@ pub struct Evaluated {
     pub complete: bool,
     /// Whether p and d are exact on the set, up to rounding.
     pub factored: bool,
+    /// Whether nothing was left of a step that was shortened.
+    pub jammed: bool,
 }
 
 /// How to go on.
@@ -38,17 +40,68 @@ pub struct OuterProgress {
     last: f64,
     iteration: usize,
     since_best: usize,
+    /// Smallest residuals so far, of any evaluation, and the outer iterations since.
+    lowest: f64,
+    since_lowest: usize,
+    /// The residuals that the fall-back has to reach, while it goes on.
+    goal: Option<f64>,
+    /// How often it was begun.
+    begun: i32,
 }
 
 impl OuterProgress {
     /// Nothing is known yet; `rough`: whether the first gap is evaluated in single precision.
     pub fn new(limits: Limits, rough: bool) -> Self {
-        Self { limits, best: f64::INFINITY, rough, last: f64::INFINITY, iteration: 0, since_best: 0 }
+        let unknown = f64::INFINITY;
+        Self {
+            limits,
+            best: unknown,
+            rough,
+            last: unknown,
+            iteration: 0,
+            since_best: 0,
+            lowest: unknown,
+            since_lowest: 0,
+            goal: None,
+            begun: 0,
+        }
+    }
+
+    /// Whether the next pressure comes from the fall-back ([`super::descent`]).
+    pub fn falls_back(&self) -> bool {
+        self.goal.is_some()
+    }
+
+    /// Begins the fall-back where the outer iteration has come to nothing, ends it where it has done its part. Whether neither goes on.
+    ///
+    /// The fall-back converges from every pressure, and the n-th time it goes on until the residuals are 10^-n times the smallest of all
+    /// before: it is left a few times at most, and each time the outer iteration either reduces the residuals within so many iterations
+    /// or is left again. So the solve ends, but for rounding, at the tolerance.
+    fn alternate(&mut self, error: f64, jammed: bool, resolved: bool, tuning: &Tuning) -> bool {
+        if error < tuning.better * self.lowest {
+            (self.lowest, self.since_lowest) = (error, 0);
+        } else {
+            self.since_lowest += 1;
+        }
+        let stagnated = self.since_best > tuning.patience;
+        match self.goal {
+            Some(goal) if error <= goal => {
+                (self.goal, self.since_lowest, self.since_best) = (None, 0, 0);
+            }
+            Some(_) => return stagnated,
+            None if jammed || self.since_lowest > tuning.stalled || (stagnated && resolved) => {
+                self.begun += 1;
+                self.goal = Some(tuning.fall_back.powi(self.begun) * self.lowest);
+                (self.rough, self.since_lowest, self.since_best) = (false, 0, 0);
+            }
+            None => return stagnated,
+        }
+        false
     }
 
     /// Decides after the evaluation of a gap at the approach d.
     pub fn judge(&mut self, evaluated: Evaluated, d: f64, tuning: &Tuning, stop: Stop<'_>) -> Decision {
-        let Evaluated { residuals, complete, factored } = evaluated;
+        let Evaluated { residuals, complete, factored, jammed } = evaluated;
         let (error, limits) = (residuals.worst(), self.limits);
         let settled = !factored || residuals.deepest <= tuning.factor_rounding * d;
         if complete && settled && error <= limits.tolerance {
@@ -57,16 +110,18 @@ impl OuterProgress {
             return Decision::End(Status::Stopped);
         } else if self.iteration >= limits.outer_iterations {
             return Decision::End(Status::IterationLimit);
-        } else if self.since_best > tuning.patience {
+        }
+        let length = error * limits.height.unwrap_or(d);
+        if self.alternate(error, jammed, length > tuning.rounding * d, tuning) {
             return Decision::End(Status::Stagnated);
         }
         self.iteration += 1;
-        let length = error * limits.height.unwrap_or(d);
         let (least, most) = tuning.gain;
         let gain = error / self.last;
         self.last = error;
         // Residuals that do not fall may be those of the precision.
-        self.rough = gain < tuning.better
+        self.rough = self.goal.is_none()
+            && gain < tuning.better
             && gain.clamp(least, most) * error > limits.tolerance
             && length > tuning.single_noise * d;
         let best = complete && error < tuning.better * self.best;
@@ -102,7 +157,7 @@ mod tests {
     /// A complete evaluation with these residuals.
     fn seen(error: f64) -> Evaluated {
         let residuals = Residuals { duality_gap: error, ..Residuals::default() };
-        Evaluated { residuals, complete: true, factored: false }
+        Evaluated { residuals, complete: true, factored: false, jammed: false }
     }
 
     /// The first decision.

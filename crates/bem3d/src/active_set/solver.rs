@@ -1,11 +1,12 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating cells.
 
+use super::descent::{Feasible, descend};
 use super::hardness;
 use super::progress::{Decision, Evaluated, OuterProgress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
 use crate::geometry::CellSet;
-use crate::linear::Factor;
+use crate::linear::{Factor, Fixed};
 use crate::parts::{Part, timed};
 use crate::real::{each, largest, smallest, sum, sum_of_pairs};
 use contact_model::{Status, Stop};
@@ -38,7 +39,7 @@ pub fn resume(
     stop: Stop<'_>,
 ) -> Solved {
     let Solved { contact, p, d, q, residuals, continuation, .. } = solved;
-    let evaluated = Evaluated { residuals, complete: true, factored: q.is_some() };
+    let evaluated = Evaluated { residuals, complete: true, factored: q.is_some(), jammed: false };
     let solver = Solver::new(problem, target, limits, Pressure { contact, p, d, q }, continuation);
     solver.iterate(Some(evaluated), false, stop)
 }
@@ -111,9 +112,18 @@ impl<'a> Solver<'a> {
                 // Better than expected; a step that was shortened has not been evaluated.
                 evaluated = timed(Part::Residuals, || self.evaluate(false));
             }
+            let fell_back = progress.falls_back();
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
                 Decision::End(status) => break (status, evaluated),
                 Decision::Continue { best } => self.now_is_best |= best,
+            }
+            if progress.falls_back() {
+                if !fell_back {
+                    // From the exact gap of a pressure that obeys the bounds and the force.
+                    self.evaluate(false);
+                }
+                steps += self.descend(stop);
+                continue;
             }
             self.before = self.is_saturated().then(|| (self.now.clone(), self.state.clone()));
             steps += self.improve(evaluated.residuals.worst(), stop);
@@ -147,6 +157,7 @@ impl<'a> Solver<'a> {
             Target::Force(force) => Some(force),
             Target::Approach(_) => None,
         };
+        hardness::saturate(&mut now.contact, &mut now.p, hardness);
         if let Some(force) = force
             && !hardness::is_saturated(&now.p, hardness)
         {
@@ -174,16 +185,16 @@ impl<'a> Solver<'a> {
             operators.exact(&now.contact, &now.p, checked, gap);
         }
         candidates.add_to(checked, gap);
-        let mut shortened = false;
+        let mut share = None;
         if let Some((before, at)) = self.before.take()
             && at.checked.len() == checked.len()
         {
             let old = (at.checked.carry(&before.contact, &before.p), &at.gap[..], before.d);
             let mut p = checked.carry(&now.contact, &now.p);
-            shortened = hardness::shorten(old, (&mut p, gap), tuning.whole_step);
+            share = hardness::shorten(old, (&mut p, gap), tuning.whole_step);
             self.inner_steps =
-                if shortened { tuning.short_steps } else { self.inner_steps.saturating_mul(2) };
-            if shortened {
+                if share.is_some() { tuning.short_steps } else { self.inner_steps.saturating_mul(2) };
+            if share.is_some() {
                 now.contact = checked.filter(&p, |p| p > 0.0);
                 p.retain(|&p| p > 0.0);
                 now.p = p;
@@ -215,8 +226,9 @@ impl<'a> Solver<'a> {
         };
         Evaluated {
             residuals,
-            complete: !rough && !shortened && now.d <= state.reach,
+            complete: !rough && share.is_none() && now.d <= state.reach,
             factored: now.q.is_some(),
+            jammed: share.is_some_and(|share| share < tuning.jammed),
         }
     }
 
@@ -256,8 +268,8 @@ impl<'a> Solver<'a> {
         criteria.steps = criteria.steps.min(self.inner_steps);
         let Problem { operators, workspace, .. } = &mut **problem;
         workspace.take(operators, set, recipe);
-        let fixed_sum = matches!(target, Target::Force(_));
-        let outcome = workspace.solve(operators, &mut change, fixed_sum, criteria, stop);
+        let fixed = if matches!(target, Target::Force(_)) { Fixed::Force } else { Fixed::Approach };
+        let outcome = workspace.solve(operators, &mut change, fixed, criteria, stop);
         let set = workspace.set();
         set.add_carried(&now.contact, &now.p, &mut change);
         let mut contact = set.filter(&change, |p| p > 0.0);
@@ -282,6 +294,26 @@ impl<'a> Solver<'a> {
         let d = now.d;
         self.advance(Pressure { contact, p: change, d, q: None });
         outcome.steps
+    }
+
+    /// Steps of the fall-back from the present pressure and its gap. Returns the steps taken.
+    fn descend(&mut self, stop: Stop<'_>) -> usize {
+        let Self { problem, target, now, state, .. } = self;
+        let Problem { operators, hardness, .. } = &mut **problem;
+        let Continuation { checked, gap, .. } = state;
+        let force = match *target {
+            Target::Force(force) => Some(force),
+            Target::Approach(_) => None,
+        };
+        let feasible = Feasible { hardness: *hardness, force };
+        let mut p = checked.carry(&now.contact, &now.p);
+        let most = operators.tuning().fall_back_steps;
+        let steps = descend(operators, checked, (&mut p, gap), feasible, most, stop);
+        let contact = checked.filter(&p, |p| p > 0.0);
+        p.retain(|&p| p > 0.0);
+        let d = now.d;
+        self.advance(Pressure { contact, p, d, q: None });
+        steps
     }
 
     /// Replaces the present pressure; it is kept where it is the best.

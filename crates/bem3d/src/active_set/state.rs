@@ -126,7 +126,7 @@ impl Solved {
 
     /// How far the pressure of the `elastic` cells is from its nearest bound, 0 or the hardness.
     pub fn room(&self, elastic: &CellSet, hardness: f64) -> Cow<'_, [f64]> {
-        if hardness.is_infinite() {
+        if hardness.is_infinite() && elastic.len() == self.contact.len() {
             return Cow::Borrowed(&self.p);
         }
         let mut room = elastic.carry(&self.contact, &self.p);

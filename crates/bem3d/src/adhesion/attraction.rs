@@ -20,7 +20,7 @@
 //! corner of the contact. Fronts become sharper too, and their tension vanishes at b = 0.389. The error of pull-off forces is then of second
 //! order in `a/R`. `fronts` repeats the calibration.
 
-use super::law::Law;
+use super::law::{Law, Shape};
 use crate::geometry::{CellSet, Grid};
 use crate::real::each;
 use contact_model::Boundary;
@@ -88,6 +88,18 @@ impl Attraction {
         self.neighbours.as_ref().map(|_| cells.filter(gap, |g| self.law.attached(g) > 0.5))
     }
 
+    /// Whether the attraction moves over the grid by whole cells, so that the force changes in steps that no derivative at a state shows:
+    /// the fronts of a short range, the edges of Dugdale's zones.
+    pub fn moves_by_cells(&self) -> bool {
+        self.neighbours.is_some() || self.law.shape == Shape::Uniform
+    }
+
+    /// The cells that attract with at least half of the work of adhesion left: of a short range the attached ones, of Dugdale's law those
+    /// within the range.
+    pub fn attracting(&self, cells: &CellSet, gap: &[f64]) -> CellSet {
+        self.held(cells, gap).unwrap_or_else(|| cells.filter(gap, |g| g < self.law.range))
+    }
+
     /// By what the attraction of each cell is multiplied; `None`: 1.
     fn factors(&self, cells: &CellSet, gap: &[f64]) -> Option<Vec<f64>> {
         let neighbours = self.neighbours.as_ref()?;
@@ -131,6 +143,17 @@ impl Attraction {
                 .map(|((&s, &g), f)| (s - f * self.law.traction(g)).abs() / self.law.peak)
                 .fold(0.0, f64::max),
             None => pairs.map(|(&s, &g)| self.law.mismatch(s, g)).fold(0.0, f64::max),
+        }
+    }
+
+    /// By how much the attractions differ in all from the law of their gaps; at the jump of Dugdale's law none do.
+    pub fn imbalance(&self, cells: &CellSet, attraction: &[f64], gap: &[f64]) -> f64 {
+        let pairs = attraction.iter().zip(gap);
+        match self.factors(cells, gap) {
+            Some(factors) => {
+                pairs.zip(factors).map(|((&s, &g), f)| (s - f * self.law.traction(g)).abs()).sum()
+            }
+            None => pairs.map(|(&s, &g)| self.law.peak * self.law.mismatch(s, g)).sum(),
         }
     }
 
@@ -231,7 +254,6 @@ impl Neighbours {
 #[cfg(test)]
 #[allow(clippy::cast_possible_wrap)] // Small numbers.
 mod tests {
-    use super::super::law::Shape;
     use super::*;
 
     fn neighbours(attraction: &Attraction) -> &Neighbours {

@@ -12,7 +12,7 @@ use super::law::Shape;
 use super::mixing::Mixing;
 use crate::active_set::{self, Candidates, Limits, Problem, Residuals, Target};
 use crate::geometry::CellSet;
-use crate::linear::StoppingCriteria;
+use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, smallest, sum};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
@@ -38,6 +38,10 @@ const LONGEST: f64 = 2.0;
 const FELT: f64 = 1e-6;
 /// Sweeps of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by the factor rho only.
 const PLAIN_SWEEPS: usize = 20;
+/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many sweeps on the attraction changes
+/// by a share only.
+const PATIENT: usize = 100;
+const DAMPED: f64 = 0.3;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
 const AHEAD: f64 = 0.5;
 /// A contact whose force changes by more than this factor is solved from coarse grids.
@@ -50,8 +54,9 @@ const FIRST: f64 = 1e-2;
 pub enum Control {
     /// Sum of the net pressure.
     Force(f64),
-    /// Approach.
-    Approach(f64),
+    /// Plane: the approach with free boundaries; with periodic ones the approach that a kernel of zero mean has, which is the mean of the
+    /// heights less the mean gap.
+    Plane(f64),
 }
 
 /// A state: contact pressure, attraction and gap on the cells within reach.
@@ -88,6 +93,11 @@ impl Equilibrium {
     /// Net pressure on the cells.
     pub fn net(&self) -> Vec<f64> {
         self.pressure.iter().zip(&self.attraction).map(|(p, s)| p - s).collect()
+    }
+
+    /// The plane of [`Control::Plane`] that a state has, from the constant in the kernel.
+    pub fn plane(&self, shift: f64) -> f64 {
+        self.d - shift * self.force()
     }
 
     /// Net force.
@@ -149,9 +159,10 @@ impl Search<'_> {
         let first = self.problem.candidates.range().first;
         let target = match self.control {
             Control::Force(f) if f > 0.0 => Target::Force(f),
-            Control::Approach(d) if d > first => Target::Approach(d),
+            // Of a periodic surface the approach under which the plane begins.
+            Control::Plane(plane) if plane > first => Target::Approach(plane),
             Control::Force(_) => return Equilibrium { d: first, ..Equilibrium::default() },
-            Control::Approach(d) => return Equilibrium { d, ..Equilibrium::default() },
+            Control::Plane(d) => return Equilibrium { d, ..Equilibrium::default() },
         };
         let limits = Limits { tolerance: FIRST, ..self.limits };
         let guess = active_set::cold_start(self.problem, target, limits, stop);
@@ -180,9 +191,6 @@ impl Search<'_> {
         let most = self.limits.outer_iterations * if many { PLAIN_SWEEPS } else { 1 };
         let (mut mixing, mut bottleneck) = (Mixing::default(), Bottleneck::default());
         let mut last = f64::INFINITY;
-        if let Control::Approach(d) = self.control {
-            state.d = d;
-        }
         self.evaluate(&mut state, &mut mixing);
         if self.is_far(&state) {
             self.contact_afresh(&mut state, stop);
@@ -241,7 +249,7 @@ impl Search<'_> {
         state.steps += solved.steps;
     }
 
-    /// How far the force of a state is from the one prescribed, relative to it; to the pressure of the contact where it is nothing.
+    /// How far the force of a state is from the one prescribed, relative to it; relative to the pressure of the contact where none is prescribed.
     pub fn load_error(&self, state: &Equilibrium) -> f64 {
         let Control::Force(asked) = self.control else { return 0.0 };
         let miss = (state.force() - asked).abs();
@@ -253,6 +261,10 @@ impl Search<'_> {
     fn evaluate(&mut self, state: &mut Equilibrium, mixing: &mut Mixing) {
         let Self { problem, attraction, control, limits, .. } = self;
         let law = attraction.law;
+        let shift = problem.operators.table().shift();
+        if let Control::Plane(plane) = *control {
+            state.d = plane + shift * state.force();
+        }
         if state.reach < state.d + law.reach() {
             let reach = state.d + law.reach() + AHEAD * law.range;
             state.take_cells(problem.candidates.below(reach).union(&state.contact()), reach);
@@ -263,14 +275,15 @@ impl Search<'_> {
             problem.operators.exact(&state.cells, &net, &state.cells, &mut state.gap);
             let lowest = smallest(&state.gap).min(0.0);
             problem.candidates.add_to(&state.cells, &mut state.gap);
-            if let Control::Force(_) = control {
-                let force = sum(&state.pressure);
-                if force > 0.0 {
+            let force = sum(&state.pressure);
+            match *control {
+                Control::Plane(plane) => state.d = plane + shift * sum(&net),
+                Control::Force(_) if force > 0.0 => {
                     state.d = state.pressure.iter().zip(&state.gap).map(|(p, g)| p / force * g).sum();
-                } else if !state.gap.is_empty() {
-                    // Nothing touches yet: the flat comes down to the highest point.
-                    state.d = smallest(&state.gap);
                 }
+                // Nothing touches yet: the flat comes down to the highest point.
+                Control::Force(_) if !state.gap.is_empty() => state.d = smallest(&state.gap),
+                Control::Force(_) => {}
             }
             let d = state.d;
             each(&mut state.gap, |g| *g -= d);
@@ -316,14 +329,25 @@ impl Search<'_> {
         let off = (state.pressure.iter().zip(&state.gap))
             .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
             .fold(0.0, f64::max);
-        let next = attraction.tractions(&state.cells, &state.gap);
+        let mut next = attraction.tractions(&state.cells, &state.gap);
+        if fixed_plane(control, problem) && state.sweeps > PATIENT {
+            next.iter_mut()
+                .zip(&state.attraction)
+                .for_each(|(next, now)| *next = now + DAMPED * (*next - now));
+        }
         let change = (next.iter().zip(&state.attraction))
             .map(|(a, b)| (a - b).abs() / (a.max(*b) * law.peak).sqrt().max(f64::MIN_POSITIVE))
             .fold(0.0, f64::max);
-        let settled = if plain { SETTLED } else { (BALANCE * change).clamp(0.5 * tolerance, SETTLED_FIRST) };
+        let settled =
+            if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
         let waits = off > settled * law.range && held > 0.0;
         let next = if waits { state.attraction.clone() } else { next };
-        let fixed_sum = matches!(control, Control::Force(_));
+        let shift = problem.operators.table().shift();
+        let fixed = match control {
+            Control::Force(_) => Fixed::Force,
+            Control::Plane(_) if shift > 0.0 => Fixed::MeanPlane(shift),
+            Control::Plane(_) => Fixed::Approach,
+        };
         let mut factor = 1.0;
         let mut pressure = state.pressure.clone();
         if let Control::Force(force) = *control {
@@ -352,11 +376,15 @@ impl Search<'_> {
         } else {
             gap.clone_from(&state.gap);
         }
-        if fixed_sum {
-            let force = sum(&pressure);
-            let offset: f64 = pressure.iter().zip(&gap).map(|(p, g)| p / force * g).sum();
-            each(&mut gap, |g| *g -= offset);
-        }
+        let offset: f64 = match fixed {
+            Fixed::Force => {
+                let force = sum(&pressure);
+                pressure.iter().zip(&gap).map(|(p, g)| p / force * g).sum()
+            }
+            Fixed::MeanPlane(shift) => shift * sum(&changed),
+            Fixed::Approach => 0.0,
+        };
+        each(&mut gap, |g| *g -= offset);
         let (square, count) = (pressure.iter().zip(&gap))
             .filter(|(p, _)| **p > 0.0)
             .fold((0.0, 0usize), |(square, count), (_, g)| (square + g * g, count + 1));
@@ -373,7 +401,7 @@ impl Search<'_> {
             let Problem { operators, workspace, .. } = &mut **problem;
             workspace.begin_load();
             workspace.take(operators, set, recipe);
-            let outcome = workspace.solve(operators, &mut right, fixed_sum, criteria, stop);
+            let outcome = workspace.solve(operators, &mut right, fixed, criteria, stop);
             state.steps += outcome.steps;
             let correction = state.cells.carry(workspace.set(), &right);
             pressure.iter_mut().zip(&correction).for_each(|(p, x)| *p = (*p + x).max(0.0));
@@ -407,6 +435,11 @@ impl Search<'_> {
         (state.pressure, state.attraction) = (pressure, pull);
         true
     }
+}
+
+/// Whether the mean plane of a periodic surface is held.
+fn fixed_plane(control: &Control, problem: &Problem) -> bool {
+    matches!(control, Control::Plane(_)) && problem.operators.table().shift() > 0.0
 }
 
 /// Goes so many times from one state to the next, between zero and `most`.

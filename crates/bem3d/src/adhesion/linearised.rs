@@ -5,6 +5,9 @@
 //! the Schur complement G^; with `S = D^(1/2) G^ D^(1/2)` and `x_Z = -D^(1/2) v` it is `(1 - S) v = b`, positive definite where the energy
 //! has a minimum. Conjugate gradients on it find v and, with the coefficients of Lanczos, the largest eigenvalue rho of S.
 //!
+//! With the mean plane of a periodic surface held, G stands for the kernel of zero mean. Where every cell touches, that is singular: the force
+//! is free, and there is no stiffness.
+//!
 //! Where the attraction of a cell depends on its neighbours, `D + C` stands for D, `N = 1 + D^(-1/2) C D^(-1/2)`: then `(1 - S N) v = b` with
 //! `x_Z = -D^(1/2) N v`, which is positive definite in the scalar product `u'N v`.
 
@@ -13,7 +16,7 @@ use super::equilibrium::{Control, Equilibrium};
 use super::law::Shape;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
-use crate::linear::StoppingCriteria;
+use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, sum};
 use contact_model::Stop;
 
@@ -25,7 +28,7 @@ const INNER: f64 = 1e-4;
 const INNER_STEPS: usize = 60;
 /// Steps of the reduced iteration at most.
 const STEPS: usize = 200;
-/// Where the stability alone is wanted, it may change in a step by so much of itself.
+/// The stability may still change in a step by so much of itself.
 const SETTLED: f64 = 1e-3;
 /// Rounds of correction of the response with the exact operator.
 const ROUNDS: usize = 4;
@@ -36,12 +39,32 @@ pub struct Response {
     /// `1 - rho` for the exponential law, with the approach or the force held as the control says; for Dugdale's law the smallest distance
     /// of the gap of a cell from the range, in ranges.
     pub stability: f64,
-    /// `dF/dd` of the net force, nondimensional, of the kernel with its constant; with a short range that of the attached cells.
-    pub stiffness: f64,
-    /// Its absolute error, estimated from above.
-    pub error: f64,
+    /// The stiffness where it was wanted and exists.
+    pub stiffness: Option<Slope>,
     /// Steps of conjugate gradients.
     pub steps: usize,
+}
+
+/// A derivative of the net force in the plane, nondimensional.
+#[derive(Debug, Clone, Copy)]
+pub struct Slope {
+    /// `dF/dd`, with periodic boundaries `-dF/d(mean gap)`.
+    pub value: f64,
+    /// Its absolute error, estimated from above.
+    pub error: f64,
+}
+
+impl Slope {
+    /// The error relative to the value.
+    pub fn relative_error(self) -> f64 {
+        if self.error > 0.0 { self.error / self.value.abs() } else { 0.0 }
+    }
+
+    /// From the kernel with its constant c to one of zero mean: `k = k'/(1 - c k')`.
+    fn of_zero_mean(self, constant: f64) -> Self {
+        let rest = 1.0 - constant * self.value;
+        Self { value: self.value / rest, error: self.error / (rest * rest) }
+    }
 }
 
 /// The linearised problem of a state.
@@ -55,6 +78,8 @@ struct Linearised<'a> {
     /// Their gaps.
     gap: Vec<f64>,
     attraction: &'a Attraction,
+    /// The constant that is taken from the kernel: all of it where the mean plane is held.
+    constant: f64,
     steps: usize,
     stop: Stop<'a>,
 }
@@ -77,21 +102,34 @@ impl Linearised<'_> {
         workspace.begin_load();
         workspace.take(operators, self.contact.clone(), recipe);
         let criteria = StoppingCriteria { reduction: INNER, energy: None, floor: 0.0, steps: INNER_STEPS };
-        let outcome = workspace.solve(operators, r, false, criteria, self.stop);
+        let fixed = if self.constant > 0.0 { Fixed::MeanPlane(self.constant) } else { Fixed::Approach };
+        let outcome = workspace.solve(operators, r, fixed, criteria, self.stop);
         self.steps += outcome.steps;
         outcome.energy
+    }
+
+    /// `G p` in single precision, from the cells of one set to those of another.
+    fn rough(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
+        let mut u = Vec::new();
+        self.problem.operators.rough(sources, p, targets, &mut u);
+        self.without_constant(p, &mut u);
+        u
+    }
+
+    fn without_constant(&self, p: &[f64], u: &mut [f64]) {
+        let offset = self.constant * sum(p);
+        each(u, |u| *u -= offset);
     }
 
     /// `S v`.
     fn apply(&mut self, v: &[f64]) -> Vec<f64> {
         let w: Vec<f64> = v.iter().zip(&self.root).map(|(v, d)| v * d).collect();
-        let mut u = Vec::new();
-        self.problem.operators.rough(&self.open, &w, &self.both, &mut u);
+        let (open, both) = (self.open.clone(), self.both.clone());
+        let u = self.rough(&open, &w, &both);
         let mut x = self.contact.carry(&self.both, &u);
         let mut direct = self.open.carry(&self.both, &u);
         self.contact_solve(&mut x);
-        let mut through = Vec::new();
-        self.problem.operators.rough(&self.contact, &x, &self.open, &mut through);
+        let through = self.rough(&self.contact.clone(), &x, &open);
         for ((u, t), d) in direct.iter_mut().zip(&through).zip(&self.root) {
             *u = d * (*u - t);
         }
@@ -147,10 +185,8 @@ impl Linearised<'_> {
             let next = dot(&r, &nr);
             let beta = next / rr;
             let least = found.smallest.min(found.smallest_at_force);
-            let done = match wanted {
-                Some(wanted) => next / found.smallest <= wanted,
-                None => (before - least).abs() <= SETTLED * least.abs(),
-            };
+            let settled = (before - least).abs() <= SETTLED * least.abs();
+            let done = settled && wanted.is_none_or(|wanted| next / found.smallest <= wanted);
             before = least;
             if done || next <= INNER * INNER * INNER * start {
                 break;
@@ -180,6 +216,11 @@ pub fn respond(
 ) -> Response {
     let law = attraction.law;
     let contact = state.contact();
+    let shift = problem.operators.table().shift();
+    if shift > 0.0 && contact.len() == problem.grid().count() {
+        return Response { stability: 1.0, ..Response::default() };
+    }
+    let constant = if matches!(control, Control::Plane(_)) { shift } else { 0.0 };
     let least = FLAT * law.peak / law.range;
     let mut slopes = attraction.slopes(&state.cells, &state.gap);
     slopes.iter_mut().zip(&state.pressure).filter(|(_, p)| **p > 0.0).for_each(|(s, _)| *s = 0.0);
@@ -187,14 +228,12 @@ pub fn respond(
     let root: Vec<f64> = open.carry(&state.cells, &slopes).iter().map(|s| s.sqrt()).collect();
     let gap = open.carry(&state.cells, &state.gap);
     let both = contact.union(&open);
-    let mut linearised = Linearised { problem, contact, open, both, root, gap, attraction, steps: 0, stop };
-    let held = attraction.held(&state.cells, &state.gap);
-    let mut response = linearised.response(control, if held.is_some() { None } else { tolerance });
-    if let (Some(held), Some(_)) = (held, tolerance) {
-        (linearised.both, linearised.contact) = (held.clone(), held);
-        (linearised.open, linearised.root, linearised.gap) = Default::default();
-        let Response { stiffness, error, .. } = linearised.response(Control::Approach(state.d), tolerance);
-        (response.stiffness, response.error) = (stiffness, error);
+    let mut linearised =
+        Linearised { problem, contact, open, both, root, gap, attraction, constant, steps: 0, stop };
+    let mut response = linearised.response(control, tolerance);
+    response.steps = linearised.steps;
+    if let Control::Force(_) = control {
+        response.stiffness = response.stiffness.map(|slope| slope.of_zero_mean(shift));
     }
     if law.shape == Shape::Uniform {
         response.stability = (state.pressure.iter().zip(&state.gap))
@@ -202,17 +241,41 @@ pub fn respond(
             .map(|(_, g)| (g / law.range - 1.0).abs())
             .fold(1.0, f64::min);
     }
-    response.steps = linearised.steps;
     response
+}
+
+/// The stiffness of the contact area of a state, held: of the closed cells and, with a short range, of those that hold more than half of
+/// their work. `None` where it is the whole of a periodic surface. Also the steps of conjugate gradients.
+///
+/// Cost: one or two solves on the contact.
+pub fn fixed_area(
+    problem: &mut Problem,
+    attraction: &Attraction,
+    state: &Equilibrium,
+    tolerance: f64,
+    stop: Stop<'_>,
+) -> (Option<Slope>, usize) {
+    let contact = attraction.held(&state.cells, &state.gap).unwrap_or_else(|| state.contact());
+    let constant = problem.operators.table().shift();
+    if constant > 0.0 && contact.len() == problem.grid().count() {
+        return (None, 0);
+    }
+    let (both, open, root, gap) = (contact.clone(), CellSet::default(), Vec::new(), Vec::new());
+    let mut linearised =
+        Linearised { problem, contact, open, both, root, gap, attraction, constant, steps: 0, stop };
+    let response = linearised.response(Control::Plane(state.d), Some(tolerance));
+    (response.stiffness, linearised.steps)
 }
 
 impl Linearised<'_> {
     fn response(&mut self, control: Control, tolerance: Option<f64>) -> Response {
-        let mut response = Response { stability: 1.0, error: f64::INFINITY, ..Response::default() };
+        let mut response = Response { stability: 1.0, ..Response::default() };
         if self.both.is_empty() {
             // Nothing within reach: nothing responds.
-            return Response { error: 0.0, ..response };
+            return Response { stiffness: Some(Slope { value: 0.0, error: 0.0 }), ..response };
         }
+        let (contact, open) = (self.contact.clone(), self.open.clone());
+        let mut best = Slope { value: 0.0, error: f64::INFINITY };
         // The net pressure per approach, and what is left of its equation.
         let mut x = vec![0.0; self.both.len()];
         let mut opening = vec![0.0; self.open.len()];
@@ -220,8 +283,7 @@ impl Linearised<'_> {
         for round in 0..ROUNDS {
             let mut on_contact = self.contact.carry(&self.both, &r);
             let energy = self.contact_solve(&mut on_contact);
-            let mut through = Vec::new();
-            self.problem.operators.rough(&self.contact, &on_contact, &self.open, &mut through);
+            let through = self.rough(&contact, &on_contact, &open);
             let left = self.open.carry(&self.both, &r);
             let b: Vec<f64> =
                 left.iter().zip(&through).zip(&self.root).map(|((l, t), d)| d * (l - t)).collect();
@@ -229,10 +291,10 @@ impl Linearised<'_> {
                 let value = sum(&x) + dot(&r, &x);
                 let error = energy.abs()
                     + dot(&b, &self.with_neighbours(&b)) / response.stability.max(f64::MIN_POSITIVE);
-                if error < response.error {
-                    (response.stiffness, response.error) = (value, error);
+                if error < best.error {
+                    best = Slope { value, error };
                 }
-                if tolerance.is_none_or(|t| response.error <= 0.5 * t * response.stiffness.abs()) {
+                if tolerance.is_none_or(|t| best.error <= 0.5 * t * best.value.abs()) {
                     break;
                 }
             }
@@ -246,17 +308,18 @@ impl Linearised<'_> {
             if round == 0 {
                 response.stability = match control {
                     Control::Force(_) => found.smallest_at_force.min(found.smallest),
-                    Control::Approach(_) => found.smallest,
+                    Control::Plane(_) => found.smallest,
                 };
                 if found.smallest <= 0.0 || tolerance.is_none() {
                     return response;
                 }
             }
+            // Ritz values lie above the eigenvalue.
+            response.stability = response.stability.min(found.smallest);
             let on_open: Vec<f64> =
                 self.with_neighbours(&found.v).iter().zip(&self.root).map(|(v, d)| -v * d).collect();
             opening.iter_mut().zip(found.v.iter().zip(&self.root)).for_each(|(g, (v, d))| *g += v / d);
-            let mut u = Vec::new();
-            self.problem.operators.rough(&self.open, &on_open, &self.contact, &mut u);
+            let u = self.rough(&open, &on_open, &contact);
             let mut more = self.contact.carry(&self.both, &r);
             more.iter_mut().zip(&u).for_each(|(m, u)| *m -= u);
             self.contact_solve(&mut more);
@@ -264,9 +327,11 @@ impl Linearised<'_> {
             self.both.add_carried(&self.open, &on_open, &mut x);
             // What is left, with the exact operator.
             self.problem.operators.exact(&self.both, &x, &self.both, &mut r);
+            self.without_constant(&x, &mut r);
             self.both.add_carried(&self.open, &opening, &mut r);
             each(&mut r, |r| *r = 1.0 - *r);
         }
+        response.stiffness = best.error.is_finite().then_some(best);
         response
     }
 }

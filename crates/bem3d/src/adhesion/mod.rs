@@ -10,7 +10,7 @@ mod mixing;
 pub use attraction::Attraction;
 pub use equilibrium::{Control, Ended, Equilibrium, Search, energy};
 pub use law::Law;
-pub use linearised::{Response, respond};
+pub use linearised::{Response, fixed_area, respond};
 
 #[cfg(test)]
 mod fronts;

@@ -68,6 +68,15 @@ fn dense(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
         .collect()
 }
 
+/// Without the constant of a periodic kernel, up to a part of it so small that it changes nothing here and keeps the matrix regular: at a
+/// plane that of zero mean acts.
+fn at_a_plane(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
+    const LEFT: f64 = 1e-8;
+    let constant = KernelTable::shared(grid, boundary).shift() * (1.0 - LEFT);
+    let without = |row: Vec<f64>| row.iter().map(|g| g - constant).collect();
+    dense(grid, boundary).into_iter().map(without).collect()
+}
+
 /// `matrix x = right` by Gauss's elimination with pivots.
 pub fn eliminated(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
@@ -255,16 +264,23 @@ fn a_short_range_does_the_work_with_the_traction_of_its_longer_side() {
 fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
     const NO_FORCE: f64 = 1e7;
     // Ritz values approach the spectral radius from below.
-    const SETTLED: f64 = 1e-3;
+    const SETTLED: f64 = 3e-3;
     let mut differ = 0;
-    for (seed, grid) in [(1, Grid::square(7, 6)), (2, Grid { columns: 6, rows: 7, stretch: 1.3 })] {
+    let oblong = Grid { columns: 6, rows: 7, stretch: 1.3 };
+    let square = Grid::square(7, 6);
+    for (seed, grid, boundary) in [
+        (1, square, Boundary::Free),
+        (2, oblong, Boundary::Free),
+        (1, square, Boundary::Periodic),
+        (4, oblong, Boundary::Periodic),
+    ] {
         let z = heights(grid, seed);
-        let g = dense(grid, Boundary::Free);
+        let g = at_a_plane(grid, boundary);
         let stiff: Vec<Vec<f64>> = g.iter().map(|row| row.iter().map(|g| g + NO_FORCE).collect()).collect();
         let law = law(0.3, 0.2);
-        let mut problem = problem(grid, &z, Boundary::Free);
+        let mut problem = problem(grid, &z, boundary);
         for d in [0.4, 0.8] {
-            let mut search = search(&mut problem, &law, Control::Approach(d), false);
+            let mut search = search(&mut problem, &law, Control::Plane(d), false);
             let start = search.first(&never);
             let state = search.from(start, &never).unwrap();
             let all = CellSet::all(grid);
@@ -275,7 +291,7 @@ fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
                 respond(problem, &law, control, &state, Some(1e-10), &never).stability
             };
             let (approach, force) =
-                (at(&mut problem, Control::Approach(d)), at(&mut problem, Control::Force(state.force())));
+                (at(&mut problem, Control::Plane(d)), at(&mut problem, Control::Force(state.force())));
             let (exact, exact_force) =
                 (dense_stability(&g, &contact, &slopes), dense_stability(&stiff, &contact, &slopes));
             approx::assert_relative_eq!(approach, exact, max_relative = SETTLED);
@@ -295,19 +311,19 @@ fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
         (3, Grid::square(6, 6), Boundary::Periodic),
     ] {
         let z = heights(grid, seed);
-        let g = dense(grid, boundary);
+        let g = at_a_plane(grid, boundary);
         let short = |range: f64| Attraction::short((0.35 * range).powi(2) / PI, grid, boundary);
         for law in [law(0.5, 0.15), law(0.3, 0.2), law(0.1, 0.2), short(0.5), short(0.2)] {
             let range = law.law.range;
             let mut problem = problem(grid, &z, boundary);
             let mut last: Option<Equilibrium> = None;
             for d in [-0.6, -0.2, 0.1, 0.4, 1.0, 0.5, 0.1, -0.1, -0.3, -0.6, -1.5] {
-                let mut search = search(&mut problem, &law, Control::Approach(d), false);
+                let mut search = search(&mut problem, &law, Control::Plane(d), false);
                 let start = last.take().unwrap_or_else(|| search.first(&never));
                 let before = gaps(grid, &start);
                 let state = search.from(start, &never).unwrap();
                 let found = gaps(grid, &state);
-                let control = Control::Approach(d);
+                let control = Control::Plane(d);
                 let response = respond(&mut problem, &law, control, &state, Some(1e-6), &never);
                 // Beyond the reach of the attraction gaps are not known to the solver.
                 let all: Vec<f64> = found
@@ -345,7 +361,7 @@ fn acceleration_finds_the_states_of_the_plain_iteration() {
             for d in [-0.3, 0.0, 0.3, 0.8, 0.2, -0.1, -0.2, -0.3, -0.5, -0.8, -2.0] {
                 let mut found = Vec::new();
                 for (plain, last) in [false, true].into_iter().zip(&mut last) {
-                    let mut search = search(&mut problem, &law, Control::Approach(d), plain);
+                    let mut search = search(&mut problem, &law, Control::Plane(d), plain);
                     let start = last.take().unwrap_or_else(|| search.first(&never));
                     let state = search.from(start, &never).unwrap();
                     found.push((gaps(grid, &state), energy(&problem, &law, &state), state.force()));
@@ -365,25 +381,32 @@ fn acceleration_finds_the_states_of_the_plain_iteration() {
 }
 
 #[test]
-fn the_stiffness_is_the_difference_of_forces_and_goes_with_the_dense_response() {
+fn the_stiffness_is_the_difference_of_forces() {
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        stiffness_by_differences(boundary);
+    }
+}
+
+fn stiffness_by_differences(boundary: Boundary) {
     let grid = Grid::square(12, 10);
     let z = heights(grid, 4);
-    let mut problem = problem(grid, &z, Boundary::Free);
+    let mut problem = problem(grid, &z, boundary);
     let at = |problem: &mut Problem, law: &Attraction, d: f64| {
-        let mut search = search(problem, law, Control::Approach(d), false);
+        let mut search = search(problem, law, Control::Plane(d), false);
         let start = search.first(&never);
         search.from(start, &never).unwrap()
     };
     for (law, d) in [(&law(0.3, 0.15), -0.4), (&law(0.3, 0.15), 0.6)] {
         let state = at(&mut problem, law, d);
-        let response = respond(&mut problem, law, Control::Approach(d), &state, Some(1e-6), &never);
+        let response = respond(&mut problem, law, Control::Plane(d), &state, Some(1e-6), &never);
         let step = 1e-4;
         let (above, below) =
             (at(&mut problem, law, d + step).force(), at(&mut problem, law, d - step).force());
         let expected = (above - below) / (2.0 * step);
         // The difference quotient is off by its second order and by cells that join.
-        approx::assert_relative_eq!(response.stiffness, expected, max_relative = 1e-3);
-        assert!(response.error <= 1e-6 * response.stiffness.abs());
+        let stiffness = response.stiffness.unwrap();
+        approx::assert_relative_eq!(stiffness.value, expected, max_relative = 1e-3);
+        assert!(stiffness.relative_error() <= 1e-6);
     }
 }
 
@@ -440,9 +463,10 @@ fn no_attachment_or_detachment_of_a_single_cell_lowers_the_energy_of_a_short_ran
         let shift = problem.operators.table().shift();
         let mut last: Option<Equilibrium> = None;
         for d in [-0.2, 0.2, 0.8, 0.3, -0.1, -0.3] {
-            let mut search = search(&mut problem, &short, Control::Approach(d), false);
+            let mut search = search(&mut problem, &short, Control::Plane(d), false);
             let start = last.take().unwrap_or_else(|| search.first(&never));
             let state = search.from(start, &never).unwrap();
+            let d = state.d;
             let u = |p: &[f64]| -> Vec<f64> { g.iter().map(|row| crate::real::dot(row, p)).collect() };
             let net = all.carry(&state.cells, &state.net());
             let gap: Vec<f64> = u(&net).iter().zip(&z).map(|(u, z)| u + z - d).collect();

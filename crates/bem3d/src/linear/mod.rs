@@ -7,5 +7,5 @@ mod preconditioner;
 mod workspace;
 
 pub use cholesky::Factor;
-pub use pcg::{Energy, StoppingCriteria};
+pub use pcg::{Energy, Fixed, StoppingCriteria};
 pub use workspace::Workspace;

@@ -3,7 +3,7 @@
 use super::preconditioner::Preconditioner;
 use crate::geometry::CellSet;
 use crate::operator::InfluenceOperator;
-use crate::real::{Real, dot, sum, update};
+use crate::real::{Real, dot, each, sum, update};
 use crate::tuning::CHUNK;
 use contact_model::Stop;
 use surface_gen::parallel::map;
@@ -29,6 +29,17 @@ pub struct Energy {
     pub share: f64,
     /// The value before the correction.
     pub base: f64,
+}
+
+/// What stays as it is while a pressure is corrected.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fixed {
+    /// The approach: `G x = r`.
+    Approach,
+    /// The force: `G x = r + const` and `sum x = 0`, the approach adapts.
+    Force,
+    /// The mean plane of a periodic surface: `(G - c) x = r` with the constant c that the kernel has beyond its zero mean.
+    MeanPlane(f64),
 }
 
 /// What an iteration took and found, in the units of the residual given.
@@ -92,10 +103,9 @@ impl<T: Real> Vectors<T> {
     }
 }
 
-/// Solves `G x = r` on a set approximately; with `fixed_sum`, `G x = r + const` and `sum x = 0`: the force is prescribed and the
-/// approach adapts.
+/// Solves `G x = r` on a set approximately, or what [`Fixed`] makes of it.
 ///
-/// With `fixed_sum` the equation is solved on the corrections without a sum: with the weights w, the residual is `r - (w'r / w'1) 1` and
+/// At a fixed force the equation is solved on the corrections without a sum: with the weights w, the residual is `r - (w'r / w'1) 1` and
 /// the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and keeps the sum whatever the weights; `G^-1 1` is the best of them.
 ///
 /// Cost: one application of G and one of the preconditioner a step. The caller checks the result with the exact operator.
@@ -103,10 +113,11 @@ pub fn pcg<T: Real>(
     operator: &mut dyn InfluenceOperator<T>,
     preconditioner: &mut dyn Preconditioner<T>,
     v: &mut Vectors<T>,
-    fixed_sum: bool,
+    fixed: Fixed,
     criteria: StoppingCriteria,
     stop: Stop<'_>,
 ) -> PcgOutcome {
+    let fixed_sum = fixed == Fixed::Force;
     v.x.fill(T::default());
     let factor = preconditioner.energy_factor();
     let total = if fixed_sum { v.weigh(preconditioner) } else { 0.0 };
@@ -144,6 +155,10 @@ pub fn pcg<T: Real>(
         }
         pending = false;
         operator.apply(set, t, set, kt);
+        if let Fixed::MeanPlane(constant) = fixed {
+            let offset = T::of(constant * sum(t));
+            each(kt, |kt| *kt += T::default() - offset);
+        }
         applications += 1;
         let curvature = dot(t, kt);
         if curvature.is_nan() || curvature <= 0.0 {

@@ -1,7 +1,7 @@
 //! Linear systems in the precision and with the preconditioner of their recipe.
 
 use super::extension::Extension;
-use super::pcg::{Energy, PcgOutcome, StoppingCriteria, Vectors, pcg};
+use super::pcg::{Energy, Fixed, PcgOutcome, StoppingCriteria, Vectors, pcg};
 use super::preconditioner::{Identity, TorusInverse};
 use crate::geometry::CellSet;
 use crate::operator::{Conditioning, Operators, Recipe};
@@ -49,13 +49,13 @@ impl Workspace {
         if self.recipe.is_some_and(|recipe| recipe.is_single()) { &self.single.set } else { &self.double.set }
     }
 
-    /// Solves `G x = right` on the set approximately and writes x over `right`; with `fixed_sum`, `G x = right + const` and `sum x = 0`.
+    /// Solves `G x = right` on the set approximately, or what `fixed` makes of it, and writes x over `right`.
     /// Criteria and outcome are in the units of `right`.
     pub fn solve(
         &mut self,
         operators: &mut Operators,
         right: &mut [f64],
-        fixed_sum: bool,
+        fixed: Fixed,
         criteria: StoppingCriteria,
         stop: Stop<'_>,
     ) -> PcgOutcome {
@@ -77,16 +77,16 @@ impl Workspace {
                 v.load(right, unit);
                 let outcome = if let Some(transform) = torus {
                     let mut inverse = TorusInverse { transform, extension: &mut self.extension };
-                    pcg(&mut operator, &mut inverse, v, fixed_sum, criteria, stop)
+                    pcg(&mut operator, &mut inverse, v, fixed, criteria, stop)
                 } else {
-                    pcg(&mut operator, &mut identity, v, fixed_sum, criteria, stop)
+                    pcg(&mut operator, &mut identity, v, fixed, criteria, stop)
                 };
                 v.unload(right, unit);
                 outcome
             } else {
                 let v = &mut self.double;
                 v.load(right, unit);
-                let outcome = pcg(&mut operator, &mut identity, v, fixed_sum, criteria, stop);
+                let outcome = pcg(&mut operator, &mut identity, v, fixed, criteria, stop);
                 v.unload(right, unit);
                 outcome
             }

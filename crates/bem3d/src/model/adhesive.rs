@@ -2,10 +2,11 @@
 
 use super::options::Bem3d;
 use super::prepared::{NAME, PreparedBem3d, without_tangential};
+use super::state::GROWTH;
 use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
-use crate::tuning::{GAP_LOADS, Tuning};
+use crate::tuning::Tuning;
 use contact_model::{
     Adhesion, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, History, HistoryState, Load,
     Normalisation, PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
@@ -23,8 +24,8 @@ const ON_BRANCH: f64 = 1e-3;
 /// One surface with adhesion of finite range, on its path.
 #[derive(Debug)]
 pub struct AdhesiveContact {
-    inner: PreparedBem3d,
-    attraction: Attraction,
+    pub(super) inner: PreparedBem3d,
+    pub(super) attraction: Attraction,
     time: f64,
     last: Option<Last>,
     plain: bool,
@@ -39,11 +40,11 @@ struct Last {
 }
 
 /// An equilibrium that was found at a load.
-struct Found {
-    equilibrium: Equilibrium,
+pub(super) struct Found {
+    pub equilibrium: Equilibrium,
     response: Response,
     control: Control,
-    status: Status,
+    pub status: Status,
     load_error: f64,
 }
 
@@ -55,7 +56,7 @@ impl AdhesiveContact {
     }
 
     /// The nondimensional load.
-    fn control(&self, load: Load) -> Result<Goal> {
+    fn control(&self, load: Load) -> Result<Control> {
         let units = self.inner.nondimensional;
         let held = |name, value: f64, result: f64| {
             let kept = result.is_finite() && (value == 0.0 || result != 0.0);
@@ -63,14 +64,12 @@ impl AdhesiveContact {
             if kept { Ok(result) } else { Err(Error::domain(name, value, expected)) }
         };
         Ok(match load.validated_with_adhesion()? {
-            Load::Force(f) => {
-                Goal::Load(Control::Force(held("force", f, (units.force_in(f.abs()) / PI).copysign(f))?))
-            }
+            Load::Force(f) => Control::Force(held("force", f, (units.force_in(f.abs()) / PI).copysign(f))?),
             Load::Approach(d) if !self.inner.is_periodic() => {
-                Goal::Load(Control::Approach(held("approach", d, units.approach_in(d))?))
+                Control::Plane(held("approach", d, units.approach_in(d))?)
             }
             Load::MeanGap(gap) if self.inner.is_periodic() => {
-                Goal::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
+                Control::Plane(self.inner.mean - held("mean gap", gap, units.approach_in(gap))?)
             }
             Load::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
@@ -83,7 +82,7 @@ impl AdhesiveContact {
     /// The next state from the last one.
     fn next(&mut self, load: Load, stop: Stop<'_>) -> Result<Last> {
         match self.control(load)? {
-            Goal::Load(Control::Force(f)) if f < 0.0 && self.untouched() => {
+            Control::Force(f) if f < 0.0 && self.untouched() => {
                 // The segment begins without force: there the surfaces already hold each other.
                 let before = self.last.take();
                 let touched = self.at(Control::Force(0.0), stop);
@@ -94,8 +93,7 @@ impl AdhesiveContact {
                 self.last = before;
                 held
             }
-            Goal::Load(control) => self.at(control, stop),
-            Goal::MeanGap(gap) => self.at_mean_gap(gap, stop),
+            control => self.at(control, stop),
         }
     }
 
@@ -105,29 +103,45 @@ impl AdhesiveContact {
 
     fn at(&mut self, control: Control, stop: Stop<'_>) -> Result<Last> {
         self.inner.begin_count();
-        let found = self.search(control, stop)?;
+        let last = self.last.as_ref().map(|last| last.equilibrium.clone());
+        let found = self.search(control, last.as_ref(), self.tolerance(), stop)?;
         self.finish(found, stop)
     }
 
-    /// Whether the load has risen since the last state.
-    fn rises(&self, control: Control) -> Option<bool> {
-        let last = &self.last.as_ref()?.equilibrium;
-        Some(match control {
+    /// The tolerance of a stiffness that moves with the gaps, where one is wanted.
+    fn tolerance(&self) -> Option<f64> {
+        let wanted = self.inner.outputs.stiffness && !self.attraction.moves_by_cells();
+        wanted.then_some(self.inner.options.tolerance)
+    }
+
+    fn shift(&self) -> f64 {
+        self.inner.problem.operators.table().shift()
+    }
+
+    /// Whether a load is above that of a state.
+    fn rises(&self, control: Control, last: &Equilibrium) -> bool {
+        match control {
             Control::Force(f) => f > last.force(),
-            Control::Approach(d) => d > last.d,
-        })
+            Control::Plane(plane) => plane > last.plane(self.shift()),
+        }
     }
 
     /// The equilibrium of a load, from the last one.
-    fn search(&mut self, control: Control, stop: Stop<'_>) -> Result<Found> {
-        let rises = self.rises(control);
+    pub(super) fn search(
+        &mut self,
+        control: Control,
+        last: Option<&Equilibrium>,
+        tolerance: Option<f64>,
+        stop: Stop<'_>,
+    ) -> Result<Found> {
+        let rises = last.is_none_or(|last| self.rises(control, last));
         let mut plain = self.plain;
         let mut spent = (0, 0);
         loop {
             let (limits, attraction) = (self.inner.limits(), &self.attraction);
             let mut search = Search { problem: &mut self.inner.problem, attraction, control, limits, plain };
-            let start = match &self.last {
-                Some(last) => last.equilibrium.again(),
+            let start = match last {
+                Some(last) => last.again(),
                 None => search.first(stop),
             };
             let ended = search.from(start, stop).map_err(|ended| *ended);
@@ -145,8 +159,7 @@ impl AdhesiveContact {
                 Err((Ended::PulledOff, _)) => return Err(self.pulled_off(control)?),
                 Err((Ended::Status(status), equilibrium)) => (equilibrium, status),
             };
-            let left = self.left_branch(&equilibrium, rises.unwrap_or(true));
-            let tolerance = self.inner.outputs.needs_stiffness().then_some(self.inner.options.tolerance);
+            let left = last.is_some_and(|last| self.left_branch(last, &equilibrium, rises));
             let mut response = Response::default();
             let sound = status == Status::Converged && !left;
             if sound || !again {
@@ -168,10 +181,9 @@ impl AdhesiveContact {
     }
 
     /// Whether a gap has moved against the load: then an accelerated step has gone beyond an equilibrium.
-    fn left_branch(&self, now: &Equilibrium, rises: bool) -> bool {
-        let Some(last) = &self.last else { return false };
-        let before = now.cells.carry(&last.equilibrium.cells, &last.equilibrium.attraction);
-        let known = now.cells.carry(&last.equilibrium.cells, &vec![1.0; last.equilibrium.cells.len()]);
+    fn left_branch(&self, last: &Equilibrium, now: &Equilibrium, rises: bool) -> bool {
+        let before = now.cells.carry(&last.cells, &last.attraction);
+        let known = now.cells.carry(&last.cells, &vec![1.0; last.cells.len()]);
         now.attraction.iter().zip(&before).zip(&known).any(|((now, before), known)| {
             let change = if rises { before - now } else { now - before };
             *known > 0.0 && change > ON_BRANCH * self.attraction.law.peak
@@ -193,74 +205,31 @@ impl AdhesiveContact {
         })
     }
 
-    /// The state at a mean gap, by secants in the approach, each time from the last state.
-    fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<Last> {
-        self.inner.begin_count();
-        let shift = self.inner.problem.operators.table().shift();
-        let length = self.inner.limits().height.unwrap_or(self.attraction.law.range);
-        let gap_of = |e: &Equilibrium, mean: f64| mean - (e.d - shift * e.force());
-        let mean = self.inner.mean;
-        let mut d = self
-            .last
-            .as_ref()
-            .map_or(mean - asked, |last| last.equilibrium.d + (gap_of(&last.equilibrium, mean) - asked));
-        let mut before: Option<(f64, f64)> =
-            self.last.as_ref().map(|last| (last.equilibrium.d, gap_of(&last.equilibrium, mean) - asked));
-        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        for _ in 0..GAP_LOADS {
-            let mut found = self.search(Control::Approach(d), stop)?;
-            let miss = gap_of(&found.equilibrium, mean) - asked;
-            found.load_error = miss.abs() / length;
-            if found.load_error <= self.inner.options.tolerance || found.status != Status::Converged {
-                return self.finish(found, stop);
-            }
-            if miss > 0.0 {
-                low = low.max(d);
-            } else {
-                high = high.min(d);
-            }
-            let slope = before.map_or(-1.0, |(d0, miss0)| (miss - miss0) / (d - d0));
-            before = Some((d, miss));
-            let next = d - miss / if slope < 0.0 { slope } else { -1.0 };
-            d = if next > low && next < high {
-                next
-            } else if low.is_finite() && high.is_finite() {
-                f64::midpoint(low, high)
-            } else {
-                d + miss
-            };
-        }
-        let units = self.inner.nondimensional;
-        let name = "mean gap".into();
-        Err(Error::OutOfRange { name, value: units.approach(asked)?, min: 0.0, max: units.approach(mean)? })
-    }
-
     /// The state that is returned.
     fn finish(&mut self, found: Found, stop: Stop<'_>) -> Result<Last> {
         let Found { equilibrium, response, control, status, load_error } = found;
-        let branch = match (self.rises(control), &self.last) {
-            (Some(true) | None, _) => Branch::Approach,
-            (Some(false), Some(last)) if self.same_load(control) => last.branch,
-            _ => Branch::Withdrawal,
+        let branch = match &self.last {
+            Some(last) if self.same_load(control, &last.equilibrium) => last.branch,
+            Some(last) if !self.rises(control, &last.equilibrium) => Branch::Withdrawal,
+            _ => Branch::Approach,
         };
+        let stiffness = self.stiffness(&equilibrium, &response, branch, stop);
+        let force_error = self.force_error(control, &equilibrium, &response);
         let inner = &mut self.inner;
         let units = inner.nondimensional;
         let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));
         let net = equilibrium.force();
-        let stiffness = inner.outputs.needs_stiffness().then(|| {
-            let rest = 1.0 - inner.problem.operators.table().shift() * response.stiffness;
-            let scale = response.stiffness.abs() * rest.abs();
-            (response.stiffness / rest, if response.error > 0.0 { response.error / scale } else { 0.0 })
-        });
-        let stiffness_error = stiffness.map(|(_, error)| error);
         let residuals = equilibrium.residuals;
         let certificate = Certificate {
             duality_gap: residuals.duality_gap,
             penetration: residuals.penetration,
             complementarity: residuals.complementarity,
             load_error,
-            stiffness_error,
+            stiffness_error: stiffness.solve_error,
+            quotient_error: stiffness.quotient_error,
             equilibrium: Some(equilibrium.mismatch),
+            force_error,
+            ..Certificate::default()
         };
         let status = match status {
             Status::Converged if certificate.meets(inner.options.tolerance) => Status::Converged,
@@ -282,21 +251,24 @@ impl AdhesiveContact {
             format!("attraction on {} cells, {} sweeps", equilibrium.cells.len(), equilibrium.sweeps),
         );
         report.work = Work::of(std::mem::take(&mut inner.problem.operators.solves), fields.as_ref());
-        report.iterations = equilibrium.steps + response.steps;
+        report.iterations = equilibrium.steps + response.steps + stiffness.steps;
         report.applications = std::mem::take(&mut inner.problem.operators.applications);
         report.contact_cells = Some(contact.len());
         report.certificate = certificate;
         let length = |value: f64| signed(value, &|v| units.approach(v));
-        let plane = equilibrium.d - inner.problem.operators.table().shift() * net;
+        let plane = equilibrium.plane(inner.problem.operators.table().shift());
         let approach = (!inner.is_periodic()).then(|| length(equilibrium.d)).transpose()?;
-        let mean_gap = inner.outputs.mean_gap.then(|| length(inner.mean - plane)).transpose()?;
-        let stiffness = stiffness.map(|(k, _)| signed(PI * k, &|v| units.stiffness(v))).transpose()?;
+        // Rounding where the contact is complete.
+        let gap = if inner.is_full(&contact) { 0.0 } else { inner.mean - plane };
+        let mean_gap = inner.outputs.mean_gap.then(|| length(gap)).transpose()?;
+        let held = |k: Option<f64>| k.map(|k| signed(PI * k, &|v| units.stiffness(v))).transpose();
         let area = self.attraction.area(&contact, &equilibrium.gap);
         let area = inner.outputs.area.then(|| units.area(area)).transpose()?;
         let state = ContactState::new(signed(PI * net, &|v| units.force(v))?, report)
             .with_approach(approach)
             .with_mean_gap(mean_gap)
-            .with_stiffness(stiffness)
+            .with_stiffness(held(stiffness.along_the_branch)?)
+            .with_stiffness_fixed_area(held(stiffness.fixed_area)?)
             .with_area(area)
             .with_patches(inner.patches(&contact)?)
             .with_adhesive(AdhesiveState::new(branch, stored, response.stability))
@@ -309,11 +281,23 @@ impl AdhesiveContact {
         }
     }
 
-    fn same_load(&self, control: Control) -> bool {
-        let Some(last) = &self.last else { return false };
+    /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest
+    /// stiffness of a contact in this place makes of the gaps left, both more where the state is less stable. `None` without a force, and for a state that is not stable.
+    fn force_error(&self, control: Control, state: &Equilibrium, response: &Response) -> Option<f64> {
+        let (Control::Plane(_), force) = (control, state.force().abs()) else { return None };
+        let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);
+        let left = (state.pressure.iter().zip(&state.gap))
+            .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
+            .fold(0.0, f64::max);
+        let stiffest = self.inner.stiffest_on(&state.cells);
+        let error = GROWTH * (lack + stiffest * left) / response.stability;
+        (force > 0.0 && response.stability > 0.0).then(|| error / force)
+    }
+
+    fn same_load(&self, control: Control, last: &Equilibrium) -> bool {
         let (a, b) = match control {
-            Control::Force(f) => (f, last.equilibrium.force()),
-            Control::Approach(d) => (d, last.equilibrium.d),
+            Control::Force(f) => (f, last.force()),
+            Control::Plane(plane) => (plane, last.plane(self.shift())),
         };
         (a - b).abs() <= self.inner.options.tolerance * a.abs().max(b.abs())
     }
@@ -363,12 +347,6 @@ fn attraction(inner: &PreparedBem3d, adhesion: Adhesion) -> Result<Attraction> {
         return Err(Error::domain("side of a cell", dx.max(dy), expected));
     }
     Ok(attraction)
-}
-
-/// What is asked for.
-enum Goal {
-    Load(Control),
-    MeanGap(f64),
 }
 
 impl History for AdhesiveContact {

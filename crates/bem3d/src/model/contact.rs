@@ -1,5 +1,6 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
+<<<<<<< HEAD
 use super::options::bytes_per_cell;
 use super::prepared::{NAME, PreparedBem3d};
 use crate::active_set::{self, Limits, Solved, Target, is_saturated};
@@ -9,6 +10,16 @@ use crate::stiffness::{self, Stiffness};
 use contact_model::{
     ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Status, Stop,
 };
+=======
+use super::prepared::{NAME, PreparedBem3d, Tangent};
+use super::state::LoadError;
+use crate::active_set::{self, Limits, Solved, Target, is_saturated};
+use crate::geometry::CellSet;
+use crate::parts::{Part, timed};
+use crate::stiffness::{self, Responding, Stiffness};
+use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
+use std::borrow::Cow;
+>>>>>>> main
 use std::f64::consts::PI;
 
 /// How far the force of all cells at the hardness may be rounded on its way through units.
@@ -21,13 +32,18 @@ impl PreparedContact for PreparedBem3d {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         let units = self.nondimensional;
-        let target = match load.validated()? {
+        let load = match load {
+            // Undefined points let the planes pass each other.
+            Load::MeanGap(gap) if gap.is_finite() => load,
+            load => load.validated()?,
+        };
+        let target = match load {
             Load::Force(f) => Target::Force(held("force", f, units.force_in(f) / PI)?),
             Load::Approach(d) if !self.is_periodic() => {
                 Target::Approach(held("approach", d, units.approach_in(d))?)
             }
             Load::MeanGap(gap) if self.is_periodic() => {
-                return self.at_mean_gap(held("mean gap", gap, units.approach_in(gap))?, stop);
+                return self.at_mean_gap(signed("mean gap", gap, units.approach_in(gap))?, stop);
             }
             Load::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
@@ -47,11 +63,11 @@ impl PreparedContact for PreparedBem3d {
         }
         self.begin_count();
         let (solved, tangent) = self.settle(target, self.limits(), stop);
-        let miss = match target {
-            Target::Force(asked) => ((solved.p.iter().sum::<f64>() - asked) / asked).abs(),
-            Target::Approach(_) => 0.0,
+        let error = match target {
+            Target::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
+            Target::Approach(_) => self.force_error(&solved, self.stiffest(&solved, tangent.as_ref()), 0.0),
         };
-        timed(Part::Results, || self.state(solved, tangent, miss, stop))
+        timed(Part::Results, || self.state(solved, tangent, error, stop))
     }
 
     /// Cost O(N).
@@ -106,24 +122,22 @@ impl PreparedBem3d {
         target: Target,
         mut limits: Limits,
         stop: Stop<'_>,
-    ) -> (Solved, Option<Stiffness>) {
+    ) -> (Solved, Option<Tangent>) {
         let tuning = *self.problem.operators.tuning();
         let guess = self.guess(target, limits, stop);
         let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
-        // Full contact of a periodic surface has no finite stiffness.
-        let hardness = self.problem.hardness;
-        let whole = self.is_periodic() && solved.contact.len() == self.problem.grid().count();
-        let full = whole && !is_saturated(&solved.p, hardness);
+        // Complete contact of a periodic surface has no finite stiffness.
+        let full = self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness);
         if full || !self.outputs.needs_stiffness() {
             return (solved, None);
         }
         // The last state is not needed any more, and as large as the contact.
         let last = self.last.take();
         let k = last.as_ref().and_then(|last| last.tangent.as_ref()).map(|&(_, k)| k);
-        let q = last.and_then(|last| last.tangent_at(&solved, hardness, &tuning));
-        let mut tangent = self.tangent(&solved, q, k, stop);
+        let q = last.and_then(|last| last.tangent_at(&solved, &self.responding(&solved).cells, &tuning));
+        let mut tangent = self.tangent(&solved, (q, None), k, stop);
         for _ in 0..tuning.tightenings {
-            let (error, before) = (self.stiffness_error(&tangent), solved.residuals.worst());
+            let (error, before) = (self.tangent_error(&tangent), solved.residuals.worst());
             if solved.status != Status::Converged || error <= self.options.tolerance || stop() {
                 break;
             }
@@ -141,18 +155,39 @@ impl PreparedBem3d {
             // The tighter state counts as converged when it meets the tolerance that was asked for.
             let converged = next.residuals.worst() <= self.options.tolerance;
             let status = if converged { Status::Converged } else { next.status };
-            let q = next.elastic(hardness).carry(&solved.elastic(hardness), &tangent.q);
-            let steps = solved.steps + tangent.steps;
+            let q = self.responding(&next).cells.carry(&tangent.cells, &tangent.stiffness.q);
+            let whole = tangent.whole.map(|whole| next.contact.carry(&solved.contact, &whole.q));
+            let steps = solved.steps + tangent.stiffness.steps;
             solved = Solved { steps, status, ..next };
-            tangent = self.tangent(&solved, Some(q), k, stop);
+            tangent = self.tangent(&solved, (Some(q), whole), k, stop);
         }
         (solved, Some(tangent))
     }
 
-    /// The stiffness of a state from guesses of q and of k.
+    /// The stiffnesses of a state from guesses of q, along the branch and of the whole contact, and of k.
     fn tangent(
         &mut self,
         solved: &Solved,
+        (q, of_whole): (Option<Vec<f64>>, Option<Vec<f64>>),
+        k: Option<f64>,
+        stop: Stop<'_>,
+    ) -> Tangent {
+        let responding = self.responding(solved);
+        let stiffness = self.stiffness(solved, &responding, q, k, stop);
+        let another = responding.cells.len() != solved.contact.len();
+        let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
+        let whole = wanted.then(|| {
+            let whole = Responding::whole(solved, self.problem.hardness);
+            self.stiffness(solved, &whole, of_whole, None, stop)
+        });
+        Tangent { stiffness, cells: responding.cells.into_owned(), whole }
+    }
+
+    /// The stiffness of the cells that respond.
+    fn stiffness(
+        &mut self,
+        solved: &Solved,
+        responding: &Responding<'_>,
         mut q: Option<Vec<f64>>,
         k: Option<f64>,
         stop: Stop<'_>,
@@ -160,25 +195,79 @@ impl PreparedBem3d {
         let misjudged = self.problem.operators.tuning().misjudged;
         let mut expected = k.map_or(1.0, |k| self.magnification(k));
         let mut steps = 0;
-        if solved.q.is_some() {
-            q.clone_from(&solved.q);
+        let factored = solved.q.as_ref().filter(|q| q.len() == responding.cells.len());
+        if let Some(factored) = factored {
+            q = Some(factored.clone());
         }
         loop {
             let tolerance = self.options.tolerance / expected;
-            let mut tangent = stiffness::solve(&mut self.problem, solved, q, tolerance, stop);
-            steps += tangent.steps;
-            tangent.steps = steps;
-            let found = self.magnification(tangent.value);
-            if found <= misjudged * expected || solved.q.is_some() || tangent.q.is_empty() || stop() {
-                return tangent;
+            let mut found = stiffness::solve(&mut self.problem, solved, responding, q, tolerance, stop);
+            steps += found.steps;
+            found.steps = steps;
+            let magnified = self.magnification(found.value);
+            if magnified <= misjudged * expected || factored.is_some() || found.q.is_empty() || stop() {
+                return found;
             }
-            expected = found;
-            q = Some(tangent.q);
+            expected = magnified;
+            q = Some(found.q);
         }
+    }
+
+    /// The stiffness to a few per cent, from above; infinite where the contact is complete.
+    pub(super) fn rough_stiffness(&mut self, solved: &Solved, stop: Stop<'_>) -> f64 {
+        const ROUGH: f64 = 0.02;
+        if self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness) {
+            return f64::INFINITY;
+        }
+        let responding = self.responding(solved);
+        let found = stiffness::solve(&mut self.problem, solved, &responding, None, ROUGH, stop);
+        let k = found.value * (1.0 + found.solve_error.min(1.0));
+        k * self.magnification(k)
+    }
+
+    /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path, cells of the indentation that
+    /// are at the hardness again flow when the load grows, and do not when it falls.
+    fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
+        let hardness = self.problem.hardness;
+        let mut responding = Responding::elastic(solved, hardness);
+        let Some(memory) = &self.memory else { return responding };
+        let decided = self.flowing_again(solved);
+        if !decided.is_empty() {
+            let rises = memory.rises_to(solved.p.iter().sum(), self.options.tolerance);
+            let cells = &*responding.cells;
+            let cells = if rises { cells.without(&decided) } else { cells.union(&decided) };
+            responding = Responding { cells: Cow::Owned(cells), limit: hardness, decided };
+        }
+        responding
+    }
+
+    /// On a path, the cells of the indentation whose pressure is the hardness, and which have flowed no further, within what the tolerance
+    /// leaves open.
+    pub(super) fn flowing_again(&self, solved: &Solved) -> CellSet {
+        let Some(memory) = &self.memory else { return CellSet::default() };
+        let (table, hardness) = (self.problem.operators.table(), self.problem.hardness);
+        let accuracy = self.options.tolerance * self.limits().height.unwrap_or(solved.d);
+        let margin = 2.0 * accuracy / table.smallest_eigenvalue();
+        let (left, grid) = (solved.gap_on(&solved.contact), self.problem.grid());
+        let again: Vec<bool> = (solved.contact.index(grid).zip(&solved.p).zip(&left))
+            .map(|((i, &p), &gap)| {
+                memory.indentation[i] > 0.0 && p >= hardness - margin && gap >= -2.0 * accuracy
+            })
+            .collect();
+        solved.contact.filter(&again, |again| again)
     }
 }
 
-/// A nondimensional load, unless no f64 holds it.
+/// A nondimensional load of either sign, unless no f64 holds it.
+pub(super) fn signed(name: &'static str, value: f64, result: f64) -> Result<f64> {
+    if result.is_finite() && (value == 0.0 || result != 0.0) {
+        Ok(result)
+    } else {
+        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
+    }
+}
+
+/// A nondimensional load >= 0, unless no f64 holds it.
 fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
     if result.is_finite() && (result > 0.0 || value <= 0.0) {
         Ok(result)

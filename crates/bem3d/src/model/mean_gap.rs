@@ -1,18 +1,26 @@
 //! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
 
 use super::prepared::PreparedBem3d;
-use crate::active_set::{Solved, Target};
+use super::state::LoadError;
+use crate::active_set::{Solved, Target, is_saturated};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 impl PreparedBem3d {
-    /// Mean gap of a state, nondimensional: the distance of the mean planes, undefined points left out. The displacement under the kernel of zero mean has none.
+    /// Mean gap of a state, nondimensional: the distance between the mean plane of the defined heights and that of the deformed half-space,
+    /// whose displacement under the kernel of zero mean has none. Undefined points or a plastic indentation may bring the planes beyond each
+    /// other.
     pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
+        if self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness) {
+            return 0.0;
+        }
         let force: f64 = solved.p.iter().sum();
-        let plane = solved.d - self.problem.operators.table().shift() * force;
-        let gap = self.mean - plane;
-        // Rounding where the contact is full. A plastic indentation may bring the mean planes of the virgin surfaces beyond each other.
-        if self.problem.hardness.is_finite() { gap } else { gap.max(0.0) }
+        self.mean - (solved.d - self.problem.operators.table().shift() * force)
+    }
+
+    /// Whether the mean gap of any force is above zero: no points are undefined, and nothing flows.
+    fn has_complete_contact(&self) -> bool {
+        self.problem.hardness.is_infinite() && self.defined == self.problem.grid().count()
     }
 
     /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and secants where it is not: the gap
@@ -23,9 +31,13 @@ impl PreparedBem3d {
             // Apart, or touching: the gap is the one asked for.
             return self.no_contact(self.mean - asked);
         }
-        if asked <= 0.0 {
+        if asked <= 0.0 && self.has_complete_contact() {
             let expected = "a number above 0, where every force from that of full contact on would do";
-            return Err(Error::domain("mean gap", 0.0, expected));
+            return Err(Error::domain(
+                "mean gap",
+                self.nondimensional.approach(asked.abs())?.copysign(asked),
+                expected,
+            ));
         }
         self.begin_count();
         let (limits, side) = (self.limits(), (self.problem.grid().count() as f64).sqrt());
@@ -43,7 +55,14 @@ impl PreparedBem3d {
             let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
             if met || solved.status != Status::Converged || stop() {
                 solved.steps = steps;
-                return self.state(solved, tangent, miss.abs() / limits.height.unwrap_or(self.mean), stop);
+                let k = match &tangent {
+                    Some(tangent) => self.stiffest(&solved, Some(tangent)),
+                    // A secant between the loads tried would be too small: the force is convex.
+                    None => self.rough_stiffness(&solved, stop),
+                };
+                let error = self.force_error(&solved, k, miss.abs());
+                let error = LoadError { load: miss.abs() / limits.height.unwrap_or(self.mean), ..error };
+                return self.state(solved, tangent, error, stop);
             }
             if miss > 0.0 {
                 low = low.max(x);
@@ -52,7 +71,7 @@ impl PreparedBem3d {
             }
             let force: f64 = solved.p.iter().sum();
             let slope = match (&tangent, before) {
-                (Some(t), _) => t.value * self.magnification(t.value) / force,
+                (Some(t), _) => t.stiffness.value * self.magnification(t.stiffness.value) / force,
                 (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (x - x0) / (miss0 - miss),
                 _ => 1.0 / self.mean,
             };
@@ -67,8 +86,9 @@ impl PreparedBem3d {
                 x + GAP_STEP.copysign(miss)
             };
         }
-        let name = "mean gap".into();
-        let asked = self.nondimensional.approach(asked)?;
-        Err(Error::OutOfRange { name, value: asked, min: 0.0, max: self.nondimensional.approach(self.mean)? })
+        let units = self.nondimensional;
+        let value = units.approach(asked.abs())?.copysign(asked);
+        let min = if self.has_complete_contact() { 0.0 } else { f64::NEG_INFINITY };
+        Err(Error::OutOfRange { name: "mean gap".into(), value, min, max: units.approach(self.mean)? })
     }
 }

@@ -1,6 +1,7 @@
 //! The boundary-element model behind the common traits.
 
 mod adhesive;
+mod adhesive_stiffness;
 mod contact;
 mod history;
 mod mean_gap;

@@ -10,12 +10,59 @@ use contact_model::{
     Adhesion, Boundary, Effects, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs,
     Result, Scene, Size, Step, Stop, Tangential,
 };
-use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Name of the model.
 pub const NAME: &str = "bem3d";
+
+/// What a path with a hardness remembers.
+#[derive(Debug)]
+pub(super) struct Memory {
+    /// Depth of the plastic indentation, nondimensional, row-major; it is in the gaps of the problem.
+    pub indentation: Vec<f64>,
+    /// Force of the last state, nondimensional.
+    pub force: f64,
+    /// Whether it was reached with a growing load.
+    pub rising: bool,
+}
+
+impl Memory {
+    /// Of a virgin surface with so many cells.
+    pub fn new(cells: usize) -> Self {
+        Self { indentation: vec![0.0; cells], force: 0.0, rising: true }
+    }
+
+    /// Whether the load of this force has grown since the last state; equal within `tolerance`, the last direction goes on.
+    pub fn rises_to(&self, force: f64, tolerance: f64) -> bool {
+        let same = (force - self.force).abs() <= tolerance * force.max(self.force);
+        if same { self.rising } else { force > self.force }
+    }
+
+    /// Goes on to the next state.
+    pub fn advance(&mut self, force: f64, tolerance: f64) {
+        self.rising = self.rises_to(force, tolerance);
+        self.force = force;
+    }
+}
+
+/// The stiffnesses of a state.
+#[derive(Debug)]
+pub(super) struct Tangent {
+    /// Along the branch, on the cells that respond.
+    pub stiffness: Stiffness,
+    /// The cells that respond.
+    pub cells: CellSet,
+    /// Of the whole contact, where it is another one and wanted; `None` also where that is complete contact.
+    pub whole: Option<Stiffness>,
+}
+
+impl Tangent {
+    /// Steps of conjugate gradients.
+    pub fn steps(&self) -> usize {
+        self.stiffness.steps + self.whole.as_ref().map_or(0, |whole| whole.steps)
+    }
+}
 
 /// One surface, ready to be loaded.
 #[derive(Debug)]
@@ -30,10 +77,10 @@ pub struct PreparedBem3d {
     /// Mean of z over the defined points.
     pub(super) mean: f64,
     /// Number of defined points.
-    defined: usize,
+    pub(super) defined: usize,
     pub(super) last: Option<LastState>,
-    /// Depth of the plastic indentation on a path, nondimensional, row-major; it is in the gaps of the problem. `None`: no path.
-    pub(super) indentation: Option<Vec<f64>>,
+    /// What a path remembers. `None`: no path.
+    pub(super) memory: Option<Memory>,
     /// Sides of the map.
     pub(super) size: Size,
 }
@@ -84,7 +131,7 @@ impl PreparedBem3d {
             mean,
             defined,
             last: None,
-            indentation: None,
+            memory: None,
             size: map.size(),
         })
     }
@@ -131,6 +178,11 @@ impl PreparedBem3d {
         tangent.error() * self.magnification(tangent.value)
     }
 
+    /// Whether every cell of a periodic surface is in contact: the force is then free at a mean gap of zero.
+    pub(super) fn is_full(&self, contact: &CellSet) -> bool {
+        self.is_periodic() && contact.len() == self.problem.grid().count()
+    }
+
     /// The force of all defined cells at the hardness, nondimensional; infinite without one.
     pub(super) fn capacity(&self) -> f64 {
         self.problem.hardness * self.defined as f64
@@ -139,7 +191,7 @@ impl PreparedBem3d {
     /// Adds the indentation of saturated cells to that of the path.
     pub(super) fn indent(&mut self, saturated: &CellSet, depth: &[f64]) {
         let grid = self.problem.grid();
-        let Some(indentation) = &mut self.indentation else { return };
+        let Some(Memory { indentation, .. }) = &mut self.memory else { return };
         if saturated.is_empty() {
             return;
         }
@@ -153,12 +205,15 @@ impl PreparedBem3d {
     }
 
     /// Keeps a state to begin the next from.
-    pub(super) fn remember(&mut self, solved: Solved, tangent: Option<Stiffness>) {
-        let hardness = self.problem.hardness;
-        // Saturated cells do not follow the tangent.
-        let tangent = tangent.filter(|t| t.value > 0.0).map(|t| match solved.elastic(hardness) {
-            Cow::Borrowed(_) => (t.q, t.value),
-            Cow::Owned(elastic) => (solved.contact.carry(&elastic, &t.q), t.value),
+    pub(super) fn remember(&mut self, solved: Solved, tangent: Option<Tangent>) {
+        // Cells that flow do not follow the tangent.
+        let tangent = tangent.filter(|t| t.stiffness.value > 0.0).map(|t| {
+            let q = if t.cells.len() == solved.contact.len() {
+                t.stiffness.q
+            } else {
+                solved.contact.carry(&t.cells, &t.stiffness.q)
+            };
+            (q, t.stiffness.value)
         });
         let Solved { contact, p, d, .. } = solved;
         let force = p.iter().sum();

@@ -33,6 +33,17 @@ fn preconditioned() -> [Tuning; 2] {
     [pairs, transforms]
 }
 
+/// On the whole contact.
+fn solve(
+    problem: &mut Problem,
+    state: &Solved,
+    guess: Option<Vec<f64>>,
+    tolerance: f64,
+    stop: Stop<'_>,
+) -> Stiffness {
+    super::solve(problem, state, &Responding::whole(state, f64::INFINITY), guess, tolerance, stop)
+}
+
 #[expect(clippy::large_types_passed_by_value, reason = "as `Problem::new`")]
 fn flat(grid: Grid, tuning: Tuning) -> Problem {
     Problem::new(grid, Arc::new(vec![0.0; grid.count()]), Boundary::Free, &tuning)

@@ -2,6 +2,7 @@
 
 use super::random_case::{CaseJob, FINER, REFERENCE, RandomCase, STRATA, stratum};
 use crate::header::header;
+use crate::limits::{self, within};
 use crate::outcome::Outcome;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
@@ -122,7 +123,7 @@ pub fn budget_check(
     files::clean(out)?;
     let store = Store::open(out, false)?;
     let what = format!("{cases} random cases against references");
-    let found = collect(run_stored(&what, &jobs, &store, Threads::all(threads), progress, &never)?)?;
+    let found = collect(run_stored(&what, &jobs, &store, Threads::all(threads), progress, &never))?;
     let coverage = judge(&found);
     let path = out.join("budget-check.csv");
     let mut header = header(format!("cargo xtask budget-check --cases {cases} --seed {seed}"))
@@ -148,6 +149,7 @@ fn jobs(cases: usize, seed: u64) -> Result<Vec<CaseJob>> {
     if cases < FEWEST {
         return Err(Error::parameter("cases", cases, format!("at least {FEWEST}, one for each stratum")));
     }
+    within("cases", cases, &limits::COUNT)?;
     Ok((0..cases as u64).map(|number| CaseJob { seed, number }).collect())
 }
 
@@ -268,7 +270,7 @@ mod tests {
         let [whole, parts] = dirs.each_ref().map(|dir| Store::open(dir.path(), false).unwrap());
         let finish = |store: &Store| {
             let run = run_stored("cases", &all, store, Threads::all(2), &Silent, &never);
-            collect(run.unwrap()).unwrap()
+            collect(run).unwrap()
         };
         let expected = finish(&whole);
         // Stopped inside the first case, then after it; a case is stored whole or not at all.

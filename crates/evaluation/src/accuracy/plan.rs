@@ -25,7 +25,7 @@ const TOLERANCES: (f64, f64) = (1e-6, 1e-3);
 /// The scatter of 16 surfaces is itself known to a fifth only.
 const SAFETY: f64 = 1.15;
 /// Most surfaces that are planned for.
-const MOST_SURFACES: f64 = 1e6;
+const MOST_SURFACES: f64 = *crate::limits::COUNT.end() as f64;
 /// Rows above the floor whose power law tells the contact cells of those below.
 const LIGHTEST: usize = 6;
 /// Steps in which a refusal looks for the accuracy that the budget buys, and the widest that is worth naming.

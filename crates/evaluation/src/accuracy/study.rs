@@ -21,7 +21,7 @@ pub(crate) fn study(sizes: &StudySizes, seed: u64, store: &Store, progress: &dyn
     // First what measures memory: it counts from what the process holds.
     let (problems, means) = jobs.split_at(jobs.partition_point(StudyJob::is_problem));
     let solve =
-        |what, jobs| collect(run_stored(what, jobs, store, Threads { total: 1, jobs: 1 }, progress, &never)?);
+        |what, jobs| collect(run_stored(what, jobs, store, Threads { total: 1, jobs: 1 }, progress, &never));
     let mut study = Study::default();
     let (mut ensembles, mut forms) = (Vec::new(), Vec::new());
     let mut parts = solve("accuracy against time: single surfaces", problems)?;

@@ -1,6 +1,7 @@
 //! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
 
 use crate::forces::Forces;
+use crate::limits::{self, within};
 use crate::realisation::{Discretisation, Realisation, RealisationResult};
 use crate::sweep::sweep;
 use runs::{Error, Progress, Result, Store};
@@ -56,7 +57,15 @@ impl Ladder {
     ///
     /// # Errors
     /// [`Error::Parameter`] for sizes that do not increase, or another number of surfaces than of sizes, or fewer than two of them.
-    pub fn validate(&self, sizes: &'static str, surfaces: &'static str) -> Result<()> {
+    pub fn validate(&self, sizes: &'static str, surfaces: &'static str, dimensions: usize) -> Result<()> {
+        let range = match self.model {
+            Discretisation::Bem3d { .. } => limits::CELLS,
+            Discretisation::Mdr1d { .. } => limits::ELEMENTS,
+        };
+        self.sizes.iter().try_for_each(|&size| within(sizes, size, &range).map(drop))?;
+        if self.sizes.is_empty() {
+            return Err(Error::parameter(sizes, "nothing", "at least one size"));
+        }
         if let Some(pair) = self.sizes.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(Error::parameter(sizes, pair[1], format!("sizes that increase, after {}", pair[0])));
         }
@@ -64,10 +73,12 @@ impl Ladder {
             let expected = format!("{} numbers, one for each size", self.sizes.len());
             return Err(Error::parameter(surfaces, format!("{} numbers", self.surfaces.len()), expected));
         }
-        match self.surfaces.iter().find(|&&count| count < 2) {
-            Some(count) => Err(Error::parameter(surfaces, count, "at least 2 on each grid")),
-            None => Ok(()),
+        if let Some(count) = self.surfaces.iter().find(|&&count| count < 2) {
+            return Err(Error::parameter(surfaces, count, "at least 2 on each grid"));
         }
+        // Each on its own grid and on the next coarser one.
+        let all = self.surfaces.iter().fold(0, |sum: usize, &count| sum.saturating_add(count));
+        limits::jobs(surfaces, all, 2 * dimensions)
     }
 
     /// Loads on the grid of this size.

@@ -121,8 +121,9 @@ impl Exponent {
         if !(self.error > 0.0 && self.error < 1.0) {
             return Err(Error::parameter("error", self.error, "a share above 0 and below 1"));
         }
-        self.solid.validate("grids", "surfaces")?;
-        self.line.validate("elements", "lines")
+        let dimensions = self.fractal_dimensions.len();
+        self.solid.validate("grids", "surfaces", dimensions)?;
+        self.line.validate("elements", "lines", dimensions)
     }
 
     /// Everything that it solves.

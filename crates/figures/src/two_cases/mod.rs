@@ -114,7 +114,7 @@ fn solve(study: &TwoCases, store: &Store, progress: &dyn Progress) -> Result<Vec
     let in_flight = threads_for_memory(study.threads, memory, "cells", study.cells)?;
     let threads = Threads { total: study.threads, jobs: in_flight };
     let what = format!("{} surfaces of {} cells a side", jobs.len(), study.cells);
-    let solved = collect(run_stored(&what, &jobs, store, threads, progress, &never)?)?;
+    let solved = collect(run_stored(&what, &jobs, store, threads, progress, &never))?;
     Ok(solved.chunks(study.surfaces).map(<[_]>::to_vec).collect())
 }
 
@@ -279,7 +279,7 @@ mod tests {
             (TwoCases { threads: 0, ..small() }, "threads"),
             (TwoCases { surfaces: 0, ..small() }, "surfaces"),
             (TwoCases { cells: 9, ..small() }, "cells"),
-            (TwoCases { cells_per_wave: 7, ..small() }, "cells per wave"),
+            (TwoCases { cells_per_wave: 7, ..small() }, "cells-per-wave"),
             (TwoCases { cells: 66, ..small() }, "cells"),
             (TwoCases { cells_per_wave: usize::MAX, ..small() }, "cells"),
             (TwoCases { roll_offs: vec![3.0, f64::NAN], ..small() }, "roll-off"),

@@ -2,6 +2,7 @@
 
 use analysis::StiffnessSample;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
+use evaluation::limits::{self, within};
 use evaluation::{Estimate, Forces, list};
 use runs::{Error, Result};
 use std::f64::consts::TAU;
@@ -140,15 +141,26 @@ impl TwoCases {
     }
 
     pub(super) fn check(&self) -> Result<()> {
-        if self.threads == 0 {
-            return Err(Error::parameter("threads", 0, "at least one thread"));
+        within("threads", self.threads, &(1..=runs::MOST_THREADS))?;
+        within("surfaces", self.surfaces, &limits::COUNT)?;
+        within("cells", self.cells, &limits::CELLS)?;
+        // Four cases of each pair, on two grids.
+        let pairs = self.fractal_dimensions.len().saturating_mul(self.roll_offs.len());
+        limits::jobs("surfaces", self.surfaces, pairs.saturating_mul(8))?;
+        if !(1e-12..=0.1).contains(&self.tolerance) {
+            return Err(Error::parameter("tolerance", self.tolerance, "a number from 1e-12 to 0.1"));
         }
-        if self.surfaces == 0 {
-            return Err(Error::parameter("surfaces", 0, "at least one surface"));
+        if let Some(d) = self.fractal_dimensions.iter().find(|d| !(2.0..=3.0).contains(*d)) {
+            return Err(Error::parameter("df", d, "numbers in [2, 3]"));
         }
         let per_wave = self.cells_per_wave;
-        if per_wave < 4 || !per_wave.is_multiple_of(2) {
-            return Err(Error::parameter("cells per wave", per_wave, "an even number of at least 4"));
+        let most = limits::CELLS.end() / 4;
+        if !(4..=most).contains(&per_wave) || !per_wave.is_multiple_of(2) {
+            return Err(Error::parameter(
+                "cells-per-wave",
+                per_wave,
+                format!("an even number from 4 to {most}"),
+            ));
         }
         if !self.cells.is_multiple_of(per_wave) {
             let expected = format!("a multiple of the {per_wave} cells of the shortest wave");

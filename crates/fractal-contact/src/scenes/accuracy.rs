@@ -15,7 +15,7 @@ use crate::scenes::scene_file::{SceneFile, cells};
 use crate::scenes::summary::short;
 use analysis::grid_error;
 use bem3d::Bem3d;
-use contact_model::{Boundary, Cells, Load};
+use contact_model::{Boundary, Cells, Conductance, Load};
 use std::time::Instant;
 
 /// Tolerance of the solver as a part of the accuracy, and its limits.
@@ -34,8 +34,13 @@ pub(crate) fn within(scene: &SceneFile, errors: &GridErrors, share: f64) -> bool
 /// Which numbers an accuracy is about: places in [`COMPARED`].
 fn controlled(scene: &SceneFile) -> Vec<usize> {
     let outputs = &scene.requested.outputs;
-    let asked =
-        [("stiffness", outputs.stiffness), ("area_corrected", outputs.area), ("mean_gap", outputs.mean_gap)];
+    let asked = [
+        ("stiffness", outputs.stiffness),
+        ("stiffness_fixed_area", outputs.stiffness_fixed_area),
+        ("area_corrected", outputs.area),
+        ("conductance", outputs.conductance != Conductance::Off),
+        ("mean_gap", outputs.mean_gap),
+    ];
     let place = |name: &str| COMPARED.iter().position(|compared| *compared == name);
     asked.into_iter().filter(|(_, asked)| *asked).filter_map(|(name, _)| place(name)).collect()
 }
@@ -49,8 +54,8 @@ impl SceneFile {
     /// The scene with the grid and the tolerance that its `accuracy` asks for; itself where it asks for none.
     ///
     /// A pilot solves the loads on surface 0 with 33, 65, 129, ... cells along the longer side of the grid (of a given map: with every so many-th of
-    /// its cells, at last with all of them) and estimates the errors of stiffness, corrected area and mean gap, as far as they are outputs, from
-    /// three grids each ([`analysis::grid_error`]). It stops at the first grid with small enough errors of which the coarser one's were at
+    /// its cells, at last with all of them) and estimates the errors of stiffness (of either kind), corrected area, conductance and mean gap, as
+    /// far as they are outputs, from three grids each ([`analysis::grid_error`]). It stops at the first grid with small enough errors of which the coarser one's were at
     /// most twice as large: nothing is extrapolated. The run then compares every state with coarser grids itself (`grid_error`): on surface 0
     /// it finds what the pilot found, and of other surfaces it says where the accuracy is missed. For one surface the pilot takes as
     /// long as the run.
@@ -72,7 +77,7 @@ impl SceneFile {
         if controlled(&self).is_empty() {
             let diagnostic =
                 Diagnostic::new("`accuracy` of what? no number that it could be about is an output")
-                    .with_help("ask for `stiffness`, `area` or `mean_gap` in [outputs]");
+                    .with_help("ask for `stiffness`, `area`, `conductance` or `mean_gap` in [outputs]");
             return Err(self.at_accuracy(diagnostic).into());
         }
         if self.surface.differs_by_grid() {

@@ -8,7 +8,7 @@ const BUDGET: f64 = 600.0;
 /// What `accuracy` asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AccuracyTarget {
-    /// Relative error of the grid that each state may have, of those among stiffness, corrected area and mean gap that are asked for.
+    /// Relative error of the grid that each state may have, of those among stiffness, corrected area, conductance and mean gap that are asked for.
     pub share: f64,
     /// Predicted seconds of one thread that it may take.
     pub seconds: f64,

@@ -1,7 +1,7 @@
 //! The columns of `results.csv`: those that a scene asks for.
 
 use crate::scenes::entries::System;
-use crate::scenes::grid_comparison::GridErrors;
+use crate::scenes::grid_comparison::{COMPARED, GridErrors};
 use crate::scenes::loads::{Loading, Prescribed};
 use crate::scenes::scene_file::SceneFile;
 use analysis::{Column, Value};
@@ -55,6 +55,10 @@ fn plastic_of(state: &State, pick: fn(&PlasticState) -> f64) -> Value {
     state.normal.as_ref().and_then(|n| n.plastic.as_ref()).map(pick).into()
 }
 
+/// The one sentence on the stiffness, for tables, book and Python.
+const STIFFNESS: &str = "dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an adhesive contact move, saturated cells flow";
+const STIFFNESS_FIXED_AREA: &str = "stiffness of the whole contact area, held (periodic: -dF/d(mean gap))";
+
 /// The columns of a scene.
 #[allow(clippy::too_many_lines)] // One entry per column, nothing else.
 fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
@@ -93,7 +97,9 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         }));
     }
     if scene.requested.outputs.mean_gap {
-        list.push(kind("mean_gap", "m", "mean of the gap over the area", |s| normal(s, |n| n.mean_gap)));
+        let meaning = "distance between the mean plane of the defined heights and that of the deformed half-space; without undefined \
+                       points the mean of the gap field; with them it may be negative";
+        list.push(kind("mean_gap", "m", meaning, |s| normal(s, |n| n.mean_gap)));
     }
     if scene.is_history() {
         list.push(kind("contact_radius", "m", "of a round contact", |s| {
@@ -132,9 +138,14 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         list.push(kind("stability", "1", at, |s| normal(s, |n| n.adhesive.map(|a| a.stability))));
     }
     if outputs.stiffness {
-        list.push(kind("stiffness", "N/m", "dF/dd on the contact set", |s| normal(s, |n| n.stiffness)));
-        list.push(kind("stiffness_bar", "1", "k/(1.1419 E* L), L = sqrt(Lx Ly)", |s| {
+        list.push(kind("stiffness", "N/m", STIFFNESS, |s| normal(s, |n| n.stiffness)));
+        list.push(kind("stiffness_bar", "1", "k/(1.1419 E* L) of this stiffness, L = sqrt(Lx Ly)", |s| {
             scaled(s, |n, c| n.stiffness.map(|k| c.stiffness_bar(k)))
+        }));
+    }
+    if outputs.stiffness_fixed_area {
+        list.push(kind("stiffness_fixed_area", "N/m", STIFFNESS_FIXED_AREA, |s| {
+            normal(s, |n| n.stiffness_fixed_area)
         }));
     }
     if outputs.area {
@@ -155,9 +166,8 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         _ => Some("S"),
     };
     if let Some(unit) = conductance {
-        list.push(kind("conductance", unit, "2 k/(E* (rho_1 + rho_2)) (Barber)", |s| {
-            normal(s, |n| n.conductance)
-        }));
+        let meaning = "2 k/(E* (rho_1 + rho_2)) with the stiffness of the whole contact area, held (Barber)";
+        list.push(kind("conductance", unit, meaning, |s| normal(s, |n| n.conductance)));
     }
     if outputs.contact_patches {
         list.push(kind("patches", "1", "connected contact areas, cells joined by an edge", |s| {
@@ -171,7 +181,7 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         kind(
             "largest_pressure",
             "Pa",
-            "of a cell; grows with smaller cells until they resolve the shortest wave",
+            "of a cell; grows with smaller cells until they resolve the shortest wave, at an edge of the rectangle or a spike without limit",
             |s| normal(s, |n| n.resolution.map(|r| r.largest_pressure)),
         ),
         kind("status", "-", "how the solve ended", |s| s.status.map_or("refused", Status::as_str).into()),
@@ -193,16 +203,24 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
         kind("complementarity", "1", "sum p |g|/(F s)", |s| {
             normal(s, |n| n.report.certificate.complementarity)
         }),
-        kind("load_error", "1", "|F - F_asked|/F_asked", |s| normal(s, |n| n.report.certificate.load_error)),
+        kind("load_error", "1", "|F - F_asked|/F_asked; of a mean gap its miss over s", |s| {
+            normal(s, |n| n.report.certificate.load_error)
+        }),
     ]);
+    if scene.request.prescribes_distance() {
+        let meaning = "bound of the relative error of the force under a prescribed approach or mean gap; an estimate with adhesion";
+        list.push(kind("force_error", "1", meaning, |s| normal(s, |n| n.report.certificate.force_error)));
+    }
     if scene.effects.adhesion != Adhesion::Off {
         let what =
             "largest difference of an attraction from the law of its gap, over the traction in contact";
         list.push(kind("equilibrium", "1", what, |s| normal(s, |n| n.report.certificate.equilibrium)));
     }
     if outputs.needs_stiffness() {
-        list.push(kind("stiffness_error", "1", "estimated relative error of k", |s| {
-            normal(s, |n| n.report.certificate.stiffness_error)
+        let meaning = "estimated relative error of the stiffness; that of a difference quotient with adhesion of short range and Dugdale's \
+                       law, where the cells decide it and not the tolerance";
+        list.push(kind("stiffness_error", "1", meaning, |s| {
+            normal(s, |n| n.report.certificate.error_of_stiffness())
         }));
     }
     if scene.requested.grid_error {
@@ -219,25 +237,34 @@ fn kinds(scene: &SceneFile) -> Vec<ResultColumn> {
     list
 }
 
-/// For each quantity that is compared with coarser grids ([`crate::scenes::grid_comparison::COMPARED`]), the estimated error and order.
-fn grid_error_columns() -> [(&'static str, [ResultColumn; 2]); 6] {
+/// For each quantity that is compared with coarser grids ([`COMPARED`]), the estimated error and order.
+fn grid_error_columns() -> [(&'static str, [ResultColumn; 2]); COMPARED.len()] {
     macro_rules! columns {
-        ($($place:literal $name:literal),*) => { [$(($name, [
+        ($($place:literal $name:literal $free:literal),*) => { [$(($name, [
             ResultColumn {
                 name: concat!($name, "_grid_error"),
                 unit: "1",
-                meaning: "estimated relative error of the grid, from cells twice and four times as large",
+                meaning: concat!("estimated relative error of the grid, from cells twice and four times as large", $free),
                 value: |s| s.grid_errors[$place].map(|e| e.error).into(),
             },
             ResultColumn {
                 name: concat!($name, "_grid_order"),
                 unit: "1",
-                meaning: "order of convergence as observed on these grids; empty where none is seen",
+                meaning: concat!("order of convergence as observed on these grids; empty where none is seen", $free),
                 value: |s| s.grid_errors[$place].and_then(|e| e.order).into(),
             },
         ])),*] };
     }
-    columns!(0 "stiffness", 1 "area", 2 "area_corrected", 3 "mean_gap", 4 "largest_pressure", 5 "rms_slope")
+    columns!(
+        0 "stiffness" "",
+        1 "stiffness_fixed_area" "",
+        2 "area" "",
+        3 "area_corrected" "",
+        4 "conductance" "",
+        5 "mean_gap" "",
+        6 "largest_pressure" "; empty with free boundaries, where the pressure at an edge of the rectangle or a spike grows without limit",
+        7 "rms_slope" ""
+    )
 }
 
 /// The columns of a scene with their units.
@@ -270,7 +297,6 @@ fn finite(value: Value) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::grid_comparison::COMPARED;
 
     #[test]
     fn what_is_compared_has_its_columns() {

@@ -16,21 +16,24 @@ macro_rules! quantities {
 type MeanAndDeviation = (f64, Option<f64>);
 
 /// What is averaged, where the table has it.
-const QUANTITIES: [Quantity; 15] = quantities!(
+const QUANTITIES: [Quantity; 18] = quantities!(
     "force",
     "force_bar",
     "approach",
     "mean_gap",
     "stiffness",
     "stiffness_bar",
+    "stiffness_fixed_area",
     "area",
     "area_corrected",
     "contact_fraction",
     "conductance",
     "largest_pressure",
     "stiffness_grid_error",
+    "stiffness_fixed_area_grid_error",
     "area_grid_error",
     "area_corrected_grid_error",
+    "conductance_grid_error",
     "mean_gap_grid_error"
 );
 

@@ -11,6 +11,8 @@ use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, 
 
 /// Memory of drawing a surface and writing it, bytes per cell.
 const BYTES: f64 = 24.0;
+/// Columns or rows: what fits is asked of the memory.
+const MOST: usize = 1 << 24;
 
 /// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,6 +81,12 @@ impl GeneratedSurface {
         let seed = surface_gen::surface_seed(self.seed, 0);
         let nearly_square = Cells::nearly_square(self.cells, size);
         let cells = self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square });
+        for (name, count) in [("cells", cells.columns), ("rows", cells.rows)] {
+            if !(1..=MOST).contains(&count) {
+                let expected = format!("a whole number from 1 to {MOST}");
+                return Err(runs::Error::parameter(name, count, expected).into());
+            }
+        }
         let memory = BYTES * cells.columns as f64 * cells.rows as f64;
         runs::threads_for_memory(1, memory, "cells", format!("{} x {}", cells.columns, cells.rows))?;
         let spectrum = RandomSpectrum::SelfAffine { surface, anisotropy: self.anisotropy };

@@ -11,8 +11,19 @@ use std::sync::Arc;
 const FEWEST_CELLS: usize = 16;
 
 /// Names of what is compared, in the order of [`Quantities`]; the table has columns for those that it holds.
-pub(crate) const COMPARED: [&str; 6] =
-    ["stiffness", "area", "area_corrected", "mean_gap", "largest_pressure", "rms_slope"];
+pub(crate) const COMPARED: [&str; 8] = [
+    "stiffness",
+    "stiffness_fixed_area",
+    "area",
+    "area_corrected",
+    "conductance",
+    "mean_gap",
+    LARGEST_PRESSURE,
+    "rms_slope",
+];
+
+/// At an edge of a free rectangle, and at a spike, this grows without limit as cells shrink: its error there is not known.
+const LARGEST_PRESSURE: &str = "largest_pressure";
 
 /// Numbers of one state on one grid.
 pub(crate) type Quantities = [Option<f64>; COMPARED.len()];
@@ -23,18 +34,31 @@ pub(crate) type GridErrors = [Option<GridError>; COMPARED.len()];
 fn quantities(state: &ContactState, rms_slope: f64) -> Quantities {
     let (corrected, pressure) =
         (state.resolution.and_then(|r| r.corrected_area), state.resolution.map(|r| r.largest_pressure));
-    [state.stiffness, state.area, corrected, state.mean_gap, pressure, Some(rms_slope)]
+    [
+        state.stiffness,
+        state.stiffness_fixed_area,
+        state.area,
+        corrected,
+        state.conductance,
+        state.mean_gap,
+        pressure,
+        Some(rms_slope),
+    ]
 }
 
-/// Their errors from three grids.
-fn errors(fine: &Quantities, half: &Quantities, quarter: &Quantities) -> GridErrors {
-    std::array::from_fn(|i| grid_error(fine[i]?, half[i]?, quarter[i]?))
+/// Their errors from three grids, where they are known to hold.
+fn errors(boundary: Boundary, fine: &Quantities, half: &Quantities, quarter: &Quantities) -> GridErrors {
+    std::array::from_fn(|i| {
+        let known = COMPARED[i] != LARGEST_PRESSURE || boundary == Boundary::Periodic;
+        known.then(|| grid_error(fine[i]?, half[i]?, quarter[i]?)).flatten()
+    })
 }
 
 /// The states of a surface on coarser grids.
 pub(crate) struct GridComparison {
     /// Of the surface on its own grid.
     pub rms_slope: f64,
+    boundary: Boundary,
     /// Under each load, with cells twice and four times as large; `None` where a grid does not answer.
     coarser: Vec<Option<[Quantities; 2]>>,
 }
@@ -51,23 +75,26 @@ impl GridComparison {
         loads: &[Load],
         stop: Stop<'_>,
     ) -> Result<Self> {
+        let boundary = scene.effects.boundary;
         let rms_slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
         let Cells { columns, rows } = cells(scene, numerics);
         let longer = columns.max(rows);
         if longer.div_ceil(4) < FEWEST_CELLS {
-            return Ok(Self { rms_slope, coarser: vec![None; loads.len()] });
+            return Ok(Self { rms_slope, boundary, coarser: vec![None; loads.len()] });
         }
         let solved =
             |factor: usize| solve(&on_grid(scene, numerics, longer.div_ceil(factor))?, seed, loads, stop);
         let both = solved(2)?.into_iter().zip(solved(4)?);
         let coarser = both.map(|(half, quarter)| Some([half?, quarter?])).collect();
-        Ok(Self { rms_slope, coarser })
+        Ok(Self { rms_slope, boundary, coarser })
     }
 
     /// The errors of a state under load number `index`.
     pub fn errors(&self, index: usize, state: &ContactState) -> GridErrors {
         match self.coarser.get(index) {
-            Some(Some([half, quarter])) => errors(&quantities(state, self.rms_slope), half, quarter),
+            Some(Some([half, quarter])) => {
+                errors(self.boundary, &quantities(state, self.rms_slope), half, quarter)
+            }
             _ => GridErrors::default(),
         }
     }
@@ -122,5 +149,27 @@ fn rms_slope(scene: &SceneFile, map: &HeightMap) -> Result<f64> {
         surface_gen::rms_slope(map)
     } else {
         Ok(surface_gen::rms_slope_differences(map))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With free edges 37 of 54 errors of the largest pressure were inside their estimates, of the other numbers 94 to 98 %.
+    #[test]
+    fn the_largest_pressure_has_no_error_where_its_limit_may_be_infinite() {
+        let [fine, half, quarter] = [1.0, 1.1, 1.3].map(|value| [Some(value); COMPARED.len()]);
+        let known = |boundary| {
+            let errors = errors(boundary, &fine, &half, &quarter);
+            COMPARED
+                .into_iter()
+                .zip(errors)
+                .filter(|(_, error)| error.is_none())
+                .map(|(name, _)| name)
+                .collect()
+        };
+        let (free, periodic): (Vec<_>, Vec<_>) = (known(Boundary::Free), known(Boundary::Periodic));
+        assert_eq!((free, periodic), (vec![LARGEST_PRESSURE], vec![]));
     }
 }

@@ -79,6 +79,18 @@ impl Loading {
     }
 }
 
+impl Loading {
+    /// Whether an approach or a mean gap may be prescribed, of which the force is a result with an error.
+    pub(crate) fn prescribes_distance(&self) -> bool {
+        match self {
+            Self::Loads(loads) => matches!(loads.prescribed, Prescribed::Approach | Prescribed::MeanGap),
+            Self::Path(steps) => {
+                steps.iter().any(|step| matches!(step.normal, Load::Approach(_) | Load::MeanGap(_)))
+            }
+        }
+    }
+}
+
 const KEYS: [&str; 5] = ["force", "force_bar", "mean_pressure", "approach", "mean_gap"];
 
 /// Reads the loads or the path of `[scene]`. `pulls`: loads may be negative (adhesion).

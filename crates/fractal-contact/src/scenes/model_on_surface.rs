@@ -20,7 +20,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Number of the format of stored units; it changes with anything that changes a row.
-pub(crate) const FORMAT: u32 = 6;
+pub(crate) const FORMAT: u32 = 7;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -218,7 +218,7 @@ impl Numerics {
         let Cells { columns, rows } = cells;
         match self {
             Self::Bem3d(numerics) | Self::Bem3dPath(Bem3dPath(numerics)) => format!(
-                "every state is certified to {:e} (penetration, complementarity, load, stiffness) on its {columns} x {rows} cells; the cells \
+                "every state is certified to {:e} (penetration, complementarity, load, and the stiffness where it is no difference quotient) on its {columns} x {rows} cells; the cells \
                  themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
                 numerics.tolerance
             ),

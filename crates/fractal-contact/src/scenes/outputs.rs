@@ -72,6 +72,7 @@ impl RequestedOutputs {
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
         let Outputs {
             stiffness,
+            stiffness_fixed_area,
             area,
             mean_gap,
             pressure,
@@ -83,6 +84,7 @@ impl RequestedOutputs {
         } = self.outputs;
         vec![
             ("stiffness", stiffness),
+            ("stiffness_fixed_area", stiffness_fixed_area),
             ("area", area),
             ("conductance", conductance != Conductance::Off),
             ("contact_patches", contact_patches),
@@ -107,6 +109,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     let flag = |key: &'static str| table.find(key).map_or(Ok(false), |e| e.flag());
     let outputs = &mut requested.outputs;
     outputs.stiffness = flag("stiffness")?;
+    outputs.stiffness_fixed_area = flag("stiffness_fixed_area")?;
     outputs.area = flag("area")?;
     outputs.contact_patches = flag("contact_patches")?;
     requested.outputs.mean_gap = flag("mean_gap")?;

@@ -62,6 +62,7 @@ pub(crate) fn statistics(of: &MapStatisticsTables) -> Markup {
             }
         }
         @for note in &of.notes { p { "Not known: " (note) } }
+        @for remark in &of.remarks { p { (remark) } }
     }
 }
 

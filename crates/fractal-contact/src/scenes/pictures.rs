@@ -12,8 +12,16 @@ use plots::{Chart, Curve, FieldPicture, Shown};
 use std::path::{Path, PathBuf};
 
 /// What is drawn over what: of loads, and of paths.
-const OVER_LOAD: [&str; 7] =
-    ["force", "stiffness", "area", "conductance", "approach", "mean_gap", "largest_pressure"];
+const OVER_LOAD: [&str; 8] = [
+    "force",
+    "stiffness",
+    "stiffness_fixed_area",
+    "area",
+    "conductance",
+    "approach",
+    "mean_gap",
+    "largest_pressure",
+];
 const OVER_TIME: [&str; 2] = ["force", "approach"];
 
 /// `curve-Y.svg` and `.png` for every column that the scene asked for.
@@ -158,8 +166,7 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
         _ => None,
     };
     let shown = |(x, y): &(f64, f64)| scene.is_history() || (*x != 0.0 && *y != 0.0);
-    // The conductance is the stiffness in other units.
-    let grid_error = format!("{}_grid_error", if y == "conductance" { "stiffness" } else { y });
+    let grid_error = format!("{y}_grid_error");
     let curve = |model: &'static str| {
         let label = model_name(model).to_owned();
         let of = || means.iter().filter(move |mean| mean.model == model && mean.surfaces > 0);
@@ -223,6 +230,7 @@ fn quantity<'a>(scene: &SceneFile, column: &'a str) -> (&'a str, &'a str) {
         "approach" => ("approach", "d"),
         "mean_gap" => ("mean gap", "\\bar{g}"),
         "stiffness" => ("stiffness", "k"),
+        "stiffness_fixed_area" => ("stiffness of the held area", "k"),
         "area" => ("contact area", "A"),
         "conductance" => ("conductance", "Λ"),
         "largest_pressure" => ("largest pressure", "p_{\\rm{max}}"),

@@ -307,19 +307,23 @@ fn spread(count: usize) -> Vec<usize> {
     order
 }
 
-const CERTIFICATES: [(&str, &str); 6] = [
+const CERTIFICATES: [(&str, &str); 7] = [
     (
         "duality_gap",
         "the pressure minimises the elastic energy: by how much it could still fall, over force times rms height",
     ),
     ("penetration", "no cell penetrates the other body: the deepest, over the rms height"),
     ("complementarity", "where there is pressure there is no gap"),
-    ("load_error", "the force is the one that was asked for"),
+    ("load_error", "the force, or the mean gap, is the one that was asked for"),
+    (
+        "force_error",
+        "a bound of the relative error of the force under a prescribed approach or mean gap; an estimate with adhesion",
+    ),
     (
         "equilibrium",
         "the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction",
     ),
-    ("stiffness_error", "an estimate: the stiffness belongs to the contact set of the exact solution"),
+    ("stiffness_error", "an estimate of the relative error of the stiffness, on these cells"),
 ];
 
 #[cfg(test)]

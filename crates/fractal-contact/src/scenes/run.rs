@@ -57,7 +57,7 @@ pub fn run(
     let columns = columns::columns(scene);
     let units = units(scene);
     let jobs = scene_jobs(scene, &options.out);
-    let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop)?;
+    let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop);
     let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
     let mut outcome =
         SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
@@ -99,7 +99,9 @@ pub fn run(
     let statistics = scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
     if let Some(statistics) = &statistics {
         outcome.files.extend(statistics.write(&options.out, &header, &pictures::scene_name(scene))?);
-        outcome.notes.extend(statistics.notes.iter().map(|note| format!("statistics: {note}")));
+        outcome.notes.extend(
+            statistics.notes.iter().chain(&statistics.remarks).map(|note| format!("statistics: {note}")),
+        );
     }
     outcome.summary = summary::summary(scene, &table, &means);
     outcome.actual = actual(scene, &units, &results, &table);

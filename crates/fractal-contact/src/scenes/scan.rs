@@ -2,6 +2,7 @@
 
 use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::entries::{Entries, Entry, LengthOrPair, Read, System};
+use crate::scenes::human_readable::number;
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
@@ -76,7 +77,8 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     let scan = Scan::read(&path, &declared).map_err(wrong)?;
     let metadata = scan.metadata();
     let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
-    let Preprocessed { map, steps, reliable_from, .. } = scan.preprocessed(&preprocessing).map_err(wrong)?;
+    let Preprocessed { map, steps, reliable_from, tapered, .. } =
+        scan.preprocessed(&preprocessing).map_err(wrong)?;
     if metric != (system == System::Si) {
         let (found, scene) = if metric { ("a unit", "none") } else { ("no unit", "units") };
         return Err(file
@@ -90,6 +92,15 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         let help =
             "its highest corner carries the load: `detrend = \"plane\"`, or \"none\" where the tilt is real";
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
+    }
+    if let (Some(entry), Some([before, after])) = (table.find("window"), tapered) {
+        let [before, after] = [before, after].map(|h| number(format!("{h:.3e}").parse().unwrap_or(h)));
+        let message = format!(
+            "the map is tapered to its edges and divided by the rms of the taper: rms height {before} before, {after} after"
+        );
+        let help = "theories take the spectrum, which a homogeneous surface keeps; `bem3d` presses the tapered map, whose smooth edges carry \
+                    load: on self-affine maps its contact fraction was 0.4 to 2.6 times that without the window";
+        notes.push(Diagnostic::note(message).at(entry.span()).with_help(help));
     }
     if let Some((row, column, height)) = spike(&map) {
         let message = format!(

@@ -324,8 +324,9 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
 }
 
 fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
-    const NAMES: [&str; 14] = [
+    const NAMES: [&str; 15] = [
         "stiffness",
+        "stiffness_fixed_area",
         "area",
         "conductance",
         "contact_patches",

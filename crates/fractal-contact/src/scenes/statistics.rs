@@ -63,6 +63,8 @@ pub(crate) struct MapStatisticsTables {
     pub reliable: Option<[f64; 2]>,
     /// Reasons why a part is missing.
     pub notes: Vec<String>,
+    /// What was done to the map for a part.
+    pub remarks: Vec<String>,
 }
 
 impl MapStatisticsTables {
@@ -76,6 +78,7 @@ impl MapStatisticsTables {
             scales: Vec::new(),
             reliable: None,
             notes: Vec::new(),
+            remarks: Vec::new(),
         };
         found.heights(map);
         found.spectra(map, boundary);
@@ -170,6 +173,12 @@ impl MapStatisticsTables {
         if let Some(f) = self.known("feature parameters", FeatureParameters::new(map)) {
             self.push("Spd", Some(f.spd), -2, "density of hills that are higher than 5 % of Sz");
             self.push("Spc", f.spc, -1, "mean curvature of their peaks");
+            if f.filled > 0 {
+                self.remarks.push(format!(
+                    "Spd and Spc: {} undefined points in patches of at most 16 were given the mean height of their neighbours",
+                    f.filled
+                ));
+            }
         }
         if let Some(d) = self.known("derivatives", Derivatives::new(map, Boundary::Free)) {
             self.push("rms gradient", Some(d.rms_gradient), 0, "from differences of neighbouring cells");
@@ -303,6 +312,9 @@ impl MapStatisticsTables {
         }
         for note in &self.notes {
             text += &format!("not known      {note}\n");
+        }
+        for remark in &self.remarks {
+            text += &format!("note           {remark}\n");
         }
         text
     }

@@ -4,8 +4,8 @@ use crate::scenes::ensemble::Mean;
 use crate::scenes::scene_file::SceneFile;
 use analysis::{Table, Value};
 
-/// Columns that are shown where the table has them.
-const SHOWN: [&str; 18] = [
+/// Columns that are shown where the table has them: each number that a scene can ask for, and what its effects add.
+const SHOWN: [&str; 24] = [
     "prescribed",
     "time",
     "force",
@@ -14,10 +14,16 @@ const SHOWN: [&str; 18] = [
     "mean_gap_grid_error",
     "stiffness",
     "stiffness_grid_error",
+    "stiffness_fixed_area",
+    "stiffness_fixed_area_grid_error",
     "area",
     "area_corrected",
     "area_corrected_grid_error",
     "contact_fraction",
+    "conductance",
+    "conductance_grid_error",
+    "patches",
+    "largest_patch",
     "plastic_area",
     "plastic_volume",
     "branch",

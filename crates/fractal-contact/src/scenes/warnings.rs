@@ -24,11 +24,19 @@ pub(crate) enum Warning {
     Yield,
     Area,
     Accuracy,
+    Stiffness,
 }
 
 impl Warning {
-    pub const ALL: [Self; 6] =
-        [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area, Self::Accuracy];
+    pub const ALL: [Self; 7] = [
+        Self::FewCells,
+        Self::OneCell,
+        Self::Edge,
+        Self::Yield,
+        Self::Area,
+        Self::Accuracy,
+        Self::Stiffness,
+    ];
 
     /// What stands in the row of the state.
     pub fn as_str(self) -> &'static str {
@@ -39,6 +47,7 @@ impl Warning {
             Self::Yield => "pressure above the hardness (E*/10 where none is given)",
             Self::Area => "area not resolved",
             Self::Accuracy => "accuracy not reached",
+            Self::Stiffness => "stiffness not known",
         }
     }
 
@@ -58,6 +67,9 @@ impl Warning {
             Self::Area => {
                 "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells"
             }
+            Self::Stiffness => {
+                "complete contact has none; at a jump or a kink of the path it is not claimed: take the difference of neighbouring states"
+            }
             Self::Accuracy => {
                 "the columns `_grid_error` say what was: the grid was chosen on surface 0, others may need more cells (ask for an `accuracy` of half the share)"
             }
@@ -73,8 +85,10 @@ impl Warning {
         let limited = scene.effects.hardness != Hardness::Off;
         let hardness = if limited { f64::INFINITY } else { scene.hardness.unwrap_or(YIELD * scene.modulus) };
         let resolution = state.resolution;
+        let wanted = scene.requested.outputs.stiffness && state.report.contact_cells.is_some();
         let holds = |warning: Self| match (warning, resolution) {
             (Self::FewCells, _) => few,
+            (Self::Stiffness, _) => wanted && state.stiffness.is_none(),
             (_, None) => false,
             (Self::Accuracy, _) => scene.accuracy.is_some_and(|target| !within(scene, errors, target.share)),
             (Self::OneCell, Some(r)) => r.largest_share > ALONE,

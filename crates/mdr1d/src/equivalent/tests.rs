@@ -234,7 +234,7 @@ impl PreparedContact for ScriptedContact {
         };
         Ok(ContactState::new(4.0 / 3.0 * d.powf(1.5), SolveReport::exact("told"))
             .with_approach(d)
-            .with_stiffness(2.0 * d.sqrt() * (self.factor)(d)))
+            .with_elastic_stiffness(2.0 * d.sqrt() * (self.factor)(d)))
     }
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use approx::assert_relative_eq;
-use contact_model::{Adhesion, Boundary, Effects, HeightMap, SelfAffine, line_length};
+use contact_model::{Adhesion, Boundary, Conductance, Effects, HeightMap, SelfAffine, line_length};
 use std::sync::Arc;
 
 /// Rounding of a root and a handful of products.
@@ -170,13 +170,13 @@ fn adhesion_of_a_sphere_behind_the_trait() {
     for (modulus, length) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
         let mut scene = Scene::new(Surface::Sphere { radius: length, size: (2.0 * length).into() }, modulus);
         scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 * (modulus * length) };
+        scene.outputs.stiffness_fixed_area = true;
         let mut contact = prepare(&scene, 0);
         let s = contact.solve(Load::Force(0.0)).unwrap();
-        assert_relative_eq!(
-            s.stiffness.unwrap() / modulus / length,
-            2.0 * 0.520_939_707_9,
-            max_relative = 1e-9
-        );
+        // Of the held area 2 E* a, along the branch 3/5 of it.
+        let [held, along] = [s.stiffness_fixed_area, s.stiffness].map(|k| k.unwrap() / modulus / length);
+        assert_relative_eq!(held, 2.0 * 0.520_939_707_9, max_relative = 1e-9);
+        assert_relative_eq!(along, 1.2 * 0.520_939_707_9, max_relative = 1e-9);
         let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
         let pull_off = -nondimensional.force(0.015 * std::f64::consts::PI).unwrap();
         assert!(contact.solve(Load::Force(0.999 * pull_off)).is_ok());
@@ -185,6 +185,69 @@ fn adhesion_of_a_sphere_behind_the_trait() {
         assert!(name.contains("pulls off"));
         assert_relative_eq!(min, pull_off, max_relative = 1e-13);
         assert!(contact.solve(Load::Approach(-length)).is_err());
+    }
+}
+
+/// dF/dd of a state is that of its neighbours, 2 E* a that of its held area; the conductance follows from the latter.
+#[test]
+fn the_stiffness_of_an_adhesive_body_is_the_slope_of_its_branch() {
+    /// Relative step of loads; the error of a central difference is its square times third derivatives, which grow towards a fold.
+    const STEP: f64 = 1e-5;
+    const DIFFERENCES: f64 = 1e-6;
+    let size = 20.0.into();
+    let mut bodies: Vec<Surface> = [0.6, 0.8, 1.0, 1.5, 2.0, 3.7]
+        .map(|exponent| Surface::PowerLaw { coefficient: 0.3, exponent, size })
+        .into();
+    bodies.push(Surface::Sphere { radius: 2.0, size });
+    bodies.push(Surface::Cone { slope: 0.2, size });
+    for surface in bodies {
+        let mut scene = asking_for_area(surface.clone());
+        scene.effects.adhesion = Adhesion::ShortRange { work: 1e-3 };
+        scene.outputs.stiffness_fixed_area = true;
+        scene.outputs.conductance = Conductance::Electrical { first: 1.0, second: 3.0 };
+        let mut contact = prepare(&scene, 0);
+        let mut pull_off = |load: Load| match contact.solve(load) {
+            Err(Error::OutOfRange { min, .. }) => min,
+            other => panic!("{other:?}"),
+        };
+        let by_force = pull_off(Load::Force(-1e3));
+        let by_approach = pull_off(Load::Approach(-1e3));
+        let shares = [-0.95, -0.5, -0.1, 0.2, 3.0];
+        let forces = shares.map(|share| Load::Force(share * by_force.abs()));
+        let approaches = shares.map(|share| Load::Approach(share * by_approach.abs()));
+        for load in forces.into_iter().chain(approaches) {
+            let here = contact.solve(load).unwrap();
+            let mut at = |by: f64| match load {
+                Load::Force(force) => contact.solve(Load::Force(by * force)).unwrap(),
+                Load::Approach(approach) => contact.solve(Load::Approach(by * approach)).unwrap(),
+                other => panic!("{other:?}"),
+            };
+            let (low, high) = (at(1.0 - STEP), at(1.0 + STEP));
+            let slope = (high.force - low.force) / (high.approach.unwrap() - low.approach.unwrap());
+            let held = 2.0 * scene.modulus * (here.area.unwrap() / std::f64::consts::PI).sqrt();
+            let unit = slope.abs().max(held);
+            assert!((here.stiffness.unwrap() - slope).abs() < DIFFERENCES * unit, "{surface:?} {load:?}");
+            assert_relative_eq!(here.stiffness_fixed_area.unwrap(), held, max_relative = ROUNDING);
+            let conductance = scene.outputs.conductance.of(held, scene.modulus).unwrap().unwrap();
+            assert_relative_eq!(here.conductance.unwrap(), conductance, max_relative = ROUNDING);
+        }
+        let fold = contact.solve(Load::Force(by_force)).unwrap();
+        let ratio = fold.stiffness.unwrap() / fold.stiffness_fixed_area.unwrap();
+        assert!(ratio.abs() < 1e-6, "{surface:?} {ratio}");
+        let fold = contact.solve(Load::Approach(by_approach)).unwrap();
+        assert!(fold.stiffness.is_none() && fold.stiffness_fixed_area.unwrap() > 0.0, "{surface:?}");
+        // Between the two pull-offs the force falls with the approach.
+        let drawn = contact.solve(Load::Approach(0.99 * by_approach)).unwrap();
+        assert!(drawn.stiffness.unwrap() < 0.0, "{surface:?}");
+    }
+    // The edge of a punch stays where it is.
+    let mut scene = scene(Surface::FlatCircle { radius: 0.1, size: 1.0.into() });
+    scene.effects.adhesion = Adhesion::ShortRange { work: 1e-3 };
+    scene.outputs.stiffness_fixed_area = true;
+    for load in [Load::Force(-1e-4), Load::Force(1e-3), Load::Approach(-1e-4)] {
+        let state = prepare(&scene, 0).solve(load).unwrap();
+        assert_relative_eq!(state.stiffness.unwrap(), 0.4, max_relative = ROUNDING);
+        assert_eq!(state.stiffness, state.stiffness_fixed_area);
     }
 }
 

@@ -14,6 +14,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::str::FromStr;
 
+/// A year, and a petabyte: more is a slip of the finger.
+#[cfg(feature = "clap")]
+const MOST_MINUTES: u64 = 527_040;
+#[cfg(feature = "clap")]
+const MOST_MEGABYTES: u64 = 1_000_000_000;
+
 /// What runs tasks on many machines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Engine {
@@ -52,10 +58,10 @@ pub struct Submission {
     #[cfg_attr(feature = "clap", arg(long))]
     pub engine: Engine,
     /// Time limit of a task in minutes [default: three times the predicted time of the longest one, at least 10].
-    #[cfg_attr(feature = "clap", arg(long = "time", value_name = "MINUTES", value_parser = clap::value_parser!(u64).range(1..)))]
+    #[cfg_attr(feature = "clap", arg(long = "time", value_name = "MINUTES", value_parser = clap::value_parser!(u64).range(1..=MOST_MINUTES)))]
     pub minutes: Option<u64>,
     /// Memory of a task in megabytes [default: predicted].
-    #[cfg_attr(feature = "clap", arg(long = "memory", value_name = "MB", value_parser = clap::value_parser!(u64).range(1..)))]
+    #[cfg_attr(feature = "clap", arg(long = "memory", value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=MOST_MEGABYTES)))]
     pub megabytes: Option<u64>,
     /// Partition (SLURM).
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]

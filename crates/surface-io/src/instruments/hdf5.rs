@@ -31,7 +31,7 @@ use crate::inflate::RATIO;
 use crate::number_type::NumberType;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
-use crate::source::Source;
+use crate::source::{Budget, Source};
 use flate2::read::ZlibDecoder;
 use hdf5_pure::{
     AttrValue, Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Group, Layout,
@@ -45,6 +45,10 @@ const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
 const MOST: usize = 1000;
+/// The metadata of a file are read from at most so many bytes for each of its own, and so many besides: strings of attributes may all
+/// be one string of a heap.
+const REREAD: u64 = 4;
+const LEAST: u64 = 16 << 20;
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
@@ -65,7 +69,8 @@ pub(crate) const READER: Reader = Reader {
 type Attributes = HashMap<String, AttrValue>;
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let input = ReadSeekSource::new(source.detached()?).map_err(|e| unreadable(source, &e))?;
+    let budget = Budget::new(source.length().saturating_mul(REREAD).saturating_add(LEAST));
+    let input = ReadSeekSource::new(source.detached(&budget)?).map_err(|e| unreadable(source, &e))?;
     let file = File::from_source(input).map_err(|e| unreadable(source, &e))?;
     let mut channels = Vec::new();
     let mut taken = HashSet::new();
@@ -76,6 +81,10 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         for (name, dataset) in group.iter_datasets().map_err(|e| unreadable(source, &e))? {
             seen += 1;
             channels.extend(channel(source, &dataset, join(&path, &name), &mut taken)?);
+            if budget.is_spent() {
+                let expected = "metadata that do not name the same bytes again and again";
+                return Err(source.wrong(FORMAT, 0, expected));
+            }
         }
         if depth < DEEPEST {
             for (name, inner) in group.iter_groups().map_err(|e| unreadable(source, &e))? {

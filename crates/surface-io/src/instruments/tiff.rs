@@ -110,7 +110,12 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let mut pages = Vec::new();
     let mut decoder = open(source)?;
     loop {
-        pages.push(Page::of(&mut decoder).map_err(|e| Error::content(&path)(unreadable(&e)))?);
+        let mut page = Page::of(&mut decoder).map_err(|e| Error::content(&path)(unreadable(&e)))?;
+        if !pages.is_empty() {
+            // All images may share one long text, and nothing but that of the first is looked at.
+            page.description = None;
+        }
+        pages.push(page);
         if !decoder.more_images() || pages.len() == MOST {
             break;
         }

@@ -28,6 +28,8 @@ use main_xml::{Axis, Main};
 const FORMAT: Format = Format::X3p;
 /// The member that describes the others.
 const MAIN: &str = "main.xml";
+/// Bytes of it: a description has a few thousand, a list of a million heights as text about this many. It is unpacked as a whole.
+const LONGEST: u64 = 16 << 20;
 
 /// Every archive: its members tell whether it is an X3P file.
 pub(crate) const READER: Reader =
@@ -47,11 +49,11 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let in_folder = |m: &&Member| m.name.split_once('/').is_some_and(|(_, name)| name == MAIN);
     let found = members.iter().find(|m| m.name == MAIN).or_else(|| members.iter().find(in_folder));
     let Some(main_member) = found else { return Err(source.content(zip::refused(&members))) };
-    let bytes = main_member.unpack(source, FORMAT)?;
-    let Some(main) = Main::read(&String::from_utf8_lossy(&bytes)) else {
+    let text = main_member.unpack_text(source, FORMAT, LONGEST)?;
+    let Some(main) = Main::read(&text) else {
         return Err(source.content(zip::refused(&members)));
     };
-    drop(bytes);
+    drop(text);
     let ([columns, rows], number) = described(&main).map_err(|e| wrong(source, main_member, &e))?;
     let [x, y, z] = &main.axes;
     let (scale, shift) = (length(&z.increment, 1.0), length(&z.offset, 0.0));
@@ -181,12 +183,12 @@ impl Numbers {
                 Ok(heights)
             }
             Self::Listed(main) => {
-                let bytes = main.unpack(source, FORMAT)?;
+                let text = main.unpack_text(source, FORMAT, LONGEST)?;
                 let (mut heights, mut others) = (Vec::new(), 0);
                 let count = rows * columns;
                 let refused = |_| ContentError::Memory { bytes: 8 * count as u128 };
                 heights.try_reserve_exact(count).map_err(refused).map_err(|e| source.content(e))?;
-                main_xml::listed(&String::from_utf8_lossy(&bytes), &mut |number| match number {
+                main_xml::listed(&text, &mut |number| match number {
                     Some(number) => heights.push(scale * number + shift),
                     None => others += 1,
                 });

@@ -373,7 +373,31 @@ fn mirrors_turns_and_tapers() {
     let even = scan_of("1 x 1", 64, 64, |x, y| if (x as i64 + y as i64) % 2 == 0 { 1.0 } else { -1.0 });
     let tapered = preprocessed(&even, |p| p.window = Some(Window::Hann)).unwrap();
     let square = tapered.heights().iter().map(|h| h * h).sum::<f64>() / 4096.0;
-    assert_relative_eq!(square.sqrt(), 0.375, max_relative = 1e-9);
+    assert_relative_eq!(square.sqrt(), 1.0, max_relative = 1e-9);
+    // 1.0 in the middle of the window over its rms, next to nothing at the corner.
+    let largest = tapered.heights().iter().copied().fold(0.0, f64::max);
+    assert_relative_eq!(largest, 8.0 / 3.0, max_relative = 5e-3);
+    assert!(tapered.heights()[0].abs() < 1e-5);
+    // The taper counts where points are defined.
+    let half = scan_of("1 x 1", 64, 64, |x, y| match (x < 32.0, (x as i64 + y as i64) % 2 == 0) {
+        (true, _) => f64::NAN,
+        (_, even) => {
+            if even {
+                1.0
+            } else {
+                -1.0
+            }
+        }
+    });
+    let window = Preprocessing {
+        window: Some(Window::Hann),
+        undefined: Some(Undefined::NoContact),
+        ..Preprocessing::default()
+    };
+    let found = half.preprocessed(&window).unwrap();
+    let [before, after] = found.tapered.unwrap();
+    assert_relative_eq!(after, before, max_relative = 1e-3);
+    assert!(found.steps[0].contains("rms height 1.0000e0 before, 1.0000e0 after"), "{:?}", found.steps);
     let steps = scan.preprocessed(&Preprocessing {
         crop: Some(Crop::Window { row: 0, column: 1, rows: 2, columns: 2 }),
         outliers: Some(1e9),

@@ -1,14 +1,28 @@
 //! Hills of a map and their pruning.
 
+use super::holes::Point;
 use contact_model::Cells;
 
-/// Peaks of the hills that remain and are complete, by index, lowest index first.
+/// Why a hill is incomplete.
+const EDGE: u8 = 1;
+const HOLE: u8 = 2;
+
+/// Hills after pruning.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Hills {
+    /// Peaks of those that are complete, by index, lowest index first.
+    pub(super) peaks: Vec<usize>,
+    /// Number of those that are incomplete for a hole alone, not for the edge of what was seen.
+    pub(super) cut: usize,
+}
+
+/// The hills that remain of heights, NaN where there is none; `points` tells holes from what is outside.
 ///
 /// Points are added from the highest down; where two parts meet, the one with the lower peak ends in a
 /// saddle. Its hill is united with the one on the other side if its peak is less than `pruning` above the
 /// saddle: that is the order of Wolf's pruning, because the neighbour across the highest saddle of the least
 /// hill has a higher peak.
-pub(super) fn peaks(heights: &[f64], cells: Cells, pruning: f64) -> Vec<usize> {
+pub(super) fn hills(heights: &[f64], points: &[Point], cells: Cells, pruning: f64) -> Hills {
     let Cells { columns, rows } = cells;
     let mut order: Vec<usize> = (0..heights.len()).filter(|&i| !heights[i].is_nan()).collect();
     // Of equal heights the first is the higher one.
@@ -19,17 +33,21 @@ pub(super) fn peaks(heights: &[f64], cells: Cells, pruning: f64) -> Vec<usize> {
     let mut hill = vec![none; heights.len()];
     let mut part: Vec<usize> = (0..heights.len()).collect();
     let mut united: Vec<usize> = (0..heights.len()).collect();
-    let mut incomplete = vec![false; heights.len()];
+    let mut incomplete = vec![0_u8; heights.len()];
     for &i in &order {
         let (x, y) = (i % columns, i / columns);
         let at_edge = x == 0 || y == 0 || x + 1 == columns || y + 1 == rows;
-        let mut open = at_edge;
+        let mut open = if at_edge { EDGE } else { 0 };
         let mut steepest = none;
         let mut around = Vec::with_capacity(8);
         for ny in y.saturating_sub(1)..(y + 2).min(rows) {
             for nx in x.saturating_sub(1)..(x + 2).min(columns) {
                 let j = ny * columns + nx;
-                open |= heights[j].is_nan();
+                open |= match points[j] {
+                    Point::Hole => HOLE,
+                    Point::Outside => EDGE,
+                    Point::Measured | Point::Filled => 0,
+                };
                 if j != i && hill[j] != none {
                     around.push(j);
                     if steepest == none || heights[j] > heights[steepest] {
@@ -64,14 +82,13 @@ pub(super) fn peaks(heights: &[f64], cells: Cells, pruning: f64) -> Vec<usize> {
     let all: Vec<usize> = order.iter().copied().filter(|&i| hill[i] == i).collect();
     for &peak in &all {
         let kept = root(&mut united, peak);
-        if incomplete[peak] {
-            incomplete[kept] = true;
-        }
+        incomplete[kept] |= incomplete[peak];
     }
-    let mut found: Vec<usize> =
-        all.into_iter().filter(|&peak| united[peak] == peak && !incomplete[peak]).collect();
-    found.sort_unstable();
-    found
+    let kept = |peak: &usize| united[*peak] == *peak;
+    let cut = all.iter().filter(|peak| kept(peak) && incomplete[**peak] == HOLE).count();
+    let mut peaks: Vec<usize> = all.into_iter().filter(|peak| kept(peak) && incomplete[*peak] == 0).collect();
+    peaks.sort_unstable();
+    Hills { peaks, cut }
 }
 
 /// Whether point a is higher than point b; of equal heights the first is.
@@ -104,14 +121,18 @@ mod tests {
                 if y == 3 && (3..8).contains(&x) { row[x - 3] } else { height - 0.01 * i as f64 }
             })
             .collect();
-        let found = |pruning: f64| peaks(&field, Cells { columns: 11, rows: 7 }, pruning);
+        let cells = Cells { columns: 11, rows: 7 };
+        let measured = vec![Point::Measured; 77];
+        let found = |pruning: f64| hills(&field, &measured, cells, pruning).peaks;
         let at = |x: usize| 33 + x;
         assert_eq!(found(0.1), [at(3), at(5), at(7)]);
         assert_eq!(found(0.5), [at(3), at(7)]);
         assert_eq!(found(1.5), [at(3)]);
-        // The rim's hills touch the edge; with a hole, so does the ridge.
-        let mut hole = field.clone();
-        hole[at(4) + 11] = f64::NAN;
-        assert_eq!(peaks(&hole, Cells { columns: 11, rows: 7 }, 0.5), [at(7)]);
+        // The rim's hills touch the edge; the ridge touches a hole.
+        let mut hole = (field.clone(), measured.clone());
+        (hole.0[at(4) + 11], hole.1[at(4) + 11]) = (f64::NAN, Point::Hole);
+        assert_eq!(hills(&hole.0, &hole.1, cells, 0.5), Hills { peaks: vec![at(7)], cut: 1 });
+        hole.1[at(4) + 11] = Point::Outside;
+        assert_eq!(hills(&hole.0, &hole.1, cells, 0.5), Hills { peaks: vec![at(7)], cut: 0 });
     }
 }

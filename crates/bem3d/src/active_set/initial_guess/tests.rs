@@ -4,7 +4,7 @@ use super::*;
 use crate::active_set::residuals::Residuals;
 use crate::active_set::state::Continuation;
 use crate::kernel::love::influence;
-use crate::stiffness;
+use crate::stiffness::{self, Responding};
 use approx::assert_relative_eq;
 use contact_model::{Boundary, Status, never};
 
@@ -37,7 +37,14 @@ mod tangent {
                 let guess = Guess { set, p, d: 4.0 * force, far: false };
                 let solved = solve(&mut problem, Target::Force(force), guess, limits, &never);
                 assert_eq!(solved.status, Status::Converged);
-                let k = stiffness::solve(&mut problem, &solved, None, 1e-9, &never);
+                let k = stiffness::solve(
+                    &mut problem,
+                    &solved,
+                    &Responding::whole(&solved, f64::INFINITY),
+                    None,
+                    1e-9,
+                    &never,
+                );
                 (solved, k.q)
             })
             .collect();
@@ -60,21 +67,28 @@ mod tangent {
             let (mut problem, states) = path(grid, &[100.0, 200.0]);
             let solved = &states[1].0;
             let carried = solved.contact.carry(&states[0].0.contact, &states[0].1);
-            let extrapolated = last(&states[0]).tangent_at(solved, f64::INFINITY, &TUNING).unwrap();
+            let extrapolated = last(&states[0]).tangent_at(solved, &solved.contact, &TUNING).unwrap();
             // A tolerance that any guess meets returns what the guess is worth.
             let [carried, extrapolated] = [carried, extrapolated].map(|q| {
-                let k = stiffness::solve(&mut problem, solved, Some(q), 100.0, &never);
+                let k = stiffness::solve(
+                    &mut problem,
+                    solved,
+                    &Responding::whole(solved, f64::INFINITY),
+                    Some(q),
+                    100.0,
+                    &never,
+                );
                 assert_eq!(k.steps, 0);
                 k.solve_error
             });
             assert!(extrapolated < 0.5 * carried, "{extrapolated} {carried}");
             // Between equal loads, or on the way down, there is no better guess than the tangent at the
             // larger load.
-            let back = last(&states[1]).tangent_at(&states[0].0, f64::INFINITY, &TUNING).unwrap();
+            let back = last(&states[1]).tangent_at(&states[0].0, &states[0].0.contact, &TUNING).unwrap();
             assert_eq!(back, states[0].0.contact.carry(&solved.contact, &states[1].1));
-            assert_eq!(last(&states[1]).tangent_at(solved, f64::INFINITY, &TUNING).unwrap(), states[1].1);
+            assert_eq!(last(&states[1]).tangent_at(solved, &solved.contact, &TUNING).unwrap(), states[1].1);
             let bare = LastState { tangent: None, ..last(&states[0]) };
-            assert!(bare.tangent_at(solved, f64::INFINITY, &TUNING).is_none());
+            assert!(bare.tangent_at(solved, &solved.contact, &TUNING).is_none());
         }
     }
 

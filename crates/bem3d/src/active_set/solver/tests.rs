@@ -5,7 +5,7 @@ use crate::geometry::Grid;
 use crate::kernel::KernelTable;
 use crate::kernel::love::influence;
 use crate::operator::{DirectSum, InfluenceOperator};
-use crate::stiffness;
+use crate::stiffness::{self, Responding};
 use crate::tuning::Tuning;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
@@ -122,9 +122,23 @@ fn every_recipe_finds_the_factored_state() {
                     assert_recipe(&problem, recipe);
                 }
                 let Some(k) = k else { continue };
-                let tangent = stiffness::solve(&mut problem, &exact, None, TOLERANCE, &never);
+                let tangent = stiffness::solve(
+                    &mut problem,
+                    &exact,
+                    &Responding::whole(&exact, f64::INFINITY),
+                    None,
+                    TOLERANCE,
+                    &never,
+                );
                 assert_relative_eq!(tangent.value, k, max_relative = TOLERANCE);
-                let tangent = stiffness::solve(&mut problem, &found, None, TOLERANCE, &never);
+                let tangent = stiffness::solve(
+                    &mut problem,
+                    &found,
+                    &Responding::whole(&found, f64::INFINITY),
+                    None,
+                    TOLERANCE,
+                    &never,
+                );
                 assert!(tangent.solve_error <= TOLERANCE, "{what} {}: {tangent:?}", recipe.1);
                 assert_relative_eq!(tangent.value, k, max_relative = 1e-8);
             }
@@ -140,11 +154,19 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
     let mut first = problem(grid, &z, Tuning::DEFAULT);
     let solved = solve(&mut first, target, everything(grid, target), limits(false), &never);
     assert!(solved.contact.len() > grid.count() / 3, "{} cells", solved.contact.len());
-    let reference = stiffness::solve(&mut first, &solved, None, 1e-8, &never);
+    let reference =
+        stiffness::solve(&mut first, &solved, &Responding::whole(&solved, f64::INFINITY), None, 1e-8, &never);
     assert!(first.operators.last().unwrap().has_preconditioner());
     for recipe in recipes() {
         let mut problem = problem(grid, &z, recipe.0);
-        let found = stiffness::solve(&mut problem, &solved, None, 1e-8, &never);
+        let found = stiffness::solve(
+            &mut problem,
+            &solved,
+            &Responding::whole(&solved, f64::INFINITY),
+            None,
+            1e-8,
+            &never,
+        );
         assert_recipe(&problem, recipe);
         assert_relative_eq!(found.value, reference.value, max_relative = 1e-8);
         assert!(found.solve_error <= 1e-8 && found.solve_error > 0.0, "{}", found.solve_error);

@@ -69,24 +69,29 @@ struct Solution {
     outcome: PcgOutcome,
 }
 
+/// What a list of both calls by whether the sum is fixed.
+fn fixed(sum: bool) -> Fixed {
+    if sum { Fixed::Force } else { Fixed::Approach }
+}
+
 fn solve_on(
     operators: &mut Operators,
     set: &CellSet,
     recipe: Recipe,
     right: &[f64],
-    fixed_sum: bool,
+    fixed: Fixed,
     criteria: StoppingCriteria,
 ) -> Solution {
     let (mut workspace, mut x) = (Workspace::default(), right.to_vec());
     workspace.take(operators, set.clone(), recipe);
     assert_eq!(workspace.set(), set);
-    let outcome = workspace.solve(operators, &mut x, fixed_sum, criteria, &never);
+    let outcome = workspace.solve(operators, &mut x, fixed, criteria, &never);
     Solution { x, outcome }
 }
 
 /// Estimated energy `r' G^-1 r`, which no step is needed for.
 fn energy(operators: &mut Operators, set: &CellSet, recipe: Recipe, r: &[f64]) -> f64 {
-    let found = solve_on(operators, set, recipe, r, false, endless(0));
+    let found = solve_on(operators, set, recipe, r, Fixed::Approach, endless(0));
     assert!(found.outcome.steps == 0 && found.x.iter().all(|&x| x == 0.0));
     found.outcome.energy
 }
@@ -95,7 +100,8 @@ fn energy(operators: &mut Operators, set: &CellSet, recipe: Recipe, r: &[f64]) -
 fn path(grid: Grid, set: &CellSet, recipe: Recipe, right: &[f64]) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut operators = operators(grid);
     let after = |steps: usize| {
-        let Solution { x, outcome } = solve_on(&mut operators, set, recipe, right, false, endless(steps));
+        let Solution { x, outcome } =
+            solve_on(&mut operators, set, recipe, right, Fixed::Approach, endless(steps));
         assert_eq!((outcome.steps, outcome.applications), (steps, steps));
         let mut u = Vec::new();
         operators.exact(set, &x, set, &mut u);
@@ -132,7 +138,7 @@ fn every_recipe_reaches_the_factored_solution() {
             for fixed_sum in [false, true] {
                 let criteria = StoppingCriteria { reduction: 1e-5, ..endless(200) };
                 let before = operators.solves;
-                let found = solve_on(&mut operators, &set, recipe, &r, fixed_sum, criteria);
+                let found = solve_on(&mut operators, &set, recipe, &r, fixed(fixed_sum), criteria);
                 assert_eq!(operators.solves, before + 1);
                 // With a fixed sum the approach takes up the rest: x = w - (sum w / sum q) q.
                 let shift = if fixed_sum { w.iter().sum::<f64>() / q.iter().sum::<f64>() } else { 0.0 };
@@ -152,7 +158,7 @@ fn every_recipe_reaches_the_factored_solution() {
                 );
                 // Eight times the gap asks for eight times the pressure, to the last bit, in as many steps.
                 let eight: Vec<f64> = r.iter().map(|r| 8.0 * r).collect();
-                let again = solve_on(&mut operators, &set, recipe, &eight, fixed_sum, criteria);
+                let again = solve_on(&mut operators, &set, recipe, &eight, fixed(fixed_sum), criteria);
                 assert_eq!(again.outcome.steps, steps);
                 assert!(again.x.iter().zip(&found.x).all(|(a, b)| (a - 8.0 * b).abs() <= 0.0));
             }
@@ -171,8 +177,9 @@ fn where_a_set_lies_in_its_grid_does_not_matter() {
     let (corner, inside) = (at(0, 0), at(13, 9));
     let r = right(corner.len(), 1.0);
     for (here, there) in both(&corner).into_iter().zip(both(&inside)) {
-        let [one, other] = [(&corner, here), (&inside, there)]
-            .map(|(set, recipe)| solve_on(&mut operators(grid), set, recipe, &r, false, endless(4)).x);
+        let [one, other] = [(&corner, here), (&inside, there)].map(|(set, recipe)| {
+            solve_on(&mut operators(grid), set, recipe, &r, Fixed::Approach, endless(4)).x
+        });
         assert_eq!(one, other, "{here}");
     }
 }
@@ -185,14 +192,14 @@ fn what_a_workspace_held_before_does_not_matter() {
         let mut used = Workspace::default();
         for recipe in recipes(SQUARE, &set) {
             let criteria = StoppingCriteria { reduction: 1e-3, ..endless(50) };
-            let fresh = solve_on(&mut operators, &set, recipe, &r, fixed_sum, criteria);
+            let fresh = solve_on(&mut operators, &set, recipe, &r, fixed(fixed_sum), criteria);
             used.begin_load();
             used.take(&mut operators, CellSet::from_index(SQUARE, &[3, 77, 200]), recipe);
-            used.solve(&mut operators, &mut [1.0, -2.0, 9.0], fixed_sum, endless(2), &never);
+            used.solve(&mut operators, &mut [1.0, -2.0, 9.0], fixed(fixed_sum), endless(2), &never);
             used.begin_load();
             used.take(&mut operators, set.clone(), recipe);
             let mut x = r.clone();
-            used.solve(&mut operators, &mut x, fixed_sum, criteria, &never);
+            used.solve(&mut operators, &mut x, fixed(fixed_sum), criteria, &never);
             assert_eq!(x, fresh.x, "{recipe}");
         }
     }
@@ -210,11 +217,11 @@ fn weights_of_another_set_lead_to_the_same_solution() {
     for recipe in recipes(SQUARE, &set) {
         let mut workspace = Workspace::default();
         workspace.take(&mut operators, set.clone(), recipe);
-        workspace.solve(&mut operators, &mut right(set.len(), 1.0), true, endless(3), &never);
+        workspace.solve(&mut operators, &mut right(set.len(), 1.0), Fixed::Force, endless(3), &never);
         workspace.take(&mut operators, part.clone(), recipe);
         let mut x = r.clone();
         let criteria = StoppingCriteria { reduction: 1e-5, ..endless(200) };
-        workspace.solve(&mut operators, &mut x, true, criteria, &never);
+        workspace.solve(&mut operators, &mut x, Fixed::Force, criteria, &never);
         for ((x, w), q) in x.iter().zip(&w).zip(&q) {
             assert!((x - (w - shift * q)).abs() < SINGLE * norm, "{recipe}: {x} {}", w - shift * q);
         }
@@ -258,7 +265,9 @@ fn the_energy_of_the_error_is_compared_with_the_value_gained() {
                     let bound = |n: usize| share * (base + dot(&path[n].0, &right));
                     let expected = if left[0] <= bound(0) { 0 } else { first_step(1, |n| left[n], bound) };
                     let criteria = StoppingCriteria { energy: Some(Energy { share, base }), ..endless(50) };
-                    let got = solve_on(&mut operators, &set, recipe, &right, false, criteria).outcome.steps;
+                    let got = solve_on(&mut operators, &set, recipe, &right, Fixed::Approach, criteria)
+                        .outcome
+                        .steps;
                     assert_eq!(got, expected, "{unit} {recipe} {share} {base}");
                     found.push(got);
                 }
@@ -280,7 +289,7 @@ fn it_ends_at_the_first_step_with_the_reduction_asked_for() {
             // The first step is always taken.
             let expected = first_step(1, |n| left[n], |_| reduction.powi(2) * left[0]);
             let criteria = StoppingCriteria { reduction, ..endless(50) };
-            let got = solve_on(&mut operators, &set, recipe, &right, false, criteria).outcome.steps;
+            let got = solve_on(&mut operators, &set, recipe, &right, Fixed::Approach, criteria).outcome.steps;
             assert_eq!(got, expected, "{recipe} reduction {reduction}");
         }
         assert!(left[8] < 1e-3 * left[0], "eight steps gain something");
@@ -298,7 +307,7 @@ fn the_floor_is_the_largest_residual() {
                 let floor = share * unit;
                 let expected = path.iter().position(|(_, r)| largest(r) <= floor).unwrap();
                 let criteria = StoppingCriteria { floor, ..endless(50) };
-                let got = solve_on(&mut operators(SQUARE), &set, recipe, &right, false, criteria);
+                let got = solve_on(&mut operators(SQUARE), &set, recipe, &right, Fixed::Approach, criteria);
                 assert_eq!(got.outcome.steps, expected, "{recipe} {floor}");
             }
         }
@@ -310,19 +319,19 @@ fn work_is_counted_and_a_uniform_gap_asks_for_none_under_a_given_force() {
     let (set, mut operators) = (scattered(SQUARE), operators(SQUARE));
     let uniform = vec![1.0; set.len()];
     let [identity, torus] = both(&set);
-    let got = solve_on(&mut operators, &set, identity, &uniform, true, endless(5));
+    let got = solve_on(&mut operators, &set, identity, &uniform, Fixed::Force, endless(5));
     assert!(got.outcome.steps == 0 && got.x.iter().all(|&x| x == 0.0));
     assert_eq!((operators.applications, operators.solves), (0, 1));
-    solve_on(&mut operators, &set, torus, &uniform, false, endless(5));
+    solve_on(&mut operators, &set, torus, &uniform, Fixed::Approach, endless(5));
     assert_eq!((operators.applications, operators.solves), (5, 2));
     assert_eq!(operators.last(), Some(torus));
     // Nothing is asked for.
-    let got = solve_on(&mut operators, &set, torus, &vec![0.0; set.len()], false, endless(5));
+    let got = solve_on(&mut operators, &set, torus, &vec![0.0; set.len()], Fixed::Approach, endless(5));
     assert!(got.outcome.steps == 0 && got.x.iter().all(|&x| x == 0.0));
     // Stopped at once.
     let (mut workspace, mut x) = (Workspace::default(), uniform);
     workspace.take(&mut operators, set.clone(), torus);
-    let outcome = workspace.solve(&mut operators, &mut x, false, endless(5), &|| true);
+    let outcome = workspace.solve(&mut operators, &mut x, Fixed::Approach, endless(5), &|| true);
     assert!(outcome.steps == 0 && x.iter().all(|&x| x == 0.0));
     assert_eq!(operators.applications, 5);
 }

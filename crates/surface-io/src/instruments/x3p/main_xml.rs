@@ -81,7 +81,15 @@ pub(super) fn listed(text: &str, each: &mut impl FnMut(Option<f64>)) {
     });
 }
 
-/// Calls for every element at its end, with the names from the root on and its own text. What is no XML ends the document.
+/// Elements inside elements that are looked at, and bytes of the names from the root on; the standard has six.
+const DEEPEST: usize = 32;
+const LONGEST_PATH: usize = 1 << 10;
+/// Bytes of an element's own text that are kept: a number, a name. Of a longer one nothing is, so that its beginning is no number.
+const LONGEST: usize = 1 << 12;
+const TOO_LONG: &str = "(too long)";
+
+/// Calls for every element at its end, with the names from the root on and its own text. What is no XML ends the document, and so does
+/// what is nested deeper than any description.
 fn elements(text: &str, each: &mut impl FnMut(&str, &str)) {
     let mut reader = Reader::from_str(text);
     let (mut path, mut lengths, mut own) = (String::new(), Vec::new(), String::new());
@@ -98,8 +106,8 @@ fn elements(text: &str, each: &mut impl FnMut(&str, &str)) {
                 each(&path, "");
                 path.truncate(length);
             }
-            Ok(Event::Text(text)) => own.push_str(&text.xml10_content()),
-            Ok(Event::CData(text)) => own.push_str(&text.xml10_content()),
+            Ok(Event::Text(text)) => keep(&mut own, &text.xml10_content()),
+            Ok(Event::CData(text)) => keep(&mut own, &text.xml10_content()),
             Ok(Event::End(_)) => {
                 each(&path, own.trim());
                 own.clear();
@@ -108,6 +116,17 @@ fn elements(text: &str, each: &mut impl FnMut(&str, &str)) {
             Ok(Event::Eof) | Err(_) => return,
             Ok(_) => {}
         }
+        if lengths.len() > DEEPEST || path.len() > LONGEST_PATH {
+            return;
+        }
+    }
+}
+
+fn keep(own: &mut String, text: &str) {
+    if own.len() + text.len() <= LONGEST && own != TOO_LONG {
+        own.push_str(text);
+    } else {
+        TOO_LONG.clone_into(own);
     }
 }
 

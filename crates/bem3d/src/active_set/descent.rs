@@ -1,0 +1,199 @@
+//! The fall-back of the outer iteration: steps along which the energy falls, whatever they begin with.
+
+use crate::geometry::CellSet;
+use crate::operator::Operators;
+use crate::real::{dot, each, update};
+use contact_model::Stop;
+
+/// Passes over the cells in a projection at most; a dozen are the rule.
+const PASSES: usize = 200;
+/// A sum is met where it is off by less than this share: the rounding of a sum.
+const ROUNDING: f64 = 1e-15;
+
+/// The pressures `0 <= p <= p_s`, of a given sum where the force is prescribed.
+#[derive(Debug, Clone, Copy)]
+pub struct Feasible {
+    /// Largest pressure, p_s; infinite without a hardness.
+    pub hardness: f64,
+    /// The sum, where it is prescribed.
+    pub force: Option<f64>,
+}
+
+impl Feasible {
+    /// The nearest feasible pressure: `min(max(y + mu, 0), p_s)`, with the mu that brings the sum to the force.
+    ///
+    /// The sum rises with mu and is piecewise linear: Newton's method within a bracket, which is halved where Newton's step leaves it.
+    fn project(self, y: &mut [f64]) {
+        let hardness = self.hardness;
+        let Some(force) = self.force else {
+            return each(y, |y| *y = y.clamp(0.0, hardness));
+        };
+        // The sum is 0 at the lower end. At the upper end each cell carries its share of the force, or p_s where that is less.
+        let (smallest, largest) =
+            y.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &y| (a.min(y), b.max(y)));
+        let share = force / y.len() as f64;
+        let (mut low, mut high) = (-largest, share - smallest);
+        let mut shift = 0.0_f64.clamp(low, high.max(low));
+        for _ in 0..PASSES {
+            let (mut total, mut between) = (0.0, 0.0);
+            for y in y.iter() {
+                let p = y + shift;
+                if p >= hardness {
+                    total += hardness;
+                } else if p > 0.0 {
+                    total += p;
+                    between += 1.0;
+                }
+            }
+            let missing = force - total;
+            if missing.abs() <= ROUNDING * force {
+                break;
+            }
+            if missing > 0.0 {
+                low = shift;
+            } else {
+                high = shift;
+            }
+            let next = shift + missing / between;
+            let next = if next > low && next < high { next } else { f64::midpoint(low, high) };
+            if next <= low || next >= high {
+                break;
+            }
+            shift = next;
+        }
+        each(y, |y| *y = (*y + shift).clamp(0.0, hardness));
+    }
+}
+
+/// Minimises the energy `p'Gp/2 + (z - d)'p` over the feasible pressures on a set of cells, `gap` being its gradient `Gp + z - d`: so many
+/// steps at most. Returns how many were taken; fewer where the energy cannot fall any more.
+///
+/// The first step goes towards the projection of `p - a gap`, to the minimum of the energy on the way or to its end. Conjugate gradients on
+/// the cells between their bounds follow, up to the first bound that a step meets, and as long as the gradient on those cells is the larger
+/// part of the projected gradient; then another projected gradient. This is the method of J. J. Moré, G. Toraldo, SIAM J. Optim. 1, 93
+/// (1991) with the proportioning of Z. Dostál, J. Schöberl, Comput. Optim. Appl. 30, 23 (2005), and with exact line searches, which a
+/// quadratic energy allows.
+///
+/// Every step lowers the energy. With a step length a between the inverses of the largest and of the smallest eigenvalue of G, as every
+/// one here is, a projected gradient lowers it by at least a fixed share of its distance from the minimum; runs that begin with one each
+/// therefore converge to the only solution, from any pressure (D. P. Bertsekas, Nonlinear Programming, section 2.3).
+///
+/// Cost: one application of G in double precision a step.
+pub fn descend(
+    operators: &mut Operators,
+    cells: &CellSet,
+    (p, gap): (&mut [f64], &mut [f64]),
+    feasible: Feasible,
+    steps: usize,
+    stop: Stop<'_>,
+) -> usize {
+    let hardness = feasible.hardness;
+    let (mut target, mut displaced) = (Vec::new(), Vec::new());
+    let (mut change, mut residual) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+    let mut length = 1.0 / operators.table().own();
+    // The square of the last gradient on the cells between their bounds, while conjugate gradients go on.
+    let mut conjugate: Option<f64> = None;
+    for taken in 0..steps {
+        if stop() {
+            return taken;
+        }
+        let (inside, outside) = project_gradient(p, gap, feasible, &mut residual);
+        let on_face = taken > 0 && inside > outside;
+        let (slope, limit) = if on_face {
+            let beta = conjugate.map_or(0.0, |last| inside / last);
+            update(&mut change, &residual, |change, r| *change = beta * *change - r);
+            (dot(&change, gap), room(p, &change, hardness))
+        } else {
+            target.clear();
+            target.extend(p.iter().zip(&*gap).map(|(p, gap)| p - length * gap));
+            feasible.project(&mut target);
+            change.copy_from_slice(&target);
+            update(&mut change, p, |change, p| *change -= p);
+            (dot(&change, gap), 1.0)
+        };
+        if slope.is_nan() || slope >= 0.0 {
+            if on_face && conjugate.is_some() {
+                // Rounding: begin anew.
+                conjugate = None;
+                continue;
+            }
+            return taken;
+        }
+        operators.exact(cells, &change, cells, &mut displaced);
+        let curvature = dot(&change, &displaced);
+        if curvature.is_nan() || curvature <= 0.0 {
+            return taken;
+        }
+        length = dot(&change, &change) / curvature;
+        let share = (-slope / curvature).min(limit);
+        if !on_face && share >= 1.0 {
+            p.copy_from_slice(&target);
+        } else {
+            update(p, &change, |p, change| *p = (*p + share * change).clamp(0.0, hardness));
+        }
+        conjugate = (on_face && share < limit).then_some(inside);
+        if on_face && share >= limit {
+            meet(p, &change, hardness);
+        }
+        update(gap, &displaced, |gap, u| *gap += share * u);
+    }
+    steps
+}
+
+/// The gradient on the cells between their bounds, less its mean where the force is prescribed, zero on all others. Its square, and that of
+/// the gradient on cells at a bound that they would leave.
+fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [f64]) -> (f64, f64) {
+    let Feasible { hardness, force } = feasible;
+    let (mut total, mut count) = (0.0, 0.0);
+    for (&p, gap) in p.iter().zip(gap) {
+        if p > 0.0 && p < hardness {
+            (total, count) = (total + gap, count + 1.0);
+        }
+    }
+    if count <= 0.0 {
+        return (0.0, f64::INFINITY);
+    }
+    let mean = if force.is_some() { total / count } else { 0.0 };
+    let mut outside = 0.0;
+    for ((r, &p), gap) in residual.iter_mut().zip(p).zip(gap) {
+        *r = gap - mean;
+        if p <= 0.0 {
+            outside += r.min(0.0).powi(2);
+            *r = 0.0;
+        } else if p >= hardness {
+            outside += r.max(0.0).powi(2);
+            *r = 0.0;
+        }
+    }
+    (dot(residual, residual), outside)
+}
+
+/// How many times a change can be added before a pressure meets a bound.
+fn room(p: &[f64], change: &[f64], hardness: f64) -> f64 {
+    let steps = p.iter().zip(change).map(|(p, &change)| {
+        if change < 0.0 {
+            -p / change
+        } else if change > 0.0 {
+            (hardness - p) / change
+        } else {
+            f64::INFINITY
+        }
+    });
+    steps.fold(f64::INFINITY, f64::min)
+}
+
+/// Puts the pressures that a step brought to a bound, up to rounding, exactly there.
+fn meet(p: &mut [f64], change: &[f64], hardness: f64) {
+    let largest = p.iter().copied().fold(0.0, f64::max);
+    let near = 1e-14 * largest;
+    update(p, change, |p, &change| {
+        if change < 0.0 && *p <= near {
+            *p = 0.0;
+        } else if change > 0.0 && *p >= hardness - near {
+            *p = hardness;
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests;

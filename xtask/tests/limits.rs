@@ -1,0 +1,158 @@
+//! Numbers that no machine has room for, and those that are none: each is refused before anything is solved or memory is asked for, by an
+//! error that names the flag and what was expected.
+
+#![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Counts that cost more than any machine has, and what is no count.
+const COUNTS: [&str; 9] = [
+    "0",
+    "1000000000",
+    "1000000000000",
+    "2147483648",
+    "9223372036854775808",
+    "18446744073709551615",
+    "-1",
+    "NaN",
+    "1e9",
+];
+/// What is no positive number.
+const NUMBERS: [&str; 7] = ["0", "-1", "NaN", "inf", "-inf", "1e999", "x"];
+
+/// With at most 8 GB of addresses where the shell limits them: what asks for more would be an abort.
+fn xtask(words: &[&str], directory: &Path) -> Output {
+    let binary = env!("CARGO_BIN_EXE_xtask");
+    let mut command = Command::new(if cfg!(unix) { "sh" } else { binary });
+    if cfg!(unix) {
+        command.args(["-c", "ulimit -v 8000000; exec \"$0\" \"$@\"", binary]);
+    }
+    command.args(words).current_dir(directory).output().unwrap()
+}
+
+/// What is wrong with the end of a command that is to be refused: with 1 or 2, and one message that names the flag.
+fn refused(words: &[&str], flag: &str) -> Option<String> {
+    let directory = tempfile::tempdir().unwrap();
+    let output = xtask(words, directory.path());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let told = said.contains(flag.trim_start_matches('-'))
+        && ["expected", "invalid value", "is not in"].iter().any(|word| said.contains(word));
+    let well = matches!(output.status.code(), Some(1 | 2))
+        && told
+        && !said.contains("panicked")
+        && said.len() < 2000;
+    (!well).then(|| format!("{}: {} {said}", words.join(" "), output.status))
+}
+
+/// The command, its flag, and values that it takes all the same.
+type Case = (&'static [&'static str], &'static str, &'static [&'static str]);
+
+const WITH_COUNTS: [Case; 24] = [
+    (&["reproduce-fig1"], "--cells", &[]),
+    (&["reproduce-fig2"], "--cells", &[]),
+    (&["reproduce-fig2"], "--surfaces", &[]),
+    (&["reproduce-fig2"], "--threads", &["0"]),
+    (&["verify"], "--lines", &[]),
+    (&["reproduce-fig5"], "--elements", &[]),
+    (&["reproduce-fig6"], "--elements", &[]),
+    (&["reproduce-fig6"], "--lines", &[]),
+    (&["reproduce-two-cases"], "--cells", &[]),
+    (&["reproduce-two-cases"], "--cells-per-wave", &[]),
+    (&["reproduce-two-cases"], "--surfaces", &[]),
+    (&["reproduce-two-cases"], "--threads", &[]),
+    (&["exponent", "--grids", "33,65", "--lines", "2,2", "--elements", "64,128"], "--surfaces", &[]),
+    (&["exponent", "--surfaces", "2", "--lines", "2", "--elements", "64"], "--grids", &[]),
+    (&["exponent", "--surfaces", "2", "--lines", "2", "--grids", "33"], "--elements", &[]),
+    (&["exponent", "--surfaces", "2", "--grids", "33", "--elements", "64"], "--lines", &[]),
+    (&["budget-check"], "--cases", &[]),
+    (&["budget-check"], "--threads", &["0"]),
+    (&["bench"], "--cells", &[]),
+    (&["bench", "--cells", "33"], "--rows", &[]),
+    (&["bench", "--cells", "33"], "--threads", &[]),
+    (&["tuning"], "--repetitions", &[]),
+    (&["plan", "reproduce-fig2"], "--surfaces", &[]),
+    (&["plan", "reproduce-two-cases"], "--surfaces", &[]),
+];
+
+const WITH_NUMBERS: [Case; 12] = [
+    (&["reproduce-fig2"], "--tolerance", &[]),
+    (&["reproduce-fig2"], "--accuracy", &[]),
+    (&["reproduce-fig2", "--accuracy", "5%"], "--budget", &[]),
+    (&["reproduce-fig2"], "--forces", &[]),
+    (&["reproduce-fig2"], "--fractal-dimensions", &[]),
+    (&["reproduce-two-cases"], "--tolerance", &[]),
+    (&["reproduce-two-cases"], "--roll-off", &[]),
+    (&["exponent"], "--error", &[]),
+    (&["exponent", "--plan"], "--budget", &[]),
+    (&["bench", "--cells", "33"], "--tolerance", &[]),
+    (&["audit"], "--share", &[]),
+    (&["audit"], "--audit-tolerance", &[]),
+];
+
+/// Before the words of the command that they are about.
+const OF_ENGINES: [Case; 5] = [
+    (&["plan"], "--nodes", &[]),
+    (&["plan"], "--node-cores", &[]),
+    (&["plan"], "--tasks", &[]),
+    (&["plan"], "--cores", &[]),
+    (&["submit", "--engine", "slurm"], "--tasks", &[]),
+];
+
+const OF_MAKESPAN: [&str; 6] =
+    ["--speed-up", "--slowness", "--operations", "--cores", "--cores-of-task", "--start"];
+
+#[test]
+fn counts_beyond_every_machine_are_refused_by_name() {
+    let mut wrong = Vec::new();
+    for (words, flag, taken) in WITH_COUNTS {
+        for value in COUNTS.iter().filter(|value| !taken.contains(value)) {
+            let mut line = words.to_vec();
+            let joined = format!("{flag}={value}");
+            line.push(&joined);
+            wrong.extend(refused(&line, flag));
+        }
+    }
+    for (words, flag, _) in OF_ENGINES {
+        for value in COUNTS {
+            let joined = format!("{flag}={value}");
+            let line = [words, &[&joined, "reproduce-fig2", "--cells", "33", "--surfaces", "1"]].concat();
+            wrong.extend(refused(&line, flag));
+        }
+    }
+    for flag in ["--time", "--memory"] {
+        for value in COUNTS.iter().filter(|value| **value != "1000000000" || flag == "--time") {
+            let joined = format!("{flag}={value}");
+            wrong.extend(refused(&["submit", "--engine", "slurm", &joined, "reproduce-fig2"], flag));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // A large seed is a seed like others.
+    let directory = tempfile::tempdir().unwrap();
+    let seed = "--seed=18446744073709551615";
+    let done = xtask(&["plan", "reproduce-fig2", "--cells", "33", "--surfaces", "1", seed], directory.path());
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+}
+
+#[test]
+fn what_is_no_number_is_refused_by_name() {
+    let mut wrong = Vec::new();
+    for (words, flag, taken) in WITH_NUMBERS {
+        for value in NUMBERS.iter().filter(|value| !taken.contains(value)) {
+            let mut line = words.to_vec();
+            let joined = format!("{flag}={value}");
+            line.push(&joined);
+            wrong.extend(refused(&line, flag));
+        }
+    }
+    for flag in OF_MAKESPAN {
+        for value in ["-1", "NaN", "inf", "1e300", "x"] {
+            let joined = format!("{flag}={value}");
+            wrong.extend(refused(
+                &["makespan", "--measured", "nowhere", &joined, "reproduce-fig6", "--lines", "2"],
+                flag,
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
