@@ -101,7 +101,6 @@ pub fn ensemble(
         // A loop for each thread: one that waits for helpers does not begin another surface, which would need memory of its own.
         run_jobs(threads, &(0..surfaces).collect::<Vec<usize>>(), stop, answer)
     })?;
-    let found = found.map_err(|error| plain(py, "Error", &error.to_string()))?;
     // A load that was refused stands for itself among the others.
     let one = |state: Result<RustState>| -> PyResult<Py<PyAny>> {
         match state {

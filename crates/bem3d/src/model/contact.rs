@@ -1,25 +1,16 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
-<<<<<<< HEAD
 use super::options::bytes_per_cell;
-use super::prepared::{NAME, PreparedBem3d};
-use crate::active_set::{self, Limits, Solved, Target, is_saturated};
-use crate::geometry::Grid;
-use crate::parts::{Part, timed};
-use crate::stiffness::{self, Stiffness};
-use contact_model::{
-    ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Status, Stop,
-};
-=======
 use super::prepared::{NAME, PreparedBem3d, Tangent};
 use super::state::LoadError;
 use crate::active_set::{self, Limits, Solved, Target, is_saturated};
-use crate::geometry::CellSet;
+use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, timed};
 use crate::stiffness::{self, Responding, Stiffness};
-use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
+use contact_model::{
+    ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Status, Stop,
+};
 use std::borrow::Cow;
->>>>>>> main
 use std::f64::consts::PI;
 
 /// How far the force of all cells at the hardness may be rounded on its way through units.
