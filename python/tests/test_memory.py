@@ -45,7 +45,8 @@ def limited(code):
         # There is memory for the contact, and for a light load, but not for a contact that fills the grid.
         ("fc.Bem3d(cells=8001).prepare(fc.Scene(sphere, 1.0)).solve(force=5.0)", "a solve on 8001 columns x 8001 rows"),
         (
-            "fc.Bem3dPath(fc.Bem3d(cells=8001)).history(fc.Scene(sphere, 1.0, effects={'hardness': 9.0})).advance(force=5.0)",
+            "fc.Bem3dPath(fc.Bem3d(cells=8001)).history(fc.Scene(sphere, 1.0, effects={'hardness': 9.0}))"
+            ".advance(force=5.0)",
             "a solve on 8001 columns x 8001 rows",
         ),
         ("fc.Mdr1d(elements=10**9).prepare(fc.Scene(rough, 1.0, outputs=[]))", "a line of 1000000000 elements: needs"),
