@@ -1,10 +1,14 @@
 //! Planned contacts.
 
 use crate::errors::of_model;
+use crate::exclusive::Exclusive;
+use crate::load_order::{LastLoad, check_rising};
+use crate::memory;
 use crate::pool;
 use crate::state::{self, ContactState};
 use fractal_contact::{
-    ContactState as RustState, Error, Load, Normalisation as RustNormalisation, PreparedContact,
+    ContactState as RustState, Error, Hardness, Load, Normalisation as RustNormalisation, PreparedContact,
+    Scene,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -90,19 +94,56 @@ impl Normalisation {
 }
 
 /// A planned contact: solve often. It keeps tables, plans and the last state, from which the next solve starts.
+///
+/// Threads that solve on one contact do so one after the other, in the order of asking.
+///
+/// With a hardness each load is solved from the virgin surface: a load smaller than the one before is refused, because the indentation of
+/// that one would be forgotten. ``Bem3dPath(...).history(scene)`` follows the indentation along any path.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct Contact {
-    inner: Mutex<Box<dyn PreparedContact>>,
+    inner: Exclusive<Inner>,
     normalisation: RustNormalisation,
     long: bool,
+    /// Whether its memory is looked at before each solve.
+    large: bool,
+    /// Whether the surface yields, so that the order of loads matters.
+    yields: bool,
     best: Mutex<Option<Py<ContactState>>>,
 }
 
+struct Inner {
+    contact: Box<dyn PreparedContact>,
+    /// Of a contact that yields.
+    last: Option<LastLoad>,
+}
+
 impl Contact {
-    /// A contact whose solves are long, or not.
-    pub fn new(contact: Box<dyn PreparedContact>, long: bool) -> Self {
+    /// A contact of a scene whose solves are long, or not.
+    pub fn new(contact: Box<dyn PreparedContact>, scene: &Scene, long: bool, large: bool) -> Self {
         let normalisation = contact.normalisation();
-        Self { inner: Mutex::new(contact), normalisation, long, best: Mutex::new(None) }
+        let inner = Exclusive::new(Inner { contact, last: None });
+        let yields = scene.effects.hardness != Hardness::Off;
+        Self { inner, normalisation, long, large, yields, best: Mutex::new(None) }
+    }
+
+    fn area(&self) -> f64 {
+        self.normalisation.length.powi(2)
+    }
+
+    fn set_best(&self, best: Py<ContactState>) {
+        let before = self.best.lock().unwrap_or_else(PoisonError::into_inner).replace(best);
+        // Outside of the lock: the end of an array may call Python, which may ask for `best`.
+        drop(before);
+    }
+}
+
+/// The load of a kind.
+pub fn load_of(normalisation: &RustNormalisation, kind: &str, value: f64) -> Load {
+    match kind {
+        "mean_pressure" => Load::Force(value * normalisation.length.powi(2)),
+        "approach" => Load::Approach(value),
+        "mean_gap" => Load::MeanGap(value),
+        _ => Load::Force(value),
     }
 }
 
@@ -114,13 +155,18 @@ pub fn load(
     mean_pressure: Option<f64>,
     mean_gap: Option<f64>,
 ) -> PyResult<Load> {
-    match (force, approach, mean_pressure, mean_gap) {
-        (Some(force), None, None, None) => Ok(Load::Force(force)),
-        (None, Some(approach), None, None) => Ok(Load::Approach(approach)),
-        (None, None, Some(pressure), None) => Ok(Load::Force(pressure * normalisation.length.powi(2))),
-        (None, None, None, Some(gap)) => Ok(Load::MeanGap(gap)),
-        _ => Err(PyTypeError::new_err("give exactly one of force, approach, mean_pressure and mean_gap")),
-    }
+    let (kind, value) = match (force, approach, mean_pressure, mean_gap) {
+        (Some(force), None, None, None) => ("force", force),
+        (None, Some(approach), None, None) => ("approach", approach),
+        (None, None, Some(pressure), None) => ("mean_pressure", pressure),
+        (None, None, None, Some(gap)) => ("mean_gap", gap),
+        _ => {
+            return Err(PyTypeError::new_err(
+                "give exactly one of force, approach, mean_pressure and mean_gap",
+            ));
+        }
+    };
+    Ok(load_of(normalisation, kind, value))
 }
 
 #[pymethods]
@@ -140,6 +186,9 @@ impl Contact {
     /// ------
     /// DomainError, OutOfRange, Unsupported
     ///     For a load that makes no sense or that the model does not hold for.
+    ///     With a hardness also for a load smaller than the one before.
+    /// OutOfMemory
+    ///     For contact that fills so much of a large grid that it does not fit in memory.
     /// NotConverged
     ///     With the state that was reached as ``best``.
     #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None))]
@@ -153,15 +202,26 @@ impl Contact {
     ) -> PyResult<Py<ContactState>> {
         let load = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
         let mut best = None;
-        let inner = &self.inner;
+        let mut inner = self.inner.take(py)?;
+        let Inner { contact, last } = &mut *inner;
+        if let Some(last) = last {
+            last.check(py, load, mean_pressure.map(|_| self.area()))?;
+        }
+        if self.large {
+            memory::check_solve(py, contact, |contact| contact.required_memory(load))?;
+        }
         let result = solved(
             py,
             self.long,
             |reached| best = reached.map_or_else(|best| best.map(|best| *best), Some),
-            |stop| inner.lock().unwrap_or_else(PoisonError::into_inner).solve_until(load, &|| stop()),
+            |stop| contact.solve_until(load, &|| stop()),
         );
+        if let (Ok(state), true) = (&result, self.yields) {
+            *last = Some(LastLoad::new(load, state));
+        }
+        drop(inner);
         if let Some(best) = best {
-            *self.best.lock().unwrap_or_else(PoisonError::into_inner) = Some(state::of(py, best)?);
+            self.set_best(state::of(py, best)?);
         }
         state::of(py, result?)
     }
@@ -171,7 +231,7 @@ impl Contact {
     /// Parameters
     /// ----------
     /// force, approach, mean_pressure, mean_gap : iterable of float
-    ///     Exactly one of them. Increasing loads are the fastest order.
+    ///     Exactly one of them. Increasing loads are the fastest order, and the only one with a hardness.
     ///
     /// Yields
     /// ------
@@ -190,6 +250,28 @@ impl Contact {
         loads.set_item("mean_pressure", mean_pressure)?;
         loads.set_item("mean_gap", mean_gap)?;
         slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), Some(&loads))
+    }
+
+    /// Forgets the loads before: with a hardness the next load may be any.
+    ///
+    /// Other contacts take loads in any order at any time.
+    fn restart(&self, py: Python<'_>) -> PyResult<()> {
+        self.inner.take(py)?.last = None;
+        Ok(())
+    }
+
+    /// Refuses the loads of a sweep that a solve would refuse later, because of their order.
+    fn _check_order(&self, py: Python<'_>, kind: &str, values: Vec<f64>) -> PyResult<()> {
+        if !self.yields {
+            return Ok(());
+        }
+        let area = (kind == "mean_pressure").then(|| self.area());
+        let loads: Vec<Load> =
+            values.iter().map(|value| load_of(&self.normalisation, kind, *value)).collect();
+        if let (Some(last), Some(first)) = (&self.inner.take(py)?.last, loads.first()) {
+            last.check(py, *first, area)?;
+        }
+        check_rising(py, &loads, area)
     }
 
     /// Normalisation: of this very surface.

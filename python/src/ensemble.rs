@@ -1,16 +1,44 @@
 //! Many surfaces at a time.
 
-use crate::errors::of_model;
-use crate::model::Model;
+use crate::contact::load_of;
+use crate::errors::{of_model, plain};
+use crate::load_order::check_rising;
+use crate::memory;
+use crate::model::{Model, Shared};
 use crate::pool;
 use crate::scene::Scene;
 use crate::state;
-use fractal_contact::{ContactModel, ContactState as RustState, Error, Load};
+use fractal_contact::runs::{Threads, run_jobs, threads_for_memory};
+use fractal_contact::{
+    ContactModel, ContactState as RustState, Error, Hardness, Load, Outputs, RequiredMemory, Result,
+    Scene as RustScene, Stop,
+};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Threads that can have a surface each at the same time, by the memory that one needs.
+///
+/// `MemoryError` where all states, which are kept until the end, do not fit in beside one surface.
+fn surfaces_in_memory(
+    py: Python<'_>,
+    model: &Shared,
+    scene: &RustScene,
+    (surfaces, loads): (usize, usize),
+) -> PyResult<Threads> {
+    let bytes =
+        |scene: &RustScene| model.least_memory(scene).map_or(0.0, |RequiredMemory { bytes, .. }| bytes);
+    let (one, bare) = (bytes(scene), bytes(&RustScene { outputs: Outputs::default(), ..scene.clone() }));
+    // Each state, and each list of them, as a value of Rust and as one of Python; the fields are moved.
+    let list = 2.0 * (size_of::<Result<Vec<RustState>>>() + size_of::<Vec<usize>>()) as f64;
+    let state = 2.0 * size_of::<Result<RustState>>() as f64 + (one - bare);
+    let states = surfaces as f64 * (list + loads as f64 * state);
+    memory::check(py, format!("an ensemble of {surfaces} surfaces x {loads} loads"), states + one)?;
+    let total = pool::threads()?;
+    let jobs = threads_for_memory(total, one.max(1.0), "surfaces", surfaces);
+    Ok(Threads { total, jobs: jobs.map_err(|error| plain(py, "Error", &error.to_string()))? })
+}
 
 /// The states of many surfaces under the same loads, surfaces in parallel.
 ///
@@ -30,23 +58,31 @@ pub fn ensemble(
         return Err(PyTypeError::new_err("this model follows a path"));
     };
     let (scene, done, mut told) = (scene.0.clone(), AtomicUsize::new(0), 0);
-    let answer = |index: usize, stop: &(dyn Fn() -> bool + Sync)| {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
+    if scene.effects.hardness != Hardness::Off {
+        // The order of the values is that of the loads on every surface.
+        let values: Vec<Load> = loads
+            .iter()
+            .map(|(kind, value)| match kind.as_str() {
+                "approach" => Load::Approach(*value),
+                "mean_gap" => Load::MeanGap(*value),
+                _ => Load::Force(*value),
+            })
+            .collect();
+        let pressures = loads.first().is_some_and(|(kind, _)| kind == "mean_pressure");
+        check_rising(py, &values, pressures.then_some(1.0))?;
+    }
+    let threads = surfaces_in_memory(py, model, &scene, (surfaces, loads.len()))?;
+    let answer = |index: usize, stop: Stop<'_>| {
         let seed = fractal_contact::surface_gen::surface_seed(seed, index as u64);
         let mut contact = model.prepare(&scene, seed)?;
         let normalisation = contact.normalisation();
         let given = |(kind, value): &(String, f64)| match kind.as_str() {
             "force_bar" => Ok(Load::Force(normalisation.force(*value)?)),
-            "mean_pressure" => Ok(Load::Force(value * normalisation.length.powi(2))),
-            "approach" => Ok(Load::Approach(*value)),
-            "mean_gap" => Ok(Load::MeanGap(*value)),
-            _ => Ok(Load::Force(*value)),
+            kind => Ok(load_of(&normalisation, kind, *value)),
         };
-        let loads = loads.iter().map(given).collect::<fractal_contact::Result<Vec<Load>>>()?;
+        let loads = loads.iter().map(given).collect::<Result<Vec<Load>>>()?;
         let mut found = Vec::new();
-        contact.sweep(&loads, &|| stop(), &mut |_, state| {
+        contact.sweep(&loads, stop, &mut |_, state| {
             found.push(state);
             Ok(())
         })?;
@@ -62,27 +98,30 @@ pub fn ensemble(
         Ok(())
     };
     let (found, raised) = pool::run(py, &mut listen, |stop| {
-        (0..surfaces)
-            .into_par_iter()
-            .map(|index| answer(index, stop))
-            .collect::<Vec<fractal_contact::Result<_>>>()
+        // A loop for each thread: one that waits for helpers does not begin another surface, which would need memory of its own.
+        run_jobs(threads, &(0..surfaces).collect::<Vec<usize>>(), stop, answer)
     })?;
     // A load that was refused stands for itself among the others.
-    let one = |state: fractal_contact::Result<RustState>| -> PyResult<Py<PyAny>> {
+    let one = |state: Result<RustState>| -> PyResult<Py<PyAny>> {
         match state {
             Ok(state) => Ok(state::of(py, state)?.into_any()),
             Err(error) => Ok(of_model(py, error).into_value(py).into_any()),
         }
     };
     let mut surfaces_done = Vec::new();
+    let mut failed = None;
     for (index, states) in found.into_iter().enumerate() {
-        match (states, &raised) {
-            (Ok(states), _) => {
+        match states {
+            Some(Ok(states)) => {
                 surfaces_done.push((index, states.into_iter().map(one).collect::<PyResult<Vec<_>>>()?));
             }
-            (Err(error), None) => return Err(of_model(py, error)),
-            (Err(_), Some(_)) => {}
+            // After a failure those in flight are stopped: their reason is not the reason.
+            None | Some(Err(Error::Stopped { .. })) => {}
+            Some(Err(error)) => failed = failed.or(Some(error)),
         }
+    }
+    if let (Some(error), None) = (failed, &raised) {
+        return Err(of_model(py, error));
     }
     if let Some(raised) = raised {
         // What is finished goes with the exception.

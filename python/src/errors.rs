@@ -61,6 +61,12 @@ pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
                 attributes.set_item("high", max)?;
                 "OutOfRange"
             }
+            Error::OutOfMemory { what, bytes, available } => {
+                attributes.set_item("what", what)?;
+                attributes.set_item("needed", bytes)?;
+                attributes.set_item("available", available)?;
+                "OutOfMemory"
+            }
             Error::NotConverged { best } => {
                 attributes.set_item("best", state::of(py, *best)?)?;
                 "NotConverged"

@@ -1,6 +1,7 @@
 //! Maps of heights.
 
 use crate::errors::of_model;
+use crate::memory;
 use crate::pool;
 use fractal_contact::surface_io::{Dimension, Sides, Unit};
 use fractal_contact::{Cells, HeightMap as RustMap, Size};
@@ -79,6 +80,14 @@ impl Extent {
     }
 }
 
+impl HeightMap {
+    /// An error where there is no memory for another map of this size.
+    fn copied(&self, py: Python<'_>) -> PyResult<()> {
+        let cells = self.0.cells();
+        memory::check_grid(py, "a map", cells, cells.map_bytes())
+    }
+}
+
 #[pymethods]
 impl HeightMap {
     #[new]
@@ -95,7 +104,9 @@ impl HeightMap {
         let prepared = py.import("fractal_contact._arrays")?.call_method1("heights", (heights, undefined))?;
         let (array, partly): (PyReadonlyArray2<'_, f64>, bool) = prepared.extract()?;
         let [rows, columns] = array.shape() else { unreachable!("two dimensions") };
-        let (cells, mut values) = (Cells { columns: *columns, rows: *rows }, array.to_vec()?);
+        let cells = Cells { columns: *columns, rows: *rows };
+        memory::check_grid(py, "a map", cells, cells.map_bytes())?;
+        let mut values = array.to_vec()?;
         if let Some(unit) = unit {
             let known: Unit =
                 unit.parse().map_err(|error| PyValueError::new_err(format!("unit = {unit:?}: {error}")))?;
@@ -117,6 +128,7 @@ impl HeightMap {
     /// numpy.ndarray: a copy of the heights, [row, column]; NaN at undefined points.
     #[getter]
     fn heights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.copied(py)?;
         let values = self.0.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
         PyArray1::from_vec(py, values).reshape([self.0.rows(), self.0.columns()])
     }
@@ -149,6 +161,7 @@ impl HeightMap {
     #[getter]
     fn rms_height(&self, py: Python<'_>) -> PyResult<f64> {
         // On the pool, as all that shares its work: the threads of rayon's own pool do not survive a fork.
+        self.copied(py)?;
         pool::call(py, || {
             let defined: Vec<f64> = self.0.defined().collect();
             fractal_contact::surface_gen::rms_height(&defined)
@@ -156,18 +169,21 @@ impl HeightMap {
     }
 
     /// The map with x and y exchanged.
-    fn transposed(&self) -> Self {
-        self.0.transposed().into()
+    fn transposed(&self, py: Python<'_>) -> PyResult<Self> {
+        self.copied(py)?;
+        Ok(self.0.transposed().into())
     }
 
     /// The map with x reversed.
-    fn mirrored(&self) -> Self {
-        self.0.mirrored().into()
+    fn mirrored(&self, py: Python<'_>) -> PyResult<Self> {
+        self.copied(py)?;
+        Ok(self.0.mirrored().into())
     }
 
     /// The map turned by a quarter from x to y.
-    fn rotated(&self) -> Self {
-        self.0.rotated().into()
+    fn rotated(&self, py: Python<'_>) -> PyResult<Self> {
+        self.copied(py)?;
+        Ok(self.0.rotated().into())
     }
 
     /// The map of the rows and columns from the first to before the second of each pair.
@@ -177,20 +193,26 @@ impl HeightMap {
     /// rows, columns : (int, int)
     ///     First, and the one after the last.
     fn cropped(&self, py: Python<'_>, rows: (usize, usize), columns: (usize, usize)) -> PyResult<Self> {
+        let [wide, high] = [columns, rows].map(|(first, end)| end.saturating_sub(first));
+        let cells = Cells { columns: wide.min(self.0.columns()), rows: high.min(self.0.rows()) };
+        memory::check_grid(py, "a map", cells, cells.map_bytes())?;
         let map = self.0.cropped(columns.0..columns.1, rows.0..rows.1);
         map.map(Self::from).map_err(|error| of_model(py, error))
     }
 
     /// The map with its sides and its heights multiplied.
     fn scaled(&self, py: Python<'_>, lateral: f64, vertical: f64) -> PyResult<Self> {
+        self.copied(py)?;
         self.0.scaled(lateral, vertical).map(Self::from).map_err(|error| of_model(py, error))
     }
 
     fn __add__(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
+        self.copied(py)?;
         self.0.plus(&other.0).map(Self::from).map_err(|error| of_model(py, error))
     }
 
     fn __sub__(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
+        self.copied(py)?;
         self.0.minus(&other.0).map(Self::from).map_err(|error| of_model(py, error))
     }
 

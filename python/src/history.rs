@@ -1,7 +1,9 @@
 //! Planned contacts that remember their path.
 
 use crate::contact::{Normalisation, load, solved};
+use crate::exclusive::Exclusive;
 use crate::history_state::{self, HistoryState};
+use crate::memory;
 use fractal_contact::{
     History as RustHistory, HistoryState as RustHistoryState, Normalisation as RustNormalisation, Step,
     Tangential,
@@ -14,23 +16,26 @@ use std::sync::{Mutex, PoisonError};
 /// A planned contact that remembers its path.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct History {
-    inner: Mutex<Box<dyn RustHistory>>,
+    inner: Exclusive<Box<dyn RustHistory>>,
     normalisation: RustNormalisation,
     long: bool,
+    /// Whether its memory is looked at before each step.
+    large: bool,
     last: Mutex<Option<Py<HistoryState>>>,
 }
 
 impl History {
     /// A history whose steps are long, or not.
-    pub fn new(history: Box<dyn RustHistory>, long: bool) -> Self {
+    pub fn new(history: Box<dyn RustHistory>, long: bool, large: bool) -> Self {
         let normalisation = history.normalisation();
-        Self { inner: Mutex::new(history), normalisation, long, last: Mutex::new(None) }
+        Self { inner: Exclusive::new(history), normalisation, long, large, last: Mutex::new(None) }
     }
 
-    fn set_last(&self, last: Option<Py<HistoryState>>) {
-        let before = std::mem::replace(&mut *self.last.lock().unwrap_or_else(PoisonError::into_inner), last);
-        // Outside of the lock: the end of an array may call Python, which may ask for `last`.
-        drop(before);
+    /// Sets the last state. The one before it ends with what is returned, outside of all locks: the end of an array may call Python, which
+    /// may ask for this history.
+    #[must_use]
+    fn set_last(&self, last: Option<Py<HistoryState>>) -> Option<Py<HistoryState>> {
+        std::mem::replace(&mut *self.last.lock().unwrap_or_else(PoisonError::into_inner), last)
     }
 }
 
@@ -84,20 +89,24 @@ impl History {
             }
         };
         let step = Step { time, normal, tangential };
-        let inner = &self.inner;
+        let mut ended = Vec::new();
+        let mut inner = self.inner.take(py)?;
+        if self.large {
+            memory::check_solve(py, &mut *inner, |history| history.required_memory(normal))?;
+        }
         let mut reached = None;
         let result: PyResult<RustHistoryState> = solved(
             py,
             self.long,
             // A step that was complete before it heard of the signal counts.
             |found| reached = found.ok(),
-            |stop| inner.lock().unwrap_or_else(PoisonError::into_inner).advance_until(step, &|| stop()),
+            |stop| inner.advance_until(step, &|| stop()),
         );
         if let Some(reached) = reached {
-            self.set_last(Some(history_state::of(py, reached)?));
+            ended.extend(self.set_last(Some(history_state::of(py, reached)?)));
         }
         let state = history_state::of(py, result?)?;
-        self.set_last(Some(state.clone_ref(py)));
+        ended.extend(self.set_last(Some(state.clone_ref(py))));
         Ok(state)
     }
 
@@ -142,10 +151,13 @@ impl History {
     }
 
     /// Forgets the path: back to no contact at time 0.
-    fn restart(&self, py: Python<'_>) {
-        let inner = &self.inner;
-        py.detach(|| inner.lock().unwrap_or_else(PoisonError::into_inner).restart());
-        self.set_last(None);
+    fn restart(&self, py: Python<'_>) -> PyResult<()> {
+        let mut inner = self.inner.take(py)?;
+        inner.restart();
+        let before = self.set_last(None);
+        drop(inner);
+        drop(before);
+        Ok(())
     }
 
     /// HistoryState or None: the state at the end of the last step that was complete, where the next one begins; None before the first.

@@ -9,10 +9,13 @@ mod contact;
 mod effect_states;
 mod ensemble;
 mod errors;
+mod exclusive;
 mod height_map;
 mod history;
 mod history_state;
 mod io;
+mod load_order;
+mod memory;
 mod model;
 mod pool;
 mod scene;
@@ -24,6 +27,13 @@ mod surface_gen;
 /// The compiled part of `fractal_contact`.
 #[pyo3::pymodule]
 mod _core {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::state::look_up_arrays(module.py())
+    }
+
     #[pymodule_export]
     use crate::contact::{Contact, Normalisation};
     #[pymodule_export]

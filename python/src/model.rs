@@ -3,6 +3,7 @@
 use crate::contact::Contact;
 use crate::errors::of_model;
 use crate::history::History;
+use crate::memory;
 use crate::pool;
 use crate::scene::{Scene, optional};
 use fractal_contact::analytic::{
@@ -12,7 +13,8 @@ use fractal_contact::analytic::{
 use fractal_contact::bem3d::{Bem3dPath, Method};
 use fractal_contact::mdr1d::{PartialSlip, Viscoelastic};
 use fractal_contact::{
-    Bem3d, ContactModel, Equivalent, Error, HistoryModel, Mdr1d, PreparedContact, Scene as RustScene, Source,
+    Bem3d, ContactModel, Equivalent, Error, HistoryModel, Mdr1d, PreparedContact, RequiredMemory,
+    Scene as RustScene, Source,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -34,6 +36,10 @@ impl ContactModel for Shared {
 
     fn prepare(&self, scene: &RustScene, seed: u64) -> fractal_contact::Result<Box<dyn PreparedContact>> {
         self.0.prepare(scene, seed)
+    }
+
+    fn least_memory(&self, scene: &RustScene) -> Option<RequiredMemory> {
+        self.0.least_memory(scene)
     }
 }
 
@@ -141,6 +147,22 @@ fn bem3d(py: Python<'_>, options: &Bound<'_, PyDict>) -> PyResult<Bem3d> {
 }
 
 impl Model {
+    /// What a contact of a scene needs at least; `None` where that does not grow with a grid.
+    pub fn least_memory(&self, scene: &RustScene) -> Option<RequiredMemory> {
+        match &self.kind {
+            Kind::Loads(model) => model.least_memory(scene),
+            Kind::Path(model) => model.least_memory(scene),
+        }
+    }
+
+    /// `MemoryError` where a contact of a scene needs more than there is; otherwise whether that is much.
+    fn check_memory(&self, py: Python<'_>, scene: &RustScene) -> PyResult<bool> {
+        let least = self.least_memory(scene);
+        let large = memory::is_large(least.as_ref());
+        least.map_or(Ok(()), |RequiredMemory { what, bytes }| memory::check(py, what, bytes))?;
+        Ok(large)
+    }
+
     /// The model, where it answers loads one by one.
     pub fn of_loads(&self) -> Option<&Shared> {
         match &self.kind {
@@ -175,18 +197,22 @@ impl Model {
         let Kind::Loads(model) = &self.kind else {
             return Err(PyTypeError::new_err("this model follows a path: use history()"));
         };
+        let large = self.check_memory(py, &scene.0)?;
         let scene = scene.0.clone();
         // Any model may measure a map.
         let contact = pool::call(py, || model.prepare(&scene, seed))?;
-        contact.map(|contact| Contact::new(contact, self.long)).map_err(|error| of_model(py, error))
+        contact
+            .map(|contact| Contact::new(contact, &scene, self.long, large))
+            .map_err(|error| of_model(py, error))
     }
 
     fn history(&self, py: Python<'_>, scene: &Scene, seed: u64) -> PyResult<History> {
         let Kind::Path(model) = &self.kind else {
             return Err(PyTypeError::new_err("this model answers loads one by one: use prepare()"));
         };
+        let large = self.check_memory(py, &scene.0)?;
         let scene = scene.0.clone();
         let history = pool::call(py, || model.prepare(&scene, seed))?;
-        history.map(|history| History::new(history, self.long)).map_err(|error| of_model(py, error))
+        history.map(|history| History::new(history, self.long, large)).map_err(|error| of_model(py, error))
     }
 }

@@ -91,6 +91,8 @@ pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> Py
 pub fn height_map(py: Python<'_>, of: &Surface, cells: OneOrTwo<usize>, seed: u64) -> PyResult<HeightMap> {
     let cells = crate::surface_gen::cells(cells, of.0.size());
     let surface = of.0.clone();
+    let bytes = fractal_contact::surface_gen::height_map_memory(&surface, cells);
+    crate::memory::check_grid(py, "a map", cells, bytes)?;
     let map = crate::pool::call(py, || fractal_contact::surface_gen::height_map(&surface, cells, seed))?;
     map.map(HeightMap).map_err(|error| of_model(py, error))
 }

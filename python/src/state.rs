@@ -12,6 +12,17 @@ pub fn array(py: Python<'_>, field: Field) -> PyResult<Py<PyArray2<f64>>> {
     Ok(PyArray1::from_vec(py, field.into_values()).reshape(shape)?.unbind())
 }
 
+/// Looks up all that arrays need of numpy, while the module is imported.
+///
+/// The crate `numpy` does so when the first array is made, and takes for granted that nothing fails there: a Ctrl-C that came at that
+/// moment would be a panic.
+pub fn look_up_arrays(py: Python<'_>) -> PyResult<()> {
+    py.import("numpy")?;
+    let array = PyArray1::from_vec(py, vec![0.0]).reshape([1, 1])?;
+    array.try_readonly()?;
+    Ok(())
+}
+
 /// How exactly the contact conditions hold, measured with the exact operator in double precision.
 ///
 /// All numbers are relative and dimensionless.

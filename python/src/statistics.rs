@@ -2,6 +2,7 @@
 
 use crate::errors::of_model;
 use crate::height_map::HeightMap;
+use crate::memory;
 use crate::pool;
 use fractal_contact::surface_statistics::{
     Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightParameters, HybridParameters,
@@ -18,6 +19,16 @@ fn boundary(periodic: bool) -> Boundary {
     if periodic { Boundary::Periodic } else { Boundary::Free }
 }
 
+/// Bytes for each point of a map: of a spectrum, and of height differences with periodic and with free boundaries.
+const SPECTRUM: f64 = 24.0;
+const DIFFERENCES: [f64; 2] = [100.0, 400.0];
+
+/// `MemoryError` where there is less than so many bytes for each point of a map.
+fn check_memory(py: Python<'_>, map: &HeightMap, bytes: f64) -> PyResult<()> {
+    let cells = map.0.cells();
+    memory::check_grid(py, "the statistics of a map", cells, cells.map_bytes() / 8.0 * bytes)
+}
+
 fn known<T>(py: Python<'_>, result: PyResult<Result<T, Error>>) -> PyResult<T> {
     result?.map_err(|error| of_model(py, error))
 }
@@ -32,6 +43,7 @@ fn arrays(dict: &Bound<'_, PyDict>, of: &[(&str, Vec<f64>)]) -> PyResult<()> {
 /// Parameters of ISO 25178-2 and of the derivatives; None where the map does not define one.
 #[pyfunction]
 pub fn parameters<'py>(py: Python<'py>, map: &HeightMap, periodic: bool) -> PyResult<Bound<'py, PyDict>> {
+    check_memory(py, map, DIFFERENCES[1])?;
     let of = &map.0;
     let found = pool::call(py, || -> Result<Vec<(&str, Option<f64>)>> {
         let mut all = Vec::new();
@@ -81,6 +93,7 @@ pub fn power_spectrum<'py>(
     per_decade: f64,
     level: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
+    check_memory(py, map, SPECTRUM)?;
     let (of, taper) = (&map.0, if periodic { Taper::None } else { Taper::Hann });
     let found = match direction {
         "radial" => {
@@ -126,6 +139,7 @@ pub fn height_difference<'py>(
     per_decade: f64,
     level: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
+    check_memory(py, map, DIFFERENCES[usize::from(!periodic)])?;
     let of = &map.0;
     let found = pool::call(py, || -> Result<_> {
         let found =
@@ -160,6 +174,7 @@ pub fn scale_dependence<'py>(
     periodic: bool,
     level: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
+    check_memory(py, map, SPECTRUM)?;
     let (of, boundary, axis) = (&map.0, boundary(periodic), usize::from(along_y));
     let found = pool::call(py, || -> Result<_> {
         let bands = DifferenceBands::new(of, boundary).ok();
@@ -192,6 +207,7 @@ pub fn fit_spectrum<'py>(
     periodic: bool,
     instrument: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    check_memory(py, map, SPECTRUM)?;
     let (of, boundary) = (&map.0, boundary(periodic));
     let found = pool::call(py, || {
         let reliable = ReliableWavelengths::new(of, boundary, instrument)?;

@@ -2,6 +2,7 @@
 
 use crate::errors::of_model;
 use crate::height_map::{HeightMap, OneOrTwo};
+use crate::memory;
 use crate::pool;
 use crate::scene::Surface;
 use fractal_contact::scenes::{RandomSpectrum, RandomSurface};
@@ -19,8 +20,10 @@ pub fn cells(given: OneOrTwo<usize>, size: Size) -> Cells {
     }
 }
 
-fn drawn(py: Python<'_>, work: impl FnOnce() -> Result<RustMap> + Send) -> PyResult<HeightMap> {
-    pool::call(py, work)?.map(HeightMap::from).map_err(|error| of_model(py, error))
+fn drawn(py: Python<'_>, random: &RandomSurface, cells: Cells, seed: u64) -> PyResult<HeightMap> {
+    memory::check_grid(py, "a map", cells, random.memory(cells))?;
+    let map: Result<RustMap> = pool::call(py, || random.map(cells, seed))?;
+    map.map(HeightMap::from).map_err(|error| of_model(py, error))
 }
 
 /// Seed of surface number `index` of the ensemble of a master seed.
@@ -50,7 +53,7 @@ pub fn self_affine_map(
     let heights = weibull.map(|shape| HeightDistribution::Weibull { shape });
     let random = RandomSurface::new(spectrum, heights);
     let cells = self::cells(cells, random.size());
-    drawn(py, move || random.map(cells, seed))
+    drawn(py, &random, cells, seed)
 }
 
 /// An artificial twin of a map.
@@ -67,5 +70,5 @@ pub fn twin(
     let (cells, like) = (of.cells(), if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave });
     let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
     let random = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
-    drawn(py, move || random.map(cells, seed))
+    drawn(py, &random, cells, seed)
 }

@@ -581,3 +581,72 @@ def test_a_ball_of_short_range_is_pulled_off_near_jkr():
     with pytest.raises(fc.NotConverged) as caught:
         path.advance(force=-1.1 * unit)
     assert caught.value.best.force == state.force
+
+
+FOLLOWS = r"virgin surface.*Bem3dPath\(\.\.\.\)\.history\(scene\) follows it"
+
+
+def yielding(**scene):
+    return fc.Bem3d(cells=33).prepare(fc.Scene(rough(33), modulus=1.0, effects={"hardness": 0.02, **scene}))
+
+
+@pytest.mark.parametrize(
+    ("kind", "first", "second", "boundary"),
+    [
+        ("force", 0.01, 0.005, "free"),
+        ("mean_pressure", 0.01, 0.005, "periodic"),
+        ("approach", 0.01, 0.005, "free"),
+        ("mean_gap", 0.005, 0.01, "periodic"),
+    ],
+)
+def test_a_smaller_load_would_forget_the_indentation(kind, first, second, boundary):
+    contact = yielding(boundary=boundary)
+    before = contact.solve(**{kind: first})
+    with pytest.raises(fc.DomainError, match=FOLLOWS) as caught:
+        contact.solve(**{kind: second})
+    assert caught.value.quantity == kind and caught.value.value == second and f"{first}" in caught.value.expected
+    # Nothing has changed: the same load again, and larger ones.
+    assert contact.solve(**{kind: first}).plastic.volume == pytest.approx(before.plastic.volume, rel=1e-3)
+    for states in (
+        lambda: contact.sweep(**{kind: [second]}),
+        lambda: fc.sweep(contact, **{kind: [first, second]}),
+    ):
+        # At the call, not at the second state.
+        with pytest.raises(fc.DomainError, match=FOLLOWS):
+            states()
+    contact.restart()
+    assert contact.solve(**{kind: second}).plastic.volume < before.plastic.volume
+
+
+def test_a_smaller_load_of_another_kind():
+    contact = yielding()
+    reached = contact.solve(force=0.01)
+    with pytest.raises(fc.DomainError, match=FOLLOWS):
+        contact.solve(approach=0.5 * reached.approach)
+    # The load that was reached is no smaller one, whatever its last digits.
+    again = contact.solve(approach=reached.approach)
+    assert contact.solve(force=0.01).approach == pytest.approx(again.approach, rel=1e-3)
+
+
+def test_a_load_that_is_no_number_is_not_remembered():
+    contact = yielding()
+    for wrong in (np.nan, np.inf, -1.0):
+        with pytest.raises(fc.DomainError):
+            contact.solve(force=wrong)
+    assert contact.solve(force=0.01).force == pytest.approx(0.01)
+    with pytest.raises(fc.DomainError):
+        contact.solve(force=np.nan)
+
+
+def test_without_a_hardness_loads_come_in_any_order():
+    contact = fc.Bem3d(cells=33).prepare(fc.Scene(rough(33), modulus=1.0))
+    assert [round(state.force, 12) for state in contact.sweep(force=[0.01, 0.005, 0.02])] == [0.01, 0.005, 0.02]
+    contact.restart()
+
+
+def test_an_ensemble_refuses_decreasing_loads_with_a_hardness():
+    surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
+    hard = fc.Scene(surface, modulus=1.0, effects={"hardness": 0.02})
+    with pytest.raises(fc.DomainError, match=FOLLOWS):
+        fc.ensemble(fc.Bem3d(cells=17), hard, seed=1, surfaces=2, force_bar=[0.2, 0.1])
+    assert len(fc.ensemble(fc.Bem3d(cells=17), hard, seed=1, surfaces=2, force_bar=[0.1, 0.2])) == 2

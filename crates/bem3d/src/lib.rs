@@ -113,7 +113,7 @@ mod tuning;
 #[doc(no_inline)]
 pub use contact_model::*;
 pub use kernel::love;
-pub use model::{Bem3d, Bem3dPath, Method};
+pub use model::{BYTES_PER_CELL, Bem3d, Bem3dPath, Method, bytes_per_cell};
 
 #[doc(hidden)]
 pub mod benchmarks;

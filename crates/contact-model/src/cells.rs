@@ -75,6 +75,15 @@ impl Cells {
         Self { columns, rows: rows.max(usize::from(columns > 0)) }
     }
 
+    /// Bytes of a map: one `f64` for each cell.
+    ///
+    /// ```
+    /// assert_eq!(contact_model::Cells::from(1000).map_bytes(), 8e6);
+    /// ```
+    pub fn map_bytes(self) -> f64 {
+        8.0 * self.columns as f64 * self.rows as f64
+    }
+
     /// Columns times rows, unless no `usize` holds it.
     pub fn checked_count(self) -> Option<usize> {
         self.columns.checked_mul(self.rows)

@@ -47,6 +47,15 @@ pub enum Error {
         /// Largest admissible value.
         max: f64,
     },
+    /// Something does not fit in memory; it was not begun.
+    OutOfMemory {
+        /// What it is for, with its size, such as `a map of 20000 columns x 20000 rows`.
+        what: Cow<'static, str>,
+        /// Bytes that it needs, about.
+        bytes: f64,
+        /// Bytes that there are; `None` where the system only refused.
+        available: Option<f64>,
+    },
     /// The solver stopped before its tolerance was met; the best state is evidence, not an answer.
     NotConverged {
         /// Best state reached, with its full report.
@@ -72,6 +81,11 @@ impl Error {
     /// Shorthand for [`Error::Unsupported`].
     pub fn unsupported(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
         Self::Unsupported { model, what: what.into() }
+    }
+
+    /// Shorthand for [`Error::OutOfMemory`] where the system refused `bytes`.
+    pub fn out_of_memory(what: impl Into<Cow<'static, str>>, bytes: f64) -> Self {
+        Self::OutOfMemory { what: what.into(), bytes, available: None }
     }
 
     /// The state reached where a solve did not converge, which has its status and certificate; any other error stays one.
@@ -108,6 +122,13 @@ impl fmt::Display for Error {
                 let [value, min, max] = [value, min, max].map(|v| Short(*v));
                 write!(f, "{name} = {value} is outside [{min}, {max}], the range in which the model holds")
             }
+            Self::OutOfMemory { what, bytes, available } => {
+                write!(f, "{what}: needs about {} of memory, ", Gigabytes(*bytes))?;
+                match available {
+                    Some(there) => write!(f, "{} are available", Gigabytes(*there)),
+                    None => write!(f, "more than there is"),
+                }
+            }
             Self::NotConverged { best } => {
                 let r = &best.report;
                 // Where a path ends at pull-off, the strategy says so.
@@ -133,6 +154,20 @@ impl fmt::Display for Short {
         // Zero, infinities and NaN are short as they are.
         let long = value.is_finite() && value.abs() > 0.0 && !(1e-4..1e15).contains(&value.abs());
         if long { write!(f, "{value:e}") } else { write!(f, "{value}") }
+    }
+}
+
+/// A number of bytes.
+struct Gigabytes(f64);
+
+impl fmt::Display for Gigabytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let gigabytes = self.0 * 1e-9;
+        if (0.1..1e6).contains(&gigabytes) {
+            write!(f, "{gigabytes:.1} GB")
+        } else {
+            write!(f, "{gigabytes:.1e} GB")
+        }
     }
 }
 

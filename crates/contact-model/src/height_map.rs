@@ -43,7 +43,7 @@ impl HeightMap {
     /// `((ix + 1/2) dx, (iy + 1/2) dy)`.
     ///
     /// # Errors
-    /// As [`HeightMap::new`]; [`Error::Domain`] when the map does not fit in memory.
+    /// As [`HeightMap::new`]; [`Error::OutOfMemory`] when the map does not fit in memory.
     ///
     /// ```
     /// use contact_model::HeightMap;
@@ -62,8 +62,9 @@ impl HeightMap {
         match cells.checked_count() {
             Some(count) if heights.try_reserve_exact(count).is_ok() => {}
             _ => {
-                let count = cells.columns as f64 * cells.rows as f64;
-                return Err(Error::domain("cells", count, "a map that fits in memory"));
+                let Cells { columns, rows } = cells;
+                let what = format!("a map of {columns} columns x {rows} rows");
+                return Err(Error::out_of_memory(what, cells.map_bytes()));
             }
         }
         for iy in 0..cells.rows {

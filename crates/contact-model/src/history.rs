@@ -5,7 +5,7 @@
 
 use crate::error::{Error, Result};
 use crate::load::Load;
-use crate::model::{Source, Stop};
+use crate::model::{RequiredMemory, Source, Stop};
 use crate::normalisation::Normalisation;
 use crate::scene::Scene;
 use crate::state::ContactState;
@@ -155,12 +155,24 @@ pub trait HistoryModel: Send + Sync {
     /// [`Error::Unsupported`] for a surface, effect or output that the model lacks, [`Error::Domain`] or [`Error::Shape`] for
     /// numbers that make no sense.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>>;
+
+    /// What planning and a light load need at least, as [`crate::ContactModel::least_memory`].
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        let _ = scene;
+        None
+    }
 }
 
 /// A planned contact that remembers its path.
 pub trait History: Send {
     /// The normalisation of this very surface.
     fn normalisation(&self) -> Normalisation;
+
+    /// What a step under this load needs beyond what the history holds, as [`crate::PreparedContact::required_memory`].
+    fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
+        let _ = load;
+        None
+    }
 
     /// Goes to the end of the next step. **A step that fails leaves the history as it was before.**
     ///

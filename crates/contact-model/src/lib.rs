@@ -56,7 +56,7 @@ pub use height_map::HeightMap;
 pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use line::Line;
 pub use load::Load;
-pub use model::{ContactModel, PreparedContact, Source, Stop, never};
+pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, never};
 pub use nondimensionalisation::Nondimensionalisation;
 pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
 pub use outputs::{Conductance, Outputs};

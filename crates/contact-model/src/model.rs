@@ -5,6 +5,7 @@ use crate::load::Load;
 use crate::normalisation::Normalisation;
 use crate::scene::Scene;
 use crate::state::ContactState;
+use std::borrow::Cow;
 
 /// A work that a model is built on. Goes into the header of every CSV.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +14,15 @@ pub struct Source {
     pub citation: &'static str,
     /// What is taken from it (equations).
     pub what: &'static str,
+}
+
+/// Memory that something needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RequiredMemory {
+    /// What needs it, with its size, such as `a contact of 257 columns x 257 rows`.
+    pub what: Cow<'static, str>,
+    /// Bytes, about.
+    pub bytes: f64,
 }
 
 /// Asked between iterations: `true` means stop now. A solver never reads a clock itself.
@@ -38,6 +48,13 @@ pub trait ContactModel: Send + Sync {
     /// [`crate::Error::Unsupported`] for a surface, effect or output that the model lacks (never a silent elastic answer),
     /// [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>>;
+
+    /// What [`ContactModel::prepare`] and a light load need at least, the surface that is drawn included; `None` where that does not grow
+    /// with a grid. For callers that compare it with what there is: a model does not ask the system.
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        let _ = scene;
+        None
+    }
 }
 
 // What wraps a model takes one that is chosen at run time, too.
@@ -53,6 +70,10 @@ impl<M: ContactModel + ?Sized> ContactModel for &M {
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         (**self).prepare(scene, seed)
     }
+
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        (**self).least_memory(scene)
+    }
 }
 
 /// A planned contact: solve often. Owns tables, plans and the warm start.
@@ -63,7 +84,8 @@ pub trait PreparedContact: Send {
     /// Solves for one load; `stop` is polled between iterations.
     ///
     /// The result does not depend on the loads solved before beyond the stated tolerance; a path of increasing loads is
-    /// the fastest order.
+    /// the fastest order. That holds with a hardness too: each load is solved from the virgin surface, whatever was indented before. A
+    /// [`crate::HistoryModel`] follows the indentation along a path.
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the model does not hold,
@@ -76,6 +98,13 @@ pub trait PreparedContact: Send {
     /// As [`PreparedContact::solve_until`].
     fn solve(&mut self, load: Load) -> Result<ContactState> {
         self.solve_until(load, &never)
+    }
+
+    /// What a solve for this load needs beyond what the contact holds, about; `None` where that does not grow with a grid. As
+    /// [`ContactModel::least_memory`], for callers that compare it with what there is.
+    fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
+        let _ = load;
+        None
     }
 
     /// Solves for loads in their order and gives each result to the observer with its number, as soon as it is there.

@@ -297,7 +297,8 @@ pub fn line_length(side: f64) -> f64 {
 pub struct Effects {
     /// What lies outside the square.
     pub boundary: Boundary,
-    /// Largest pressure that the bodies carry.
+    /// Largest pressure that the bodies carry. A [`crate::PreparedContact`] solves each load from the virgin surface; the indentation of
+    /// a path is followed by a [`crate::HistoryModel`] (`bem3d::Bem3dPath`).
     pub hardness: Hardness,
     /// Attraction between the surfaces.
     pub adhesion: Adhesion,

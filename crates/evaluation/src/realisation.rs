@@ -49,12 +49,12 @@ impl Discretisation {
         }
     }
 
-    /// Memory that one surface needs at least, bytes: as many per cell as light loads take (`peak_memory_bytes` in
-    /// `data/bench/scaling.csv`), per element as drawing a line takes.
+    /// Memory that one surface needs at least, bytes: as many per cell as light loads take, per element as drawing
+    /// a line takes.
     pub fn memory(&self) -> f64 {
         match *self {
-            Self::Bem3d { cells, .. } => 50.0 * (cells as f64).powi(2),
-            Self::Mdr1d { elements } => 40.0 * elements as f64,
+            Self::Bem3d { cells, .. } => bem3d::BYTES_PER_CELL * (cells as f64).powi(2),
+            Self::Mdr1d { elements } => mdr1d::BYTES_PER_ELEMENT * elements as f64,
         }
     }
 

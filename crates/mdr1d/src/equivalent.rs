@@ -11,7 +11,8 @@ use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     Adhesion, ContactModel, Effects, Error, Friction, Hardness, History, HistoryModel, HistoryState, Load,
-    Normalisation, Outputs, Result, Rheology, Scene, Source, Step, Stop, Tangential, TangentialState, never,
+    Normalisation, Outputs, RequiredMemory, Result, Rheology, Scene, Source, Step, Stop, Tangential,
+    TangentialState, never,
 };
 use std::sync::Arc;
 
@@ -136,6 +137,11 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
                 what: "viscoelastic contact while the contact grows",
             },
         ]
+    }
+
+    /// That of the model that presses.
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        self.model.least_memory(scene)
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {

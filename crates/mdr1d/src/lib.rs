@@ -79,7 +79,7 @@ pub use bearing::{Bearing, Support};
 #[doc(no_inline)]
 pub use contact_model::*;
 pub use equivalent::Equivalent;
-pub use model::{Ensemble, Mdr1d};
+pub use model::{BYTES_PER_ELEMENT, Ensemble, Mdr1d};
 pub use partial_slip::PartialSlip;
 pub use tabulated::Tabulated;
 pub use viscoelastic::Viscoelastic;

@@ -5,12 +5,16 @@ use crate::axisymmetric::{Profile, RoundContact, check_radius};
 use crate::bearing::Bearing;
 use contact_model::{
     Adhesion, ContactModel, ContactState, Effects, Error, Line, Load, Nondimensionalisation, Normalisation,
-    Outputs, PreparedContact, Result, Scene, SelfAffine, Size, SolveReport, Source, Stop, Surface,
+    Outputs, PreparedContact, RequiredMemory, Result, Scene, SelfAffine, Size, SolveReport, Source, Stop,
+    Surface,
 };
 use std::sync::{Arc, Mutex};
 use surface_gen::LineGenerator;
 
 const NAME: &str = "mdr1d";
+
+/// Memory of drawing a line, bytes for each element.
+pub const BYTES_PER_ELEMENT: f64 = 40.0;
 
 /// The method of reduction of dimensionality.
 ///
@@ -122,6 +126,15 @@ impl ContactModel for Mdr1d {
             other => Err(Error::unsupported(NAME, other.kind())),
         }
     }
+
+    /// That of a line that is drawn; a given line and a round body need less than they are.
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        let elements = self.elements;
+        matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_)).then(|| RequiredMemory {
+            what: format!("a line of {elements} elements").into(),
+            bytes: BYTES_PER_ELEMENT * elements as f64,
+        })
+    }
 }
 
 /// [`Mdr1d`] for many lines of one surface: plans, amplitudes and memory are kept from line to line.
@@ -187,6 +200,10 @@ impl ContactModel for Ensemble {
         let mut rough = RoughLine::new(bearing, &line, self.surface.size.length(), scene.modulus, outputs);
         rough.home = Some(Arc::clone(&self.spare));
         Ok(Box::new(rough))
+    }
+
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        self.model.least_memory(scene)
     }
 }
 

@@ -24,6 +24,7 @@
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 
+mod cgroup;
 pub mod cluster;
 mod csv_file;
 mod error;
@@ -44,8 +45,8 @@ pub use error::{Error, Result};
 pub use jobs::{Failure, Job, JobList, Threads, collect, on_one_thread, run_jobs, run_stored};
 pub use manifest::{file_names, machine, write_manifest};
 pub use meters::{
-    available_memory, cpu_seconds, peak_memory, process_cpu_seconds, reset_peak_memory, resident_memory,
-    threads_for_memory,
+    available_memory, check_memory, cpu_seconds, peak_memory, process_cpu_seconds, reset_peak_memory,
+    resident_memory, threads_for_memory,
 };
 pub use npy::{read_map, unit_area, write_npy};
 pub use progress::{Progress, Silent};

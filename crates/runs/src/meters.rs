@@ -1,6 +1,8 @@
 //! What the operating system tells about this process; absent where it does not.
 
+use crate::cgroup;
 use crate::error::{Error, Result};
+use std::borrow::Cow;
 use std::fmt;
 use std::fs;
 use std::time::Duration;
@@ -36,10 +38,24 @@ pub fn peak_memory() -> Option<u64> {
     memory("VmHWM:")
 }
 
-/// Memory that the system could give to this process now, in bytes (Linux); less where the address space of the process is limited.
+/// Memory that the system could give to this process now, in bytes (Linux); less where the address space of the process or the memory of
+/// its control group is limited.
 pub fn available_memory() -> Option<u64> {
     let there = memory_in("/proc/meminfo", "MemAvailable:")?;
-    Some(address_space().map_or(there, |left| there.min(left)))
+    Some([address_space(), cgroup::memory_left()].into_iter().flatten().fold(there, u64::min))
+}
+
+/// Refuses what needs more memory than there is. Where the system tells nothing, all is taken.
+///
+/// # Errors
+/// [`contact_model::Error::OutOfMemory`] with both numbers; `what` names the size.
+pub fn check_memory(what: impl Into<Cow<'static, str>>, bytes: f64) -> contact_model::Result<()> {
+    match available_memory().map(|bytes| bytes as f64) {
+        Some(available) if bytes > available => {
+            Err(contact_model::Error::OutOfMemory { what: what.into(), bytes, available: Some(available) })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Address space that a limit (`ulimit -v`) leaves to this process, in bytes; `None` without a limit.
@@ -109,6 +125,14 @@ mod tests {
         assert!(cpu_seconds().unwrap() > cpu && process_cpu_seconds().unwrap() >= cpu);
         assert!(before > 0 && peak_memory().is_some() && resident_memory().is_some());
         reset_peak_memory();
+    }
+
+    #[test]
+    fn what_needs_more_than_there_is_is_refused() {
+        assert!(check_memory("a small map", 1e3).is_ok());
+        let refused = check_memory("a map", 1e18).unwrap_err().to_string();
+        assert!(refused.starts_with("a map: needs about 1.0e9 GB of memory, "), "{refused}");
+        assert!(refused.ends_with(" GB are available"), "{refused}");
     }
 
     #[test]

@@ -71,6 +71,7 @@ mod lattice;
 mod line;
 mod map;
 mod measure;
+mod memory;
 #[doc(hidden)]
 pub mod parallel;
 mod phases;
@@ -88,6 +89,7 @@ pub use measure::{
     hurst_from_line_spectrum, hurst_from_spectrum, line_spectrum, patches, periodogram, radial_spectrum,
     rms_height, rms_slope, rms_slope_differences, windowed,
 };
+pub use memory::{height_map_memory, wave_map_memory};
 pub use phases::{line_phase, map_phase};
 pub use surface::{height_map, line};
 pub use waves::{Anisotropy, TwinSpectrum, WaveGenerator};

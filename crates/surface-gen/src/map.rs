@@ -1,10 +1,11 @@
 //! Self-affine maps (Eqs. 2-5).
 
+use crate::memory;
 use crate::parallel::{for_each, threads_for};
 use crate::phases::{Stream, Turns};
 use crate::spectrum::MapSpectrum;
 use crate::turn::Circle;
-use contact_model::{Cells, Error, HeightMap, Result, SelfAffine, Size};
+use contact_model::{Cells, HeightMap, Result, SelfAffine, Size};
 use realfft::{ComplexToReal, RealFftPlanner};
 use rustfft::{Fft, FftPlanner, num_complex::Complex64};
 use std::fmt;
@@ -80,12 +81,13 @@ impl MapGenerator {
     /// The same bytes for any number of threads. Cost O(N log N) for N cells, memory twice that of the map.
     ///
     /// # Errors
-    /// [`Error::Domain`] when the map does not fit in memory or its heights overflow.
+    /// [`Error::OutOfMemory`] when the map does not fit in memory, [`Error::Domain`] when its heights overflow.
     pub fn map(&self, seed: u64) -> Result<HeightMap> {
         let Cells { columns: nx, rows: ny } = self.cells;
         let zero = Complex64::new(0.0, 0.0);
-        fits_in_memory::<Complex64>(ny, self.spectrum.columns())?;
-        fits_in_memory::<f64>(ny, nx)?;
+        // Half of the waves, as complex numbers, beside the map.
+        let waves = 16.0 * ny as f64 * self.spectrum.columns() as f64;
+        memory::check(self.cells, waves + self.cells.map_bytes())?;
 
         let threads = threads_for(nx * ny);
         let mut scratch = vec![vec![zero; self.along_y.get_inplace_scratch_len()]; threads];
@@ -165,15 +167,6 @@ struct RowScratch {
     fft: Vec<Complex64>,
 }
 
-/// An error where `n * m` values cannot be had. They are not kept: each thread touches its own part of them first.
-fn fits_in_memory<T>(n: usize, m: usize) -> Result<()> {
-    let mut values = Vec::<T>::new();
-    match n.checked_mul(m).map(|len| values.try_reserve_exact(len)) {
-        Some(Ok(())) => Ok(()),
-        _ => Err(Error::domain("cells", n as f64, "a map that fits in memory")),
-    }
-}
-
 /// A self-affine map: `h(x) = sum over all q of B_2D(q) cos(q x + phi(q))`, `B_2D = (2 pi / L) sqrt(C_2D)`,
 /// `L = sqrt(Lx Ly)`.
 ///
@@ -210,7 +203,7 @@ mod tests {
     use super::*;
     use crate::{hurst_from_spectrum, map_phase, radial_spectrum, rms_height, rms_slope};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::Amplitude;
+    use contact_model::{Amplitude, Error};
     use proptest::prelude::*;
     use std::f64::consts::{PI, TAU};
 

@@ -3,6 +3,7 @@
 use crate::fourier::MapTransform;
 use crate::lattice::Lattice;
 use crate::measure::{homogeneous, periodogram, rms_height};
+use crate::memory;
 use crate::phases::{Stream, Turns};
 use crate::spectrum::{CUTOFF_SLACK, MapSpectrum};
 use crate::turn::Circle;
@@ -81,6 +82,7 @@ impl WaveGenerator {
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn twin(map: &HeightMap, like: TwinSpectrum) -> Result<Self> {
+        memory::check_with_amplitudes(map.cells())?;
         let sample = homogeneous(map)?.map;
         let (cells, size) = (map.cells(), map.size());
         let (lattice, rows) = (Lattice::new(cells, size), cells.rows);
@@ -143,6 +145,7 @@ impl WaveGenerator {
             return Err(Error::domain("lay of an anisotropy", lay, "a finite number of degrees"));
         }
         let spectrum = MapSpectrum::new(surface, cells)?;
+        memory::check_with_amplitudes(cells)?;
         let lattice = Lattice::new(cells, size);
         // As the phases, so that no library's sine decides.
         let [cos, sin] = Circle::shared().cos_sin((lay.rem_euclid(180.0) / 360.0 * 2f64.powi(64)) as u64);

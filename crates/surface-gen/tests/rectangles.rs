@@ -238,6 +238,7 @@ fn undefined_points_count_for_nothing() {
 fn what_cannot_be_made_is_named() {
     let name = |e| match e {
         Error::Domain { name, .. } => name.into_owned(),
+        Error::OutOfMemory { .. } => "memory".to_owned(),
         e => panic!("{e}"),
     };
     let unit = SelfAffine::new(2.4, [2.0, 1.0], 1.0).unwrap();
@@ -262,7 +263,7 @@ fn what_cannot_be_made_is_named() {
         }
     }
     let flat = Surface::Flat { size: [2.0, 1.0].into() };
-    assert_eq!(name(height_map(&flat, [usize::MAX, usize::MAX], 0).unwrap_err()), "cells");
+    assert_eq!(name(height_map(&flat, [usize::MAX, usize::MAX], 0).unwrap_err()), "memory");
     assert_eq!(
         name(height_map(&Surface::Flat { size: [-2.0, 1.0].into() }, 4, 0).unwrap_err()),
         "side along x"

@@ -70,6 +70,24 @@ class OutOfRange(Error, ValueError):
     high: float
 
 
+class OutOfMemory(Error, MemoryError):
+    """Something does not fit in memory; it was not begun.
+
+    Attributes
+    ----------
+    what : str
+        What it is for, with its size in cells, elements or surfaces.
+    needed : float
+        Bytes that it needs, about.
+    available : float or None
+        Bytes that there are below the limits of the process and its control group.
+    """
+
+    what: str
+    needed: float
+    available: float | None
+
+
 class NotConverged(Error):
     """The solver stopped before its tolerance was met.
 

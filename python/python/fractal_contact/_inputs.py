@@ -133,6 +133,11 @@ class Surface:
             Columns, with as many rows as make the cells nearly square, or columns and rows.
         seed : int
             Of a random surface.
+
+        Raises
+        ------
+        OutOfMemory
+            For a map that does not fit in memory, before it is drawn.
         """
         return _core.height_map(self._core(), cells, seed)
 
@@ -164,7 +169,8 @@ class Effects:
     boundary : {"free", "periodic"}
         What lies outside of the rectangle.
     hardness : float, optional
-        Largest pressure that the bodies carry (force/length^2), perfect plasticity.
+        Largest pressure that the bodies carry (force/length^2), perfect plasticity. A `Contact` solves each load from
+        the virgin surface and refuses decreasing loads; ``Bem3dPath(...).history(scene)`` follows the indentation.
     adhesion : float or mapping, optional
         Work of adhesion (energy/length^2), of short range (JKR); or of a finite range (length), across open gaps,
         ``{"work": ..., "range": ..., "law": "exponential" or "dugdale"}``, by the exponential law if none is named.

@@ -67,10 +67,15 @@ class Model(_Options):
         seed : int
             Draws the surface, where it is random.
 
+        With a hardness each load is solved from the virgin surface; loads that become smaller are refused, and
+        ``Bem3dPath(...).history(scene)`` follows the indentation.
+
         Raises
         ------
         Unsupported
             For a surface, effect or output that the model lacks.
+        OutOfMemory
+            For a grid that does not fit in memory, before anything is drawn or planned.
         """
         return self._core().prepare(scene._core(), seed)
 
@@ -349,7 +354,8 @@ def sweep(
     Parameters
     ----------
     contact : Contact
-        A planned contact. Increasing loads are the fastest order.
+        A planned contact. Increasing loads are the fastest order, and the only one with a hardness: each load is solved
+        from the virgin surface, and a smaller one after a larger one is a `DomainError`.
     force, approach, mean_pressure, mean_gap : iterable of float
         Exactly one of them.
 
@@ -367,6 +373,7 @@ def sweep(
     given = {"force": force, "approach": approach, "mean_pressure": mean_pressure, "mean_gap": mean_gap}
     name, values = _one_of(given)
     # Checked at the call, not at the first state.
+    contact._check_order(name, values)
     return (contact.solve(**{name: value}) for value in values)
 
 
@@ -457,7 +464,8 @@ def ensemble(
     surfaces : int
         How many.
     force, approach, mean_pressure, mean_gap, force_bar : iterable of float
-        Exactly one of them; ``force_bar`` counts in E* h L of each surface.
+        Exactly one of them; ``force_bar`` counts in E* h L of each surface. With a hardness in increasing order, as in
+        `sweep`.
     progress : callable, optional
         Called with the number of surfaces that are done and that of all.
 
@@ -466,6 +474,11 @@ def ensemble(
     list of list of ContactState
         ``[surface][load]``; a load that the model refused is the exception in its place. An exception that ends it
         early, such as KeyboardInterrupt, has the surfaces that were finished as ``finished``, a dict by their number.
+
+    Raises
+    ------
+    OutOfMemory
+        Where the states of all surfaces, which are kept until the end, do not fit in memory.
     """
     given = {
         "force": force,

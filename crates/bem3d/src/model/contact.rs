@@ -1,12 +1,15 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
+use super::options::bytes_per_cell;
 use super::prepared::{NAME, PreparedBem3d, Tangent};
 use super::state::LoadError;
 use crate::active_set::{self, Limits, Solved, Target, is_saturated};
-use crate::geometry::CellSet;
+use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, timed};
 use crate::stiffness::{self, Responding, Stiffness};
-use contact_model::{ContactState, Error, Load, Normalisation, PreparedContact, Result, Status, Stop};
+use contact_model::{
+    ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Status, Stop,
+};
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
@@ -57,9 +60,41 @@ impl PreparedContact for PreparedBem3d {
         };
         timed(Part::Results, || self.state(solved, tangent, error, stop))
     }
+
+    /// Cost O(N).
+    fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
+        let Grid { columns, rows, .. } = self.problem.grid();
+        let bytes = bytes_per_cell(self.expected_contact(load)) * columns as f64 * rows as f64;
+        Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
+    }
 }
 
 impl PreparedBem3d {
+    /// About which share of the cells a load brings into contact.
+    fn expected_contact(&self, load: Load) -> f64 {
+        let z = self.problem.candidates.z();
+        match load {
+            // Contact lies within the bearing area.
+            Load::Approach(d) => {
+                let d = self.nondimensional.approach_in(d);
+                z.iter().filter(|z| **z < d).count() as f64 / z.len() as f64
+            }
+            // Rough contact has an area of about 2 F/(E* g), g the rms gradient.
+            Load::Force(force) => {
+                let squares = z.chunks_exact(self.problem.grid().columns).flat_map(|row| row.windows(2));
+                let squares =
+                    squares.map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| square.is_finite());
+                let (sum, count) =
+                    squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+                let gradient = self.height / self.cell().0 * (2.0 * sum / f64::max(count, 1.0)).sqrt();
+                let share = 2.0 * force / (self.normalisation.modulus * self.size.area() * gradient);
+                // Of a flat surface all.
+                if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
+            }
+            _ => 1.0,
+        }
+    }
+
     /// Errors for a force that all cells at the hardness do not carry.
     fn refuse_beyond_hardness(&self, force: f64, asked: f64) -> Result<()> {
         let capacity = self.capacity();

@@ -5,7 +5,9 @@ use super::adhesive::{AdhesiveContact, WithoutAdhesion};
 use super::plastic_path::PlasticPath;
 use super::prepared::{NAME, refuse_together};
 use crate::tuning::Tuning;
-use contact_model::{Adhesion, ContactModel, Error, Hardness, History, HistoryModel, Result, Scene, Source};
+use contact_model::{
+    Adhesion, ContactModel, Error, Hardness, History, HistoryModel, RequiredMemory, Result, Scene, Source,
+};
 
 /// The boundary-element model along a path of loads, for effects that remember it: hardness and adhesion.
 ///
@@ -50,5 +52,9 @@ impl HistoryModel for Bem3dPath {
             }
             other => Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
         }
+    }
+
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        Some(self.0.memory(scene))
     }
 }

@@ -11,13 +11,13 @@ mod prepared;
 mod state;
 
 pub use history::Bem3dPath;
-pub use options::{Bem3d, Method};
+pub use options::{BYTES_PER_CELL, Bem3d, Method, bytes_per_cell};
 
 use crate::tuning::Tuning;
 use adhesive::{AdhesiveContact, without_adhesion};
 use contact_model::{
-    Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, Result, Scene, Source,
-    Surface,
+    Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, RequiredMemory, Result,
+    Scene, Source, Surface,
 };
 use prepared::{NAME, PreparedBem3d, refuse_together};
 use std::sync::Arc;
@@ -42,6 +42,10 @@ impl ContactModel for Bem3d {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.prepare_tuned(scene, seed, &Tuning::DEFAULT)
+    }
+
+    fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
+        Some(self.memory(scene))
     }
 }
 
@@ -162,6 +166,33 @@ mod tests {
         let largest = gaps(0.02);
         assert!(largest > 0.01 && largest < 0.1, "{largest}");
         approx::assert_abs_diff_eq!(gaps(0.0), 0.0);
+    }
+
+    #[test]
+    fn required_memory_follows_the_contact() {
+        let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
+        let model = Bem3d { cells: 256, rows: Some(128), ..Bem3d::default() };
+        let cells = 256.0 * 128.0;
+        let least = ContactModel::least_memory(&model, &scene).unwrap();
+        approx::assert_relative_eq!(least.bytes, BYTES_PER_CELL * cells);
+        assert_eq!(least.what, "a contact of 256 columns x 128 rows");
+        let fields = Scene { outputs: Outputs { gap: true, ..scene.outputs }, ..scene.clone() };
+        let more = ContactModel::least_memory(&model, &fields).unwrap().bytes - least.bytes;
+        approx::assert_relative_eq!(more, 8.0 * cells);
+        let contact = model.prepare(&scene, 0).unwrap();
+        let bytes = |load| contact.required_memory(load).unwrap().bytes;
+        // The bearing area: r^2 < 2 R d, up to the cells at its edge.
+        let area = std::f64::consts::PI * 2.0 * 0.005;
+        approx::assert_relative_eq!(
+            bytes(Load::Approach(0.005)),
+            bytes_per_cell(area) * cells,
+            max_relative = 0.05
+        );
+        assert!(bytes(Load::Force(1e-6)) < 1e-4 * bytes(Load::Force(1.0)));
+        approx::assert_relative_eq!(bytes(Load::Force(1.0)), bytes_per_cell(1.0) * cells);
+        let flat = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
+        let all = model.prepare(&flat, 0).unwrap().required_memory(Load::Force(1e-6)).unwrap();
+        approx::assert_relative_eq!(all.bytes, bytes_per_cell(1.0) * cells);
     }
 
     #[test]

@@ -1,6 +1,20 @@
 //! Numerics of the boundary-element model.
 
-use contact_model::{Cells, Size};
+use contact_model::{Cells, RequiredMemory, Scene, Size, Surface};
+
+/// Memory of one surface under light loads, bytes for each cell, the drawing of the surface included: the largest of
+/// `peak_memory_bytes` in `data/bench/scaling.csv`, rounded up.
+pub const BYTES_PER_CELL: f64 = 50.0;
+
+/// How much more contact takes that fills the grid, bytes for each cell, by the same table.
+const FILLED_BYTES: f64 = 150.0;
+/// The box around a contact of a share s of the cells fills about so many times s of the grid.
+const BOX_OVER_CONTACT: f64 = 6.0;
+
+/// Memory of a solve beyond [`BYTES_PER_CELL`], bytes for each cell of the grid, where a share of the cells is in contact.
+pub fn bytes_per_cell(contact: f64) -> f64 {
+    FILLED_BYTES * (BOX_OVER_CONTACT * contact).min(1.0)
+}
 
 /// Numerics of the boundary-element model.
 ///
@@ -48,6 +62,22 @@ impl Bem3d {
     pub fn grid(&self, size: Size) -> Cells {
         let nearly_square = Cells::nearly_square(self.cells, size);
         Cells { rows: self.rows.unwrap_or(nearly_square.rows), ..nearly_square }
+    }
+
+    /// What planning and a light load need at least, with the fields that are asked for.
+    pub(super) fn memory(&self, scene: &Scene) -> RequiredMemory {
+        let cells = match &scene.surface {
+            Surface::Heights(map) => map.cells(),
+            surface => self.grid(surface.size()),
+        };
+        let outputs = &scene.outputs;
+        let fields = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
+        let fields = fields.iter().filter(|asked| **asked).count() as f64;
+        let Cells { columns, rows } = cells;
+        RequiredMemory {
+            what: format!("a contact of {columns} columns x {rows} rows").into(),
+            bytes: columns as f64 * rows as f64 * BYTES_PER_CELL + fields * cells.map_bytes(),
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use super::prepared::{Memory, PreparedBem3d, without_tangential};
 use crate::active_set::Candidates;
 use contact_model::{
-    Error, History, HistoryState, Normalisation, PreparedContact, Result, Step, Stop, never,
+    Error, History, HistoryState, Load, Normalisation, PreparedContact, RequiredMemory, Result, Step, Stop,
+    never,
 };
 use std::sync::Arc;
 
@@ -34,6 +35,10 @@ impl PlasticPath {
 impl History for PlasticPath {
     fn normalisation(&self) -> Normalisation {
         self.contact.normalisation()
+    }
+
+    fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
+        self.contact.required_memory(load)
     }
 
     fn advance(&mut self, step: Step) -> Result<HistoryState> {

@@ -8,7 +8,9 @@ use crate::scenes::numerics::Numerics;
 use crate::scenes::sampled::sampled;
 use crate::scenes::scene_file::SceneFile;
 use crate::scenes::scene_file::cells;
+use bem3d::BYTES_PER_CELL;
 use contact_model::{Adhesion, Cells, ContactState, Surface};
+use mdr1d::BYTES_PER_ELEMENT;
 use std::time::{Duration, Instant};
 
 /// Cells a side, and elements, of the solves that the cost is predicted from.
@@ -29,14 +31,6 @@ const APPLICATIONS_EXPONENT: f64 = 0.3;
 /// N^0.5 to N^1.4 as measured by the example `effects` of `bem3d`.
 const FRONTS_TIME_EXPONENT: f64 = 3.1;
 const FRONTS_APPLICATIONS_EXPONENT: f64 = 1.0;
-/// Memory of one solve of bem3d, bytes per cell of the grid: what light loads take, and how much more contact
-/// that fills the grid takes; the box around a contact of a share `s` of the cells fills about `6 s` of it.
-/// Read off `peak_memory_bytes` in `data/bench/scaling.csv`.
-const LIGHT_BYTES: f64 = 50.0;
-const FILLED_BYTES: f64 = 150.0;
-/// Memory of drawing a line, bytes per element.
-const ELEMENT_BYTES: f64 = 40.0;
-const BOX_OVER_CONTACT: f64 = 6.0;
 /// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from outside
 /// on that example.
 const ADHESION_BYTES: f64 = 300.0;
@@ -92,9 +86,9 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         let fields = named.iter().filter(|f| **f).count() as f64;
         cost.fields = fields * total;
         cost.field_bytes = cost.fields * count * 8.0;
-        let filled = (BOX_OVER_CONTACT * solved.filled).min(1.0);
         let adhesion = if scene.effects.adhesion == Adhesion::Off { 0.0 } else { ADHESION_BYTES };
-        cost.memory = count * (LIGHT_BYTES + FILLED_BYTES * filled + adhesion + 8.0 * fields);
+        cost.memory =
+            count * (BYTES_PER_CELL + bem3d::bytes_per_cell(solved.filled) + adhesion + 8.0 * fields);
     }
     cost
 }
@@ -104,9 +98,9 @@ pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let Cells { columns, rows } = cells(scene, numerics);
     let bytes = match numerics {
         Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) => {
-            LIGHT_BYTES * columns as f64 * rows as f64
+            BYTES_PER_CELL * columns as f64 * rows as f64
         }
-        _ => ELEMENT_BYTES * numerics.size() as f64,
+        _ => BYTES_PER_ELEMENT * numerics.size() as f64,
     };
     bytes.max(1.0)
 }

@@ -88,6 +88,22 @@ impl RandomSurface {
         Ok(self.draw(cells.into(), seed)?.map)
     }
 
+    /// Bytes that drawing it takes at the peak, the map included.
+    pub fn memory(&self, cells: impl Into<Cells>) -> f64 {
+        let cells = self.sampling.map_or(cells.into(), |(finest, _)| finest);
+        match (&self.heights, &self.spectrum) {
+            (None, RandomSpectrum::SelfAffine { surface, anisotropy: None }) => {
+                surface_gen::height_map_memory(&contact_model::Surface::SelfAffine(*surface), cells)
+            }
+            (heights, RandomSpectrum::SelfAffine { .. }) => {
+                surface_gen::wave_map_memory(cells, heights.is_some())
+            }
+            (heights, RandomSpectrum::Twin { of, .. }) => {
+                surface_gen::wave_map_memory(of.cells(), heights.is_some())
+            }
+        }
+    }
+
     /// Draws it; `cells` count where it brings none of its own.
     ///
     /// # Errors

@@ -1,0 +1,38 @@
+//! Memory that a call will take, compared with what there is before it is asked for: a system that refuses memory later ends the process.
+
+use crate::errors::of_model;
+use fractal_contact::runs::check_memory;
+use fractal_contact::{Cells, RequiredMemory};
+use pyo3::prelude::*;
+use std::borrow::Cow;
+
+/// `MemoryError` where `bytes` are more than there are; `what` names the size.
+pub fn check(py: Python<'_>, what: impl Into<Cow<'static, str>>, bytes: f64) -> PyResult<()> {
+    check_memory(what, bytes).map_err(|error| of_model(py, error))
+}
+
+/// Bytes of a contact below which its solves are not looked at: to ask the system would take a part of their time.
+const SMALL: f64 = 1e8;
+
+/// Whether contacts that need this much at least are looked at before each solve.
+pub fn is_large(least: Option<&RequiredMemory>) -> bool {
+    least.is_some_and(|least| least.bytes > SMALL)
+}
+
+/// `MemoryError` where a solve with a contact, which may be used by one thread at a time, needs more than there is.
+pub fn check_solve<C: Send + ?Sized>(
+    py: Python<'_>,
+    contact: &mut C,
+    required: impl FnOnce(&mut C) -> Option<RequiredMemory> + Send,
+) -> PyResult<()> {
+    match py.detach(|| required(contact)) {
+        Some(RequiredMemory { what, bytes }) => check(py, what, bytes),
+        None => Ok(()),
+    }
+}
+
+/// The same for work on a grid.
+pub fn check_grid(py: Python<'_>, what: &str, cells: Cells, bytes: f64) -> PyResult<()> {
+    let Cells { columns, rows } = cells;
+    check(py, format!("{what} of {columns} columns x {rows} rows"), bytes)
+}
