@@ -88,13 +88,12 @@ impl OuterProgress {
             Some(goal) if error <= goal => {
                 (self.goal, self.since_lowest, self.since_best) = (None, 0, 0);
             }
-            Some(_) => return stagnated,
             None if jammed || self.since_lowest > tuning.stalled || (stagnated && resolved) => {
                 self.begun += 1;
                 self.goal = Some(tuning.fall_back.powi(self.begun) * self.lowest);
                 (self.rough, self.since_lowest, self.since_best) = (false, 0, 0);
             }
-            None => return stagnated,
+            _ => return stagnated,
         }
         false
     }

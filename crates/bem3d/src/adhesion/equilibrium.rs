@@ -312,6 +312,7 @@ impl Search<'_> {
 
     /// One sweep: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
     /// hold the force.
+    #[allow(clippy::too_many_lines)] // One sweep, in the order of its steps.
     fn sweep(
         &mut self,
         state: &mut Equilibrium,

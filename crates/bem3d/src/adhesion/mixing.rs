@@ -63,7 +63,7 @@ impl Mixing {
 }
 
 /// Gauss's elimination of a small symmetric system with its right-hand side as the last column; `None` where it is singular.
-fn solved(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+pub fn solved(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let n = rows.len();
     for k in 0..n {
         let pivot = (k..n).max_by(|&i, &j| rows[i][k].abs().total_cmp(&rows[j][k].abs()))?;

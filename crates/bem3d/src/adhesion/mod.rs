@@ -11,6 +11,7 @@ pub use attraction::Attraction;
 pub use equilibrium::{Control, Ended, Equilibrium, Search, energy};
 pub use law::Law;
 pub use linearised::{Response, fixed_area, respond};
+pub use mixing::solved;
 
 #[cfg(test)]
 mod fronts;

@@ -229,7 +229,6 @@ impl AdhesiveContact {
             quotient_error: stiffness.quotient_error,
             equilibrium: Some(equilibrium.mismatch),
             force_error,
-            ..Certificate::default()
         };
         let status = match status {
             Status::Converged if certificate.meets(inner.options.tolerance) => Status::Converged,

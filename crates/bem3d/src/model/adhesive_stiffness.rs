@@ -6,10 +6,8 @@
 //! by two cells, and a parabola through the states found has its slope at the first one.
 
 use super::adhesive::AdhesiveContact;
-use crate::adhesion::{Control, Equilibrium, Response, fixed_area};
+use crate::adhesion::{Control, Equilibrium, Response, fixed_area, solved};
 use contact_model::{Branch, Status, Stop};
-use faer::Mat;
-use faer::linalg::solvers::DenseSolveCore;
 
 /// The first step of the plane, in ranges of the law.
 const FIRST_STEP: f64 = 0.1;
@@ -177,19 +175,31 @@ impl Fit {
         if unit <= 0.0 || points.len() < n {
             return None;
         }
-        let power = |i: usize, k: usize| ((points[i].0 - points[0].0) / unit).powi(k as i32);
-        let matrix = Mat::from_fn(points.len(), n, power);
-        let values = Mat::from_fn(points.len(), 1, |i, _| points[i].1);
-        // (X'X)^-1 of few well separated points.
-        let inverse = (matrix.transpose() * &matrix).partial_piv_lu().inverse();
-        let coefficients = &inverse * (matrix.transpose() * &values);
-        let misfit = (&matrix * &coefficients - &values).norm_l2();
+        let powers = |x: f64| -> Vec<f64> {
+            let x = (x - points[0].0) / unit;
+            std::iter::successors(Some(1.0), |power| Some(power * x)).take(n).collect()
+        };
+        // Normal equations of few well separated points, with one column more.
+        let normal = |column: &dyn Fn(usize) -> f64| {
+            let mut rows: Vec<Vec<f64>> = (0..n).map(|i| [vec![0.0; n], vec![column(i)]].concat()).collect();
+            for &(x, _) in points {
+                let powers = powers(x);
+                for i in 0..n {
+                    for j in 0..n {
+                        rows[i][j] += powers[i] * powers[j];
+                    }
+                }
+            }
+            solved(rows)
+        };
+        let coefficients = normal(&|i| points.iter().map(|&(x, y)| powers(x)[i] * y).sum())?;
+        let inverse = normal(&|i| if i == 1 { 1.0 } else { 0.0 })?;
+        let left =
+            |&(x, y): &(f64, f64)| y - powers(x).iter().zip(&coefficients).map(|(p, c)| p * c).sum::<f64>();
+        let misfit: f64 = points.iter().map(|point| left(point).powi(2)).sum();
         let freedom = (points.len() - n).max(1) as f64;
-        let (slope, spread) = (coefficients[(1, 0)] / unit, inverse[(1, 1)].max(0.0).sqrt() / unit);
-        (slope.is_finite() && spread.is_finite()).then_some(Self {
-            slope,
-            spread,
-            scatter: misfit / freedom.sqrt(),
-        })
+        let (slope, spread) = (coefficients[1] / unit, inverse[1].max(0.0).sqrt() / unit);
+        let fit = Self { slope, spread, scatter: (misfit / freedom).sqrt() };
+        (slope.is_finite() && spread.is_finite()).then_some(fit)
     }
 }

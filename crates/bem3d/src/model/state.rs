@@ -213,11 +213,8 @@ impl PreparedBem3d {
     /// The indentation of a path and of the saturated cells.
     fn plastic_field(&self, saturated: &CellSet, depth: &[f64]) -> Result<Field> {
         let grid = self.problem.grid();
-        let mut depths = self
-            .memory
-            .as_ref()
-            .map(|memory| memory.indentation.clone())
-            .unwrap_or_else(|| vec![0.0; grid.count()]);
+        let mut depths =
+            self.memory.as_ref().map_or_else(|| vec![0.0; grid.count()], |memory| memory.indentation.clone());
         for (i, depth) in saturated.index(grid).zip(depth) {
             depths[i] += depth;
         }

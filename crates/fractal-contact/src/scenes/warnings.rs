@@ -28,15 +28,8 @@ pub(crate) enum Warning {
 }
 
 impl Warning {
-    pub const ALL: [Self; 7] = [
-        Self::FewCells,
-        Self::OneCell,
-        Self::Edge,
-        Self::Yield,
-        Self::Area,
-        Self::Accuracy,
-        Self::Stiffness,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area, Self::Accuracy, Self::Stiffness];
 
     /// What stands in the row of the state.
     pub fn as_str(self) -> &'static str {
