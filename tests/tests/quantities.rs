@@ -149,7 +149,8 @@ fn fields(scene: &Scene, state: &ContactState, depth: Option<&[f64]>, faults: &m
             (false, _, Some(approach)) => map.highest() - approach,
             _ => f64::NAN,
         };
-        if !((plane - expected).abs() <= allowed) {
+        let off = (plane - expected).abs();
+        if off.is_nan() || off > allowed {
             faults.push(format!("gap field at {i}: its plane is at {plane:e}, the state says {expected:e}"));
             break;
         }
