@@ -89,8 +89,12 @@ fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
                 }
             }
             let plane = if force.is_some() {
-                let inside: Vec<f64> =
-                    p.iter().zip(&gap).filter(|(p, _)| **p > 0.0 && **p < hardness).map(|(_, g)| *g).collect();
+                let inside: Vec<f64> = p
+                    .iter()
+                    .zip(&gap)
+                    .filter(|(p, _)| **p > 0.0 && **p < hardness)
+                    .map(|(_, g)| *g)
+                    .collect();
                 sum(&inside) / inside.len() as f64
             } else {
                 0.0
