@@ -2,7 +2,7 @@
 
 use crate::geometry::CellSet;
 use crate::operator::Operators;
-use crate::real::{dot, each, sum, update};
+use crate::real::{dot, each, sum, sum_of_pairs, update};
 use contact_model::Stop;
 
 /// Passes over the cells in a projection at most; a dozen are the rule.
@@ -108,20 +108,22 @@ pub fn descend(
         if stop() {
             return taken;
         }
-        let (inside, outside) = project_gradient(p, gap, feasible, &mut residual);
+        let (inside, outside, plane) = project_gradient(p, gap, feasible, &mut residual);
         let on_face = taken > 0 && inside > outside;
-        let (slope, limit) = if on_face {
+        let limit = if on_face {
             let beta = conjugate.map_or(0.0, |last| inside / last);
             update(&mut change, &residual, |change, r| *change = beta * *change - r);
-            (dot(&change, gap), room(p, &change, hardness))
+            room(p, &change, hardness)
         } else {
             target.clear();
-            target.extend(p.iter().zip(&*gap).map(|(p, gap)| p - length * gap));
+            target.extend(p.iter().zip(&*gap).map(|(p, gap)| p - length * (gap - plane)));
             feasible.project(&mut target);
             change.copy_from_slice(&target);
             update(&mut change, p, |change, p| *change -= p);
-            (dot(&change, gap), 1.0)
+            1.0
         };
+        // The sum of the change is nothing but for rounding, which a plane far away would multiply.
+        let slope = sum_of_pairs(&change, gap, |change, gap| change * (gap - plane));
         if slope.is_nan() || slope >= 0.0 {
             if on_face && conjugate.is_some() {
                 // Rounding: begin anew.
@@ -151,9 +153,9 @@ pub fn descend(
     steps
 }
 
-/// The gradient on the cells between their bounds, less its mean where the force is prescribed, zero on all others. Its square, and that of
-/// the gradient on cells at a bound that they would leave.
-fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [f64]) -> (f64, f64) {
+/// The gradient on the cells between their bounds, less its mean where the force is prescribed, zero on all others. Its square, that of the
+/// gradient on cells at a bound that they would leave, and the mean.
+fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [f64]) -> (f64, f64, f64) {
     let Feasible { hardness, force } = feasible;
     let (mut total, mut count) = (0.0, 0.0);
     for (&p, gap) in p.iter().zip(gap) {
@@ -162,7 +164,7 @@ fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [
         }
     }
     if count <= 0.0 {
-        return (0.0, f64::INFINITY);
+        return (0.0, f64::INFINITY, 0.0);
     }
     let mean = if force.is_some() { total / count } else { 0.0 };
     let mut outside = 0.0;
@@ -176,7 +178,7 @@ fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [
             *r = 0.0;
         }
     }
-    (dot(residual, residual), outside)
+    (dot(residual, residual), outside, mean)
 }
 
 /// How many times a change can be added before a pressure meets a bound.

@@ -1,7 +1,8 @@
 //! The upper bound of the pressure: cells at the hardness are saturated, their gap is negative by the plastic indentation.
 //!
 //! Open cells have p = 0 and g >= 0, elastic ones g = 0, saturated ones p = p_s and g <= 0: the conditions of `0 <= p <= p_s`. A cell is
-//! saturated exactly where its pressure is p_s. Without a hardness p_s is infinite, and nothing here is called but [`is_saturated`].
+//! saturated exactly where its pressure is p_s. Without a hardness p_s is infinite, and nothing here is called but
+//! [`is_saturated`] and [`saturate`], which return at once.
 
 use super::candidates::Candidates;
 use super::residuals::Residuals;

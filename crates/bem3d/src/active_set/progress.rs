@@ -200,16 +200,21 @@ mod tests {
 
     #[test]
     fn patience_is_for_outer_iterations_without_better_residuals() {
-        // The first residuals are the best, patience + 1 more are no better, the next one ends it.
-        let decisions = judged(TIGHT, &[1e-3; Tuning::DEFAULT.patience + 3]);
-        let (last, before) = decisions.split_last().unwrap();
-        assert_eq!(*last, Decision::End(Status::Stagnated));
-        assert_eq!(before[0], Decision::Continue { best: true });
-        assert!(before[1..].iter().all(|&decision| decision == Decision::Continue { best: false }));
-        // Large ones that do not fall end it, too.
-        let end = Decision::End(Status::Stagnated);
-        let decisions = judged(TIGHT, &[0.5; Tuning::DEFAULT.patience + 3]);
-        assert_eq!(decisions.iter().position(|&d| d == end), Some(TUNING.patience + 2));
+        // The first residuals are the best, patience + 1 more are no better: the next one ends it where they may be those of rounding, and
+        // begins the fall-back where they are not. Large ones that do not fall do so, too.
+        for error in [1e-3, 0.5] {
+            for (d, rounding) in [(1e-3, false), (2.0 * error / TUNING.rounding, true)] {
+                let mut progress = OuterProgress::new(TIGHT, false);
+                for i in 0..TUNING.patience + 2 {
+                    let decision = progress.judge(seen(error), d, &TUNING, &never);
+                    assert_eq!(decision, Decision::Continue { best: i == 0 });
+                    assert!(!progress.falls_back());
+                }
+                let decision = progress.judge(seen(error), d, &TUNING, &never);
+                assert_eq!(decision == Decision::End(Status::Stagnated), rounding, "{error} {d}");
+                assert_eq!(progress.falls_back(), !rounding, "{error} {d}");
+            }
+        }
         // What is followed by a gap in single precision takes no patience: only the limit of iterations ends it.
         let mut progress = OuterProgress::new(TIGHT, false);
         let mut error = 0.5;
@@ -228,6 +233,40 @@ mod tests {
         let errors: Vec<f64> =
             (0..5 * TUNING.patience).map(|i| 1e-3 * 0.8f64.powf((i / 10) as f64)).collect();
         assert!(judged(TIGHT, &errors).iter().all(|d| matches!(d, Decision::Continue { .. })));
+    }
+
+    #[test]
+    fn the_fall_back_begins_where_nothing_falls_and_goes_on_to_its_goal() {
+        let jammed = |error| Evaluated { complete: false, jammed: true, ..seen(error) };
+        let next = |progress: &mut OuterProgress, evaluated| {
+            let decision = progress.judge(evaluated, 1.0, &TUNING, &never);
+            (decision, progress.falls_back())
+        };
+        let continued = Decision::Continue { best: false };
+        // A step of which nothing is left begins it at once, without a gap in single precision; a tenth of the smallest residuals ends it.
+        let mut progress = OuterProgress::new(TIGHT, false);
+        assert_eq!(next(&mut progress, seen(0.1)), (Decision::Continue { best: true }, false));
+        assert_eq!(next(&mut progress, jammed(0.2)), (continued, true));
+        assert!(!progress.rough);
+        assert!(next(&mut progress, seen(0.011)).1 && !progress.rough);
+        assert!(!next(&mut progress, seen(0.009)).1);
+        // The second time it takes a hundredth.
+        assert!(next(&mut progress, jammed(0.5)).1);
+        assert!(next(&mut progress, seen(1e-4)).1);
+        assert!(!next(&mut progress, seen(8.9e-5)).1);
+        // It ends where nothing falls any more, and where the tolerance is met.
+        assert!(next(&mut progress, jammed(0.5)).1);
+        let mut stagnated = (0..).map(|_| next(&mut progress, seen(8.5e-5)).0);
+        assert_eq!(stagnated.position(|d| d == Decision::End(Status::Stagnated)), Some(TUNING.patience + 1));
+        let mut progress = OuterProgress::new(TIGHT, false);
+        next(&mut progress, seen(0.1));
+        assert!(next(&mut progress, jammed(0.1)).1);
+        assert_eq!(next(&mut progress, seen(1e-6)).0, Decision::End(Status::Converged));
+        // Shortened steps without better residuals begin it, too.
+        let mut progress = OuterProgress::new(TIGHT, false);
+        let shortened = Evaluated { complete: false, ..seen(0.1) };
+        let begins = (0..).position(|_| next(&mut progress, shortened).1);
+        assert_eq!(begins, Some(TUNING.stalled + 1));
     }
 
     #[test]

@@ -10,6 +10,9 @@ use contact_model::{Boundary, Status, never};
 use proptest::prelude::*;
 use std::sync::Arc;
 
+#[cfg(feature = "faer")]
+mod reference;
+
 /// Bound of the residuals, in approaches.
 const TIGHT: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
 /// What they leave open in the pressure of a few cells.
@@ -243,4 +246,50 @@ fn the_approach_is_that_of_elastic_cells_or_of_the_lowest_saturated_ones() {
     // One cell, then more than there are.
     assert_eq!(approach(&[1.0], &[0.1], &[0.3, 0.1, 0.2], 1.0).to_bits(), 0.2_f64.to_bits());
     assert_eq!(approach(&[1.0; 5], &[0.1; 5], &[0.3, 0.1, 0.2], 1.0).to_bits(), 0.3_f64.to_bits());
+}
+
+#[test]
+fn forces_of_whole_cells_by_hand() {
+    let grid = Grid::square(4, 1);
+    let saturated = |p: &[f64], force: Option<f64>| {
+        let (mut set, mut p) =
+            (CellSet::from_index(grid, &(0..p.len() as u32).collect::<Vec<_>>()), p.to_vec());
+        saturate(&mut set, &mut p, force, 1.0);
+        (set.index(grid).collect::<Vec<_>>(), p)
+    };
+    // The last digit of one cell.
+    assert_eq!(saturated(&[1.0 - 1e-15, 0.5], None), (vec![0, 1], vec![1.0, 0.5]));
+    assert_eq!(saturated(&[1.0 - 1e-14, 0.5], None), (vec![0, 1], vec![1.0 - 1e-14, 0.5]));
+    // Two whole cells, and what rounding left to others.
+    let (little, most) = (3e-14, 1.0 - 5e-14);
+    let p = [1.0, most, little, 1e-14];
+    assert_eq!(saturated(&p, Some(2.0)), (vec![0, 1], vec![1.0, 1.0]));
+    assert_eq!(saturated(&p, Some(2.0 + 1e-13)), (vec![0, 1], vec![1.0, 1.0]));
+    // Another force, no force, other cells: left as they are.
+    for (p, force) in [(p, Some(2.0 + 1e-12)), (p, None), ([1.0, 0.5, 0.5, 1e-14], Some(2.0)), (p, Some(3.0))]
+    {
+        assert_eq!(saturated(&p, force), (vec![0, 1, 2, 3], p.to_vec()), "{force:?}");
+    }
+    let mut p = vec![0.5];
+    saturate(&mut CellSet::from_index(grid, &[0]), &mut p, Some(1.0), f64::INFINITY);
+    assert_eq!(p, [0.5]);
+}
+
+#[test]
+fn one_cell_gives_way_where_the_saturated_ones_carry_a_little_too_much() {
+    let grid = Grid::square(4, 1);
+    let candidates = Candidates::new(grid, Arc::new(vec![0.0, 0.3, 0.1, 0.2]));
+    let brought = |p: &[f64], force: f64| {
+        let (mut set, mut p) =
+            (CellSet::from_index(grid, &(0..p.len() as u32).collect::<Vec<_>>()), p.to_vec());
+        bring_to(&mut set, &mut p, force, 1.0, &candidates);
+        (set.index(grid).collect::<Vec<_>>(), p)
+    };
+    // Within rounding nothing is done; beyond, the cell with the largest gap gives way, and elastic cells open.
+    assert_eq!(brought(&[1.0, 1.0, 1.0], 3.0 - 3e-13), (vec![0, 1, 2], vec![1.0; 3]));
+    let (cells, p) = brought(&[1.0, 1.0, 1.0, 1e-9], 3.0 - 1e-8);
+    assert_eq!((cells, p[0], p[2]), (vec![0, 1, 2], 1.0, 1.0));
+    assert_relative_eq!(p[1], 1.0 - 1e-8, max_relative = 1e-14);
+    // More than that is taken from all.
+    assert_eq!(brought(&[1.0, 1.0], 1.0).1, [0.5, 0.5]);
 }
