@@ -63,7 +63,9 @@ fn heights(draw: &mut Draw, columns: usize, rows: usize) -> Vec<f64> {
         _ => {}
     }
     let scale = draw.decades(-2.0, 1.5);
-    h.iter_mut().for_each(|h| *h *= scale);
+    for h in &mut h {
+        *h *= scale;
+    }
     h
 }
 
@@ -115,7 +117,7 @@ fn state(number: u64, tolerances: [f64; 2]) -> (Bem3d, Scene, Load) {
     scene.outputs = Outputs::default();
     scene.outputs.stiffness = false;
     scene.outputs.area = true;
-    let tight = draw.next() % TIGHT_SHARE == 0;
+    let tight = draw.next().is_multiple_of(TIGHT_SHARE);
     let method = if draw.index(0, 1) == 0 { Method::Auto } else { Method::Iterative };
     let model = Bem3d { tolerance: tolerances[usize::from(tight)], method, ..Bem3d::default() };
     (model, scene, load)
@@ -151,7 +153,9 @@ fn solved(first: u64, count: u64, tolerances: [f64; 2]) -> (BTreeMap<&'static st
         let threads = [scope.spawn(work), scope.spawn(work)];
         let (mut ends, mut failed) = (BTreeMap::new(), Vec::new());
         for (found, messages) in threads.map(|thread| thread.join().unwrap()) {
-            found.into_iter().for_each(|(end, count)| *ends.entry(end).or_insert(0) += count);
+            for (end, count) in found {
+                *ends.entry(end).or_insert(0) += count;
+            }
             failed.extend(messages);
         }
         (ends, failed)
