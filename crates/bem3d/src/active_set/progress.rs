@@ -265,7 +265,7 @@ mod tests {
         // Shortened steps without better residuals begin it, too.
         let mut progress = OuterProgress::new(TIGHT, false);
         let shortened = Evaluated { complete: false, ..seen(0.1) };
-        let begins = (0..).position(|_| next(&mut progress, shortened).1);
+        let begins = (0..1000).position(|_| next(&mut progress, shortened).1);
         assert_eq!(begins, Some(TUNING.stalled + 1));
     }
 

@@ -47,7 +47,9 @@ impl Dense {
         let of = |kind: Kind| (0..n as u32).filter(|&i| kinds[i as usize] == kind).collect::<Vec<_>>();
         let (elastic, saturated) = (of(Kind::Elastic), of(Kind::Saturated));
         let mut p = vec![0.0; n];
-        saturated.iter().for_each(|&i| p[i as usize] = self.hardness);
+        for &i in saturated.iter() {
+            p[i as usize] = self.hardness;
+        }
         let mut u = vec![0.0; n];
         DirectSum(&self.table).apply(&all, &p, &all, &mut u);
         let mut d = match self.target {
@@ -127,7 +129,9 @@ fn state(number: u64) -> (Dense, Boundary) {
         });
     }
     let lowest = z.iter().copied().fold(f64::INFINITY, f64::min);
-    z.iter_mut().for_each(|z| *z -= lowest);
+    for z in &mut z {
+        *z -= lowest;
+    }
     let boundary = if draw(0.0, 1.0) < 0.5 { Boundary::Free } else { Boundary::Periodic };
     let table = KernelTable::shared(grid, boundary);
     let defined = z.iter().filter(|z| z.is_finite()).count() as f64;
