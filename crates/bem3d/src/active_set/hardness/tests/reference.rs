@@ -47,7 +47,7 @@ impl Dense {
         let of = |kind: Kind| (0..n as u32).filter(|&i| kinds[i as usize] == kind).collect::<Vec<_>>();
         let (elastic, saturated) = (of(Kind::Elastic), of(Kind::Saturated));
         let mut p = vec![0.0; n];
-        for &i in saturated.iter() {
+        for &i in &saturated {
             p[i as usize] = self.hardness;
         }
         let mut u = vec![0.0; n];
