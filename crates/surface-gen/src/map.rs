@@ -43,7 +43,7 @@ impl MapGenerator {
     /// Plans maps of so many cells: a number for as many rows as columns, or `[columns, rows]`.
     ///
     /// # Errors
-    /// [`Error::Domain`] for parameters that make no sense, for 0 or more than 2^17 columns or rows, for
+    /// [`contact_model::Error::Domain`] for parameters that make no sense, for 0 or more than 2^17 columns or rows, for
     /// cells whose sides differ by more than 1e4, and where no wave is left: fewer than 3 columns and 3 rows,
     /// and short cut-offs below the longest wave.
     pub fn new(surface: &SelfAffine, cells: impl Into<Cells>) -> Result<Self> {
@@ -81,7 +81,7 @@ impl MapGenerator {
     /// The same bytes for any number of threads. Cost O(N log N) for N cells, memory twice that of the map.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] when the map does not fit in memory, [`Error::Domain`] when its heights overflow.
+    /// [`contact_model::Error::OutOfMemory`] when the map does not fit in memory, [`contact_model::Error::Domain`] when its heights overflow.
     pub fn map(&self, seed: u64) -> Result<HeightMap> {
         let Cells { columns: nx, rows: ny } = self.cells;
         let zero = Complex64::new(0.0, 0.0);
