@@ -249,7 +249,8 @@ impl Search<'_> {
         state.steps += solved.steps;
     }
 
-    /// How far the force of a state is from the one prescribed, relative to it; relative to the pressure of the contact where none is prescribed.
+    /// How far the force of a state is from the one prescribed, relative to it; where a force of zero is prescribed,
+    /// relative to the pressure of the contact.
     pub fn load_error(&self, state: &Equilibrium) -> f64 {
         let Control::Force(asked) = self.control else { return 0.0 };
         let miss = (state.force() - asked).abs();
