@@ -59,6 +59,17 @@ pub enum Control {
     Plane(f64),
 }
 
+impl Control {
+    /// What stays as it is while the contact is corrected; `shift` is the constant in the kernel, 0 with free boundaries.
+    fn fixed(self, shift: f64) -> Fixed {
+        match self {
+            Self::Force(_) => Fixed::Force,
+            Self::Plane(_) if shift > 0.0 => Fixed::MeanPlane(shift),
+            Self::Plane(_) => Fixed::Approach,
+        }
+    }
+}
+
 /// A state: contact pressure, attraction and gap on the cells within reach.
 #[derive(Debug, Clone, Default)]
 pub struct Equilibrium {
@@ -98,6 +109,12 @@ impl Equilibrium {
     /// The plane of [`Control::Plane`] that a state has, from the constant in the kernel.
     pub fn plane(&self, shift: f64) -> f64 {
         self.d - shift * self.force()
+    }
+
+    /// The largest gap left on the contact, or penetration beside it.
+    pub fn largest_gap_left(&self) -> f64 {
+        let gaps = self.pressure.iter().zip(&self.gap);
+        gaps.map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) }).fold(0.0, f64::max)
     }
 
     /// Net force.
@@ -328,11 +345,10 @@ impl Search<'_> {
         let tuning = *problem.operators.tuning();
         let held = sum(&state.pressure);
         // Where the contact is not yet settled, the plain iteration waits with the attraction.
-        let off = (state.pressure.iter().zip(&state.gap))
-            .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
-            .fold(0.0, f64::max);
+        let off = state.largest_gap_left();
         let mut next = attraction.tractions(&state.cells, &state.gap);
-        if fixed_plane(control, problem) && state.sweeps > PATIENT {
+        let fixed = control.fixed(problem.operators.table().shift());
+        if matches!(fixed, Fixed::MeanPlane(_)) && state.sweeps > PATIENT {
             next.iter_mut()
                 .zip(&state.attraction)
                 .for_each(|(next, now)| *next = now + DAMPED * (*next - now));
@@ -344,12 +360,6 @@ impl Search<'_> {
             if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
         let waits = off > settled * law.range && held > 0.0;
         let next = if waits { state.attraction.clone() } else { next };
-        let shift = problem.operators.table().shift();
-        let fixed = match control {
-            Control::Force(_) => Fixed::Force,
-            Control::Plane(_) if shift > 0.0 => Fixed::MeanPlane(shift),
-            Control::Plane(_) => Fixed::Approach,
-        };
         let mut factor = 1.0;
         let mut pressure = state.pressure.clone();
         if let Control::Force(force) = *control {
@@ -437,11 +447,6 @@ impl Search<'_> {
         (state.pressure, state.attraction) = (pressure, pull);
         true
     }
-}
-
-/// Whether the mean plane of a periodic surface is held.
-fn fixed_plane(control: &Control, problem: &Problem) -> bool {
-    matches!(control, Control::Plane(_)) && problem.operators.table().shift() > 0.0
 }
 
 /// Goes so many times from one state to the next, between zero and `most`.

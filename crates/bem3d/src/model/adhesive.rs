@@ -285,9 +285,7 @@ impl AdhesiveContact {
     fn force_error(&self, control: Control, state: &Equilibrium, response: &Response) -> Option<f64> {
         let (Control::Plane(_), force) = (control, state.force().abs()) else { return None };
         let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);
-        let left = (state.pressure.iter().zip(&state.gap))
-            .map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) })
-            .fold(0.0, f64::max);
+        let left = state.largest_gap_left();
         let stiffest = self.inner.stiffest_on(&state.cells);
         let error = GROWTH * (lack + stiffest * left) / response.stability;
         (force > 0.0 && response.stability > 0.0).then(|| error / force)
