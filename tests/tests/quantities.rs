@@ -10,7 +10,8 @@
 use bem3d::{Bem3d, Bem3dPath};
 use contact_model::{
     Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Error, Friction,
-    Hardness, HeightMap, HistoryModel, HistoryState, Load, Pair, Scene, Status, Step, Surface, Tangential,
+    Hardness, HeightMap, HistoryModel, HistoryState, Load, Pair, PronySeries, Relaxing, Rheology, Scene,
+    Status, Step, Surface, Tangential,
 };
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -621,6 +622,45 @@ fn friction(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
+/// A sphere of Prony's series that is pressed in at changing rates: its force is the relaxation of every increment of the elastic force,
+/// and its area that of the contact radius.
+fn rheology(seed: u64) -> Result<Faults, Error> {
+    const STEPS: usize = 4000;
+    let mut draw = Draw::new(seed);
+    let arms: Vec<Relaxing> = (0..draw.count(1, 3))
+        .map(|_| Relaxing { weight: draw.between(0.1, 3.0), time: 10f64.powf(draw.between(-1.0, 1.0)) })
+        .collect();
+    let (modulus, radius) = (draw.between(0.5, 4.0), draw.between(0.5, 3.0));
+    let mut scene = Scene::new(Surface::Sphere { radius, size: 2.0.into() }, modulus);
+    scene.outputs = contact_model::Outputs { area: true, ..Default::default() };
+    scene.effects.rheology = Rheology::Prony(PronySeries::new(&arms)?);
+    let mut history = HistoryModel::prepare(&mdr1d::Viscoelastic, &scene, 0)?;
+    let elastic = |d: f64| 4.0 / 3.0 * modulus * radius.sqrt() * d.powf(1.5);
+    let mut faults = Vec::new();
+    let (mut time, mut d) = (0.0, 0.0);
+    let mut held = vec![0.0; arms.len()];
+    for _ in 0..draw.count(1, 5) {
+        let (lasts, grows) = (draw.between(0.05, 3.0), draw.between(0.0, 0.02));
+        for i in 0..STEPS {
+            let at = |i: usize| d + grows * i as f64 / STEPS as f64;
+            let (step, increment) = (lasts / STEPS as f64, elastic(at(i + 1)) - elastic(at(i)));
+            for (held, arm) in held.iter_mut().zip(&arms) {
+                // The increment arrives in the middle of the step.
+                *held = *held * (-step / arm.time).exp()
+                    + arm.weight * increment * (-0.5 * step / arm.time).exp();
+            }
+        }
+        (time, d) = (time + lasts, d + grows);
+        let state = history.advance(Step::normal(time, Load::Approach(d)))?;
+        let expected = elastic(d) + held.iter().sum::<f64>();
+        check(&mut faults, "force", state.normal.force, expected, 1e-5 * expected);
+        let a = state.contact_radius.unwrap();
+        check(&mut faults, "contact radius", a, (radius * d).sqrt(), ROUNDING * a);
+        check(&mut faults, "area", state.normal.area.unwrap(), PI * a * a, ROUNDING * a * a);
+    }
+    Ok(faults)
+}
+
 /// How many times the default number of states.
 fn times() -> u64 {
     std::env::var("QUANTITIES").ok().and_then(|times| times.parse().ok()).unwrap_or(1)
@@ -694,6 +734,11 @@ fn of_fronts_that_move_by_cells() {
             "{held} of {claimed}"
         );
     }
+}
+
+#[test]
+fn of_rheology() {
+    none(&of_kind("rheology", 100, rheology).1);
 }
 
 #[test]

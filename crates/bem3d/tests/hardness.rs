@@ -277,3 +277,35 @@ fn nearly_full_plasticity_converges() {
     }
     assert!(last > 0.998);
 }
+
+/// A state on which the outer iteration stood still for ever: every step was cut at the bounds so that nothing of it went downhill. Its
+/// pressure obeys the conditions of the bounded problem, by the fields and whatever the method.
+#[test]
+fn a_state_that_jams_the_outer_iteration_is_solved() {
+    let heights: Vec<f64> = include_str!("data/jammed.csv")
+        .split([',', '\n'])
+        .filter(|text| !text.is_empty())
+        .map(|text| text.parse().unwrap())
+        .collect();
+    let map = HeightMap::new([27, 31], [1.35, 0.775], heights).unwrap();
+    let area = map.dx() * map.dy();
+    let mut scene = Scene::new(Surface::Heights(Arc::new(map)), 1.0);
+    scene.effects.boundary = Boundary::Periodic;
+    let (pressure, force) = (36.504_276_057_006_074, 26.405_214_017_754_37);
+    scene.effects.hardness = Hardness::Limit { pressure };
+    (scene.outputs.pressure, scene.outputs.gap, scene.outputs.plastic_depth) = (true, true, true);
+    for method in [Method::Auto, Method::Iterative, Method::SingleLevel] {
+        let state = solved(Bem3d { method, ..TIGHT }, &scene, Load::Force(force));
+        let depth = state.fields.as_ref().unwrap().plastic_depth.as_ref().unwrap().values();
+        let (p, g) = (state.pressure().unwrap().values(), state.gap().unwrap().values());
+        assert!((p.iter().sum::<f64>() * area / force - 1.0).abs() < 1e-9);
+        for ((&p, &g), &depth) in p.iter().zip(g).zip(depth) {
+            // Gaps are certified to 1e-9 of the rms height.
+            let free = p > 0.0 && p < pressure;
+            assert!((0.0..=pressure * (1.0 + 1e-12)).contains(&p) && g > -1e-8, "{p} {g}");
+            assert!(!free || g.abs() < 1e-8 && depth == 0.0, "{p} {g} {depth}");
+            assert!(p < pressure || g.abs() < 1e-8, "{p} {g} {depth}");
+        }
+        assert!(depth.iter().any(|&depth| depth > 0.0));
+    }
+}
