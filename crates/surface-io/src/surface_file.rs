@@ -1,6 +1,6 @@
 //! A file of surfaces: its channels, and the scan of each.
 
-use crate::channel::{StoredChannel, StoredUnit, chosen};
+use crate::channel::{StoredChannel, StoredHeights, StoredUnit, chosen};
 use crate::detect::detect;
 use crate::error::{ContentError, Error, Result};
 use crate::format::Format;
@@ -74,7 +74,13 @@ impl<'a> SurfaceFile<'a> {
             }
         };
         if channels.is_empty() {
-            return Err(source.wrong(format, 0, "one map at least"));
+            return Err(source.wrong(0, "one map at least"));
+        }
+        // Where none can be read, the first says why.
+        if let [StoredChannel { heights: StoredHeights::Unread(problem), .. }, rest @ ..] = &channels[..]
+            && rest.iter().all(|channel| matches!(channel.heights, StoredHeights::Unread(_)))
+        {
+            return Err(source.content(problem.clone()));
         }
         channels.iter_mut().for_each(StoredChannel::escape);
         Ok(Self { source, format, channels, declared: declared.clone() })
@@ -138,6 +144,7 @@ pub(crate) fn told<'a>(
     let mut source = Source::new(path, input, length);
     let start = source.start(SNIFF)?;
     let format = detect(declared.format, path, &start, length).map_err(Error::content(path))?;
+    source.read_as(format);
     Ok((source, format))
 }
 

@@ -29,7 +29,6 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError, TiffResult};
 
-const FORMAT: Format = Format::Tiff;
 /// The beginning of TIFF and of its kind for more than 4 GB, in either byte order.
 const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 /// Images in one file that are looked at.
@@ -38,18 +37,18 @@ const MOST: usize = 1000;
 const LONGEST: usize = 1 << 20;
 
 pub(crate) const READER: Reader = Reader {
-    format: FORMAT,
+    format: Format::Tiff,
     recognises: |start, _| MAGIC.iter().any(|magic| start.starts_with(magic)),
     channels,
 };
 
 /// Refuses lists and texts that reach beyond the end of the file, for which the other crate reserves up to 4 MB unasked.
 fn check_directories(source: &mut Source<'_>) -> Result<()> {
-    let start = source.bytes(FORMAT, 0, 8)?;
+    let start = source.bytes(0, 8)?;
     let (big, large) = (start.starts_with(b"MM"), start[2] == 43 || start[3] == 43);
     // Bytes of an entry, of the value in it, of a count of entries, and where the first offset stands.
     let (entry, held, counted, first) = if large { (20, 8, 8, 8) } else { (12, 4, 2, 4) };
-    let fields = |source: &mut Source<'_>, at, count| -> Result<Vec<u8>> { source.bytes(FORMAT, at, count) };
+    let fields = |source: &mut Source<'_>, at, count| -> Result<Vec<u8>> { source.bytes(at, count) };
     let number = |bytes: &[u8]| {
         let digit = |n: u64, &byte: &u8| n << 8 | u64::from(byte);
         if big { bytes.iter().fold(0, digit) } else { bytes.iter().rev().fold(0, digit) }
@@ -62,7 +61,7 @@ fn check_directories(source: &mut Source<'_>) -> Result<()> {
         let entries = number(&fields(source, at, counted)?);
         let expected = || format!("{entries} entries of {entry} bytes here (cut short?)");
         let length = entries.checked_mul(entry).filter(|length| *length <= source.length());
-        let length = length.ok_or_else(|| source.wrong(FORMAT, at, expected()))?;
+        let length = length.ok_or_else(|| source.wrong(at, expected()))?;
         let directory = fields(source, at + counted, length)?;
         for one in directory.chunks_exact(entry as usize) {
             let size = match number(&one[2..4]) {
@@ -77,7 +76,7 @@ fn check_directories(source: &mut Source<'_>) -> Result<()> {
                 .and_then(|length| if length <= held { Some(0) } else { number(value).checked_add(length) });
             if end.is_none_or(|end| end > source.length()) {
                 let tag = number(&one[..2]);
-                return Err(source.wrong(FORMAT, at, format!("the values of tag {tag} inside the file")));
+                return Err(source.wrong(at, format!("the values of tag {tag} inside the file")));
             }
         }
         at = number(&fields(source, at + counted + length, held)?);
@@ -101,7 +100,7 @@ fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {
 fn unreadable(said: &dyn std::fmt::Display) -> ContentError {
     let said: String = said.to_string().chars().take(200).collect();
     let expected = format!("a file as its specification has it ({said})");
-    ContentError::Binary { format: FORMAT, offset: 0, expected }
+    ContentError::Binary { format: Format::Tiff, offset: 0, expected }
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
@@ -264,7 +263,7 @@ fn channel(
         4 => [false, true],
         other => {
             let expected = format!("an orientation of 1 to 4 in image {number}, found {other}");
-            return Err(source.wrong(FORMAT, 0, expected));
+            return Err(source.wrong(0, expected));
         }
     };
     if rows == 0 || columns == 0 {
@@ -274,7 +273,7 @@ fn channel(
     let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
     if claimed > u128::from(RATIO.saturating_mul(source.length())) {
         let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
-        return Err(source.wrong(FORMAT, 0, expected));
+        return Err(source.wrong(0, expected));
     }
     let letter = match page.sample_format {
         2 => b'i',
@@ -285,18 +284,15 @@ fn channel(
     let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
     let (unit, scale, shift) = description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
     let held = Bytes::Held(Vec::new());
-    let raw = RawHeights { reversed, scale, shift, ..RawHeights::new(FORMAT, held, kind) };
+    let raw = RawHeights { reversed, scale, shift, ..RawHeights::new(held, kind) };
     raw.check_scale(source)?;
     let image = Image { number, size: page.size, bytes: u64::from(bits / 8), raw };
-    Ok(Some(StoredChannel {
-        name: (!alone).then(|| format!("image {number}")),
-        details: format!("{}, row by row", kind.name()),
-        rows: rows as usize,
-        columns: columns as usize,
-        unit,
-        extent: description.map_or([None; 2], |description| description.extent(page)),
-        heights: StoredHeights::Deferred(Box::new(move |source| image.read(source))),
-    }))
+    let heights = StoredHeights::Deferred(Box::new(move |source| image.read(source)));
+    let details = format!("{}, row by row", kind.name());
+    let channel = StoredChannel::of(heights, details, [rows as usize, columns as usize], unit);
+    let extent = description.map_or([None; 2], |description| description.extent(page));
+    let name = if alone { String::new() } else { format!("image {number}") };
+    Ok(Some(StoredChannel { extent, ..channel }.named(&name)))
 }
 
 /// What is needed to read one image.

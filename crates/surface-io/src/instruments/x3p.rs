@@ -19,13 +19,11 @@ use crate::error::{ContentError, Error, Result};
 use crate::extent::Extent;
 use crate::format::Format;
 use crate::number_type::NumberType;
-use crate::quantity::{Dimension, Quantity};
 use crate::reader::Reader;
 use crate::source::Source;
 use crate::zip::{self, Member};
 use main_xml::{Axis, Main};
 
-const FORMAT: Format = Format::X3p;
 /// The member that describes the others.
 const MAIN: &str = "main.xml";
 /// Bytes of it: a description has a few thousand, a list of a million heights as text about this many. It is unpacked as a whole.
@@ -33,7 +31,7 @@ const LONGEST: u64 = 16 << 20;
 
 /// Every archive: its members tell whether it is an X3P file.
 pub(crate) const READER: Reader =
-    Reader { format: FORMAT, recognises: |start, _| start.starts_with(zip::MAGIC), channels };
+    Reader { format: Format::X3p, recognises: |start, _| start.starts_with(zip::MAGIC), channels };
 
 /// Where the numbers are.
 enum Numbers {
@@ -44,12 +42,12 @@ enum Numbers {
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let members = zip::members(source, FORMAT)?;
+    let members = zip::members(source)?;
     // Archives that were packed by hand have everything in one folder.
     let in_folder = |m: &&Member| m.name.split_once('/').is_some_and(|(_, name)| name == MAIN);
     let found = members.iter().find(|m| m.name == MAIN).or_else(|| members.iter().find(in_folder));
     let Some(main_member) = found else { return Err(source.content(zip::refused(&members))) };
-    let text = main_member.unpack_text(source, FORMAT, LONGEST)?;
+    let text = main_member.unpack_text(source, LONGEST)?;
     let Some(main) = Main::read(&text) else {
         return Err(source.content(zip::refused(&members)));
     };
@@ -66,7 +64,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         members.iter().find(|m| m.name == name).cloned()
     };
     let count = rows as u64 * columns as u64;
-    let mut details = RawHeights::new(FORMAT, Bytes::Held(Vec::new()), number).details();
+    let mut details = RawHeights::new(Bytes::Held(Vec::new()), number).details();
     let numbers = if main.data.is_empty() {
         if main.listed != count {
             let expected = format!("{columns} x {rows} numbers or a link to them, found {}", main.listed);
@@ -92,19 +90,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let (x, y) = (x.cell(), y.cell());
     let read = move |source: &mut Source<'_>| numbers.read(source, [columns, rows], (scale, shift));
-    Ok(vec![StoredChannel {
-        name: None,
-        details,
-        rows,
-        columns,
-        unit: StoredUnit::heights("m".parse().ok()),
-        extent: [x, y],
-        heights: StoredHeights::Deferred(Box::new(read)),
-    }])
+    let heights = StoredHeights::Deferred(Box::new(read));
+    let channel = StoredChannel::of(heights, details, [rows, columns], StoredUnit::written("m"));
+    Ok(vec![StoredChannel { extent: [x, y], ..channel }])
 }
 
 fn wrong(source: &Source<'_>, main: &Member, expected: &str) -> Error {
-    source.wrong(FORMAT, main.offset, format!("in main.xml {expected}"))
+    source.wrong(main.offset, format!("in main.xml {expected}"))
 }
 
 /// Columns, rows and the type of numbers of a surface that is read.
@@ -143,8 +135,7 @@ fn length(text: &str, absent: f64) -> Option<f64> {
 impl Axis {
     /// The side of a cell, where the increment is one.
     fn cell(&self) -> Option<Extent> {
-        let increment = length(&self.increment, 0.0).filter(|increment| *increment > 0.0)?;
-        Quantity::new(increment, Dimension::LENGTH).ok().map(Extent::Cell)
+        Extent::of_cell(length(&self.increment, 0.0)?, "m")
     }
 }
 
@@ -154,9 +145,9 @@ fn sized(source: &mut Source<'_>, member: &Member, bytes: Option<u64>) -> Result
         let bytes = bytes.map_or("more".to_owned(), |bytes| bytes.to_string());
         let expected =
             format!("a member of {bytes} bytes for these rows and columns, found {}", member.unpacked);
-        return Err(source.wrong(FORMAT, member.offset, expected));
+        return Err(source.wrong(member.offset, expected));
     }
-    member.packed(source, FORMAT).map(drop)
+    member.packed(source).map(drop)
 }
 
 impl Numbers {
@@ -169,12 +160,12 @@ impl Numbers {
     ) -> Result<Vec<f64>> {
         match self {
             Self::Linked { data, valid, number } => {
-                let bytes = Bytes::Held(data.unpack(source, FORMAT)?);
-                let raw = RawHeights { scale, shift, ..RawHeights::new(FORMAT, bytes, *number) };
+                let bytes = Bytes::Held(data.unpack(source)?);
+                let raw = RawHeights { scale, shift, ..RawHeights::new(bytes, *number) };
                 let mut heights = raw.read(source, rows, columns)?;
                 drop(raw);
                 let Some(valid) = valid else { return Ok(heights) };
-                let bits = valid.unpack(source, FORMAT)?;
+                let bits = valid.unpack(source)?;
                 for (i, height) in heights.iter_mut().enumerate() {
                     if bits.get(i / 8).is_none_or(|byte| byte >> (i % 8) & 1 == 0) {
                         *height = f64::NAN;
@@ -183,7 +174,7 @@ impl Numbers {
                 Ok(heights)
             }
             Self::Listed(main) => {
-                let text = main.unpack_text(source, FORMAT, LONGEST)?;
+                let text = main.unpack_text(source, LONGEST)?;
                 let (mut heights, mut others) = (Vec::new(), 0);
                 let count = rows * columns;
                 let refused = |_| ContentError::Memory { bytes: 8 * count as u128 };

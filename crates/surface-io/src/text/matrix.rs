@@ -21,15 +21,9 @@ pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<Sto
     if let Some(scale) = table.scale {
         table.values.iter_mut().for_each(|h| *h *= scale);
     }
-    Ok(StoredChannel {
-        name: table.heading.name,
-        details,
-        rows,
-        columns,
-        unit: StoredUnit::heights(table.heading.unit),
-        extent,
-        heights: StoredHeights::Read(table.values),
-    })
+    let (heights, unit) = (StoredHeights::Read(table.values), StoredUnit::heights(table.heading.unit));
+    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
+    Ok(StoredChannel { name: table.heading.name, extent, ..channel })
 }
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells
