@@ -5,6 +5,7 @@ use crate::error::{ContentError, Error, Place, Result};
 use crate::escape::escaped;
 use crate::extent::Extent;
 use crate::number_type::NumberType;
+use crate::options::Axes;
 use crate::quantity::{Dimension, QuantityError, Unit};
 use crate::source::Source;
 use std::fmt;
@@ -50,9 +51,21 @@ pub(crate) struct StoredChannel {
     pub(crate) unit: StoredUnit,
     /// Along x and y, where the file says it.
     pub(crate) extent: [Option<Extent>; 2],
+    pub(crate) axes: FileAxes,
     /// What the file says and what is not used of it, or what may be meant otherwise: sentences for people.
     pub(crate) notes: Vec<String>,
     pub(crate) heights: StoredHeights,
+}
+
+/// What a file says of the axis that the first index of an array counts along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FileAxes {
+    /// Nothing: the format has one order.
+    Fixed,
+    /// This, by names of the axes.
+    Said(Axes),
+    /// Nothing, and this is a custom.
+    Assumed(Axes),
 }
 
 /// Where the heights are.
@@ -120,6 +133,23 @@ pub(crate) enum AxisOrder {
     Columns,
 }
 
+impl AxisOrder {
+    fn other(self) -> Self {
+        match self {
+            Self::Rows => Self::Columns,
+            Self::Columns => Self::Rows,
+        }
+    }
+
+    /// In words of people.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Rows => "row by row",
+            Self::Columns => "column by column",
+        }
+    }
+}
+
 /// Numbers that stand for undefined points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Undefined {
@@ -170,11 +200,7 @@ impl RawHeights {
 
     /// The type of the numbers and their order, for people.
     pub(crate) fn details(&self) -> String {
-        let order = match self.order {
-            AxisOrder::Rows => "row by row",
-            AxisOrder::Columns => "column by column",
-        };
-        format!("{}, {order}", self.number)
+        format!("{}, {}", self.number, self.order.words())
     }
 
     /// Bytes that so many rows and columns take; `None` beyond 2^64.
@@ -373,7 +399,8 @@ impl StoredChannel {
         [rows, columns]: [usize; 2],
         unit: StoredUnit,
     ) -> Self {
-        Self { name: None, details, rows, columns, unit, extent: [None; 2], notes: Vec::new(), heights }
+        let (extent, axes, notes) = ([None; 2], FileAxes::Fixed, Vec::new());
+        Self { name: None, details, rows, columns, unit, extent, axes, notes, heights }
     }
 
     /// A channel, or one that says why it is not read: the others of its file are read all the same.
@@ -395,6 +422,64 @@ impl StoredChannel {
     /// Adds a remark for people.
     pub(crate) fn note(&mut self, note: impl Into<String>) {
         self.notes.push(note.into());
+    }
+
+    /// Takes this for the order of the axes, of which the file says nothing, and tells why.
+    pub(crate) fn assume(&mut self, axes: Axes, why: &str) {
+        let (taken, other) = match axes {
+            Axes::Xy => ("x", Axes::Yx),
+            Axes::Yx => ("y", Axes::Xy),
+        };
+        self.axes = FileAxes::Assumed(axes);
+        let other = other.word();
+        self.note(format!(
+            "the first index is taken for {taken} ({why}); axes = \"{other}\" takes the other"
+        ));
+    }
+
+    /// Puts the axes in the order that is asked for.
+    ///
+    /// # Errors
+    /// [`ContentError::Useless`] where the format has one order, [`ContentError::Contradiction`] where the file names another.
+    pub(crate) fn orient(&mut self, declared: Axes) -> Result<(), ContentError> {
+        match self.axes {
+            FileAxes::Said(axes) | FileAxes::Assumed(axes) if axes == declared => {}
+            FileAxes::Assumed(_) => self.transpose(),
+            FileAxes::Said(axes) => {
+                let (first, second) = (format!("{} in the file", axes.word()), declared.word().to_owned());
+                return Err(ContentError::Contradiction { what: "axes", first, second });
+            }
+            FileAxes::Fixed => {
+                let reason = "the format has one order of axes; mirror and rotate turn a map";
+                return Err(ContentError::Useless { what: "axes", reason });
+            }
+        }
+        Ok(())
+    }
+
+    /// Exchanges x and y of the heights; sides are those of x and y already.
+    fn transpose(&mut self) {
+        let (rows, columns) = (self.rows, self.columns);
+        self.heights = match std::mem::replace(&mut self.heights, StoredHeights::Read(Vec::new())) {
+            StoredHeights::Raw(raw) => {
+                let order = raw.order.other();
+                self.details = self.details.replace(raw.order.words(), order.words());
+                StoredHeights::Raw(RawHeights { order, reversed: [raw.reversed[1], raw.reversed[0]], ..raw })
+            }
+            StoredHeights::Deferred(read) => {
+                self.details += ", transposed";
+                StoredHeights::Deferred(Box::new(move |source| {
+                    let heights = read(source)?;
+                    let mut turned = undefined_heights(source, columns, rows)?;
+                    for (i, height) in heights.into_iter().enumerate() {
+                        turned[i % columns * rows + i / columns] = height;
+                    }
+                    Ok(turned)
+                }))
+            }
+            other => other,
+        };
+        (self.rows, self.columns) = (columns, rows);
     }
 
     /// Escapes the control characters of all that is the file's own text: what is shown is what a channel is chosen by.

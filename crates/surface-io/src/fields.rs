@@ -128,6 +128,16 @@ impl<'a> Fields<'a> {
         self.base + self.at as u64
     }
 
+    /// Which byte of a number comes first.
+    pub(crate) fn order(&self) -> ByteOrder {
+        self.order
+    }
+
+    /// Offset in this part of what is read next.
+    pub(crate) fn place(&self) -> usize {
+        self.at
+    }
+
     /// Bytes that are left.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len() - self.at

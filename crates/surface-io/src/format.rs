@@ -36,11 +36,25 @@ pub enum Format {
     Opd,
     /// PLu, of Sensofar.
     Plu,
+    /// BCR-STM and BCRF, of Image Metrology.
+    Bcr,
+    /// FRT, of the profilers MicroProf.
+    Frt,
+    /// Gwyddion's simple field.
+    Gsf,
+    /// MATLAB version 5, matrices of any program; version 7.3 is HDF5.
+    Mat,
+    /// NMS, of Nanofocus.
+    Nms,
+    /// OPDx, of the profilers Dektak.
+    Opdx,
+    /// TMD, of TrueMap and GelSight.
+    Tmd,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 22] = [
         Self::Npy,
         Self::Text,
         Self::Xyz,
@@ -56,6 +70,13 @@ impl Format {
         Self::MetroPro,
         Self::Opd,
         Self::Plu,
+        Self::Bcr,
+        Self::Frt,
+        Self::Gsf,
+        Self::Mat,
+        Self::Nms,
+        Self::Opdx,
+        Self::Tmd,
     ];
 
     /// The word that stands for it in scenes and on command lines.
@@ -80,6 +101,13 @@ impl Format {
             Self::MetroPro => ("metropro", "MetroPro (Zygo)"),
             Self::Opd => ("opd", "OPD (Wyko)"),
             Self::Plu => ("plu", "PLu (Sensofar)"),
+            Self::Bcr => ("bcr", "BCR-STM (Image Metrology)"),
+            Self::Frt => ("frt", "FRT (MicroProf)"),
+            Self::Gsf => ("gsf", "GSF (Gwyddion simple field)"),
+            Self::Mat => ("mat", "MATLAB"),
+            Self::Nms => ("nms", "NMS (Nanofocus)"),
+            Self::Opdx => ("opdx", "OPDx (Dektak)"),
+            Self::Tmd => ("tmd", "TMD (TrueMap)"),
         }
     }
 }

@@ -1,16 +1,23 @@
 //! Binary formats of instruments and programs, each told by its first bytes.
 
 mod al3d;
+mod bcr;
+mod frt;
+mod gsf;
 mod gwy;
 mod hdf5;
+mod mat;
 mod metropro;
 mod nanoscope;
 mod netcdf;
+mod nms;
 mod opd;
+mod opdx;
 mod plu;
 mod sdf;
 mod sur;
 mod tiff;
+mod tmd;
 mod x3p;
 
 pub use gwy::gwy;
@@ -25,15 +32,22 @@ use crate::reader::Reader;
 pub(crate) const READERS: &[Reader] = &[
     npy::READER,
     al3d::READER,
+    bcr::READER,
+    frt::READER,
+    gsf::READER,
     gwy::READER,
     hdf5::READER,
+    mat::READER,
     metropro::READER,
     nanoscope::READER,
     netcdf::READER,
+    nms::READER,
     opd::READER,
+    opdx::READER,
     plu::READER,
     sdf::READER,
     sur::READER,
     tiff::READER,
+    tmd::READER,
     x3p::READER,
 ];

@@ -1,7 +1,7 @@
 //! Words of scenes and command lines.
 
 use crate::format::Format;
-use crate::options::Decimal;
+use crate::options::{Axes, Decimal};
 use crate::preprocessing::{Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
@@ -62,8 +62,8 @@ impl FromStr for Format {
 }
 
 /// All words of [`Format`].
-const FORMATS: &str =
-    "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd or plu";
+const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd, plu, bcr, frt, \
+     gsf, mat, nms, opdx or tmd";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -75,6 +75,19 @@ impl FromStr for Decimal {
     fn from_str(text: &str) -> Result<Self, KeywordError> {
         let known = [("point", Self::Point), ("comma", Self::Comma)];
         among("decimal", text, known, "point or comma")
+    }
+}
+
+impl FromStr for Axes {
+    type Err = KeywordError;
+
+    /// Reads `xy` or `yx`: the first index is x, or y.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        let known = [Self::Xy, Self::Yx].map(|axes| (axes.word(), axes));
+        among("axes", text, known, "xy or yx, what the first and the second index count along")
     }
 }
 
@@ -189,6 +202,8 @@ mod tests {
         }
         assert_eq!("point".parse(), Ok(Decimal::Point));
         assert_eq!("comma".parse(), Ok(Decimal::Comma));
+        assert_eq!("xy".parse(), Ok(Axes::Xy));
+        assert_eq!("yx".parse(), Ok(Axes::Yx));
         assert_eq!("none".parse(), Ok(Detrend::Nothing));
         assert_eq!("mean".parse(), Ok(Detrend::Mean));
         assert_eq!("plane".parse(), Ok(Detrend::Plane));
@@ -203,6 +218,7 @@ mod tests {
         for (text, error) in [
             ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz, gwy"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
+            ("zx".parse::<Axes>().unwrap_err(), "axes = \"zx\": expected xy or yx"),
             ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane, quadric, sphere or cylinder"),
             ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, defined, or row"),
             ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, defined, or row"),

@@ -18,6 +18,8 @@ pub struct ReadOptions {
     pub height_scale: Option<Quantity>,
     /// Unit of x and y of points.
     pub lateral_unit: Option<Unit>,
+    /// Which axis the first index of an array is, where the file does not say it (HDF5, MATLAB, NetCDF).
+    pub axes: Option<Axes>,
     /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights
     /// have no unit. One value is that of a square map.
     pub size: Option<Sides>,
@@ -44,6 +46,7 @@ impl Default for ReadOptions {
             unit: None,
             height_scale: None,
             lateral_unit: None,
+            axes: None,
             size: None,
             cell: None,
             width: None,
@@ -64,4 +67,23 @@ pub enum Decimal {
     Point,
     /// 1,5
     Comma,
+}
+
+/// What the first index of an array counts along, and what the second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axes {
+    /// The first index is x, the second y.
+    Xy,
+    /// The first index is y: rows, as those of a picture.
+    Yx,
+}
+
+impl Axes {
+    /// The word that stands for it in scenes and on command lines.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Xy => "xy",
+            Self::Yx => "yx",
+        }
+    }
 }

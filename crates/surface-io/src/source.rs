@@ -145,6 +145,15 @@ impl<'a> Source<'a> {
         self.read(offset, count)
     }
 
+    /// An error where so many bytes from an offset on are not the rest of the file.
+    pub(crate) fn ends(&self, offset: u64, count: u64) -> Result<()> {
+        let rest = self.length.saturating_sub(offset);
+        if rest == count {
+            return Ok(());
+        }
+        Err(self.wrong(offset, format!("{count} bytes up to the end of the file, found {rest}")))
+    }
+
     /// The same as numbers of one byte order.
     pub(crate) fn fields(&mut self, order: ByteOrder, offset: u64, count: u64) -> Result<Fields<'static>> {
         Ok(Fields::new(self.subject.clone(), order, offset, self.bytes(offset, count)?))

@@ -184,6 +184,9 @@ fn read(
     (number, mut channel): (usize, StoredChannel),
     declared: &ReadOptions,
 ) -> Result<Scan> {
+    if let Some(axes) = declared.axes {
+        channel.orient(axes).map_err(|e| source.content(e))?;
+    }
     let heights = channel.read(source)?;
     let own;
     let declared = if let StoredUnit::NoHeights(_) = channel.unit {
