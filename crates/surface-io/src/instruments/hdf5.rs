@@ -4,31 +4,46 @@
 //! of the axes the HDF5 Dimension Scales and the Image and Palette specifications, for packed values the NetCDF attribute conventions.
 //!
 //! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides (`y`, `x` or `x`, `y`), or `CLASS = "IMAGE"` (rows first). A data set
-//!   without either has x first, as SurfaceTopography and MATLAB write it. The first row is y = 0.
-//! - **Unit.** The attribute `unit` or `units` of the data set, nothing else. `none` are plain numbers.
+//!   without either has x first, as SurfaceTopography and MATLAB write it, which is noted; [`crate::Axes`] `yx` takes the first index for y.
+//!   The first row is y = 0.
+//! - **Unit.** The attribute `unit` or `units` of the data set, nothing else. `none` are plain numbers. Integers with a unit of length and
+//!   without a scale are counts of an unknown height: [`crate::ReadOptions::height_scale`] says it.
 //! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`; this crate writes them. HDF5 itself has no size.
 //! - **Values.** `scale_factor`, `add_offset`, `_FillValue` and `missing_value` count as NetCDF defines them.
 //! - **Undefined points.** NaN, fill values, chunks that were never written.
 //!
-//! Read are the layouts compact, contiguous and chunked (deflate, shuffle, Fletcher-32, which is not checked); not read are other filters
+//! Programs that write attributes of their own:
+//!
+//! - **JPK.** `encoder.scaling.multiplier`, `.offset` and `.unit.unit` of the group that holds a data set: height = multiplier x number +
+//!   offset. The conversion sets are not applied.
+//! - **MATLAB 7.3.** A matrix of rows and columns stands as columns and rows. Text and scalars are passed.
+//! - **Zygo's DATX** (`Data/Surface/...`, after prysm's `read_zygo_datx` and `IO/DATX.py` of SurfaceTopography). Height = number in `Unit`, of
+//!   `Fringes` number x `Wavelength` x `Interferometric Scale Factor` x `Obliquity Factor` in m; numbers from `No Data` on are undefined. Rows
+//!   first, as prysm has it; SurfaceTopography takes the first index for x. The sides of a cell stand in `X Converter` and `Y Converter`,
+//!   records of texts and of a list of numbers, which the crate hdf5-pure does not give: the size is unknown, and a note tells it.
+//!
+//! A data set that cannot be read is listed with its reason. Read are the layouts compact, contiguous and chunked (deflate, shuffle, Fletcher-32, which is not checked); not read are other filters
 //! (LZF, SZIP, scale-offset, ZFP), chunks indexed by a B-tree of version 2, data layouts of HDF5 2.0
 //! (version 5), virtual data sets and data in other files, links to which are passed.
 //!
 //! The crate hdf5-pure reads the metadata; its own reading of chunks allocates what a damaged header claims (4 GB for a file of 4 kB), so
 //! numbers are decoded here.
 
+mod vendor;
 mod write;
 
 pub use write::hdf5;
 
 use crate::channel::{
-    AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights,
+    AxisOrder, Bytes, FileAxes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined,
+    undefined_heights,
 };
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
 use crate::inflate::RATIO;
 use crate::number_type::NumberType;
+use crate::options::Axes;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::{Budget, Source};
@@ -77,9 +92,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     // Level by level, so that what has two names gets its shorter one.
     let mut waiting: VecDeque<(String, Group, usize)> = [(String::new(), file.root(), 0)].into();
     while let Some((path, group, depth)) = waiting.pop_front() {
+        let beside = group.attrs().unwrap_or_default();
         for (name, dataset) in group.iter_datasets().map_err(|e| unreadable(source, &e))? {
             seen += 1;
-            channels.extend(channel(source, &dataset, join(&path, &name), &mut taken)?);
+            let name = join(&path, &name);
+            if let Some(channel) = channel(source, &dataset, &beside, &name, &mut taken).transpose() {
+                channels.push(StoredChannel::listed(Some(name), channel)?);
+            }
             if budget.is_spent() {
                 let expected = "metadata that do not name the same bytes again and again";
                 return Err(source.wrong(0, expected));
@@ -117,7 +136,8 @@ fn unreadable(source: &Source<'_>, error: &dyn std::fmt::Display) -> crate::erro
 fn channel(
     source: &Source<'_>,
     dataset: &Dataset,
-    name: String,
+    beside: &Attributes,
+    name: &str,
     taken: &mut HashSet<u64>,
 ) -> Result<Option<StoredChannel>> {
     let shape = dataset.shape().map_err(|e| unreadable(source, &e))?;
@@ -128,7 +148,20 @@ fn channel(
         return Ok(None);
     }
     let attributes = dataset.attrs().map_err(|e| unreadable(source, &e))?;
-    let order = order(&attributes);
+    let matlab = text(&attributes, "MATLAB_class");
+    if matlab == Some("char") || (matlab.is_some() && (first, second) == (1, 1)) {
+        return Ok(None);
+    }
+    let packed = packed(&attributes).map_err(|expected| source.wrong(0, expected))?;
+    let values = match vendor::values(dataset, beside, name, &attributes) {
+        Some(values) => values.map_err(|expected| source.wrong(0, expected))?,
+        None => Values { unit: unit(&attributes), ..packed },
+    };
+    let axes = axes(&attributes).unwrap_or(FileAxes::Assumed(values.axes));
+    let order = match axes {
+        FileAxes::Said(Axes::Yx) | FileAxes::Assumed(Axes::Yx) => AxisOrder::Rows,
+        _ => AxisOrder::Columns,
+    };
     let (lines, along) = (first, second);
     let claimed = lines.checked_mul(along).and_then(|n| n.checked_mul(number.bytes() as u64));
     let most = RATIO.saturating_mul(source.length());
@@ -141,7 +174,7 @@ fn channel(
         AxisOrder::Rows => (lines, along),
         AxisOrder::Columns => (along, lines),
     };
-    let (scale, shift, undefined) = packed(&attributes).map_err(|expected| source.wrong(0, expected))?;
+    let Values { scale, shift, undefined, .. } = values;
     let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(bytes, number) };
     raw(Bytes::Held(Vec::new())).check_scale(source)?;
     let (heights, details) = match dataset.layout() {
@@ -177,14 +210,42 @@ fn channel(
             let details = format!("{}, in chunks", raw.details());
             let filters = dataset.filters();
             let [a, b] = chunk_shape[..] else { return Ok(None) };
-            let pieces = Pieces { name: name.clone(), raw, chunk: [a, b], filters, chunks, lines, along };
+            let pieces = Pieces { name: name.to_owned(), raw, chunk: [a, b], filters, chunks, lines, along };
             (StoredHeights::Deferred(Box::new(move |source| pieces.read(source))), details)
         }
         // Never written, in other files, or mapped from other data sets.
         Ok(_) => return Ok(None),
     };
-    let channel = StoredChannel::of(heights, details, [rows, columns], unit(&attributes));
-    Ok(Some(StoredChannel { extent: extent(&attributes), ..channel }.named(&name)))
+    let mut channel = StoredChannel::of(heights, details, [rows, columns], values.unit);
+    channel.axes = axes;
+    if let FileAxes::Assumed(axes) = axes {
+        channel.assume(axes, values.custom);
+    }
+    channel.notes.extend(values.notes);
+    if let (StoredUnit::Heights(unit), false, false) = (&channel.unit, number.is_float(), values.scaled)
+        && *unit != Unit::none()
+    {
+        let (integers, unit) = (number.name(), unit.clone());
+        channel.note(format!(
+            "the file has {integers} in {unit} and no scale: a count need not be 1 {unit}, height_scale says what it is"
+        ));
+        channel.unit = StoredUnit::Unknown;
+    }
+    Ok(Some(StoredChannel { extent: extent(&attributes), ..channel }.named(name)))
+}
+
+/// What the numbers of a data set stand for.
+struct Values {
+    scale: f64,
+    shift: f64,
+    undefined: Undefined,
+    unit: StoredUnit,
+    /// Whether the file gives a scale.
+    scaled: bool,
+    /// Order of the axes where no label says it, and why.
+    axes: Axes,
+    custom: &'static str,
+    notes: Vec<String>,
 }
 
 /// Whole IEEE floats and integers; `None` for all else.
@@ -222,21 +283,30 @@ fn number_type(datatype: &Datatype) -> Option<NumberType> {
     }
 }
 
-fn order(attributes: &Attributes) -> AxisOrder {
-    let text = |key: &str| attributes.get(key).and_then(AttrValue::as_str);
+/// The order of the axes, where the file says it.
+fn axes(attributes: &Attributes) -> Option<FileAxes> {
     if let Some([first, second]) = attributes.get(LABELS).and_then(AttrValue::as_strings) {
         match (first.as_str(), second.as_str()) {
-            ("x", "y") => return AxisOrder::Columns,
-            ("y", "x") => return AxisOrder::Rows,
+            ("x", "y") => return Some(FileAxes::Said(Axes::Xy)),
+            ("y", "x") => return Some(FileAxes::Said(Axes::Yx)),
             _ => {}
         }
     }
-    if text("CLASS") == Some("IMAGE") { AxisOrder::Rows } else { AxisOrder::Columns }
+    (text(attributes, "CLASS") == Some("IMAGE")).then_some(FileAxes::Said(Axes::Yx))
+}
+
+/// A text, alone or as the only one of an array.
+fn text<'a>(attributes: &'a Attributes, key: &str) -> Option<&'a str> {
+    let value = attributes.get(key)?;
+    let only = || match value.as_strings()? {
+        [one] => Some(one.as_str()),
+        _ => None,
+    };
+    value.as_str().or_else(only)
 }
 
 fn unit(attributes: &Attributes) -> StoredUnit {
-    let text = |key: &str| attributes.get(key).and_then(AttrValue::as_str);
-    match text(UNIT).or_else(|| text("units")).map(str::trim) {
+    match text(attributes, UNIT).or_else(|| text(attributes, "units")).map(str::trim) {
         None => StoredUnit::Unknown,
         Some("none") => StoredUnit::Heights(Unit::none()),
         Some(text) => StoredUnit::written(text),
@@ -273,12 +343,21 @@ fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
     sides().map_or([None; 2], |[x, y]| [Some(x), Some(y)])
 }
 
-/// Factor, shift and undefined value of what is packed or marked as NetCDF defines it.
-fn packed(attributes: &Attributes) -> std::result::Result<(f64, f64, Undefined), String> {
+/// What is packed or marked as NetCDF defines it.
+fn packed(attributes: &Attributes) -> std::result::Result<Values, String> {
     let of = |key: &str| number(attributes, key);
     let mark = of("_FillValue")?.or(of("missing_value")?);
-    let undefined = mark.map_or(Undefined::None, Undefined::Equal);
-    Ok((of("scale_factor")?.unwrap_or(1.0), of("add_offset")?.unwrap_or(0.0), undefined))
+    let scale = of("scale_factor")?;
+    Ok(Values {
+        scale: scale.unwrap_or(1.0),
+        shift: of("add_offset")?.unwrap_or(0.0),
+        undefined: mark.map_or(Undefined::None, Undefined::Equal),
+        unit: StoredUnit::Unknown,
+        scaled: scale.is_some(),
+        axes: Axes::Xy,
+        custom: "as SurfaceTopography and MATLAB write it, no label says it",
+        notes: Vec::new(),
+    })
 }
 
 /// A data set in chunks.

@@ -109,8 +109,9 @@ fn matrix(fields: &mut Fields<'_>) -> Result<Option<Matrix>> {
         return Ok(None);
     }
     let (_, flags) = element(fields, 4)?;
+    let after = fields.place();
     let [class, flags, ..] = fields.go(flags).get::<u32>()?.to_le_bytes();
-    fields.go(24);
+    fields.go(after);
     let (bytes, shape) = element(fields, 8)?;
     if !CLASSES.contains(&class) || bytes != 8 {
         return Ok(None);
@@ -153,7 +154,7 @@ fn element(fields: &mut Fields<'_>, least: u32) -> Result<(u32, usize)> {
     let small = kind > 0xffff;
     let bytes = if small { kind >> 16 } else { fields.get()? };
     let at = fields.place();
-    let end = if small { 4 } else { bytes.next_multiple_of(8) as usize };
+    let end = if small { 4 } else { (bytes as usize).next_multiple_of(8) };
     if bytes < least || end > fields.left() || (small && bytes > 4) {
         return Err(fields.wrong(format!("{least} bytes or more that are there, found {bytes}")));
     }

@@ -16,6 +16,29 @@
 //!     f.create_dataset("hole", shape=(4, 4), dtype="f8")
 //!     n = f.create_dataset("part", shape=(2, 4), dtype="f8", chunks=(1, 4)); n[1, :] = [1, 2, 3, 4]
 //! ```
+//!
+//! And of programs that write attributes of their own: `fringes.datx` and `nanometers.datx` after the description of Zygo's files,
+//! `matlab73.mat` after that of MATLAB's, `counts.h5` after JPK's:
+//!
+//! ```python
+//! largest = np.finfo("f8").max
+//! with h5py.File("fringes.datx", "w", libver="latest") as f:
+//!     d = f.create_dataset("Data/Surface/{7B5E}", data=np.array([[1, 2, 3], [4, largest, 6]]))
+//!     d.attrs["No Data"] = np.array([largest]); d.attrs["Unit"] = ["Fringes"]  # or NanoMeters
+//!     d.attrs["Wavelength"] = [6.33e-7]; d.attrs["Interferometric Scale Factor"] = [0.5]
+//!     d.attrs["Obliquity Factor"] = [1.0]  # besides, X, Y and Z Converter: (text, text, list of numbers)
+//! with h5py.File("matlab73.mat", "w", userblock_size=512) as f:
+//!     d = f.create_dataset("Z", data=np.array([[1., 4], [2, 5], [3, 6]])); d.attrs["MATLAB_class"] = b"double"
+//!     d = f.create_dataset("dx", data=np.array([[0.5]])); d.attrs["MATLAB_class"] = b"double"
+//!     d = f.create_dataset("t", data=np.array([[65, 66]], "u2")); d.attrs["MATLAB_class"] = b"char"
+//! with h5py.File("counts.h5", "w", libver="latest") as f:
+//!     g = f.create_group("a"); g.attrs["encoder.scaling.multiplier"] = 1.5e-15
+//!     g.attrs["encoder.scaling.offset"] = -1e-6; g.attrs["encoder.scaling.unit.unit"] = b"m"
+//!     d = g.create_dataset("z", data=np.array([[10, -20, 30], [40, 50, 60]], "i4")); d.attrs["units"] = "m"
+//!     d = f.create_dataset("b", data=np.array([[1, 2], [3, 4]], "i2")); d.attrs["unit"] = "nm"
+//!     d = f.create_dataset("c", data=np.array([[1, 2], [3, 4]], "i2")); d.attrs["unit"] = "nm"
+//!     d.attrs["scale_factor"] = "two"
+//! ```
 
 use super::Small;
 
@@ -40,7 +63,25 @@ pub fn files() -> Vec<Small> {
         vec![1e-9, -2e-9, undefined, 0.0, 5e-9, 1.0],
     );
     let own = surface_io::hdf5(&map.unwrap(), surface_io::Metric::Metres).unwrap();
+    let counts = include_bytes!("hdf5/counts.h5");
+    let fringes = include_bytes!("hdf5/fringes.datx");
+    let nanometers = include_bytes!("hdf5/nanometers.datx");
+    let zygo = |factor: f64| [1.0, 2.0, 3.0, 4.0, undefined, 6.0].map(|h: f64| h * factor).to_vec();
+    let jpk = [10.0, 40.0, -20.0, 50.0, 30.0, 60.0].map(|n: f64| 1.5e-15 * n - 1e-6).to_vec();
     vec![
+        small("hdf5 of Zygo in fringes", fringes, 0, [3, 2], None, zygo(0.5 * 6.33e-7)),
+        small("hdf5 of Zygo", nanometers, 0, [3, 2], None, zygo(1e-9)),
+        small(
+            "hdf5 of MATLAB",
+            include_bytes!("hdf5/matlab73.mat"),
+            0,
+            [3, 2],
+            None,
+            vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        ),
+        small("hdf5 of JPK", counts, 0, [2, 3], None, jpk),
+        // Integers in nm without a scale: counts.
+        small("hdf5 of counts", counts, 1, [2, 2], None, vec![1.0, 3.0, 2.0, 4.0]),
         // Channel 0 is again/phase.
         small("hdf5 in chunks", chunks, 1, [4, 3], Some([4e-6, 1.5e-6]), nm(&count)),
         // The first index is x.

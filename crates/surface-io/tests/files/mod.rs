@@ -1,16 +1,23 @@
 //! Small valid files of every binary format, written here byte by byte from the description of the format.
 
 mod al3d;
+mod bcr;
+mod frt;
+mod gsf;
 mod gwy;
 mod hdf5;
+mod mat;
 mod metropro;
 mod nanoscope;
 mod netcdf;
+mod nms;
 mod opd;
+mod opdx;
 mod plu;
 mod sdf;
 mod sur;
 mod tiff;
+mod tmd;
 pub mod x3p;
 
 /// A small file, and what is in it.
@@ -45,6 +52,13 @@ pub fn all() -> Vec<Small> {
         sur::files(),
         tiff::files(),
         x3p::files(),
+        bcr::files(),
+        frt::files(),
+        gsf::files(),
+        mat::files(),
+        nms::files(),
+        opdx::files(),
+        tmd::files(),
     ];
     of_all.into_iter().flatten().collect()
 }
