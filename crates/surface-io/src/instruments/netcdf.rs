@@ -2,7 +2,8 @@
 //!
 //! After "The NetCDF Classic Format Specification" (<https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>) and
 //! `IO/NC.py` of SurfaceTopography. The last index runs fastest: of `heights(x, y)` that is y, so the file goes column by column; row j is
-//! y = j * cell; `heights(y, x)` is read too. The attribute `length` of the variables `x` and `y` is the side, their attribute `unit`
+//! y = j * cell; `heights(y, x)` is read too. Dimensions of other names are taken for y and x, as the CF conventions order them; [`crate::Axes`]
+//! `xy` takes the first for x. The attribute `length` of the variables `x` and `y` is the side, their attribute `unit`
 //! (or `units`) its unit, that of `heights` the unit of the heights. Undefined are NaN, the attributes `_FillValue` and `missing_value`,
 //! in floats without the former also the library's own fill value, and points where a variable `mask` is not 0. `scale_factor` and
 //! `add_offset` are applied after that, as the conventions say.
@@ -14,12 +15,15 @@ mod write;
 
 pub use write::netcdf;
 
-use crate::channel::{AxisOrder, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, masked};
+use crate::channel::{
+    AxisOrder, FileAxes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, masked,
+};
 use crate::error::{ContentError, Result};
 use crate::extent::Extent;
 use crate::fields::{ByteOrder, Cursor, decoded};
 use crate::format::Format;
 use crate::number_type::NumberType;
+use crate::options::Axes;
 use crate::reader::Reader;
 use crate::source::Source;
 
@@ -72,10 +76,17 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         dimensions.get(at).map(|(name, length)| (name.as_str(), *length))
     };
     let of: Vec<_> = heights.dimensions.iter().filter_map(named).collect();
-    let (order, [columns, rows]) = match (of.as_slice(), heights.rank) {
-        ([("x", columns), ("y", rows)], 2) => (AxisOrder::Columns, [*columns, *rows]),
-        ([("y", rows), ("x", columns)], 2) => (AxisOrder::Rows, [*columns, *rows]),
-        _ => return wrong(source, "heights over the dimensions x and y"),
+    let (axes, order, [columns, rows]) = match (of.as_slice(), heights.rank) {
+        ([("x", columns), ("y", rows)], 2) => {
+            (FileAxes::Said(Axes::Xy), AxisOrder::Columns, [*columns, *rows])
+        }
+        ([("y", rows), ("x", columns)], 2) => (FileAxes::Said(Axes::Yx), AxisOrder::Rows, [*columns, *rows]),
+        ([(first, rows), (second, columns)], 2)
+            if ![first, second].iter().any(|n| ["x", "y"].contains(n)) =>
+        {
+            (FileAxes::Assumed(Axes::Yx), AxisOrder::Rows, [*columns, *rows])
+        }
+        _ => return wrong(source, "heights over the dimensions x and y, or over two of other names"),
     };
     let (Ok(columns), Ok(rows)) = (usize::try_from(columns), usize::try_from(rows)) else {
         return Err(source.content(ContentError::NoCells { rows, columns }));
@@ -114,7 +125,11 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         Extent::of_side(length?, &unit?)
     };
     let unit = StoredUnit::written(heights.attributes.unit.as_deref().unwrap_or_default());
-    let channel = StoredChannel::of(stored, details, [rows, columns], unit);
+    let mut channel = StoredChannel::of(stored, details, [rows, columns], unit);
+    channel.axes = axes;
+    if let FileAxes::Assumed(axes) = axes {
+        channel.assume(axes, "as the conventions have it, the dimensions have other names than x and y");
+    }
     Ok(vec![StoredChannel { extent: [side(x), side(y)], ..channel }.named("heights")])
 }
 
