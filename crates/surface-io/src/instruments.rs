@@ -51,3 +51,6 @@ pub(crate) const READERS: &[Reader] = &[
     tmd::READER,
     x3p::READER,
 ];
+
+#[cfg(test)]
+mod tests;

@@ -47,6 +47,9 @@
 //!   unit both stay as they are. What is given beside what the file says must agree with it within the digits
 //!   of a header (0.5 %).
 //! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`] only.
+//!   Integers of an HDF5 file that have a unit of length and no scale are counts too.
+//! * **Axes.** Arrays without names of their axes (HDF5, MATLAB, NetCDF) are read by the custom of the format, which is noted;
+//!   [`ReadOptions::axes`] says which index is x. It is an error where the file or the format says it.
 //! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both),
 //!   infinite heights always.
 //! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row,

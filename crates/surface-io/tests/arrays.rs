@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 
+#[allow(dead_code)] // Other tests use the rest.
 mod files;
 
 use surface_io::{Axes, Preprocessing, ReadOptions, Scan, SurfaceFile};

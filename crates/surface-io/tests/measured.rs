@@ -6,7 +6,7 @@
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use surface_io::{ReadOptions, Scan, SurfaceFile};
+use surface_io::{Axes, ReadOptions, Scan, SurfaceFile};
 
 /// Relative differences of sizes, extrema and rms.
 const CLOSE: f64 = 1e-6;
@@ -183,4 +183,28 @@ fn a_line_of_a_stylus_has_the_distance_of_its_places() {
     let unit = &metadata.unit.as_ref().unwrap().value;
     assert!((unit.to_si(scan.height(0, 0).unwrap()) - scale * first * 1e-6).abs() < 1e-20);
     assert!((unit.to_si(scan.height(0, 3000).unwrap()) - scale * double(48561 + 24000) * 1e-6).abs() < 1e-20);
+}
+
+/// Files of `../shared/reports`: JPK's integers have the scale of their group, an array without labels tells its order, a simple field.
+#[test]
+fn reported_files_are_read() {
+    let Some(directory) = directory("reports") else { return };
+    let read = |name: &str, axes| {
+        let options = ReadOptions { axes, ..ReadOptions::default() };
+        Scan::read(&directory.join(name), &options).unwrap()
+    };
+    let jpk = read("h5-jpk.h5", None);
+    assert_eq!(jpk.metadata().unit.as_ref().map(|unit| unit.value.to_string()).as_deref(), Some("m"));
+    let [low, high] = jpk.metadata().range.unwrap();
+    let of_count = |height: f64| (height + 1e-6) / 1.5e-15;
+    for height in [low, high] {
+        assert!((of_count(height) - of_count(height).round()).abs() < 1e-3, "{height:e}");
+    }
+    let (plain, turned) = (read("h5-plain.h5", None), read("h5-plain.h5", Some(Axes::Yx)));
+    assert_eq!([plain.metadata().columns, plain.metadata().rows], [3, 4]);
+    assert_eq!([turned.metadata().columns, turned.metadata().rows], [4, 3]);
+    assert_eq!(plain.height(3, 1), turned.height(1, 3));
+    let field = read("made.gsf", None);
+    assert_eq!(field.metadata().size.map(|size| size.map(|side| side.value())), Some([4e-6, 3e-6]));
+    assert_eq!(field.height(1, 0).map(|h| (h * 1e10).round()), Some(40.0));
 }

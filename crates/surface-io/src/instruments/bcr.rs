@@ -1,11 +1,14 @@
-//! BCR-STM and BCRF, of the program SPIP of Image Metrology: a text header of 2048 or more characters, the heights row by row as int16
-//! (`bcrstm`) or float32 (`bcrf`). In the kinds `bcrstm_unicode` and `bcrf_unicode` the characters of the header have two bytes.
+//! BCR-STM and BCRF, of the program SPIP of Image Metrology: a text header of 2048 or more characters, the
+//! heights row by row as int16 (`bcrstm`) or float32 (`bcrf`). In the kinds `bcrstm_unicode` and
+//! `bcrf_unicode` the characters of the header have two bytes.
 //!
-//! After Image Metrology's description of the format, Gwyddion's `bcrfile.c` and the reader of `SurfaceTopography` (`IO/BCR.py`). Height =
-//! `bit2nm` x number in `zunit` (nm without it, as the sides are in `xunit` and `yunit`); the first row of the file is y = 0.
-//! `intelmode` 0 is big-endian. Undefined are, where `voidpixels` is there and not 0, the integer 32767, and floats from 1.7e38 on.
+//! After Image Metrology's description of the format, Gwyddion's `bcrfile.c` and the reader of
+//! `SurfaceTopography` (`IO/BCR.py`). Height = `bit2nm` x number in `zunit` (nm without it, as the sides are
+//! in `xunit` and `yunit`); the first row of the file is y = 0. `intelmode` 0 is big-endian. Undefined are,
+//! where `voidpixels` is there and not 0, the integer 32767, and floats from 1.7e38 on.
 //!
-//! `zmin` is not used: Gwyddion moves all heights so that the lowest is `zmin`, `SurfaceTopography` does not. Not read: force curves.
+//! `zmin` is not used: Gwyddion moves all heights so that the lowest is `zmin`, `SurfaceTopography` does not.
+//! Not read: force curves.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::entries::{Entries, HeaderLine};

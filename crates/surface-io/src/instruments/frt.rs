@@ -1,12 +1,15 @@
-//! FRT, of the profilers MicroProf of Fries Research & Technology: `FRTM_GLIDERV`, a version, and numbered blocks.
+//! FRT, of the profilers MicroProf of Fries Research & Technology: `FRTM_GLIDERV`, a version, and numbered
+//! blocks.
 //!
-//! After Gwyddion's `microprof.c` (from FRT's description) and the reader of `SurfaceTopography` (`IO/FRT.py`). Block 0x66 has the shape and
-//! the bits of a number, 0x67 the sides in m, 0x6c the height of a count in m, 0x0b the numbers row by row, uint16 or int32, the first row
-//! that of the largest y (both programs turn it so). Height = count x number; the number 1 is undefined. Version 1.00 writes the length of a block in four bytes, 1.01 in eight.
+//! After Gwyddion's `microprof.c` (from FRT's description) and the reader of `SurfaceTopography`
+//! (`IO/FRT.py`). Block 0x66 has the shape and the bits of a number, 0x67 the sides in m, 0x6c the height of
+//! a count in m, 0x0b the numbers row by row, uint16 or int32, the first row that of the largest y (both
+//! programs turn it so). Height = count x number; the number 1 is undefined. Version 1.00 writes the length
+//! of a block in four bytes, 1.01 in eight.
 //!
-//! Numbers below the least valid one of block 0x70 are read as heights, as both programs do; a note tells it. Not read: the images of
-//! block 0x7d (the first is the map of block 0x0b again) and files that have no other map, profiles, the offset of the colour scale in
-//! block 0x71.
+//! Numbers below the least valid one of block 0x70 are read as heights, as both programs do; a note tells it.
+//! Not read: the images of block 0x7d (the first is the map of block 0x0b again) and files that have no other
+//! map, profiles, the offset of the colour scale in block 0x71.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;
@@ -24,6 +27,7 @@ const SHAPE: u16 = 0x66;
 const SIDES: u16 = 0x67;
 const SENSOR: u16 = 0x6c;
 const VALID: u16 = 0x70;
+const IMAGES: u16 = 0x7d;
 
 pub(crate) const READER: Reader =
     Reader { format: Format::Frt, recognises: |start, _| start.starts_with(MAGIC), channels };
@@ -53,6 +57,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let [shape, sides, sensor] = [find(SHAPE, 12)?.1, find(SIDES, 16)?.1, find(SENSOR, 12)?.1];
     let &(_, begin, length) = find(NUMBERS, 1)?;
+    let images = find(IMAGES, 0).is_ok();
     let valid = find(VALID, 4).ok().map(|block| block.1);
     let [columns, rows, bits] = source.get::<[u32; 3]>(LITTLE, shape)?;
     let number = match bits {
@@ -77,6 +82,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let extent = source.get::<[f64; 2]>(LITTLE, sides)?.map(|side| Extent::of_side(side, "m"));
     let shape = [rows as usize, columns as usize];
     let mut channel = StoredChannel::new(source, raw, shape, StoredUnit::written("m"), extent)?;
+    if images {
+        channel.note("the file has images in block 0x7d, which are not read; the first is mostly this map");
+    }
     if let Some(at) = valid {
         let least: u32 = source.get(LITTLE, at)?;
         channel.note(format!("the file calls numbers from {least} on valid; only 1 is taken for undefined"));

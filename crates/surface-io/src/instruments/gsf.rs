@@ -1,9 +1,10 @@
-//! GSF, Gwyddion's simple field: lines `Key = value`, zeros up to a multiple of four bytes, the heights as float32 row by row.
+//! GSF, Gwyddion's simple field: lines `Key = value`, zeros up to a multiple of four bytes, the heights as
+//! float32 row by row.
 //!
-//! After the specification (<http://gwyddion.net/documentation/user-guide-en/gsf.html>) and Gwyddion's `gsffile.c`. Height = number in
-//! `ZUnits`; rows go from the top to the bottom of the picture; undefined are NaN. `XReal` and `YReal` are the sides in `XYUnits`; sides
-//! without a unit of length are noted and not used. The numbers fill the file to its end: another length is an error. The offsets are not
-//! used.
+//! After the specification (<http://gwyddion.net/documentation/user-guide-en/gsf.html>) and Gwyddion's
+//! `gsffile.c`. Height = number in `ZUnits`; rows go from the top to the bottom of the picture; undefined are
+//! NaN. `XReal` and `YReal` are the sides in `XYUnits`; sides without a unit of length are noted and not
+//! used. The numbers fill the file to its end: another length is an error. The offsets are not used.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit};
 use crate::entries::{Entries, HeaderLine};

@@ -3,9 +3,9 @@
 //! Sources: the HDF5 File Format Specification 3.0 (<https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>), for the order
 //! of the axes the HDF5 Dimension Scales and the Image and Palette specifications, for packed values the NetCDF attribute conventions.
 //!
-//! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides (`y`, `x` or `x`, `y`), or `CLASS = "IMAGE"` (rows first). A data set
-//!   without either has x first, as SurfaceTopography and MATLAB write it, which is noted; [`crate::Axes`] `yx` takes the first index for y.
-//!   The first row is y = 0.
+//! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides (`y`, `x` or `x`, `y`), or `CLASS = "IMAGE"` (rows first). A data
+//!   set without either has x first, as SurfaceTopography and MATLAB write it, which is noted; [`crate::Axes`] `yx` takes the first index
+//!   for y. The first row is y = 0.
 //! - **Unit.** The attribute `unit` or `units` of the data set, nothing else. `none` are plain numbers. Integers with a unit of length and
 //!   without a scale are counts of an unknown height: [`crate::ReadOptions::height_scale`] says it.
 //! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`; this crate writes them. HDF5 itself has no size.
@@ -17,14 +17,15 @@
 //! - **JPK.** `encoder.scaling.multiplier`, `.offset` and `.unit.unit` of the group that holds a data set: height = multiplier x number +
 //!   offset. The conversion sets are not applied.
 //! - **MATLAB 7.3.** A matrix of rows and columns stands as columns and rows. Text and scalars are passed.
-//! - **Zygo's DATX** (`Data/Surface/...`, after prysm's `read_zygo_datx` and `IO/DATX.py` of SurfaceTopography). Height = number in `Unit`, of
-//!   `Fringes` number x `Wavelength` x `Interferometric Scale Factor` x `Obliquity Factor` in m; numbers from `No Data` on are undefined. Rows
-//!   first, as prysm has it; SurfaceTopography takes the first index for x. The sides of a cell stand in `X Converter` and `Y Converter`,
-//!   records of texts and of a list of numbers, which the crate hdf5-pure does not give: the size is unknown, and a note tells it.
+//! - **Zygo's DATX** (`Data/Surface/...`, after prysm's `read_zygo_datx` and `IO/DATX.py` of SurfaceTopography). Height = number in `Unit`,
+//!   of `Fringes` number x `Wavelength` x `Interferometric Scale Factor` x `Obliquity Factor` in m; numbers from `No Data` on are
+//!   undefined; intensities are no heights. Rows first, as prysm has it; SurfaceTopography takes the first index for x. The sides of a cell
+//!   stand in `X Converter` and `Y Converter`, records of texts and of a list of numbers, which the crate hdf5-pure does not give: the size
+//!   is unknown, and a note tells it.
 //!
-//! A data set that cannot be read is listed with its reason. Read are the layouts compact, contiguous and chunked (deflate, shuffle, Fletcher-32, which is not checked); not read are other filters
-//! (LZF, SZIP, scale-offset, ZFP), chunks indexed by a B-tree of version 2, data layouts of HDF5 2.0
-//! (version 5), virtual data sets and data in other files, links to which are passed.
+//! A data set that cannot be read is listed with its reason. Read are the layouts compact, contiguous and chunked (deflate, shuffle,
+//! Fletcher-32, which is not checked); not read are other filters (LZF, SZIP, scale-offset, ZFP), chunks indexed by a B-tree of version 2,
+//! data layouts of HDF5 2.0 (version 5), virtual data sets and data in other files, links to which are passed.
 //!
 //! The crate hdf5-pure reads the metadata; its own reading of chunks allocates what a damaged header claims (4 GB for a file of 4 kB), so
 //! numbers are decoded here.

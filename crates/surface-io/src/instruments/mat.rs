@@ -1,15 +1,18 @@
-//! MAT, the file of MATLAB of version 5 (up to 7.2), as SciPy and Octave write it too: every matrix of real numbers is a channel.
+//! MAT, the file of MATLAB of version 5 (up to 7.2), as SciPy and Octave write it too: every matrix of real
+//! numbers is a channel.
 //!
-//! After "MAT-File Format" of `MathWorks`. A header of 128 bytes with the order of bytes, then elements of a tag (type and length) and data,
-//! filled up to eight bytes; an element may be packed by zlib. A matrix is a list of elements: its class and flags, its shape, its name,
-//! and its numbers column by column, of a type that may be smaller than that of the class.
+//! After "MAT-File Format" of `MathWorks`. A header of 128 bytes with the order of bytes, then elements of a
+//! tag (type and length) and data, filled up to eight bytes; an element may be packed by zlib. A matrix is a
+//! list of elements: its class and flags, its shape, its name, and its numbers column by column, of a type
+//! that may be smaller than that of the class.
 //!
-//! Height = number, without a unit; undefined are NaN. MATLAB's `surf`, `mesh` and `imagesc` draw the matrix Z(row, column) over y and x:
-//! the first index is taken for y, row 1 for y = 0; [`crate::Axes`] `xy` takes it for x. No variable is taken for a size or for
+//! Height = number, without a unit; undefined are NaN. MATLAB's `surf`, `mesh` and `imagesc` draw the matrix
+//! Z(row, column) over y and x: the first index is taken for y, row 1 for y = 0, which is noted;
+//! [`crate::Axes`] `xy` takes it for x, as `SurfaceTopography` does. No variable is taken for a size or for
 //! coordinates.
 //!
-//! Passed are scalars, text, structures, cells, sparse matrices and arrays of three dimensions; complex matrices are listed and not read.
-//! Version 7.3 is HDF5; version 4 is not read.
+//! Passed are scalars, text, structures, cells, sparse matrices and arrays of three dimensions; complex
+//! matrices are listed and not read. Version 7.3 is HDF5; version 4 is not read.
 
 use crate::channel::{AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
 use crate::error::Result;
@@ -72,16 +75,17 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             return Err(source.wrong(begin, expected));
         }
         let start = match kind {
-            MATRIX => source.bytes(at, 8 + length.min(START))?,
-            PACKED => unpacked(source, begin, length)?,
-            _ => Vec::new(),
+            MATRIX => source.bytes(at, 8 + length.min(START)),
+            PACKED => unpacked(source, begin, length),
+            _ => Ok(Vec::new()),
         };
-        let mut fields = Fields::new(source.subject().clone(), order, at, start);
-        if let Some(matrix) = matrix(&mut fields)? {
-            let name = matrix.name.clone();
+        let subject = source.subject().clone();
+        let matrix = start.and_then(|start| matrix(&mut Fields::new(subject, order, at, start)));
+        if let Some(matrix) = matrix.transpose() {
+            let name = matrix.as_ref().ok().map(|matrix| matrix.name.clone());
             let packed = (kind == PACKED).then_some((begin, length));
-            let channel = channel(source, matrix, at, packed);
-            found.push(StoredChannel::listed(Some(name), channel)?);
+            let channel = matrix.and_then(|matrix| channel(source, matrix, at, packed));
+            found.push(StoredChannel::listed(name, channel)?);
         }
         if found.len() > MOST {
             return Err(source.wrong(at, format!("{MOST} matrices at most")));

@@ -1,17 +1,18 @@
-//! NMS, of the confocal microscopes µsurf of Nanofocus (also called `.orginal`): a header of 3468 bytes, the heights as uint16 row by row,
-//! then the intensities, one byte each.
+//! NMS, of the confocal microscopes µsurf of Nanofocus (also called `.orginal`): a header of 3468 bytes, the
+//! heights as uint16 row by row, then the intensities, one byte each.
 //!
-//! After musurf-reader (<https://github.com/drocheam/musurf-reader>) and the reader of `SurfaceTopography` 1.27.1. Height in µm of the
-//! number n: `low + (high - low) (n - first) / (last - first)`, where the numbers `first` and `last` stand at offset 8 and the heights
-//! `low` and `high` of them at 16. The first row of the file is y = 0. Where there are intensities, points of the intensity 0 are
-//! undefined.
+//! After musurf-reader (<https://github.com/drocheam/musurf-reader>) and the reader of `SurfaceTopography`
+//! 1.27.1. Height in µm of the number n: `low + (high - low) (n - first) / (last - first)`, where the numbers
+//! `first` and `last` stand at offset 8 and the heights `low` and `high` of them at 16. The first row of the
+//! file is y = 0. Where there are intensities, points of the intensity 0 are undefined.
 //!
-//! The sides of a cell at offset 1376 are nanometres: a file of a 100x objective, whose field is 160 µm, has 512 cells and there the bytes
-//! `25 8a bb f6 ff 87 73 40`, 312.5. `SurfaceTopography` 1.27.1 takes them for 312.5 mm and gets a map of 160 m. It also divides by 65534
-//! instead of `last - first` = `ff ff 00 00` = 65535: the largest number of that file is 65535, and its height is `high` to the last bit
-//! only with 65535.
+//! The sides of a cell at offset 1376 are nanometres: a file of a 100x objective, whose field is 160 µm, has
+//! 512 cells and there the bytes `25 8a bb f6 ff 87 73 40`, 312.5. `SurfaceTopography` 1.27.1 takes them for
+//! 312.5 mm and gets a map of 160 m. It also divides by 65534 instead of `last - first` = `ff ff 00 00` =
+//! 65535: the largest number of that file is 65535, and its height is `high` to the last bit only with 65535.
 //!
-//! Not read: other versions than `OM_MS_2.0`, other numbers than uint16, profiles, files of several images (SMS, SMT).
+//! Not read: other versions than `OM_MS_2.0`, other numbers than uint16, profiles, files of several images
+//! (SMS, SMT).
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined, masked};
 use crate::error::Result;

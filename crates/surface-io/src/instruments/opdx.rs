@@ -1,14 +1,18 @@
-//! OPDx, of the stylus profilers Dektak of Bruker (`VCA DATA`): a tree of items, each with a name, a type and a length.
+//! OPDx, of the stylus profilers Dektak of Bruker (`VCA DATA`): a tree of items, each with a name, a type and
+//! a length.
 //!
-//! After Gwyddion's `dektakvca.c` and the reader of `SurfaceTopography` (`IO/OPDx.py`). A name has its length in four bytes before it; the
-//! length of most types is a number of one, two or four bytes behind a byte that says which. Read are the groups of `1D_Data` (a line of
-//! doubles, `Array`) and of `2D_Data` (a map of floats row by row, `Matrix`; the first row is y = 0). Height = number x `DataScale`, whose
-//! unit is that of the heights; NaN are undefined. A group is called by its name and its `DataKind`.
+//! After Gwyddion's `dektakvca.c` and the reader of `SurfaceTopography` (`IO/OPDx.py`). A name has its length
+//! in four bytes before it; the length of most types is a number of one, two or four bytes behind a byte that
+//! says which. Read are the groups of `1D_Data` (a line of doubles, `Array`) and of `2D_Data` (a map of
+//! floats row by row, `Matrix`; the first row is y = 0). Height = number x `DataScale`, whose unit is that of
+//! the heights; NaN are undefined. A group is called by its name and its `DataKind`.
 //!
-//! - **Lines** are channels of one row, of which only the length along x is known. The cell is that of the places in `PositionFunction`,
-//!   which must be equally spaced. `Extent` is the distance of the first from the last point, one cell less than the length that n cells
-//!   have: a file of 3001 points has the places 0 to 49.96669 µm and the `Extent` 49.96669 µm.
-//! - **Maps**: `Dimension2Extent` is the side along x, `Dimension1Extent` that along y, as both programs have it.
+//! - **Lines** are channels of one row, of which only the length along x is known. The cell is that of the
+//!   places in `PositionFunction`, which must be equally spaced. `Extent` is the distance of the first from
+//!   the last point, one cell less than the length that n cells have: a file of 3001 points has the places 0
+//!   to 49.96669 µm and the `Extent` 49.96669 µm.
+//! - **Maps**: `Dimension2Extent` is the side along x, `Dimension1Extent` that along y, as both programs have
+//!   it.
 //!
 //! Not read: the settings of the measurement (`MetaData`), arrays of other numbers.
 
@@ -216,9 +220,10 @@ fn cell(source: &mut Source<'_>, places: &Item, count: u64) -> Result<Option<Ext
     file.get::<[u8; 20]>()?;
     let (stated, at): (u64, u64) = (file.get()?, file.at);
     if stated != count || at.checked_add(8 * count) != Some(places.end) {
-        return Err(
-            source.wrong(at, format!("{count} places as in Array, found {stated} in {} bytes", places.end))
-        );
+        return Err(source.wrong(
+            at,
+            format!("{count} places as in Array, found {stated} in {} bytes", places.end.saturating_sub(at)),
+        ));
     }
     let bytes = source.bytes(at, 8 * count)?;
     let place = |i: u64| NumberType::F64.decode(&bytes[8 * i as usize..]).unwrap_or(f64::NAN);

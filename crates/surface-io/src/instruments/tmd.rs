@@ -1,12 +1,14 @@
-//! TMD, of the programs TrueMap (TrueGage) and GelSight: two texts, the shape, the sides in millimetres, and the heights in millimetres,
-//! float32 row by row.
+//! TMD, of the programs TrueMap (TrueGage) and GelSight: two texts, the shape, the sides in millimetres, and
+//! the heights in millimetres, float32 row by row.
 //!
-//! After Gwyddion's `rmitmd.c`, the reader of `SurfaceTopography` (`IO/TMD.py`; its version 1.27.1 has the lengths in mm) and GelSight's
-//! own `readtmd`/`writetmd`. The first text has 32 bytes; the second, a comment, ends at its zero and may be empty. Height = number, in
-//! mm, upwards; the first row of the file is y = 0; undefined are NaN. The offsets of the map in x and y are not used. The numbers fill
-//! the file to its end: another length is an error.
+//! After Gwyddion's `rmitmd.c`, the reader of `SurfaceTopography` (`IO/TMD.py`; its version 1.27.1 has the
+//! lengths in mm) and GelSight's own `readtmd`/`writetmd`. The first text has 32 bytes; the second, a
+//! comment, ends at its zero and may be empty. Height = number, in mm, upwards; the first row of the file is
+//! y = 0; undefined are NaN. The offsets of the map in x and y are not used. The numbers fill the file to its
+//! end: another length is an error.
 //!
-//! Not read: the first version of the format (`v1.0`), the AMB files of Ambios that begin with the same words.
+//! Not read: the first version of the format (`v1.0`), the AMB files of Ambios that begin with the same
+//! words.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit};
 use crate::error::Result;

@@ -18,6 +18,9 @@ pub(super) fn values(
     if path.starts_with("Data/Surface/") && attributes.contains_key("No Data") {
         return Some(zygo(dataset, attributes));
     }
+    if path.starts_with("Data/Intensity/") {
+        return Some(packed(attributes).map(|values| Values { unit: StoredUnit::NoHeights(None), ..values }));
+    }
     beside.contains_key(&format!("{JPK}.multiplier")).then(|| jpk(beside, attributes))
 }
 
