@@ -205,6 +205,6 @@ fn reported_files_are_read() {
     assert_eq!([turned.metadata().columns, turned.metadata().rows], [4, 3]);
     assert_eq!(plain.height(3, 1), turned.height(1, 3));
     let field = read("made.gsf", None);
-    assert_eq!(field.metadata().size.map(|size| size.map(|side| side.value())), Some([4e-6, 3e-6]));
+    assert_eq!(field.metadata().size.map(|size| size.map(surface_io::Quantity::value)), Some([4e-6, 3e-6]));
     assert_eq!(field.height(1, 0).map(|h| (h * 1e10).round()), Some(40.0));
 }

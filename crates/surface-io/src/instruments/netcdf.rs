@@ -216,7 +216,7 @@ impl<'s, 'a> Header<'s, 'a> {
             if let Some(target) = target {
                 // Left out, heights would be others than those that are meant.
                 let (Some(number), 1) = (number(kind), count) else {
-                    return Err(self.file.wrong(&format!("one number as {name}")));
+                    return Err(self.file.wrong(format!("one number as {name}")));
                 };
                 let value = number.big_endian().decode(self.file.take(size)?);
                 *target = Some(
@@ -259,7 +259,7 @@ impl<'s, 'a> Header<'s, 'a> {
         match (kind, number(kind)) {
             (2, _) => Ok(1),
             (_, Some(number)) => Ok(number.bytes() as u64),
-            _ => Err(self.file.wrong(&format!("a type of values from 1 to 11 before this, found {kind}"))),
+            _ => Err(self.file.wrong(format!("a type of values from 1 to 11 before this, found {kind}"))),
         }
     }
 }
