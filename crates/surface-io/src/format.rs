@@ -36,11 +36,13 @@ pub enum Format {
     Opd,
     /// PLu, of Sensofar.
     Plu,
+    /// Points as MetroPro exports them.
+    ZygoXyz,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Npy,
         Self::Text,
         Self::Xyz,
@@ -56,6 +58,7 @@ impl Format {
         Self::MetroPro,
         Self::Opd,
         Self::Plu,
+        Self::ZygoXyz,
     ];
 
     /// The word that stands for it in scenes and on command lines.
@@ -80,6 +83,7 @@ impl Format {
             Self::MetroPro => ("metropro", "MetroPro (Zygo)"),
             Self::Opd => ("opd", "OPD (Wyko)"),
             Self::Plu => ("plu", "PLu (Sensofar)"),
+            Self::ZygoXyz => ("zygo_xyz", "Zygo XYZ"),
         }
     }
 }

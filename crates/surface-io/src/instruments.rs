@@ -12,6 +12,7 @@ mod sdf;
 mod sur;
 mod tiff;
 mod x3p;
+mod zygo_xyz;
 
 pub use gwy::gwy;
 pub use hdf5::hdf5;
@@ -36,4 +37,5 @@ pub(crate) const READERS: &[Reader] = &[
     sur::READER,
     tiff::READER,
     x3p::READER,
+    zygo_xyz::READER,
 ];

@@ -1,7 +1,7 @@
 //! Words of scenes and command lines.
 
 use crate::format::Format;
-use crate::options::Decimal;
+use crate::options::{Border, Decimal};
 use crate::preprocessing::{Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
@@ -63,7 +63,7 @@ impl FromStr for Format {
 
 /// All words of [`Format`].
 const FORMATS: &str =
-    "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd or plu";
+    "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd, plu or zygo_xyz";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -75,6 +75,18 @@ impl FromStr for Decimal {
     fn from_str(text: &str) -> Result<Self, KeywordError> {
         let known = [("point", Self::Point), ("comma", Self::Comma)];
         among("decimal", text, known, "point or comma")
+    }
+}
+
+impl FromStr for Border {
+    type Err = KeywordError;
+
+    /// Reads `axes` or `heights`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        among("border", text, [("axes", Self::Axes), ("heights", Self::Heights)], "axes or heights")
     }
 }
 
