@@ -195,6 +195,12 @@ pub enum ContentError {
         /// All of them.
         list: String,
     },
+    /// A channel that cannot be read, of a file with others.
+    #[error("channel {channel}")]
+    Unread {
+        /// Number, name and what is wrong.
+        channel: String,
+    },
     /// A channel whose values are no heights.
     #[error("channel {what}: its values are no heights")]
     NoHeights {

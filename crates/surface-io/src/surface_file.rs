@@ -108,7 +108,7 @@ impl<'a> SurfaceFile<'a> {
     /// The scans of all channels, one after another.
     ///
     /// # Errors
-    /// Of each: [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
+    /// Of each: [`ContentError::Unread`] where this channel cannot be read and others can; [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
     /// that no double holds, and for contradictions to what is declared.
     pub fn scans(self) -> impl Iterator<Item = Result<Scan>> {
         let Self { mut source, format, channels, declared } = self;
@@ -181,6 +181,9 @@ fn read(
     (number, mut channel): (usize, StoredChannel),
     declared: &ReadOptions,
 ) -> Result<Scan> {
+    if let StoredHeights::Unread(_) = channel.heights {
+        return Err(source.content(ContentError::Unread { channel: channel.line(number) }));
+    }
     let heights = channel.read(source)?;
     let own;
     let declared = if let StoredUnit::NoHeights(_) = channel.unit {
