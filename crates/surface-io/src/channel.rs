@@ -68,6 +68,9 @@ pub(crate) enum FileAxes {
     Assumed(Axes),
 }
 
+/// How a note on the order of the axes begins.
+const TAKEN: &str = "the first index is taken for";
+
 /// Where the heights are.
 pub(crate) enum StoredHeights {
     /// In memory: text is read as a whole.
@@ -442,6 +445,8 @@ impl StoredChannel {
     /// # Errors
     /// [`ContentError::Useless`] where the format has one order, [`ContentError::Contradiction`] where the file names another.
     pub(crate) fn orient(&mut self, declared: Axes) -> Result<(), ContentError> {
+        // Who says it need not be told.
+        self.notes.retain(|note| !note.starts_with(TAKEN));
         match self.axes {
             FileAxes::Said(axes) | FileAxes::Assumed(axes) if axes == declared => {}
             FileAxes::Assumed(_) => self.transpose(),

@@ -128,7 +128,9 @@ pub(crate) fn check_axis(
     count: usize,
 ) -> Result<(), ContentError> {
     let (stated, given) = (caller.like(file, count)?, caller.length());
-    if agree(stated, given) {
+    // What the file says without a unit, the caller says with one.
+    let plain = stated.dimension() == Dimension::NONE && given.dimension() == Dimension::LENGTH;
+    if plain || agree(stated, given) {
         return Ok(());
     }
     let what = if matches!(caller, Extent::Cell(_)) { CELL } else { ["size along x", "size along y"] };

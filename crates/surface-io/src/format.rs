@@ -36,6 +36,8 @@ pub enum Format {
     Opd,
     /// PLu, of Sensofar.
     Plu,
+    /// Points as MetroPro exports them.
+    ZygoXyz,
     /// BCR-STM and BCRF, of Image Metrology.
     Bcr,
     /// FRT, of the profilers MicroProf.
@@ -54,7 +56,7 @@ pub enum Format {
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Npy,
         Self::Text,
         Self::Xyz,
@@ -70,6 +72,7 @@ impl Format {
         Self::MetroPro,
         Self::Opd,
         Self::Plu,
+        Self::ZygoXyz,
         Self::Bcr,
         Self::Frt,
         Self::Gsf,
@@ -101,6 +104,7 @@ impl Format {
             Self::MetroPro => ("metropro", "MetroPro (Zygo)"),
             Self::Opd => ("opd", "OPD (Wyko)"),
             Self::Plu => ("plu", "PLu (Sensofar)"),
+            Self::ZygoXyz => ("zygo_xyz", "Zygo XYZ"),
             Self::Bcr => ("bcr", "BCR-STM (Image Metrology)"),
             Self::Frt => ("frt", "FRT (MicroProf)"),
             Self::Gsf => ("gsf", "GSF (Gwyddion simple field)"),

@@ -19,6 +19,7 @@ mod sur;
 mod tiff;
 mod tmd;
 mod x3p;
+mod zygo_xyz;
 
 pub use gwy::gwy;
 pub use hdf5::hdf5;
@@ -50,6 +51,7 @@ pub(crate) const READERS: &[Reader] = &[
     tiff::READER,
     tmd::READER,
     x3p::READER,
+    zygo_xyz::READER,
 ];
 
 #[cfg(test)]

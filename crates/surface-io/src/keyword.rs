@@ -1,7 +1,7 @@
 //! Words of scenes and command lines.
 
 use crate::format::Format;
-use crate::options::{Axes, Decimal};
+use crate::options::{Axes, Border, Decimal};
 use crate::preprocessing::{Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
@@ -62,8 +62,8 @@ impl FromStr for Format {
 }
 
 /// All words of [`Format`].
-const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd, plu, bcr, frt, \
-     gsf, mat, nms, opdx or tmd";
+const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd, plu, zygo_xyz, \
+     bcr, frt, gsf, mat, nms, opdx or tmd";
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -88,6 +88,18 @@ impl FromStr for Axes {
     fn from_str(text: &str) -> Result<Self, KeywordError> {
         let known = [Self::Xy, Self::Yx].map(|axes| (axes.word(), axes));
         among("axes", text, known, "xy or yx, what the first and the second index count along")
+    }
+}
+
+impl FromStr for Border {
+    type Err = KeywordError;
+
+    /// Reads `axes` or `heights`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        among("border", text, [("axes", Self::Axes), ("heights", Self::Heights)], "axes or heights")
     }
 }
 

@@ -127,7 +127,7 @@ pub use format::Format;
 pub use instruments::{gwy, hdf5, netcdf, x3p};
 pub use keyword::KeywordError;
 pub use npy::npy;
-pub use options::{Axes, Decimal, ReadOptions};
+pub use options::{Axes, Border, Decimal, ReadOptions};
 pub use points::{profile, profile_from_bytes};
 pub use preprocessing::{Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window};
 pub use provenance::{Origin, Sourced};

@@ -62,10 +62,7 @@ impl<'a> SurfaceFile<'a> {
     fn new(path: &Path, input: impl Input + 'a, length: u64, declared: &ReadOptions) -> Result<Self> {
         let (mut source, format) = told(path, input, length, declared)?;
         let (format, mut channels) = match format {
-            None | Some(Format::Text | Format::Xyz) => {
-                let (format, channel) = of_text(&mut source, format, declared)?;
-                (format, vec![channel])
-            }
+            None | Some(Format::Text | Format::Xyz) => of_text(&mut source, format, declared)?,
             Some(format) => {
                 no_lines(declared).map_err(Error::content(path))?;
                 let reader = READERS.iter().find(|reader| reader.format == format);
@@ -111,7 +108,7 @@ impl<'a> SurfaceFile<'a> {
     /// The scans of all channels, one after another.
     ///
     /// # Errors
-    /// Of each: [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
+    /// Of each: [`ContentError::Unread`] where this channel cannot be read and others can; [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
     /// that no double holds, and for contradictions to what is declared.
     pub fn scans(self) -> impl Iterator<Item = Result<Scan>> {
         let Self { mut source, format, channels, declared } = self;
@@ -184,6 +181,9 @@ fn read(
     (number, mut channel): (usize, StoredChannel),
     declared: &ReadOptions,
 ) -> Result<Scan> {
+    if let StoredHeights::Unread(_) = channel.heights {
+        return Err(source.content(ContentError::Unread { channel: channel.line(number) }));
+    }
     if let Some(axes) = declared.axes {
         channel.orient(axes).map_err(|e| source.content(e))?;
     }
@@ -199,34 +199,47 @@ fn read(
     Scan::new(source.path(), format, (number, channel), heights, declared).map_err(|e| source.content(e))
 }
 
-/// A matrix or points.
+/// Matrices or points.
 fn of_text(
     source: &mut Source<'_>,
     format: Option<Format>,
     declared: &ReadOptions,
-) -> Result<(Format, StoredChannel)> {
+) -> Result<(Format, Vec<StoredChannel>)> {
     let length = source.length();
     let bytes = source.start(length)?;
-    let table = text::TextTable::read(&bytes, declared).map_err(|e| source.content(e))?;
-    let format = match format {
-        Some(format) => format,
-        None if table.columns == 3 && table.rows() > 3 => {
-            let ambiguous = ContentError::Ambiguous { lines: table.rows() };
-            // Numbers whose first two columns are all places of a grid, each once, are no heights.
-            let places = || points::is_full_grid(&table).then_some(Format::Xyz);
-            table.heading.format().or_else(places).ok_or(ambiguous).map_err(|e| source.content(e))?
-        }
-        None if table.is_profile() => {
-            return Err(source.content(ContentError::Profile { lines: table.rows() }));
-        }
-        None => Format::Text,
-    };
+    let maps = text::TextTable::read(&bytes, declared).map_err(|e| source.content(e))?;
     drop(bytes);
-    let channel = match format {
-        Format::Xyz => points::grid(&table, declared),
-        _ => text::matrix(table, declared),
+    let channel = |table: text::TextTable| {
+        let format = format.map_or_else(|| of_table(&table), Ok)?;
+        let channel = match format {
+            Format::Xyz => points::grid(&table, declared),
+            _ => text::matrix(table, declared),
+        };
+        Ok((format, channel?))
     };
-    Ok((format, channel.map_err(|e| source.content(e))?))
+    let mut channels = Vec::new();
+    let mut first = None;
+    for table in maps {
+        let name = table.heading.name.clone();
+        let read = channel(table).map_err(|e| source.content(e));
+        first = first.or(read.as_ref().ok().map(|(format, _)| *format));
+        channels.push(StoredChannel::listed(name, read.map(|(_, channel)| channel))?);
+    }
+    Ok((first.unwrap_or(Format::Text), channels))
+}
+
+/// Whether numbers are a matrix or points.
+fn of_table(table: &text::TextTable) -> Result<Format, ContentError> {
+    if table.columns == 3 && table.rows() > 3 {
+        // Numbers whose first two columns are all places of a grid, each once, are no heights.
+        let places = || points::is_full_grid(table).then_some(Format::Xyz);
+        let ambiguous = ContentError::Ambiguous { lines: table.rows() };
+        return table.heading.format().or_else(places).ok_or(ambiguous);
+    }
+    if table.is_profile() {
+        return Err(ContentError::Profile { lines: table.rows() });
+    }
+    Ok(Format::Text)
 }
 
 /// Fails for options that only text has a use for.

@@ -154,6 +154,14 @@ fn text_in_place(mut bytes: Vec<u8>) -> String {
 /// The error for an archive without a file of heights that is known.
 pub(crate) fn refused(members: &[Member]) -> ContentError {
     const SHOWN: usize = 8;
+    let remedy = "not read; export X3P, SDF, GWY or text with that program";
+    for (member, what) in
+        [("header.properties", "a JPK file (in an archive)"), ("index.xml", "a PLUX file of Sensofar")]
+    {
+        if members.iter().any(|m| m.name == member) {
+            return ContentError::Foreign { what, remedy };
+        }
+    }
     let mut names: Vec<String> = members.iter().take(SHOWN).map(|m| shortened(&m.name, 64)).collect();
     if members.len() > SHOWN {
         names.push(format!("{} more", members.len() - SHOWN));

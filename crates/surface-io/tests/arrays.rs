@@ -91,7 +91,10 @@ fn integers_are_no_lengths_without_a_scale() {
     let plain = Scan::from_bytes("a.h5", &bytes, &options(None)).unwrap();
     assert_eq!(plain.metadata().unit, None);
     let error = plain.map(&Preprocessing::default()).unwrap_err().to_string();
-    assert!(error.contains("unit of the heights is neither in the file nor given"), "{error}");
+    assert!(
+        error.contains("the file has int16 in nm and no scale: a count need not be 1 nm, height_scale says"),
+        "{error}"
+    );
     let scaled = Scan::from_bytes("a.h5", &bytes, &options(Some("0.5 nm"))).unwrap();
     let map = scaled.map(&Preprocessing::default()).unwrap();
     for (height, expected) in map.heights().iter().zip([1.0, 3.0, 2.0, 4.0]) {

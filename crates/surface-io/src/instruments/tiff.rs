@@ -8,12 +8,14 @@
 //! - **Size.** By ImageJ's `unit` (and `yunit`), pixels per unit in the tags of the resolution. Resolutions per inch, and those without that
 //!   description, are those of print or screens.
 //! - **Order.** The first row is the top one and y = 0; the orientations 2, 3 and 4 are turned, 5 to 8 are refused.
-//! - **Undefined points.** NaN.
+//! - **Undefined points.** NaN, and what GDAL's tag of no data says.
 //!
 //! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data, LZW, Deflate and `PackBits` in
-//! strips and tiles; not read is the XML of OME-TIFF.
+//! strips and tiles. Of OME's description the physical size of a pixel counts (<https://docs.openmicroscopy.org/ome-model>).
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, undefined_heights};
+use crate::channel::{
+    Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights,
+};
 use crate::error::{ContentError, Error, Place, Result};
 use crate::extent::Extent;
 use crate::format::Format;
@@ -22,6 +24,7 @@ use crate::number_type::{NumberType, exact};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::Source;
+use quick_xml::events::Event;
 use std::collections::HashMap;
 use std::io::{Read, Seek};
 use tiff::decoder::ifd::Value;
@@ -33,6 +36,8 @@ use tiff::{ColorType, TiffError, TiffResult};
 const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 /// Images in one file that are looked at.
 const MOST: usize = 1000;
+/// GDAL's mark of undefined points, as text.
+const NODATA: Tag = Tag::GdalNodata;
 /// Longest text or list in a directory, in bytes.
 const LONGEST: usize = 1 << 20;
 
@@ -122,11 +127,12 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     drop(decoder);
     // ImageJ describes a stack in its first image.
-    let description = ImageJ::of(pages.first().and_then(|page| page.description.as_deref()));
+    let text = pages.first().and_then(|page| page.description.as_deref());
+    let (image_j, microscope) = (ImageJ::of(text), text.map_or([None; 2], of_microscope));
     let alone = pages.len() == 1;
     let mut channels = Vec::new();
     for (number, page) in pages.into_iter().enumerate() {
-        if let Some(channel) = channel(source, number, &page, description.as_ref(), alone)? {
+        if let Some(channel) = channel(source, number, &page, (image_j.as_ref(), microscope), alone)? {
             channels.push(channel);
         }
     }
@@ -149,6 +155,8 @@ struct Page {
     resolution: [Option<f64>; 2],
     resolution_unit: u16,
     description: Option<String>,
+    /// The mark of undefined points that GDAL writes.
+    missing: Option<f64>,
 }
 
 impl Page {
@@ -176,7 +184,12 @@ impl Page {
             Some(Value::Ascii(text)) => Some(text),
             _ => None,
         };
+        let missing = match decoder.find_tag(NODATA)? {
+            Some(Value::Ascii(text)) => text.trim_matches(['\0', ' ']).parse().ok(),
+            _ => None,
+        };
         Ok(Self {
+            missing,
             size,
             bits,
             sample_format,
@@ -185,6 +198,29 @@ impl Page {
             resolution_unit: short(decoder, Tag::ResolutionUnit, 2)?,
             description,
         })
+    }
+}
+
+/// The sides of a pixel by OME's description; without a unit they are micrometres.
+fn of_microscope(description: &str) -> [Option<Extent>; 2] {
+    let mut reader = quick_xml::Reader::from_str(description);
+    loop {
+        match reader.read_event() {
+            Ok(Event::Start(element) | Event::Empty(element))
+                if element.local_name().as_ref() == "Pixels" =>
+            {
+                let text = |name: String| {
+                    let attribute = element.try_get_attribute(name.as_str()).ok()??;
+                    Some(attribute.value.to_string())
+                };
+                return ["X", "Y"].map(|axis| {
+                    let unit = text(format!("PhysicalSize{axis}Unit")).unwrap_or_else(|| "um".to_owned());
+                    Extent::of_cell(text(format!("PhysicalSize{axis}"))?.parse().ok()?, &unit)
+                });
+            }
+            Ok(Event::Eof) | Err(_) => return [None; 2],
+            Ok(_) => {}
+        }
     }
 }
 
@@ -251,7 +287,7 @@ fn channel(
     source: &Source<'_>,
     number: usize,
     page: &Page,
-    description: Option<&ImageJ>,
+    (description, microscope): (Option<&ImageJ>, [Option<Extent>; 2]),
     alone: bool,
 ) -> Result<Option<StoredChannel>> {
     let (columns, rows) = page.size;
@@ -284,13 +320,14 @@ fn channel(
     let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
     let (unit, scale, shift) = description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
     let held = Bytes::Held(Vec::new());
-    let raw = RawHeights { reversed, scale, shift, ..RawHeights::new(held, kind) };
+    let undefined = page.missing.map_or(Undefined::None, Undefined::Equal);
+    let raw = RawHeights { reversed, scale, shift, undefined, ..RawHeights::new(held, kind) };
     raw.check_scale(source)?;
     let image = Image { number, size: page.size, bytes: u64::from(bits / 8), raw };
     let heights = StoredHeights::Deferred(Box::new(move |source| image.read(source)));
     let details = format!("{}, row by row", kind.name());
     let channel = StoredChannel::of(heights, details, [rows as usize, columns as usize], unit);
-    let extent = description.map_or([None; 2], |description| description.extent(page));
+    let extent = description.map_or_else(|| microscope, |description| description.extent(page));
     let name = if alone { String::new() } else { format!("image {number}") };
     Ok(Some(StoredChannel { extent, ..channel }.named(&name)))
 }

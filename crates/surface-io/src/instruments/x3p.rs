@@ -5,9 +5,9 @@
 //! first, then along y: row j is y = j * increment, upwards, as in this crate. A height is increment * number + offset; the increment is 1
 //! where none is given. I and L are signed integers of 16 and 32 bits, F and D floats.
 //!
-//! Undefined points are NaN, empty in a list of numbers in `main.xml`, or zero bits of the member that `ValidPointsLink` names (lowest bit
+//! Undefined points are NaN, infinities, empty in a list of numbers in `main.xml`, or zero bits of the member that `ValidPointsLink` names (lowest bit
 //! first). Read: surfaces (`SUR`) on a regular grid in one layer. Not read: profiles, clouds of points, irregular grids, several layers,
-//! the rotation. Damage shows in the checksums of the archive; MD5 is not compared, as `SurfaceTopography` gives that of another member.
+//! a third axis that points downwards; another rotation is noted and not applied. An increment beside floats leaves the unit open. Damage shows in the checksums of the archive; MD5 is not compared, as `SurfaceTopography` gives that of another member.
 
 mod main_xml;
 mod write;
@@ -54,10 +54,22 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     drop(text);
     let ([columns, rows], number) = described(&main).map_err(|e| wrong(source, main_member, &e))?;
     let [x, y, z] = &main.axes;
+    let mut notes = Vec::new();
+    notes.extend(rotated(&main.rotation).map_err(|e| wrong(source, main_member, &e))?);
     let (scale, shift) = (length(&z.increment, 1.0), length(&z.offset, 0.0));
     let (Some(scale), Some(shift)) = (scale.filter(|scale| scale.abs() > 0.0), shift) else {
         return Err(wrong(source, main_member, "an increment along z other than 0, and an offset"));
     };
+    // The schema gives an increment to integers only, and readers disagree whether floats are multiplied by it.
+    let disputed = number.is_float() && (scale - 1.0).abs() > 0.0;
+    let (scale, unit) = if disputed { (1.0, StoredUnit::Unknown) } else { (scale, StoredUnit::written("m")) };
+    if disputed {
+        let increment = &z.increment;
+        notes.push(format!(
+            "heights are floats, which are metres, beside an increment of {increment}, by which some readers multiply them: say \
+             height_scale = \"1 m\" or height_scale = \"{increment} m\""
+        ));
+    }
     let folder = &main_member.name[..main_member.name.len() - MAIN.len()];
     let member = |link: &str| {
         let name = format!("{folder}{}", link.replace('\\', "/").trim_start_matches("./"));
@@ -91,8 +103,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let (x, y) = (x.cell(), y.cell());
     let read = move |source: &mut Source<'_>| numbers.read(source, [columns, rows], (scale, shift));
     let heights = StoredHeights::Deferred(Box::new(read));
-    let channel = StoredChannel::of(heights, details, [rows, columns], StoredUnit::written("m"));
-    Ok(vec![StoredChannel { extent: [x, y], ..channel }])
+    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
+    Ok(vec![StoredChannel { extent: [x, y], notes, ..channel }])
 }
 
 fn wrong(source: &Source<'_>, main: &Member, expected: &str) -> Error {
@@ -124,6 +136,28 @@ fn described(main: &Main) -> Result<([usize; 2], NumberType), String> {
         None | Some(0) => Err(format!("a surface of at least one point, found {columns} x {rows}")),
         Some(_) => Ok(([columns, rows], number)),
     }
+}
+
+/// What is said of the rotation of the axes, which is not applied.
+///
+/// # Errors
+/// What is expected instead of a third axis that does not point out of the surface.
+fn rotated(rotation: &[String; 9]) -> Result<Option<String>, String> {
+    let of =
+        |i: usize, j: usize| length(&rotation[3 * i + j], if i == j { 1.0 } else { 0.0 }).unwrap_or(f64::NAN);
+    let off =
+        (0..9).map(|k| (of(k / 3, k % 3) - if k % 4 == 0 { 1.0 } else { 0.0 }).abs()).fold(0.0, f64::max);
+    if of(2, 2).is_nan() || of(2, 2) < 0.5 {
+        return Err(format!(
+            "a third axis that points out of the surface, r33 is {} (hills would be valleys: turn the surface and write it anew)",
+            of(2, 2)
+        ));
+    }
+    let angle = of(1, 0).atan2(of(0, 0)).to_degrees();
+    let said = format!(
+        "the file says that its axes are rotated (by {angle:.4} degrees from x to y), which is not applied"
+    );
+    Ok((off > 1e-6 || off.is_nan()).then_some(said))
 }
 
 /// A number, or what is meant where there is none; `None` where it is no number.
@@ -164,6 +198,8 @@ impl Numbers {
                 let raw = RawHeights { scale, shift, ..RawHeights::new(bytes, *number) };
                 let mut heights = raw.read(source, rows, columns)?;
                 drop(raw);
+                // Writers put infinities where nothing was measured.
+                heights.iter_mut().filter(|h| h.is_infinite()).for_each(|h| *h = f64::NAN);
                 let Some(valid) = valid else { return Ok(heights) };
                 let bits = valid.unpack(source)?;
                 for (i, height) in heights.iter_mut().enumerate() {
