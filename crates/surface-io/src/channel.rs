@@ -468,6 +468,26 @@ pub(crate) fn chosen(
     })
 }
 
+/// Channels of one file that are listed: those of probe microscopes have dozens at most.
+const MOST: usize = 256;
+
+/// An error where a header lists more channels than files have: each takes more memory than its line in the header.
+pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) -> Result<()> {
+    if channels <= MOST {
+        return Ok(());
+    }
+    Err(source.wrong(offset, format!("at most {MOST} channels, found {channels}")))
+}
+
+/// Notes bytes behind the numbers of the last channel, which end at an offset.
+pub(crate) fn note_rest(channels: &mut [StoredChannel], source: &Source<'_>, end: u64) {
+    let rest = source.length().saturating_sub(end);
+    if rest > 0 {
+        let note = format!("{rest} bytes behind the last numbers that the header lists are not read");
+        channels.iter_mut().for_each(|channel| channel.note(&*note));
+    }
+}
+
 /// Heights have a length or no unit at all.
 pub(crate) fn check_unit(what: &'static str, unit: Option<&Unit>) -> Result<(), ContentError> {
     match unit.map(|u| (u, u.dimension())) {

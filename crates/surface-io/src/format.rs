@@ -36,11 +36,19 @@ pub enum Format {
     Opd,
     /// PLu, of Sensofar.
     Plu,
+    /// Igor binary wave, of Asylum Research and others.
+    Ibw,
+    /// NID, of Nanosurf.
+    Nid,
+    /// WSxM's images (STP, TOP).
+    Wsxm,
+    /// MI, of Molecular Imaging, Agilent and Keysight.
+    Mi,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 19] = [
         Self::Npy,
         Self::Text,
         Self::Xyz,
@@ -56,6 +64,10 @@ impl Format {
         Self::MetroPro,
         Self::Opd,
         Self::Plu,
+        Self::Ibw,
+        Self::Nid,
+        Self::Wsxm,
+        Self::Mi,
     ];
 
     /// The word that stands for it in scenes and on command lines.
@@ -80,6 +92,10 @@ impl Format {
             Self::MetroPro => ("metropro", "MetroPro (Zygo)"),
             Self::Opd => ("opd", "OPD (Wyko)"),
             Self::Plu => ("plu", "PLu (Sensofar)"),
+            Self::Ibw => ("ibw", "IBW (Igor)"),
+            Self::Nid => ("nid", "NID (Nanosurf)"),
+            Self::Wsxm => ("wsxm", "WSxM"),
+            Self::Mi => ("mi", "MI (Molecular Imaging)"),
         }
     }
 }

@@ -62,8 +62,7 @@ impl FromStr for Format {
 }
 
 /// All words of [`Format`].
-const FORMATS: &str =
-    "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd or plu";
+const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd, plu, ibw, nid, wsxm or mi";
 
 impl FromStr for Decimal {
     type Err = KeywordError;

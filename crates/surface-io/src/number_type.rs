@@ -48,6 +48,11 @@ impl NumberType {
         self.kind == Kind::Float
     }
 
+    /// Whether it is an integer with a sign.
+    pub(crate) fn is_signed(self) -> bool {
+        self.kind == Kind::Signed
+    }
+
     /// Type and bits, such as float32.
     pub(crate) fn name(self) -> String {
         let name = match self.kind {
