@@ -484,7 +484,9 @@ pub(crate) fn note_rest(channels: &mut [StoredChannel], source: &Source<'_>, end
     let rest = source.length().saturating_sub(end);
     if rest > 0 {
         let note = format!("{rest} bytes behind the last numbers that the header lists are not read");
-        channels.iter_mut().for_each(|channel| channel.note(&*note));
+        for channel in channels {
+            channel.note(&*note);
+        }
     }
 }
 

@@ -63,6 +63,11 @@ impl NumberType {
         format!("{name}{}", 8 * self.size)
     }
 
+    /// How many values a number of this size has.
+    pub(crate) fn values(self) -> f64 {
+        256_f64.powi(self.size.into())
+    }
+
     /// Bytes of one number.
     pub(crate) fn bytes(self) -> usize {
         usize::from(self.size)

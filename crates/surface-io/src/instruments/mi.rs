@@ -56,15 +56,15 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         let raw = RawHeights {
             reversed: [false, true],
             // All numbers together make the range from its negative to itself.
-            scale: 2.0 * range / 256_f64.powi(number.bytes() as i32),
+            scale: 2.0 * range / number.values(),
             ..RawHeights::at(header.end.saturating_add((i as u64).saturating_mul(length)), number)
         };
         let unit = StoredUnit::written(map.text("bufferunit").unwrap_or_default());
         let mut channel = StoredChannel::new(source, raw, shape, unit, extent)?;
         // Maps of one name differ by it.
         if let Some(direction) = map.text("direction") {
-            channel.details +=
-                &format!(", {}", direction.to_lowercase().chars().take(32).collect::<String>());
+            channel.details.push_str(", ");
+            channel.details.extend(direction.to_lowercase().chars().take(32));
         }
         for key in ["reversex", "reversey", "reversez"] {
             if about.text(key) == Some("TRUE") {

@@ -105,7 +105,7 @@ fn channel(
     let (range, low) = (wanted("dim2range")?, wanted("dim2min")?);
     let middle = if number.is_signed() { low + range / 2.0 } else { low };
     let shift = if middle.abs() <= PRINTED * range.abs() { 0.0 } else { middle };
-    let scale = range / 256_f64.powi(number.bytes() as i32);
+    let scale = range / number.values();
     let raw = RawHeights { reversed: [false, true], scale, shift, ..RawHeights::at(at, number) };
     let side = |range: &str, unit: &str| map.side(range, map.text(unit)?);
     let extent = [side("dim0range", "dim0unit"), side("dim1range", "dim1unit")];

@@ -28,6 +28,7 @@ use crate::number_type::{NumberType, exact};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::Source;
+use directory::Directories;
 use jpk::Jpk;
 use std::collections::HashMap;
 use std::io::{Read, Seek};
@@ -69,14 +70,13 @@ fn unreadable(said: &dyn std::fmt::Display) -> ContentError {
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let entries = directory::check(source)?;
-    if let Some(channel) = park::channel(source, &entries)? {
+    let tags = Directories::read(source)?;
+    if let Some(channel) = park::channel(source, &tags)? {
         return Ok(vec![channel]);
     }
     let path = source.path().to_owned();
     let mut pages = Vec::new();
     let mut decoder = open(source)?;
-    let grid = jpk::extent(&mut decoder);
     loop {
         let mut page = Page::of(&mut decoder).map_err(|e| Error::content(&path)(unreadable(&e)))?;
         if !pages.is_empty() {
@@ -95,10 +95,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let alone = pages.len() == 1;
     let mut channels = Vec::new();
     for (number, page) in pages.into_iter().enumerate() {
-        if let Some(channel) = channel(source, number, &page, description.as_ref(), alone)? {
-            let extent = if page.jpk.is_some() { grid } else { channel.extent };
-            channels.push(StoredChannel { extent, ..channel });
-        }
+        let jpk = if page.bits.is_some() { Jpk::of(source, &tags, number)? } else { None };
+        channels.extend(channel(source, number, &page, description.as_ref(), (jpk, alone))?);
     }
     if channels.is_empty() {
         let what = "a TIFF picture of 8 bits, in colours or with white as zero";
@@ -119,7 +117,6 @@ struct Page {
     resolution: [Option<f64>; 2],
     resolution_unit: u16,
     description: Option<String>,
-    jpk: Option<Jpk>,
 }
 
 impl Page {
@@ -155,7 +152,6 @@ impl Page {
             resolution: [ratio(decoder, Tag::XResolution)?, ratio(decoder, Tag::YResolution)?],
             resolution_unit: short(decoder, Tag::ResolutionUnit, 2)?,
             description,
-            jpk: if bits.is_some() { Jpk::of(decoder) } else { None },
         })
     }
 }
@@ -224,7 +220,7 @@ fn channel(
     number: usize,
     page: &Page,
     description: Option<&ImageJ>,
-    alone: bool,
+    (jpk, alone): (Option<Jpk>, bool),
 ) -> Result<Option<StoredChannel>> {
     let (columns, rows) = page.size;
     let Some(bits) = page.bits else { return Ok(None) };
@@ -254,12 +250,12 @@ fn channel(
     };
     // Byte order and packing are the other crate's; what it decodes has this type.
     let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
-    let (unit, scale, shift) = match &page.jpk {
+    let (unit, scale, shift) = match &jpk {
         Some(jpk) => (jpk.unit.clone(), jpk.scale, jpk.shift),
         None => description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights),
     };
     // The first row is the bottom of JPK's image.
-    let reversed = match &page.jpk {
+    let reversed = match &jpk {
         Some(jpk) if !jpk.reflected => [reversed[0], !reversed[1]],
         _ => reversed,
     };
@@ -270,9 +266,12 @@ fn channel(
     let heights = StoredHeights::Deferred(Box::new(move |source| image.read(source)));
     let details = format!("{}, row by row", kind.name());
     let channel = StoredChannel::of(heights, details, [rows as usize, columns as usize], unit);
-    let extent = description.map_or([None; 2], |description| description.extent(page));
-    let name = match &page.jpk {
-        Some(jpk) => jpk.name.clone(),
+    let extent = match &jpk {
+        Some(jpk) => jpk.extent,
+        None => description.map_or([None; 2], |description| description.extent(page)),
+    };
+    let name = match jpk {
+        Some(jpk) => jpk.name,
         None if alone => String::new(),
         None => format!("image {number}"),
     };

@@ -28,8 +28,8 @@ pub fn files() -> Vec<Small> {
 }
 
 fn file(maps: &[(&str, &str)], kind: &str, data: &[u8]) -> Vec<u8> {
-    let mut text = String::new();
-    let mut line = |key: &str, value: &str| text += &format!("{key:14}{value}\n");
+    let mut text = Vec::new();
+    let mut line = |key: &str, value: &str| text.extend(format!("{key:14}{value}\n").into_bytes());
     for (key, value) in [
         ("fileType", "Image"),
         ("version", "PicoView 0x10c04"),
@@ -54,5 +54,5 @@ fn file(maps: &[(&str, &str)], kind: &str, data: &[u8]) -> Vec<u8> {
         }
     }
     line("data", kind);
-    [text.as_bytes(), data].concat()
+    [&text[..], data].concat()
 }

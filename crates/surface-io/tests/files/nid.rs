@@ -43,12 +43,8 @@ fn map(unit: &str, range: f64, low: f64, bits: u8, sign: &str) -> String {
 }
 
 fn file(maps: &[&str], data: &[u8]) -> Vec<u8> {
-    let mut text = "[DataSet]\r\nVersion=2\r\nGroupCount=1\r\nGr0-Count=8\r\n".to_owned();
-    for i in 0..maps.len() {
-        text += &format!("Gr0-Ch{}=DataSet-0:{i}\r\n", 2 * i);
-    }
-    for (i, map) in maps.iter().enumerate() {
-        text += &format!("\r\n[DataSet-0:{i}]\r\n{map}");
-    }
-    [text.as_bytes(), b"\r\n#!", data].concat()
+    let mut text = vec!["[DataSet]\r\nVersion=2\r\nGroupCount=1\r\nGr0-Count=8\r\n".to_owned()];
+    text.extend((0..maps.len()).map(|i| format!("Gr0-Ch{}=DataSet-0:{i}\r\n", 2 * i)));
+    text.extend(maps.iter().enumerate().map(|(i, map)| format!("\r\n[DataSet-0:{i}]\r\n{map}")));
+    [text.concat().as_bytes(), b"\r\n#!", data].concat()
 }

@@ -7,7 +7,7 @@
 //!
 //! Not read: line profiles, spectra, logarithms and squares, the picture.
 
-use super::directory::Entry;
+use super::directory::Directories;
 use crate::channel::{RawHeights, StoredChannel, StoredUnit};
 use crate::error::Result;
 use crate::extent::Extent;
@@ -16,12 +16,14 @@ use crate::number_type::NumberType;
 use crate::source::Source;
 
 /// Tags, and the number in the first of them.
-const MAGIC: (u64, u64) = (50432, 0x0e03_1301);
-const VERSION: u64 = 50433;
-const DATA: u64 = 50434;
-const HEADER: u64 = 50435;
+const MARK: u16 = 50432;
+const MAGIC: u32 = 0x0e03_1301;
+const VERSION: u16 = 50433;
+const DATA: u16 = 50434;
+const HEADER: u16 = 50435;
 /// The first version, and the second, which has types of numbers.
-const VERSIONS: [u64; 2] = [0x0100_0001, 0x0100_0002];
+const FIRST: u32 = 0x0100_0001;
+const SECOND: u32 = 0x0100_0002;
 /// Bytes of the header that are read.
 const LENGTH: u64 = 356;
 
@@ -46,14 +48,13 @@ header! {
 }
 
 /// The map of a file of this kind; `None` for another TIFF.
-pub(super) fn channel(source: &mut Source<'_>, entries: &[Entry]) -> Result<Option<StoredChannel>> {
-    let find = |tag: u64| entries.iter().find(|entry| entry.tag == tag).map(|entry| entry.values);
-    if find(MAGIC.0).is_none_or(|(number, _)| number != MAGIC.1) {
+pub(super) fn channel(source: &mut Source<'_>, tags: &Directories) -> Result<Option<StoredChannel>> {
+    if tags.number(source, 0, MARK)? != Some(MAGIC.into()) {
         return Ok(None);
     }
-    let version = find(VERSION).map_or(0, |(version, _)| version);
-    let (Some((at, length)), Some((data, bytes)), true) =
-        (find(HEADER), find(DATA), VERSIONS.contains(&version))
+    let version = tags.number(source, 0, VERSION)?.map_or(0, |version| version as u32);
+    let (Some((at, length)), Some((data, bytes)), FIRST | SECOND) =
+        (tags.bytes(0, HEADER), tags.bytes(0, DATA), version)
     else {
         let expected = format!("Park's version 1 or 2, a header and data, found version {version:#x}");
         return Err(source.wrong(0, expected));
@@ -69,8 +70,8 @@ pub(super) fn channel(source: &mut Source<'_>, entries: &[Entry]) -> Result<Opti
             format!("a map, no line, logarithms or squares, found {:?}", (header.kind, header.other)),
         );
     }
-    let number = match (version == VERSIONS[0], header.number) {
-        (true, _) | (_, 0) => NumberType::I16,
+    let number = match (version, header.number) {
+        (FIRST, _) | (_, 0) => NumberType::I16,
         (_, 1) => NumberType::I32,
         (_, 2) => NumberType::F32,
         (_, other) => return wrong(348, format!("a type of numbers from 0 to 2, found {other}")),
