@@ -1,16 +1,19 @@
-//! IBW, the binary waves of Igor Pro, as Asylum Research's microscopes write them: headers of 64 and 320 bytes, the numbers, and behind them a
-//! formula, a note, units and labels.
+//! IBW, the binary waves of Igor Pro, as Asylum Research's microscopes write them: headers of 64 and 320
+//! bytes, the numbers, and behind them a formula, a note, units and labels.
 //!
-//! After WaveMetrics' Technical Note 3 (Igor binary format), Gwyddion's `igorfile.c` and `SurfaceTopography`'s `IO/IBW.py` (which reads by
-//! igor2). A file is told by its version and the checksum of its headers, either byte order. x runs fastest, then y, then the layers:
-//! each layer is a channel, named by its label. The first line is the bottom of the image, so the last row. Values are as they are, in the
+//! After WaveMetrics' Technical Note 3 (Igor binary format), Gwyddion's `igorfile.c` and
+//! `SurfaceTopography`'s `IO/IBW.py` (which reads by igor2). A file is told by its version and the checksum
+//! of its headers, either byte order. x runs fastest, then y, then the layers: each layer is a channel, named
+//! by its label. The first line is the bottom of the image, so the last row. Values are as they are, in the
 //! unit of the wave; a cell is `sfA` wide in the unit of its axis. Undefined are NaN.
 //!
-//! - **Asylum** (the file ends with `MFP3D` or `Force`). The unit of the wave is that of the heights only: layers whose label does not begin with
-//!   `Height` or `ZSensor` hold amplitudes, phases or voltages, and are no heights (Gwyddion tells units by the same labels).
+//! - **Asylum** (the file ends with `MFP3D` or `Force`, or labels end with `Trace` or `Retrace`). The unit of
+//!   the wave is that of the heights only: layers whose label does not begin with `Height` or `ZSensor` hold
+//!   amplitudes, phases or voltages, and are no heights (Gwyddion tells units by the same labels).
 //! - **Other waves.** The unit is that of all layers.
 //!
-//! Not read: versions 1 to 3, whose waves have one dimension; complex numbers, texts, waves of four dimensions; the note.
+//! Not read: versions 1 to 3, whose waves have one dimension; complex numbers, texts, waves of four
+//! dimensions; the note.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number};
 use crate::error::Result;
@@ -28,6 +31,8 @@ const WAVE: u64 = 320;
 const LABEL: u64 = 32;
 /// Last bytes of a file of Asylum's programs.
 const ASYLUM: [&[u8; 5]; 2] = [b"MFP3D", b"Force"];
+/// Ends of their labels.
+const DIRECTIONS: [&str; 2] = ["Trace", "Retrace"];
 /// Beginnings of labels of heights in such files.
 const HEIGHTS: [&str; 2] = ["Height", "ZSensor"];
 
@@ -83,20 +88,24 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         return Err(source.wrong(132, expected));
     }
     check_number(source, 140, layers as usize)?;
-    let (letter, size) = match header.kind & !0x40 {
-        2 => (b'f', 4),
-        4 => (b'f', 8),
-        kind @ (8 | 0x10 | 0x20 | 0x80) => {
-            (if header.kind & 0x40 == 0 { b'i' } else { b'u' }, if kind == 0x80 { 8 } else { kind as u8 / 8 })
-        }
-        _ => return Err(source.wrong(80, format!("real numbers, found the type {:#x}", header.kind))),
+    let letter = if header.kind & 0x40 == 0 { b'i' } else { b'u' };
+    let number = match header.kind {
+        2 => Some((b'f', 4)),
+        4 => Some((b'f', 8)),
+        8 | 0x48 => Some((letter, 1)),
+        0x10 | 0x50 => Some((letter, 2)),
+        0x20 | 0x60 => Some((letter, 4)),
+        0x80 | 0xc0 => Some((letter, 8)),
+        _ => None,
     };
-    let number = NumberType::new(letter, size, order == ByteOrder::Little);
-    let number = number.ok_or_else(|| source.wrong(80, "a type of numbers"))?;
+    let number = number.and_then(|(letter, size)| NumberType::new(letter, size, order == ByteOrder::Little));
+    let Some(number) = number else {
+        return Err(source.wrong(80, format!("real numbers, found the type {:#x}", header.kind)));
+    };
+    let size = number.bytes() as u64;
     let points = [columns, rows, layers].into_iter().try_fold(1, |n: u64, count| n.checked_mul(count.into()));
-    let bytes = points
-        .and_then(|points| points.checked_mul(size.into()))
-        .filter(|_| points == Some(header.points.into()));
+    let bytes =
+        points.and_then(|points| points.checked_mul(size)).filter(|_| points == Some(header.points.into()));
     if bytes.is_none_or(|bytes| bytes.checked_add(WAVE) != Some(header.wave.into())) {
         let expected = format!(
             "{WAVE} bytes and {columns} x {rows} x {layers} numbers of {size} bytes, found {} bytes and {} numbers",
@@ -116,17 +125,20 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         at += long;
     }
     at += u64::from(header.labels[0]) + u64::from(header.labels[1]);
-    let end = source.bytes(source.length() - 5, 5)?;
-    let asylum = ASYLUM.iter().any(|mark| end == *mark);
-    let one = u64::from(columns) * u64::from(rows) * u64::from(size);
-    let mut found = Vec::new();
+    // The first label is that of the axis.
+    let mut labels = Vec::new();
     for layer in 0..u64::from(layers) {
-        // The first label is that of the axis.
-        let label = if (layer + 2) * LABEL <= header.labels[2].into() {
-            source.get::<Text<32>>(order, at + (layer + 1) * LABEL)?.to_string()
-        } else {
-            String::new()
-        };
+        let is_there = (layer + 2) * LABEL <= header.labels[2].into();
+        let label =
+            if is_there { source.get(order, at + (layer + 1) * LABEL)? } else { Text::<32>::default() };
+        labels.push(label.to_string());
+    }
+    let end = source.bytes(source.length() - 5, 5)?;
+    let asylum = ASYLUM.iter().any(|mark| end == *mark)
+        || labels.iter().any(|label| DIRECTIONS.iter().any(|word| label.ends_with(word)));
+    let one = u64::from(columns) * u64::from(rows) * size;
+    let mut found = Vec::new();
+    for (layer, label) in (0..).zip(labels) {
         let unit = match StoredUnit::written(&units[0]) {
             _ if asylum && !HEIGHTS.iter().any(|name| label.starts_with(name)) => StoredUnit::NoHeights(None),
             unit => unit,

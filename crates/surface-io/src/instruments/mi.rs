@@ -1,15 +1,17 @@
-//! MI, of Molecular Imaging's, Agilent's and Keysight's probe microscopes: a text header of keys in 14 columns and values, and the maps
-//! one after another.
+//! MI, of Molecular Imaging's, Agilent's and Keysight's probe microscopes: a text header of keys in 14
+//! columns and values, and the maps one after another.
 //!
-//! After Gwyddion's `mifile.c`, which C. Anderson of Molecular Imaging wrote, and `SurfaceTopography`'s `IO/MI.py`. `bufferLabel` begins the
-//! entries of a map; the line `data` ends the header and says the type: little-endian int16 (`BINARY`, nothing) or int32 (`BINARY_32`). A
-//! height is `bufferRange * number / 2^15` (`2^31`) in `bufferUnit`: the range contains `zSensitivity`, the volts of the converter and the
-//! unit already. Values in volts are no heights. `xLength` and `yLength` are metres.
+//! After Gwyddion's `mifile.c`, which C. Anderson of Molecular Imaging wrote, and `SurfaceTopography`'s
+//! `IO/MI.py`. `bufferLabel` begins the entries of a map; the line `data` ends the header and says the type:
+//! little-endian int16 (`BINARY`, nothing) or int32 (`BINARY_32`). A height is `bufferRange * number / 2^15`
+//! (`2^31`) in `bufferUnit`: the range contains `zSensitivity` already (in a real file 2.9025 um are 1.35e-8
+//! m/V times the 215 V of the converter). Values in volts are no heights, nor are amplitudes and deflections
+//! in metres. `xLength` and `yLength` are metres.
 //!
-//! The first line of the file is the bottom of the image, so the last row, whatever `scanUp` says. Not read: spectra, data as text;
-//! `reverseX` and its like, which no reader uses: a note says where one is set.
+//! The first line of the file is the bottom of the image, so the last row, whatever `scanUp` says. Not read:
+//! spectra, data as text; `reverseX` and its like, which no reader uses: a note says where one is set.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number, note_rest};
+use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number, check_rest};
 use crate::entries::{Entries, HeaderLine, Section};
 use crate::error::Result;
 use crate::format::Format;
@@ -52,6 +54,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let length = length.ok_or_else(|| about.wrong("ypixels", "fewer points"))? as u64;
     let extent = ["xlength", "ylength"].map(|key| about.side(key, "m"));
     let one = |i: usize, map: &Section| {
+        let name = map.text("bufferlabel").unwrap_or_default();
         let range = map.number("bufferrange")?.ok_or_else(|| map.wrong("bufferrange", "a number"))?;
         let raw = RawHeights {
             reversed: [false, true],
@@ -59,7 +62,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             scale: 2.0 * range / number.values(),
             ..RawHeights::at(header.end.saturating_add((i as u64).saturating_mul(length)), number)
         };
-        let unit = StoredUnit::written(map.text("bufferunit").unwrap_or_default());
+        let unit = StoredUnit::of_signal(name, map.text("bufferunit").unwrap_or_default());
         let mut channel = StoredChannel::new(source, raw, shape, unit, extent)?;
         // Maps of one name differ by it.
         if let Some(direction) = map.text("direction") {
@@ -71,12 +74,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
                 channel.note(format!("the file says {key} TRUE, which is not used"));
             }
         }
-        Ok(channel.named(map.text("bufferlabel").unwrap_or_default()))
+        Ok(channel.named(name))
     };
     let name = |map: &Section| map.text("bufferlabel").map(str::to_owned);
     let found = maps.iter().enumerate().map(|(i, map)| StoredChannel::listed(name(map), one(i, map)));
     let mut found = found.collect::<Result<Vec<_>>>()?;
-    note_rest(&mut found, source, header.end.saturating_add(length.saturating_mul(maps.len() as u64)));
+    let end = header.end.saturating_add(length.saturating_mul(maps.len() as u64));
+    check_rest(&mut found, source, end, shape[1].saturating_mul(number.bytes()))?;
     Ok(found)
 }
 

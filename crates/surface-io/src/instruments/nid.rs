@@ -1,16 +1,19 @@
-//! NID and EZD, of Nanosurf's probe microscopes: a text header of lines `Key=value` in sections `[Name]`, the mark `#!`, and the maps one
-//! after another.
+//! NID and EZD, of Nanosurf's probe microscopes: a text header of lines `Key=value` in sections `[Name]`, the
+//! mark `#!`, and the maps one after another.
 //!
-//! After Gwyddion's `ezdfile.c` and `SurfaceTopography`'s `IO/EZD.py`. `Gr0-Ch1=DataSet-0:1` in `[DataSet]` names the section of channel 1 of
-//! group 0; maps follow one another by group and channel. All integers of `SaveBits` bits together make the range from `Dim2Min` to `Dim2Min` +
-//! `Dim2Range`: a height is `Dim2Range / 2^bits * number + shift`, where the shift is that of the range from one about 0 (from 0 for unsigned
-//! integers), as in Gwyddion; `SurfaceTopography` leaves it out. A shift that is 0 within the six digits of the header is 0.
+//! After Gwyddion's `ezdfile.c` and `SurfaceTopography`'s `IO/EZD.py`. `Gr0-Ch1=DataSet-0:1` in `[DataSet]`
+//! names the section of channel 1 of group 0; maps follow one another by group and channel. All integers of
+//! `SaveBits` bits together make the range from `Dim2Min` to `Dim2Min` + `Dim2Range`: a height is `Dim2Range
+//! / 2^bits * number + shift`, where the shift is that of the range from one about 0 (from 0 for unsigned
+//! integers), as in Gwyddion; `SurfaceTopography` leaves it out. A shift that is 0 within the six digits of
+//! the header is 0.
 //!
-//! The first line of the file is the bottom of the image, so the last row, whatever `Scan direction` says. `Dim0Range` and `Dim1Range`
-//! are the sides; without two sides that are lengths (spectra) values are no heights. Lines behind `CurLine` were not measured: a note
+//! The first line of the file is the bottom of the image, so the last row, whatever `Scan direction` says.
+//! `Dim0Range` and `Dim1Range` are the sides; without two sides that are lengths (spectra) values are no
+//! heights, nor are amplitudes and deflections in metres. Lines behind `CurLine` were not measured: a note
 //! says so. Not read: data that are not `Binary`, the calibration (the ranges contain it).
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number, note_rest};
+use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number, check_rest};
 use crate::entries::{Entries, HeaderLine, Section};
 use crate::error::Result;
 use crate::format::Format;
@@ -44,7 +47,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     check_number(source, 0, maps.len())?;
     maps.sort_by_key(|map| map.0);
     let mut at = (end + MARK.len()) as u64;
-    let mut channels = Vec::new();
+    let (mut channels, mut line_bytes) = (Vec::new(), 1);
     for (_, key, name) in maps {
         let map = header.sections().iter().find(|section| section.name == name.to_lowercase());
         // Where the others are is not known without it.
@@ -57,9 +60,10 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         );
         let channel = channel(source, map, at, shape, number).map(|channel| channel.named(&title));
         channels.push(StoredChannel::listed(Some(title), channel)?);
+        line_bytes = shape[1].saturating_mul(number.bytes());
         at = at.checked_add(length).ok_or_else(|| map.wrong("points", "fewer points"))?;
     }
-    note_rest(&mut channels, source, at);
+    check_rest(&mut channels, source, at, line_bytes)?;
     Ok(channels)
 }
 
@@ -110,7 +114,7 @@ fn channel(
     let side = |range: &str, unit: &str| map.side(range, map.text(unit)?);
     let extent = [side("dim0range", "dim0unit"), side("dim1range", "dim1unit")];
     let unit = match (map.text("dim2unit").unwrap_or_default(), extent) {
-        (unit, [Some(_), Some(_)]) => StoredUnit::written(unit),
+        (unit, [Some(_), Some(_)]) => StoredUnit::of_signal(map.text("dim2name").unwrap_or_default(), unit),
         (unit, _) => StoredUnit::NoHeights(Some(unit.to_owned()).filter(|unit| !unit.is_empty())),
     };
     let mut channel = StoredChannel::new(source, raw, shape, unit, extent)?;

@@ -1,17 +1,21 @@
-//! WSxM's images of probe microscopes (STP, TOP, CUR): a text header of lines `Key: value` in sections `[Name]`, and one map behind it.
+//! WSxM's images of probe microscopes (STP, TOP): a text header of lines `Key: value` in sections
+//! `[Name]`, and one map behind it.
 //!
-//! After Gwyddion's `wsxmfile.c` and `SurfaceTopography`'s `IO/WSXM.py`. Numbers are little-endian, of `Image Data Type` (int16 where there is
-//! none), row by row. Doubles and floats are heights in the unit of `Z Amplitude`; an integer is worth `Z Amplitude` over `Maximum` less
-//! `Minimum`, which are integers of the file. Gwyddion makes the range of all numbers the amplitude instead: the same within the digits that
-//! the header prints. Heights are not counted from the smallest one.
+//! After Gwyddion's `wsxmfile.c` and `SurfaceTopography`'s `IO/WSXM.py`. Numbers are little-endian, of `Image
+//! Data Type` (int16 where there is none), row by row. Doubles and floats are heights in the unit of `Z
+//! Amplitude`; an integer is worth `Z Amplitude` over `Maximum` less `Minimum`, which are integers of the
+//! file. Gwyddion makes the range of all numbers the amplitude instead: the same within the digits that the
+//! header prints. Heights are not counted from the smallest one: so the doubles and the integers of one map
+//! are the same.
 //!
-//! The first number is the last of the last row: both readers turn the image by half a turn. The header ends at its last line, whatever
-//! `Image header size` says (some programs miscount it). `X Amplitude` and `Y Amplitude` are the sides. A `Z Amplitude` that is no length
-//! makes no heights.
+//! The first number is the last of the last row: both readers turn the image by half a turn. The header ends
+//! at its last line, whatever `Image header size` says (some programs miscount it). `X Amplitude` and `Y
+//! Amplitude` are the sides. A `Z Amplitude` that is no length makes no heights.
 //!
-//! Not read: curves, movies, the offsets and the calibration of the scanner (`Z Amplitude` contains it).
+//! Not read: curves, movies, the offsets and the calibration of the scanner, which `Z Amplitude` contains: in
+//! a real file 18.8851 nm are 973 counts of 20 V / 2^16 at a gain of 3 and 21.2 nm/V.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, note_rest};
+use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_rest};
 use crate::entries::{Entries, HeaderLine, number_and_text};
 use crate::error::Result;
 use crate::extent::Extent;
@@ -69,17 +73,19 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         (Some((height, _)), Some((range, _))) => height / range,
         (Some(_), None) => return Err(other.wrong("maximum", "Maximum and Minimum of the integers")),
     };
-    let unit = amplitude.map_or(StoredUnit::Unknown, |(_, unit)| StoredUnit::written(unit));
+    let name = general.text("acquisition channel").unwrap_or_default();
+    let unit = amplitude.map_or(StoredUnit::Unknown, |(_, unit)| StoredUnit::of_signal(name, unit));
     let side = |key: &str| control.length(key).filter(|side| side.value() > 0.0).map(Extent::Side);
     let raw = RawHeights { reversed: [true; 2], scale, ..RawHeights::at(header.end, number) };
     let shape @ [rows, columns] = [general.whole("number of rows")?, general.whole("number of columns")?];
     let extent = [side("x amplitude"), side("y amplitude")];
     let channel = StoredChannel::new(source, raw, shape, unit, extent)?;
-    let mut channels = [channel.named(general.text("acquisition channel").unwrap_or_default())];
+    let mut channels = [channel.named(name)];
     if amplitude.is_none() {
         channels[0].note("no Z Amplitude with a number: the numbers of the file as they stand");
     }
-    note_rest(&mut channels, source, header.end + (rows * columns * number.bytes()) as u64);
+    let line = columns * number.bytes();
+    check_rest(&mut channels, source, header.end + (rows * line) as u64, line)?;
     Ok(channels.into())
 }
 

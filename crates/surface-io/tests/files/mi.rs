@@ -3,13 +3,13 @@
 use super::Small;
 
 pub fn files() -> Vec<Small> {
-    // Volts, and heights of which 2^31 are 3 um; the first line is the last row.
+    // An amplitude, and heights of which 2^31 are 3 um; the first line is the last row.
     let words = [-2_147_483_648_i32, 0, 1 << 30, 3, -4, 5];
     let data: Vec<u8> = words.iter().chain(&words).flat_map(|n| n.to_le_bytes()).collect();
     let step = 3e-6 / 2_147_483_648.0;
     let wide = Small {
         name: "mi",
-        bytes: file(&[("Deflection", "V"), ("Topography", "um")], "BINARY_32", &data),
+        bytes: file(&[("Amplitude", "nm"), ("Topography", "um")], "BINARY_32", &data),
         number: 1,
         shape: [3, 2],
         size: Some([2e-5, 1e-5]),

@@ -1,8 +1,11 @@
 //! Private tags of JPK's microscopes: what the numbers of an image mean, and the size of the grid.
 //!
-//! After Gwyddion's `jpkscan.c` and `jpk.h`, which S. Neumann of JPK wrote, and `SurfaceTopography`'s `IO/JPK.py`: of the scalings of an image,
-//! the default one makes `multiplier * number + offset` in its unit, where it is linear. The first row of the file is the bottom of the image,
-//! so the last row, unless the grid is reflected (Gwyddion). The sides are metres, in the first directory.
+//! After Gwyddion's `jpkscan.c` and `jpk.h`, which S. Neumann of JPK wrote, and `SurfaceTopography`'s
+//! `IO/JPK.py`: of the scalings of an image, the default one makes `multiplier * number + offset` in its
+//! unit, where it is linear. The first row of the file is the bottom of the image, so the last row, unless
+//! the grid is reflected (Gwyddion). The sides are metres, in the first directory. Amplitudes and deflections
+//! in metres are no heights. The sums of six images of AFMReader (<https://github.com/AFM-SPM/AFMReader>,
+//! `tests/test_jpk.py`) agree.
 
 use super::directory::Directories;
 use crate::channel::StoredUnit;
@@ -64,7 +67,7 @@ impl Jpk {
             let offset = tags.number(source, image, first + OFFSET)?;
             calibration = match (tags.text(source, image, first + TYPE)?.as_deref(), multiplier, offset) {
                 (Some("LinearScaling"), Some(scale), Some(shift)) => {
-                    (StoredUnit::written(&unit), scale, shift)
+                    (StoredUnit::of_signal(&name, &unit), scale, shift)
                 }
                 _ => (StoredUnit::NoHeights(Some("a scaling that is not linear".into())), 1.0, 0.0),
             };

@@ -1,9 +1,11 @@
 //! TIFF of Park Systems' (PSIA's) microscopes: beside a picture, tags hold one map and its header.
 //!
-//! After Gwyddion's `psia.c` and `SurfaceTopography`'s `IO/PS.py`. A height is `gain * (scale * number + offset)` in the unit of the data (the
-//! scale is 1, or 0 for 1), as in Gwyddion; `SurfaceTopography` leaves the offset out. Numbers are little-endian int16, from the second version
-//! on also int32 or float32, row by row; The sides are micrometres. The first row of the file is the bottom of the image, so the last
-//! row. A fast axis along y is a note: Gwyddion turns such a map by a quarter turn.
+//! After Gwyddion's `psia.c` and `SurfaceTopography`'s `IO/PS.py`. A height is `gain * (scale * number +
+//! offset)` in the unit of the data, where that is a length (a scale of 0 is taken for 1 and noted), as in
+//! Gwyddion; `SurfaceTopography` leaves the offset out. Numbers are little-endian int16, from the second
+//! version on also int32 or float32, row by row. The sides are micrometres. The first row of the file is the
+//! bottom of the image, so the last row. A fast axis along y is a note: Gwyddion turns such a map by a
+//! quarter turn.
 //!
 //! Not read: line profiles, spectra, logarithms and squares, the picture.
 
@@ -88,8 +90,12 @@ pub(super) fn channel(source: &mut Source<'_>, tags: &Directories) -> Result<Opt
     let raw = RawHeights { reversed: [false, true], scale, shift, ..RawHeights::at(data, number) };
     let shape = [header.rows as usize, header.columns as usize];
     let extent = header.side.map(|side| Extent::of_side(side, "um"));
-    let channel = StoredChannel::new(source, raw, shape, StoredUnit::written(&header.unit), extent)?;
+    let unit = StoredUnit::of_signal(&header.name, &header.unit);
+    let channel = StoredChannel::new(source, raw, shape, unit, extent)?;
     let mut channel = channel.named(&header.name);
+    if header.scale.abs() <= 0.0 {
+        channel.note("the file says a scale of 0, which is taken for 1");
+    }
     if header.swapped != 0 {
         channel.note("the fast axis of the scan was y: other readers turn this map by a quarter turn");
     }
