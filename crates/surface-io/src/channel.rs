@@ -40,6 +40,22 @@ impl StoredUnit {
     }
 }
 
+/// Words in names of signals of probe microscopes that are no heights, in metres neither.
+const SIGNALS: [&str; 3] = ["amplitude", "deflection", "error"];
+
+impl StoredUnit {
+    /// The unit of a signal of a probe microscope: what the cantilever does is no height, though it may be a length.
+    pub(crate) fn of_signal(name: &str, unit: &str) -> Self {
+        let name = name.to_lowercase();
+        match Self::written(unit) {
+            Self::Heights(unit) if SIGNALS.iter().any(|signal| name.contains(signal)) => {
+                Self::NoHeights(Some(unit.to_string()))
+            }
+            unit => unit,
+        }
+    }
+}
+
 /// One channel as the header of its file describes it.
 pub(crate) struct StoredChannel {
     /// Name, where the file gives one.
@@ -556,6 +572,39 @@ pub(crate) fn chosen(
         matching: matching.len(),
         list: list.join(", "),
     })
+}
+
+/// Channels of one file that are listed: those of probe microscopes have dozens at most.
+const MOST: usize = 256;
+
+/// An error where a header lists more channels than files have: each takes more memory than its line in the header.
+pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) -> Result<()> {
+    if channels <= MOST {
+        return Ok(());
+    }
+    Err(source.wrong(offset, format!("at most {MOST} channels, found {channels}")))
+}
+
+/// An error where a line of numbers or more stands behind the last numbers that a header lists: its counts or its type are not those of
+/// the file. A few bytes are a note.
+pub(crate) fn check_rest(
+    channels: &mut [StoredChannel],
+    source: &Source<'_>,
+    end: u64,
+    line: usize,
+) -> Result<()> {
+    let rest = source.length().saturating_sub(end);
+    if rest >= line.max(1) as u64 {
+        let expected =
+            format!("the end of the file behind all numbers that the header lists, found {rest} bytes");
+        return Err(source.wrong(end, expected));
+    }
+    if rest > 0 {
+        for channel in channels {
+            channel.note(format!("{rest} bytes behind the last numbers are not read"));
+        }
+    }
+    Ok(())
 }
 
 /// Heights have a length or no unit at all.

@@ -1,6 +1,7 @@
 //! Headers of files that are text: lines of keys and values in sections.
 
 use crate::error::{Error, Result};
+use crate::extent::Extent;
 use crate::fields::decoded;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::source::Subject;
@@ -11,6 +12,8 @@ pub(crate) enum HeaderLine<'l> {
     Section(&'l str),
     /// A key and its value.
     Entry(&'l str, &'l str),
+    /// The first key and its value of a section without a name.
+    First(&'l str, &'l str),
     /// The last line.
     End,
     /// A comment, an empty line.
@@ -50,9 +53,13 @@ impl Entries {
             let offset = found.end;
             found.end += bytes.len() as u64;
             let text = decoded(bytes);
-            match line(text.trim_end_matches(['\r', '\n'])) {
+            let line = line(text.trim_end_matches(['\r', '\n']));
+            if let HeaderLine::First(..) = line {
+                found.sections.push(section(""));
+            }
+            match line {
                 HeaderLine::Section(name) => found.sections.push(section(name)),
-                HeaderLine::Entry(key, value) => {
+                HeaderLine::Entry(key, value) | HeaderLine::First(key, value) => {
                     let entry = (key.trim().to_lowercase(), value.trim().to_owned(), offset);
                     if let Some(section) = found.sections.last_mut() {
                         section.entries.push(entry);
@@ -114,6 +121,11 @@ impl Section {
         number.ok_or_else(|| self.wrong(key, "a whole number"))
     }
 
+    /// A side of the map in a unit; `None` where there is no length above 0.
+    pub(crate) fn side(&self, key: &str, unit: &str) -> Option<Extent> {
+        Extent::of_side(self.text(key)?.parse().ok()?, unit)
+    }
+
     /// A length with its unit; `None` where there is none.
     pub(crate) fn length(&self, key: &str) -> Option<Quantity> {
         length(self.text(key)?)
@@ -128,6 +140,12 @@ pub(crate) fn length(text: &str) -> Option<Quantity> {
 
 /// A number and the unit behind it.
 pub(crate) fn number_and_unit(text: &str) -> Option<(f64, Unit)> {
+    let (number, unit) = number_and_text(text)?;
+    Some((number, unit.parse().ok()?))
+}
+
+/// A number and what stands behind it.
+pub(crate) fn number_and_text(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let digits = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',');
     // An exponent has digits behind its letter.
@@ -136,5 +154,5 @@ pub(crate) fn number_and_unit(text: &str) -> Option<(f64, Unit)> {
         !digits(c) && !exponent
     });
     let (number, unit) = text.split_at(end.map_or(text.len(), |(at, _)| at));
-    Some((number.replacen(',', ".", 1).parse().ok()?, unit.trim().parse().ok()?))
+    Some((number.replacen(',', ".", 1).parse().ok()?, unit.trim()))
 }

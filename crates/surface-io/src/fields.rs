@@ -80,6 +80,28 @@ impl<const N: usize> Deref for Text<N> {
     }
 }
 
+/// Text of N units of UTF-16, up to its first zero, without spaces around it.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(crate) struct Wide<const N: usize>(String);
+
+impl<const N: usize> Stored for Wide<N> {
+    const BYTES: usize = 2 * N;
+
+    fn decode(bytes: &[u8], order: ByteOrder) -> Self {
+        let units: Vec<u16> = bytes.chunks_exact(2).map(|unit| u16::decode(unit, order)).collect();
+        let text = String::from_utf16_lossy(units.split(|&unit| unit == 0).next().unwrap_or_default());
+        Self(text.trim().to_owned())
+    }
+}
+
+impl<const N: usize> Deref for Wide<N> {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        &self.0
+    }
+}
+
 /// UTF-8, or else Latin-1, whose bytes are the first 256 characters.
 pub(crate) fn decoded(bytes: &[u8]) -> String {
     let latin = || bytes.iter().map(|&b| char::from(b)).collect();

@@ -6,10 +6,13 @@ mod frt;
 mod gsf;
 mod gwy;
 mod hdf5;
+mod ibw;
 mod mat;
 mod metropro;
+mod mi;
 mod nanoscope;
 mod netcdf;
+mod nid;
 mod nms;
 mod opd;
 mod opdx;
@@ -18,6 +21,7 @@ mod sdf;
 mod sur;
 mod tiff;
 mod tmd;
+mod wsxm;
 mod x3p;
 mod zygo_xyz;
 
@@ -38,10 +42,13 @@ pub(crate) const READERS: &[Reader] = &[
     gsf::READER,
     gwy::READER,
     hdf5::READER,
+    ibw::READER,
     mat::READER,
     metropro::READER,
+    mi::READER,
     nanoscope::READER,
     netcdf::READER,
+    nid::READER,
     nms::READER,
     opd::READER,
     opdx::READER,
@@ -50,6 +57,7 @@ pub(crate) const READERS: &[Reader] = &[
     sur::READER,
     tiff::READER,
     tmd::READER,
+    wsxm::READER,
     x3p::READER,
     zygo_xyz::READER,
 ];

@@ -6,6 +6,7 @@ use crate::preprocessing::{Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
 /// A word that is not one of those expected.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,13 +58,15 @@ impl FromStr for Format {
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        among("format", text, Self::ALL.map(|format| (format.word(), format)), FORMATS)
+        among("format", text, Self::ALL.map(|format| (format.word(), format)), &FORMATS)
     }
 }
 
 /// All words of [`Format`].
-const FORMATS: &str = "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd, plu, zygo_xyz, \
-     bcr, frt, gsf, mat, nms, opdx or tmd";
+static FORMATS: LazyLock<String> = LazyLock::new(|| {
+    let [first @ .., last] = Format::ALL.map(Format::word);
+    format!("{} or {last}", first.join(", "))
+});
 
 impl FromStr for Decimal {
     type Err = KeywordError;

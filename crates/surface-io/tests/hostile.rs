@@ -470,26 +470,36 @@ fn archives_are_told_by_their_members() {
     assert!(error.contains("in main.xml a surface, FeatureType SUR, found \"PRF\""), "{error}");
 }
 
+/// The small file of a name.
+fn small(name: &str) -> Vec<u8> {
+    files::all().into_iter().find(|file| file.name == name).unwrap().bytes
+}
+
+/// The error of the file, or of the first channel that is not read.
+fn error(bytes: &[u8]) -> String {
+    match SurfaceFile::from_bytes("a", bytes, &ReadOptions::default()) {
+        Err(error) => error.to_string(),
+        Ok(file) => file.scans().find_map(Result::err).unwrap().to_string(),
+    }
+}
+
+/// The error of a small file with other bytes at an offset.
+fn changed(name: &str, at: usize, to: &[u8]) -> String {
+    let mut bytes = small(name);
+    bytes[at..at + to.len()].copy_from_slice(to);
+    error(&bytes)
+}
+
+/// The error of a small file with another text, whose bytes are Latin-1.
+fn replaced(name: &str, from: &str, to: &str) -> String {
+    let text: String = small(name).iter().map(|&b| char::from(b)).collect();
+    assert!(text.contains(from), "{name}: {from}");
+    error(&text.replace(from, to).chars().map(|c| c as u8).collect::<Vec<_>>())
+}
+
 /// One byte makes heights that are upside down, of another scale, or not heights at all: what is refused, and the message.
 #[test]
 fn heights_that_may_be_others_are_refused() {
-    let small = |name: &str| files::all().into_iter().find(|file| file.name == name).unwrap().bytes;
-    // Of the file, or of the first channel that is not read.
-    let error = |bytes: &[u8]| match SurfaceFile::from_bytes("a", bytes, &ReadOptions::default()) {
-        Err(error) => error.to_string(),
-        Ok(file) => file.scans().find_map(Result::err).unwrap().to_string(),
-    };
-    let changed = |name: &str, at: usize, to: &[u8]| {
-        let mut bytes = small(name);
-        bytes[at..at + to.len()].copy_from_slice(to);
-        error(&bytes)
-    };
-    // Text whose bytes are Latin-1.
-    let replaced = |name: &str, from: &str, to: &str| {
-        let text: String = small(name).iter().map(|&b| char::from(b)).collect();
-        assert!(text.contains(from), "{name}: {from}");
-        error(&text.replace(from, to).chars().map(|c| c as u8).collect::<Vec<_>>())
-    };
     let nanoscope = "nanoscope with two channels";
     // As many points, in six columns of one.
     let mut other_mask = small("gwy with a mask");
@@ -544,6 +554,73 @@ fn heights_that_may_be_others_are_refused() {
         (error(&other_mask), "GWY (Gwyddion), offset 655: expected a mask of as many columns and rows"),
     ] {
         assert!(found.contains(expected), "{found}");
+    }
+}
+
+/// Contradictions in headers of probe microscopes, and what is not read of them.
+#[test]
+fn contradictions_in_headers_of_probe_microscopes_are_named() {
+    // The sum of all words of the headers stays 0.
+    let mut complex = small("ibw of Asylum");
+    complex[80] += 1;
+    let sum = u16::from_le_bytes([complex[2], complex[3]]).wrapping_sub(1);
+    complex[2..4].copy_from_slice(&sum.to_le_bytes());
+    for (found, expected) in [
+        (
+            replaced("wsxm of doubles", "Z Amplitude: 2.5 nm", "Z Amplitude: 2.6 nm"),
+            "WSxM, offset 262: expected the amplitude 2.5, Maximum less Minimum, as z amplitude, found \"2.6 nm\"",
+        ),
+        (
+            replaced("wsxm of integers", "Maximum", "Max"),
+            "WSxM, offset 0: expected Maximum and Minimum of the integers",
+        ),
+        (
+            replaced("nid", "Order=Intel", "Order=Other"),
+            "NID (Nanosurf), offset 323: expected Intel, little-endian, as saveorder",
+        ),
+        (
+            replaced("nid", "\n[DataSet-0:0]", "\n[DataSet-1:0]"),
+            "NID (Nanosurf), offset 49: expected the name of a section as gr0-ch0",
+        ),
+        (
+            replaced("mi", "BINARY_32", "ASCII"),
+            "MI (Molecular Imaging), offset 384: expected data of the type BINARY or BINARY_32",
+        ),
+        (
+            replaced("mi", "Image", "Spectroscopy"),
+            "MI (Molecular Imaging), offset 0: expected an image; this file holds spectra",
+        ),
+        (
+            replaced("mi of int16", "yPixels       2", "yPixels       1"),
+            "MI (Molecular Imaging), offset 307: expected the end",
+        ),
+        (replaced("nid", "Bits=32", "Bits=16"), "NID (Nanosurf), offset 617: expected the end of the file"),
+        (replaced("wsxm of doubles", "rows: 2", "rows: 1"), "WSxM, offset 383: expected the end of the file"),
+        (error(&complex), "IBW (Igor), offset 80: expected real numbers, found the type 0x3"),
+        (
+            replaced("tiff of Park", "\u{3}\0\0\0\u{2}\0\0\0", "\u{2}\0\0\0\u{2}\0\0\0"),
+            "TIFF, offset 172: expected 2 x 2 numbers of 2 bytes, found 12 bytes",
+        ),
+    ] {
+        assert!(found.starts_with(&format!("a: {expected}")), "{found}");
+    }
+}
+
+/// Of a wave, a group, a list of buffers, the only heights are taken; other signals are listed with their unit.
+#[test]
+fn other_signals_are_no_heights() {
+    for (name, heights, other, unit) in [
+        ("ibw of Asylum", "HeightRetrace", "PhaseTrace", ""),
+        ("nid", "Scan forward (Z-Axis)", "Scan forward (Z-Axis)", "N"),
+        ("mi", "Topography", "Amplitude", "nm"),
+    ] {
+        let bytes = files::all().into_iter().find(|file| file.name == name).unwrap().bytes;
+        let scan = Scan::from_bytes("a", &bytes, &ReadOptions::default()).unwrap();
+        assert_eq!(scan.metadata().name.as_deref(), Some(heights));
+        let all = SurfaceFile::from_bytes("a", &bytes, &ReadOptions::default()).unwrap();
+        let first = all.scans().next().unwrap().unwrap();
+        assert_eq!(first.metadata().name.as_deref(), Some(other));
+        assert_eq!(first.metadata().no_heights.as_deref(), Some(unit));
     }
 }
 

@@ -12,6 +12,12 @@
 //!
 //! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data, LZW, Deflate and `PackBits` in
 //! strips and tiles. Of OME's description the physical size of a pixel counts (<https://docs.openmicroscopy.org/ome-model>).
+//!
+//! Files of Park Systems (one map in private tags) and JPK (private tags of each image) have descriptions of their own.
+
+mod directory;
+mod jpk;
+mod park;
 
 use crate::channel::{
     Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights,
@@ -24,6 +30,8 @@ use crate::number_type::{NumberType, exact};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::Source;
+use directory::Directories;
+use jpk::Jpk;
 use quick_xml::events::Event;
 use std::collections::HashMap;
 use std::io::{Read, Seek};
@@ -47,48 +55,6 @@ pub(crate) const READER: Reader = Reader {
     channels,
 };
 
-/// Refuses lists and texts that reach beyond the end of the file, for which the other crate reserves up to 4 MB unasked.
-fn check_directories(source: &mut Source<'_>) -> Result<()> {
-    let start = source.bytes(0, 8)?;
-    let (big, large) = (start.starts_with(b"MM"), start[2] == 43 || start[3] == 43);
-    // Bytes of an entry, of the value in it, of a count of entries, and where the first offset stands.
-    let (entry, held, counted, first) = if large { (20, 8, 8, 8) } else { (12, 4, 2, 4) };
-    let fields = |source: &mut Source<'_>, at, count| -> Result<Vec<u8>> { source.bytes(at, count) };
-    let number = |bytes: &[u8]| {
-        let digit = |n: u64, &byte: &u8| n << 8 | u64::from(byte);
-        if big { bytes.iter().fold(0, digit) } else { bytes.iter().rev().fold(0, digit) }
-    };
-    let mut at = number(&fields(source, first, held)?);
-    for _ in 0..MOST {
-        if at == 0 {
-            break;
-        }
-        let entries = number(&fields(source, at, counted)?);
-        let expected = || format!("{entries} entries of {entry} bytes here (cut short?)");
-        let length = entries.checked_mul(entry).filter(|length| *length <= source.length());
-        let length = length.ok_or_else(|| source.wrong(at, expected()))?;
-        let directory = fields(source, at + counted, length)?;
-        for one in directory.chunks_exact(entry as usize) {
-            let size = match number(&one[2..4]) {
-                3 | 8 => 2,
-                4 | 9 | 11 | 13 => 4,
-                5 | 10 | 12 | 16..=18 => 8,
-                _ => 1,
-            };
-            let (count, value) = one[4..].split_at(held as usize);
-            let length = number(count).checked_mul(size);
-            let end = length
-                .and_then(|length| if length <= held { Some(0) } else { number(value).checked_add(length) });
-            if end.is_none_or(|end| end > source.length()) {
-                let tag = number(&one[..2]);
-                return Err(source.wrong(at, format!("the values of tag {tag} inside the file")));
-            }
-        }
-        at = number(&fields(source, at + counted + length, held)?);
-    }
-    Ok(())
-}
-
 /// A decoder that stands at the first image.
 fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {
     let length = source.length();
@@ -109,7 +75,10 @@ fn unreadable(said: &dyn std::fmt::Display) -> ContentError {
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    check_directories(source)?;
+    let tags = Directories::read(source)?;
+    if let Some(channel) = park::channel(source, &tags)? {
+        return Ok(vec![channel]);
+    }
     let path = source.path().to_owned();
     let mut pages = Vec::new();
     let mut decoder = open(source)?;
@@ -132,9 +101,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let alone = pages.len() == 1;
     let mut channels = Vec::new();
     for (number, page) in pages.into_iter().enumerate() {
-        if let Some(channel) = channel(source, number, &page, (image_j.as_ref(), microscope), alone)? {
-            channels.push(channel);
-        }
+        let jpk = if page.bits.is_some() { Jpk::of(source, &tags, number)? } else { None };
+        channels.extend(channel(source, number, &page, (image_j.as_ref(), microscope), (jpk, alone))?);
     }
     if channels.is_empty() {
         let what = "a TIFF picture of 8 bits, in colours or with white as zero";
@@ -288,7 +256,7 @@ fn channel(
     number: usize,
     page: &Page,
     (description, microscope): (Option<&ImageJ>, [Option<Extent>; 2]),
-    alone: bool,
+    (jpk, alone): (Option<Jpk>, bool),
 ) -> Result<Option<StoredChannel>> {
     let (columns, rows) = page.size;
     let Some(bits) = page.bits else { return Ok(None) };
@@ -318,7 +286,15 @@ fn channel(
     };
     // Byte order and packing are the other crate's; what it decodes has this type.
     let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
-    let (unit, scale, shift) = description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
+    let (unit, scale, shift) = match &jpk {
+        Some(jpk) => (jpk.unit.clone(), jpk.scale, jpk.shift),
+        None => description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights),
+    };
+    // The first row is the bottom of JPK's image.
+    let reversed = match &jpk {
+        Some(jpk) if !jpk.reflected => [reversed[0], !reversed[1]],
+        _ => reversed,
+    };
     let held = Bytes::Held(Vec::new());
     let undefined = page.missing.map_or(Undefined::None, Undefined::Equal);
     let raw = RawHeights { reversed, scale, shift, undefined, ..RawHeights::new(held, kind) };
@@ -327,8 +303,15 @@ fn channel(
     let heights = StoredHeights::Deferred(Box::new(move |source| image.read(source)));
     let details = format!("{}, row by row", kind.name());
     let channel = StoredChannel::of(heights, details, [rows as usize, columns as usize], unit);
-    let extent = description.map_or_else(|| microscope, |description| description.extent(page));
-    let name = if alone { String::new() } else { format!("image {number}") };
+    let extent = match &jpk {
+        Some(jpk) => jpk.extent,
+        None => description.map_or_else(|| microscope, |description| description.extent(page)),
+    };
+    let name = match jpk {
+        Some(jpk) => jpk.name,
+        None if alone => String::new(),
+        None => format!("image {number}"),
+    };
     Ok(Some(StoredChannel { extent, ..channel }.named(&name)))
 }
 

@@ -6,10 +6,13 @@ mod frt;
 mod gsf;
 mod gwy;
 mod hdf5;
+mod ibw;
 mod mat;
 mod metropro;
+mod mi;
 mod nanoscope;
 mod netcdf;
+mod nid;
 mod nms;
 mod opd;
 mod opdx;
@@ -18,6 +21,7 @@ mod sdf;
 mod sur;
 mod tiff;
 mod tmd;
+mod wsxm;
 pub mod x3p;
 
 /// A small file, and what is in it.
@@ -51,6 +55,10 @@ pub fn all() -> Vec<Small> {
         sdf::files(),
         sur::files(),
         tiff::files(),
+        ibw::files(),
+        mi::files(),
+        nid::files(),
+        wsxm::files(),
         x3p::files(),
         bcr::files(),
         frt::files(),
