@@ -28,7 +28,7 @@ where
 }
 
 fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
-    const KNOWN: [&str; 22] = [
+    const KNOWN: [&str; 23] = [
         "format",
         "channel",
         "unit",
@@ -37,6 +37,7 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
         "cell",
         "height_scale",
         "decimal",
+        "axes",
         "border",
         "missing",
         "skip_lines",
@@ -68,6 +69,7 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
         cell: word(of, "cell")?,
         height_scale: word(of, "height_scale")?,
         decimal: word::<Decimal>(of, "decimal")?.unwrap_or_default(),
+        axes: word(of, "axes")?,
         border: word(of, "border")?,
         missing: optional(of, "missing")?,
         skip_lines: optional(of, "skip_lines")?.unwrap_or(0),

@@ -228,6 +228,9 @@ pub struct MapArguments {
     /// How decimals are written: point or comma.
     #[arg(long, default_value = "point")]
     decimal: surface_io::Decimal,
+    /// What the two indices of an array are, where its file does not say: xy (the first is x) or yx.
+    #[arg(long)]
+    axes: Option<surface_io::Axes>,
     /// What the first line and the first column of a text matrix are, where they may be coordinates: axes or heights.
     #[arg(long)]
     border: Option<surface_io::Border>,
@@ -301,6 +304,7 @@ impl MapArguments {
             size: self.size,
             cell: self.cell,
             decimal,
+            axes: self.axes,
             border: self.border,
             missing,
             skip_lines,

@@ -438,6 +438,12 @@ impl StoredChannel {
         Self { name: Some(name.trim().to_owned()).filter(|name| !name.is_empty()), ..self }
     }
 
+    /// Adds a detail of how the numbers are stored.
+    pub(crate) fn detail(&mut self, detail: &str) {
+        self.details.push_str(", ");
+        self.details.push_str(detail);
+    }
+
     /// Adds a remark for people.
     pub(crate) fn note(&mut self, note: impl Into<String>) {
         self.notes.push(note.into());

@@ -188,13 +188,6 @@ impl<'a> Fields<'a> {
         Ok(&self.bytes[self.at - count..self.at])
     }
 
-    /// Bytes up to a mark, which is left out and passed.
-    pub(crate) fn until(&mut self, mark: u8) -> Result<&[u8]> {
-        let count = self.bytes[self.at..].iter().position(|&b| b == mark).ok_or_else(|| self.short())?;
-        self.at += count + 1;
-        Ok(&self.bytes[self.at - 1 - count..self.at - 1])
-    }
-
     /// The next number, text or row of them.
     pub(crate) fn get<T: Stored>(&mut self) -> Result<T> {
         let order = self.order;
@@ -269,15 +262,13 @@ impl<'s, 'a> Cursor<'s, 'a> {
     /// Text up to its zero.
     pub(crate) fn name(&mut self) -> Result<String> {
         let zero = |bytes: &[u8]| bytes.iter().position(|&b| b == 0);
-        let length = match zero(self.held(1)?) {
-            Some(length) => length,
+        let mut length = zero(self.held(1)?);
+        if length.is_none() {
             // Not all of it is held.
-            None => {
-                self.window = (0, Vec::new());
-                let held = self.held(1)?;
-                zero(held).ok_or_else(|| self.wrong("a text that ends"))?
-            }
-        };
+            self.window = (0, Vec::new());
+            length = zero(self.held(1)?);
+        }
+        let length = length.ok_or_else(|| self.wrong("a text that ends"))?;
         let text = String::from_utf8_lossy(self.take(length as u64)?).into_owned();
         self.at += 1;
         Ok(text)

@@ -85,6 +85,9 @@ pub(crate) struct TextTable {
 /// Most maps of one text.
 const MOST_MAPS: usize = 1000;
 
+/// A line and its number, from 1.
+type NumberedLine<'t> = (usize, &'t [u8]);
+
 /// Two columns of at most so many rows are a map.
 const PROFILE: usize = 8;
 
@@ -144,7 +147,7 @@ impl TextTable {
         let mut maps: Vec<Self> = Vec::new();
         // Lines of the heading of the next map, and the first and the last of them without the mark of a comment.
         let mut heading: Vec<(usize, Cow<'_, [u8]>)> = Vec::new();
-        let (mut first, mut last): (Option<(usize, &[u8])>, Option<(usize, &[u8])>) = (None, None);
+        let (mut first, mut last): (Option<NumberedLine<'_>>, Option<NumberedLine<'_>>) = (None, None);
         let (mut open, mut gap) = (false, false);
         // The line before the numbers of the map that is open.
         let mut title = None;

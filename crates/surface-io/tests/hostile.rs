@@ -465,6 +465,10 @@ fn archives_are_told_by_their_members() {
     assert_eq!(error("a", &npz), expected);
     assert!(error("a", &other).starts_with("a: an archive of main.xml: take"));
     assert!(error("a.npy", &npz).starts_with("a.npy: looks like an archive (NPZ"));
+    for (member, expected) in [("header.properties", "a JPK file"), ("index.xml", "a PLUX file")] {
+        let message = error("a", &files::x3p::zip(&[(member, vec![1])], false));
+        assert!(message.contains(expected), "{message}");
+    }
     let profile = files::x3p::descriptions()[0].replace("SUR", "PRF");
     let error = error("a", &files::x3p::described(profile.as_bytes(), true));
     assert!(error.contains("in main.xml a surface, FeatureType SUR, found \"PRF\""), "{error}");

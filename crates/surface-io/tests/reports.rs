@@ -6,9 +6,6 @@ use surface_io::{
     Border, ContentError, Metadata, Preprocessing, Quantity, ReadOptions, Scan, SurfaceFile, Undefined,
 };
 
-#[path = "files/mod.rs"]
-mod files;
-
 const UNDEFINED: f64 = f64::NAN;
 
 fn read(text: &str) -> Scan {
@@ -221,10 +218,6 @@ fn other_programs_are_named() {
         (b"%PDF-1.7\n", "a PDF page"),
     ] {
         let message = problem(bytes).to_string();
-        assert!(message.contains(expected), "{message}");
-    }
-    for (member, expected) in [("header.properties", "a JPK file"), ("index.xml", "a PLUX file")] {
-        let message = problem(files::x3p::zip(&[(member, vec![1])], false)).to_string();
         assert!(message.contains(expected), "{message}");
     }
 }

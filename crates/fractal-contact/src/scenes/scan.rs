@@ -6,7 +6,7 @@ use crate::scenes::human_readable::number;
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed, Preprocessing,
+    Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed, Preprocessing,
     Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
 };
 
@@ -58,6 +58,9 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     }
     if let Some(entry) = table.find("decimal") {
         declared.decimal = entry.choice(&[("point", Decimal::Point), ("comma", Decimal::Comma)])?;
+    }
+    if let Some(entry) = table.find("axes") {
+        declared.axes = Some(entry.choice(&[("xy", Axes::Xy), ("yx", Axes::Yx)])?);
     }
     if let Some(entry) = table.find("border") {
         declared.border = Some(entry.choice(&[("axes", Border::Axes), ("heights", Border::Heights)])?);

@@ -157,7 +157,7 @@ fn channel(source: &Source<'_>, field: &DataField, mask: Option<&DataField>) -> 
         };
         let mask = RawHeights::at(masked_at, NumberType::F64);
         mask.check(source, shape[0], shape[1])?;
-        channel.details += ", masked points undefined";
+        channel.detail("masked points undefined");
         channel.heights = masked(RawHeights::at(at, NumberType::F64), mask, shape[0], shape[1]);
     }
     if let ([None, None], [Some(x), Some(y)]) = (extent, field.size) {

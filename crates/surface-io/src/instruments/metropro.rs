@@ -33,13 +33,13 @@ header! {
         kind: u8 = 3,
         /// 1 to 3.
         format: u16 = 4,
-        header: u32 = 6,
+        length: u32 = 6,
         intensities: [u16; 3] = 52,
         /// Bytes of the intensities, and of the phase.
         of_intensities: u32 = 60,
         columns: u16 = 68,
         rows: u16 = 70,
-        of_phase: u32 = 72,
+        bytes: u32 = 72,
         interference: f32 = 164,
         wavelength: f32 = 168,
         obliquity: f32 = 176,
@@ -54,8 +54,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let wrong = |offset: u64, expected: String| Err(source.wrong(offset, expected));
     let format = u16::from(phase.kind - 0x6e);
     let header = if format == 3 { LONG_HEADER } else { HEADER };
-    if (phase.format, u64::from(phase.header)) != (format, header) {
-        let (found, length) = (phase.format, phase.header);
+    if (phase.format, u64::from(phase.length)) != (format, header) {
+        let (found, length) = (phase.format, phase.length);
         return wrong(
             4,
             format!("the format {format} and {header} bytes of header, found {found} and {length}"),
@@ -63,7 +63,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     let intensities = 2 * phase.intensities.iter().map(|&n| u64::from(n)).product::<u64>();
     let points = u64::from(phase.columns) * u64::from(phase.rows);
-    for (at, own, stated) in [(60, intensities, phase.of_intensities), (72, 4 * points, phase.of_phase)] {
+    for (at, own, stated) in [(60, intensities, phase.of_intensities), (72, 4 * points, phase.bytes)] {
         if own != u64::from(stated) {
             return wrong(at, format!("{own} bytes, as width and height before say, found {stated}"));
         }

@@ -96,9 +96,11 @@ fn channel<'s>(
     let (columns, rows) = (image.whole("samps/line")?, image.whole("number of lines")?);
     let (offset, length) = (image.whole("data offset")? as u64, image.whole("data length")? as u64);
     let pixel = if image.text("bytes/pixel").is_some() { image.whole("bytes/pixel")? } else { 2 };
-    if !matches!(pixel, 2 | 4) {
-        return Err(image.wrong("bytes/pixel", "2 or 4 bytes"));
-    }
+    let range = match pixel {
+        2 => 65_536.0,
+        4 => 4_294_967_296.0,
+        _ => return Err(image.wrong("bytes/pixel", "2 or 4 bytes")),
+    };
     let bytes = |size: usize| columns.checked_mul(rows)?.checked_mul(size).map(|bytes| bytes as u64);
     let wide = pixel == 4 || (version >= WIDE && bytes(4).is_some_and(|bytes| bytes <= length));
     let kind = if wide { NumberType::I32 } else { NumberType::I16 };
@@ -118,7 +120,7 @@ fn channel<'s>(
     let unit = match scale.as_ref().and_then(|scale| scale.height(scales)) {
         Some((height, unit)) => {
             // All counts together make the range of the hard value.
-            raw.scale = height / 256_f64.powi(pixel as i32);
+            raw.scale = height / range;
             StoredUnit::Heights(unit)
         }
         None => StoredUnit::NoHeights(None),
@@ -131,14 +133,14 @@ fn channel<'s>(
     for (key, behind) in [("scan line", " scan"), ("line direction", "")] {
         if let Some(word) = image.text(key) {
             let word: String = word.to_lowercase().chars().take(32).collect();
-            channel.details += &format!(", {word}{behind}");
+            channel.detail(&format!("{word}{behind}"));
         }
     }
     let valid = ["valid data len x", "valid data len y"].map(|key| image.text(key)?.parse::<usize>().ok());
     if let [Some(x), Some(y)] = valid
         && [x, y] != [columns, rows]
     {
-        channel.details += &format!(", of them {x} x {y} valid");
+        channel.detail(&format!("of them {x} x {y} valid"));
     }
     if scale.is_none() {
         channel.note(format!("no Z scale that can be read: {:?}", image.text(key).unwrap_or_default()));

@@ -79,7 +79,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             ..RawHeights::at(intensities, NumberType::U8)
         };
         dark.check(source, rows, columns)?;
-        channel.details += ", points of intensity 0 undefined";
+        channel.detail("points of intensity 0 undefined");
         channel.heights = masked(raw(), dark, rows, columns);
     }
     Ok(vec![channel.named(&header.name)])

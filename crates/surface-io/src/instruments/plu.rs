@@ -75,7 +75,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         let shape = [rows as usize, columns as usize];
         let mut channel = StoredChannel::new(source, raw, shape, StoredUnit::written("um"), extent)?;
         if header.layers > layers {
-            channel.details += &format!(", the first of {} layers", header.layers);
+            channel.detail(&format!("the first of {} layers", header.layers));
         }
         channels.push(channel.named(&format!("layer{layer}")));
         at += SHAPE + 4 * u64::from(rows) * u64::from(columns) + RANGE;

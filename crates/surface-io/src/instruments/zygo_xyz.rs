@@ -68,10 +68,9 @@ fn points(
         let text = decoded(line);
         let words: Vec<&str> = text.split_whitespace().collect();
         let (x, y, height) = match words[..] {
-            [] => continue,
-            ["#"] if at - line.len() as u64 > offset + 1 => break,
-            ["#"] => continue,
-            [_, _, "No", "Data"] => continue,
+            // The mark that ends the points, not that of the header.
+            ["#"] if begins > offset + 1 => break,
+            [] | ["#"] | [_, _, "No", "Data"] => continue,
             [x, y, height] => (x, y, height),
             _ => {
                 return Err(source.wrong(begins, format!("column, row and height, found {:?}", short(&text))));
