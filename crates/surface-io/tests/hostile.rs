@@ -11,8 +11,8 @@ use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use surface_io::{
-    Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan, SurfaceFile, Undefined,
-    Window,
+    AlignLines, Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan, SurfaceFile,
+    Undefined, Window,
 };
 
 thread_local! {
@@ -132,6 +132,8 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                         };
                         check(&scan, &plain)?;
                         let all = Preprocessing {
+                            align_lines: Some(AlignLines::MedianDifference),
+                            scars: Some(3.0),
                             outliers: Some(3.0),
                             tip_radius: "0.5".parse().ok(),
                             mirror: Some(Mirror::Y),
@@ -140,6 +142,13 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                             ..plain
                         };
                         check(&scan, &all)?;
+                        let filtered = Preprocessing {
+                            align_lines: Some(AlignLines::Median),
+                            filter_across: "4.5".parse().ok(),
+                            crop: None,
+                            ..all
+                        };
+                        check(&scan, &filtered)?;
                     }
                 }
             }

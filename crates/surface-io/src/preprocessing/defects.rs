@@ -4,7 +4,7 @@ use contact_model::Cells;
 use std::ops::Range;
 
 /// The standard deviation of a Gaussian over its median absolute deviation.
-const GAUSSIAN: f64 = 1.4826;
+pub(super) const GAUSSIAN: f64 = 1.4826;
 
 /// Makes NaN of every height farther from the median of its neighbours (eight, fewer at an edge) than `times` the robust standard deviation
 /// of all such distances; how many.
@@ -44,7 +44,7 @@ pub(super) fn remove_outliers(cells: Cells, times: f64, heights: &mut [f64]) -> 
 }
 
 /// The middle value, the lower one of two; of at least one value.
-fn median(values: &mut [f64]) -> f64 {
+pub(super) fn median(values: &mut [f64]) -> f64 {
     let middle = (values.len() - 1) / 2;
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
