@@ -44,7 +44,7 @@ pub(super) fn remove_outliers(cells: Cells, times: f64, heights: &mut [f64]) -> 
 }
 
 /// The middle value, the lower one of two; of at least one value.
-pub(super) fn median(values: &mut [f64]) -> f64 {
+fn median(values: &mut [f64]) -> f64 {
     let middle = (values.len() - 1) / 2;
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

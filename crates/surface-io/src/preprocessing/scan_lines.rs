@@ -1,6 +1,6 @@
 //! Errors of scanning instruments: offsets between scan lines, scars, and noise across the lines. Scan lines are rows.
 
-use super::defects::{GAUSSIAN, median};
+use super::defects::GAUSSIAN;
 use contact_model::Cells;
 
 /// How scan lines (rows, the fast axis along x) are shifted to a common height. The mean height of the map is kept.
@@ -96,8 +96,8 @@ fn shifts_by_medians(cells: Cells, heights: &[f64]) -> Vec<f64> {
     heights.chunks_exact(cells.columns).map(median_of).collect()
 }
 
-/// The median, of an even number of values the mean of the middle two; of at least one value. Shifts of lines add up,
-/// so that the lower one of two would tilt a map.
+/// The median, of an even number of values the mean of the middle two; of at least one value. Shifts of lines add up:
+/// the lower one of two would tilt a map.
 fn central(values: &mut [f64]) -> f64 {
     let even = values.len().is_multiple_of(2);
     let middle = values.len() / 2;
@@ -121,15 +121,14 @@ const SHORTEST: usize = 16;
 ///
 /// A point belongs to a bright streak where it lies in one to [`TALLEST`] consecutive rows of its column that are all
 /// higher than both the row before them and the row after them, by more than `times` the robust standard deviation
-/// of the height differences between neighbouring rows (1.4826 times the median of their amounts over the map); a
-/// dark streak is as much lower. A scar is a run of [`SHORTEST`] points or more of one kind in a row. Rows beyond the
+/// of the height differences between neighbouring rows (1.4826 times the median of their distances from their median,
+/// which no tilt changes); a dark streak is as much lower. A scar is a run of [`SHORTEST`] points or more of one kind in a row. Rows beyond the
 /// edges and undefined points are no neighbours. Of a ridge of the surface that is as narrow, as long and along x it
 /// cannot be told. Cost O(N) for N points.
 pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> String {
     let Cells { columns, rows } = cells;
-    let differences = heights.iter().zip(heights.iter().skip(columns)).map(|(a, b)| (b - a).abs());
-    let mut differences: Vec<f64> = differences.filter(|d| !d.is_nan()).collect();
-    let deviation = if differences.is_empty() { 0.0 } else { GAUSSIAN * median(&mut differences) };
+    let differences = heights.iter().zip(heights.iter().skip(columns)).map(|(a, b)| b - a);
+    let deviation = robust_deviation(&mut differences.filter(|d| !d.is_nan()).collect::<Vec<_>>());
     let limit = times * deviation;
     let mut scars = vec![false; heights.len()];
     let mut runs = 0;
@@ -169,6 +168,16 @@ pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> Str
         "{removed} points of scars made undefined, in {runs} runs along x: beyond {times} times {deviation:.4e}, the \
          robust standard deviation of differences between lines"
     )
+}
+
+/// 1.4826 times the median distance from the median, which is the standard deviation of Gaussian values; 0 of none.
+fn robust_deviation(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = central(values);
+    values.iter_mut().for_each(|value| *value = (*value - middle).abs());
+    GAUSSIAN * central(values)
 }
 
 /// The cut-off in cells from which on weights at the cells have the transmission of the Gaussian: 50.2 % at a cut-off
@@ -371,7 +380,10 @@ mod tests {
         }
         let expected = "149 points of scars made undefined, in 5 runs along x: beyond 8 times ";
         assert!(step.starts_with(expected), "{step}");
-        // The same with the sign of the heights, or the order of the rows, reversed.
+        // The same of a tilted map, with the sign of the heights or the order of the rows reversed.
+        let mut tilted: Vec<f64> =
+            before.iter().enumerate().map(|(i, h)| h + 0.01 * (i / 64) as f64).collect();
+        assert_eq!(remove_scars(cells, 8.0, &mut tilted)[..expected.len()], step[..expected.len()]);
         let mut negative: Vec<f64> = before.iter().map(|h| -h).collect();
         assert_eq!(remove_scars(cells, 8.0, &mut negative), step);
         let mut reversed: Vec<f64> = before.chunks_exact(64).rev().flatten().copied().collect();
@@ -388,7 +400,7 @@ mod tests {
         }
         let cells = Cells { columns: 16, rows: 3 };
         let mut flat = heights(cells, |_, y| if (y - 1.0).abs() < 0.5 { 1.0 } else { 0.0 });
-        // Every difference between lines is of size 1: a scar is as large as the deviation.
+        // A tilt across the lines is no deviation of their differences.
         assert!(remove_scars(cells, 0.6, &mut flat).starts_with("16 points"));
         assert!(flat[16..32].iter().all(|h| h.is_nan()));
         assert!(remove_scars(cells, 0.6, &mut [f64::NAN; 48]).starts_with("0 points"));
