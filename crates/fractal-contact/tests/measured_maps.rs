@@ -104,14 +104,14 @@ fn what_is_done_to_a_map_is_in_its_manifest() {
     assert!(error.contains("`rotate` is 45") && error.contains("0, 90, 180 or 270"), "{error}");
 }
 
-/// A map of 20 lines of 30 points with offsets of the lines and a streak: through scene, manifest and command line.
+/// A map of 20 lines of 40 points with offsets of the lines and a streak: through scene, manifest and command line.
 #[test]
 fn scan_lines_are_repaired_where_it_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let noise = |i: usize| ((i as f64) * 12.9898).sin() * 1e-3;
-    let streak = |i: usize| if i / 30 == 6 && i % 30 < 20 { 5.0 } else { 0.0 };
-    let values: Vec<f64> = (0..600).map(|i| noise(i) + streak(i) + ((i / 30) as f64).sin()).collect();
-    let bytes = surface_io::npy(&[20, 30], &values).unwrap();
+    let streak = |i: usize| if i / 40 == 6 && i % 40 < 16 { 5.0 } else { 0.0 };
+    let values: Vec<f64> = (0..800).map(|i| noise(i) + streak(i) + ((i / 40) as f64).sin()).collect();
+    let bytes = surface_io::npy(&[20, 40], &values).unwrap();
     std::fs::write(dir.path().join("afm.npy"), bytes).unwrap();
     let scene = |keys: &str| {
         let text = format!(
@@ -128,8 +128,8 @@ fn scan_lines_are_repaired_where_it_is_named() {
     let plan = Plan::new(&found).unwrap().to_string();
     for step in [
         "scan lines shifted by 7.",
-        "20 points of scars made undefined, in 1 runs along x: beyond 6 times ",
-        "20 undefined points filled",
+        "16 points of scars made undefined, in 1 runs along x: beyond 6 times ",
+        "16 undefined points filled",
         "filtered across the scan lines, cut-off 0.005 m: rms height ",
     ] {
         assert!(plan.contains(step), "{step}\n{plan}");
@@ -145,7 +145,7 @@ fn scan_lines_are_repaired_where_it_is_named() {
             "filter_across = \"3 mm\"",
             "filter_across = 3e-3: expected a wavelength from 4e-3, four cells, to 2e-2",
         ),
-        ("scars = 6", "20 of 600 points are undefined"),
+        ("scars = 6", "16 of 800 points are undefined"),
     ] {
         let error = scene(keys).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(expected), "{keys}: {error}");
@@ -158,7 +158,7 @@ fn scan_lines_are_repaired_where_it_is_named() {
         (output.status.code(), String::from_utf8_lossy(&text).into_owned())
     };
     let (code, text) = info(&["--align-lines", "median", "--scars", "6", "--filter-across", "5 mm"]);
-    assert!(code == Some(0) && text.contains("then       20 points of scars made undefined"), "{text}");
+    assert!(code == Some(0) && text.contains("then       16 points of scars made undefined"), "{text}");
     assert!(text.contains("all have the same median") && text.contains("cut-off 0.005 m"), "{text}");
     let (code, text) = info(&["--align-lines", "up"]);
     assert!(code != Some(0) && text.contains("expected median_difference or median"), "{text}");
