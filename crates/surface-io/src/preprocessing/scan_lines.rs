@@ -56,9 +56,13 @@ impl AlignLines {
         let all = counts.iter().sum::<f64>().max(1.0);
         let mean = |shifts: &[f64]| shifts.iter().zip(&counts).map(|(s, n)| n / all * s).sum::<f64>();
         let offset = mean(&shifts);
-        shifts.iter_mut().for_each(|shift| *shift -= offset);
+        for shift in &mut shifts {
+            *shift -= offset;
+        }
         for (line, shift) in heights.chunks_exact_mut(cells.columns).zip(&shifts) {
-            line.iter_mut().for_each(|h| *h -= shift);
+            for h in line {
+                *h -= shift;
+            }
         }
         let rms = mean(&shifts.iter().map(|s| s * s).collect::<Vec<_>>()).sqrt();
         Ok(format!("scan lines shifted by {rms:.4e} rms: {}; mean height kept", self.result()))
@@ -176,7 +180,9 @@ fn robust_deviation(values: &mut [f64]) -> f64 {
         return 0.0;
     }
     let middle = central(values);
-    values.iter_mut().for_each(|value| *value = (*value - middle).abs());
+    for value in values.iter_mut() {
+        *value = (*value - middle).abs();
+    }
     GAUSSIAN * central(values)
 }
 
@@ -230,7 +236,7 @@ mod tests {
     /// Heights `f(column, row)`.
     fn heights(cells: Cells, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let place = |i: usize| ((i % cells.columns) as f64, (i / cells.columns) as f64);
-        (0..cells.columns * cells.rows).map(|i| place(i)).map(|(x, y)| f(x, y)).collect()
+        (0..cells.columns * cells.rows).map(place).map(|(x, y)| f(x, y)).collect()
     }
 
     fn mean(heights: &[f64]) -> f64 {
@@ -416,8 +422,8 @@ mod tests {
             found[2000 * cells.columns]
         };
         for cut_off in [5.0, 8.7, 20.0, 333.0] {
-            for ratio in [0.6, 1.0, 1.7, 4.0] {
-                let expected = 0.5_f64.powf((1.0 / ratio as f64).powi(2));
+            for ratio in [0.6_f64, 1.0, 1.7, 4.0] {
+                let expected = 0.5_f64.powf(ratio.powi(-2));
                 // Truncated weights: 1e-7. Sampled weights: images at the sampling frequency, below five cells 1e-3.
                 let tolerance = if cut_off < 6.0 { 4e-2 } else { 1e-6 };
                 let wavelength = ratio * cut_off;
