@@ -28,7 +28,7 @@ where
 }
 
 fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
-    const KNOWN: [&str; 24] = [
+    const KNOWN: [&str; 25] = [
         "format",
         "channel",
         "unit",
@@ -37,6 +37,7 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
         "cell",
         "height_scale",
         "decimal",
+        "border",
         "missing",
         "skip_lines",
         "crop",
@@ -70,6 +71,7 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
         cell: word(of, "cell")?,
         height_scale: word(of, "height_scale")?,
         decimal: word::<Decimal>(of, "decimal")?.unwrap_or_default(),
+        border: word(of, "border")?,
         missing: optional(of, "missing")?,
         skip_lines: optional(of, "skip_lines")?.unwrap_or(0),
         ..ReadOptions::default()
@@ -112,6 +114,7 @@ fn metadata<'py>(py: Python<'py>, of: &Metadata) -> PyResult<Bound<'py, PyDict>>
     dict.set_item("size", of.size.map(|[x, y]| (x.value(), y.value())))?;
     dict.set_item("unit", if metric { Some("m") } else { None })?;
     dict.set_item("undefined", of.undefined)?;
+    dict.set_item("notes", of.notes.clone())?;
     dict.set_item("text", of.to_string())?;
     Ok(dict)
 }
@@ -137,7 +140,7 @@ pub fn read_surface<'py>(
     Ok((found.map.into(), metadata(py, &described)?, found.steps, found.reliable_from))
 }
 
-/// What a file says of each of its channels.
+/// What a file says of each of its channels; of one that is not read beside others, `error`.
 #[pyfunction]
 #[pyo3(signature = (path, options))]
 pub fn channels<'py>(
@@ -146,11 +149,24 @@ pub fn channels<'py>(
     options: &Bound<'py, PyDict>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let (declared, _) = self::options(options)?;
-    let read = || -> Result<Vec<Metadata>, Error> {
-        SurfaceFile::open(&path, &declared)?.scans().map(|scan| Ok(scan?.metadata().clone())).collect()
+    let read = || -> Result<Vec<Result<Metadata, String>>, Error> {
+        let one = |scan: Result<Scan, Error>| match scan {
+            Ok(scan) => Ok(Ok(scan.metadata().clone())),
+            Err(error) if error.problem().is_some() => Ok(Err(error.to_string())),
+            Err(error) => Err(error),
+        };
+        SurfaceFile::open(&path, &declared)?.scans().map(one).collect()
     };
     let found = pool::call(py, read)?.map_err(|error| failed(py, &error))?;
-    found.iter().map(|of| metadata(py, of)).collect()
+    let one = |of: &Result<Metadata, String>| match of {
+        Ok(of) => metadata(py, of),
+        Err(error) => {
+            let dict = PyDict::new(py);
+            dict.set_item("error", error)?;
+            Ok(dict)
+        }
+    };
+    found.iter().map(one).collect()
 }
 
 /// A text with a unit in SI units.

@@ -228,6 +228,9 @@ pub struct MapArguments {
     /// How decimals are written: point or comma.
     #[arg(long, default_value = "point")]
     decimal: surface_io::Decimal,
+    /// What the first line and the first column of a text matrix are, where they may be coordinates: axes or heights.
+    #[arg(long)]
+    border: Option<surface_io::Border>,
     /// A number that stands for an undefined point, such as -9999.
     #[arg(long, allow_negative_numbers = true)]
     missing: Option<f64>,
@@ -310,6 +313,7 @@ impl MapArguments {
             size: self.size,
             cell: self.cell,
             decimal,
+            border: self.border,
             missing,
             skip_lines,
             ..ReadOptions::default()

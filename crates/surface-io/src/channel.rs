@@ -1,10 +1,9 @@
 //! Channels: the maps in one file, and the heights of each where the file holds them.
 
 use crate::choice::ChannelChoice;
-use crate::error::{ContentError, Place, Result};
+use crate::error::{ContentError, Error, Place, Result};
 use crate::escape::escaped;
 use crate::extent::Extent;
-use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::quantity::{Dimension, QuantityError, Unit};
 use crate::source::Source;
@@ -40,6 +39,22 @@ impl StoredUnit {
     }
 }
 
+/// Words in names of signals of probe microscopes that are no heights, in metres neither.
+const SIGNALS: [&str; 3] = ["amplitude", "deflection", "error"];
+
+impl StoredUnit {
+    /// The unit of a signal of a probe microscope: what the cantilever does is no height, though it may be a length.
+    pub(crate) fn of_signal(name: &str, unit: &str) -> Self {
+        let name = name.to_lowercase();
+        match Self::written(unit) {
+            Self::Heights(unit) if SIGNALS.iter().any(|signal| name.contains(signal)) => {
+                Self::NoHeights(Some(unit.to_string()))
+            }
+            unit => unit,
+        }
+    }
+}
+
 /// One channel as the header of its file describes it.
 pub(crate) struct StoredChannel {
     /// Name, where the file gives one.
@@ -51,6 +66,8 @@ pub(crate) struct StoredChannel {
     pub(crate) unit: StoredUnit,
     /// Along x and y, where the file says it.
     pub(crate) extent: [Option<Extent>; 2],
+    /// What the file says and what is not used of it, or what may be meant otherwise: sentences for people.
+    pub(crate) notes: Vec<String>,
     pub(crate) heights: StoredHeights,
 }
 
@@ -62,6 +79,8 @@ pub(crate) enum StoredHeights {
     Raw(RawHeights),
     /// Whatever another reader makes of the file.
     Deferred(Box<Deferred>),
+    /// What is wrong with this channel, where others of its file can be read.
+    Unread(ContentError),
 }
 
 /// Reads the heights row by row, NaN where undefined.
@@ -73,13 +92,13 @@ impl fmt::Debug for StoredHeights {
             Self::Read(heights) => write!(f, "{} heights", heights.len()),
             Self::Raw(raw) => raw.fmt(f),
             Self::Deferred(_) => write!(f, "heights to be read"),
+            Self::Unread(problem) => problem.fmt(f),
         }
     }
 }
 
 /// Numbers one after another: `height = scale * number + shift`.
 pub(crate) struct RawHeights {
-    pub(crate) format: Format,
     pub(crate) bytes: Bytes,
     pub(crate) number: NumberType,
     /// Which index runs fastest.
@@ -96,7 +115,7 @@ pub(crate) struct RawHeights {
 
 impl fmt::Debug for RawHeights {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} of {}, {:?}", self.number, self.format, self.order)
+        write!(f, "{}, {:?}", self.number, self.order)
     }
 }
 
@@ -146,10 +165,14 @@ impl Undefined {
 }
 
 impl RawHeights {
+    /// Numbers of a type in the file from an offset on, as [`RawHeights::new`].
+    pub(crate) fn at(offset: u64, number: NumberType) -> Self {
+        Self::new(Bytes::File(offset), number)
+    }
+
     /// Numbers of a type row by row from the first row on, heights as they are.
-    pub(crate) fn new(format: Format, bytes: Bytes, number: NumberType) -> Self {
+    pub(crate) fn new(bytes: Bytes, number: NumberType) -> Self {
         Self {
-            format,
             bytes,
             number,
             order: AxisOrder::Rows,
@@ -196,7 +219,7 @@ impl RawHeights {
             "a factor other than 0 and a finite shift of the heights, found {} and {}",
             self.scale, self.shift
         );
-        Err(source.wrong(self.format, offset, expected))
+        Err(source.wrong(offset, expected))
     }
 
     /// An error where the numbers are not all there, or their scale makes no heights; called before the channel is listed.
@@ -215,7 +238,7 @@ impl RawHeights {
             let expected = format!(
                 "{rows} x {columns} numbers of {size} bytes ({what}), there are {found} {held}bytes (cut short?)"
             );
-            return Err(source.wrong(self.format, offset, expected));
+            return Err(source.wrong(offset, expected));
         }
         self.check_scale(source)
     }
@@ -356,14 +379,45 @@ impl StoredChannel {
     ) -> Result<Self> {
         raw.check(source, rows, columns)?;
         let details = raw.details();
-        Ok(Self { name: None, details, rows, columns, unit, extent, heights: StoredHeights::Raw(raw) })
+        Ok(Self { extent, ..Self::of(StoredHeights::Raw(raw), details, [rows, columns], unit) })
+    }
+
+    /// A channel without a name and without a size.
+    pub(crate) fn of(
+        heights: StoredHeights,
+        details: String,
+        [rows, columns]: [usize; 2],
+        unit: StoredUnit,
+    ) -> Self {
+        Self { name: None, details, rows, columns, unit, extent: [None; 2], notes: Vec::new(), heights }
+    }
+
+    /// A channel, or one that says why it is not read: the others of its file are read all the same.
+    pub(crate) fn listed(name: Option<String>, channel: Result<Self>) -> Result<Self> {
+        match channel {
+            Err(Error::Content { problem, .. }) => {
+                let heights = StoredHeights::Unread(problem);
+                Ok(Self { name, ..Self::of(heights, String::new(), [0, 0], StoredUnit::NoHeights(None)) })
+            }
+            channel => channel,
+        }
+    }
+
+    /// The same with a name, where it is one.
+    pub(crate) fn named(self, name: &str) -> Self {
+        Self { name: Some(name.trim().to_owned()).filter(|name| !name.is_empty()), ..self }
+    }
+
+    /// Adds a remark for people.
+    pub(crate) fn note(&mut self, note: impl Into<String>) {
+        self.notes.push(note.into());
     }
 
     /// Escapes the control characters of all that is the file's own text: what is shown is what a channel is chosen by.
     pub(crate) fn escape(&mut self) {
-        let Self { name, details, unit, .. } = self;
+        let Self { name, details, unit, notes, .. } = self;
         let unit = if let StoredUnit::NoHeights(unit) = unit { unit.as_mut() } else { None };
-        for text in [name.as_mut(), Some(details), unit].into_iter().flatten() {
+        for text in [name.as_mut(), Some(details), unit].into_iter().flatten().chain(notes) {
             *text = escaped(text);
         }
     }
@@ -374,6 +428,7 @@ impl StoredChannel {
             StoredHeights::Read(heights) => std::mem::take(heights),
             StoredHeights::Raw(raw) => raw.read(source, self.rows, self.columns)?,
             StoredHeights::Deferred(read) => read(source)?,
+            StoredHeights::Unread(problem) => return Err(source.content(problem.clone())),
         };
         if heights.len() != self.rows * self.columns {
             let (rows, columns) = (self.rows as u64, self.columns as u64);
@@ -387,6 +442,9 @@ impl StoredChannel {
     /// Name and size in one line, for lists.
     pub(crate) fn line(&self, number: usize) -> String {
         let name = self.name.as_deref().unwrap_or("without a name");
+        if let StoredHeights::Unread(problem) = &self.heights {
+            return format!("{number} {name} (not read: {problem})");
+        }
         let unit = match &self.unit {
             StoredUnit::Unknown => "unit unknown".to_owned(),
             StoredUnit::Heights(unit) => format!("heights in {unit}"),
@@ -424,6 +482,39 @@ pub(crate) fn chosen(
         matching: matching.len(),
         list: list.join(", "),
     })
+}
+
+/// Channels of one file that are listed: those of probe microscopes have dozens at most.
+const MOST: usize = 256;
+
+/// An error where a header lists more channels than files have: each takes more memory than its line in the header.
+pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) -> Result<()> {
+    if channels <= MOST {
+        return Ok(());
+    }
+    Err(source.wrong(offset, format!("at most {MOST} channels, found {channels}")))
+}
+
+/// An error where a line of numbers or more stands behind the last numbers that a header lists: its counts or its type are not those of
+/// the file. A few bytes are a note.
+pub(crate) fn check_rest(
+    channels: &mut [StoredChannel],
+    source: &Source<'_>,
+    end: u64,
+    line: usize,
+) -> Result<()> {
+    let rest = source.length().saturating_sub(end);
+    if rest >= line.max(1) as u64 {
+        let expected =
+            format!("the end of the file behind all numbers that the header lists, found {rest} bytes");
+        return Err(source.wrong(end, expected));
+    }
+    if rest > 0 {
+        for channel in channels {
+            channel.note(format!("{rest} bytes behind the last numbers are not read"));
+        }
+    }
+    Ok(())
 }
 
 /// Heights have a length or no unit at all.

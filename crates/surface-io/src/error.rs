@@ -195,6 +195,12 @@ pub enum ContentError {
         /// All of them.
         list: String,
     },
+    /// A channel that cannot be read, of a file with others.
+    #[error("channel {channel}")]
+    Unread {
+        /// Number, name and what is wrong.
+        channel: String,
+    },
     /// A channel whose values are no heights.
     #[error("channel {what}: its values are no heights")]
     NoHeights {
@@ -271,6 +277,22 @@ pub enum ContentError {
         place: Place,
         /// The integer.
         value: i128,
+    },
+    /// A text of more maps than are read.
+    #[error("line {line} begins another map: at most {most} are read from one text")]
+    TooManyMaps {
+        /// Most maps.
+        most: usize,
+        /// The line, from 1.
+        line: usize,
+    },
+    /// The first line and the first value of each line may be coordinates.
+    #[error(
+        "the {what} numbers that ascend in equal steps: coordinates or heights? say border = \"axes\" or border = \"heights\""
+    )]
+    Border {
+        /// What they are of.
+        what: &'static str,
     },
     /// A line with another number of values than the first one.
     #[error("line {line} has {found} values: expected {expected} as in line {first}")]
@@ -379,10 +401,15 @@ pub enum ContentError {
         points: usize,
     },
     /// Neither the file nor the caller states it.
-    #[error("{what} is neither in the file nor given: {remedy}")]
+    #[error(
+        "{what} is {}: {remedy}",
+        if .seen.is_empty() { "neither in the file nor given".to_owned() } else { format!("not known ({})", .seen.join("; ")) }
+    )]
     Unspecified {
         /// What.
         what: &'static str,
+        /// What the file says about it that is not used, and why.
+        seen: Vec<String>,
         /// How to say it.
         remedy: &'static str,
     },

@@ -3,7 +3,7 @@
 use crate::error::ContentError;
 use crate::options::ReadOptions;
 use crate::provenance::{PRINTED, contradiction};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::{Dimension, Quantity, Unit};
 use crate::sides::Sides;
 
 /// How far one axis reaches, as it was stated: by one cell or by the whole side.
@@ -14,6 +14,16 @@ pub(crate) enum Extent {
 }
 
 impl Extent {
+    /// The side of a cell in a unit as a file writes it; `None` where that is no length above 0.
+    pub(crate) fn of_cell(cell: f64, unit: &str) -> Option<Self> {
+        length(cell, unit).map(Self::Cell)
+    }
+
+    /// The side of the map, likewise.
+    pub(crate) fn of_side(side: f64, unit: &str) -> Option<Self> {
+        length(side, unit).map(Self::Side)
+    }
+
     /// Side of one of `count` cells.
     pub(crate) fn cell(self, count: usize) -> Result<Quantity, ContentError> {
         match self {
@@ -43,6 +53,11 @@ impl Extent {
             Self::Cell(length) | Self::Side(length) => length,
         }
     }
+}
+
+fn length(value: f64, unit: &str) -> Option<Quantity> {
+    let unit = unit.parse::<Unit>().ok().filter(|unit| unit.dimension() == Dimension::LENGTH)?;
+    Quantity::of(value, &unit).ok().filter(|length| length.value() > 0.0)
 }
 
 fn scaled(what: &'static str, from: Quantity, by: f64, value: f64) -> Result<Quantity, ContentError> {
@@ -113,7 +128,9 @@ pub(crate) fn check_axis(
     count: usize,
 ) -> Result<(), ContentError> {
     let (stated, given) = (caller.like(file, count)?, caller.length());
-    if agree(stated, given) {
+    // What the file says without a unit, the caller says with one.
+    let plain = stated.dimension() == Dimension::NONE && given.dimension() == Dimension::LENGTH;
+    if plain || agree(stated, given) {
         return Ok(());
     }
     let what = if matches!(caller, Extent::Cell(_)) { CELL } else { ["size along x", "size along y"] };

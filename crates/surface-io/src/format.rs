@@ -2,85 +2,73 @@
 
 use std::fmt;
 
-/// A format that is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Format {
+/// Declares the formats: each with its word and its name.
+macro_rules! formats {
+    ($($(#[$about:meta])* $name:ident = $word:literal, $shown:literal;)*) => {
+        /// A format that is read.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum Format { $($(#[$about])* $name,)* }
+
+        impl Format {
+            /// All of them.
+            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$name),*];
+
+            /// Word, and name.
+            fn words(self) -> (&'static str, &'static str) {
+                match self { $(Self::$name => ($word, $shown),)* }
+            }
+        }
+    };
+}
+
+formats! {
     /// NumPy's array file.
-    Npy,
+    Npy = "npy", "NPY";
     /// Heights as text, one row per line.
-    Text,
+    Text = "text", "a text matrix";
     /// Points x, y, z as text, one per line, in any order.
-    Xyz,
+    Xyz = "xyz", "XYZ points";
     /// Gwyddion's own file.
-    Gwy,
+    Gwy = "gwy", "GWY (Gwyddion)";
     /// Nanoscope, of Digital Instruments, Veeco and Bruker.
-    Nanoscope,
+    Nanoscope = "nanoscope", "Nanoscope";
     /// HDF5, data sets of any program.
-    Hdf5,
+    Hdf5 = "hdf5", "HDF5";
     /// Grey images of numbers.
-    Tiff,
+    Tiff = "tiff", "TIFF";
     /// Surface data file of ISO 25178-71.
-    Sdf,
+    Sdf = "sdf", "SDF (ISO 25178-71)";
     /// Digital Surf's (MountainsMap) file.
-    Sur,
+    Sur = "sur", "SUR (Digital Surf)";
     /// The XML container of ISO 25178-72.
-    X3p,
+    X3p = "x3p", "X3P (ISO 25178-72)";
     /// Classic NetCDF as contact.engineering writes it.
-    NetCdf,
+    NetCdf = "netcdf", "NetCDF-3";
     /// AL3D, of Alicona.
-    Al3d,
+    Al3d = "al3d", "AL3D (Alicona)";
     /// MetroPro .dat, of Zygo.
-    MetroPro,
+    MetroPro = "metropro", "MetroPro (Zygo)";
     /// OPD, of Wyko, Veeco and Bruker.
-    Opd,
+    Opd = "opd", "OPD (Wyko)";
     /// PLu, of Sensofar.
-    Plu,
+    Plu = "plu", "PLu (Sensofar)";
+    /// Points as MetroPro exports them.
+    ZygoXyz = "zygo_xyz", "Zygo XYZ";
+    /// Igor binary wave, of Asylum Research and others.
+    Ibw = "ibw", "IBW (Igor)";
+    /// NID, of Nanosurf.
+    Nid = "nid", "NID (Nanosurf)";
+    /// WSxM's images (STP, TOP).
+    Wsxm = "wsxm", "WSxM";
+    /// MI, of Molecular Imaging, Agilent and Keysight.
+    Mi = "mi", "MI (Molecular Imaging)";
 }
 
 impl Format {
-    /// All of them.
-    pub const ALL: [Self; 15] = [
-        Self::Npy,
-        Self::Text,
-        Self::Xyz,
-        Self::Gwy,
-        Self::Nanoscope,
-        Self::Hdf5,
-        Self::Tiff,
-        Self::Sdf,
-        Self::Sur,
-        Self::X3p,
-        Self::NetCdf,
-        Self::Al3d,
-        Self::MetroPro,
-        Self::Opd,
-        Self::Plu,
-    ];
-
     /// The word that stands for it in scenes and on command lines.
     pub fn word(self) -> &'static str {
         self.words().0
-    }
-
-    fn words(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Npy => ("npy", "NPY"),
-            Self::Text => ("text", "a text matrix"),
-            Self::Xyz => ("xyz", "XYZ points"),
-            Self::Gwy => ("gwy", "GWY (Gwyddion)"),
-            Self::Nanoscope => ("nanoscope", "Nanoscope"),
-            Self::Hdf5 => ("hdf5", "HDF5"),
-            Self::Tiff => ("tiff", "TIFF"),
-            Self::Sdf => ("sdf", "SDF (ISO 25178-71)"),
-            Self::Sur => ("sur", "SUR (Digital Surf)"),
-            Self::X3p => ("x3p", "X3P (ISO 25178-72)"),
-            Self::NetCdf => ("netcdf", "NetCDF-3"),
-            Self::Al3d => ("al3d", "AL3D (Alicona)"),
-            Self::MetroPro => ("metropro", "MetroPro (Zygo)"),
-            Self::Opd => ("opd", "OPD (Wyko)"),
-            Self::Plu => ("plu", "PLu (Sensofar)"),
-        }
     }
 }
 

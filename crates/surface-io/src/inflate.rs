@@ -1,7 +1,6 @@
 //! Packed numbers: deflate with and without the header of zlib.
 
 use crate::error::{ContentError, Result};
-use crate::format::Format;
 use crate::source::Source;
 use flate2::read::{DeflateDecoder, ZlibDecoder};
 use std::io::Read;
@@ -35,12 +34,12 @@ pub(crate) struct Packed {
 
 impl Packed {
     /// An error where the file ends too early or the bytes cannot unpack to as many as claimed; called before anything is allocated.
-    pub(crate) fn check(self, source: &Source<'_>, format: Format) -> Result<()> {
+    pub(crate) fn check(self, source: &Source<'_>) -> Result<()> {
         let Self { packing, offset, length, unpacked } = self;
         if offset.checked_add(length).is_none_or(|end| end > source.length()) {
             let expected =
                 format!("{length} packed bytes here, the file ends at {} (cut short?)", source.length());
-            return Err(source.wrong(format, offset, expected));
+            return Err(source.wrong(offset, expected));
         }
         let most = match packing {
             Packing::Stored => length,
@@ -48,14 +47,14 @@ impl Packed {
         };
         if unpacked > most {
             let expected = format!("{length} bytes to unpack to at most {most}, not {unpacked}");
-            return Err(source.wrong(format, offset, expected));
+            return Err(source.wrong(offset, expected));
         }
         Ok(())
     }
 
     /// Appends the unpacked bytes.
-    pub(crate) fn unpack(self, source: &mut Source<'_>, format: Format, into: &mut Vec<u8>) -> Result<()> {
-        self.check(source, format)?;
+    pub(crate) fn unpack(self, source: &mut Source<'_>, into: &mut Vec<u8>) -> Result<()> {
+        self.check(source)?;
         let Self { packing, offset, length, unpacked } = self;
         let before = into.len();
         let refused = |_| ContentError::Memory { bytes: unpacked.into() };
@@ -72,6 +71,6 @@ impl Packed {
             Ok(_) if found < unpacked => format!("{unpacked} bytes unpacked, found {found}"),
             Ok(_) => return Ok(()),
         };
-        Err(source.wrong(format, offset, expected))
+        Err(source.wrong(offset, expected))
     }
 }

@@ -1,11 +1,12 @@
 //! Words of scenes and command lines.
 
 use crate::format::Format;
-use crate::options::Decimal;
+use crate::options::{Border, Decimal};
 use crate::preprocessing::{AlignLines, Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
 /// A word that is not one of those expected.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,13 +58,15 @@ impl FromStr for Format {
     /// # Errors
     /// [`KeywordError`] for other words.
     fn from_str(text: &str) -> Result<Self, KeywordError> {
-        among("format", text, Self::ALL.map(|format| (format.word(), format)), FORMATS)
+        among("format", text, Self::ALL.map(|format| (format.word(), format)), &FORMATS)
     }
 }
 
 /// All words of [`Format`].
-const FORMATS: &str =
-    "npy, text, xyz, gwy, nanoscope, hdf5, tiff, sdf, sur, x3p, netcdf, al3d, metropro, opd or plu";
+static FORMATS: LazyLock<String> = LazyLock::new(|| {
+    let [first @ .., last] = Format::ALL.map(Format::word);
+    format!("{} or {last}", first.join(", "))
+});
 
 impl FromStr for Decimal {
     type Err = KeywordError;
@@ -75,6 +78,18 @@ impl FromStr for Decimal {
     fn from_str(text: &str) -> Result<Self, KeywordError> {
         let known = [("point", Self::Point), ("comma", Self::Comma)];
         among("decimal", text, known, "point or comma")
+    }
+}
+
+impl FromStr for Border {
+    type Err = KeywordError;
+
+    /// Reads `axes` or `heights`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        among("border", text, [("axes", Self::Axes), ("heights", Self::Heights)], "axes or heights")
     }
 }
 

@@ -87,9 +87,11 @@ mod choice;
 mod composite;
 mod describe;
 mod detect;
+mod entries;
 mod error;
 mod escape;
 mod extent;
+mod fields;
 pub mod files;
 mod format;
 mod inflate;
@@ -122,7 +124,7 @@ pub use format::Format;
 pub use instruments::{gwy, hdf5, netcdf, x3p};
 pub use keyword::KeywordError;
 pub use npy::npy;
-pub use options::{Decimal, ReadOptions};
+pub use options::{Border, Decimal, ReadOptions};
 pub use points::{profile, profile_from_bytes};
 pub use preprocessing::{
     AlignLines, Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window,

@@ -9,7 +9,7 @@ mod write;
 
 pub use write::npy;
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredUnit};
+use crate::channel::{RawHeights, StoredChannel, StoredUnit};
 use crate::error::{ContentError, Result};
 use crate::format::Format;
 use crate::reader::Reader;
@@ -33,10 +33,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     if expected != u128::from(found) {
         return Err(source.content(ContentError::Length { rows, columns, expected, found }));
     }
-    let raw = RawHeights {
-        order: header.order,
-        ..RawHeights::new(Format::Npy, Bytes::File(header_bytes), header.kind)
-    };
+    let raw = RawHeights { order: header.order, ..RawHeights::at(header_bytes, header.kind) };
     let shape = [rows as usize, columns as usize];
     Ok(vec![StoredChannel::new(source, raw, shape, StoredUnit::Unknown, [None; 2])?])
 }

@@ -48,6 +48,11 @@ impl NumberType {
         self.kind == Kind::Float
     }
 
+    /// Whether it is an integer with a sign.
+    pub(crate) fn is_signed(self) -> bool {
+        self.kind == Kind::Signed
+    }
+
     /// Type and bits, such as float32.
     pub(crate) fn name(self) -> String {
         let name = match self.kind {
@@ -56,6 +61,11 @@ impl NumberType {
             Kind::Unsigned => "uint",
         };
         format!("{name}{}", 8 * self.size)
+    }
+
+    /// How many values a number of this size has.
+    pub(crate) fn values(self) -> f64 {
+        256_f64.powi(self.size.into())
     }
 
     /// Bytes of one number.

@@ -25,6 +25,8 @@ pub struct ReadOptions {
     pub cell: Option<Sides>,
     /// Older name of a size of square cells: the length of a row, `columns * cell`.
     pub width: Option<Quantity>,
+    /// What the first line and the first column of a text matrix are, where they may be coordinates.
+    pub border: Option<Border>,
     /// How decimals are written in text.
     pub decimal: Decimal,
     /// A number of the file that stands for an undefined point, such as -9999.
@@ -47,6 +49,7 @@ impl Default for ReadOptions {
             size: None,
             cell: None,
             width: None,
+            border: None,
             decimal: Decimal::Point,
             missing: None,
             skip_lines: 0,
@@ -54,6 +57,15 @@ impl Default for ReadOptions {
             largest_bytes: (8 << 30) + 65536,
         }
     }
+}
+
+/// What the first line and the first column of a text matrix are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Border {
+    /// Coordinates of the columns and of the rows.
+    Axes,
+    /// Heights like all others.
+    Heights,
 }
 
 /// How decimals are written.

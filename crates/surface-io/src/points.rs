@@ -75,8 +75,10 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
     let off =
         if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
     let details = format!("{points} points, {}{off}", table.details());
-    let (name, unit) = (table.heading.name.clone(), StoredUnit::heights(unit));
-    Ok(StoredChannel { name, details, rows, columns, unit, extent, heights: StoredHeights::Read(heights) })
+    let (heights, unit) = (StoredHeights::Read(heights), StoredUnit::heights(unit));
+    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
+    let notes = table.heading.notes(extent);
+    Ok(StoredChannel { name: table.heading.name.clone(), extent, notes, ..channel })
 }
 
 /// Whether the first two of three columns are all places of a grid of two rows and columns or more, each once and exactly on its place.
@@ -120,7 +122,11 @@ fn lateral_unit(
     check_unit("lateral_unit", unit.as_ref())?;
     if unit.is_none() && heights_have_length {
         let remedy = "say lateral_unit = \"um\" or another unit of length";
-        return Err(ContentError::Unspecified { what: "the unit of x and y", remedy });
+        return Err(ContentError::Unspecified {
+            what: "the unit of x and y",
+            seen: table.heading.notes([None; 2]),
+            remedy,
+        });
     }
     Ok(unit)
 }

@@ -353,12 +353,17 @@ impl Scan {
         let unit = metadata.unit.as_ref().map(|u| u.value.dimension());
         let (Some(size), Some(cell)) = (metadata.size, &metadata.cell) else {
             let remedy = "say size = [\"1 mm\", \"2 mm\"] or cell = \"0.5 um\", or numbers where the heights have no unit";
-            return Err(ContentError::Unspecified { what: "the size of the map", remedy });
+            return Err(ContentError::Unspecified {
+                what: "the size of the map",
+                seen: metadata.notes.clone(),
+                remedy,
+            });
         };
         let dx = cell.value[0];
         match unit {
             None if dx.dimension() == Dimension::LENGTH => Err(ContentError::Unspecified {
                 what: "the unit of the heights",
+                seen: metadata.notes.clone(),
                 remedy: "say unit = \"nm\" or another unit of length",
             }),
             unit if dx.dimension() == unit.unwrap_or(Dimension::NONE) => {

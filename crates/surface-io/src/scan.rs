@@ -40,6 +40,8 @@ pub struct Metadata {
     pub range: Option<[f64; 2]>,
     /// Root mean square of the heights about their mean in the file's unit; `None` where no point is defined.
     pub rms_height: Option<f64>,
+    /// What the file says and what is not used of it, what may be meant otherwise, and values that stand alone: sentences for people.
+    pub notes: Vec<String>,
 }
 
 impl Metadata {
@@ -79,7 +81,10 @@ cell       {dx} x {dy}"
             _ => writeln!(f, "range      none")?,
         }
         write!(f, "undefined  {} of {} points", self.undefined, self.rows * self.columns)?;
-        if self.undefined > 0 { write!(f, " ({:.3} %)", 100.0 * self.undefined_share()) } else { Ok(()) }
+        if self.undefined > 0 {
+            write!(f, " ({:.3} %)", 100.0 * self.undefined_share())?;
+        }
+        self.notes.iter().try_for_each(|note| write!(f, "\nnote       {note}"))
     }
 }
 
@@ -103,7 +108,7 @@ impl Scan {
         mut heights: Vec<f64>,
         declared: &ReadOptions,
     ) -> Result<Self, ContentError> {
-        let StoredChannel { name, details, rows, columns, unit, extent, .. } = channel;
+        let StoredChannel { name, details, rows, columns, unit, extent, mut notes, .. } = channel;
         if let Some(undefined) = declared.missing {
             for h in &mut heights {
                 if h.to_bits() == undefined.to_bits() || (*h - undefined).abs() <= 0.0 {
@@ -136,6 +141,7 @@ impl Scan {
                 range = Some([h.min(low), h.max(high)]);
             }
         }
+        notes.extend(lone_extremes(&heights));
         let count = [columns, rows];
         let given = extent::given(declared, count)?;
         let extents = match (given, extent) {
@@ -170,6 +176,7 @@ impl Scan {
             undefined,
             range,
             rms_height,
+            notes,
         };
         Ok(Self { path: path.to_owned(), metadata, heights })
     }
@@ -226,6 +233,48 @@ fn scaled(
     }
     let value = "m".parse().map_err(|source| ContentError::Quantity { what: "height_scale", source })?;
     Ok(Sourced { value, origin: Origin::Caller })
+}
+
+/// What is said of the lowest and the highest value where it stands alone: farther from the next one than twice the range of all others, as
+/// a mark of undefined points does that the file does not declare.
+fn lone_extremes(heights: &[f64]) -> Vec<String> {
+    const ALONE: f64 = 2.0;
+    // The lowest value and the next one, the highest and the one before.
+    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for &h in heights.iter().filter(|h| !h.is_nan()) {
+        low = if h < low[0] {
+            [h, low[0]]
+        } else if h > low[0] {
+            [low[0], low[1].min(h)]
+        } else {
+            low
+        };
+        high = if h > high[0] {
+            [h, high[0]]
+        } else if h < high[0] {
+            [high[0], high[1].max(h)]
+        } else {
+            high
+        };
+    }
+    let note = |value: f64, next: f64, [from, to]: [f64; 2]| {
+        let alone = to > from && (value - next).abs() > ALONE * (to - from);
+        let count = heights.iter().filter(|h| (**h - value).abs() <= 0.0).count();
+        alone.then(|| {
+            let (value, from, to) = (shown(value), shown(from), shown(to));
+            let points = if count == 1 { "1 point".to_owned() } else { format!("{count} points") };
+            format!(
+                "{points} of {value}, all others are from {from} to {to}: a mark of undefined points? missing = {value} makes them so"
+            )
+        })
+    };
+    let found = [note(low[0], low[1], [low[1], high[0]]), note(high[0], high[1], [low[0], high[1]])];
+    found.into_iter().flatten().collect()
+}
+
+/// Large and small numbers with an exponent.
+fn shown(value: f64) -> String {
+    if value.abs() >= 1e6 || value.abs() < 1e-3 { format!("{value:e}") } else { value.to_string() }
 }
 
 /// Rms height of the defined points about their mean: about the middle of the range and in units of half of

@@ -1,8 +1,8 @@
 //! The bytes of a file, read where a format's header says, never beyond its end.
 
 use crate::error::{ContentError, Error, Result};
+use crate::fields::{ByteOrder, Fields, Stored};
 use crate::format::Format;
-use crate::number_type::NumberType;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
@@ -80,20 +80,50 @@ impl Seek for Detached {
     }
 }
 
+/// What errors are about: a file, and the format that it is read as.
+#[derive(Debug, Clone)]
+pub(crate) struct Subject(Arc<(PathBuf, Option<Format>)>);
+
+impl Subject {
+    pub(crate) fn new(path: &Path, format: Option<Format>) -> Self {
+        Self(Arc::new((path.to_owned(), format)))
+    }
+
+    /// An error about this file.
+    pub(crate) fn content(&self, problem: ContentError) -> Error {
+        Error::content(&self.0.0)(problem)
+    }
+
+    /// An error about what stands at an offset of a binary file.
+    pub(crate) fn wrong(&self, offset: u64, expected: impl Into<String>) -> Error {
+        let format = self.0.1.unwrap_or(Format::Text);
+        self.content(ContentError::Binary { format, offset, expected: expected.into() })
+    }
+}
+
 /// An opened file of a known length.
 pub(crate) struct Source<'a> {
     input: Box<dyn Input + 'a>,
-    path: PathBuf,
+    subject: Subject,
     length: u64,
 }
 
 impl<'a> Source<'a> {
     pub(crate) fn new(path: &Path, input: impl Input + 'a, length: u64) -> Self {
-        Self { input: Box::new(input), path: path.to_owned(), length }
+        Self { input: Box::new(input), subject: Subject::new(path, None), length }
+    }
+
+    /// Takes the file as one of this format.
+    pub(crate) fn read_as(&mut self, format: Option<Format>) {
+        self.subject = Subject::new(self.path(), format);
+    }
+
+    pub(crate) fn subject(&self) -> &Subject {
+        &self.subject
     }
 
     pub(crate) fn path(&self) -> &Path {
-        &self.path
+        &self.subject.0.0
     }
 
     /// Bytes of the file.
@@ -107,18 +137,28 @@ impl<'a> Source<'a> {
     }
 
     /// So many bytes from an offset on; an error where the file is shorter, before anything is allocated.
-    pub(crate) fn bytes(&mut self, format: Format, offset: u64, count: u64) -> Result<Vec<u8>> {
+    pub(crate) fn bytes(&mut self, offset: u64, count: u64) -> Result<Vec<u8>> {
         if offset.checked_add(count).is_none_or(|end| end > self.length) {
             let expected = format!("{count} bytes here, the file ends at {} (cut short?)", self.length);
-            return Err(self.wrong(format, offset, expected));
+            return Err(self.wrong(offset, expected));
         }
         self.read(offset, count)
     }
 
+    /// The same as numbers of one byte order.
+    pub(crate) fn fields(&mut self, order: ByteOrder, offset: u64, count: u64) -> Result<Fields<'static>> {
+        Ok(Fields::new(self.subject.clone(), order, offset, self.bytes(offset, count)?))
+    }
+
+    /// So many numbers or texts of one type from an offset on.
+    pub(crate) fn get<T: Stored>(&mut self, order: ByteOrder, offset: u64) -> Result<T> {
+        self.fields(order, offset, T::BYTES as u64)?.get()
+    }
+
     fn read(&mut self, offset: u64, count: u64) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
-        let refused = |_| ContentError::Memory { bytes: count.into() };
-        bytes.try_reserve_exact(count as usize).map_err(refused).map_err(Error::content(&self.path))?;
+        let refused = |_| self.content(ContentError::Memory { bytes: count.into() });
+        bytes.try_reserve_exact(count as usize).map_err(refused)?;
         bytes.resize(count as usize, 0);
         self.fill(offset, &mut bytes)?;
         Ok(bytes)
@@ -133,150 +173,35 @@ impl<'a> Source<'a> {
                 let found = offset;
                 Err(self.content(ContentError::Changed { expected: self.length, found }))
             }
-            read => read.map_err(Error::system("read", &self.path)),
+            read => read.map_err(Error::system("read", self.path())),
         }
     }
 
     /// The whole input from its beginning, for readers of other crates.
     pub(crate) fn whole(&mut self) -> Result<&mut (dyn Input + 'a)> {
-        self.input.seek(SeekFrom::Start(0)).map_err(Error::system("read", &self.path))?;
+        self.input.seek(SeekFrom::Start(0)).map_err(Error::system("read", &self.subject.0.0))?;
         Ok(&mut *self.input)
     }
 
     /// The input without its lifetime, for readers of other crates that keep it.
     pub(crate) fn detached(&self, budget: &Budget) -> Result<Detached> {
-        let input = self.input.detached().map_err(Error::system("read", &self.path))?;
+        let input = self.input.detached().map_err(Error::system("read", self.path()))?;
         Ok(Detached { input, budget: budget.clone() })
     }
 
     /// A part of the input, for readers of other crates; the caller has compared its end with [`Source::length`].
     pub(crate) fn part(&mut self, offset: u64, length: u64) -> Result<Take<&mut (dyn Input + 'a)>> {
-        self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", &self.path))?;
+        self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", &self.subject.0.0))?;
         Ok((&mut *self.input as &mut (dyn Input + 'a)).take(length))
     }
 
     /// An error about this file.
     pub(crate) fn content(&self, problem: ContentError) -> Error {
-        Error::content(&self.path)(problem)
+        self.subject.content(problem)
     }
 
     /// An error about what stands at an offset of a binary file.
-    pub(crate) fn wrong(&self, format: Format, offset: u64, expected: impl Into<String>) -> Error {
-        self.content(ContentError::Binary { format, offset, expected: expected.into() })
-    }
-}
-
-/// A part of a file that is in memory, read number by number and never beyond its end.
-pub(crate) struct Fields<'a> {
-    bytes: &'a [u8],
-    /// Where the part begins in the file.
-    base: u64,
-    at: usize,
-    little: bool,
-}
-
-/// Too short; the offset in the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct EndOfFields(u64);
-
-impl EndOfFields {
-    /// The error of a file whose header ends too early.
-    pub(crate) fn of(self, source: &Source<'_>, format: Format) -> Error {
-        source.wrong(format, self.0, "more of the header (cut short?)")
-    }
-}
-
-impl<'a> Fields<'a> {
-    pub(crate) fn little(bytes: &'a [u8], base: u64) -> Self {
-        Self { bytes, base, at: 0, little: true }
-    }
-
-    pub(crate) fn big(bytes: &'a [u8], base: u64) -> Self {
-        Self { bytes, base, at: 0, little: false }
-    }
-
-    /// Offset in the file of what is read next.
-    pub(crate) fn offset(&self) -> u64 {
-        self.base + self.at as u64
-    }
-
-    /// Goes to an offset of this part.
-    pub(crate) fn go(&mut self, at: usize) -> &mut Self {
-        self.at = at.min(self.bytes.len());
-        self
-    }
-
-    pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], EndOfFields> {
-        let rest = &self.bytes[self.at..];
-        let found = rest.get(..count).ok_or(EndOfFields(self.offset()))?;
-        self.at += count;
-        Ok(found)
-    }
-
-    /// Bytes up to a mark, which is left out and passed.
-    pub(crate) fn until(&mut self, mark: u8) -> Result<&'a [u8], EndOfFields> {
-        let rest = &self.bytes[self.at..];
-        let count = rest.iter().position(|&b| b == mark).ok_or(EndOfFields(self.offset()))?;
-        self.at += count + 1;
-        Ok(&rest[..count])
-    }
-
-    /// Text in a field of so many bytes, up to its first zero, without spaces around it; bytes that are no UTF-8 are Latin-1.
-    pub(crate) fn text(&mut self, count: usize) -> Result<String, EndOfFields> {
-        let field = self.take(count)?;
-        let field = field.split(|&b| b == 0).next().unwrap_or_default().trim_ascii();
-        let latin = || field.iter().map(|&b| char::from(b)).collect();
-        Ok(std::str::from_utf8(field).map_or_else(|_| latin(), str::to_owned))
-    }
-
-    /// A number of a type of at most four bytes, or of a double.
-    pub(crate) fn number(&mut self, number: NumberType) -> Result<f64, EndOfFields> {
-        let number = if self.little { number } else { number.big_endian() };
-        let at = EndOfFields(self.offset());
-        number.decode(self.take(number.bytes())?).map_err(|_| at)
-    }
-
-    pub(crate) fn u8(&mut self) -> Result<u8, EndOfFields> {
-        Ok(self.take(1)?[0])
-    }
-
-    pub(crate) fn u16(&mut self) -> Result<u16, EndOfFields> {
-        self.integer().map(|n| n as u16)
-    }
-
-    pub(crate) fn i16(&mut self) -> Result<i16, EndOfFields> {
-        self.u16().map(u16::cast_signed)
-    }
-
-    pub(crate) fn u32(&mut self) -> Result<u32, EndOfFields> {
-        self.wide::<4>().map(|n| n as u32)
-    }
-
-    pub(crate) fn i32(&mut self) -> Result<i32, EndOfFields> {
-        self.u32().map(u32::cast_signed)
-    }
-
-    pub(crate) fn u64(&mut self) -> Result<u64, EndOfFields> {
-        self.wide::<8>()
-    }
-
-    pub(crate) fn f32(&mut self) -> Result<f64, EndOfFields> {
-        self.number(NumberType::F32)
-    }
-
-    pub(crate) fn f64(&mut self) -> Result<f64, EndOfFields> {
-        self.number(NumberType::F64)
-    }
-
-    fn integer(&mut self) -> Result<u64, EndOfFields> {
-        self.wide::<2>()
-    }
-
-    fn wide<const N: usize>(&mut self) -> Result<u64, EndOfFields> {
-        let mut word = [0; 8];
-        for (i, byte) in self.take(N)?.iter().enumerate() {
-            word[if self.little { i } else { N - 1 - i }] = *byte;
-        }
-        Ok(u64::from_le_bytes(word))
+    pub(crate) fn wrong(&self, offset: u64, expected: impl Into<String>) -> Error {
+        self.subject.wrong(offset, expected)
     }
 }

@@ -1,6 +1,6 @@
 //! A file of surfaces: its channels, and the scan of each.
 
-use crate::channel::{StoredChannel, StoredUnit, chosen};
+use crate::channel::{StoredChannel, StoredHeights, StoredUnit, chosen};
 use crate::detect::detect;
 use crate::error::{ContentError, Error, Result};
 use crate::format::Format;
@@ -62,10 +62,7 @@ impl<'a> SurfaceFile<'a> {
     fn new(path: &Path, input: impl Input + 'a, length: u64, declared: &ReadOptions) -> Result<Self> {
         let (mut source, format) = told(path, input, length, declared)?;
         let (format, mut channels) = match format {
-            None | Some(Format::Text | Format::Xyz) => {
-                let (format, channel) = of_text(&mut source, format, declared)?;
-                (format, vec![channel])
-            }
+            None | Some(Format::Text | Format::Xyz) => of_text(&mut source, format, declared)?,
             Some(format) => {
                 no_lines(declared).map_err(Error::content(path))?;
                 let reader = READERS.iter().find(|reader| reader.format == format);
@@ -74,7 +71,13 @@ impl<'a> SurfaceFile<'a> {
             }
         };
         if channels.is_empty() {
-            return Err(source.wrong(format, 0, "one map at least"));
+            return Err(source.wrong(0, "one map at least"));
+        }
+        // Where none can be read, the first says why.
+        if let [StoredChannel { heights: StoredHeights::Unread(problem), .. }, rest @ ..] = &channels[..]
+            && rest.iter().all(|channel| matches!(channel.heights, StoredHeights::Unread(_)))
+        {
+            return Err(source.content(problem.clone()));
         }
         channels.iter_mut().for_each(StoredChannel::escape);
         Ok(Self { source, format, channels, declared: declared.clone() })
@@ -105,7 +108,7 @@ impl<'a> SurfaceFile<'a> {
     /// The scans of all channels, one after another.
     ///
     /// # Errors
-    /// Of each: [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
+    /// Of each: [`ContentError::Unread`] where this channel cannot be read and others can; [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
     /// that no double holds, and for contradictions to what is declared.
     pub fn scans(self) -> impl Iterator<Item = Result<Scan>> {
         let Self { mut source, format, channels, declared } = self;
@@ -138,6 +141,7 @@ pub(crate) fn told<'a>(
     let mut source = Source::new(path, input, length);
     let start = source.start(SNIFF)?;
     let format = detect(declared.format, path, &start, length).map_err(Error::content(path))?;
+    source.read_as(format);
     Ok((source, format))
 }
 
@@ -177,6 +181,9 @@ fn read(
     (number, mut channel): (usize, StoredChannel),
     declared: &ReadOptions,
 ) -> Result<Scan> {
+    if let StoredHeights::Unread(_) = channel.heights {
+        return Err(source.content(ContentError::Unread { channel: channel.line(number) }));
+    }
     let heights = channel.read(source)?;
     let own;
     let declared = if let StoredUnit::NoHeights(_) = channel.unit {
@@ -189,34 +196,47 @@ fn read(
     Scan::new(source.path(), format, (number, channel), heights, declared).map_err(|e| source.content(e))
 }
 
-/// A matrix or points.
+/// Matrices or points.
 fn of_text(
     source: &mut Source<'_>,
     format: Option<Format>,
     declared: &ReadOptions,
-) -> Result<(Format, StoredChannel)> {
+) -> Result<(Format, Vec<StoredChannel>)> {
     let length = source.length();
     let bytes = source.start(length)?;
-    let table = text::TextTable::read(&bytes, declared).map_err(|e| source.content(e))?;
-    let format = match format {
-        Some(format) => format,
-        None if table.columns == 3 && table.rows() > 3 => {
-            let ambiguous = ContentError::Ambiguous { lines: table.rows() };
-            // Numbers whose first two columns are all places of a grid, each once, are no heights.
-            let places = || points::is_full_grid(&table).then_some(Format::Xyz);
-            table.heading.format().or_else(places).ok_or(ambiguous).map_err(|e| source.content(e))?
-        }
-        None if table.is_profile() => {
-            return Err(source.content(ContentError::Profile { lines: table.rows() }));
-        }
-        None => Format::Text,
-    };
+    let maps = text::TextTable::read(&bytes, declared).map_err(|e| source.content(e))?;
     drop(bytes);
-    let channel = match format {
-        Format::Xyz => points::grid(&table, declared),
-        _ => text::matrix(table, declared),
+    let channel = |table: text::TextTable| {
+        let format = format.map_or_else(|| of_table(&table), Ok)?;
+        let channel = match format {
+            Format::Xyz => points::grid(&table, declared),
+            _ => text::matrix(table, declared),
+        };
+        Ok((format, channel?))
     };
-    Ok((format, channel.map_err(|e| source.content(e))?))
+    let mut channels = Vec::new();
+    let mut first = None;
+    for table in maps {
+        let name = table.heading.name.clone();
+        let read = channel(table).map_err(|e| source.content(e));
+        first = first.or(read.as_ref().ok().map(|(format, _)| *format));
+        channels.push(StoredChannel::listed(name, read.map(|(_, channel)| channel))?);
+    }
+    Ok((first.unwrap_or(Format::Text), channels))
+}
+
+/// Whether numbers are a matrix or points.
+fn of_table(table: &text::TextTable) -> Result<Format, ContentError> {
+    if table.columns == 3 && table.rows() > 3 {
+        // Numbers whose first two columns are all places of a grid, each once, are no heights.
+        let places = || points::is_full_grid(table).then_some(Format::Xyz);
+        let ambiguous = ContentError::Ambiguous { lines: table.rows() };
+        return table.heading.format().or_else(places).ok_or(ambiguous);
+    }
+    if table.is_profile() {
+        return Err(ContentError::Profile { lines: table.rows() });
+    }
+    Ok(Format::Text)
 }
 
 /// Fails for options that only text has a use for.

@@ -9,8 +9,11 @@ pub(crate) use heading::Heading;
 pub(crate) use matrix::matrix;
 
 use crate::error::{ContentError, NumberKind, Place};
+use crate::fields::decoded;
+use crate::format::Format;
 use crate::options::{Decimal, ReadOptions};
-use number::Numbers;
+use number::{Numbers, unquoted};
+use std::borrow::Cow;
 use std::fmt;
 
 /// What stands between two numbers.
@@ -75,7 +78,12 @@ pub(crate) struct TextTable {
     end: u8,
     /// Whether every line so far ended with a delimiter: the habit of some programs, or an empty last place.
     open: bool,
+    /// Whether there is an empty line behind every line.
+    spaced: bool,
 }
+
+/// Most maps of one text.
+const MOST_MAPS: usize = 1000;
 
 /// Two columns of at most so many rows are a map.
 const PROFILE: usize = 8;
@@ -102,10 +110,13 @@ impl TextTable {
         self.lines.first().map_or(1, |&line| line as usize)
     }
 
-    /// Reads all lines; with decimal commas where they are found to be nothing else.
+    /// Reads all lines, map by map; with decimal commas where they are found to be nothing else.
+    ///
+    /// A heading between numbers ends a map, and so does an empty line: not where there is one behind every line, nor between three
+    /// columns, which are points of one map unless they are asked for as a matrix.
     ///
     /// Memory: at most 8 bytes for each byte of the text (nothing between two commas), and 4 for each line.
-    pub(crate) fn read(bytes: &[u8], declared: &ReadOptions) -> Result<Self, ContentError> {
+    pub(crate) fn read(bytes: &[u8], declared: &ReadOptions) -> Result<Vec<Self>, ContentError> {
         let end = line_end(bytes);
         check_text(bytes, end)?;
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
@@ -116,9 +127,9 @@ impl TextTable {
         let kind = NumberKind::DecimalComma;
         if matches!(&error, ContentError::Number { kind: found, .. } if *found == kind || *found == NumberKind::Two)
             && has_decimal_commas(bytes, end, declared.skip_lines)
-            && let Ok(table) = Self::read_as(bytes, end, Decimal::Comma, declared)
+            && let Ok(maps) = Self::read_as(bytes, end, Decimal::Comma, declared)
         {
-            return Ok(Self { found_commas: true, ..table });
+            return Ok(maps.into_iter().map(|map| Self { found_commas: true, ..map }).collect());
         }
         Err(error)
     }
@@ -128,43 +139,105 @@ impl TextTable {
         end: u8,
         decimal: Decimal,
         declared: &ReadOptions,
-    ) -> Result<Self, ContentError> {
-        let mut table: Option<Self> = None;
-        let mut heading = Heading::default();
+    ) -> Result<Vec<Self>, ContentError> {
         let numbers = Numbers { decimal };
-        // The first and the last line of a header without marks of comments.
-        let mut first: Option<(usize, &[u8])> = None;
-        let mut last = None;
+        let mut maps: Vec<Self> = Vec::new();
+        // Lines of the heading of the next map, and the first and the last of them without the mark of a comment.
+        let mut heading: Vec<(usize, Cow<'_, [u8]>)> = Vec::new();
+        let (mut first, mut last): (Option<(usize, &[u8])>, Option<(usize, &[u8])>) = (None, None);
+        let (mut open, mut gap) = (false, false);
+        // The line before the numbers of the map that is open.
+        let mut title = None;
         for (i, line) in bytes.split(|&b| b == end).enumerate().skip(declared.skip_lines) {
             let (data, comment) = without_comment(line);
             if data.trim_ascii().is_empty() {
-                if let Some(comment) = comment {
-                    heading.read(comment, i + 1)?;
-                }
+                gap |= comment.is_none();
+                heading.extend(comment.map(|comment| (i + 1, Cow::from(comment))));
                 continue;
             }
-            if table.is_none() && numbers.is_header(data) {
-                heading.read(line.trim_ascii(), i + 1)?;
+            if numbers.is_header(data) {
+                heading.push((i + 1, line.trim_ascii().into()));
                 (first, last) = (first.or(Some((i + 1, data))), Some((i + 1, data)));
                 continue;
             }
-            let new = table.is_none();
-            let begun = table.get_or_insert_with(|| Self::new(data, decimal, end));
-            begun.line(numbers, data, i + 1, bytes).map_err(|error| begun.odd_one_out(error, bytes))?;
-            if let (true, Some((number, header))) = (new, last) {
-                begun.check_header(numbers, header, number)?;
+            if let Some(map) = maps.last_mut().filter(|_| open)
+                && map.ends(
+                    gap,
+                    last.is_some() || heading.iter().any(|(_, line)| Heading::says(line)),
+                    declared,
+                )
+            {
+                open = false;
+                if let Some(stated) = title.and_then(|title| map.statements(title)) {
+                    heading.splice(0..0, stated.into_iter().map(|line| (i, line.into_bytes().into())));
+                    maps.pop();
+                } else {
+                    map.values.shrink_to_fit();
+                    map.lines.shrink_to_fit();
+                }
             }
+            let new = !open;
+            if new {
+                if maps.len() == MOST_MAPS {
+                    return Err(ContentError::TooManyMaps { most: MOST_MAPS, line: i + 1 });
+                }
+                let mut map = Self::new(data, decimal, end);
+                heading.drain(..).try_for_each(|(line, text)| map.heading.read(&text, line))?;
+                maps.push(map);
+            }
+            let alone = maps.len() == 1;
+            let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
+            let all = if alone { bytes } else { &[] };
+            map.line(numbers, data, i + 1, all).map_err(|error| map.odd_one_out(error, bytes))?;
+            if let (true, Some((number, header))) = (new, last)
+                && !Heading::says(header)
+            {
+                map.check_header(numbers, header, number)?;
+            }
+            if new {
+                title = last.map(|(_, header)| header);
+            }
+            heading.clear();
+            (open, gap, last) = (true, false, None);
         }
-        let Some(mut table) = table else {
-            // A header without numbers: what was expected instead of its first line.
-            let Some((number, line)) = first else { return Err(ContentError::Empty) };
+        // A heading without numbers: what was expected instead of its first line.
+        if let (Some((number, line)), true) = (last.and(first), last.is_some()) {
+            let (number, line) =
+                if maps.is_empty() { (number, line) } else { last.unwrap_or((number, line)) };
             let mut none = Self::new(line, decimal, end);
             return none.line(numbers, line, number, line).and(Err(ContentError::Empty));
+        }
+        let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
+        heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
+        for map in &mut maps {
+            map.heading.finish()?;
+            map.scale = map.heading.scale;
+            if let Some(mark) = map.heading.missing {
+                map.values.iter_mut().filter(|h| (**h - mark).abs() <= 0.0).for_each(|h| *h = f64::NAN);
+            }
+        }
+        Ok(maps)
+    }
+
+    /// Whether the map ends before the next numbers, with a heading or an empty line between.
+    fn ends(&mut self, gap: bool, heading: bool, declared: &ReadOptions) -> bool {
+        let points = match declared.format {
+            Some(Format::Xyz) => true,
+            Some(_) => false,
+            None => self.columns == 3,
         };
-        heading.finish()?;
-        table.scale = heading.scale;
-        table.heading = heading;
-        Ok(table)
+        self.spaced |= gap && self.rows() == 1;
+        heading || (gap && !points && !self.spaced)
+    }
+
+    /// One line of numbers below as many keys says what they are: `numCols numRows pixelSize`, `4 3 1.7`.
+    fn statements(&self, title: &[u8]) -> Option<Vec<String>> {
+        let title = decoded(title);
+        let keys: Vec<&str> = title.trim().split(char::from(self.delimiter.byte())).map(str::trim).collect();
+        let lines = keys.iter().zip(&self.values).map(|(key, value)| format!("{key}: {value}"));
+        let lines: Vec<String> = lines.collect();
+        let known = lines.iter().any(|line| Heading::says(line.as_bytes()));
+        (self.rows() == 1 && keys.len() == self.columns && known).then_some(lines)
     }
 
     fn new(first: &[u8], decimal: Decimal, end: u8) -> Self {
@@ -178,6 +251,7 @@ impl TextTable {
             found_commas: false,
             end,
             open: true,
+            spaced: false,
         }
     }
 
@@ -221,8 +295,8 @@ impl TextTable {
         } else {
             let byte = self.delimiter.byte();
             // Tabs at the ends are delimiters there, so only the line break and spaces go.
-            let data = data.strip_suffix(b"\r").unwrap_or(data);
-            let data = if byte == b'\t' { data } else { data.trim_ascii() };
+            let end = data.iter().rposition(|&b| b != b'\r').map_or(0, |at| at + 1);
+            let data = if byte == b'\t' { &data[..end] } else { data.trim_ascii() };
             // One delimiter behind the last number is the habit of some programs; with a number less than in other lines, the last
             // place is empty.
             let (data, open) = data.strip_suffix(&[byte]).map_or((data, false), |data| (data, true));
@@ -284,7 +358,7 @@ impl TextTable {
         self.lines.push(line as u32);
         if self.columns == 0 {
             self.columns = found;
-            // All lines at once, and never more than there can be values in these bytes.
+            // All lines of the first map at once, and never more than there can be values in these bytes.
             let lines = all.split(|&b| b == self.end).count();
             let most = (all.len() + 1).min(found.saturating_mul(lines));
             let refused = |_| ContentError::Memory { bytes: 8 * most as u128 };
@@ -300,7 +374,13 @@ impl TextTable {
 
 /// The data of a line and its comment.
 fn without_comment(line: &[u8]) -> (&[u8], Option<&[u8]>) {
-    match line.iter().position(|b| matches!(b, b'#' | b'%')) {
+    // A mark inside a word is none: `1.#QNAN`, `#N/A`.
+    let begins = |&at: &usize| {
+        matches!(line[at], b'#' | b'%')
+            && (at == 0 || line[at - 1].is_ascii_whitespace())
+            && !line[at..].starts_with(b"#N/A")
+    };
+    match (0..line.len()).find(begins) {
         Some(at) => (line[..at].trim_ascii(), Some(&line[at + 1..])),
         None => (line, None),
     }
@@ -315,10 +395,15 @@ fn line_end(bytes: &[u8]) -> u8 {
 fn check_text(bytes: &[u8], end: u8) -> Result<(), ContentError> {
     let bad = |&(i, b): &(usize, &u8)| match *b {
         b'\t' | b'\n' | 0x0c => false,
-        b'\r' => end == b'\n' && !matches!(bytes.get(i + 1), None | Some(b'\n')),
+        // Some programs end lines with CR CR LF.
+        b'\r' => end == b'\n' && !matches!(bytes[i + 1..], [] | [b'\n', ..] | [b'\r', b'\n', ..]),
         b => b < b' ' || b == 0x7f,
     };
     match bytes.iter().enumerate().find(bad) {
+        Some((offset @ (0 | 1), 0)) if bytes.get(offset + 2) == Some(&0) => {
+            let (what, remedy) = ("text in UTF-16 without a mark of it", "save it as UTF-8");
+            Err(ContentError::Foreign { what, remedy })
+        }
         Some((offset, &byte)) => Err(ContentError::NoText { offset, byte }),
         None => Ok(()),
     }
@@ -337,7 +422,7 @@ fn has_decimal_commas(bytes: &[u8], end: u8, skip: usize) -> bool {
         }
         begun = true;
         for token in data.split(|b| matches!(b, b' ' | b'\t' | b';' | b'\r')).filter(|t| t.contains(&b',')) {
-            let Ok(text) = std::str::from_utf8(token) else { return false };
+            let Ok(text) = std::str::from_utf8(unquoted(token)) else { return false };
             certain |= statement::is_decimal_comma(text);
             let grouped = text.split_once(',').is_some_and(|(_, rest)| {
                 !rest.contains(',') && rest.starts_with(|c: char| c.is_ascii_digit())

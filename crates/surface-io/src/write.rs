@@ -80,7 +80,8 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
         }
         "x3p" if metric == Metric::Unitless => {
             let remedy = "X3P is in metres: read the heights with a unit, or write txt";
-            let problem = ContentError::Unspecified { what: "the unit of the heights", remedy };
+            let problem =
+                ContentError::Unspecified { what: "the unit of the heights", seen: Vec::new(), remedy };
             return Err(Error::content(path)(problem));
         }
         "x3p" => x3p(map).map_err(Error::content(path))?,

@@ -5,13 +5,13 @@
 //! the directory and not by the file.
 
 use crate::error::{ContentError, Result};
-use crate::format::Format;
+use crate::fields::{ByteOrder, Fields, header};
 use crate::inflate::{Packed, Packing};
-use crate::source::{Fields, Source};
+use crate::source::Source;
 use flate2::Crc;
 
 pub(crate) const MAGIC: &[u8] = b"PK\x03\x04";
-const DIRECTORY: &[u8] = b"PK\x01\x02";
+const DIRECTORY: [u8; 4] = *b"PK\x01\x02";
 const END: &[u8] = b"PK\x05\x06";
 /// Bytes of a member's own header, of its entry in the directory and of the end, without names.
 const HEADER: u64 = 30;
@@ -35,104 +35,104 @@ pub(crate) struct Member {
 }
 
 /// The members by the directory at the end of the file.
-pub(crate) fn members(source: &mut Source<'_>, format: Format) -> Result<Vec<Member>> {
+pub(crate) fn members(source: &mut Source<'_>) -> Result<Vec<Member>> {
     let length = source.length();
     let tail = length.min(TAIL + LONGEST_COMMENT);
-    let bytes = source.bytes(format, length - tail, tail)?;
-    let end = bytes.windows(END.len()).rposition(|window| window == END);
-    let cut =
-        |s: &Source<'_>| s.wrong(format, length, "the directory of the archive before this (cut short?)");
-    let Some(end) = end else { return Err(cut(source)) };
+    let bytes = source.bytes(length - tail, tail)?;
+    let Some(end) = bytes.windows(END.len()).rposition(|window| window == END) else {
+        return Err(source.wrong(length, "the directory of the archive before this (cut short?)"));
+    };
     let at = length - tail + end as u64;
-    let mut fields = Fields::little(&bytes, length - tail);
-    fields.go(end + 10);
-    let read = |f: &mut Fields<'_>| Ok((f.u16()?, f.u32()?, f.u32()?));
-    let (count, size, offset) =
-        read(&mut fields).map_err(|e: crate::source::EndOfFields| e.of(source, format))?;
+    let mut fields = Fields::new(source.subject().clone(), ByteOrder::Little, length - tail, bytes);
+    let (count, size, offset): (u16, u32, u32) = (fields.go(end + 10).get()?, fields.get()?, fields.get()?);
     let (size, offset) = (u64::from(size), u64::from(offset));
     if offset + size > at {
         let expected =
             format!("a directory before this, not to {} (or an archive beyond 4 GB)", offset + size);
-        return Err(source.wrong(format, at, expected));
+        return Err(source.wrong(at, expected));
     }
-    let bytes = source.bytes(format, offset, size)?;
-    let mut fields = Fields::little(&bytes, offset);
-    let mut found = Vec::new();
-    for _ in 0..count {
-        let at = fields.offset();
-        found.push(
-            entry(&mut fields)
-                .map_err(|e| e.of(source, format))?
-                .ok_or_else(|| source.wrong(format, at, "an entry of the directory of the archive"))?,
-        );
-    }
-    Ok(found)
+    let mut fields = source.fields(ByteOrder::Little, offset, size)?;
+    (0..count).map(|_| entry(&mut fields)).collect()
 }
 
-/// One entry of the directory; `None` where there is none.
-fn entry(fields: &mut Fields<'_>) -> Result<Option<Member>, crate::source::EndOfFields> {
-    let mut entry = Fields::little(fields.take(ENTRY as usize)?, 0);
-    if entry.take(DIRECTORY.len())? != DIRECTORY {
-        return Ok(None);
+header! {
+    /// An entry of the directory.
+    struct Entry {
+        magic: [u8; 4] = 0,
+        flags: u16 = 8,
+        method: u16 = 10,
+        checksum: u32 = 16,
+        packed: u32 = 20,
+        unpacked: u32 = 24,
+        /// Bytes of the name, of what is behind it, and of a comment.
+        behind: [u16; 3] = 28,
+        offset: u32 = 42,
     }
-    entry.go(8);
-    let (flags, method) = (entry.u16()?, entry.u16()?);
-    entry.go(16);
-    let (checksum, packed, unpacked) = (entry.u32()?, entry.u32()?, entry.u32()?);
-    let [name, extra, comment] = [entry.u16()?, entry.u16()?, entry.u16()?].map(usize::from);
-    entry.go(42);
-    let offset = entry.u32()?.into();
+}
+
+/// One entry of the directory.
+fn entry(fields: &mut Fields<'_>) -> Result<Member> {
+    let wrong = fields.wrong("an entry of the directory of the archive");
+    let entry = Entry::of(&mut Fields::of_start(ByteOrder::Little, fields.take(ENTRY as usize)?))?;
+    if entry.magic != DIRECTORY {
+        return Err(wrong);
+    }
+    let [name, extra, comment] = entry.behind.map(usize::from);
     let name = String::from_utf8_lossy(fields.take(name)?).replace('\\', "/");
     fields.take(extra + comment)?;
-    let (packed, unpacked) = (packed.into(), unpacked.into());
-    let encrypted = flags & 1 == 1;
-    Ok(Some(Member { name, unpacked, packed, method, encrypted, checksum, offset }))
+    Ok(Member {
+        name,
+        unpacked: entry.unpacked.into(),
+        packed: entry.packed.into(),
+        method: entry.method,
+        encrypted: entry.flags & 1 == 1,
+        checksum: entry.checksum,
+        offset: entry.offset.into(),
+    })
 }
 
 impl Member {
     /// Where its bytes are; an error where they cannot be all there.
-    pub(crate) fn packed(&self, source: &mut Source<'_>, format: Format) -> Result<Packed> {
+    pub(crate) fn packed(&self, source: &mut Source<'_>) -> Result<Packed> {
         let packing = match (self.method, self.encrypted) {
             (0, false) => Packing::Stored,
             (8, false) => Packing::Deflate,
             _ => {
                 let expected = "a member that is stored or deflated, without a password";
-                return Err(source.wrong(format, self.offset, expected));
+                return Err(source.wrong(self.offset, expected));
             }
         };
-        let header = source.bytes(format, self.offset, HEADER)?;
-        let mut fields = Fields::little(&header, self.offset);
-        fields.go(26);
-        let behind = |f: &mut Fields<'_>| Ok(u64::from(f.u16()?) + u64::from(f.u16()?));
-        let behind = behind(&mut fields).map_err(|e: crate::source::EndOfFields| e.of(source, format))?;
+        let header = source.bytes(self.offset, HEADER)?;
+        let behind: [u16; 2] = source.get(ByteOrder::Little, self.offset + 26)?;
+        let behind: u64 = behind.map(u64::from).iter().sum();
         if !header.starts_with(MAGIC) {
-            return Err(source.wrong(format, self.offset, "the header of a member"));
+            return Err(source.wrong(self.offset, "the header of a member"));
         }
         let offset = self.offset + HEADER + behind;
         let packed = Packed { packing, offset, length: self.packed, unpacked: self.unpacked };
-        packed.check(source, format)?;
+        packed.check(source)?;
         Ok(packed)
     }
 
     /// Its text, whose checksum is right: what is no UTF-8 is a question mark. An error where it is longer than `most` bytes, before it is
     /// unpacked.
-    pub(crate) fn unpack_text(&self, source: &mut Source<'_>, format: Format, most: u64) -> Result<String> {
+    pub(crate) fn unpack_text(&self, source: &mut Source<'_>, most: u64) -> Result<String> {
         if self.unpacked > most {
             let expected = format!("{} of at most {most} bytes, it has {}", self.name, self.unpacked);
-            return Err(source.wrong(format, self.offset, expected));
+            return Err(source.wrong(self.offset, expected));
         }
-        Ok(text_in_place(self.unpack(source, format)?))
+        Ok(text_in_place(self.unpack(source)?))
     }
 
     /// Its bytes, whose checksum is right.
-    pub(crate) fn unpack(&self, source: &mut Source<'_>, format: Format) -> Result<Vec<u8>> {
+    pub(crate) fn unpack(&self, source: &mut Source<'_>) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
-        self.packed(source, format)?.unpack(source, format, &mut bytes)?;
+        self.packed(source)?.unpack(source, &mut bytes)?;
         let mut sum = Crc::new();
         sum.update(&bytes);
         if sum.sum() != self.checksum {
             let expected = format!("{} with the checksum of the directory (damaged)", self.name);
-            return Err(source.wrong(format, self.offset, shortened(&expected, 120)));
+            return Err(source.wrong(self.offset, shortened(&expected, 120)));
         }
         Ok(bytes)
     }
@@ -154,6 +154,14 @@ fn text_in_place(mut bytes: Vec<u8>) -> String {
 /// The error for an archive without a file of heights that is known.
 pub(crate) fn refused(members: &[Member]) -> ContentError {
     const SHOWN: usize = 8;
+    let remedy = "not read; export X3P, SDF, GWY or text with that program";
+    for (member, what) in
+        [("header.properties", "a JPK file (in an archive)"), ("index.xml", "a PLUX file of Sensofar")]
+    {
+        if members.iter().any(|m| m.name == member) {
+            return ContentError::Foreign { what, remedy };
+        }
+    }
     let mut names: Vec<String> = members.iter().take(SHOWN).map(|m| shortened(&m.name, 64)).collect();
     if members.len() > SHOWN {
         names.push(format!("{} more", members.len() - SHOWN));
@@ -181,7 +189,7 @@ pub(crate) fn archive(members: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
         let length = bytes.len() as u32;
         about.extend([DAY, sum.sum(), length, length].map(u32::to_le_bytes).concat());
         about.extend([name.len() as u16, 0].map(u16::to_le_bytes).concat());
-        directory.extend([DIRECTORY, &20_u16.to_le_bytes(), &about, &[0; 10]].concat());
+        directory.extend([&DIRECTORY[..], &20_u16.to_le_bytes(), &about, &[0; 10]].concat());
         directory.extend((archive.len() as u32).to_le_bytes());
         directory.extend(name.bytes());
         archive.extend([MAGIC, &about, name.as_bytes()].concat());

@@ -11,8 +11,8 @@ use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use surface_io::{
-    AlignLines, Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan, SurfaceFile,
-    Undefined, Window,
+    AlignLines, Border, Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan,
+    SurfaceFile, Undefined, Window,
 };
 
 thread_local! {
@@ -88,6 +88,7 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
         ReadOptions { size: "7 x 0.5".parse().ok(), ..plain.clone() },
         ReadOptions { size: "1 nm x 1 m".parse().ok(), unit: "nm".parse().ok(), ..plain.clone() },
         ReadOptions { cell: "1e-300 x 1e300".parse().ok(), width: "1".parse().ok(), ..plain.clone() },
+        ReadOptions { border: Some(Border::Axes), lateral_unit: "um".parse().ok(), ..plain.clone() },
         ReadOptions { cell: "1 x 2".parse().ok(), format: Some(Format::Xyz), ..plain },
         cell,
     ];
@@ -197,7 +198,13 @@ fn valid(which: usize) -> Vec<u8> {
         6 => b"# Lateral units: mm\n0 0 1\n2 0 2\n0 0.5 nan\n2 0.5 4\n0 1 5\n2 1 6\n".to_vec(),
         7 => b"\\Scan Size: 3 2 ~m\nx-pixels = 3\nPixel size (um)\t1\ndata unit=rad\nheight conversion factor (-> m)=6e-8\n1,5;2;3\n4;5;6,25\n".to_vec(),
         8 => b"x [um]\tz [nm]\r\n0,0\t5\r\n0,5\t6\r\n1,0\t4\r\n".to_vec(),
-        _ => b"1,2,,4\n5,6,7,8\n9,,,,\n".to_vec(),
+        9 => b"1,2,,4\n5,6,7,8\n9,,,,\n".to_vec(),
+        10 => b"ncols 2\nnrows 2\ncellsize 0.5\nNODATA_value -9\n1 -9\n3 1.0D3\n".to_vec(),
+        11 => b"\"XY Calibration\",\"7.4\",\"um\"\n\"Unit\",\"mm\"\n\n\"Height\"\n\"0.01\",\"0.02\"\n\"0.03\",#N/A\n".to_vec(),
+        12 => b"# Channel: a\n1 1.#QNAN\n3 4\n\n# Channel: b\n5 6\n\n7 8\n9 0\n".to_vec(),
+        13 => b"Zygo XYZ Data File - Format 1\n0\n0\n0 0 2 2\n\n\n\n0 0 6e-7 0.5 1 0 5e-5 17\n3\n0\n#\n0 0 0.1\n1 0 No Data\n#\n".to_vec(),
+        14 => b"numCols\tnumRows\tpixelSize (um)\n2\t2\t1.7\nZ-data (um)\n1\t2\n3\t4\n".to_vec(),
+        _ => b"\t0\t0.5\t1\n0\t0.1\t0.2\t0.3\n1\t0.2\t0.3\t0.5\n2\t0.3\t0.4\t0.6\n".to_vec(),
     }
 }
 
@@ -307,7 +314,7 @@ proptest! {
     #[test]
     fn almost_a_header_block(
         keys in prop::collection::vec(
-            ("(x.length|Width|Scan Size|Pixel size|x-pixels|Lines|z unit|x unit|Bit2nm|data unit|a b|height conversion factor \\(-> m\\)|# File Format = ASCII)",
+            ("(x.length|ncols|cellsize|NODATA_value|unit|z-data|Width|Scan Size|Pixel size|x-pixels|Lines|z unit|x unit|Bit2nm|data unit|a b|height conversion factor \\(-> m\\)|# File Format = ASCII)",
              "( ?[:=\t] ?|)", "[-+]?[0-9]{0,2}([.,][0-9]{1,3})?(e-?[0-9]{1,3})?", " ?(um|nm|x 3 um|~m|microns|\u{b5}m|V|)"),
             0..5,
         ),
@@ -328,7 +335,7 @@ proptest! {
 
     #[test]
     fn valid_files_with_bytes_changed_lost_and_doubled(
-        which in 0..10_usize,
+        which in 0..16_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..6),
     ) {
         let mut bytes = valid(which);
@@ -472,23 +479,36 @@ fn archives_are_told_by_their_members() {
     assert!(error.contains("in main.xml a surface, FeatureType SUR, found \"PRF\""), "{error}");
 }
 
+/// The small file of a name.
+fn small(name: &str) -> Vec<u8> {
+    files::all().into_iter().find(|file| file.name == name).unwrap().bytes
+}
+
+/// The error of the file, or of the first channel that is not read.
+fn error(bytes: &[u8]) -> String {
+    match SurfaceFile::from_bytes("a", bytes, &ReadOptions::default()) {
+        Err(error) => error.to_string(),
+        Ok(file) => file.scans().find_map(Result::err).unwrap().to_string(),
+    }
+}
+
+/// The error of a small file with other bytes at an offset.
+fn changed(name: &str, at: usize, to: &[u8]) -> String {
+    let mut bytes = small(name);
+    bytes[at..at + to.len()].copy_from_slice(to);
+    error(&bytes)
+}
+
+/// The error of a small file with another text, whose bytes are Latin-1.
+fn replaced(name: &str, from: &str, to: &str) -> String {
+    let text: String = small(name).iter().map(|&b| char::from(b)).collect();
+    assert!(text.contains(from), "{name}: {from}");
+    error(&text.replace(from, to).chars().map(|c| c as u8).collect::<Vec<_>>())
+}
+
 /// One byte makes heights that are upside down, of another scale, or not heights at all: what is refused, and the message.
 #[test]
 fn heights_that_may_be_others_are_refused() {
-    let small = |name: &str| files::all().into_iter().find(|file| file.name == name).unwrap().bytes;
-    let error =
-        |bytes: &[u8]| SurfaceFile::from_bytes("a", bytes, &ReadOptions::default()).unwrap_err().to_string();
-    let changed = |name: &str, at: usize, to: &[u8]| {
-        let mut bytes = small(name);
-        bytes[at..at + to.len()].copy_from_slice(to);
-        error(&bytes)
-    };
-    // Text whose bytes are Latin-1.
-    let replaced = |name: &str, from: &str, to: &str| {
-        let text: String = small(name).iter().map(|&b| char::from(b)).collect();
-        assert!(text.contains(from), "{name}: {from}");
-        error(&text.replace(from, to).chars().map(|c| c as u8).collect::<Vec<_>>())
-    };
     let nanoscope = "nanoscope with two channels";
     // As many points, in six columns of one.
     let mut other_mask = small("gwy with a mask");
@@ -523,7 +543,7 @@ fn heights_that_may_be_others_are_refused() {
         ),
         (
             replaced(nanoscope, "offset: 4096", "offset: 0096"),
-            "Nanoscope, offset 159: expected a data offset behind",
+            "Nanoscope, offset 159: expected a place behind the header",
         ),
         (replaced("tiff of ImageJ", "c1=0.5", "c1=0.0"), "TIFF, offset 0: expected a factor other than 0"),
         (
@@ -542,16 +562,84 @@ fn heights_that_may_be_others_are_refused() {
         ),
         (error(&other_mask), "GWY (Gwyddion), offset 655: expected a mask of as many columns and rows"),
     ] {
+        assert!(found.contains(expected), "{found}");
+    }
+}
+
+/// Contradictions in headers of probe microscopes, and what is not read of them.
+#[test]
+fn contradictions_in_headers_of_probe_microscopes_are_named() {
+    // The sum of all words of the headers stays 0.
+    let mut complex = small("ibw of Asylum");
+    complex[80] += 1;
+    let sum = u16::from_le_bytes([complex[2], complex[3]]).wrapping_sub(1);
+    complex[2..4].copy_from_slice(&sum.to_le_bytes());
+    for (found, expected) in [
+        (
+            replaced("wsxm of doubles", "Z Amplitude: 2.5 nm", "Z Amplitude: 2.6 nm"),
+            "WSxM, offset 262: expected the amplitude 2.5, Maximum less Minimum, as z amplitude, found \"2.6 nm\"",
+        ),
+        (
+            replaced("wsxm of integers", "Maximum", "Max"),
+            "WSxM, offset 0: expected Maximum and Minimum of the integers",
+        ),
+        (
+            replaced("nid", "Order=Intel", "Order=Other"),
+            "NID (Nanosurf), offset 323: expected Intel, little-endian, as saveorder",
+        ),
+        (
+            replaced("nid", "\n[DataSet-0:0]", "\n[DataSet-1:0]"),
+            "NID (Nanosurf), offset 49: expected the name of a section as gr0-ch0",
+        ),
+        (
+            replaced("mi", "BINARY_32", "ASCII"),
+            "MI (Molecular Imaging), offset 384: expected data of the type BINARY or BINARY_32",
+        ),
+        (
+            replaced("mi", "Image", "Spectroscopy"),
+            "MI (Molecular Imaging), offset 0: expected an image; this file holds spectra",
+        ),
+        (
+            replaced("mi of int16", "yPixels       2", "yPixels       1"),
+            "MI (Molecular Imaging), offset 307: expected the end",
+        ),
+        (replaced("nid", "Bits=32", "Bits=16"), "NID (Nanosurf), offset 617: expected the end of the file"),
+        (replaced("wsxm of doubles", "rows: 2", "rows: 1"), "WSxM, offset 383: expected the end of the file"),
+        (error(&complex), "IBW (Igor), offset 80: expected real numbers, found the type 0x3"),
+        (
+            replaced("tiff of Park", "\u{3}\0\0\0\u{2}\0\0\0", "\u{2}\0\0\0\u{2}\0\0\0"),
+            "TIFF, offset 172: expected 2 x 2 numbers of 2 bytes, found 12 bytes",
+        ),
+    ] {
         assert!(found.starts_with(&format!("a: {expected}")), "{found}");
+    }
+}
+
+/// Of a wave, a group, a list of buffers, the only heights are taken; other signals are listed with their unit.
+#[test]
+fn other_signals_are_no_heights() {
+    for (name, heights, other, unit) in [
+        ("ibw of Asylum", "HeightRetrace", "PhaseTrace", ""),
+        ("nid", "Scan forward (Z-Axis)", "Scan forward (Z-Axis)", "N"),
+        ("mi", "Topography", "Amplitude", "nm"),
+    ] {
+        let bytes = files::all().into_iter().find(|file| file.name == name).unwrap().bytes;
+        let scan = Scan::from_bytes("a", &bytes, &ReadOptions::default()).unwrap();
+        assert_eq!(scan.metadata().name.as_deref(), Some(heights));
+        let all = SurfaceFile::from_bytes("a", &bytes, &ReadOptions::default()).unwrap();
+        let first = all.scans().next().unwrap().unwrap();
+        assert_eq!(first.metadata().name.as_deref(), Some(other));
+        assert_eq!(first.metadata().no_heights.as_deref(), Some(unit));
     }
 }
 
 #[test]
 fn the_valid_files_are_valid() {
-    for which in 0..10 {
+    for which in (0..13).chain([14]) {
         let declared = match which {
             3 => ReadOptions { decimal: Decimal::Comma, ..ReadOptions::default() },
             2 | 6 => ReadOptions { format: Some(Format::Xyz), ..ReadOptions::default() },
+            12 => ReadOptions { channel: "b".parse().ok(), ..ReadOptions::default() },
             _ => ReadOptions::default(),
         };
         let scan = Scan::from_bytes("a", &valid(which), &declared);

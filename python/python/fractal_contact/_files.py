@@ -21,7 +21,7 @@ class ReadSurface:
     heights: HeightMap
     """The map, in metres where the file has a unit of length."""
     metadata: dict[str, Any]
-    """What the file says: format, channel, name, shape, size, unit, undefined, text."""
+    """What the file says: format, channel, name, shape, size, unit, undefined, notes, text."""
     steps: list[str]
     """What was done to the heights, in order."""
     reliable_from: float | None
@@ -37,7 +37,7 @@ def read_surface(path: str | Path, **options: Any) -> ReadSurface:
         The format is told by the content.
     **options
         As in ``[scene.surface]`` of a scene: ``channel``, ``format``, ``unit``, ``lateral_unit``, ``size``, ``cell``,
-        ``height_scale``, ``decimal``, ``missing``, ``skip_lines``, ``crop``, ``align_lines``, ``scars``,
+        ``height_scale``, ``decimal``, ``border``, ``missing``, ``skip_lines``, ``crop``, ``align_lines``, ``scars``,
         ``outliers``, ``tip_radius``, ``undefined``, ``fill``, ``detrend``, ``filter_across``, ``cells``, ``rows``,
         ``mirror``, ``rotate``, ``window``. Lengths are texts with a unit, such as ``cell="0.5 um"``.
 
@@ -62,7 +62,7 @@ def si(text: str) -> float:
 
 
 def channels(path: str | Path, **options: Any) -> list[dict[str, Any]]:
-    """What a file says of each of its channels."""
+    """What a file says of each of its channels; ``{"error": ...}`` of one that is not read beside others."""
     return _core.channels(Path(path), options)
 
 

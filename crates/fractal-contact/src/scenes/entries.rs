@@ -303,6 +303,15 @@ impl<'a> Entry<'a> {
         }
     }
 
+    /// A number as [`Entry::number`], or an infinity: `inf`, `-inf`.
+    pub fn any_number(&self) -> Read<f64> {
+        match self.value.get_ref() {
+            DeValue::Float(v) if matches!(v.as_str(), "inf" | "+inf") => Ok(f64::INFINITY),
+            DeValue::Float(v) if v.as_str() == "-inf" => Ok(f64::NEG_INFINITY),
+            _ => self.number(),
+        }
+    }
+
     /// A whole number from `least`.
     pub fn count(&self, least: u64) -> Read<u64> {
         let whole = match self.value.get_ref() {

@@ -131,7 +131,12 @@ fn described(scan: &Scan, found: &Preprocessed) -> String {
 fn each(file: SurfaceFile<'_>) -> Result<String> {
     let mut text = format!("{} channels; --channel NUMBER or NAME describes one\n", file.len());
     for scan in file.scans() {
-        text += &format!("\n{}\n", scan.map_err(Error::Surface)?.metadata());
+        match scan {
+            Ok(scan) => text += &format!("\n{}\n", scan.metadata()),
+            // The others are told all the same.
+            Err(error) if error.problem().is_some() => text += &format!("\nnot read   {error}\n"),
+            Err(error) => return Err(Error::Surface(error)),
+        }
     }
     Ok(text)
 }
@@ -141,7 +146,7 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
 ///
 /// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is "m"; values of another or no unit
 /// stand as they are in the file. `rms` is about the mean, `undefined` a share of the points; what the file does not say and `declared` does
-/// not either is null.
+/// not either is null. A channel that is not read beside others is `{"error"}`; `notes` are remarks on what the file says.
 ///
 /// # Errors
 /// [`Error::Surface`] with what is wrong with the file.
@@ -149,7 +154,11 @@ pub fn info_json(path: &Path, declared: &ReadOptions) -> Result<String> {
     let file = SurfaceFile::open(path, declared).map_err(Error::Surface)?;
     let mut channels = Vec::with_capacity(file.len());
     for scan in file.scans() {
-        channels.push(channel(scan.map_err(Error::Surface)?.metadata()));
+        channels.push(match scan {
+            Ok(scan) => channel(scan.metadata()),
+            Err(error) if error.problem().is_some() => serde_json::json!({ "error": error.to_string() }),
+            Err(error) => return Err(Error::Surface(error)),
+        });
     }
     Ok(format!("{:#}\n", serde_json::json!({ "channels": channels })))
 }
@@ -173,5 +182,6 @@ fn channel(metadata: &Metadata) -> serde_json::Value {
         "minimum": metadata.range.map(|[low, _]| height(low)),
         "maximum": metadata.range.map(|[_, high]| height(high)),
         "rms": metadata.rms_height.map(height),
+        "notes": metadata.notes,
     })
 }

@@ -6,7 +6,7 @@ use crate::scenes::human_readable::number;
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    AlignLines, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed,
+    AlignLines, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed,
     Preprocessing, Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
 };
 
@@ -59,8 +59,11 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     if let Some(entry) = table.find("decimal") {
         declared.decimal = entry.choice(&[("point", Decimal::Point), ("comma", Decimal::Comma)])?;
     }
+    if let Some(entry) = table.find("border") {
+        declared.border = Some(entry.choice(&[("axes", Border::Axes), ("heights", Border::Heights)])?);
+    }
     if let Some(entry) = table.find("missing") {
-        declared.missing = Some(entry.number()?);
+        declared.missing = Some(entry.any_number()?);
     }
     if let Some(entry) = table.find("skip_lines") {
         declared.skip_lines = entry.count(0)? as usize;
@@ -76,6 +79,9 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     };
     let scan = Scan::read(&path, &declared).map_err(wrong)?;
     let metadata = scan.metadata();
+    for note in &metadata.notes {
+        notes.push(Diagnostic::note(note.clone()).at(file.span()));
+    }
     let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
     let Preprocessed { map, steps, reliable_from, tapered, .. } =
         scan.preprocessed(&preprocessing).map_err(wrong)?;

@@ -1,28 +1,25 @@
 //! GWY, the file of Gwyddion: named components, objects inside objects (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>).
 //!
 //! Channel N is the object `/N/data`, its name `/N/data/title`. Rows go from the top to the bottom of the picture. The points of a mask
-//! (`/N/mask`) are undefined, and so are those that are no numbers.
+//! (`/N/mask`) are undefined, and so are those that are no numbers. Sides without a unit of length are noted and not used.
 
 mod write;
 
 pub use write::gwy;
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, masked};
+use crate::channel::{RawHeights, StoredChannel, StoredUnit, masked};
 use crate::error::Result;
 use crate::extent::Extent;
+use crate::fields::{ByteOrder, Cursor};
 use crate::format::Format;
 use crate::number_type::NumberType;
-use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
-use crate::source::{Fields, Source};
+use crate::source::Source;
 
-const FORMAT: Format = Format::Gwy;
 const MAGIC: &[u8] = b"GWYP";
-/// Longest text that is read, in bytes.
-const LONGEST: u32 = 1 << 16;
 
 pub(crate) const READER: Reader =
-    Reader { format: FORMAT, recognises: |start, _| start.starts_with(MAGIC), channels };
+    Reader { format: Format::Gwy, recognises: |start, _| start.starts_with(MAGIC), channels };
 
 /// What is kept of a data field.
 #[derive(Debug, Default)]
@@ -46,23 +43,29 @@ struct Numbered {
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let mut found = Vec::new();
-    let mut at = MAGIC.len() as u64;
-    let (name, end) = object(source, &mut at)?;
+    let mut file = Cursor::new(source, ByteOrder::Little, MAGIC.len() as u64);
+    let (name, end) = object(&mut file)?;
     if name != "GwyContainer" {
-        return Err(source.wrong(FORMAT, MAGIC.len() as u64, "the object GwyContainer"));
+        return Err(source.wrong(MAGIC.len() as u64, "the object GwyContainer"));
     }
-    while at < end {
-        component(source, &mut at, end, &mut found)?;
+    while file.at < end {
+        component(&mut file, end, &mut found)?;
     }
     found.sort_by_key(|c: &Numbered| c.number);
-    found.into_iter().filter_map(|c| Some((c.data?, c.title, c.mask))).map(|c| channel(source, c)).collect()
+    let of = |c: Numbered| Some((c.data?, c.title, c.mask));
+    let one = |(data, title, mask): (DataField, Option<String>, Option<DataField>)| {
+        let channel = channel(source, &data, mask.as_ref());
+        let channel = StoredChannel::listed(None, channel)?;
+        Ok(channel.named(&title.unwrap_or_default()))
+    };
+    found.into_iter().filter_map(of).map(one).collect()
 }
 
 /// One component of the container.
-fn component(source: &mut Source<'_>, at: &mut u64, end: u64, found: &mut Vec<Numbered>) -> Result<()> {
-    let key = name(source, at)?;
-    let begins = *at;
-    let kind = byte(source, at)?;
+fn component(file: &mut Cursor<'_, '_>, end: u64, found: &mut Vec<Numbered>) -> Result<()> {
+    let key = file.name()?;
+    let begins = file.at;
+    let kind: u8 = file.get()?;
     let parts: Vec<&str> = key.split('/').collect();
     let number = match parts[..] {
         ["", number, ..] => number.parse::<u64>().ok(),
@@ -71,48 +74,48 @@ fn component(source: &mut Source<'_>, at: &mut u64, end: u64, found: &mut Vec<Nu
     let wanted =
         matches!((&parts[..], kind), (["", _, "data" | "mask"], b'o') | (["", _, "data", "title"], b's'));
     let Some(number) = number.filter(|_| wanted) else {
-        *at = begins;
-        return skip(source, at, end);
+        file.at = begins;
+        return skip(file, end);
     };
     let place = found.iter().position(|c| c.number == number).unwrap_or_else(|| {
         found.push(Numbered { number, title: None, data: None, mask: None });
         found.len() - 1
     });
     if kind == b's' {
-        found[place].title = Some(name(source, at)?);
+        found[place].title = Some(file.name()?);
         return Ok(());
     }
-    let field = data_field(source, at, end)?;
+    let field = data_field(file, end)?;
     let target = if parts[2] == "data" { &mut found[place].data } else { &mut found[place].mask };
     *target = Some(field);
     Ok(())
 }
 
-/// The fields of an object `GwyDataField`; `at` stands behind its type.
-fn data_field(source: &mut Source<'_>, at: &mut u64, outer: u64) -> Result<DataField> {
-    let begins = *at;
-    let (kind, end) = object(source, at)?;
+/// The fields of an object `GwyDataField`; the cursor stands behind its type.
+fn data_field(file: &mut Cursor<'_, '_>, outer: u64) -> Result<DataField> {
+    let begins = file.at;
+    let (kind, end) = object(file)?;
     if kind != "GwyDataField" || end > outer {
-        return Err(source.wrong(FORMAT, begins, "an object GwyDataField inside the container"));
+        return Err(file.source.wrong(begins, "an object GwyDataField inside the container"));
     }
     let mut field = DataField::default();
-    while *at < end {
-        let key = name(source, at)?;
-        let begins = *at;
+    while file.at < end {
+        let key = file.name()?;
+        let begins = file.at;
         let axis = usize::from(key.starts_with('y'));
-        match (key.as_str(), byte(source, at)?) {
-            ("xres" | "yres", b'i') => field.shape[axis] = Some(u32::from_le_bytes(fixed(source, at)?)),
-            ("xreal" | "yreal", b'd') => field.size[axis] = Some(f64::from_le_bytes(fixed(source, at)?)),
-            ("si_unit_xy", b'o') => field.lateral_unit = unit(source, at, end)?,
-            ("si_unit_z", b'o') => field.unit = unit(source, at, end)?,
+        match (key.as_str(), file.get()?) {
+            ("xres" | "yres", b'i') => field.shape[axis] = Some(file.get()?),
+            ("xreal" | "yreal", b'd') => field.size[axis] = Some(file.get()?),
+            ("si_unit_xy", b'o') => field.lateral_unit = unit(file, end)?,
+            ("si_unit_z", b'o') => field.unit = unit(file, end)?,
             ("data", b'D') => {
-                let count = u32::from_le_bytes(fixed(source, at)?);
-                field.values = Some((*at, count));
-                jump(source, at, 8 * u64::from(count), end)?;
+                let count = file.get()?;
+                field.values = Some((file.at, count));
+                file.pass(8 * u64::from(count), end)?;
             }
             _ => {
-                *at = begins;
-                skip(source, at, end)?;
+                file.at = begins;
+                skip(file, end)?;
             }
         }
     }
@@ -120,154 +123,80 @@ fn data_field(source: &mut Source<'_>, at: &mut u64, outer: u64) -> Result<DataF
 }
 
 /// The text of an object `GwySIUnit`.
-fn unit(source: &mut Source<'_>, at: &mut u64, outer: u64) -> Result<String> {
-    let (_, end) = object(source, at)?;
+fn unit(file: &mut Cursor<'_, '_>, outer: u64) -> Result<String> {
+    let (_, end) = object(file)?;
     let mut text = String::new();
-    while *at < end.min(outer) {
-        let key = name(source, at)?;
-        let begins = *at;
-        if key == "unitstr" && byte(source, at)? == b's' {
-            text = name(source, at)?;
+    while file.at < end.min(outer) {
+        let key = file.name()?;
+        let begins = file.at;
+        if key == "unitstr" && file.get::<u8>()? == b's' {
+            text = file.name()?;
         } else {
-            *at = begins;
-            skip(source, at, end)?;
+            file.at = begins;
+            skip(file, end)?;
         }
     }
     Ok(text)
 }
 
-fn channel(
-    source: &Source<'_>,
-    (field, title, mask): (DataField, Option<String>, Option<DataField>),
-) -> Result<StoredChannel> {
-    let wrong = |expected: &str| source.wrong(FORMAT, 0, expected);
+fn channel(source: &Source<'_>, field: &DataField, mask: Option<&DataField>) -> Result<StoredChannel> {
     let ([Some(columns), Some(rows)], Some((at, count))) = (field.shape, field.values) else {
-        return Err(wrong("xres, yres and data of each data field"));
+        return Err(source.wrong(0, "xres, yres and data of each data field"));
     };
     if u64::from(columns) * u64::from(rows) != u64::from(count) {
-        return Err(source.wrong(FORMAT, at, format!("{columns} x {rows} numbers, found {count}")));
+        return Err(source.wrong(at, format!("{columns} x {rows} numbers, found {count}")));
     }
-    let (columns, rows) = (columns as usize, rows as usize);
-    let raw = RawHeights::new(FORMAT, Bytes::File(at), NumberType::F64);
-    raw.check(source, rows, columns)?;
-    let mut details = raw.details();
-    let heights = match mask {
-        None => StoredHeights::Raw(raw),
-        Some(DataField { shape, values: Some((at, _)), .. }) if shape == field.shape => {
-            details += ", masked points undefined";
-            let mask = RawHeights::new(FORMAT, Bytes::File(at), NumberType::F64);
-            mask.check(source, rows, columns)?;
-            masked(raw, mask, rows, columns)
-        }
-        Some(_) => {
-            return Err(source.wrong(FORMAT, at, "a mask of as many columns and rows as its data field"));
-        }
-    };
-    let lateral: Option<Unit> =
-        field.lateral_unit.parse().ok().filter(|u: &Unit| u.dimension() == Dimension::LENGTH);
-    let side = |side: Option<f64>| -> Option<Extent> {
-        let length = lateral.as_ref()?.to_si(side?);
-        let length = Quantity::new(length, Dimension::LENGTH).ok();
-        length.filter(|l| l.value() > 0.0).map(Extent::Side)
-    };
-    Ok(StoredChannel {
-        name: title,
-        details,
-        rows,
-        columns,
-        unit: StoredUnit::written(&field.unit),
-        extent: field.size.map(side),
-        heights,
-    })
+    let shape = [rows as usize, columns as usize];
+    let raw = RawHeights::at(at, NumberType::F64);
+    let unit = StoredUnit::written(&field.unit);
+    let extent = field.size.map(|side| Extent::of_side(side?, &field.lateral_unit));
+    let mut channel = StoredChannel::new(source, raw, shape, unit, extent)?;
+    if let Some(mask) = mask {
+        let Some((masked_at, _)) = mask.values.filter(|_| mask.shape == field.shape) else {
+            return Err(source.wrong(at, "a mask of as many columns and rows as its data field"));
+        };
+        let mask = RawHeights::at(masked_at, NumberType::F64);
+        mask.check(source, shape[0], shape[1])?;
+        channel.details += ", masked points undefined";
+        channel.heights = masked(RawHeights::at(at, NumberType::F64), mask, shape[0], shape[1]);
+    }
+    if let ([None, None], [Some(x), Some(y)]) = (extent, field.size) {
+        let unit = if field.lateral_unit.is_empty() { "without a unit" } else { &field.lateral_unit };
+        channel.note(format!("the file has sides {x:e} x {y:e} {unit}, which is no length"));
+    }
+    Ok(channel)
 }
 
-/// The name of an object and the offset of its end; `at` stands before the name, and behind the length afterwards.
-fn object(source: &mut Source<'_>, at: &mut u64) -> Result<(String, u64)> {
-    let name = name(source, at)?;
-    let length = u32::from_le_bytes(fixed(source, at)?);
-    let end = *at + u64::from(length);
-    if end > source.length() {
-        let expected =
-            format!("an object of {length} bytes, the file ends at {} (cut short?)", source.length());
-        return Err(source.wrong(FORMAT, *at, expected));
+/// The name of an object and the offset of its end; the cursor stands before the name, and behind the length afterwards.
+fn object(file: &mut Cursor<'_, '_>) -> Result<(String, u64)> {
+    let name = file.name()?;
+    let length: u32 = file.get()?;
+    let (end, length) = (file.at + u64::from(length), file.source.length());
+    if end > length {
+        let expected = format!("an object that ends at {end}, the file ends at {length} (cut short?)");
+        return Err(file.wrong(expected));
     }
     Ok((name, end))
 }
 
-/// Passes the value of a component; `at` stands before its type.
-fn skip(source: &mut Source<'_>, at: &mut u64, end: u64) -> Result<()> {
-    let begins = *at;
-    let kind = byte(source, at)?;
-    let size = |kind: u8| match kind.to_ascii_lowercase() {
+/// Passes the value of a component; the cursor stands before its type.
+fn skip(file: &mut Cursor<'_, '_>, end: u64) -> Result<()> {
+    let begins = file.at;
+    let kind: u8 = file.get()?;
+    let size = match kind.to_ascii_lowercase() {
         b'b' | b'c' => Some(1),
         b'i' => Some(4),
         b'q' | b'd' => Some(8),
         _ => None,
     };
-    let count = |source: &mut Source<'_>, at: &mut u64| fixed(source, at).map(u32::from_le_bytes);
-    match (kind, size(kind)) {
-        (b's', _) => name(source, at).map(drop),
-        (b'o', _) => {
-            let (_, inner) = object(source, at)?;
-            jump(source, at, inner - *at, end)
-        }
-        (b'S', _) => {
-            for _ in 0..count(source, at)? {
-                name(source, at)?;
-            }
-            Ok(())
-        }
-        (b'O', _) => {
-            for _ in 0..count(source, at)? {
-                let (_, inner) = object(source, at)?;
-                jump(source, at, inner - *at, end)?;
-            }
-            Ok(())
-        }
-        (kind, Some(size)) if kind.is_ascii_uppercase() => {
-            let count = count(source, at)?;
-            jump(source, at, size * u64::from(count), end)
-        }
-        (_, Some(size)) => jump(source, at, size, end),
-        _ => Err(source.wrong(FORMAT, begins, "the type of a component, one of bciqdsoCIQDSO")),
-    }
-}
-
-fn jump(source: &Source<'_>, at: &mut u64, by: u64, end: u64) -> Result<()> {
-    if end - (*at).min(end) < by {
-        return Err(source.wrong(FORMAT, *at, format!("{by} bytes inside this object, it ends at {end}")));
-    }
-    *at += by;
-    Ok(())
-}
-
-fn byte(source: &mut Source<'_>, at: &mut u64) -> Result<u8> {
-    fixed::<1>(source, at).map(|[byte]| byte)
-}
-
-fn fixed<const N: usize>(source: &mut Source<'_>, at: &mut u64) -> Result<[u8; N]> {
-    let mut bytes = [0; N];
-    bytes.copy_from_slice(&source.bytes(FORMAT, *at, N as u64)?);
-    *at += N as u64;
-    Ok(bytes)
-}
-
-/// A text up to its zero.
-fn name(source: &mut Source<'_>, at: &mut u64) -> Result<String> {
-    let left = source.length().saturating_sub(*at).min(u64::from(LONGEST));
-    let mut length = 64.min(left);
-    loop {
-        let bytes = source.bytes(FORMAT, *at, length)?;
-        let mut fields = Fields::little(&bytes, *at);
-        match fields.until(0) {
-            Ok(text) => {
-                *at += text.len() as u64 + 1;
-                return Ok(String::from_utf8_lossy(text).into_owned());
-            }
-            Err(_) if length == left => {
-                return Err(source.wrong(FORMAT, *at, "a text that ends"));
-            }
-            Err(_) => length = (4 * length).min(left),
-        }
+    let count = if kind.is_ascii_uppercase() { file.get::<u32>()? } else { 1 };
+    match (kind.to_ascii_lowercase(), size) {
+        (b's', _) => (0..count).try_for_each(|_| file.name().map(drop)),
+        (b'o', _) => (0..count).try_for_each(|_| {
+            let (_, inner) = object(file)?;
+            file.pass(inner - file.at, end)
+        }),
+        (_, Some(size)) => file.pass(size * u64::from(count), end),
+        _ => Err(file.source.wrong(begins, "the type of a component, one of bciqdsoCIQDSO")),
     }
 }

@@ -40,7 +40,6 @@ use hdf5_pure::{
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::io::Read as _;
 
-const FORMAT: Format = Format::Hdf5;
 const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
@@ -61,7 +60,7 @@ const LABELS: &str = "DIMENSION_LABELS";
 
 /// Other programs put up to 512 bytes of their own before the file (MATLAB).
 pub(crate) const READER: Reader = Reader {
-    format: FORMAT,
+    format: Format::Hdf5,
     recognises: |start, _| start.starts_with(MAGIC) || start.get(512..).is_some_and(|s| s.starts_with(MAGIC)),
     channels,
 };
@@ -83,7 +82,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             channels.extend(channel(source, &dataset, join(&path, &name), &mut taken)?);
             if budget.is_spent() {
                 let expected = "metadata that do not name the same bytes again and again";
-                return Err(source.wrong(FORMAT, 0, expected));
+                return Err(source.wrong(0, expected));
             }
         }
         if depth < DEEPEST {
@@ -93,12 +92,12 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             }
         }
         if seen > MOST {
-            return Err(source.wrong(FORMAT, 0, format!("{MOST} groups and data sets at most")));
+            return Err(source.wrong(0, format!("{MOST} groups and data sets at most")));
         }
     }
     channels.sort_by(|a, b| a.name.cmp(&b.name));
     if channels.is_empty() {
-        return Err(source.wrong(FORMAT, 0, "a data set of numbers of two dimensions"));
+        return Err(source.wrong(0, "a data set of numbers of two dimensions"));
     }
     Ok(channels)
 }
@@ -111,7 +110,7 @@ fn join(path: &str, name: &str) -> String {
 /// What the other crate says about the file.
 fn unreadable(source: &Source<'_>, error: &dyn std::fmt::Display) -> crate::error::Error {
     let said: String = error.to_string().chars().take(200).collect();
-    source.wrong(FORMAT, 0, format!("a file as its specification has it ({said})"))
+    source.wrong(0, format!("a file as its specification has it ({said})"))
 }
 
 /// The channel of a data set; `None` for those that are no map.
@@ -135,16 +134,15 @@ fn channel(
     let most = RATIO.saturating_mul(source.length());
     if claimed.is_none_or(|claimed| claimed > most) {
         let expected = format!("{name} of {first} x {second} numbers in at most {most} bytes");
-        return Err(source.wrong(FORMAT, 0, expected));
+        return Err(source.wrong(0, expected));
     }
     let (lines, along) = (lines as usize, along as usize);
     let (rows, columns) = match order {
         AxisOrder::Rows => (lines, along),
         AxisOrder::Columns => (along, lines),
     };
-    let (scale, shift, undefined) =
-        packed(&attributes).map_err(|expected| source.wrong(FORMAT, 0, expected))?;
-    let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(FORMAT, bytes, number) };
+    let (scale, shift, undefined) = packed(&attributes).map_err(|expected| source.wrong(0, expected))?;
+    let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(bytes, number) };
     raw(Bytes::Held(Vec::new())).check_scale(source)?;
     let (heights, details) = match dataset.layout() {
         Err(e) => {
@@ -185,15 +183,8 @@ fn channel(
         // Never written, in other files, or mapped from other data sets.
         Ok(_) => return Ok(None),
     };
-    Ok(Some(StoredChannel {
-        name: Some(name),
-        details,
-        rows,
-        columns,
-        unit: unit(&attributes),
-        extent: extent(&attributes),
-        heights,
-    }))
+    let channel = StoredChannel::of(heights, details, [rows, columns], unit(&attributes));
+    Ok(Some(StoredChannel { extent: extent(&attributes), ..channel }.named(&name)))
 }
 
 /// Whole IEEE floats and integers; `None` for all else.
@@ -308,7 +299,7 @@ impl Pieces {
         let chunks = self.chunks.as_ref().map_err(|e| unreadable(source, e))?;
         if let Some(filter) = self.filters.iter().find(|f| !matches!(**f, DEFLATE | SHUFFLE | FLETCHER32)) {
             let expected = format!("{} packed by deflate or not at all, it has filter {filter}", self.name);
-            return Err(source.wrong(FORMAT, 0, expected));
+            return Err(source.wrong(0, expected));
         }
         let size = self.raw.number.bytes();
         let [tall, wide] = self.chunk;
@@ -319,10 +310,10 @@ impl Pieces {
         let count = u128::from(count(self.lines, tall)) * u128::from(count(self.along, wide));
         if bytes == 0 || count.checked_mul(bytes.into()).is_none_or(|all| all > most.into()) {
             let expected = format!("chunks of {tall} x {wide} numbers in {} bytes", source.length());
-            return Err(source.wrong(FORMAT, 0, expected));
+            return Err(source.wrong(0, expected));
         }
         if chunks.len() as u128 > count {
-            return Err(source.wrong(FORMAT, 0, format!("{count} chunks at most, found {}", chunks.len())));
+            return Err(source.wrong(0, format!("{count} chunks at most, found {}", chunks.len())));
         }
         let (rows, columns) = match self.raw.order {
             AxisOrder::Rows => (self.lines, self.along),
@@ -332,7 +323,7 @@ impl Pieces {
         let wide = wide as usize;
         for chunk in chunks {
             let (Some(&line), Some(&at)) = (chunk.offset.first(), chunk.offset.get(1)) else {
-                return Err(source.wrong(FORMAT, chunk.address, "two coordinates of a chunk"));
+                return Err(source.wrong(chunk.address, "two coordinates of a chunk"));
             };
             if line >= self.lines as u64 || at >= self.along as u64 {
                 // Left over from before the data set was made smaller.
@@ -352,7 +343,7 @@ impl Pieces {
 
     /// The numbers of a chunk.
     fn unpacked(&self, source: &mut Source<'_>, chunk: &Chunk, bytes: u64) -> Result<Vec<u8>> {
-        let mut data = source.bytes(FORMAT, chunk.address, chunk.storage_size)?;
+        let mut data = source.bytes(chunk.address, chunk.storage_size)?;
         for (i, filter) in self.filters.iter().enumerate().rev() {
             if i < 32 && chunk.filter_mask >> i & 1 == 1 {
                 continue;
@@ -364,14 +355,14 @@ impl Pieces {
                     let mut plain = Vec::new();
                     // A checksum may stand behind the numbers.
                     let read = ZlibDecoder::new(&data[..]).take(bytes + 4).read_to_end(&mut plain);
-                    read.map_err(|_| source.wrong(FORMAT, chunk.address, "a chunk packed by deflate"))?;
+                    read.map_err(|_| source.wrong(chunk.address, "a chunk packed by deflate"))?;
                     data = plain;
                 }
             }
         }
         if data.len() as u64 != bytes {
             let expected = format!("a chunk of {bytes} bytes, it has {}", data.len());
-            return Err(source.wrong(FORMAT, chunk.address, expected));
+            return Err(source.wrong(chunk.address, expected));
         }
         Ok(data)
     }

@@ -7,60 +7,64 @@
 //! Not read: files with the mark of another sign. Gwyddion, `SurfaceTopography` and itom turn their heights over; the formula of the
 //! guide has no sign, and other readers follow it.
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredUnit, Undefined};
+use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;
 use crate::extent::Extent;
+use crate::fields::{ByteOrder, header};
 use crate::format::Format;
 use crate::number_type::NumberType;
-use crate::quantity::{Dimension, Quantity};
 use crate::reader::Reader;
-use crate::source::{EndOfFields, Fields, Source};
+use crate::source::Source;
 
-const FORMAT: Format = Format::MetroPro;
 /// First three bytes; the fourth is that of the header.
 const MAGIC: &[u8] = b"\x88\x1b\x03";
 const HEADER: u64 = 834;
 const LONG_HEADER: u64 = 4096;
 
 pub(crate) const READER: Reader = Reader {
-    format: FORMAT,
+    format: Format::MetroPro,
     recognises: |start, _| start.starts_with(MAGIC) && matches!(start.get(3), Some(0x6f..=0x71)),
     channels,
 };
 
-/// What the header says of the phase.
-struct Phase {
-    /// Format, 1 to 3, and length of the header.
-    header: (u16, u32),
-    /// Bytes of the intensities and of the phase by their shapes.
-    by_shape: [u64; 2],
-    /// The same as the header states them.
-    stated: [u64; 2],
-    columns: usize,
-    rows: usize,
-    /// Height of a fringe.
-    fringe: f64,
-    cell: f64,
-    resolution: i16,
-    sign: i16,
+header! {
+    /// What the header says of the phase.
+    struct Phase {
+        kind: u8 = 3,
+        /// 1 to 3.
+        format: u16 = 4,
+        header: u32 = 6,
+        intensities: [u16; 3] = 52,
+        /// Bytes of the intensities, and of the phase.
+        of_intensities: u32 = 60,
+        columns: u16 = 68,
+        rows: u16 = 70,
+        of_phase: u32 = 72,
+        interference: f32 = 164,
+        wavelength: f32 = 168,
+        obliquity: f32 = 176,
+        cell: f32 = 184,
+        resolution: i16 = 218,
+        sign: i16 = 232,
+    }
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let bytes = source.bytes(FORMAT, 0, HEADER)?;
-    let phase = Phase::read(&bytes).map_err(|end: EndOfFields| end.of(source, FORMAT))?;
-    let format = u16::from(bytes[3] - 0x6e);
+    let phase = Phase::of(&mut source.fields(ByteOrder::Big, 0, HEADER)?)?;
+    let wrong = |offset: u64, expected: String| Err(source.wrong(offset, expected));
+    let format = u16::from(phase.kind - 0x6e);
     let header = if format == 3 { LONG_HEADER } else { HEADER };
-    let wrong = |offset: u64, expected: String| Err(source.wrong(FORMAT, offset, expected));
-    if (phase.header.0, u64::from(phase.header.1)) != (format, header) {
-        let (found, length) = phase.header;
+    if (phase.format, u64::from(phase.header)) != (format, header) {
+        let (found, length) = (phase.format, phase.header);
         return wrong(
             4,
             format!("the format {format} and {header} bytes of header, found {found} and {length}"),
         );
     }
-    for (i, at) in [(0, 60), (1, 72)] {
-        let [own, stated] = [phase.by_shape, phase.stated].map(|n| n[i]);
-        if own != stated {
+    let intensities = 2 * phase.intensities.iter().map(|&n| u64::from(n)).product::<u64>();
+    let points = u64::from(phase.columns) * u64::from(phase.rows);
+    for (at, own, stated) in [(60, intensities, phase.of_intensities), (72, 4 * points, phase.of_phase)] {
+        if own != u64::from(stated) {
             return wrong(at, format!("{own} bytes, as width and height before say, found {stated}"));
         }
     }
@@ -70,7 +74,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         (2, 2..) => 131_072.0,
         _ => return wrong(218, "a phase resolution of 0 or 1, or 2 from the second format on".into()),
     };
-    let scale = phase.fringe / counts;
+    let scale =
+        [phase.interference, phase.obliquity, phase.wavelength].map(f64::from).iter().product::<f64>()
+            / counts;
     if !(scale.is_finite() && scale > 0.0) {
         return wrong(164, "a scale, a wavelength and an obliquity above 0".into());
     }
@@ -82,34 +88,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let raw = RawHeights {
         scale,
         undefined: Undefined::AtLeast(2_147_483_640.0),
-        ..RawHeights::new(FORMAT, Bytes::File(header + phase.stated[0]), NumberType::I32.big_endian())
+        ..RawHeights::at(header + intensities, NumberType::I32.big_endian())
     };
-    let Phase { rows, columns, cell, .. } = phase;
-    let side = (cell > 0.0).then(|| Quantity::new(cell, Dimension::LENGTH).ok().map(Extent::Cell)).flatten();
-    Ok(vec![StoredChannel::new(source, raw, [rows, columns], StoredUnit::written("m"), [side; 2])?])
-}
-
-impl Phase {
-    fn read(bytes: &[u8]) -> Result<Self, EndOfFields> {
-        let mut fields = Fields::big(bytes, 0);
-        let header = (fields.go(4).u16()?, fields.u32()?);
-        let intensities: [u16; 3] = [fields.go(52).u16()?, fields.u16()?, fields.u16()?];
-        let of_intensities = fields.go(60).u32()?;
-        let [columns, rows] = [fields.go(68).u16()?, fields.u16()?];
-        let of_phase = fields.u32()?;
-        let [interference, wavelength] = [fields.go(164).f32()?, fields.f32()?];
-        let obliquity = fields.go(176).f32()?;
-        let before = 2 * intensities.iter().map(|&n| u64::from(n)).product::<u64>();
-        Ok(Self {
-            header,
-            by_shape: [before, 4 * u64::from(columns) * u64::from(rows)],
-            stated: [of_intensities, of_phase].map(u64::from),
-            columns: columns.into(),
-            rows: rows.into(),
-            fringe: interference * obliquity * wavelength,
-            cell: fields.go(184).f32()?,
-            resolution: fields.go(218).i16()?,
-            sign: fields.go(232).i16()?,
-        })
-    }
+    let shape = [phase.rows.into(), phase.columns.into()];
+    let side = Extent::of_cell(phase.cell.into(), "m");
+    Ok(vec![StoredChannel::new(source, raw, shape, StoredUnit::written("m"), [side; 2])?])
 }

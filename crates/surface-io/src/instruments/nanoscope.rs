@@ -8,29 +8,28 @@
 //! whatever the direction of the frame.
 //!
 //! `Scan Size` has the side along y where both sides have the ratio of `Aspect Ratio`; readers disagree on the side of other images,
-//! which is left open. All lines are read, also those beyond `Valid data len`: the details tell how many are valid.
+//! which is left open and noted. All lines are read, also those beyond `Valid data len`: the details tell how many are valid.
 //!
 //! Not read: versions before 4.3 (no `@2:Z scale`), data as text, force curves, files whose line ends were changed.
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
+use crate::channel::{RawHeights, StoredChannel, StoredUnit};
+use crate::entries::{Entries, HeaderLine, Section};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::format::Format;
 use crate::number_type::NumberType;
-use crate::quantity::{Dimension, Quantity, Unit};
+use crate::quantity::{Dimension, Unit};
 use crate::reader::Reader;
 use crate::source::Source;
 
-const FORMAT: Format = Format::Nanoscope;
 /// First bytes, in small letters.
 const BEGINNINGS: [&[u8]; 3] = [b"\\*file list", b"\\*ec file list", b"\\*force file list"];
-const END: &str = "\\*file list end";
 /// Longest header that is read: those of files have 8 to 80 kB.
 const LONGEST: u64 = 1 << 20;
 /// Integers have four bytes from this version on.
 const WIDE: u32 = 0x0920_0000;
 
-pub(crate) const READER: Reader = Reader { format: FORMAT, recognises, channels };
+pub(crate) const READER: Reader = Reader { format: Format::Nanoscope, recognises, channels };
 
 fn recognises(start: &[u8], _: u64) -> bool {
     let mut lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
@@ -40,67 +39,52 @@ fn recognises(start: &[u8], _: u64) -> bool {
         && lines.all(|line| line.first().is_none_or(|&b| b == b'\\' || b < b' '))
 }
 
-/// A section: its name and its lines, keys in small letters, each with its offset.
-struct Section {
-    name: String,
-    entries: Vec<(String, String, u64)>,
-}
-
-impl Section {
-    fn find(&self, key: &str) -> Option<&str> {
-        self.entries.iter().find(|e| e.0 == key).map(|e| e.1.as_str())
-    }
-}
-
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let (sections, end) = sections(source)?;
-    let lists = |ending: &'static str| sections.iter().filter(move |s| s.name.ends_with(ending));
-    let find = |ending: &'static str, key: &str| lists(ending).find_map(|s| s.find(key));
+    let bytes = source.start(LONGEST)?;
+    let first = bytes.split_inclusive(|&b| b == b'\n').next().unwrap_or_default();
+    if !first.ends_with(b"\r\n") || first.ends_with(b"\r\r\n") {
+        // Numbers that look like line ends were changed too, and those behind them moved.
+        let expected = "lines that end in CR LF; this file was copied as text, which damages its numbers";
+        return Err(source.wrong(0, expected));
+    }
+    let (header, ended) = Entries::read(source.subject(), &bytes, line)?;
+    if !ended {
+        return Err(source.wrong(header.end, "the line \\*File list end of the header (cut short?)"));
+    }
+    let lists = |ending: &'static str| header.sections().iter().filter(move |s| s.name.ends_with(ending));
+    let find = |ending: &'static str, key: &str| lists(ending).find_map(|s| s.text(key));
     let version = find("file list", "version").unwrap_or_default().trim_start_matches("0x");
     let version = u32::from_str_radix(version, 16).unwrap_or(0);
-    let context = find("file list", "start context").unwrap_or_default();
-    let curves = sections.first().is_some_and(|s| s.name == "force file list");
-    if curves || sections.iter().any(|s| s.find("operating mode") == Some("Force")) || context == "FOL" {
-        return Err(source.wrong(FORMAT, 0, "a map; this file holds force curves"));
+    let curves = header
+        .sections()
+        .iter()
+        .any(|s| s.name == "force file list" || s.text("operating mode") == Some("Force"));
+    if curves || find("file list", "start context") == Some("FOL") {
+        return Err(source.wrong(0, "a map; this file holds force curves"));
     }
     let scales = |key: &str| {
         ["scanner list", "microscope list", "scan list", "afm list", "stm list"]
             .iter()
             .find_map(|list| find(list, key))
     };
-    lists("image list").map(|image| channel(source, image, (version, end), &scales)).collect()
+    let one =
+        |image| StoredChannel::listed(name(image), channel(source, image, (version, header.end), &scales));
+    lists("image list").map(one).collect()
 }
 
-/// Reads the header up to its end, whose offset comes with it.
-fn sections(source: &mut Source<'_>) -> Result<(Vec<Section>, u64)> {
-    let bytes = source.start(LONGEST)?;
-    let mut sections: Vec<Section> = Vec::new();
-    let mut at = 0;
-    for line in bytes.split_inclusive(|&b| b == b'\n') {
-        let offset = at;
-        at += line.len() as u64;
-        if offset == 0 && (!line.ends_with(b"\r\n") || line.ends_with(b"\r\r\n")) {
-            // Numbers that look like line ends were changed too, and those behind them moved.
-            let expected = "lines that end in CR LF; this file was copied as text, which damages its numbers";
-            return Err(source.wrong(FORMAT, offset, expected));
-        }
-        // Latin-1: degrees, and a tilde or the micro sign for micro.
-        let line: String = line.trim_ascii().iter().map(|&b| char::from(b)).collect();
-        if line.to_ascii_lowercase() == END {
-            return Ok((sections, at));
-        }
-        let Some(entry) = line.strip_prefix('\\') else {
-            return Err(source.wrong(FORMAT, offset, "a line of the header that begins with a backslash"));
-        };
-        if let Some(name) = entry.strip_prefix('*') {
-            sections.push(Section { name: name.to_ascii_lowercase(), entries: Vec::new() });
-        } else if let Some(section) = sections.last_mut() {
-            // A key may hold a colon, as in `@2:Z scale: ...`.
-            let (key, value) = entry.split_once(": ").unwrap_or((entry.trim_end_matches(':'), ""));
-            section.entries.push((key.to_ascii_lowercase(), value.trim().to_owned(), offset));
-        }
+fn line(line: &str) -> HeaderLine<'_> {
+    if line.trim().eq_ignore_ascii_case("\\*File list end") {
+        return HeaderLine::End;
     }
-    Err(source.wrong(FORMAT, at, "the line \\*File list end of the header (cut short?)"))
+    let Some(entry) = line.trim().strip_prefix('\\') else {
+        return HeaderLine::Wrong("a line of the header that begins with a backslash");
+    };
+    if let Some(name) = entry.strip_prefix('*') {
+        return HeaderLine::Section(name);
+    }
+    // A key may hold a colon, as in `@2:Z scale: ...`.
+    let (key, value) = entry.split_once(": ").unwrap_or((entry.trim_end_matches(':'), ""));
+    HeaderLine::Entry(key, value)
 }
 
 fn channel<'s>(
@@ -109,42 +93,29 @@ fn channel<'s>(
     (version, end): (u32, u64),
     scales: &impl Fn(&str) -> Option<&'s str>,
 ) -> Result<StoredChannel> {
-    let at = |key: &str| image.entries.iter().find(|e| e.0 == key).map_or(0, |e| e.2);
-    let number = |key: &'static str| {
-        let found = image.find(key).and_then(|text| text.parse::<u64>().ok());
-        found.ok_or_else(|| source.wrong(FORMAT, at(key), format!("a whole number as {key:?} of an image")))
-    };
-    let (columns, rows) = (number("samps/line")?, number("number of lines")?);
-    let (offset, length) = (number("data offset")?, number("data length")?);
-    let pixel = if image.find("bytes/pixel").is_some() { number("bytes/pixel")? } else { 2 };
+    let (columns, rows) = (image.whole("samps/line")?, image.whole("number of lines")?);
+    let (offset, length) = (image.whole("data offset")? as u64, image.whole("data length")? as u64);
+    let pixel = if image.text("bytes/pixel").is_some() { image.whole("bytes/pixel")? } else { 2 };
     if !matches!(pixel, 2 | 4) {
-        return Err(source.wrong(FORMAT, at("bytes/pixel"), "2 or 4 bytes a pixel"));
+        return Err(image.wrong("bytes/pixel", "2 or 4 bytes"));
     }
-    let points = columns.checked_mul(rows);
-    let wide =
-        pixel == 4 || (version >= WIDE && points.and_then(|n| n.checked_mul(4)).is_some_and(|n| n <= length));
+    let bytes = |size: usize| columns.checked_mul(rows)?.checked_mul(size).map(|bytes| bytes as u64);
+    let wide = pixel == 4 || (version >= WIDE && bytes(4).is_some_and(|bytes| bytes <= length));
     let kind = if wide { NumberType::I32 } else { NumberType::I16 };
-    if points.and_then(|n| n.checked_mul(kind.bytes() as u64)).is_none_or(|bytes| bytes != length) {
-        let size = kind.bytes();
-        let expected = format!("a data length of {columns} x {rows} numbers of {size} bytes, found {length}");
-        return Err(source.wrong(FORMAT, at("data length"), expected));
+    if bytes(kind.bytes()) != Some(length) {
+        let expected = format!("{columns} x {rows} numbers of {} bytes", kind.bytes());
+        return Err(image.wrong("data length", expected));
     }
     if offset < end {
-        let expected = format!("a data offset behind the header, which ends at {end}, found {offset}");
-        return Err(source.wrong(FORMAT, at("data offset"), expected));
+        return Err(image.wrong("data offset", format!("a place behind the header, which ends at {end},")));
     }
-    let (columns, rows) = (columns as usize, rows as usize);
-    let mut raw =
-        RawHeights { reversed: [false, true], ..RawHeights::new(FORMAT, Bytes::File(offset), kind) };
-    raw.check(source, rows, columns)?;
-    let key = ["@4:z scale", "@2:z scale"].into_iter().find(|key| image.find(key).is_some());
+    let mut raw = RawHeights { reversed: [false, true], ..RawHeights::at(offset, kind) };
+    let key = ["@4:z scale", "@2:z scale"].into_iter().find(|key| image.text(key).is_some());
     let Some(key) = key else {
-        return Err(source.wrong(FORMAT, offset, "an entry @2:Z scale of each image (version 4.3 or later)"));
+        return Err(source.wrong(offset, "an entry @2:Z scale of each image (version 4.3 or later)"));
     };
-    let unreadable =
-        || source.wrong(FORMAT, at(key), "a Z scale such as V [Sens. Zsens] (0.005 V/LSB) 2.9 V");
-    let scale = Scale::read(image.find(key).unwrap_or_default()).ok_or_else(unreadable)?;
-    let unit = match scale.height(scales) {
+    let scale = Scale::read(image.text(key).unwrap_or_default());
+    let unit = match scale.as_ref().and_then(|scale| scale.height(scales)) {
         Some((height, unit)) => {
             // All counts together make the range of the hard value.
             raw.scale = height / 256_f64.powi(pixel as i32);
@@ -152,35 +123,38 @@ fn channel<'s>(
         }
         None => StoredUnit::NoHeights(None),
     };
-    let mut details = raw.details();
+    let (size, aspect) = (image.text("scan size").unwrap_or_default(), image.text("aspect ratio"));
+    let extent = extents(size, aspect);
+    let mut channel = StoredChannel::new(source, raw, [rows, columns], unit, extent)?;
+    channel.name = name(image);
     // Images of one name differ by these.
     for (key, behind) in [("scan line", " scan"), ("line direction", "")] {
-        if let Some(word) = image.find(key) {
+        if let Some(word) = image.text(key) {
             let word: String = word.to_lowercase().chars().take(32).collect();
-            details = format!("{details}, {word}{behind}");
+            channel.details += &format!(", {word}{behind}");
         }
     }
-    let valid = ["valid data len x", "valid data len y"].map(|key| image.find(key)?.parse::<usize>().ok());
+    let valid = ["valid data len x", "valid data len y"].map(|key| image.text(key)?.parse::<usize>().ok());
     if let [Some(x), Some(y)] = valid
         && [x, y] != [columns, rows]
     {
-        details = format!("{details}, of them {x} x {y} valid");
+        channel.details += &format!(", of them {x} x {y} valid");
     }
-    Ok(StoredChannel {
-        name: name(image),
-        details,
-        rows,
-        columns,
-        unit,
-        extent: extents(image.find("scan size").unwrap_or_default(), image.find("aspect ratio")),
-        heights: StoredHeights::Raw(raw),
-    })
+    if scale.is_none() {
+        channel.note(format!("no Z scale that can be read: {:?}", image.text(key).unwrap_or_default()));
+    }
+    if let ([Some(_), None], Some(aspect)) = (extent, aspect) {
+        channel.note(format!(
+            "the file says Scan Size {size} beside Aspect Ratio {aspect}; readers disagree on the side along y then"
+        ));
+    }
+    Ok(channel)
 }
 
 /// Name of what an image shows: the word in brackets, or else the one in quotes.
 fn name(image: &Section) -> Option<String> {
     let keys = ["@2:image data", "@3:image data", "@4:image data", "image data"];
-    let data = keys.into_iter().find_map(|key| image.find(key))?;
+    let data = keys.into_iter().find_map(|key| image.text(key))?;
     let inside = |open: char, close: char| {
         let (_, rest) = data.split_once(open)?;
         let (word, _) = rest.split_once(close)?;
@@ -249,19 +223,11 @@ fn extents(text: &str, aspect: Option<&str>) -> [Option<Extent>; 2] {
         [side, unit] => (side, side, unit),
         _ => return [None; 2],
     };
-    let Some(unit) = length_unit(unit) else { return [None; 2] };
-    let [x, y] = [x, y].map(|side| {
-        let length = Quantity::of(side.parse().ok()?, &unit).ok()?;
-        (length.value() > 0.0).then_some(length)
-    });
-    let (Some(x), Some(y)) = (x, y) else { return [None; 2] };
-    let ratio = aspect.map_or(Some(x.value() / y.value()), ratio);
-    let agree = ratio.is_some_and(|ratio| (x.value() / y.value() / ratio - 1.0).abs() <= PRINTED);
-    [Some(Extent::Side(x)), agree.then_some(Extent::Side(y))]
-}
-
-/// `2:1`.
-fn ratio(text: &str) -> Option<f64> {
-    let (x, y) = text.split_once(':')?;
-    Some(x.trim().parse::<f64>().ok()? / y.trim().parse::<f64>().ok()?)
+    let number = |text: &str| text.parse::<f64>().ok();
+    let ratio =
+        |text: &str| text.split_once(':').and_then(|(x, y)| Some(number(x.trim())? / number(y.trim())?));
+    let (Some(x), Some(y)) = (number(x), number(y)) else { return [None; 2] };
+    let agree = aspect.map_or(Some(x / y), ratio).is_some_and(|ratio| (x / y / ratio - 1.0).abs() <= PRINTED);
+    let side = |side: f64| Extent::of_side(side, &unit.replace('~', "u"));
+    [side(x), if agree { side(y) } else { None }]
 }

@@ -14,26 +14,21 @@ mod write;
 
 pub use write::netcdf;
 
-use crate::channel::{
-    AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, masked,
-};
+use crate::channel::{AxisOrder, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, masked};
 use crate::error::{ContentError, Result};
 use crate::extent::Extent;
+use crate::fields::{ByteOrder, Cursor, decoded};
 use crate::format::Format;
 use crate::number_type::NumberType;
-use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
-use crate::source::{Fields, Source};
+use crate::source::Source;
 
-const FORMAT: Format = Format::NetCdf;
 const MAGIC: &[u8] = b"CDF";
-/// Longest name or text that is read, in bytes.
-const LONGEST: u64 = 1 << 16;
 /// What the library writes where nothing was written, as double and as float.
 const FILL: f64 = f64::from_bits(0x479e_0000_0000_0000);
 
 pub(crate) const READER: Reader = Reader {
-    format: FORMAT,
+    format: Format::NetCdf,
     recognises: |start, _| start.starts_with(MAGIC) && matches!(start.get(3), Some(1 | 2 | 5)),
     channels,
 };
@@ -69,9 +64,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     header.attributes(&mut Attributes::default())?;
     let [heights, mask, x, y] = header.variables()?;
     let Some(heights) = heights else {
-        return Err(source.wrong(FORMAT, 0, "a variable called heights"));
+        return Err(source.wrong(0, "a variable called heights"));
     };
-    let wrong = |source: &Source<'_>, expected: &str| Err(source.wrong(FORMAT, heights.offset, expected));
+    let wrong = |source: &Source<'_>, expected: &str| Err(source.wrong(heights.offset, expected));
     let named = |number: &u64| {
         let at = usize::try_from(*number).ok()?;
         dimensions.get(at).map(|(name, length)| (name.as_str(), *length))
@@ -99,8 +94,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         [Some(mark), None] | [None, Some(mark)] => Undefined::Equal(mark),
         [None, None] => Undefined::None,
     };
-    let bytes = Bytes::File(heights.offset);
-    let raw = RawHeights { order, scale, shift, undefined, ..RawHeights::new(FORMAT, bytes, number) };
+    let raw = RawHeights { order, scale, shift, undefined, ..RawHeights::at(heights.offset, number) };
     raw.check(source, rows, columns)?;
     let mut details = raw.details();
     let stored = match mask {
@@ -109,7 +103,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             if dimensions == heights.dimensions =>
         {
             details += ", masked points undefined";
-            let mask = RawHeights { order, ..RawHeights::new(FORMAT, Bytes::File(offset), number) };
+            let mask = RawHeights { order, ..RawHeights::at(offset, number) };
             mask.check(source, rows, columns)?;
             masked(raw, mask, rows, columns)
         }
@@ -117,97 +111,59 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let side = |variable: Option<Variable>| {
         let Attributes { unit, length, .. } = variable?.attributes;
-        let unit = unit?.parse::<Unit>().ok().filter(|unit| unit.dimension() == Dimension::LENGTH)?;
-        let side = Quantity::new(unit.to_si(length?), Dimension::LENGTH).ok();
-        side.filter(|side| side.value() > 0.0).map(Extent::Side)
+        Extent::of_side(length?, &unit?)
     };
     let unit = StoredUnit::written(heights.attributes.unit.as_deref().unwrap_or_default());
-    let (name, extent) = (Some("heights".to_owned()), [side(x), side(y)]);
-    Ok(vec![StoredChannel { name, details, rows, columns, unit, extent, heights: stored }])
+    let channel = StoredChannel::of(stored, details, [rows, columns], unit);
+    Ok(vec![StoredChannel { extent: [side(x), side(y)], ..channel }.named("heights")])
 }
 
 /// The header, read from its beginning to its end.
 struct Header<'s, 'a> {
-    source: &'s mut Source<'a>,
+    file: Cursor<'s, 'a>,
     version: u8,
-    /// Offset of what is read next.
-    at: u64,
-    /// Some bytes from an offset on.
-    window: (u64, Vec<u8>),
 }
 
 impl<'s, 'a> Header<'s, 'a> {
     fn new(source: &'s mut Source<'a>) -> Result<Self> {
-        let version = source.bytes(FORMAT, 0, 4)?[3];
-        let mut header = Self { source, version, at: 4, window: (0, Vec::new()) };
+        let version = source.get(ByteOrder::Big, 3)?;
+        let mut header = Self { file: Cursor::new(source, ByteOrder::Big, 4), version };
         // The number of records.
         header.count()?;
         Ok(header)
     }
 
-    /// The next bytes, at most [`LONGEST`].
-    fn take(&mut self, length: u64) -> Result<Fields<'_>> {
-        let (from, held) = (self.window.0, self.window.1.len() as u64);
-        if length > LONGEST {
-            return Err(self.wrong("a shorter name or text"));
-        }
-        if self.at < from || self.at + length > from + held {
-            let rest = self.source.length().saturating_sub(self.at);
-            let bytes = self.source.bytes(FORMAT, self.at, LONGEST.min(rest).max(length))?;
-            self.window = (self.at, bytes);
-        }
-        let inside = (self.at - self.window.0) as usize;
-        let base = self.at;
-        self.at += length;
-        Ok(Fields::big(&self.window.1[inside..inside + length as usize], base))
-    }
-
-    fn wrong(&self, expected: &str) -> crate::error::Error {
-        self.source.wrong(FORMAT, self.at, expected)
-    }
-
     fn u32(&mut self) -> Result<u64> {
-        let at = self.at;
-        let read = self.take(4)?.u32().map(u64::from);
-        read.map_err(|_| self.source.wrong(FORMAT, at, "a number of four bytes"))
-    }
-
-    fn u64(&mut self) -> Result<u64> {
-        let at = self.at;
-        let read = self.take(8)?.u64();
-        read.map_err(|_| self.source.wrong(FORMAT, at, "a number of eight bytes"))
+        self.file.get::<u32>().map(u64::from)
     }
 
     /// How many there are of something.
     fn count(&mut self) -> Result<u64> {
-        if self.version == 5 { self.u64() } else { self.u32() }
+        if self.version == 5 { self.file.get() } else { self.u32() }
     }
 
     /// The length of a list that begins with this mark, 0 where there is no list.
     fn list(&mut self, mark: u64) -> Result<u64> {
-        let at = self.at;
+        let at = self.file.at;
         let (found, count) = (self.u32()?, self.count()?);
         if found == mark || (found, count) == (0, 0) {
             return Ok(count);
         }
-        Err(self.source.wrong(FORMAT, at, format!("a list with the mark {mark}, found {found}")))
+        Err(self.file.source.wrong(at, format!("a list with the mark {mark}, found {found}")))
     }
 
     /// Passes bytes that are filled up to a multiple of four.
     fn pass(&mut self, length: u64) -> Result<()> {
-        let end = length.checked_next_multiple_of(4).and_then(|length| self.at.checked_add(length));
-        let end = end.filter(|end| *end <= self.source.length());
-        self.at =
-            end.ok_or_else(|| self.wrong("a value that ends before the end of the file (cut short?)"))?;
-        Ok(())
+        let end = self.file.source.length();
+        self.file.pass(length.checked_next_multiple_of(4).unwrap_or(u64::MAX), end)
     }
 
     fn text(&mut self, length: u64) -> Result<String> {
-        let at = self.at;
-        let text = self.take(length)?.text(length as usize).unwrap_or_default();
-        self.at = at;
+        let at = self.file.at;
+        let text = decoded(self.file.take(length)?);
+        self.file.at = at;
         self.pass(length)?;
-        Ok(text)
+        Ok(text.trim_matches(['\0', ' ']).to_owned())
     }
 
     fn name(&mut self) -> Result<String> {
@@ -228,12 +184,12 @@ impl<'s, 'a> Header<'s, 'a> {
             let name = self.name()?;
             let (kind, count) = (self.u32()?, self.count()?);
             let size = self.size(kind)?;
-            let length = size.checked_mul(count).ok_or_else(|| self.wrong("fewer values"))?;
+            let length = size.checked_mul(count).ok_or_else(|| self.file.wrong("fewer values"))?;
             if kind == 2 && matches!(name.as_str(), "unit" | "units") {
                 keep.unit = Some(self.text(length)?);
                 continue;
             }
-            let at = self.at;
+            let at = self.file.at;
             let target = match name.as_str() {
                 "length" => Some(&mut keep.length),
                 "_FillValue" => Some(&mut keep.fill),
@@ -245,11 +201,13 @@ impl<'s, 'a> Header<'s, 'a> {
             if let Some(target) = target {
                 // Left out, heights would be others than those that are meant.
                 let (Some(number), 1) = (number(kind), count) else {
-                    return Err(self.wrong(&format!("one number as {name}")));
+                    return Err(self.file.wrong(&format!("one number as {name}")));
                 };
-                let read = self.take(size)?.number(number);
-                *target = Some(read.map_err(|e| e.of(self.source, FORMAT))?);
-                self.at = at;
+                let value = number.big_endian().decode(self.file.take(size)?);
+                *target = Some(
+                    value.map_err(|_| self.file.wrong(format!("a number as {name} that a double holds")))?,
+                );
+                self.file.at = at;
             }
             self.pass(length)?;
         }
@@ -273,7 +231,7 @@ impl<'s, 'a> Header<'s, 'a> {
             self.size(kind)?;
             variable.number = number(kind);
             self.count()?;
-            variable.offset = if self.version == 1 { self.u32()? } else { self.u64()? };
+            variable.offset = if self.version == 1 { self.u32()? } else { self.file.get()? };
             if let Some(at) = NAMES.iter().position(|known| *known == name) {
                 found[at] = Some(variable);
             }
@@ -286,7 +244,7 @@ impl<'s, 'a> Header<'s, 'a> {
         match (kind, number(kind)) {
             (2, _) => Ok(1),
             (_, Some(number)) => Ok(number.bytes() as u64),
-            _ => Err(self.wrong(&format!("a type of values from 1 to 11 before this, found {kind}"))),
+            _ => Err(self.file.wrong(&format!("a type of values from 1 to 11 before this, found {kind}"))),
         }
     }
 }

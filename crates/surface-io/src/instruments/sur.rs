@@ -14,46 +14,50 @@
 use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
 use crate::error::{ContentError, Result};
 use crate::extent::Extent;
+use crate::fields::{ByteOrder, Text, header};
 use crate::format::Format;
 use crate::inflate::{Packed, Packing};
 use crate::number_type::NumberType;
-use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
-use crate::source::{EndOfFields, Fields, Source};
+use crate::source::Source;
 
-const FORMAT: Format = Format::Sur;
-const PLAIN: &[u8] = b"DIGITAL SURF";
-const COMPRESSED: &[u8] = b"DSCOMPRESSED";
+const PLAIN: &[u8; 12] = b"DIGITAL SURF";
+const COMPRESSED: &[u8; 12] = b"DSCOMPRESSED";
 const HEADER: u64 = 512;
 /// Streams of one object; MountainsMap writes up to 8.
 const STREAMS: u32 = 1024;
 
-pub(crate) const READER: Reader =
-    Reader { format: FORMAT, recognises: |start, _| is_object(start), channels };
+pub(crate) const READER: Reader = Reader {
+    format: Format::Sur,
+    recognises: |start, _| start.starts_with(PLAIN) || start.starts_with(COMPRESSED),
+    channels,
+};
 
-fn is_object(start: &[u8]) -> bool {
-    start.starts_with(PLAIN) || start.starts_with(COMPRESSED)
-}
-
-/// What is kept of a header.
-#[derive(Debug)]
-struct Header {
-    machine: u16,
-    objects: u16,
-    kind: u16,
-    name: String,
-    channels: u16,
-    special: bool,
-    bits: u16,
-    lowest: i32,
-    count: [i32; 2],
-    total: u32,
-    step: [f64; 3],
-    z_axis: String,
-    unit: [String; 3],
-    inverted: bool,
-    behind: u64,
-    z_offset: f64,
+header! {
+    /// What is kept of a header.
+    struct Header {
+        magic: [u8; 12] = 0,
+        machine: u16 = 12,
+        objects: u16 = 14,
+        kind: u16 = 18,
+        name: Text<30> = 20,
+        channels: u16 = 80,
+        /// 1 where numbers mark undefined points.
+        special: u16 = 86,
+        bits: u16 = 98,
+        lowest: i32 = 100,
+        /// Columns and rows, and their product.
+        count: [i32; 2] = 108,
+        total: u32 = 116,
+        /// Along x, y and z.
+        step: [f32; 3] = 120,
+        z_axis: Text<16> = 164,
+        unit: [Text<16>; 3] = 180,
+        inverted: u16 = 290,
+        /// Bytes of a comment and of a private part.
+        behind: [u16; 2] = 334,
+        z_offset: f32 = 474,
+    }
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
@@ -61,11 +65,10 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let (mut at, mut most, mut first_kind) = (0, 1, 0);
     // Older writers have the code of a material where newer ones have the number of channels: what follows decides.
     while found.len() < most && source.length() - at >= HEADER {
-        let bytes = source.bytes(FORMAT, at, HEADER)?;
-        if !is_object(&bytes) {
+        let header = Header::of(&mut source.fields(ByteOrder::Little, at, HEADER)?)?;
+        if header.magic != *PLAIN && header.magic != *COMPRESSED {
             break;
         }
-        let header = header(&bytes).map_err(|e| e.of(source, FORMAT))?;
         if found.is_empty() {
             most = usize::from(header.objects.max(1)) * usize::from(header.channels.max(1));
             first_kind = header.kind;
@@ -73,73 +76,20 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         // Of a surface with an image, the surface is first.
         let image = matches!(header.kind, 3 | 10 | 12 | 18)
             || (matches!(first_kind, 11 | 13 | 16) && !found.is_empty());
-        let (channel, end) = object(source, at, &header, (image, bytes.starts_with(COMPRESSED)))?;
+        let (channel, end) = object(source, at, &header, image)?;
         found.push(channel);
         at = end;
     }
     if found.is_empty() {
-        return Err(source.wrong(
-            FORMAT,
-            source.length(),
-            format!("a header of {HEADER} bytes (cut short?)"),
-        ));
+        let expected = format!("a header of {HEADER} bytes (cut short?)");
+        return Err(source.wrong(source.length(), expected));
     }
     Ok(found)
 }
 
-fn header(bytes: &[u8]) -> Result<Header, EndOfFields> {
-    let mut f = Fields::little(bytes, 0);
-    f.go(12);
-    let (machine, objects) = (f.u16()?, f.u16()?);
-    f.u16()?;
-    let (kind, name) = (f.u16()?, f.text(30)?);
-    f.go(80);
-    let channels = f.u16()?;
-    f.go(86);
-    let special = f.u16()? == 1;
-    f.go(98);
-    let (bits, lowest) = (f.u16()?, f.i32()?);
-    f.i32()?;
-    let (count, total) = ([f.i32()?, f.i32()?], f.u32()?);
-    let step = [f.f32()?, f.f32()?, f.f32()?];
-    f.go(164);
-    let z_axis = f.text(16)?;
-    let unit = [f.text(16)?, f.text(16)?, f.text(16)?];
-    f.go(290);
-    let inverted = f.u16()? != 0;
-    f.go(334);
-    let behind = HEADER + u64::from(f.u16()?) + u64::from(f.u16()?);
-    f.go(474);
-    let z_offset = f.f32()?;
-    Ok(Header {
-        machine,
-        objects,
-        kind,
-        name,
-        channels,
-        special,
-        bits,
-        lowest,
-        count,
-        total,
-        step,
-        z_axis,
-        unit,
-        inverted,
-        behind,
-        z_offset,
-    })
-}
-
 /// The channel of an object and the offset of its end.
-fn object(
-    source: &mut Source<'_>,
-    at: u64,
-    header: &Header,
-    (image, compressed): (bool, bool),
-) -> Result<(StoredChannel, u64)> {
-    let wrong =
-        |source: &Source<'_>, inside: u64, expected: String| Err(source.wrong(FORMAT, at + inside, expected));
+fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Result<(StoredChannel, u64)> {
+    let wrong = |source: &Source<'_>, inside: u64, expected: String| Err(source.wrong(at + inside, expected));
     if header.machine != 0 {
         return wrong(source, 12, format!("0, the format of a PC, found {}", header.machine));
     }
@@ -148,7 +98,7 @@ fn object(
         32 => NumberType::I32,
         bits => return wrong(source, 98, format!("16 or 32 bits for a number, found {bits}")),
     };
-    let [x, y, z] = header.step;
+    let [x, y, z] = header.step.map(f64::from);
     let [Ok(columns), Ok(rows)] = header.count.map(usize::try_from) else {
         return wrong(source, 108, "numbers of columns and rows".to_owned());
     };
@@ -169,26 +119,25 @@ fn object(
     if !(z.is_finite() && z.abs() > 0.0 && header.z_offset.is_finite()) {
         return wrong(source, 128, format!("a step along z other than 0 and an offset, found {z}"));
     }
-    if header.inverted && !image {
+    if header.inverted != 0 && !image {
         let expected = "no mark of an inversion: readers disagree whether the numbers are inverted already; export X3P or text";
         return wrong(source, 290, expected.to_owned());
     }
     let mark = f64::from(header.lowest) - 2.0;
-    let undefined = if header.special { Undefined::Equal(mark) } else { Undefined::None };
-    let data = at + header.behind;
-    let shift = header.z_offset;
-    let raw =
-        move |bytes| RawHeights { scale: z, shift, undefined, ..RawHeights::new(FORMAT, bytes, number) };
+    let undefined = if header.special == 1 { Undefined::Equal(mark) } else { Undefined::None };
+    let data = at + HEADER + header.behind.map(u64::from).iter().sum::<u64>();
+    let shift = header.z_offset.into();
+    let raw = move |bytes| RawHeights { scale: z, shift, undefined, ..RawHeights::new(bytes, number) };
     let plain = raw(Bytes::File(data));
     let mut details = plain.details();
     let length = u64::from(header.total) * number.bytes() as u64;
-    let (heights, end) = if compressed {
+    let (heights, end) = if header.magic == *COMPRESSED {
         details += ", compressed";
         let (streams, end) = streams(source, data, length)?;
         let read = move |source: &mut Source<'_>| {
             let mut bytes = Vec::new();
             for stream in &streams {
-                stream.unpack(source, FORMAT, &mut bytes)?;
+                stream.unpack(source, &mut bytes)?;
             }
             raw(Bytes::Held(bytes)).read(source, rows, columns)
         };
@@ -197,50 +146,36 @@ fn object(
         plain.check(source, rows, columns)?;
         (StoredHeights::Raw(plain), data + length)
     };
-    let side = |step: f64, unit: &str| {
-        let unit = unit.parse::<Unit>().ok().filter(|unit| unit.dimension() == Dimension::LENGTH)?;
-        let cell = Quantity::new(unit.to_si(step), Dimension::LENGTH).ok().filter(|cell| cell.value() > 0.0);
-        cell.map(Extent::Cell)
+    let unit = match StoredUnit::written(&header.unit[2]) {
+        StoredUnit::NoHeights(unit) => StoredUnit::NoHeights(unit),
+        _ if image => StoredUnit::NoHeights(None),
+        unit => unit,
     };
-    let unit = StoredUnit::written(&header.unit[2]);
-    let channel = StoredChannel {
-        name: [&header.name, &header.z_axis].into_iter().find(|name| !name.is_empty()).cloned(),
-        details,
-        rows,
-        columns,
-        unit: match unit {
-            StoredUnit::NoHeights(unit) => StoredUnit::NoHeights(unit),
-            _ if image => StoredUnit::NoHeights(None),
-            unit => unit,
-        },
-        extent: [side(x, &header.unit[0]), side(y, &header.unit[1])],
-        heights,
-    };
-    Ok((channel, end))
+    let name = [&*header.name, &*header.z_axis].into_iter().find(|name| !name.is_empty()).unwrap_or_default();
+    let extent = [Extent::of_cell(x, &header.unit[0]), Extent::of_cell(y, &header.unit[1])];
+    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
+    Ok((StoredChannel { extent, ..channel }.named(name), end))
 }
 
 /// The streams of a compressed object that unpack to so many bytes, and the offset of their end.
 fn streams(source: &mut Source<'_>, data: u64, length: u64) -> Result<(Vec<Packed>, u64)> {
-    let count = source.bytes(FORMAT, data, 4)?;
-    let count = Fields::little(&count, data).u32().map_err(|e| e.of(source, FORMAT))?;
+    let count: u32 = source.get(ByteOrder::Little, data)?;
     if !(1..=STREAMS).contains(&count) {
-        return Err(source.wrong(FORMAT, data, format!("1 to {STREAMS} streams, found {count}")));
+        return Err(source.wrong(data, format!("1 to {STREAMS} streams, found {count}")));
     }
-    let bytes = source.bytes(FORMAT, data + 4, 8 * u64::from(count))?;
-    let mut fields = Fields::little(&bytes, data + 4);
-    let mut end = data + 4 + bytes.len() as u64;
+    let mut fields = source.fields(ByteOrder::Little, data + 4, 8 * u64::from(count))?;
+    let mut end = data + 4 + 8 * u64::from(count);
     let (mut found, mut total) = (Vec::new(), 0);
     for _ in 0..count {
-        let lengths = |f: &mut Fields<'_>| Ok([u64::from(f.u32()?), u64::from(f.u32()?)]);
-        let [unpacked, packed] = lengths(&mut fields).map_err(|e: EndOfFields| e.of(source, FORMAT))?;
+        let [unpacked, packed] = fields.get::<[u32; 2]>()?.map(u64::from);
         let stream = Packed { packing: Packing::Zlib, offset: end, length: packed, unpacked };
-        stream.check(source, FORMAT)?;
+        stream.check(source)?;
         found.push(stream);
         end += packed;
         total += unpacked;
     }
     if total != length {
-        return Err(source.wrong(FORMAT, data, format!("streams of {length} bytes unpacked, found {total}")));
+        return Err(source.wrong(data, format!("streams of {length} bytes unpacked, found {total}")));
     }
     Ok((found, end))
 }

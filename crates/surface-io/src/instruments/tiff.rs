@@ -8,12 +8,20 @@
 //! - **Size.** By ImageJ's `unit` (and `yunit`), pixels per unit in the tags of the resolution. Resolutions per inch, and those without that
 //!   description, are those of print or screens.
 //! - **Order.** The first row is the top one and y = 0; the orientations 2, 3 and 4 are turned, 5 to 8 are refused.
-//! - **Undefined points.** NaN.
+//! - **Undefined points.** NaN, and what GDAL's tag of no data says.
 //!
 //! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data, LZW, Deflate and `PackBits` in
-//! strips and tiles; not read is the XML of OME-TIFF.
+//! strips and tiles. Of OME's description the physical size of a pixel counts (<https://docs.openmicroscopy.org/ome-model>).
+//!
+//! Files of Park Systems (one map in private tags) and JPK (private tags of each image) have descriptions of their own.
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, undefined_heights};
+mod directory;
+mod jpk;
+mod park;
+
+use crate::channel::{
+    Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights,
+};
 use crate::error::{ContentError, Error, Place, Result};
 use crate::extent::Extent;
 use crate::format::Format;
@@ -22,6 +30,9 @@ use crate::number_type::{NumberType, exact};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::Source;
+use directory::Directories;
+use jpk::Jpk;
+use quick_xml::events::Event;
 use std::collections::HashMap;
 use std::io::{Read, Seek};
 use tiff::decoder::ifd::Value;
@@ -29,61 +40,20 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError, TiffResult};
 
-const FORMAT: Format = Format::Tiff;
 /// The beginning of TIFF and of its kind for more than 4 GB, in either byte order.
 const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 /// Images in one file that are looked at.
 const MOST: usize = 1000;
+/// GDAL's mark of undefined points, as text.
+const NODATA: Tag = Tag::GdalNodata;
 /// Longest text or list in a directory, in bytes.
 const LONGEST: usize = 1 << 20;
 
 pub(crate) const READER: Reader = Reader {
-    format: FORMAT,
+    format: Format::Tiff,
     recognises: |start, _| MAGIC.iter().any(|magic| start.starts_with(magic)),
     channels,
 };
-
-/// Refuses lists and texts that reach beyond the end of the file, for which the other crate reserves up to 4 MB unasked.
-fn check_directories(source: &mut Source<'_>) -> Result<()> {
-    let start = source.bytes(FORMAT, 0, 8)?;
-    let (big, large) = (start.starts_with(b"MM"), start[2] == 43 || start[3] == 43);
-    // Bytes of an entry, of the value in it, of a count of entries, and where the first offset stands.
-    let (entry, held, counted, first) = if large { (20, 8, 8, 8) } else { (12, 4, 2, 4) };
-    let fields = |source: &mut Source<'_>, at, count| -> Result<Vec<u8>> { source.bytes(FORMAT, at, count) };
-    let number = |bytes: &[u8]| {
-        let digit = |n: u64, &byte: &u8| n << 8 | u64::from(byte);
-        if big { bytes.iter().fold(0, digit) } else { bytes.iter().rev().fold(0, digit) }
-    };
-    let mut at = number(&fields(source, first, held)?);
-    for _ in 0..MOST {
-        if at == 0 {
-            break;
-        }
-        let entries = number(&fields(source, at, counted)?);
-        let expected = || format!("{entries} entries of {entry} bytes here (cut short?)");
-        let length = entries.checked_mul(entry).filter(|length| *length <= source.length());
-        let length = length.ok_or_else(|| source.wrong(FORMAT, at, expected()))?;
-        let directory = fields(source, at + counted, length)?;
-        for one in directory.chunks_exact(entry as usize) {
-            let size = match number(&one[2..4]) {
-                3 | 8 => 2,
-                4 | 9 | 11 | 13 => 4,
-                5 | 10 | 12 | 16..=18 => 8,
-                _ => 1,
-            };
-            let (count, value) = one[4..].split_at(held as usize);
-            let length = number(count).checked_mul(size);
-            let end = length
-                .and_then(|length| if length <= held { Some(0) } else { number(value).checked_add(length) });
-            if end.is_none_or(|end| end > source.length()) {
-                let tag = number(&one[..2]);
-                return Err(source.wrong(FORMAT, at, format!("the values of tag {tag} inside the file")));
-            }
-        }
-        at = number(&fields(source, at + counted + length, held)?);
-    }
-    Ok(())
-}
 
 /// A decoder that stands at the first image.
 fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {
@@ -101,11 +71,14 @@ fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {
 fn unreadable(said: &dyn std::fmt::Display) -> ContentError {
     let said: String = said.to_string().chars().take(200).collect();
     let expected = format!("a file as its specification has it ({said})");
-    ContentError::Binary { format: FORMAT, offset: 0, expected }
+    ContentError::Binary { format: Format::Tiff, offset: 0, expected }
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    check_directories(source)?;
+    let tags = Directories::read(source)?;
+    if let Some(channel) = park::channel(source, &tags)? {
+        return Ok(vec![channel]);
+    }
     let path = source.path().to_owned();
     let mut pages = Vec::new();
     let mut decoder = open(source)?;
@@ -123,13 +96,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     drop(decoder);
     // ImageJ describes a stack in its first image.
-    let description = ImageJ::of(pages.first().and_then(|page| page.description.as_deref()));
+    let text = pages.first().and_then(|page| page.description.as_deref());
+    let (image_j, microscope) = (ImageJ::of(text), text.map_or([None; 2], of_microscope));
     let alone = pages.len() == 1;
     let mut channels = Vec::new();
     for (number, page) in pages.into_iter().enumerate() {
-        if let Some(channel) = channel(source, number, &page, description.as_ref(), alone)? {
-            channels.push(channel);
-        }
+        let jpk = if page.bits.is_some() { Jpk::of(source, &tags, number)? } else { None };
+        channels.extend(channel(source, number, &page, (image_j.as_ref(), microscope), (jpk, alone))?);
     }
     if channels.is_empty() {
         let what = "a TIFF picture of 8 bits, in colours or with white as zero";
@@ -150,6 +123,8 @@ struct Page {
     resolution: [Option<f64>; 2],
     resolution_unit: u16,
     description: Option<String>,
+    /// The mark of undefined points that GDAL writes.
+    missing: Option<f64>,
 }
 
 impl Page {
@@ -177,7 +152,12 @@ impl Page {
             Some(Value::Ascii(text)) => Some(text),
             _ => None,
         };
+        let missing = match decoder.find_tag(NODATA)? {
+            Some(Value::Ascii(text)) => text.trim_matches(['\0', ' ']).parse().ok(),
+            _ => None,
+        };
         Ok(Self {
+            missing,
             size,
             bits,
             sample_format,
@@ -186,6 +166,29 @@ impl Page {
             resolution_unit: short(decoder, Tag::ResolutionUnit, 2)?,
             description,
         })
+    }
+}
+
+/// The sides of a pixel by OME's description; without a unit they are micrometres.
+fn of_microscope(description: &str) -> [Option<Extent>; 2] {
+    let mut reader = quick_xml::Reader::from_str(description);
+    loop {
+        match reader.read_event() {
+            Ok(Event::Start(element) | Event::Empty(element))
+                if element.local_name().as_ref() == "Pixels" =>
+            {
+                let text = |name: String| {
+                    let attribute = element.try_get_attribute(name.as_str()).ok()??;
+                    Some(attribute.value.to_string())
+                };
+                return ["X", "Y"].map(|axis| {
+                    let unit = text(format!("PhysicalSize{axis}Unit")).unwrap_or_else(|| "um".to_owned());
+                    Extent::of_cell(text(format!("PhysicalSize{axis}"))?.parse().ok()?, &unit)
+                });
+            }
+            Ok(Event::Eof) | Err(_) => return [None; 2],
+            Ok(_) => {}
+        }
     }
 }
 
@@ -252,8 +255,8 @@ fn channel(
     source: &Source<'_>,
     number: usize,
     page: &Page,
-    description: Option<&ImageJ>,
-    alone: bool,
+    (description, microscope): (Option<&ImageJ>, [Option<Extent>; 2]),
+    (jpk, alone): (Option<Jpk>, bool),
 ) -> Result<Option<StoredChannel>> {
     let (columns, rows) = page.size;
     let Some(bits) = page.bits else { return Ok(None) };
@@ -264,7 +267,7 @@ fn channel(
         4 => [false, true],
         other => {
             let expected = format!("an orientation of 1 to 4 in image {number}, found {other}");
-            return Err(source.wrong(FORMAT, 0, expected));
+            return Err(source.wrong(0, expected));
         }
     };
     if rows == 0 || columns == 0 {
@@ -274,7 +277,7 @@ fn channel(
     let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
     if claimed > u128::from(RATIO.saturating_mul(source.length())) {
         let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
-        return Err(source.wrong(FORMAT, 0, expected));
+        return Err(source.wrong(0, expected));
     }
     let letter = match page.sample_format {
         2 => b'i',
@@ -283,20 +286,33 @@ fn channel(
     };
     // Byte order and packing are the other crate's; what it decodes has this type.
     let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
-    let (unit, scale, shift) = description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights);
+    let (unit, scale, shift) = match &jpk {
+        Some(jpk) => (jpk.unit.clone(), jpk.scale, jpk.shift),
+        None => description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights),
+    };
+    // The first row is the bottom of JPK's image.
+    let reversed = match &jpk {
+        Some(jpk) if !jpk.reflected => [reversed[0], !reversed[1]],
+        _ => reversed,
+    };
     let held = Bytes::Held(Vec::new());
-    let raw = RawHeights { reversed, scale, shift, ..RawHeights::new(FORMAT, held, kind) };
+    let undefined = page.missing.map_or(Undefined::None, Undefined::Equal);
+    let raw = RawHeights { reversed, scale, shift, undefined, ..RawHeights::new(held, kind) };
     raw.check_scale(source)?;
     let image = Image { number, size: page.size, bytes: u64::from(bits / 8), raw };
-    Ok(Some(StoredChannel {
-        name: (!alone).then(|| format!("image {number}")),
-        details: format!("{}, row by row", kind.name()),
-        rows: rows as usize,
-        columns: columns as usize,
-        unit,
-        extent: description.map_or([None; 2], |description| description.extent(page)),
-        heights: StoredHeights::Deferred(Box::new(move |source| image.read(source))),
-    }))
+    let heights = StoredHeights::Deferred(Box::new(move |source| image.read(source)));
+    let details = format!("{}, row by row", kind.name());
+    let channel = StoredChannel::of(heights, details, [rows as usize, columns as usize], unit);
+    let extent = match &jpk {
+        Some(jpk) => jpk.extent,
+        None => description.map_or_else(|| microscope, |description| description.extent(page)),
+    };
+    let name = match jpk {
+        Some(jpk) => jpk.name,
+        None if alone => String::new(),
+        None => format!("image {number}"),
+    };
+    Ok(Some(StoredChannel { extent, ..channel }.named(&name)))
 }
 
 /// What is needed to read one image.

@@ -5,9 +5,9 @@
 //! first, then along y: row j is y = j * increment, upwards, as in this crate. A height is increment * number + offset; the increment is 1
 //! where none is given. I and L are signed integers of 16 and 32 bits, F and D floats.
 //!
-//! Undefined points are NaN, empty in a list of numbers in `main.xml`, or zero bits of the member that `ValidPointsLink` names (lowest bit
+//! Undefined points are NaN, infinities, empty in a list of numbers in `main.xml`, or zero bits of the member that `ValidPointsLink` names (lowest bit
 //! first). Read: surfaces (`SUR`) on a regular grid in one layer. Not read: profiles, clouds of points, irregular grids, several layers,
-//! the rotation. Damage shows in the checksums of the archive; MD5 is not compared, as `SurfaceTopography` gives that of another member.
+//! a third axis that points downwards; another rotation is noted and not applied. An increment beside floats leaves the unit open. Damage shows in the checksums of the archive; MD5 is not compared, as `SurfaceTopography` gives that of another member.
 
 mod main_xml;
 mod write;
@@ -19,13 +19,11 @@ use crate::error::{ContentError, Error, Result};
 use crate::extent::Extent;
 use crate::format::Format;
 use crate::number_type::NumberType;
-use crate::quantity::{Dimension, Quantity};
 use crate::reader::Reader;
 use crate::source::Source;
 use crate::zip::{self, Member};
 use main_xml::{Axis, Main};
 
-const FORMAT: Format = Format::X3p;
 /// The member that describes the others.
 const MAIN: &str = "main.xml";
 /// Bytes of it: a description has a few thousand, a list of a million heights as text about this many. It is unpacked as a whole.
@@ -33,7 +31,7 @@ const LONGEST: u64 = 16 << 20;
 
 /// Every archive: its members tell whether it is an X3P file.
 pub(crate) const READER: Reader =
-    Reader { format: FORMAT, recognises: |start, _| start.starts_with(zip::MAGIC), channels };
+    Reader { format: Format::X3p, recognises: |start, _| start.starts_with(zip::MAGIC), channels };
 
 /// Where the numbers are.
 enum Numbers {
@@ -44,29 +42,41 @@ enum Numbers {
 }
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let members = zip::members(source, FORMAT)?;
+    let members = zip::members(source)?;
     // Archives that were packed by hand have everything in one folder.
     let in_folder = |m: &&Member| m.name.split_once('/').is_some_and(|(_, name)| name == MAIN);
     let found = members.iter().find(|m| m.name == MAIN).or_else(|| members.iter().find(in_folder));
     let Some(main_member) = found else { return Err(source.content(zip::refused(&members))) };
-    let text = main_member.unpack_text(source, FORMAT, LONGEST)?;
+    let text = main_member.unpack_text(source, LONGEST)?;
     let Some(main) = Main::read(&text) else {
         return Err(source.content(zip::refused(&members)));
     };
     drop(text);
     let ([columns, rows], number) = described(&main).map_err(|e| wrong(source, main_member, &e))?;
     let [x, y, z] = &main.axes;
+    let mut notes = Vec::new();
+    notes.extend(rotated(&main.rotation).map_err(|e| wrong(source, main_member, &e))?);
     let (scale, shift) = (length(&z.increment, 1.0), length(&z.offset, 0.0));
     let (Some(scale), Some(shift)) = (scale.filter(|scale| scale.abs() > 0.0), shift) else {
         return Err(wrong(source, main_member, "an increment along z other than 0, and an offset"));
     };
+    // The schema gives an increment to integers only, and readers disagree whether floats are multiplied by it.
+    let disputed = number.is_float() && (scale - 1.0).abs() > 0.0;
+    let (scale, unit) = if disputed { (1.0, StoredUnit::Unknown) } else { (scale, StoredUnit::written("m")) };
+    if disputed {
+        let increment = &z.increment;
+        notes.push(format!(
+            "heights are floats, which are metres, beside an increment of {increment}, by which some readers multiply them: say \
+             height_scale = \"1 m\" or height_scale = \"{increment} m\""
+        ));
+    }
     let folder = &main_member.name[..main_member.name.len() - MAIN.len()];
     let member = |link: &str| {
         let name = format!("{folder}{}", link.replace('\\', "/").trim_start_matches("./"));
         members.iter().find(|m| m.name == name).cloned()
     };
     let count = rows as u64 * columns as u64;
-    let mut details = RawHeights::new(FORMAT, Bytes::Held(Vec::new()), number).details();
+    let mut details = RawHeights::new(Bytes::Held(Vec::new()), number).details();
     let numbers = if main.data.is_empty() {
         if main.listed != count {
             let expected = format!("{columns} x {rows} numbers or a link to them, found {}", main.listed);
@@ -92,19 +102,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let (x, y) = (x.cell(), y.cell());
     let read = move |source: &mut Source<'_>| numbers.read(source, [columns, rows], (scale, shift));
-    Ok(vec![StoredChannel {
-        name: None,
-        details,
-        rows,
-        columns,
-        unit: StoredUnit::heights("m".parse().ok()),
-        extent: [x, y],
-        heights: StoredHeights::Deferred(Box::new(read)),
-    }])
+    let heights = StoredHeights::Deferred(Box::new(read));
+    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
+    Ok(vec![StoredChannel { extent: [x, y], notes, ..channel }])
 }
 
 fn wrong(source: &Source<'_>, main: &Member, expected: &str) -> Error {
-    source.wrong(FORMAT, main.offset, format!("in main.xml {expected}"))
+    source.wrong(main.offset, format!("in main.xml {expected}"))
 }
 
 /// Columns, rows and the type of numbers of a surface that is read.
@@ -134,6 +138,28 @@ fn described(main: &Main) -> Result<([usize; 2], NumberType), String> {
     }
 }
 
+/// What is said of the rotation of the axes, which is not applied.
+///
+/// # Errors
+/// What is expected instead of a third axis that does not point out of the surface.
+fn rotated(rotation: &[String; 9]) -> Result<Option<String>, String> {
+    let of =
+        |i: usize, j: usize| length(&rotation[3 * i + j], if i == j { 1.0 } else { 0.0 }).unwrap_or(f64::NAN);
+    let off =
+        (0..9).map(|k| (of(k / 3, k % 3) - if k % 4 == 0 { 1.0 } else { 0.0 }).abs()).fold(0.0, f64::max);
+    if of(2, 2).is_nan() || of(2, 2) < 0.5 {
+        return Err(format!(
+            "a third axis that points out of the surface, r33 is {} (hills would be valleys: turn the surface and write it anew)",
+            of(2, 2)
+        ));
+    }
+    let angle = of(1, 0).atan2(of(0, 0)).to_degrees();
+    let said = format!(
+        "the file says that its axes are rotated (by {angle:.4} degrees from x to y), which is not applied"
+    );
+    Ok((off > 1e-6 || off.is_nan()).then_some(said))
+}
+
 /// A number, or what is meant where there is none; `None` where it is no number.
 fn length(text: &str, absent: f64) -> Option<f64> {
     let number = if text.is_empty() { Some(absent) } else { text.parse().ok() };
@@ -143,8 +169,7 @@ fn length(text: &str, absent: f64) -> Option<f64> {
 impl Axis {
     /// The side of a cell, where the increment is one.
     fn cell(&self) -> Option<Extent> {
-        let increment = length(&self.increment, 0.0).filter(|increment| *increment > 0.0)?;
-        Quantity::new(increment, Dimension::LENGTH).ok().map(Extent::Cell)
+        Extent::of_cell(length(&self.increment, 0.0)?, "m")
     }
 }
 
@@ -154,9 +179,9 @@ fn sized(source: &mut Source<'_>, member: &Member, bytes: Option<u64>) -> Result
         let bytes = bytes.map_or("more".to_owned(), |bytes| bytes.to_string());
         let expected =
             format!("a member of {bytes} bytes for these rows and columns, found {}", member.unpacked);
-        return Err(source.wrong(FORMAT, member.offset, expected));
+        return Err(source.wrong(member.offset, expected));
     }
-    member.packed(source, FORMAT).map(drop)
+    member.packed(source).map(drop)
 }
 
 impl Numbers {
@@ -169,12 +194,14 @@ impl Numbers {
     ) -> Result<Vec<f64>> {
         match self {
             Self::Linked { data, valid, number } => {
-                let bytes = Bytes::Held(data.unpack(source, FORMAT)?);
-                let raw = RawHeights { scale, shift, ..RawHeights::new(FORMAT, bytes, *number) };
+                let bytes = Bytes::Held(data.unpack(source)?);
+                let raw = RawHeights { scale, shift, ..RawHeights::new(bytes, *number) };
                 let mut heights = raw.read(source, rows, columns)?;
                 drop(raw);
+                // Writers put infinities where nothing was measured.
+                heights.iter_mut().filter(|h| h.is_infinite()).for_each(|h| *h = f64::NAN);
                 let Some(valid) = valid else { return Ok(heights) };
-                let bits = valid.unpack(source, FORMAT)?;
+                let bits = valid.unpack(source)?;
                 for (i, height) in heights.iter_mut().enumerate() {
                     if bits.get(i / 8).is_none_or(|byte| byte >> (i % 8) & 1 == 0) {
                         *height = f64::NAN;
@@ -183,7 +210,7 @@ impl Numbers {
                 Ok(heights)
             }
             Self::Listed(main) => {
-                let text = main.unpack_text(source, FORMAT, LONGEST)?;
+                let text = main.unpack_text(source, LONGEST)?;
                 let (mut heights, mut others) = (Vec::new(), 0);
                 let count = rows * columns;
                 let refused = |_| ContentError::Memory { bytes: 8 * count as u128 };

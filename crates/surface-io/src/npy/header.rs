@@ -2,7 +2,6 @@
 
 use crate::channel::AxisOrder;
 use crate::error::{ContentError, Result};
-use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::source::Source;
 
@@ -47,7 +46,7 @@ impl NpyHeader {
         if size > LONGEST {
             return Err(wrong(8, "a header of at most 10000 bytes"));
         }
-        let text = source.bytes(Format::Npy, before, size)?;
+        let text = source.bytes(before, size)?;
         let mut parser = Parser { text: &text, at: 0, before: before as usize };
         let header = parser.dictionary().map_err(|e| source.content(e))?;
         Ok((header, before + size))

@@ -60,12 +60,15 @@ fn line(bytes: &[u8], declared: &ReadOptions) -> Result<Line, ContentError> {
         let reason = "x says how long a profile is; cell says its steps";
         return Err(ContentError::Useless { what: "size", reason });
     }
-    let table = TextTable::read(bytes, declared)?;
+    let [table] = &TextTable::read(bytes, declared)?[..] else {
+        let reason = "the text has several blocks of numbers, a profile is one";
+        return Err(ContentError::Useless { what: "a profile", reason });
+    };
     if table.columns != 2 {
         return Err(ContentError::NotProfile { line: table.first_line(), found: table.columns });
     }
-    let (unit, scale) = heights_in(&table, declared)?;
-    let lateral = lateral_unit(declared, &table, true)?.unwrap_or_else(Unit::none);
+    let (unit, scale) = heights_in(table, declared)?;
+    let lateral = lateral_unit(declared, table, true)?.unwrap_or_else(Unit::none);
     if lateral.dimension() != unit.dimension() {
         let (first, second) = (format!("x has {lateral}"), format!("the heights have {unit}"));
         return Err(ContentError::Contradiction { what: "units", first, second });
@@ -79,7 +82,7 @@ fn line(bytes: &[u8], declared: &ReadOptions) -> Result<Line, ContentError> {
     let axis = GridAxis::find('x', along, given)?;
     let Some(spacing) = axis.spacing else {
         let remedy = "say cell = \"0.5 um\"; one point has no step";
-        return Err(ContentError::Unspecified { what: "the step of the profile", remedy });
+        return Err(ContentError::Unspecified { what: "the step of the profile", seen: Vec::new(), remedy });
     };
     if axis.count > 2.0 * points as f64 {
         return Err(ContentError::Sparse { points, rows: 1.0, columns: axis.count });
@@ -130,6 +133,7 @@ fn heights_in(table: &TextTable, declared: &ReadOptions) -> Result<(Unit, f64), 
         }
         (None, None) => Err(ContentError::Unspecified {
             what: "the unit of the heights",
+            seen: table.heading.notes([None; 2]),
             remedy: "say unit = \"nm\" or another unit of length",
         }),
     }

@@ -7,6 +7,7 @@
 use super::statement::{Axes, Side, Statement, key_and_value, lengths};
 use crate::error::ContentError;
 use crate::extent::{Extent, agree};
+use crate::fields::decoded;
 use crate::format::Format;
 use crate::quantity::{Dimension, Quantity, QuantityError, Unit};
 
@@ -35,12 +36,21 @@ pub(crate) struct Heading {
     other_unit: Option<ContentError>,
     /// The file of SPIP says lengths in nanometres without saying so.
     spip: bool,
+    /// Whether it is that of an ESRI grid, whose lengths are numbers.
+    grid: bool,
     /// Name of the channel.
     pub(crate) name: Option<String>,
+    /// A number that stands for an undefined point.
+    pub(super) missing: Option<f64>,
+    /// Lines that speak of units or sizes in words that are not known, the first few.
+    unused: Vec<String>,
 }
 
 /// What a header says of each axis: the length of the map, and that of a cell.
 type SidesAndCells = ([Option<Side>; 2], [Option<Extent>; 2]);
+
+/// Words of units and sizes.
+const ABOUT: [&str; 7] = ["unit", "size", "pixel", "scale", "length", "resolution", "spacing"];
 
 /// Longest line that is looked at, in bytes.
 const LONGEST: usize = 200;
@@ -53,9 +63,7 @@ impl Heading {
         if line.len() > LONGEST {
             return Ok(());
         }
-        // Files of older programs write the micro sign in Latin-1, whose bytes are the first 256 characters.
-        let latin = || line.iter().map(|&b| char::from(b)).collect();
-        let text: String = std::str::from_utf8(line).map_or_else(|_| latin(), str::to_owned);
+        let text = decoded(line);
         self.spip |= text.trim() == "File Format = ASCII";
         let several: Vec<&str> = text.split_whitespace().collect();
         if several.len() > 1
@@ -67,12 +75,31 @@ impl Heading {
         if self.columns(&text) { Ok(()) } else { self.statement(&text, number) }
     }
 
+    /// Whether a line says anything that counts.
+    pub(super) fn says(line: &[u8]) -> bool {
+        let mut alone = Self::default();
+        let read = alone.read(line, 0);
+        alone.unused.clear();
+        read.is_err() || alone != Self::default()
+    }
+
+    /// What is said and not used, for people, where a unit or a size is not known.
+    pub(crate) fn notes(&self, extent: [Option<Extent>; 2]) -> Vec<String> {
+        let known = self.unit.is_some() && extent.iter().all(Option::is_some);
+        let lines = self.unused.iter().filter(|_| !known);
+        lines.map(|line| format!("the heading says {line:?}, which is not used")).collect()
+    }
+
     /// The units of two or three headed columns, `x [um]` and `z [nm]`; whether the line is such a one.
     fn columns(&mut self, text: &str) -> bool {
-        let Some(delimiter) = ['\t', ';', ','].into_iter().find(|&d| text.contains(d)) else { return false };
+        let text = text.trim();
+        let Some(delimiter) = ['\t', ';', ',', ' '].into_iter().find(|&d| text.contains(d)) else {
+            return false;
+        };
         let unit = |name: &str| -> Option<(char, Unit)> {
             let name = name.trim().trim_matches('"');
-            let (word, unit) = name.strip_suffix([']', ')'])?.rsplit_once(['[', '('])?;
+            let bracketed = name.strip_suffix([']', ')']).and_then(|name| name.rsplit_once(['[', '(']));
+            let (word, unit) = bracketed.or_else(|| name.split_once('/'))?;
             let unit: Unit = unit.parse().ok().filter(|u: &Unit| u.dimension() == Dimension::LENGTH)?;
             let word = word.trim().trim_end_matches('_').to_lowercase();
             matches!(word.as_str(), "x" | "y" | "z").then(|| (word.chars().next().unwrap_or('x'), unit))
@@ -89,7 +116,16 @@ impl Heading {
     }
 
     fn statement(&mut self, text: &str, line: usize) -> Result<(), ContentError> {
-        let Some((statement, key, value)) = key_and_value(text) else { return Ok(()) };
+        let Some((statement, key, value)) = key_and_value(text) else {
+            let lower = text.to_lowercase();
+            if text.contains([':', '=', '\t', ','])
+                && ABOUT.iter().any(|word| lower.contains(word))
+                && self.unused.len() < 3
+            {
+                self.unused.push(text.trim().chars().take(80).collect());
+            }
+            return Ok(());
+        };
         match statement {
             Statement::Channel => {
                 self.name = self.name.take().or_else(|| (!value.is_empty()).then(|| value.clone()));
@@ -107,6 +143,7 @@ impl Heading {
                 let said = lengths(&value).unwrap_or_default();
                 let one = said.first().copied();
                 let of_length = |side: &Side| side.quantity.dimension() == Dimension::LENGTH;
+                self.grid |= key == "cellsize";
                 match (axes, said.as_slice()) {
                     (_, []) => {}
                     (Axes::One(axis), [plain]) if !of_length(plain) => self.count(axis, &value, &key)?,
@@ -144,6 +181,7 @@ impl Heading {
                     (self.scale, self.unit) = (Some(factor), Some(unit));
                 }
             }
+            Statement::Missing => self.missing = self.missing.or(value.parse().ok()),
             Statement::BitToNm => self.bit_to_nm = self.bit_to_nm.or(positive(&value)),
             Statement::HeightUnit | Statement::LateralUnit => {}
         }
@@ -235,7 +273,9 @@ impl Heading {
             let of_length =
                 |side: &Side| side.quantity.dimension() == Dimension::LENGTH && side.quantity.value() > 0.0;
             let square = self.square.filter(of_length).filter(|_| count[0] == count[1]);
-            let cell = self.cells[axis].filter(of_length);
+            // A cell without a unit is a number beside heights without one.
+            let cell =
+                self.cells[axis].filter(|cell| of_length(cell) || (self.grid && cell.quantity.value() > 0.0));
             if let (Some(side), Some(square)) = (sides[axis], square)
                 && !agree(side.quantity, square.quantity)
             {

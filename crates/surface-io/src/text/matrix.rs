@@ -4,32 +4,86 @@ use super::TextTable;
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit};
 use crate::error::ContentError;
 use crate::extent::Extent;
-use crate::options::ReadOptions;
+use crate::options::{Border, ReadOptions};
+use crate::quantity::{Quantity, Unit};
 
 /// Rounding of a quotient of two lengths.
 const EXACT: f64 = 4.0 * f64::EPSILON;
 
 /// The rows of a table as a map; the first line is row 0.
 pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {
-    if declared.lateral_unit.is_some() {
+    if declared.lateral_unit.is_some() && declared.border.is_none() {
         let reason = "a matrix has no coordinates; give size or cell with a unit";
         return Err(ContentError::Useless { what: "lateral_unit", reason });
     }
+    let steps = border(&mut table, declared)?;
     let (rows, columns) = (table.rows(), table.columns);
-    let extent = extents(&table, columns, rows)?;
+    let mut extent = extents(&table, columns, rows)?;
+    if extent == [None; 2] {
+        extent = steps;
+    }
     let details = table.details();
     if let Some(scale) = table.scale {
         table.values.iter_mut().for_each(|h| *h *= scale);
     }
-    Ok(StoredChannel {
-        name: table.heading.name,
-        details,
-        rows,
-        columns,
-        unit: StoredUnit::heights(table.heading.unit),
-        extent,
-        heights: StoredHeights::Read(table.values),
-    })
+    let (heights, unit) =
+        (StoredHeights::Read(table.values), StoredUnit::heights(table.heading.unit.clone()));
+    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
+    let notes = table.heading.notes(extent);
+    Ok(StoredChannel { name: table.heading.name, extent, notes, ..channel })
+}
+
+/// Takes coordinates in the first line and the first value of each line out of a table that has them, and gives the sides of its cells.
+///
+/// # Errors
+/// [`ContentError::Border`] where numbers may be such coordinates and nobody says whether they are.
+fn border(table: &mut TextTable, declared: &ReadOptions) -> Result<[Option<Extent>; 2], ContentError> {
+    let (rows, columns) = (table.rows(), table.columns);
+    // Where the heading says both sides, they are those of all columns and rows.
+    let stated = table.heading.sides().iter().all(Option::is_some);
+    if rows < 3 || columns < 3 || stated || declared.border == Some(Border::Heights) {
+        return Ok([None; 2]);
+    }
+    let first_line = || table.values[..columns].iter().copied();
+    let first_column = || table.values.iter().step_by(columns).copied();
+    let corner = table.values[0].is_nan();
+    let axes = [equal_steps(first_line().skip(1)), equal_steps(first_column().skip(1))];
+    // The index of a data frame, 0 or 1 and on, beside heights that are no whole numbers.
+    let counts = |mut values: Box<dyn Iterator<Item = f64> + '_>| {
+        let first = values.next().unwrap_or(f64::NAN);
+        matches!(first, 0.0 | 1.0)
+            && values.enumerate().all(|(i, v)| (v - first - 1.0 - i as f64).abs() <= 0.0)
+    };
+    let whole = table.values.iter().all(|v| v.is_nan() || v.fract().abs() <= 0.0);
+    let what = match axes {
+        [Some(_), Some(_)] if corner => "first line and the first column have no corner, but",
+        _ if !whole && columns > 3 && counts(Box::new(first_line())) => "first line has",
+        _ if !whole && columns > 3 && counts(Box::new(first_column())) => "first column has",
+        [Some(_), Some(_)] if declared.border.is_some() => "",
+        _ if declared.border.is_some() => {
+            let reason = "the first line and the first column are no coordinates in equal steps";
+            return Err(ContentError::Useless { what: "border", reason });
+        }
+        _ => return Ok([None; 2]),
+    };
+    if declared.border.is_none() {
+        return Err(ContentError::Border { what });
+    }
+    table.values = table.values.chunks_exact(columns).skip(1).flat_map(|row| &row[1..]).copied().collect();
+    table.lines.remove(0);
+    table.columns -= 1;
+    let unit = table.heading.lateral_unit.clone().or_else(|| declared.lateral_unit.clone());
+    let unit = unit.unwrap_or_else(Unit::none);
+    Ok(axes.map(|step| Quantity::of(step?, &unit).ok().map(Extent::Cell)))
+}
+
+/// The step of ascending numbers in equal steps, within the digits that are printed.
+fn equal_steps(mut values: impl Iterator<Item = f64>) -> Option<f64> {
+    let first = values.next()?;
+    let all: Vec<f64> = values.collect();
+    let step = (all.last()? - first) / all.len() as f64;
+    let equal = all.iter().enumerate().all(|(i, v)| (v - first - (i + 1) as f64 * step).abs() <= 0.02 * step);
+    (step > 0.0 && equal).then_some(step)
 }
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells

@@ -4,7 +4,8 @@ use crate::error::{ContentError, NumberKind, Place};
 use crate::options::Decimal;
 
 /// Words for a missing height, besides an empty place between two delimiters and `nan`; in lower case.
-const MISSING: [&str; 10] = ["na", "n/a", "null", "none", "bad", "nodata", "-", "--", "---", "***"];
+const MISSING: [&str; 12] =
+    ["na", "n/a", "#n/a", "no data", "null", "none", "bad", "nodata", "-", "--", "---", "***"];
 
 /// Longest text that an error quotes, in characters.
 const QUOTED: usize = 32;
@@ -18,14 +19,15 @@ pub(super) struct Numbers {
 impl Numbers {
     /// The number, NaN for a missing one.
     pub(super) fn read(self, token: &[u8], place: Place) -> Result<f64, ContentError> {
+        let token = unquoted(token);
         if token.is_empty() {
             return Ok(f64::NAN);
         }
         let text = std::str::from_utf8(token).ok();
         let value = match self.decimal {
-            Decimal::Point => text.and_then(|t| t.parse::<f64>().ok()),
+            Decimal::Point => text.and_then(parsed),
             Decimal::Comma if token.contains(&b'.') => None,
-            Decimal::Comma => text.and_then(|t| t.replacen(',', ".", 1).parse().ok()),
+            Decimal::Comma => text.and_then(|t| parsed(&t.replacen(',', ".", 1))),
         };
         match value {
             Some(value) if value.is_infinite() && token.iter().any(u8::is_ascii_digit) => {
@@ -41,7 +43,7 @@ impl Numbers {
     /// Whether a line is one of a header: it begins with none of the characters of numbers, and has a word that is none.
     pub(super) fn is_header(self, line: &[u8]) -> bool {
         let line = line.trim_ascii();
-        let first = line.first().copied().unwrap_or_default();
+        let first = line.iter().copied().find(|&b| b != b'"').unwrap_or_default();
         let place = Place::Line { line: 0, value: 0 };
         let number = |token: &[u8]| match self.read(token, place) {
             Err(ContentError::Infinite { .. }) => true,
@@ -66,8 +68,35 @@ impl Numbers {
     }
 }
 
+/// A token without the quotes around it.
+pub(super) fn unquoted(token: &[u8]) -> &[u8] {
+    match token {
+        [b'"', inner @ .., b'"'] => inner.trim_ascii(),
+        token => token,
+    }
+}
+
+/// A number, also with a minus sign of Unicode or the exponent of Fortran's double precision, `1.0D-3`.
+fn parsed(text: &str) -> Option<f64> {
+    if let Ok(number) = text.parse() {
+        return Some(number);
+    }
+    let other = |c: char| matches!(c, 'd' | 'D' | '\u{2212}');
+    let number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e' | 'E') || other(c);
+    let is_number = text.contains(other) && text.chars().all(number);
+    is_number.then(|| text.replace('\u{2212}', "-").replace(['d', 'D'], "e").parse().ok())?
+}
+
+/// Words, and what the C libraries of Microsoft print: `1.#QNAN`, `-1.#IND`, `nan(ind)`.
 fn missing(text: &str) -> bool {
-    MISSING.iter().any(|word| word.eq_ignore_ascii_case(text))
+    let lower = text.to_ascii_lowercase();
+    let of_library = || {
+        let (digits, word) = lower.trim_start_matches(['+', '-']).split_once(".#")?;
+        let known = matches!(word.trim_end_matches('0'), "qnan" | "snan" | "ind" | "inf" | "nan");
+        (known && digits.bytes().all(|b| b.is_ascii_digit())).then_some(())
+    };
+    let with_brackets = lower.trim_start_matches(['+', '-']).starts_with("nan(") && lower.ends_with(')');
+    with_brackets || of_library().is_some() || MISSING.contains(&&*lower)
 }
 
 fn wrong(token: &[u8], place: Place, kind: NumberKind) -> ContentError {

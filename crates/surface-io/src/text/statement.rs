@@ -31,6 +31,8 @@ pub(super) enum Statement {
     Factor(String),
     /// Nanometres of one count.
     BitToNm,
+    /// A number that stands for an undefined point.
+    Missing,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,8 +44,13 @@ pub(super) enum Axes {
 /// Kind, key and value of a line `key: value` or `key = value`, or with a tab between; `None` for what means nothing here.
 pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let text = text.trim().trim_start_matches(['\\', '@', '*']);
-    let between = text.find([':', '=']).or_else(|| text.find('\t'))?;
-    let (key, value) = text.split_at(between);
+    let text = &joined(text);
+    let between = text.find([':', '=']).or_else(|| text.find('\t')).or_else(|| grid(text));
+    let (key, value) = match between {
+        Some(between) => text.split_at(between),
+        // `Z-data (um)`: the line above numbers.
+        None => (text.as_str(), " "),
+    };
     let value = unquoted(value.get(1..)?);
     let key = unquoted(key);
     let lower = key.to_lowercase();
@@ -61,8 +68,26 @@ pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let words: Vec<&str> = words.split_whitespace().collect();
     let words = words.join(" ");
     let statement = known(&words)?;
+    if between.is_none() && statement != Statement::HeightUnit {
+        return None;
+    }
     let value = if unit.is_empty() { value.to_owned() } else { format!("{value} {unit}") };
     Some((statement, words, value))
+}
+
+/// Cells of a line in quotes as a key and its value: `"XY Calibration","7.4","um"`.
+fn joined(text: &str) -> String {
+    match text.strip_prefix('"').and_then(|rest| rest.split_once("\",\"")) {
+        Some((key, value)) => format!("{key}: {}", value.trim_end_matches('"').replace("\",\"", " ")),
+        None => text.to_owned(),
+    }
+}
+
+/// Where the key of a line of an ESRI grid ends: `ncols 4`.
+fn grid(text: &str) -> Option<usize> {
+    let between = text.find(' ')?;
+    let known = ["ncols", "nrows", "cellsize", "nodata_value"];
+    known.contains(&text[..between].to_lowercase().as_str()).then_some(between)
 }
 
 fn unquoted(text: &str) -> &str {
@@ -79,21 +104,30 @@ fn known(words: &str) -> Option<Statement> {
         "y length" | "ylength" | "y size" | "size y" | "y range" | "y amplitude" | "scan size y"
         | "y scan size" | "scan range y" | "y scan range" | "length y" => Statement::Side(1, true),
         "scan size" | "scan range" | "scan area" | "image size" | "field of view" => Statement::Size,
-        "pixel size" | "cell size" | "point spacing" | "sample spacing" => Statement::Cell(Axes::Both),
+        "pixel size" | "pixelsize" | "cell size" | "cellsize" | "xy calibration" | "point spacing"
+        | "sample spacing" => Statement::Cell(Axes::Both),
         "x pixel size" | "pixel size x" | "x spacing" | "spacing x" | "x step" | "step x" | "x increment"
         | "dx" | "x resolution" => Statement::Cell(Axes::One(0)),
         "y pixel size" | "pixel size y" | "y spacing" | "spacing y" | "y step" | "step y" | "y increment"
         | "dy" | "y resolution" => Statement::Cell(Axes::One(1)),
         "x pixels" | "pixels x" | "columns" | "number of columns" | "samps/line" | "samples/line" | "nx"
-        | "w" => Statement::Count(0),
-        "y pixels" | "pixels y" | "rows" | "number of rows" | "number of lines" | "lines" | "ny" | "h" => {
-            Statement::Count(1)
-        }
-        "value units" | "value unit" | "werteeinheiten" | "z unit" | "z units" | "height unit"
-        | "height units" | "unit z" => Statement::HeightUnit,
+        | "w" | "ncols" | "numcols" | "horizontal" => Statement::Count(0),
+        "y pixels" | "pixels y" | "rows" | "number of rows" | "number of lines" | "lines" | "ny" | "h"
+        | "nrows" | "numrows" | "vertical" => Statement::Count(1),
+        "value units"
+        | "value unit"
+        | "werteeinheiten"
+        | "z unit"
+        | "z units"
+        | "height unit"
+        | "height units"
+        | "unit z"
+        | "exported image units"
+        | "z data" => Statement::HeightUnit,
         "lateral units" | "lateral unit" | "xy unit" | "xy units" | "x unit" | "x units" | "y unit"
         | "y units" => Statement::LateralUnit,
-        "data unit" => Statement::DataUnit,
+        "data unit" | "unit" => Statement::DataUnit,
+        "nodata value" => Statement::Missing,
         "bit2nm" => Statement::BitToNm,
         _ => return None,
     })

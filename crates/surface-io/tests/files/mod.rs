@@ -3,14 +3,18 @@
 mod al3d;
 mod gwy;
 mod hdf5;
+mod ibw;
 mod metropro;
+mod mi;
 mod nanoscope;
 mod netcdf;
+mod nid;
 mod opd;
 mod plu;
 mod sdf;
 mod sur;
 mod tiff;
+mod wsxm;
 pub mod x3p;
 
 /// A small file, and what is in it.
@@ -44,6 +48,10 @@ pub fn all() -> Vec<Small> {
         sdf::files(),
         sur::files(),
         tiff::files(),
+        ibw::files(),
+        mi::files(),
+        nid::files(),
+        wsxm::files(),
         x3p::files(),
     ];
     of_all.into_iter().flatten().collect()

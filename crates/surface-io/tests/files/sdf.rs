@@ -15,7 +15,8 @@ pub fn files() -> Vec<Small> {
     let nan = f64::NAN;
     let of_16_bits = [5, -7, i16::MIN, 0, i16::MAX, 1].map(i16::to_le_bytes).concat();
     let floats = [1.5_f32, -2.0, f32::MIN, 1e3, 0.0, 4.0].map(f32::to_le_bytes).concat();
-    let doubles = [1.5, -2.0, f64::MIN, 1e3, nan, 4.0].map(f64::to_le_bytes).concat();
+    // Of BCR: the first profile has the largest y, the largest number is undefined.
+    let doubles = [1e3, nan, 4.0, 1.5, -2.0, f64::MAX].map(f64::to_le_bytes).concat();
     let text = "aISO-1.0\r\nManufacID = Tester\r\n; a comment = 3\r\nCreateDate = 010120260000\r\nNumPoints = 3\r\n\
                 NumProfiles = 2\r\nXscale = 1.0E-6\r\nYscale = 5e-7\r\nZscale = 1e-9\r\nZresolution = -1\r\n\
                 Compression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n1.5 -2 BAD\r\n1e3\r\n0 4\r\n*\r\n\

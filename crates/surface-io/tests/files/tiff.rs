@@ -50,6 +50,75 @@ pub fn files() -> Vec<Small> {
             None,
             vec![1.0, 7.0, 9.0 * 256.0, 514.0, 514.0, 514.0],
         ),
+        // The first row of the file is the last one.
+        small(
+            "tiff of JPK",
+            Image { private: jpk(), ..Image::new(16, 1) }
+                .file(true, &[&[0, 1, 0, 2, 0, 3], &[0, 4, 0, 5, 0, 6]]),
+            Some([3e-6, 1e-6]),
+            [4.0, 5.0, 6.0, 1.0, 2.0, 3.0].map(|n: f64| n * 2e-9 - 1e-9).to_vec(),
+        ),
+        small(
+            "tiff of Park",
+            Image { private: park(&words(&[1, 2, 3, -4, 5, 6]), 1, 0), ..Image::new(8, 1) }
+                .file(false, &[&[1, 2, 3], &[4, 5, 6]]),
+            Some([3e-6, 1e-6]),
+            [-4.0, 5.0, 6.0, 1.0, 2.0, 3.0].map(|n: f64| -0.5 * (n + 10.0) * 1e-9).to_vec(),
+        ),
+        small(
+            "tiff of Park with float32",
+            Image {
+                private: park(&[1_f32, 2.0, 3.0, -4.0, 5.5, 6.0].map(f32::to_le_bytes).concat(), 2, 2),
+                ..Image::new(8, 1)
+            }
+            .file(false, &[&[1, 2, 3], &[4, 5, 6]]),
+            Some([3e-6, 1e-6]),
+            [-4.0, 5.5, 6.0, 1.0, 2.0, 3.0].map(|n: f64| -0.5 * (n + 10.0) * 1e-9).to_vec(),
+        ),
+    ]
+}
+
+/// Tag, type, bytes of a tag of an instrument.
+type Private = (u16, u16, Vec<u8>);
+
+/// Big-endian tags of an image with two scalings, of which the second counts.
+fn jpk() -> Vec<Private> {
+    let text = |tag: u16, text: &str| (tag, 2, [text.as_bytes(), &[0]].concat());
+    let double = |tag: u16, number: f64| (tag, 12, number.to_be_bytes().to_vec());
+    vec![
+        double(0x8042, 3e-6),
+        double(0x8043, 1e-6),
+        text(0x8050, "height"),
+        text(0x8081, "nominal"),
+        text(0x8090, "raw"),
+        text(0x80a3, "NullScaling"),
+        text(0x80c0, "nominal"),
+        text(0x80d2, "m"),
+        text(0x80d3, "LinearScaling"),
+        double(0x80d4, 2e-9),
+        double(0x80d5, -1e-9),
+    ]
+}
+
+/// Tags of a map of 3 x 2 points beside a picture.
+fn park(data: &[u8], version: u8, number: u32) -> Vec<Private> {
+    let mut header = vec![0; 580];
+    let mut put = |at: usize, field: &[u8]| header[at..at + field.len()].copy_from_slice(field);
+    for (at, n) in [(100, 3), (104, 2), (348, number)] {
+        put(at, &n.to_le_bytes());
+    }
+    for (at, x) in [(140, 3.0_f64), (148, 1.0), (220, -0.5), (228, 1.0), (236, 10.0)] {
+        put(at, &x.to_le_bytes());
+    }
+    for (at, text) in [(4, "Z Height"), (244, "nm")] {
+        let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        put(at, &wide);
+    }
+    vec![
+        (50432, 4, 0x0e03_1301_u32.to_le_bytes().to_vec()),
+        (50433, 4, vec![version, 0, 0, 1]),
+        (50434, 1, data.to_vec()),
+        (50435, 7, header),
     ]
 }
 
@@ -62,12 +131,14 @@ struct Image {
     dpi: bool,
     description: &'static str,
     resolution: Option<[[u32; 2]; 2]>,
+    private: Vec<Private>,
 }
 
 impl Image {
     fn new(bits: u16, sample_format: u16) -> Self {
         let (compression, orientation) = (1, 1);
-        Self { bits, sample_format, compression, orientation, dpi: false, description: "", resolution: None }
+        let (dpi, description, resolution, private) = (false, "", None, Vec::new());
+        Self { bits, sample_format, compression, orientation, dpi, description, resolution, private }
     }
 
     fn file(&self, big: bool, strips: &[&[u8]; 2]) -> Vec<u8> {
@@ -88,6 +159,7 @@ impl Image {
         let description = put(&text);
         let resolution = self.resolution.or(self.dpi.then_some([[72, 1]; 2])).unwrap_or_default();
         let resolution = resolution.map(|[a, b]| put(&longs([a, b])));
+        let private: Vec<_> = self.private.iter().map(|(_, _, bytes)| put(bytes)).collect();
         let directory = put(&[]);
         // Tag, type (2 text, 3 short, 4 long, 5 ratio), count, value or offset.
         let mut entries: Vec<(u16, u16, u32, u32)> = vec![
@@ -111,10 +183,26 @@ impl Image {
         if self.description.is_empty() {
             entries.retain(|entry| entry.0 != 270);
         }
-        bytes.extend(short(entries.len() as u16));
+        bytes.extend(short((entries.len() + private.len()) as u16));
         for (tag, kind, count, value) in entries {
             let value = if kind == 3 { [short(value as u16), [0; 2]].concat() } else { long(value).to_vec() };
             bytes.extend([&short(tag)[..], &short(kind), &long(count), &value].concat());
+        }
+        for ((tag, kind, values), at) in self.private.iter().zip(private) {
+            let size = match kind {
+                12 => 8,
+                4 => 4,
+                _ => 1,
+            };
+            // Up to four bytes stand in the entry.
+            let value = if values.len() > 4 {
+                long(at).to_vec()
+            } else {
+                [&values[..], &[0; 4]].concat()[..4].to_vec()
+            };
+            bytes.extend(
+                [&short(*tag)[..], &short(*kind), &long((values.len() / size) as u32), &value].concat(),
+            );
         }
         bytes.extend([0; 4]);
         bytes[4..8].copy_from_slice(&long(directory));

@@ -23,6 +23,8 @@ pub(super) struct Main {
     /// Names of the members with the numbers and with the bits of the points that are defined.
     pub(super) data: String,
     pub(super) valid: String,
+    /// r11, r12, ... r33.
+    pub(super) rotation: [String; 9],
     /// Numbers that stand in `main.xml` itself.
     pub(super) listed: u64,
 }
@@ -35,7 +37,11 @@ impl Main {
     pub(super) fn read(text: &str) -> Option<Self> {
         let (mut main, mut found) = (Self::default(), false);
         elements(text, &mut |path, text| {
-            found |= path.starts_with("ISO5436_2/");
+            // Some writers leave out the part of the standard.
+            let Some(path) = path.strip_prefix("ISO5436_2/").or_else(|| path.strip_prefix("ISO5436/")) else {
+                return;
+            };
+            found = true;
             if path == DATUM {
                 main.listed += 1;
             } else if let Some(target) = main.target(path) {
@@ -46,7 +52,6 @@ impl Main {
     }
 
     fn target(&mut self, path: &str) -> Option<&mut String> {
-        let path = path.strip_prefix("ISO5436_2/")?;
         match path {
             "Record1/FeatureType" => return Some(&mut self.feature),
             "Record3/DataLink/PointDataLink" => return Some(&mut self.data),
@@ -55,6 +60,11 @@ impl Main {
         }
         if let Some(name) = path.strip_prefix("Record3/MatrixDimension/") {
             return self.sizes.get_mut(SIZES.iter().position(|size| *size == name)?);
+        }
+        if let Some([b'r', row @ b'1'..=b'3', column @ b'1'..=b'3']) =
+            path.strip_prefix("Record1/Axes/Rotation/").map(str::as_bytes)
+        {
+            return self.rotation.get_mut(usize::from(3 * (row - b'1') + column - b'1'));
         }
         let (name, what) = path.strip_prefix("Record1/Axes/")?.split_once('/')?;
         let axis = self.axes.get_mut(AXES.iter().position(|axis| *axis == name)?)?;
@@ -68,12 +78,12 @@ impl Main {
     }
 }
 
-const DATUM: &str = "ISO5436_2/Record3/DataList/Datum";
+const DATUM: &str = "Record3/DataList/Datum";
 
 /// Calls for every number that stands in `main.xml` itself, NaN where it is missing, `None` where it is no number.
 pub(super) fn listed(text: &str, each: &mut impl FnMut(Option<f64>)) {
     elements(text, &mut |path, text| {
-        if path == DATUM {
+        if path.split_once('/').is_some_and(|(_, path)| path == DATUM) {
             // The last of x;y;z.
             let number = text.rsplit(';').next().unwrap_or_default().trim();
             each(if number.is_empty() { Some(f64::NAN) } else { number.parse().ok() });
