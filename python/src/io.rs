@@ -28,7 +28,7 @@ where
 }
 
 fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
-    const KNOWN: [&str; 23] = [
+    const KNOWN: [&str; 26] = [
         "format",
         "channel",
         "unit",
@@ -42,11 +42,14 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
         "missing",
         "skip_lines",
         "crop",
+        "align_lines",
+        "scars",
         "outliers",
         "tip_radius",
         "undefined",
         "fill",
         "detrend",
+        "filter_across",
         "cells",
         "rows",
         "mirror",
@@ -81,11 +84,14 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
     }
     let preprocessing = Preprocessing {
         crop: word(of, "crop")?,
+        align_lines: word(of, "align_lines")?,
+        scars: optional(of, "scars")?,
         outliers: optional(of, "outliers")?,
         tip_radius: word(of, "tip_radius")?,
         undefined: word::<Undefined>(of, "undefined")?,
         fill: word(of, "fill")?,
         detrend: word::<Detrend>(of, "detrend")?.unwrap_or_default(),
+        filter_across: word(of, "filter_across")?,
         cells: optional(of, "cells")?,
         rows: optional(of, "rows")?,
         mirror: word(of, "mirror")?,

@@ -243,6 +243,12 @@ pub struct MapArguments {
     /// Part of the map: centre, defined (the largest rectangle without undefined points), or "row,column,rows,columns".
     #[arg(long)]
     crop: Option<surface_io::Crop>,
+    /// Shifts scan lines (rows) to a common height: median_difference (to the line before) or median.
+    #[arg(long, value_name = "HOW")]
+    align_lines: Option<surface_io::AlignLines>,
+    /// Streaks along x, at most four rows tall, become undefined beyond so many robust standard deviations of the differences between rows.
+    #[arg(long, value_name = "TIMES")]
+    scars: Option<f64>,
     /// Heights farther from their neighbours than so many robust standard deviations become undefined.
     #[arg(long, value_name = "TIMES")]
     outliers: Option<f64>,
@@ -255,6 +261,9 @@ pub struct MapArguments {
     /// What is subtracted: none, mean, plane, quadric, sphere or cylinder.
     #[arg(long, default_value = "none")]
     detrend: surface_io::Detrend,
+    /// Cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y, such as "2 nm".
+    #[arg(long, value_name = "LENGTH")]
+    filter_across: Option<surface_io::Quantity>,
     /// Which axis is reversed: x or y.
     #[arg(long)]
     mirror: Option<surface_io::Mirror>,
@@ -284,11 +293,14 @@ impl MapArguments {
         let undefined = fill.is_none().then_some(surface_io::Undefined::NoContact);
         let preprocessing = Preprocessing {
             crop,
+            align_lines: self.align_lines,
+            scars: self.scars,
             outliers: self.outliers,
             tip_radius: self.tip_radius,
             undefined,
             fill,
             detrend,
+            filter_across: self.filter_across,
             mirror: self.mirror,
             // One of four words.
             quarter_turns: self.rotate.parse::<u16>().map_or(0, |degrees| (degrees / 90) as u8),

@@ -78,7 +78,7 @@ fn two_bodies_lie_face_to_face() {
 
 #[test]
 fn what_is_done_to_a_map_is_in_its_manifest() {
-    let keys = "crop = \"centre\"\noutliers = 1e6\ntip_radius = \"1 mm\"\nmirror = \"y\"\nrotate = 90\nwindow = \"hann\"\n\
+    let keys = "crop = \"centre\"\nalign_lines = \"median_difference\"\nscars = 5\noutliers = 1e6\ntip_radius = \"1 mm\"\nmirror = \"y\"\nrotate = 90\nwindow = \"hann\"\n\
                 [outputs]\nstiffness = true\n[models.bem3d]\ntolerance = 1e-6";
     let (dir, scene) = folder(keys);
     let scene = scene.unwrap_or_else(|e| panic!("{e}"));
@@ -89,6 +89,8 @@ fn what_is_done_to_a_map_is_in_its_manifest() {
     let manifest = std::fs::read_to_string(out.join("manifest.json")).unwrap();
     for step in [
         "cropped to 3 x 3 points from row 0, column 0 (from 0)",
+        "; mean height kept",
+        "0 points of scars made undefined, in 0 runs along x: beyond 5 times ",
         "0 outliers beyond 1000000 robust standard deviations made undefined",
         "with a tip of radius 0.001 m, heights are reliable",
         "y reversed",
@@ -100,6 +102,68 @@ fn what_is_done_to_a_map_is_in_its_manifest() {
     }
     let error = folder("rotate = 45").1.unwrap_err().to_string();
     assert!(error.contains("`rotate` is 45") && error.contains("0, 90, 180 or 270"), "{error}");
+}
+
+/// A map of 20 lines of 40 points with offsets of the lines and a streak: through scene, manifest and command line.
+#[test]
+fn scan_lines_are_repaired_where_it_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let noise = |i: usize| ((i as f64) * 12.9898).sin() * 1e-3;
+    let streak = |i: usize| if i / 40 == 6 && i % 40 < 16 { 5.0 } else { 0.0 };
+    let values: Vec<f64> = (0..800).map(|i| noise(i) + streak(i) + ((i / 40) as f64).sin()).collect();
+    let bytes = surface_io::npy(&[20, 40], &values).unwrap();
+    std::fs::write(dir.path().join("afm.npy"), bytes).unwrap();
+    let scene = |keys: &str| {
+        let text = format!(
+            "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
+             kind = \"file\"\npath = \"afm.npy\"\nunit = \"um\"\ncell = \"1 mm\"\ndetrend = \"none\"\n{keys}\n"
+        );
+        SceneFile::parse(&dir.path().join("a.toml"), text)
+    };
+    let keys =
+        "align_lines = \"median_difference\"\nscars = 6\nfill = \"neighbours\"\nfilter_across = \"5 mm\"";
+    let found = scene(keys).unwrap_or_else(|e| panic!("{e}"));
+    let deviation = 1e6 * surface_gen::rms_height(map(&found).heights());
+    assert!(deviation < 1e-3, "{deviation}");
+    let plan = Plan::new(&found).unwrap().to_string();
+    for step in [
+        "the median of differences to the line before is zero; mean height kept",
+        "16 points of scars made undefined, in 1 runs along x: beyond 6 times ",
+        "16 undefined points filled",
+        "filtered across the scan lines, cut-off 0.005 m: rms height ",
+    ] {
+        assert!(plan.contains(step), "{step}\n{plan}");
+    }
+    for (keys, expected) in [
+        ("align_lines = \"mean\"", "`scene.surface.align_lines` is \"mean\""),
+        ("scars = -1", "scars = -1: expected a number > 0 of robust standard deviations"),
+        ("scars = nan", "scars"),
+        ("filter_across = \"-1 mm\"", "filter_across"),
+        ("filter_across = \"0 mm\"", "filter_across"),
+        ("filter_across = 4", "filter_across"),
+        (
+            "filter_across = \"3 mm\"",
+            "filter_across = 3e-3: expected a wavelength from 4e-3, four cells, to 2e-2",
+        ),
+        ("align_lines = \"median\"\nscars = 6", "16 of 800 points are undefined"),
+    ] {
+        let error = scene(keys).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{keys}: {error}");
+    }
+    let info = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_fractal-contact"));
+        let declared = ["info", "afm.npy", "--unit", "um", "--cell", "1 mm"];
+        let output = command.args(declared).args(arguments).current_dir(dir.path()).output().unwrap();
+        let text = [output.stdout, output.stderr].concat();
+        (output.status.code(), String::from_utf8_lossy(&text).into_owned())
+    };
+    let (code, text) = info(&["--align-lines", "median", "--scars", "6", "--filter-across", "5 mm"]);
+    assert!(code == Some(0) && text.contains("then       16 points of scars made undefined"), "{text}");
+    assert!(text.contains("all have the same median") && text.contains("cut-off 0.005 m"), "{text}");
+    let (code, text) = info(&["--align-lines", "up"]);
+    assert!(code != Some(0) && text.contains("expected median_difference or median"), "{text}");
+    let (_, text) = info(&["--filter-across", "30 mm"]);
+    assert!(text.contains("filter_across = 3e-2: expected"), "{text}");
 }
 
 #[test]

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use surface_gen::{Anisotropy, WaveGenerator};
+use surface_io::Preprocessing;
 
 /// Two exact solutions of one contact, each good to about 1e-12.
 const EXACT: f64 = 1e-9;
@@ -21,7 +22,12 @@ fn folder() -> PathBuf {
 }
 
 fn solved(name: &str) -> (SceneOutcome, CsvFile, tempfile::TempDir) {
-    let scene = SceneFile::read(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
+    solved_text(name, std::fs::read_to_string(folder().join(name)).unwrap())
+}
+
+/// A scene of this text, whose files are beside the scene of this name.
+fn solved_text(name: &str, text: String) -> (SceneOutcome, CsvFile, tempfile::TempDir) {
+    let scene = SceneFile::parse(&folder().join(name), text).unwrap_or_else(|e| panic!("{e}"));
     let scene = scene.with_grid_for_accuracy(&contact_model::never).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}"));
     assert!(!plan.shows.is_empty(), "{name} says nothing");
@@ -275,7 +281,22 @@ fn an_accuracy_is_what_the_run_finds() {
     assert!(outcome.notes.iter().all(|note| !note.contains("accuracy")), "{:?}", outcome.notes);
 }
 
-/// The table of the book's page on measured surfaces, and what it says of single heights.
+/// The numbers of a line of a table.
+fn stated(line: &str) -> Vec<&str> {
+    line.split(['|', '±', ',', '%']).map(str::trim).filter(|word| word.parse::<f64>().is_ok()).collect()
+}
+
+/// Each number as it is stated, with as many decimals.
+fn assert_stated(line: &str, found: &[f64]) {
+    let stated = stated(line);
+    assert_eq!(stated.len(), found.len(), "{line}");
+    for (stated, found) in stated.iter().zip(found) {
+        let decimals = stated.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        assert_eq!(**stated, format!("{found:.decimals$}"), "{line}");
+    }
+}
+
+/// The tables of the book's page on the diamond film.
 #[test]
 fn diamond_scenes_give_the_numbers_of_their_page() {
     let page = std::fs::read_to_string(folder().join("../../book/src/measured.md")).unwrap();
@@ -283,42 +304,126 @@ fn diamond_scenes_give_the_numbers_of_their_page() {
     for (state, pressure) in [(0, "10 MPa"), (2, "100 MPa"), (4, "1 GPa"), (6, "10 GPa")] {
         let start = format!("| {pressure} | ");
         let line = page.lines().find(|line| line.starts_with(&start) && line.contains('±')).unwrap();
-        let numbers: Vec<&str> = line
-            .split(['|', '±', ',', '%'])
-            .map(str::trim)
-            .filter(|word| word.parse::<f64>().is_ok())
-            .collect();
         let of = |run: usize, name: &str| column(&runs[run], "bem3d", name)[state];
         let area = |run: usize| [1e18 * of(run, "area"), 1.0 + of(run, "area_grid_error")];
         let stiffness = |run: usize| [of(run, "stiffness"), 100.0 * of(run, "stiffness_grid_error")];
         let conductance = [0, 1].map(|run| 1e9 * of(run, "conductance"));
         let found = [stiffness(0), stiffness(1), conductance, area(0), area(1)].concat();
-        assert_eq!(numbers.len(), found.len(), "{line}");
-        for (stated, found) in numbers.iter().zip(found) {
-            let decimals = stated.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-            assert_eq!(**stated, format!("{found:.decimals$}"), "{pressure}");
-        }
+        assert_stated(line, &found);
     }
-    let scan = surface_io::Scan::read(
-        &folder().join("../measured/uncd-afm.001"),
-        &surface_io::ReadOptions {
-            channel: Some(surface_io::ChannelChoice::Number(0)),
-            ..Default::default()
-        },
-    );
-    let preprocessing = surface_io::Preprocessing {
-        detrend: surface_io::Detrend::Plane,
-        ..surface_io::Preprocessing::default()
+    let scene = std::fs::read_to_string(folder().join("diamond-on-flat.toml")).unwrap();
+    let drawn = ["curves = true\n", "heights = [\"png\"]\n", "pressure = [\"png\"]\n", "gap = [\"png\"]\n"];
+    let scene = drawn.iter().fold(scene, |scene, output| scene.replace(output, ""));
+    let scene = scene.replace("{ from = \"10 MPa\", to = \"10 GPa\", count = 7 }", "[\"1 GPa\", \"10 GPa\"]");
+    let filter = scene.lines().find(|line| line.starts_with("filter_across")).unwrap();
+    let aligned = "align_lines = \"median_difference\"";
+    let scars = "scars = 3\nfill = \"neighbours\"";
+    for (row, [old, new]) in [
+        ("as measured", [filter, ""]),
+        ("scars taken out", [filter, scars]),
+        ("lines aligned", [filter, aligned]),
+        ("filtered, 3 nm", [filter, "filter_across = \"3 nm\""]),
+        ("filtered, 6 nm (the scene)", ["", ""]),
+        ("filtered, 12 nm", [filter, "filter_across = \"12 nm\""]),
+        ("aligned, scars taken out, filtered, 6 nm", [filter, &format!("{filter}\n{aligned}\n{scars}")]),
+        ("filtered, 6 nm, `cells = 128`", [filter, &format!("{filter}\ncells = 128")]),
+        ("filtered, 6 nm, a quadric subtracted", ["detrend = \"plane\"", "detrend = \"quadric\""]),
+        ("filtered, 6 nm, the second scan", ["channel = 0", "channel = 1"]),
+    ] {
+        let (_, file, _dir) = solved_text("diamond-on-flat.toml", scene.replacen(old, new, 1));
+        let of = |name: &str| <[f64; 2]>::try_from(column(&file, "bem3d", name)).unwrap();
+        let [stiffness, area, factor] = ["stiffness", "area", "area_grid_error"].map(of);
+        let areas = [0, 1].map(|state| [1e18 * area[state], 1.0 + factor[state]]).concat();
+        let rest = [of("patches")[1], 1e-12 * of("largest_pressure")[1]];
+        let found = [&of("rms_slope")[..1], &stiffness, &areas, &rest].concat();
+        let start = format!("| {row} | ");
+        let line =
+            page.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("{row} {found:?}"));
+        assert_stated(&line[start.len() - 2..], &found);
+    }
+}
+
+/// What the page says of the heights of both scans of the diamond film.
+#[test]
+fn scans_of_the_diamond_film_agree_as_their_page_says() {
+    let page = std::fs::read_to_string(folder().join("../../book/src/measured.md")).unwrap();
+    let states = |sentence: &str| {
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(page.contains(sentence), "{sentence}");
     };
-    let map = scan.unwrap().map(&preprocessing).unwrap();
-    let (n, h) = (map.columns(), map.heights());
-    let rms = |differences: Vec<f64>| format!("{:.2}", 1e9 * surface_gen::rms_height(&differences));
-    let lines = rms((n..h.len()).map(|i| h[i] - h[i - n]).collect());
-    let points = rms((1..h.len()).filter(|i| i % n > 0).map(|i| h[i] - h[i - 1]).collect());
-    assert!(
-        page.contains(&format!("differ by {lines} nm rms"))
-            && page.contains(&format!("\n   {points}: noise"))
-    );
+    let map = |channel: usize, preprocessing: &Preprocessing| {
+        let options = surface_io::ReadOptions {
+            channel: Some(surface_io::ChannelChoice::Number(channel)),
+            ..Default::default()
+        };
+        let path = folder().join("../measured/uncd-afm.001");
+        let scan = surface_io::Scan::read(&path, &options).unwrap();
+        scan.map(&Preprocessing { detrend: surface_io::Detrend::Plane, ..preprocessing.clone() }).unwrap()
+    };
+    let both = |preprocessing: &Preprocessing| [0, 1].map(|channel| map(channel, preprocessing));
+    let difference = |a: &[HeightMap; 2], b: &[HeightMap; 2]| {
+        [0, 1].map(|i| a[i].heights().iter().zip(b[i].heights()).map(|(a, b)| a - b).collect::<Vec<f64>>())
+    };
+    // Of the second scan the point 8 columns before that of the first.
+    let (n, shift) = (512, 8);
+    let inner = |heights: &[f64], from: usize| -> Vec<f64> {
+        heights.chunks_exact(n).flat_map(|line| line[from..from + n - shift].to_vec()).collect()
+    };
+    let pair = |heights: [Vec<f64>; 2]| [inner(&heights[0], shift), inner(&heights[1], 0)];
+    let rms = |heights: &[f64]| 1e9 * surface_gen::rms_height(heights);
+    let correlation = |[a, b]: [Vec<f64>; 2]| {
+        let mean = |heights: &[f64]| heights.iter().sum::<f64>() / heights.len() as f64;
+        let (mean_a, mean_b) = (mean(&a), mean(&b));
+        let product: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - mean_a) * (b - mean_b)).collect();
+        mean(&product) * 1e18 / (rms(&a) * rms(&b))
+    };
+    let plain = both(&Preprocessing::default());
+    let filtered = |cut_off: &str| {
+        both(&Preprocessing { filter_across: cut_off.parse().ok(), ..Preprocessing::default() })
+    };
+    let [three, six, twelve] = ["3 nm", "6 nm", "12 nm"].map(filtered);
+    let heights = six.clone().map(|map| map.heights().to_vec());
+    states(&format!("passes the filter has a correlation of {:.3} between", correlation(pair(heights))));
+    let noise = difference(&plain, &six);
+    states(&format!("what is removed, {:.2} nm rms, one of {:.2}", rms(&noise[0]), correlation(pair(noise))));
+    states(&format!(
+        "Between cut-offs of 3 and 6 nm it is {:.2}, between 6 and 12 nm {:.2}",
+        correlation(pair(difference(&three, &six))),
+        correlation(pair(difference(&six, &twelve)))
+    ));
+    let lines = plain.clone().map(|map| {
+        let h = map.heights();
+        (n..h.len()).map(|i| h[i] - h[i - n]).collect::<Vec<f64>>()
+    });
+    let points = plain[0].heights().windows(2).enumerate().filter(|(i, _)| (i + 1) % n > 0);
+    let points = rms(&points.map(|(_, pair)| pair[1] - pair[0]).collect::<Vec<f64>>());
+    states(&format!(
+        "lines differ by {:.2} nm rms, neighbouring points of a line by {points:.2}",
+        rms(&lines[0])
+    ));
+    let medians = lines.map(|lines| {
+        let median = |line: &[f64]| {
+            let mut line = line.to_vec();
+            line.sort_by(f64::total_cmp);
+            0.5 * line[n / 2 - 1] + 0.5 * line[n / 2]
+        };
+        lines.chunks_exact(n).map(median).collect::<Vec<f64>>()
+    });
+    states(&format!(
+        "medians of the differences between lines are {:.2} nm rms, with a correlation of {:.2} between",
+        rms(&medians[0]),
+        correlation(medians)
+    ));
+    let aligned = both(&Preprocessing {
+        align_lines: Some(surface_io::AlignLines::MedianDifference),
+        ..Preprocessing::default()
+    });
+    let removed = difference(&plain, &aligned);
+    states(&format!(
+        "alignment removes, {:.1} nm rms, has a correlation of {:.2}",
+        rms(&removed[0]),
+        correlation(pair(removed))
+    ));
 }
 
 /// The heights of a scene's first surface that a model with cells solves.

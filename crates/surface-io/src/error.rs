@@ -482,6 +482,18 @@ pub enum ContentError {
         /// Rows and columns of the map.
         shape: [usize; 2],
     },
+    /// A cut-off wavelength across the scan lines that the map does not have.
+    #[error(
+        "filter_across = {value:e}: expected a wavelength from {least:e}, four cells, to {side:e}, the side of the map across the scan lines"
+    )]
+    CutOff {
+        /// The cut-off.
+        value: f64,
+        /// Four cells.
+        least: f64,
+        /// The side of the map along y.
+        side: f64,
+    },
     /// More cells than the map has along one axis, or none.
     #[error("{cells} {what}: expected 1 to {found}, as many as the map has; finer cells would be invented")]
     Resample {

@@ -2,7 +2,7 @@
 
 use crate::format::Format;
 use crate::options::{Axes, Border, Decimal};
-use crate::preprocessing::{Crop, Detrend, Fill, Mirror, Undefined, Window};
+use crate::preprocessing::{AlignLines, Crop, Detrend, Fill, Mirror, Undefined, Window};
 use crate::quantity::QuantityError;
 use std::fmt;
 use std::str::FromStr;
@@ -119,6 +119,19 @@ impl FromStr for Detrend {
     }
 }
 
+impl FromStr for AlignLines {
+    type Err = KeywordError;
+
+    /// Reads `median_difference` or `median`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        let known = Self::ALL.map(|align| (align.word(), align));
+        among("align_lines", text, known, "median_difference or median")
+    }
+}
+
 impl FromStr for Fill {
     type Err = KeywordError;
 
@@ -223,6 +236,8 @@ mod tests {
         assert_eq!("mean".parse(), Ok(Detrend::Mean));
         assert_eq!("plane".parse(), Ok(Detrend::Plane));
         assert_eq!("quadric".parse(), Ok(Detrend::Quadric));
+        assert_eq!("median_difference".parse(), Ok(AlignLines::MedianDifference));
+        assert_eq!("median".parse(), Ok(AlignLines::Median));
         assert_eq!("neighbours".parse(), Ok(Fill::Neighbours));
         assert_eq!("plane".parse(), Ok(Fill::Plane));
         assert_eq!("-2 um".parse(), Ok(Fill::Value("-2e-6 m".parse().unwrap())));
@@ -235,6 +250,7 @@ mod tests {
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
             ("zx".parse::<Axes>().unwrap_err(), "axes = \"zx\": expected xy or yx"),
             ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane, quadric, sphere or cylinder"),
+            ("mean".parse::<AlignLines>().unwrap_err(), "align_lines = \"mean\": expected median_difference or median"),
             ("middle".parse::<Crop>().unwrap_err(), "crop = \"middle\": expected centre, defined, or row"),
             ("1,-2,3".parse::<Crop>().unwrap_err(), "crop = \"1,-2,3\": expected centre, defined, or row"),
             ("skip".parse::<Undefined>().unwrap_err(), "undefined = \"skip\": expected no_contact (fill gives"),

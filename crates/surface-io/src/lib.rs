@@ -129,7 +129,9 @@ pub use keyword::KeywordError;
 pub use npy::npy;
 pub use options::{Axes, Border, Decimal, ReadOptions};
 pub use points::{profile, profile_from_bytes};
-pub use preprocessing::{Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window};
+pub use preprocessing::{
+    AlignLines, Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window,
+};
 pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};
 pub use scan::{Metadata, Scan};

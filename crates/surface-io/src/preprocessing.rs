@@ -5,9 +5,11 @@ mod fill;
 mod form;
 mod normal_equations;
 mod resample;
+mod scan_lines;
 mod tip;
 mod trend;
 
+pub use scan_lines::AlignLines;
 pub use trend::Detrend;
 
 use crate::error::{ContentError, Error, Place, Result};
@@ -21,6 +23,12 @@ use surface_gen::{hann_window, rms_height};
 pub struct Preprocessing {
     /// Which part is taken.
     pub crop: Option<Crop>,
+    /// How scan lines, the rows, are shifted to a common height.
+    pub align_lines: Option<AlignLines>,
+    /// Scars become undefined: runs of at least 16 points along x, at most four rows tall, that are higher or lower than the row before and
+    /// the row after them by more than so many robust standard deviations of the differences between neighbouring rows. A ridge or a
+    /// groove of the surface that is as narrow and lies along x goes too.
+    pub scars: Option<f64>,
     /// Heights farther from the median of their neighbours than so many robust standard deviations of all such distances become undefined.
     pub outliers: Option<f64>,
     /// Radius of the tip that measured the heights: says from which distance on they are reliable, and changes nothing.
@@ -31,6 +39,10 @@ pub struct Preprocessing {
     pub fill: Option<Fill>,
     /// What is subtracted: fitted to the points that are defined in the file, after the crop.
     pub detrend: Detrend,
+    /// Cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y (ISO 16610-21: half of a wave of this wavelength is
+    /// transmitted), from four cells to the side of the map. At edges and undefined points the weights are those of the defined points,
+    /// their sum one; undefined points that are kept stay undefined. It takes noise from line to line, and waves of the surface with it.
+    pub filter_across: Option<Quantity>,
     /// Columns after averaging over larger cells; as many as the map has where only `rows` is given.
     pub cells: Option<usize>,
     /// Rows after averaging over larger cells; as much fewer as the columns where only `cells` is given.
@@ -140,8 +152,8 @@ pub enum Fill {
 }
 
 impl Scan {
-    /// A map: crop, take out outliers, fill, subtract the trend, average over larger cells, mirror, turn, taper; in metres where the scan
-    /// has units, else in its own numbers.
+    /// A map: crop, align scan lines, take out scars and outliers, fill, subtract the trend, filter across the lines, average over larger
+    /// cells, mirror, turn, taper; in metres where the scan has units, else in its own numbers.
     ///
     /// The trend is fitted to measured heights only and subtracted from all. Where undefined points are kept,
     /// the mean over a larger cell is that of its defined part, and the cell is undefined where this is less
@@ -204,18 +216,6 @@ impl Scan {
         // Cells that no map may have are refused before anything is fitted to them.
         Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
         let (cells, mut heights) = self.part(heights, preprocessing.crop, cell, &mut steps)?;
-        if let Some(times) = preprocessing.outliers {
-            if !(times > 0.0 && times.is_finite()) {
-                let expected = "a number > 0 of robust standard deviations, such as 8";
-                return Err(ContentError::OutOfRange { what: "outliers", value: times, expected });
-            }
-            let found = defects::remove_outliers(cells, times, &mut heights);
-            steps.push(format!("{found} outliers beyond {times} robust standard deviations made undefined"));
-        }
-        let undefined = heights.iter().filter(|h| h.is_nan()).count();
-        if undefined == heights.len() {
-            return Err(ContentError::AllUndefined { points: heights.len() });
-        }
         if let Some(unit) = &self.metadata().unit {
             for h in &mut heights {
                 *h = unit.value.to_si(*h);
@@ -223,6 +223,11 @@ impl Scan {
         }
         if let Some(value) = heights.iter().copied().find(|h| h.is_infinite()) {
             return Err(ContentError::Overflow { value });
+        }
+        repair(preprocessing, cells, &mut heights, &mut steps)?;
+        let undefined = heights.iter().filter(|h| h.is_nan()).count();
+        if undefined == heights.len() {
+            return Err(ContentError::AllUndefined { points: heights.len() });
         }
         let mut reliable_from = None;
         if let Some(radius) = preprocessing.tip_radius {
@@ -265,6 +270,9 @@ impl Scan {
                 if radius > 0.0 { "a hill" } else { "a hollow" }
             ));
         }
+        if let Some(cut_off) = preprocessing.filter_across {
+            steps.push(self.filter(cut_off, cells, cell[1], &mut heights)?);
+        }
         let whole = cells == Cells { columns: self.metadata().columns, rows: self.metadata().rows };
         let part = [cell[0] * cells.columns as f64, cell[1] * cells.rows as f64];
         let size = if whole { size } else { part };
@@ -292,9 +300,8 @@ impl Scan {
         cell: [f64; 2],
         heights: &[f64],
     ) -> Result<(String, Option<f64>), ContentError> {
-        let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
         let what = "tip_radius";
-        let value = radius.expect(unit).map_err(|source| ContentError::Quantity { what, source })?;
+        let value = self.length(what, radius)?;
         if value <= 0.0 {
             return Err(ContentError::OutOfRange { what, value, expected: "a length > 0" });
         }
@@ -307,6 +314,37 @@ impl Scan {
             None => format!("with a tip of radius {radius}, heights are reliable at no distance"),
         };
         Ok((step, Some(found.unwrap_or(f64::INFINITY)).filter(|distance| *distance > 0.0)))
+    }
+
+    /// Filters across the lines; a line for records.
+    fn filter(
+        &self,
+        cut_off: Quantity,
+        cells: Cells,
+        dy: f64,
+        heights: &mut [f64],
+    ) -> Result<String, ContentError> {
+        let value = self.length("filter_across", cut_off)?;
+        let (least, side) = (scan_lines::LEAST_CUT_OFF * dy, cells.rows as f64 * dy);
+        // Decimals of lengths are rounded.
+        if !(value >= least * (1.0 - 1e-9) && value <= side * (1.0 + 1e-9)) {
+            return Err(ContentError::CutOff { value, least, side });
+        }
+        let rms = |heights: &[f64]| {
+            rms_height(&heights.iter().copied().filter(|h| !h.is_nan()).collect::<Vec<_>>())
+        };
+        let before = rms(heights);
+        scan_lines::filter_across(cells, value / dy, heights);
+        let after = rms(heights);
+        Ok(format!(
+            "filtered across the scan lines, cut-off {cut_off}: rms height {before:.4e} before, {after:.4e} after"
+        ))
+    }
+
+    /// The value of a length in the unit of the map's sides.
+    fn length(&self, what: &'static str, length: Quantity) -> Result<f64, ContentError> {
+        let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
+        length.expect(unit).map_err(|source| ContentError::Quantity { what, source })
     }
 
     /// Sides of the map and of a cell in metres, or in the numbers of the file.
@@ -400,14 +438,41 @@ impl Scan {
                 }
             }
             Fill::Value(value) => {
-                let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
-                let value =
-                    value.expect(unit).map_err(|source| ContentError::Quantity { what: "fill", source })?;
+                let value = self.length("fill", value)?;
                 heights.iter_mut().filter(|h| h.is_nan()).for_each(|h| *h = value);
             }
         }
         Ok(())
     }
+}
+
+/// Scan lines aligned, then scars and outliers made undefined.
+fn repair(
+    preprocessing: &Preprocessing,
+    cells: Cells,
+    heights: &mut [f64],
+    steps: &mut Vec<String>,
+) -> Result<(), ContentError> {
+    if let Some(align) = preprocessing.align_lines {
+        steps.push(align.apply(cells, heights).map_err(|value| ContentError::Overflow { value })?);
+        if let Some(value) = heights.iter().copied().find(|h| h.is_infinite()) {
+            return Err(ContentError::Overflow { value });
+        }
+    }
+    let positive = |what, value: f64, expected| {
+        let valid = value > 0.0 && value.is_finite();
+        if valid { Ok(value) } else { Err(ContentError::OutOfRange { what, value, expected }) }
+    };
+    if let Some(times) = preprocessing.scars {
+        let times = positive("scars", times, "a number > 0 of robust standard deviations, such as 3")?;
+        steps.push(scan_lines::remove_scars(cells, times, heights));
+    }
+    if let Some(times) = preprocessing.outliers {
+        let times = positive("outliers", times, "a number > 0 of robust standard deviations, such as 8")?;
+        let found = defects::remove_outliers(cells, times, heights);
+        steps.push(format!("{found} outliers beyond {times} robust standard deviations made undefined"));
+    }
+    Ok(())
 }
 
 /// The map mirrored and turned.

@@ -11,8 +11,8 @@ use proptest::test_runner::FileFailurePersistence;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use surface_io::{
-    Border, Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan, SurfaceFile,
-    Undefined, Window,
+    AlignLines, Border, Crop, Decimal, Detrend, Fill, Format, Mirror, Preprocessing, ReadOptions, Scan,
+    SurfaceFile, Undefined, Window,
 };
 
 thread_local! {
@@ -133,6 +133,8 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                         };
                         check(&scan, &plain)?;
                         let all = Preprocessing {
+                            align_lines: Some(AlignLines::MedianDifference),
+                            scars: Some(3.0),
                             outliers: Some(3.0),
                             tip_radius: "0.5".parse().ok(),
                             mirror: Some(Mirror::Y),
@@ -141,6 +143,13 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
                             ..plain
                         };
                         check(&scan, &all)?;
+                        let filtered = Preprocessing {
+                            align_lines: Some(AlignLines::Median),
+                            filter_across: "4.5".parse().ok(),
+                            crop: None,
+                            ..all
+                        };
+                        check(&scan, &filtered)?;
                     }
                 }
             }

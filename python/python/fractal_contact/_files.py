@@ -37,9 +37,9 @@ def read_surface(path: str | Path, **options: Any) -> ReadSurface:
         The format is told by the content.
     **options
         As in ``[scene.surface]`` of a scene: ``channel``, ``format``, ``unit``, ``lateral_unit``, ``size``, ``cell``,
-        ``height_scale``, ``decimal``, ``axes``, ``border``, ``missing``, ``skip_lines``, ``crop``, ``outliers``, ``tip_radius``,
-        ``undefined``, ``fill``, ``detrend``, ``cells``, ``rows``, ``mirror``, ``rotate``, ``window``. Lengths are
-        texts with a unit, such as ``cell="0.5 um"``.
+        ``height_scale``, ``decimal``, ``axes``, ``border``, ``missing``, ``skip_lines``, ``crop``, ``align_lines``,
+        ``scars``, ``outliers``, ``tip_radius``, ``undefined``, ``fill``, ``detrend``, ``filter_across``, ``cells``,
+        ``rows``, ``mirror``, ``rotate``, ``window``. Lengths are texts with a unit, such as ``cell="0.5 um"``.
 
     Raises
     ------

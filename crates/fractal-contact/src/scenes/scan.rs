@@ -6,8 +6,8 @@ use crate::scenes::human_readable::number;
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed, Preprocessing,
-    Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
+    AlignLines, Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed,
+    Preprocessing, Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
 };
 
 /// A map from a file.
@@ -223,6 +223,13 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
             entry.choice(&[("centre", Crop::Centre), ("defined", Crop::Defined)])?
         });
     }
+    if let Some(entry) = table.find("align_lines") {
+        let align = entry.choice(&AlignLines::ALL.map(|align| (align.word(), align)))?;
+        preprocessing.align_lines = Some(align);
+    }
+    if let Some(entry) = table.find("scars") {
+        preprocessing.scars = Some(entry.number()?);
+    }
     if let Some(entry) = table.find("outliers") {
         preprocessing.outliers = Some(entry.number()?);
     }
@@ -252,6 +259,10 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
     }
     if let Some(entry) = table.find("detrend") {
         preprocessing.detrend = entry.choice(&Detrend::ALL.map(|detrend| (detrend.word(), detrend)))?;
+    }
+    if let Some(entry) = table.find("filter_across") {
+        let cut_off = entry.positive(Dimension::LENGTH, system)?;
+        preprocessing.filter_across = Some(length(&entry, cut_off, system)?);
     }
     if let Some(entry) = table.find("mirror") {
         preprocessing.mirror = Some(entry.choice(&[("x", Mirror::X), ("y", Mirror::Y)])?);

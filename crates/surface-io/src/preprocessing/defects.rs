@@ -4,7 +4,7 @@ use contact_model::Cells;
 use std::ops::Range;
 
 /// The standard deviation of a Gaussian over its median absolute deviation.
-const GAUSSIAN: f64 = 1.4826;
+pub(super) const GAUSSIAN: f64 = 1.4826;
 
 /// Makes NaN of every height farther from the median of its neighbours (eight, fewer at an edge) than `times` the robust standard deviation
 /// of all such distances; how many.

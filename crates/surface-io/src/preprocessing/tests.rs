@@ -1,4 +1,4 @@
-use crate::{Crop, Detrend, Fill, Mirror, Preprocessing, ReadOptions, Scan, Undefined, Window};
+use crate::{AlignLines, Crop, Detrend, Fill, Mirror, Preprocessing, ReadOptions, Scan, Undefined, Window};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use contact_model::HeightMap;
 use proptest::prelude::*;
@@ -435,4 +435,111 @@ fn undefined_points_are_cropped_away() {
         let error = holes.map(&change).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
     }
+}
+
+#[test]
+fn errors_of_scanning_are_repaired_in_order_and_told() {
+    // Lines 2 nm apart that jump by 3 nm, a streak of 50 nm in row 9, a wave across the lines at the cut-off; in a file of nanometres.
+    let wave = |y: f64| (std::f64::consts::TAU * y / 10.0).cos();
+    let height = |x: f64, y: f64| {
+        let streak = if (y - 9.0).abs() < 0.5 && (30.0..46.0).contains(&x) { 50.0 } else { 0.0 };
+        let jump = if y < 15.0 { 0.0 } else { 3.0 };
+        // Columns of their own height, which no median of differences takes away.
+        let band = if x < 8.0 { 4.0 * wave(y) } else { 0.0 };
+        0.001 * (x * 7.7 + y * 1.3).sin() + streak + jump + band
+    };
+    let values: Vec<f64> = (0..60 * 40).map(|i| height(f64::from(i % 60), f64::from(i / 60))).collect();
+    let bytes = crate::npy(&[40, 60], &values).unwrap();
+    let declared =
+        ReadOptions { cell: "1 nm x 2 nm".parse().ok(), unit: "nm".parse().ok(), ..ReadOptions::default() };
+    let scan = Scan::from_bytes("a.npy", &bytes, &declared).unwrap();
+    let all = Preprocessing {
+        crop: Some(Crop::Window { row: 0, column: 0, rows: 40, columns: 59 }),
+        align_lines: Some(AlignLines::MedianDifference),
+        scars: Some(20.0),
+        outliers: Some(1e9),
+        tip_radius: "1 nm".parse().ok(),
+        fill: Some(Fill::Neighbours),
+        detrend: Detrend::Mean,
+        filter_across: "20 nm".parse().ok(),
+        mirror: Some(Mirror::X),
+        ..Preprocessing::default()
+    };
+    let found = scan.preprocessed(&all).unwrap();
+    let beginnings = [
+        "cropped to 59 x 40 points",
+        "scan lines shifted by 1.4",
+        "16 points of scars made undefined, in 1 runs along x: beyond 20 times ",
+        "0 outliers beyond 1000000000 robust",
+        "with a tip of radius 1e-9 m, heights are reliable",
+        "16 undefined points filled",
+        "the mean of least squares subtracted",
+        "filtered across the scan lines, cut-off 2e-8 m: rms height 1.",
+        "x reversed",
+    ];
+    assert_eq!(found.steps.len(), beginnings.len(), "{:?}", found.steps);
+    for (step, beginning) in found.steps.iter().zip(beginnings) {
+        assert!(step.starts_with(beginning), "{step}\n{beginning}");
+    }
+    let h = |row: usize, column: usize| 1e9 * found.map.heights()[row * 59 + 58 - column];
+    // Half of the band far from the edges; the jump and the streak are gone.
+    assert_abs_diff_eq!(h(20, 5) - h(20, 55), 2.0, epsilon = 0.05);
+    assert_abs_diff_eq!(h(30, 55) - h(2, 55), 0.0, epsilon = 0.05);
+    assert_abs_diff_eq!(h(9, 40), h(9, 55), epsilon = 0.05);
+    // Scars are undefined points as others: an error unless something is said of them.
+    let bare = Preprocessing { scars: all.scars, align_lines: all.align_lines, ..Preprocessing::default() };
+    let error = scan.map(&bare).unwrap_err().to_string();
+    assert!(error.contains("16 of 2400 points are undefined, the first in row 9, column 30"), "{error}");
+    let kept = Preprocessing { undefined: Some(Undefined::NoContact), ..bare };
+    assert_eq!(scan.map(&kept).unwrap().undefined(), 16);
+    for (change, expected) in [
+        (Preprocessing { scars: Some(0.0), ..Preprocessing::default() }, "scars = 0: expected a number > 0"),
+        (
+            Preprocessing { scars: Some(-2.0), ..Preprocessing::default() },
+            "scars = -2: expected a number > 0",
+        ),
+        (
+            Preprocessing { scars: Some(f64::NAN), ..Preprocessing::default() },
+            "scars = NaN: expected a number > 0",
+        ),
+        (
+            Preprocessing { scars: Some(f64::INFINITY), ..Preprocessing::default() },
+            "scars = inf: expected a number > 0",
+        ),
+        (
+            Preprocessing { filter_across: "7.9 nm".parse().ok(), ..Preprocessing::default() },
+            "filter_across = 7.9e-9: expected a wavelength from 8e-9, four cells, to 8e-8, the side of the map across",
+        ),
+        (
+            Preprocessing { filter_across: "81 nm".parse().ok(), ..Preprocessing::default() },
+            "filter_across = 8.1e-8: ",
+        ),
+        (
+            Preprocessing { filter_across: "0 nm".parse().ok(), ..Preprocessing::default() },
+            "filter_across = 0e0: ",
+        ),
+        (
+            Preprocessing { filter_across: "-9 nm".parse().ok(), ..Preprocessing::default() },
+            "filter_across = -9e-9: ",
+        ),
+        (Preprocessing { filter_across: "5".parse().ok(), ..Preprocessing::default() }, "filter_across: 5 "),
+    ] {
+        let error = scan.map(&change).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    for cut_off in ["8 nm", "80 nm"] {
+        let ends = Preprocessing { filter_across: cut_off.parse().ok(), ..Preprocessing::default() };
+        assert!(scan.map(&ends).is_ok());
+    }
+    // A map of one line has no wave across.
+    let line = scan_of("1", 1, 30, |x, _| x);
+    let filter = Preprocessing { filter_across: "4".parse().ok(), ..Preprocessing::default() };
+    let error = line.map(&filter).unwrap_err().to_string();
+    assert!(error.contains("from 4e0, four cells, to 1e0, the side"), "{error}");
+    let rest = Preprocessing {
+        align_lines: Some(AlignLines::MedianDifference),
+        scars: Some(3.0),
+        ..Preprocessing::default()
+    };
+    assert_eq!(line.map(&rest).unwrap(), line.map(&Preprocessing::default()).unwrap());
 }
