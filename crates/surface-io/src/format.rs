@@ -12,6 +12,8 @@ pub enum Format {
     Text,
     /// Points x, y, z as text, one per line, in any order.
     Xyz,
+    /// Points x, z of a profile as text, one per line: a body that is uniform along y.
+    Profile,
     /// Gwyddion's own file.
     Gwy,
     /// Nanoscope, of Digital Instruments, Veeco and Bruker.
@@ -40,10 +42,11 @@ pub enum Format {
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Npy,
         Self::Text,
         Self::Xyz,
+        Self::Profile,
         Self::Gwy,
         Self::Nanoscope,
         Self::Hdf5,
@@ -68,6 +71,7 @@ impl Format {
             Self::Npy => ("npy", "NPY"),
             Self::Text => ("text", "a text matrix"),
             Self::Xyz => ("xyz", "XYZ points"),
+            Self::Profile => ("profile", "a profile x, z"),
             Self::Gwy => ("gwy", "GWY (Gwyddion)"),
             Self::Nanoscope => ("nanoscope", "Nanoscope"),
             Self::Hdf5 => ("hdf5", "HDF5"),

@@ -200,6 +200,9 @@ impl Scan {
             let what = format!("{} {name} {unit}", self.metadata().number).trim().to_owned();
             return Err(ContentError::NoHeights { what });
         }
+        if self.metadata().profile {
+            of_profile(preprocessing)?;
+        }
         let (size, cell) = self.sides()?;
         // Cells that no map may have are refused before anything is fitted to them.
         Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
@@ -402,6 +405,19 @@ impl Scan {
             }
         }
         Ok(())
+    }
+}
+
+/// Refuses steps that have no meaning for a profile.
+fn of_profile(preprocessing: &Preprocessing) -> Result<(), ContentError> {
+    let reason = "a profile has one row";
+    let refused = |what| Err(ContentError::Useless { what, reason });
+    match preprocessing {
+        Preprocessing { crop: Some(Crop::Centre), .. } => refused("crop = \"centre\""),
+        Preprocessing { quarter_turns: 1 | 3, .. } => refused("a rotation by 90 degrees"),
+        Preprocessing { detrend: Detrend::Sphere, .. } => refused("detrend = \"sphere\""),
+        Preprocessing { detrend: Detrend::Cylinder, .. } => refused("detrend = \"cylinder\""),
+        _ => Ok(()),
     }
 }
 

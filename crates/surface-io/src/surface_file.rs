@@ -62,7 +62,7 @@ impl<'a> SurfaceFile<'a> {
     fn new(path: &Path, input: impl Input + 'a, length: u64, declared: &ReadOptions) -> Result<Self> {
         let (mut source, format) = told(path, input, length, declared)?;
         let (format, mut channels) = match format {
-            None | Some(Format::Text | Format::Xyz) => {
+            None | Some(Format::Text | Format::Xyz | Format::Profile) => {
                 let (format, channel) = of_text(&mut source, format, declared)?;
                 (format, vec![channel])
             }
@@ -189,7 +189,7 @@ fn read(
     Scan::new(source.path(), format, (number, channel), heights, declared).map_err(|e| source.content(e))
 }
 
-/// A matrix or points.
+/// A matrix, points or a profile.
 fn of_text(
     source: &mut Source<'_>,
     format: Option<Format>,
@@ -206,14 +206,13 @@ fn of_text(
             let places = || points::is_full_grid(&table).then_some(Format::Xyz);
             table.heading.format().or_else(places).ok_or(ambiguous).map_err(|e| source.content(e))?
         }
-        None if table.is_profile() => {
-            return Err(source.content(ContentError::Profile { lines: table.rows() }));
-        }
+        None if table.is_profile() => Format::Profile,
         None => Format::Text,
     };
     drop(bytes);
     let channel = match format {
         Format::Xyz => points::grid(&table, declared),
+        Format::Profile => points::row(&table, declared),
         _ => text::matrix(table, declared),
     };
     Ok((format, channel.map_err(|e| source.content(e))?))

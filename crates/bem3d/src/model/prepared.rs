@@ -1,8 +1,10 @@
 //! One surface, ready to be loaded.
 
 use super::options::{Bem3d, Method};
+use super::profile;
 use crate::active_set::{self, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
+use crate::kernel::Medium;
 use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
@@ -109,7 +111,7 @@ impl PreparedBem3d {
         let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
-        let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, tuning);
+        let mut problem = Problem::new(grid, Arc::new(z), profile::medium(scene), tuning);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         if let Hardness::Limit { pressure } = scene.effects.hardness {
@@ -123,7 +125,7 @@ impl PreparedBem3d {
             Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
         Ok(Self {
             options,
-            outputs: scene.outputs,
+            outputs: profile::outputs(scene.outputs, problem.operators.table().medium()),
             problem,
             nondimensional,
             height,
@@ -138,6 +140,11 @@ impl PreparedBem3d {
 
     pub(super) fn is_periodic(&self) -> bool {
         self.problem.operators.table().boundary() == Boundary::Periodic
+    }
+
+    /// Whether states have an approach: displacements are counted from those at infinity.
+    pub(super) fn has_approach(&self) -> bool {
+        self.problem.operators.table().medium() == Medium::HalfSpace
     }
 
     pub(super) fn limits(&self) -> Limits {

@@ -39,7 +39,6 @@ impl PreparedBem3d {
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let force: f64 = solved.p.iter().sum();
-        let periodic = self.is_periodic();
         let mut certificate = Certificate {
             duality_gap: solved.residuals.duality_gap,
             penetration: solved.residuals.penetration,
@@ -73,7 +72,7 @@ impl PreparedBem3d {
         report.applications = std::mem::take(&mut self.problem.operators.applications);
         report.contact_cells = Some(solved.contact.len());
         report.certificate = certificate;
-        let approach = (!periodic).then(|| units.approach(solved.d)).transpose()?;
+        let approach = self.has_approach().then(|| units.approach(solved.d)).transpose()?;
         let mean_gap = self.outputs.mean_gap.then(|| units.approach(self.gap_of(&solved))).transpose()?;
         let dimensional = |t: &Stiffness| units.stiffness(PI * t.value * self.magnification(t.value));
         let stiffness = tangent.as_ref().map(|t| dimensional(&t.stiffness)).transpose()?;
@@ -288,7 +287,7 @@ impl PreparedBem3d {
         let mean_gap =
             self.outputs.mean_gap.then(|| self.nondimensional.approach(self.mean - d)).transpose()?;
         ContactState::new(0.0, report)
-            .with_approach((!self.is_periodic()).then(|| self.nondimensional.approach(d)).transpose()?)
+            .with_approach(self.has_approach().then(|| self.nondimensional.approach(d)).transpose()?)
             .with_mean_gap(mean_gap)
             .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(0.0))
             .with_area(self.outputs.area.then_some(0.0))
