@@ -100,7 +100,13 @@ pub fn info_statistics(
     let found = scan.preprocessed(preprocessing).map_err(Error::Surface)?;
     let metric = scan.metadata().unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
     let system = if metric { System::Si } else { System::None };
-    let statistics = MapStatisticsTables::new(&found.map, Boundary::Free, found.reliable_from, system);
+    let statistics = MapStatisticsTables::new(
+        &found.map,
+        scan.metadata().profile,
+        Boundary::Free,
+        found.reliable_from,
+        system,
+    );
     let name = path.file_name().map_or_else(|| "surface".into(), |name| name.to_string_lossy().into_owned());
     let mut header = Header { command: format!("fractal-contact info {name}"), ..Header::default() };
     for step in &found.steps {

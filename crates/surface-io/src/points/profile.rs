@@ -3,7 +3,7 @@
 use super::axis::GridAxis;
 use super::{SHOWN, lateral_unit, spacing_of};
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit};
-use crate::error::{ContentError, Error, Result};
+use crate::error::{ContentError, Result};
 use crate::extent::Extent;
 use crate::format::Format;
 use crate::options::ReadOptions;
