@@ -57,14 +57,14 @@ fn column(path: &Path, name: &str) -> Vec<Option<f64>> {
 #[test]
 fn a_stylus_line_is_answered_in_one_step() {
     let dir = folder((0..400).map(rough));
-    let rest = "[outputs]\narea = true\nmean_gap = true\nstiffness = true\npressure = [\"png\", \"npy\"]\ncurves = true\nreport = true\n\
+    let rest = "[outputs]\narea = true\nmean_gap = true\nstiffness = true\npressure = [\"png\", \"npy\"]\ncurves = true\n\
                 statistics = true\n[effects]\nboundary = \"periodic\"\n";
     let scene = "models = [\"bem3d\"]\nmean_pressure = [\"1 MPa\", \"10 MPa\"]";
     std::fs::write(dir.path().join("a.toml"), text(scene, "", rest)).unwrap();
     let output = program(dir.path(), &["run", "a.toml", "--out", "out"]);
     let said = texts(&output);
     assert!(output.status.success(), "{said}");
-    let plan = texts(&program(dir.path(), &["check", "a.toml"]));
+    let plan = texts(&program(dir.path(), &["plan", "a.toml"]));
     assert!(plan.contains("uniform along y") && plan.contains("plane strain"), "{plan}");
     let results = dir.path().join("out/results.csv");
     let areas = column(&results, "area");

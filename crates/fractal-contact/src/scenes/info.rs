@@ -142,7 +142,7 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
     Ok(text)
 }
 
-/// All channels of a surface's file as JSON: `{"channels": [{"name", "columns", "rows", "size": [x, y], "unit", "undefined", "minimum",
+/// All channels of a surface's file as JSON: `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "unit", "undefined", "minimum",
 /// "maximum", "rms"}]}`.
 ///
 /// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is "m"; values of another or no unit
@@ -173,6 +173,7 @@ fn channel(metadata: &Metadata) -> serde_json::Value {
         "name": metadata.name,
         "columns": metadata.columns,
         "rows": metadata.rows,
+        "profile": metadata.profile,
         "size": metadata.size.map(|size| size.map(Quantity::value)),
         "unit": unit,
         "undefined": metadata.undefined_share(),

@@ -127,12 +127,12 @@ pub(crate) fn row(picture: &FieldPicture<'_>, points: Vec<(f64, f64)>) -> Chart 
         if unit.is_empty() { words.to_owned() } else { format!("{words} ({})", unit_label(unit)) }
     };
     Chart {
-        title: picture.title.clone(),
+        title: picture.title.replace("3D boundary elements", "boundary elements in plane strain"),
         subtitle: picture.subtitle.clone(),
         x_label: label("$x$", &length),
         y_label: label(&picture.quantity, &unit),
         curves: vec![Curve {
-            label: String::new(),
+            label: "profile".into(),
             points: points.into_iter().map(|(x, v)| (per_length * x, per_unit * v)).collect(),
             band: Vec::new(),
         }],

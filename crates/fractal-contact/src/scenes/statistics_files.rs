@@ -220,7 +220,8 @@ impl MapStatisticsTables {
         let (sure, unsure): (Vec<_>, Vec<_>) =
             points(&s.wavenumber, &s.density).into_iter().partition(|&(q, _)| trusted(q));
         let unsure_label = "waves not to be trusted";
-        let mut curves = vec![Curve { label: "map".into(), points: sure, band }];
+        let label = if self.profile { "profile" } else { "map" };
+        let mut curves = vec![Curve { label: label.into(), points: sure, band }];
         if curves[0].points.is_empty() {
             curves[0].label = unsure_label.into();
             curves[0].points = unsure;
@@ -249,7 +250,7 @@ impl MapStatisticsTables {
             x_label: format!("distance $r${}", self.si("m")),
             y_label: format!("$A${}", self.si("m^2")),
             curves: vec![Curve {
-                label: "map".into(),
+                label: if self.profile { "profile".into() } else { "map".into() },
                 points: points(&d.distance, &d.half_square),
                 band: shaded(&d.distance, bands),
             }],

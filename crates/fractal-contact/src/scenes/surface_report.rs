@@ -127,7 +127,10 @@ impl SurfaceReport<'_> {
             subtitle: format!("{}: about the mean", self.name),
             x_label: "height over rms height".into(),
             y_label: "probability density".into(),
-            curves: vec![curve("map", found), curve("normal law", normal)],
+            curves: vec![
+                curve(if self.statistics.profile { "profile" } else { "map" }, found),
+                curve("normal law", normal),
+            ],
             logarithmic: false,
         }
     }
