@@ -47,6 +47,8 @@ fn a_cylinder_is_the_line_contact_of_hertz() {
         let body = scene(n, width, Boundary::Free, |x| -(x - 0.5).powi(2) / (2.0 * radius));
         let state = solved(&body, per_length * width);
         assert_eq!((state.approach, state.stiffness, state.mean_gap), (None, None, None));
+        let resolution = state.resolution.unwrap();
+        assert_eq!((resolution.edge_cells, resolution.corrected_area), (0, None));
         let step = 1.0 / n as f64;
         let half_width = state.area.unwrap() / width / 2.0;
         assert!((half_width - a).abs() <= 1.001 * step, "{n}: {half_width} {a}");

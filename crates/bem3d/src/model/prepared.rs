@@ -10,7 +10,7 @@ use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
     Adhesion, Boundary, Effects, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs,
-    Result, Scene, Size, Step, Stop, Tangential,
+    Result, Scene, Size, Step, Stop, Surface, Tangential,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -85,6 +85,8 @@ pub struct PreparedBem3d {
     pub(super) memory: Option<Memory>,
     /// Sides of the map.
     pub(super) size: Size,
+    /// Whether it is a profile: a body uniform along y.
+    pub(super) is_profile: bool,
 }
 
 impl PreparedBem3d {
@@ -135,6 +137,7 @@ impl PreparedBem3d {
             last: None,
             memory: None,
             size: map.size(),
+            is_profile: matches!(scene.surface, Surface::Profile(_)),
         })
     }
 

@@ -232,13 +232,15 @@ impl PreparedBem3d {
     fn resolution(&self, solved: &Solved) -> Result<ContactResolution> {
         let (grid, contact) = (self.problem.grid(), &solved.contact);
         let largest = solved.p.iter().copied().fold(0.0, f64::max);
-        let at_edge =
-            |&(x, y): &(usize, usize)| x == 0 || y == 0 || x + 1 == grid.columns || y + 1 == grid.rows;
+        // A profile goes on along y.
+        let across = |y: usize| !self.is_profile && (y == 0 || y + 1 == grid.rows);
+        let at_edge = |&(x, y): &(usize, usize)| x == 0 || x + 1 == grid.columns || across(y);
         let edge_cells = if self.is_periodic() { 0 } else { contact.places().filter(at_edge).count() };
         let largest_share = largest / solved.p.iter().sum::<f64>();
         let pressure = self.nondimensional.pressure(PI * largest)?;
         let resolution = ContactResolution::new(pressure, largest_share, edge_cells);
-        if !self.outputs.area {
+        // The correction for the boundary is one for curved boundaries; a line contact is not biased.
+        if !self.outputs.area || self.is_profile {
             return Ok(resolution);
         }
         let (cells, index, boundary) = self.indexed(contact);
