@@ -1,6 +1,8 @@
 //! Profiles, bodies uniform along y: Hertz's line contact, Westergaard's wave, and a dense reference in two dimensions that shares no code
 //! with the solver.
 
+#![allow(clippy::unwrap_used)] // Helpers of tests.
+
 use bem3d::{
     Bem3d, Bem3dPath, ContactModel, ContactState, Hardness, HistoryModel, Load, Method, Scene, Step, Surface,
 };
@@ -166,9 +168,9 @@ fn reference(heights: &[f64], periodic: bool, per_length: f64, hardness: f64) ->
         let plane = f64::midpoint(low, high);
         let (force, p) = settle(plane);
         if force < per_length {
-            low = plane
+            low = plane;
         } else {
-            high = plane
+            high = plane;
         }
         found = p;
         if (force / per_length - 1.0).abs() < 1e-9 {

@@ -83,7 +83,7 @@ fn a_stylus_line_is_answered_in_one_step() {
 #[test]
 fn a_roller_is_a_line_contact() {
     // R = 1 mm: z = x^2/(2 R) in nm with x in um is x^2/2.
-    let dir = folder((0..400).map(|i| -0.5 * (0.5 * i as f64 - 99.75).powi(2)));
+    let dir = folder((0..400).map(|i| -0.5 * (0.5 * f64::from(i) - 99.75).powi(2)));
     let rest = "[outputs]\narea = true\n";
     let scene = "models = [\"bem3d\"]\nforce = \"1 mN\"";
     std::fs::write(dir.path().join("a.toml"), text(scene, "", rest)).unwrap();

@@ -60,8 +60,8 @@ impl fmt::Debug for KernelTable {
 impl KernelTable {
     /// The table of a grid; one table serves all surfaces alive at the same time.
     pub fn shared(grid: Grid, medium: impl Into<Medium>) -> Arc<Self> {
-        let medium = medium.into();
         static LIVE: Mutex<Vec<Weak<KernelTable>>> = Mutex::new(Vec::new());
+        let medium = medium.into();
         let mut live = lock(&LIVE);
         live.retain(|t| t.strong_count() > 0);
         let same = |t: &Arc<Self>| t.grid == grid && t.medium == medium;

@@ -113,15 +113,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
     }
     let profile = metadata.profile;
-    if profile {
-        let help = "contact is that of plane strain: `bem3d` solves it, pressures do not depend on that width, and force over width is the force \
-                    per length; theories of isotropic surfaces and `mdr1d` are refused";
-        let width = number(map.size().y);
-        let message = format!(
-            "a profile: the body is taken as uniform along y, and forces are those on a width of {width}"
-        );
-        notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
-    }
+    notes.extend(profile.then(|| uniform(&file, &map)));
     let mut metadata = metadata.to_string();
     for step in steps {
         metadata += &format!("\nthen       {step}");
@@ -171,6 +163,17 @@ pub(crate) fn read_second(
         sum.size().y
     );
     Ok(FileMap { map: sum, metadata, reliable_from, notes, profile: false })
+}
+
+/// What a profile is taken for.
+fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
+    let help = "contact is that of plane strain: `bem3d` solves it, pressures do not depend on that width, and force over width is the force \
+                per length; theories of isotropic surfaces and `mdr1d` are refused";
+    let width = number(map.size().y);
+    let message = format!(
+        "a profile: the body is taken as uniform along y, and forces are those on a width of {width}"
+    );
+    Diagnostic::note(message).at(file.span()).with_help(help)
 }
 
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points reaches 6.

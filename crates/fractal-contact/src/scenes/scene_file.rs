@@ -556,14 +556,12 @@ fn check_half_plane(
         ("stiffness_fixed_area", outputs.stiffness_fixed_area),
         ("displacement", outputs.displacement),
     ];
-    for (name, _) in asked.iter().filter(|(_, asked)| *asked) {
-        let mut diagnostic = Diagnostic::new(format!("{name} of a profile with free boundaries: {why}"));
-        if let Some((_, span)) = places.outputs.iter().find(|(key, _)| key == name) {
-            diagnostic = diagnostic.at(span.clone());
-        }
-        return Err(diagnostic.with_help(help));
+    let Some((name, _)) = asked.iter().find(|(_, asked)| *asked) else { return Ok(()) };
+    let mut diagnostic = Diagnostic::new(format!("{name} of a profile with free boundaries: {why}"));
+    if let Some((_, span)) = places.outputs.iter().find(|(key, _)| key == name) {
+        diagnostic = diagnostic.at(span.clone());
     }
-    Ok(())
+    Err(diagnostic.with_help(help))
 }
 
 /// Whether boundary elements have an effect that depends on the path.
