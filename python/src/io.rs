@@ -139,6 +139,11 @@ pub fn read_surface<'py>(
         Ok((scan.metadata().clone(), found))
     };
     let (described, found) = pool::call(py, read)?.map_err(|error| failed(py, &error))?;
+    if described.profile {
+        let reason = "a profile x, z stands for a body uniform along y, which a HeightMap is not: run_scene presses it (a map of two columns: \
+                      format=\"text\")";
+        return Err(plain(py, "ReadError", &format!("{}: {reason}", path.display())));
+    }
     Ok((found.map.into(), metadata(py, &described)?, found.steps, found.reliable_from))
 }
 

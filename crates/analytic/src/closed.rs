@@ -2,7 +2,7 @@
 
 use contact_model::{
     ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene,
-    Size, SolveReport, Stop,
+    Size, SolveReport, Stop, Surface,
 };
 use std::f64::consts::PI;
 
@@ -108,6 +108,18 @@ impl<L: ClosedLaw> PreparedContact for Closed<L> {
             .with_area(area)
             .completed(&self.outputs, self.normalisation.modulus)
     }
+}
+
+/// Refuses a profile, with the reason of theories of rough surfaces.
+///
+/// # Errors
+/// [`Error::Unsupported`].
+pub(crate) fn refuse_profile(scene: &Scene, model: &'static str) -> Result<()> {
+    if matches!(scene.surface, Surface::Profile(_)) {
+        let what = "a profile (a body uniform along y): the theory is one of isotropic surfaces, and a profile is none";
+        return Err(Error::unsupported(model, what));
+    }
+    Ok(())
 }
 
 /// Checks a scene against what closed forms of elastic contact lack: effects and fields.

@@ -1,5 +1,6 @@
 //! Greenwood and Williamson: independent summits, their statistics from the spectrum (Nayak, McCool).
 
+use crate::closed;
 use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::quadrature::Gauss;
 use crate::root;
@@ -127,6 +128,7 @@ impl ContactModel for GreenwoodWilliamson {
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        closed::refuse_profile(scene, NAME)?;
         periodic::check(scene, NAME)?;
         let (moments, height) = match &scene.surface {
             Surface::SelfAffine(surface) => {

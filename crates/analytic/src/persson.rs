@@ -1,5 +1,6 @@
 //! Persson: contact area, mean gap and stiffness of a random surface from its spectrum.
 
+use crate::closed;
 use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::quadrature::Gauss;
 use crate::root;
@@ -78,6 +79,7 @@ impl ContactModel for Persson {
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        closed::refuse_profile(scene, NAME)?;
         periodic::check(scene, NAME)?;
         let gamma = self.checked()?;
         let (law, height) = match &scene.surface {

@@ -138,6 +138,7 @@ impl ContactModel for PowerLaw {
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        closed::refuse_profile(scene, NAME)?;
         closed::check(scene, NAME)?;
         let (fractal_dimension, height) = match &scene.surface {
             Surface::SelfAffine(surface) => (surface.fractal_dimension(), paper_height(surface)?),

@@ -32,6 +32,12 @@
 //! ([`contact_model::ContactState::mean_gap`]), which can also be prescribed, and `k = -dF/d(mean gap)`. Full contact has
 //! no finite stiffness: it stays `None` there. Every number of cells is solved on its own period.
 //!
+//! A [`Surface::Profile`] is a body that is uniform along y, in plane strain, as a map of one row; a force is that on the side of the row
+//! along y. With periodic boundaries the kernel of one row is that of plane strain by itself. With free ones G is that of a half-plane,
+//! `u = -(2/(pi E*)) int p ln(|x - s|/D) ds` over strips: pressure, contact and gap do not depend on the distance D, from which
+//! displacements are counted, and states have neither an approach nor a stiffness, which do. Hardness works as for maps; adhesion, a
+//! displacement field and a conductance of a half-plane are refused.
+//!
 //! With [`Adhesion::ShortRange`], JKR's limit, the work of adhesion is put into the last cells of a contact, by a law of the cell's own gap
 //! whose range is a share of the cell and by a factor of its neighbours that takes the line tension of fronts out (`adhesion`): pull-off
 //! forces of smooth bodies are of second order in the cell over the radius of the contact and within half a percent that fronts are trapped

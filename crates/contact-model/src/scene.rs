@@ -92,6 +92,9 @@ pub enum Surface {
     SelfAffine(SelfAffine),
     /// A given map.
     Heights(Arc<HeightMap>),
+    /// A given profile: a map of one row that stands for a body uniform along y (plane strain). A force on it is that on the side of
+    /// its row along y.
+    Profile(Arc<HeightMap>),
     /// A given line (for one-dimensional models), standing for a rectangle.
     Line {
         /// The line.
@@ -150,7 +153,7 @@ impl Surface {
     pub fn size(&self) -> Size {
         match self {
             Self::SelfAffine(s) => s.size,
-            Self::Heights(m) => m.size(),
+            Self::Heights(m) | Self::Profile(m) => m.size(),
             Self::Line { size, .. }
             | Self::Sphere { size, .. }
             | Self::Cone { size, .. }
@@ -166,6 +169,7 @@ impl Surface {
         match self {
             Self::SelfAffine(_) => "a self-affine surface",
             Self::Heights(_) => "a height map",
+            Self::Profile(_) => "a profile (a body uniform along y)",
             Self::Line { .. } => "a line",
             Self::Sphere { .. } => "a sphere",
             Self::Cone { .. } => "a cone",
@@ -199,7 +203,10 @@ impl Surface {
                 positive("amplitude", amplitude)?;
                 positive("wavelength", wavelength)?;
             }
-            Self::Heights(_) | Self::Line { .. } | Self::Flat { .. } => {}
+            Self::Profile(ref map) if map.rows() != 1 => {
+                return Err(Error::domain("rows of a profile", map.rows() as f64, "1"));
+            }
+            Self::Heights(_) | Self::Profile(_) | Self::Line { .. } | Self::Flat { .. } => {}
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ mod bad_scenes;
 mod limits;
 mod measured_maps;
 mod own_models;
+mod profiles;
 mod program;
 mod rectangles;
 mod report;

@@ -11,7 +11,7 @@ use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     Adhesion, ContactModel, Effects, Error, Friction, Hardness, History, HistoryModel, HistoryState, Load,
-    Normalisation, Outputs, RequiredMemory, Result, Rheology, Scene, Source, Step, Stop, Tangential,
+    Normalisation, Outputs, RequiredMemory, Result, Rheology, Scene, Source, Step, Stop, Surface, Tangential,
     TangentialState, never,
 };
 use std::sync::Arc;
@@ -86,6 +86,10 @@ impl<M: ContactModel> Equivalent<M> {
     }
 
     fn normal(&self, scene: &Scene, seed: u64) -> Result<Normal> {
+        if matches!(scene.surface, Surface::Profile(_)) {
+            let what = "a profile (a body uniform along y): friction and rheology go through an equivalent body in three dimensions";
+            return Err(Error::unsupported(NAME, what));
+        }
         for (name, value, most) in [("per_decade", self.per_decade, 1000), ("decades", self.decades, 12)] {
             if !(1..=most).contains(&value) {
                 return Err(Error::domain(name, f64::from(value), format!("1 to {most}")));

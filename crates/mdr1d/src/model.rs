@@ -16,6 +16,10 @@ const NAME: &str = "mdr1d";
 /// Memory of drawing a line, bytes for each element.
 pub const BYTES_PER_ELEMENT: f64 = 40.0;
 
+/// Why a measured profile is refused.
+const PROFILE: &str = "a measured profile: the method replaces a surface by a line of another spectrum, C_1D = pi q C_2D, and a measured profile \
+    is not that line";
+
 /// The method of reduction of dimensionality.
 ///
 /// Takes a [`Surface::SelfAffine`] (the line is drawn from the seed), a [`Surface::Heights`] (phases are drawn, the spectrum of the
@@ -123,6 +127,7 @@ impl ContactModel for Mdr1d {
                 let line = LineGenerator::of_map(map, self.elements)?.line(seed)?;
                 Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, modulus, outputs)))
             }
+            Surface::Profile(_) => Err(Error::unsupported(NAME, PROFILE)),
             other => Err(Error::unsupported(NAME, other.kind())),
         }
     }

@@ -22,7 +22,7 @@ const PRESCRIBED: f64 = 7.0;
 pub fn height_map_memory(surface: &Surface, cells: impl Into<Cells>) -> f64 {
     let map = cells.into().map_bytes();
     match surface {
-        Surface::Heights(_) => 0.0,
+        Surface::Heights(_) | Surface::Profile(_) => 0.0,
         Surface::SelfAffine(_) => DRAWN * map,
         _ => map,
     }

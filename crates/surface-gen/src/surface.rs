@@ -36,8 +36,10 @@ pub fn height_map(surface: &Surface, cells: impl Into<Cells>, seed: u64) -> Resu
     let (cells, size) = (cells.into(), surface.size());
     let map = match *surface {
         Surface::SelfAffine(ref s) => self_affine_map(s, cells, seed)?,
-        Surface::Heights(ref map) if map.cells() == cells => return Ok(Arc::clone(map)),
-        Surface::Heights(ref map) => {
+        Surface::Heights(ref map) | Surface::Profile(ref map) if map.cells() == cells => {
+            return Ok(Arc::clone(map));
+        }
+        Surface::Heights(ref map) | Surface::Profile(ref map) => {
             let Cells { columns, rows } = cells;
             return Err(Error::Shape {
                 name: "heights".into(),

@@ -37,6 +37,8 @@ pub struct Description {
 pub enum Absent {
     /// The spectrum of a map with undefined points is that of their pattern too.
     Undefined,
+    /// A profile has no rings: its own spectrum is that of `surface_statistics::ProfileFit`.
+    Profile,
     /// All heights are one.
     NoRelief,
     /// Too few rings lie in the range of the fit: fewer than about 40 cells along the shorter side, or cells
@@ -48,6 +50,7 @@ impl fmt::Display for Absent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Undefined => "points are undefined; fill them first",
+            Self::Profile => "one row of points has the spectrum of a profile, not of a surface",
             Self::NoRelief => "no relief",
             Self::FewWaves => "too few waves along one side",
         })
@@ -84,12 +87,15 @@ pub fn describe(map: &HeightMap) -> Description {
     let ends = |(low, high): (f64, f64), h: f64| (low.min(h), high.max(h));
     let (low, high) = map.defined().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
     let whole = undefined == 0;
-    let spectrum = windowed(map).and_then(|map| radial_spectrum(&map).ok()).unwrap_or_default();
+    let rings = || windowed(map).and_then(|map| radial_spectrum(&map).ok()).unwrap_or_default();
+    let spectrum = if cells.rows == 1 { Vec::new() } else { rings() };
     let fitted = fit_range(map);
     let hurst = if !whole {
         Err(Absent::Undefined)
     } else if high <= low {
         Err(Absent::NoRelief)
+    } else if cells.rows == 1 {
+        Err(Absent::Profile)
     } else {
         hurst_from_spectrum(&spectrum, fitted[0], fitted[1]).map_err(|_| Absent::FewWaves)
     };

@@ -77,7 +77,7 @@ pub(crate) fn detect(
         (_, Some(found)) => Ok(Some(found)),
         (expected, None) => match (foreign(start), expected) {
             (Some(error), _) => Err(error),
-            (None, None | Some(Format::Text | Format::Xyz)) => Ok(expected),
+            (None, None | Some(Format::Text | Format::Xyz | Format::Profile)) => Ok(expected),
             (None, Some(expected)) => Err(ContentError::Other { expected }),
         },
     }

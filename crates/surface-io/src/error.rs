@@ -134,15 +134,6 @@ pub enum ContentError {
         /// The format that it looks like.
         found: Format,
     },
-    /// Two columns, the first of ascending numbers: x and z along a line.
-    #[error(
-        "{lines} lines of two numbers, the first of them ascending: a profile x, z along a line, which is no map: \
-         surface_io::profile reads it (a map of two columns: say format = \"text\")"
-    )]
-    Profile {
-        /// Lines.
-        lines: usize,
-    },
     /// Three columns: a matrix of three columns, or points.
     #[error(
         "{lines} lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\""

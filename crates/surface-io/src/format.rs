@@ -29,6 +29,8 @@ formats! {
     Text = "text", "a text matrix";
     /// Points x, y, z as text, one per line, in any order.
     Xyz = "xyz", "XYZ points";
+    /// Points x, z of a profile as text, one per line: a body that is uniform along y.
+    Profile = "profile", "a profile x, z";
     /// Gwyddion's own file.
     Gwy = "gwy", "GWY (Gwyddion)";
     /// Nanoscope, of Digital Instruments, Veeco and Bruker.

@@ -26,7 +26,7 @@
 //! * **Format.** Binary ones by their first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
 //!   a text matrix; three columns without either are points or a matrix by their comments, points where the first two are all
 //!   places of a grid, or else an error; two
-//!   columns, the first of ascending numbers, are a profile, which is refused by its name ([`profile`] reads it). Other
+//!   columns of more than eight lines, the first of ascending or descending numbers, are a profile. Other
 //!   files that people try (archives, pictures) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
 //!   Comments begin with `#` or `%`; lines before the numbers that begin with a word are a header like them. Of both count `Width`,
@@ -37,6 +37,8 @@
 //! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
 //!   is a header's width or height without the other, and two that are square cells within the decimals that
 //!   are printed. Cells whose sides differ by more than 1e4 are an error.
+//! * **Profiles.** Points x, z with equal steps become a map of one row, as does any row whose file says its length along x alone
+//!   ([`Metadata::profile`]): a body that is uniform along y, on square cells.
 //! * **Points.** In any order; the spacing along each axis is the smallest step, refined over the whole
 //!   range, and one for both where they differ by no more than the points are off their places. A point may
 //!   be off its place by a tenth of a found spacing or a quarter of a given one, how far one is is told, two

@@ -3,6 +3,7 @@
 mod axis;
 mod profile;
 
+pub(crate) use profile::row;
 pub use profile::{profile, profile_from_bytes};
 
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit, check_unit};

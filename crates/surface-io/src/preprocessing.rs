@@ -212,6 +212,9 @@ impl Scan {
             let what = format!("{} {name} {unit}", self.metadata().number).trim().to_owned();
             return Err(ContentError::NoHeights { what });
         }
+        if self.metadata().profile {
+            of_profile(preprocessing)?;
+        }
         let (size, cell) = self.sides()?;
         // Cells that no map may have are refused before anything is fitted to them.
         Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
@@ -473,6 +476,22 @@ fn repair(
         steps.push(format!("{found} outliers beyond {times} robust standard deviations made undefined"));
     }
     Ok(())
+}
+
+/// Refuses steps that have no meaning for a profile.
+fn of_profile(preprocessing: &Preprocessing) -> Result<(), ContentError> {
+    let reason = "a profile has one row";
+    let refused = |what| Err(ContentError::Useless { what, reason });
+    match preprocessing {
+        Preprocessing { crop: Some(Crop::Centre), .. } => refused("crop = \"centre\""),
+        Preprocessing { align_lines: Some(_), .. } => refused("align_lines"),
+        Preprocessing { scars: Some(_), .. } => refused("scars"),
+        Preprocessing { filter_across: Some(_), .. } => refused("filter_across"),
+        Preprocessing { quarter_turns: 1 | 3, .. } => refused("a rotation by 90 degrees"),
+        Preprocessing { detrend: Detrend::Sphere, .. } => refused("detrend = \"sphere\""),
+        Preprocessing { detrend: Detrend::Cylinder, .. } => refused("detrend = \"cylinder\""),
+        _ => Ok(()),
+    }
 }
 
 /// The map mirrored and turned.

@@ -2,7 +2,7 @@
 
 use crate::channel::{StoredChannel, StoredUnit, check_unit};
 use crate::error::{ContentError, Place};
-use crate::extent;
+use crate::extent::{self, Extent};
 use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::provenance::{Origin, Sourced, contradiction, sourced};
@@ -25,6 +25,9 @@ pub struct Metadata {
     pub rows: usize,
     /// Columns.
     pub columns: usize,
+    /// Whether it is a profile: one row whose file says how far it reaches along x alone. It stands for a body that is uniform along y;
+    /// its cells are squares unless the caller says otherwise, and a force on it is one on the side of a cell along y.
+    pub profile: bool,
     /// Sides of the map along x and y; `None` where neither they nor the cells are known.
     pub size: Option<[Quantity; 2]>,
     /// Sides of one cell along x and y; `None` where neither they nor the size are known.
@@ -57,8 +60,19 @@ impl fmt::Display for Metadata {
         if let Some(name) = &self.name {
             writeln!(f, "channel    {} {name}", self.number)?;
         }
-        writeln!(f, "shape      {} rows of {}", self.rows, self.columns)?;
+        if self.profile {
+            writeln!(f, "shape      a profile of {} points", self.columns)?;
+        } else {
+            writeln!(f, "shape      {} rows of {}", self.rows, self.columns)?;
+        }
         match (&self.size, &self.cell) {
+            (Some([x, _]), Some(Sourced { value: [dx, dy], origin })) if self.profile => {
+                writeln!(
+                    f,
+                    "length     {x} ({origin}), steps of {dx}
+body       uniform along y: forces are those on {dy} of it"
+                )?;
+            }
             (Some([x, y]), Some(Sourced { value: [dx, dy], origin })) => {
                 writeln!(
                     f,
@@ -143,6 +157,7 @@ impl Scan {
         }
         notes.extend(lone_extremes(&heights));
         let count = [columns, rows];
+        let profile = rows == 1 && matches!(extent, [Some(_), None]);
         let given = extent::given(declared, count)?;
         let extents = match (given, extent) {
             (Some(given), file) => {
@@ -154,6 +169,7 @@ impl Scan {
                 Some((given, Origin::Caller))
             }
             (None, [Some(x), Some(y)]) => Some(([x, y], Origin::File)),
+            (None, [Some(x), None]) if profile => Some(([x, Extent::Cell(x.cell(columns)?)], Origin::File)),
             (None, _) => None,
         };
         let (mut size, mut cell) = (None, None);
@@ -169,6 +185,7 @@ impl Scan {
             details,
             rows,
             columns,
+            profile,
             size,
             cell,
             unit,

@@ -62,7 +62,9 @@ impl<'a> SurfaceFile<'a> {
     fn new(path: &Path, input: impl Input + 'a, length: u64, declared: &ReadOptions) -> Result<Self> {
         let (mut source, format) = told(path, input, length, declared)?;
         let (format, mut channels) = match format {
-            None | Some(Format::Text | Format::Xyz) => of_text(&mut source, format, declared)?,
+            None | Some(Format::Text | Format::Xyz | Format::Profile) => {
+                of_text(&mut source, format, declared)?
+            }
             Some(format) => {
                 no_lines(declared).map_err(Error::content(path))?;
                 let reader = READERS.iter().find(|reader| reader.format == format);
@@ -199,7 +201,7 @@ fn read(
     Scan::new(source.path(), format, (number, channel), heights, declared).map_err(|e| source.content(e))
 }
 
-/// Matrices or points.
+/// Matrices, points or profiles.
 fn of_text(
     source: &mut Source<'_>,
     format: Option<Format>,
@@ -213,6 +215,7 @@ fn of_text(
         let format = format.map_or_else(|| of_table(&table), Ok)?;
         let channel = match format {
             Format::Xyz => points::grid(&table, declared),
+            Format::Profile => points::row(&table, declared),
             _ => text::matrix(table, declared),
         };
         Ok((format, channel?))
@@ -228,7 +231,7 @@ fn of_text(
     Ok((first.unwrap_or(Format::Text), channels))
 }
 
-/// Whether numbers are a matrix or points.
+/// Whether numbers are a matrix, points or a profile.
 fn of_table(table: &text::TextTable) -> Result<Format, ContentError> {
     if table.columns == 3 && table.rows() > 3 {
         // Numbers whose first two columns are all places of a grid, each once, are no heights.
@@ -237,7 +240,7 @@ fn of_table(table: &text::TextTable) -> Result<Format, ContentError> {
         return table.heading.format().or_else(places).ok_or(ambiguous);
     }
     if table.is_profile() {
-        return Err(ContentError::Profile { lines: table.rows() });
+        return Ok(Format::Profile);
     }
     Ok(Format::Text)
 }

@@ -99,13 +99,14 @@ impl TextTable {
         self.values.len() / self.columns
     }
 
-    /// Whether these are two columns, the first of which only goes up, as x does along a profile.
+    /// Whether these are two columns, the first of which only goes up or only goes down where it is a number, as x does along a profile.
     pub(crate) fn is_profile(&self) -> bool {
-        let (rows, x) = (self.rows(), |row: usize| self.values[2 * row]);
-        if self.columns != 2 || rows <= PROFILE {
+        if self.columns != 2 || self.rows() <= PROFILE {
             return false;
         }
-        (1..rows).all(|row| x(row) > x(row - 1))
+        let along: Vec<f64> = self.values.iter().step_by(2).copied().filter(|x| !x.is_nan()).collect();
+        let every = |order: fn(f64, f64) -> bool| along.windows(2).all(|pair| order(pair[0], pair[1]));
+        along.len() > PROFILE && (every(|a, b| a < b) || every(|a, b| a > b))
     }
 
     /// Number of the first line of data, from 1.

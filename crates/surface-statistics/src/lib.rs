@@ -40,6 +40,7 @@
 //! | slope and curvature over a distance | [`ScaleDependence`] | left out |
 //! | Nayak's parameter | [`nayak_parameter`] | error |
 //! | Hurst exponent, roll-off, cut-off, noise | [`SpectrumFit`] | error |
+//! | Hurst exponent of a profile | [`ProfileFit`] | error |
 //! | wavelengths to be trusted | [`ReliableWavelengths`] | |
 //!
 //! # Conventions
@@ -97,8 +98,9 @@
 //!
 //! # What it does not do
 //!
-//! Filters (Gaussian, spline) and levelling, functional and volume parameters (Sk, Vmp, ...), profiles of
-//! lines, fits of anisotropic spectra, dales.
+//! Filters (Gaussian, spline) and levelling, functional and volume parameters (Sk, Vmp, ...), roll-off and
+//! cut-off of profiles, fits of anisotropic spectra, dales. A profile is a map of one row: height parameters of
+//! such a map are those of its primary profile (Pa, Pq, ... of ISO 21920-2).
 
 mod areal;
 mod bins;
@@ -109,6 +111,7 @@ mod difference_bands;
 mod fit;
 mod fourier;
 mod normal;
+mod profile_fit;
 mod relative;
 mod reliable;
 mod spectrum;
@@ -122,6 +125,7 @@ pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};
 pub use difference::{DifferenceMap, HeightDifference};
 pub use difference_bands::DifferenceBands;
 pub use fit::{FitOptions, Interval, SpectrumFit, Wavelength};
+pub use profile_fit::ProfileFit;
 pub use reliable::ReliableWavelengths;
 pub use spectrum::PowerSpectrum;
 pub use taper::Taper;

@@ -192,7 +192,7 @@ fn coarser(problem: &Problem) -> Problem {
             *mean = if count > 0.0 { sum / count } else { f64::INFINITY };
         }
     });
-    let mut coarse = Problem::new(grid, Arc::new(z), problem.operators.table().boundary(), &tuning);
+    let mut coarse = Problem::new(grid, Arc::new(z), problem.operators.table().medium(), &tuning);
     coarse.hardness = problem.hardness * pressure_ratio(fine, &tuning);
     coarse
 }

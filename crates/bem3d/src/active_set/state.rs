@@ -5,12 +5,12 @@ use super::hardness::elastic;
 use super::residuals::Residuals;
 use super::undecided::undecided;
 use crate::geometry::{CellSet, Grid};
-use crate::kernel::KernelTable;
+use crate::kernel::{KernelTable, Medium};
 use crate::linear::Workspace;
 use crate::operator::Operators;
 use crate::parts::{Part, timed};
 use crate::tuning::Tuning;
-use contact_model::{Boundary, Status};
+use contact_model::Status;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -33,10 +33,10 @@ pub struct Problem {
 
 impl Problem {
     /// A surface of gaps z from the plane of first touch, row-major; infinite where a point is undefined.
-    pub fn new(grid: Grid, z: Arc<Vec<f64>>, boundary: Boundary, tuning: &Tuning) -> Self {
+    pub fn new(grid: Grid, z: Arc<Vec<f64>>, medium: impl Into<Medium>, tuning: &Tuning) -> Self {
         Self {
             candidates: Candidates::new(grid, z),
-            operators: timed(Part::Plans, || Operators::new(KernelTable::shared(grid, boundary), tuning)),
+            operators: timed(Part::Plans, || Operators::new(KernelTable::shared(grid, medium), tuning)),
             workspace: Workspace::default(),
             hardness: f64::INFINITY,
             coarser: None,

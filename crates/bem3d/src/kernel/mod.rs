@@ -1,10 +1,11 @@
-//! Influence coefficients: Love's for a half-space that is unloaded outside the map, the periodic ones, and tables of both.
+//! Influence coefficients: Love's for a half-space that is unloaded outside the map, the periodic ones, those of a half-plane, and tables of them.
 
 mod alternating;
+mod half_plane;
 pub mod love;
 mod periodic;
 mod symbol;
 mod table;
 
 pub use symbol::Symbol;
-pub use table::KernelTable;
+pub use table::{KernelTable, Medium};

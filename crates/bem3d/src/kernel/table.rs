@@ -1,5 +1,6 @@
-//! The kernel of one grid, free or periodic, and its symbols, shared by all surfaces of that grid.
+//! The kernel of one grid and medium, and its symbols, shared by all surfaces of that grid.
 
+use super::half_plane;
 use super::love::{influence_of_rectangle, influence_row, smallest_eigenvalue};
 use super::periodic::PeriodicKernel;
 use super::symbol::Symbol;
@@ -9,13 +10,37 @@ use contact_model::Boundary;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
+/// What deforms, and how it goes on outside the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Medium {
+    /// A half-space that is unloaded outside the map.
+    HalfSpace,
+    /// A half-space on which the map repeats itself.
+    Periodic,
+    /// A half-plane in plane strain, unloaded outside the line: one row of strips.
+    HalfPlane,
+}
+
+impl Medium {
+    /// What lies outside the map.
+    pub fn boundary(self) -> Boundary {
+        if self == Self::Periodic { Boundary::Periodic } else { Boundary::Free }
+    }
+}
+
+impl From<Boundary> for Medium {
+    fn from(boundary: Boundary) -> Self {
+        if boundary == Boundary::Periodic { Self::Periodic } else { Self::HalfSpace }
+    }
+}
+
 /// The kernel at all lags of a grid and the symbols made from it.
 ///
 /// Rows and symbols are made when they are first needed: a contact of three cells does not pay for a table of four million.
 /// What it holds depends on the grid alone, so that sharing it changes no result.
 pub struct KernelTable {
     grid: Grid,
-    boundary: Boundary,
+    medium: Medium,
     smallest_eigenvalue: f64,
     /// Made at the first use where the rectangle repeats itself.
     periodic: OnceLock<PeriodicKernel>,
@@ -28,24 +53,28 @@ pub struct KernelTable {
 impl fmt::Debug for KernelTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Grid { columns, rows, .. } = self.grid;
-        write!(f, "KernelTable({columns} x {rows} cells, {:?})", self.boundary)
+        write!(f, "KernelTable({columns} x {rows} cells, {:?})", self.medium)
     }
 }
 
 impl KernelTable {
     /// The table of a grid; one table serves all surfaces alive at the same time.
-    pub fn shared(grid: Grid, boundary: Boundary) -> Arc<Self> {
+    pub fn shared(grid: Grid, medium: impl Into<Medium>) -> Arc<Self> {
         static LIVE: Mutex<Vec<Weak<KernelTable>>> = Mutex::new(Vec::new());
+        let medium = medium.into();
         let mut live = lock(&LIVE);
         live.retain(|t| t.strong_count() > 0);
-        let same = |t: &Arc<Self>| t.grid == grid && t.boundary == boundary;
+        let same = |t: &Arc<Self>| t.grid == grid && t.medium == medium;
         if let Some(table) = live.iter().filter_map(Weak::upgrade).find(same) {
             return table;
         }
         let table = Arc::new(Self {
             grid,
-            boundary,
-            smallest_eigenvalue: smallest_eigenvalue(grid.stretch),
+            medium,
+            smallest_eigenvalue: match medium {
+                Medium::HalfPlane => half_plane::smallest_eigenvalue(grid.stretch),
+                _ => smallest_eigenvalue(grid.stretch),
+            },
             periodic: OnceLock::new(),
             rows: (0..grid.rows).map(|_| OnceLock::new()).collect(),
             double: Mutex::default(),
@@ -63,11 +92,16 @@ impl KernelTable {
 
     /// What lies outside the map.
     pub fn boundary(&self) -> Boundary {
-        self.boundary
+        self.medium.boundary()
+    }
+
+    /// What deforms.
+    pub fn medium(&self) -> Medium {
+        self.medium
     }
 
     fn is_periodic(&self) -> bool {
-        self.boundary == Boundary::Periodic
+        self.medium == Medium::Periodic
     }
 
     fn periodic(&self) -> &PeriodicKernel {
@@ -91,10 +125,10 @@ impl KernelTable {
 
     /// Displacement of a cell under its own unit pressure.
     pub fn own(&self) -> f64 {
-        if self.is_periodic() {
-            self.periodic().at(0, 0)
-        } else {
-            influence_of_rectangle(0, 0, self.grid.stretch)
+        match self.medium {
+            Medium::Periodic => self.periodic().at(0, 0),
+            Medium::HalfSpace => influence_of_rectangle(0, 0, self.grid.stretch),
+            Medium::HalfPlane => half_plane::influence(0, self.grid),
         }
     }
 
@@ -111,13 +145,19 @@ impl KernelTable {
 
     /// Writes the kernel at the lags `(0 .., y)`.
     fn fill(&self, y: usize, row: &mut [f64]) {
-        if self.is_periodic() {
-            let kernel = self.periodic();
-            for (x, value) in row.iter_mut().enumerate() {
-                *value = kernel.at(x, y);
+        match self.medium {
+            Medium::Periodic => {
+                let kernel = self.periodic();
+                for (x, value) in row.iter_mut().enumerate() {
+                    *value = kernel.at(x, y);
+                }
             }
-        } else {
-            influence_row(y, self.grid.stretch, row);
+            Medium::HalfSpace => influence_row(y, self.grid.stretch, row),
+            Medium::HalfPlane => {
+                for (x, value) in row.iter_mut().enumerate() {
+                    *value = half_plane::influence(x, self.grid);
+                }
+            }
         }
     }
 
@@ -137,7 +177,12 @@ impl KernelTable {
     }
 
     fn within_period(&self, lengths: Lengths) -> Lengths {
-        if self.is_periodic() { lengths.within_period(self.grid) } else { lengths }
+        match self.medium {
+            Medium::Periodic => lengths.within_period(self.grid),
+            Medium::HalfSpace => lengths,
+            // One row has no lag along y.
+            Medium::HalfPlane => Lengths { y: 1, ..lengths },
+        }
     }
 
     /// Scaled symbol of the operator in double precision.
@@ -242,7 +287,7 @@ mod tests {
         assert_eq!((free.boundary(), periodic.boundary()), (Boundary::Free, Boundary::Periodic));
         assert_eq!((free.grid(), periodic.grid()), (grid, grid));
         assert!(Arc::ptr_eq(&periodic, &KernelTable::shared(grid, Boundary::Periodic)));
-        assert_eq!(format!("{free:?}"), "KernelTable(37 x 37 cells, Free)");
+        assert_eq!(format!("{free:?}"), "KernelTable(37 x 37 cells, HalfSpace)");
     }
 
     #[test]

@@ -30,11 +30,15 @@ impl PreparedContact for PreparedBem3d {
         };
         let target = match load {
             Load::Force(f) => Target::Force(held("force", f, units.force_in(f) / PI)?),
-            Load::Approach(d) if !self.is_periodic() => {
+            Load::Approach(d) if self.has_approach() => {
                 Target::Approach(held("approach", d, units.approach_in(d))?)
             }
             Load::MeanGap(gap) if self.is_periodic() => {
                 return self.at_mean_gap(signed("mean gap", gap, units.approach_in(gap))?, stop);
+            }
+            Load::Approach(_) if !self.is_periodic() => {
+                let what = "an approach of a profile with free boundaries: displacements of a half-plane have no zero at infinity; give a force or a pressure";
+                return Err(Error::unsupported(NAME, what));
             }
             Load::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";

@@ -4,6 +4,7 @@ use super::Bem3d;
 use super::adhesive::{AdhesiveContact, WithoutAdhesion};
 use super::plastic_path::PlasticPath;
 use super::prepared::{NAME, refuse_together};
+use super::profile;
 use crate::tuning::Tuning;
 use contact_model::{
     Adhesion, ContactModel, Error, Hardness, History, HistoryModel, RequiredMemory, Result, Scene, Source,
@@ -37,6 +38,7 @@ impl HistoryModel for Bem3dPath {
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
         scene.validate()?;
         refuse_together(&scene.effects)?;
+        profile::check(scene)?;
         match scene.effects.adhesion {
             Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work > 0.0 => {
                 Ok(Box::new(AdhesiveContact::new(&self.0, scene, seed, &Tuning::DEFAULT)?))

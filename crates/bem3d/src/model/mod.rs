@@ -8,6 +8,7 @@ mod mean_gap;
 mod options;
 mod plastic_path;
 mod prepared;
+mod profile;
 mod state;
 
 pub use history::Bem3dPath;
@@ -59,6 +60,7 @@ impl Bem3d {
     ) -> Result<Box<dyn PreparedContact>> {
         refuse_together(&scene.effects)?;
         scene.validate()?;
+        profile::check(scene)?;
         Ok(match scene.effects.adhesion {
             Adhesion::Off => Box::new(self.prepared(scene, seed, tuning)?),
             Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work > 0.0 => {
@@ -75,6 +77,7 @@ impl Bem3d {
     /// A surface without adhesion, ready to be loaded.
     fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
         scene.validate()?;
+        profile::check(scene)?;
         if !matches!(scene.effects.boundary, Boundary::Free | Boundary::Periodic) {
             scene.refuse_effects(NAME)?;
         }
@@ -83,11 +86,12 @@ impl Bem3d {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }
         let map = match &scene.surface {
-            Surface::Heights(map) => Arc::clone(map),
+            Surface::Heights(map) | Surface::Profile(map) => Arc::clone(map),
             Surface::Line { .. } => return Err(Error::unsupported(NAME, "a line (it needs a map)")),
             surface => surface_gen::height_map(surface, self.grid(surface.size()), seed)?,
         };
-        let has_rms = matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_));
+        let has_rms =
+            matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
         PreparedBem3d::new(*self, scene, &map, has_rms, tuning)
     }
 }

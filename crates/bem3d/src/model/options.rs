@@ -67,7 +67,7 @@ impl Bem3d {
     /// What planning and a light load need at least, with the fields that are asked for.
     pub(super) fn memory(&self, scene: &Scene) -> RequiredMemory {
         let cells = match &scene.surface {
-            Surface::Heights(map) => map.cells(),
+            Surface::Heights(map) | Surface::Profile(map) => map.cells(),
             surface => self.grid(surface.size()),
         };
         let outputs = &scene.outputs;

@@ -1,14 +1,16 @@
 //! One surface, ready to be loaded.
 
 use super::options::{Bem3d, Method};
+use super::profile;
 use crate::active_set::{self, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
+use crate::kernel::Medium;
 use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
     Adhesion, Boundary, Effects, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs,
-    Result, Scene, Size, Step, Stop, Tangential,
+    Result, Scene, Size, Step, Stop, Surface, Tangential,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -83,6 +85,8 @@ pub struct PreparedBem3d {
     pub(super) memory: Option<Memory>,
     /// Sides of the map.
     pub(super) size: Size,
+    /// Whether it is a profile: a body uniform along y.
+    pub(super) is_profile: bool,
 }
 
 impl PreparedBem3d {
@@ -109,7 +113,7 @@ impl PreparedBem3d {
         let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
-        let mut problem = Problem::new(grid, Arc::new(z), scene.effects.boundary, tuning);
+        let mut problem = Problem::new(grid, Arc::new(z), profile::medium(scene), tuning);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         if let Hardness::Limit { pressure } = scene.effects.hardness {
@@ -123,7 +127,7 @@ impl PreparedBem3d {
             Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
         Ok(Self {
             options,
-            outputs: scene.outputs,
+            outputs: profile::outputs(scene.outputs, problem.operators.table().medium()),
             problem,
             nondimensional,
             height,
@@ -133,11 +137,17 @@ impl PreparedBem3d {
             last: None,
             memory: None,
             size: map.size(),
+            is_profile: matches!(scene.surface, Surface::Profile(_)),
         })
     }
 
     pub(super) fn is_periodic(&self) -> bool {
         self.problem.operators.table().boundary() == Boundary::Periodic
+    }
+
+    /// Whether states have an approach: displacements are counted from those at infinity.
+    pub(super) fn has_approach(&self) -> bool {
+        self.problem.operators.table().medium() == Medium::HalfSpace
     }
 
     pub(super) fn limits(&self) -> Limits {

@@ -39,7 +39,6 @@ impl PreparedBem3d {
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let force: f64 = solved.p.iter().sum();
-        let periodic = self.is_periodic();
         let mut certificate = Certificate {
             duality_gap: solved.residuals.duality_gap,
             penetration: solved.residuals.penetration,
@@ -73,7 +72,7 @@ impl PreparedBem3d {
         report.applications = std::mem::take(&mut self.problem.operators.applications);
         report.contact_cells = Some(solved.contact.len());
         report.certificate = certificate;
-        let approach = (!periodic).then(|| units.approach(solved.d)).transpose()?;
+        let approach = self.has_approach().then(|| units.approach(solved.d)).transpose()?;
         let mean_gap = self.outputs.mean_gap.then(|| units.approach(self.gap_of(&solved))).transpose()?;
         let dimensional = |t: &Stiffness| units.stiffness(PI * t.value * self.magnification(t.value));
         let stiffness = tangent.as_ref().map(|t| dimensional(&t.stiffness)).transpose()?;
@@ -233,13 +232,15 @@ impl PreparedBem3d {
     fn resolution(&self, solved: &Solved) -> Result<ContactResolution> {
         let (grid, contact) = (self.problem.grid(), &solved.contact);
         let largest = solved.p.iter().copied().fold(0.0, f64::max);
-        let at_edge =
-            |&(x, y): &(usize, usize)| x == 0 || y == 0 || x + 1 == grid.columns || y + 1 == grid.rows;
+        // A profile goes on along y.
+        let across = |y: usize| !self.is_profile && (y == 0 || y + 1 == grid.rows);
+        let at_edge = |&(x, y): &(usize, usize)| x == 0 || x + 1 == grid.columns || across(y);
         let edge_cells = if self.is_periodic() { 0 } else { contact.places().filter(at_edge).count() };
         let largest_share = largest / solved.p.iter().sum::<f64>();
         let pressure = self.nondimensional.pressure(PI * largest)?;
         let resolution = ContactResolution::new(pressure, largest_share, edge_cells);
-        if !self.outputs.area {
+        // The correction for the boundary is one for curved boundaries; a line contact is not biased.
+        if !self.outputs.area || self.is_profile {
             return Ok(resolution);
         }
         let (cells, index, boundary) = self.indexed(contact);
@@ -288,7 +289,7 @@ impl PreparedBem3d {
         let mean_gap =
             self.outputs.mean_gap.then(|| self.nondimensional.approach(self.mean - d)).transpose()?;
         ContactState::new(0.0, report)
-            .with_approach((!self.is_periodic()).then(|| self.nondimensional.approach(d)).transpose()?)
+            .with_approach(self.has_approach().then(|| self.nondimensional.approach(d)).transpose()?)
             .with_mean_gap(mean_gap)
             .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(0.0))
             .with_area(self.outputs.area.then_some(0.0))

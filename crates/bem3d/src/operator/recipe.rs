@@ -2,9 +2,8 @@
 
 use super::two_level::Split;
 use crate::geometry::{CellSet, Lengths, Window};
-use crate::kernel::KernelTable;
+use crate::kernel::{KernelTable, Medium};
 use crate::tuning::Tuning;
-use contact_model::Boundary;
 use std::fmt;
 
 /// How one application of the influence matrix is done.
@@ -120,7 +119,7 @@ impl Planner<'_> {
             if direct <= fft { (direct, Application::Direct) } else { (fft, Application::Fft(lengths)) };
         let cells = sources.len().max(targets.len());
         // The smooth far field is that of the free kernel of square cells.
-        let known = self.table.boundary() == Boundary::Free && self.table.grid().has_square_cells();
+        let known = self.table.medium() == Medium::HalfSpace && self.table.grid().has_square_cells();
         let few = cells <= tuning.largest_scattered && cells * tuning.scattered <= window.count();
         if !(self.two_levels && known && few) {
             return best;
@@ -212,6 +211,7 @@ fn close_pairs(sources: &CellSet, targets: &CellSet, window: Window, radius: usi
 mod tests {
     use super::*;
     use crate::geometry::Grid;
+    use contact_model::Boundary;
     use std::sync::Arc;
 
     const GRID: Grid = Grid { columns: 2049, rows: 2049, stretch: 1.0 };

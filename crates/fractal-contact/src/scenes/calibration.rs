@@ -152,10 +152,14 @@ fn small_solves(
     let seed = scene.seed(0);
     let mut physics = scene.scene(numerics, seed)?;
     let mut grid = numerics.boundary_elements().map(|elements| elements.grid(scene.surface.size()));
-    if let Surface::Heights(map) = &physics.surface {
+    if let Surface::Heights(map) | Surface::Profile(map) = &physics.surface {
         let thin = sampled(map, coarse)?;
         grid = Some(thin.cells());
-        physics.surface = Surface::Heights(std::sync::Arc::new(thin));
+        let thin = std::sync::Arc::new(thin);
+        physics.surface = match physics.surface {
+            Surface::Profile(_) => Surface::Profile(thin),
+            _ => Surface::Heights(thin),
+        };
     }
     // Larger cells resolve an attraction as well whose range is larger by the root of that: so it costs as many
     // sweeps, and is not refused.

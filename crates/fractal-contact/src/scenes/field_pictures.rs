@@ -95,6 +95,17 @@ pub(crate) fn draw(
             let contact: Vec<bool> = pressure.into_iter().flatten().map(|p| p > 0.0).collect();
             let name = file(field, state.index, FieldFormat::Png.extension()).to_string();
             let mut picture = pictures::field(scene, field, model, (surface, state.index), cells, &values);
+            if scene.surface.is_profile() {
+                let step = scene.surface.size().x / cells.columns as f64;
+                let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
+                let stem = name.strip_suffix(".png").unwrap_or(&name);
+                for path in pictures::row(&picture, points.collect()).save(out, stem)? {
+                    let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
+                    state.files.retain(|file| file.name != name);
+                    state.files.push(StoredFile::of(out, name.to_owned())?);
+                }
+                continue;
+            }
             (picture.range, picture.contact) = (range, &contact);
             if states.len() > 1 && field != "heights" {
                 picture.subtitle += "; one scale for all loads";

@@ -82,6 +82,18 @@ impl FieldView {
         Some([finite().reduce(f32::min)?, finite().reduce(f32::max)?])
     }
 
+    /// The values of the first row over the middles of their cells.
+    pub fn row(&self, length: f64) -> Vec<(f64, f64)> {
+        let step = length / self.cells.columns as f64;
+        let shown = self.values.iter().zip(&self.places).take(self.columns).enumerate();
+        shown
+            .map(|(i, (&value, &place))| {
+                let column = i * self.block + usize::from(place) % self.block;
+                ((column as f64 + 0.5) * step, f64::from(value))
+            })
+            .collect()
+    }
+
     /// As bytes, little-endian.
     pub fn encode(&self) -> Vec<u8> {
         let head = [self.cells.columns, self.cells.rows, self.block].map(|n| (n as u64).to_le_bytes());

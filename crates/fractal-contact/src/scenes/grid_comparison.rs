@@ -139,7 +139,7 @@ pub(crate) fn solved_map(scene: &SceneFile, numerics: &Numerics, seed: u64) -> R
         return Err(Error::unsupported(numerics.name(), "heights on cells: it has none"));
     };
     match scene.surface.for_model(numerics, seed)? {
-        Surface::Heights(map) => Ok(map),
+        Surface::Heights(map) | Surface::Profile(map) => Ok(map),
         surface => surface_gen::height_map(&surface, elements.grid(surface.size()), seed),
     }
 }

@@ -100,7 +100,13 @@ pub fn info_statistics(
     let found = scan.preprocessed(preprocessing).map_err(Error::Surface)?;
     let metric = scan.metadata().unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
     let system = if metric { System::Si } else { System::None };
-    let statistics = MapStatisticsTables::new(&found.map, Boundary::Free, found.reliable_from, system);
+    let statistics = MapStatisticsTables::new(
+        &found.map,
+        scan.metadata().profile,
+        Boundary::Free,
+        found.reliable_from,
+        system,
+    );
     let name = path.file_name().map_or_else(|| "surface".into(), |name| name.to_string_lossy().into_owned());
     let mut header = Header { command: format!("fractal-contact info {name}"), ..Header::default() };
     for step in &found.steps {
@@ -141,7 +147,7 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
     Ok(text)
 }
 
-/// All channels of a surface's file as JSON: `{"channels": [{"name", "columns", "rows", "size": [x, y], "unit", "undefined", "minimum",
+/// All channels of a surface's file as JSON: `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "unit", "undefined", "minimum",
 /// "maximum", "rms"}]}`.
 ///
 /// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is "m"; values of another or no unit
@@ -176,6 +182,7 @@ fn channel(metadata: &Metadata) -> serde_json::Value {
         "name": metadata.name,
         "columns": metadata.columns,
         "rows": metadata.rows,
+        "profile": metadata.profile,
         "size": metadata.size.map(|size| size.map(Quantity::value)),
         "unit": unit,
         "undefined": metadata.undefined_share(),

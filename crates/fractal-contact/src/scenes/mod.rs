@@ -97,6 +97,7 @@ mod outputs;
 mod page;
 mod pictures;
 mod plan;
+mod profile_statistics;
 mod random_surface;
 mod registry;
 mod report;

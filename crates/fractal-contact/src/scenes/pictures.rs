@@ -116,6 +116,30 @@ pub(crate) fn field<'a>(
     }
 }
 
+/// A field of one row as a curve over x, instead of a picture one cell high; the points are (x, value), x in the scene's unit.
+pub(crate) fn row(picture: &FieldPicture<'_>, points: Vec<(f64, f64)>) -> Chart {
+    let extreme = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        points.iter().map(|p| of(p).abs()).filter(|v| v.is_finite()).fold(0.0, f64::max)
+    };
+    let (length, per_length) = plots::prefixed(picture.length_unit, extreme(&|p| p.0));
+    let (unit, per_unit) = plots::prefixed(picture.unit, extreme(&|p| p.1));
+    let label = |words: &str, unit: &str| {
+        if unit.is_empty() { words.to_owned() } else { format!("{words} ({})", unit_label(unit)) }
+    };
+    Chart {
+        title: picture.title.replace("3D boundary elements", "boundary elements in plane strain"),
+        subtitle: picture.subtitle.clone(),
+        x_label: label("$x$", &length),
+        y_label: label(&picture.quantity, &unit),
+        curves: vec![Curve {
+            label: "profile".into(),
+            points: points.into_iter().map(|(x, v)| (per_length * x, per_unit * v)).collect(),
+            band: Vec::new(),
+        }],
+        logarithmic: false,
+    }
+}
+
 /// The scene's name in a title.
 pub(crate) fn scene_name(scene: &SceneFile) -> String {
     let file = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());

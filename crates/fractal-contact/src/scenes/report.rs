@@ -269,7 +269,12 @@ impl Report<'_> {
         for view in &views {
             let (view, field, model, state) = view;
             let picture = pictures::field(self.scene, field, model, (0, *state), view.cells, &[]);
-            let figure = page::field(&picture, view, field)?.into_string();
+            let figure = if self.scene.surface.is_profile() {
+                page::chart(&pictures::row(&picture, view.row(self.scene.surface.size().x)))?
+            } else {
+                page::field(&picture, view, field)?
+            };
+            let figure = figure.into_string();
             bytes += figure.len();
             if bytes > MOST_BYTES {
                 break;
@@ -285,7 +290,7 @@ impl Report<'_> {
             @if drawn.is_empty() {
                 p { "No field was asked for: name `pressure`, `gap` or `heights` in [outputs]." }
             } @else {
-                p { (page::READING) @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, " (which) "; the \
+                p { @if !self.scene.surface.is_profile() { (page::READING) } @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, " (which) "; the \
                      others are files beside this page." } }
                 div.fields { @for (_, figure) in &drawn { (PreEscaped(figure)) } }
             }

@@ -19,6 +19,8 @@ pub(crate) struct FileMap {
     pub reliable_from: Option<f64>,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,
+    /// Whether it is a profile: one row that stands for a body uniform along y.
+    pub profile: bool,
 }
 
 /// Reads the file of a surface.
@@ -119,11 +121,13 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
                     `fill` or `undefined = \"no_contact\"` says what stands there instead";
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
     }
+    let profile = metadata.profile;
+    notes.extend(profile.then(|| uniform(&file, &map)));
     let mut metadata = metadata.to_string();
     for step in steps {
         metadata += &format!("\nthen       {step}");
     }
-    Ok(FileMap { map, metadata, reliable_from, notes })
+    Ok(FileMap { map, metadata, reliable_from, notes, profile })
 }
 
 /// Reads the surface of the second body, lays it on the first face to face, and adds both.
@@ -148,7 +152,12 @@ pub(crate) fn read_second(
             }
         },
     };
-    let FileMap { map, mut metadata, reliable_from, notes } = read_map(table, system, directory)?;
+    let FileMap { map, mut metadata, reliable_from, notes, profile } = read_map(table, system, directory)?;
+    if profile {
+        return Err(table
+            .diagnostic("[scene.second_surface] is a profile")
+            .with_help("a profile is a body uniform along y, alone: bring both surfaces as maps"));
+    }
     let (map, how) = match facing {
         Some(mirror) => (mirror.of(&map), mirror.to_string()),
         None => (map, "as it is seen through its body".to_owned()),
@@ -162,7 +171,18 @@ pub(crate) fn read_second(
         sum.size().x,
         sum.size().y
     );
-    Ok(FileMap { map: sum, metadata, reliable_from, notes })
+    Ok(FileMap { map: sum, metadata, reliable_from, notes, profile: false })
+}
+
+/// What a profile is taken for.
+fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
+    let help = "contact is that of plane strain: `bem3d` solves it, pressures do not depend on that width, and force over width is the force \
+                per length; theories of isotropic surfaces and `mdr1d` are refused";
+    let width = number(map.size().y);
+    let message = format!(
+        "a profile: the body is taken as uniform along y, and forces are those on a width of {width}"
+    );
+    Diagnostic::note(message).at(file.span()).with_help(help)
 }
 
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points reaches 6.

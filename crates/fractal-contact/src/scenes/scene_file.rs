@@ -10,7 +10,9 @@ use crate::scenes::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::scenes::outputs::{RequestedOutputs, read_outputs};
 use crate::scenes::registry::Registry;
 use crate::scenes::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
-use contact_model::{Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Pair, Rheology, Scene};
+use contact_model::{
+    Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Load, Pair, Rheology, Scene,
+};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use surface_io::Dimension;
@@ -295,6 +297,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
         accuracy: accuracy.as_ref().map(|(_, entry)| entry.key_span()),
     };
     check_request(&request, &request_entry, &surface, &effects)?;
+    check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
     let along = matches!(request, Loading::Path(_)) && depends_on_path(&effects);
     let models = models
         .into_iter()
@@ -523,6 +526,42 @@ fn check_request(
         }
         _ => Ok(()),
     }
+}
+
+/// What depends on where displacements of a half-plane are counted from: of a profile with free boundaries.
+fn check_half_plane(
+    request: &Loading,
+    entry: &Entry<'_>,
+    surface: &SceneSurface,
+    (effects, requested): (&Effects, &RequestedOutputs),
+    places: &Places,
+) -> Read<()> {
+    if !surface.is_profile() || effects.boundary == Boundary::Periodic {
+        return Ok(());
+    }
+    let why = "displacements under a body uniform along y have no zero at infinity";
+    let help = "prescribe `force` or `mean_pressure` and ask for area, pressure or gap; or add `boundary = \"periodic\"` to [effects], where a mean \
+                gap and its stiffness have a meaning";
+    let by_approach = match request {
+        Loading::Loads(loads) => loads.prescribed == Prescribed::Approach,
+        Loading::Path(steps) => steps.iter().any(|step| matches!(step.normal, Load::Approach(_))),
+    };
+    if by_approach {
+        let message = format!("an approach of a profile with free boundaries: {why}");
+        return Err(entry.diagnostic_at_key(message).with_help(help));
+    }
+    let outputs = &requested.outputs;
+    let asked = [
+        ("stiffness", outputs.stiffness),
+        ("stiffness_fixed_area", outputs.stiffness_fixed_area),
+        ("displacement", outputs.displacement),
+    ];
+    let Some((name, _)) = asked.iter().find(|(_, asked)| *asked) else { return Ok(()) };
+    let mut diagnostic = Diagnostic::new(format!("{name} of a profile with free boundaries: {why}"));
+    if let Some((_, span)) = places.outputs.iter().find(|(key, _)| key == name) {
+        diagnostic = diagnostic.at(span.clone());
+    }
+    Err(diagnostic.with_help(help))
 }
 
 /// Whether boundary elements have an effect that depends on the path.

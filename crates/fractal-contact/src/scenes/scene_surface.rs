@@ -2,6 +2,7 @@
 
 use crate::scenes::diagnostic::Diagnostic;
 use crate::scenes::entries::{Entries, Entry, LengthOrPair, Read, System};
+use crate::scenes::human_readable::number;
 use crate::scenes::numerics::Numerics;
 use crate::scenes::random_surface::{
     RandomSpectrum, RandomSurface, describe_self_affine, describe_sides, map_key,
@@ -43,8 +44,16 @@ impl SceneSurface {
         matches!(self, Self::Plain(Surface::SelfAffine(_)) | Self::Drawn { .. })
     }
 
+    /// Whether it is a profile: a body that is uniform along y.
+    pub fn is_profile(&self) -> bool {
+        matches!(self, Self::Plain(Surface::Profile(_)))
+    }
+
     /// Whether a model has other numbers for other seeds: of a given map only the line that stands for it has.
     pub(crate) fn is_random_for(&self, numerics: &Numerics) -> bool {
+        if self.is_profile() {
+            return false;
+        }
         let given = matches!(self, Self::Plain(Surface::Heights(_)));
         numerics.depends_on_realisation() && (!given || matches!(numerics, Numerics::Mdr1d(_)))
     }
@@ -53,15 +62,16 @@ impl SceneSurface {
     pub fn is_rough(&self) -> bool {
         matches!(
             self,
-            Self::Plain(Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. })
-                | Self::Drawn { .. }
+            Self::Plain(
+                Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_) | Surface::Line { .. }
+            ) | Self::Drawn { .. }
         )
     }
 
-    /// The map of a file, as it is solved.
+    /// The map of a file, as it is solved; that of a profile has one row.
     pub fn given_map(&self) -> Option<&Arc<HeightMap>> {
         match self {
-            Self::Plain(Surface::Heights(map)) => Some(map),
+            Self::Plain(Surface::Heights(map) | Surface::Profile(map)) => Some(map),
             _ => None,
         }
     }
@@ -69,7 +79,7 @@ impl SceneSurface {
     /// Cells that it brings, whatever a model asks for: those of a given map, and of its twin.
     pub(crate) fn own_cells(&self) -> Option<Cells> {
         match self {
-            Self::Plain(Surface::Heights(map)) => Some(map.cells()),
+            Self::Plain(Surface::Heights(map) | Surface::Profile(map)) => Some(map.cells()),
             Self::Plain(_) => None,
             Self::Drawn { rough, .. } => rough.own_cells(),
         }
@@ -85,6 +95,9 @@ impl SceneSurface {
         Ok(match self {
             Self::Plain(Surface::Heights(map)) => {
                 Self::Plain(Surface::Heights(Arc::new(sampled(map, longer)?)))
+            }
+            Self::Plain(Surface::Profile(map)) => {
+                Self::Plain(Surface::Profile(Arc::new(sampled(map, longer)?)))
             }
             Self::Plain(_) => self.clone(),
             Self::Drawn { rough, body } => {
@@ -105,6 +118,18 @@ impl SceneSurface {
                 }
                 text
             }
+            Self::Plain(Surface::Profile(map)) => {
+                let [length, width] = [map.size().x, map.size().y].map(number);
+                let undefined = if map.undefined() > 0 {
+                    format!(", {} undefined points", map.undefined())
+                } else {
+                    String::new()
+                };
+                format!(
+                    "a profile of {} points over {length}{undefined}; the body is uniform along y (plane strain), forces are those on {width} of it",
+                    map.columns()
+                )
+            }
             Self::Plain(surface) => {
                 let size = surface.size();
                 let shape = if size.is_square() { "square" } else { "rectangle" };
@@ -119,6 +144,7 @@ impl SceneSurface {
     pub(crate) fn key(&self) -> String {
         match self {
             Self::Plain(Surface::Heights(map)) => map_key(map),
+            Self::Plain(Surface::Profile(map)) => format!("profile {}", map_key(map)),
             Self::Drawn { rough, body } => format!("{} on {body:?}", rough.key()),
             Self::Plain(surface) => format!("{surface:?}"),
         }
@@ -209,8 +235,14 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
     };
     if of_file(&surface)? {
         let twin = read_twin(&surface, second.is_some())?;
-        let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes } =
+        let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes, profile } =
             scan::read_map(&surface, system, directory)?;
+        if profile {
+            let twin = twin.map(|(entry, ..)| entry);
+            refuse_for_profile(scene, twin.as_ref(), second.is_some(), body.is_some())?;
+            let plain = SceneSurface::Plain(Surface::Profile(Arc::new(map)));
+            return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), reliable_from, notes });
+        }
         if let Some(second) = second {
             let other = scan::read_second(&second, &map, system, directory)?;
             map = other.map;
@@ -248,6 +280,27 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
     }
     let spectrum = RandomSpectrum::SelfAffine { surface: rough, anisotropy };
     Ok(SceneSurface::Drawn { rough: RandomSurface::new(spectrum, heights), body }.into())
+}
+
+/// What a profile is not combined with.
+fn refuse_for_profile(
+    scene: &Entries<'_>,
+    twin: Option<&Entry<'_>>,
+    has_second: bool,
+    has_body: bool,
+) -> Read<()> {
+    let help = "remove it, or measure an area; a tilt or a bow of the profile goes with `detrend`";
+    if let Some(entry) = twin {
+        let message = "`twin` of a profile: a twin has the spectrum of a map in all directions";
+        return Err(entry.diagnostic_at_key(message).with_help(help));
+    }
+    for (name, given) in [("second_surface", has_second), ("body", has_body)] {
+        if let (true, Some(entry)) = (given, scene.entry(name)) {
+            let message = format!("[scene.{name}] beside a profile, which is a body uniform along y");
+            return Err(entry.diagnostic_at_key(message).with_help(help));
+        }
+    }
+    Ok(())
 }
 
 /// `twin` and `keep_heights`.

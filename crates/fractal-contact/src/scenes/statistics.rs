@@ -55,6 +55,8 @@ pub(crate) struct Scale {
 /// What a map is, and why some of it is not known.
 pub(crate) struct MapStatisticsTables {
     pub system: System,
+    /// Whether they are of a profile.
+    pub profile: bool,
     pub parameters: Vec<Parameter>,
     pub spectra: Vec<(&'static str, PowerSpectrum)>,
     pub differences: Option<(HeightDifference, Bands)>,
@@ -68,10 +70,18 @@ pub(crate) struct MapStatisticsTables {
 }
 
 impl MapStatisticsTables {
-    /// Measures a map: of a periodic surface without a window, else under Hann's over its deviation from the mean.
-    pub fn new(map: &HeightMap, boundary: Boundary, instrument: Option<f64>, system: System) -> Self {
+    /// Measures a map: of a periodic surface without a window, else under Hann's over its deviation from the mean. Of a `profile` what one
+    /// row says.
+    pub fn new(
+        map: &HeightMap,
+        profile: bool,
+        boundary: Boundary,
+        instrument: Option<f64>,
+        system: System,
+    ) -> Self {
         let mut found = Self {
             system,
+            profile,
             parameters: Vec::new(),
             spectra: Vec::new(),
             differences: None,
@@ -80,6 +90,10 @@ impl MapStatisticsTables {
             notes: Vec::new(),
             remarks: Vec::new(),
         };
+        if profile {
+            found.measure_profile(map, boundary, instrument);
+            return found;
+        }
         found.heights(map);
         found.spectra(map, boundary);
         found.fit(map, boundary, instrument);
@@ -124,16 +138,22 @@ impl MapStatisticsTables {
         }
     }
 
-    /// Sq.
+    /// Sq, Pq of a profile.
     pub fn rms_height(&self) -> Option<f64> {
-        self.parameters.iter().find(|p| p.symbol == "Sq")?.value
+        self.parameters.iter().find(|p| matches!(p.symbol, "Sq" | "Pq"))?.value
     }
 
-    fn known<T>(&mut self, what: &str, found: contact_model::Result<T>) -> Option<T> {
+    pub(super) fn known<T>(&mut self, what: &str, found: contact_model::Result<T>) -> Option<T> {
         found.map_err(|reason| self.notes.push(format!("{what}: {reason}"))).ok()
     }
 
-    fn push(&mut self, symbol: &'static str, value: Option<f64>, power: i32, meaning: &'static str) {
+    pub(super) fn push(
+        &mut self,
+        symbol: &'static str,
+        value: Option<f64>,
+        power: i32,
+        meaning: &'static str,
+    ) {
         self.parameters.push(Parameter { symbol, value, ends: [None; 2], power: Some(power), meaning });
     }
 
@@ -279,7 +299,8 @@ impl MapStatisticsTables {
             );
             return Err(runs::Error::model("statistics")(refused).into());
         };
-        Ok(Self::new(&map, scene.effects.boundary, scene.reliable_from, scene.system))
+        let profile = scene.surface.is_profile();
+        Ok(Self::new(&map, profile, scene.effects.boundary, scene.reliable_from, scene.system))
     }
 
     /// The parameters as texts: symbol, value, interval, meaning.

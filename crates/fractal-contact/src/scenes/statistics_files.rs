@@ -54,7 +54,10 @@ impl MapStatisticsTables {
             column("unit", "-", "of the row"),
             column("meaning", "-", "what it is"),
         ];
-        let mut table = Table::new("Statistics of a surface", columns);
+        let mut table = Table::new(
+            if self.profile { "Statistics of a profile" } else { "Statistics of a surface" },
+            columns,
+        );
         for p in &self.parameters {
             let unit = p.power.map_or("degrees", |power| self.unit(power));
             let row = vec![
@@ -203,7 +206,13 @@ impl MapStatisticsTables {
     }
 
     fn spectrum_chart(&self, name: &str) -> Option<Chart> {
-        let (_, s) = self.spectra.iter().find(|(direction, _)| *direction == "radial")?;
+        let shown = if self.profile { "x" } else { "radial" };
+        let (_, s) = self.spectra.iter().find(|(direction, _)| *direction == shown)?;
+        let (averaged, symbol, unit) = if self.profile {
+            ("of the profile", "$C_{1D}$", "m^3")
+        } else {
+            ("averaged over rings", "$C_{2D}$", "m^4")
+        };
         let bands = s.band(LEVEL).unwrap_or_default();
         let band = s.wavenumber.iter().zip(bands).map(|(&q, [low, high])| (q, low, high)).collect();
         let [shortest, longest] = self.reliable.unwrap_or([0.0, f64::INFINITY]);
@@ -211,7 +220,8 @@ impl MapStatisticsTables {
         let (sure, unsure): (Vec<_>, Vec<_>) =
             points(&s.wavenumber, &s.density).into_iter().partition(|&(q, _)| trusted(q));
         let unsure_label = "waves not to be trusted";
-        let mut curves = vec![Curve { label: "map".into(), points: sure, band }];
+        let label = if self.profile { "profile" } else { "map" };
+        let mut curves = vec![Curve { label: label.into(), points: sure, band }];
         if curves[0].points.is_empty() {
             curves[0].label = unsure_label.into();
             curves[0].points = unsure;
@@ -220,9 +230,9 @@ impl MapStatisticsTables {
         }
         Some(Chart {
             title: "Power spectral density".into(),
-            subtitle: format!("{name}: averaged over rings, two-sided; shaded: 95 % of Gaussian heights"),
+            subtitle: format!("{name}: {averaged}, two-sided; shaded: 95 % of Gaussian heights"),
             x_label: format!("wavenumber $q${}", self.si("1/m")),
-            y_label: format!("$C_{{2D}}${}", self.si("m^4")),
+            y_label: format!("{symbol}{}", self.si(unit)),
             curves,
             logarithmic: true,
         })
@@ -232,13 +242,15 @@ impl MapStatisticsTables {
         let (d, bands) = self.differences.as_ref()?;
         Some(Chart {
             title: "Height differences".into(),
-            subtitle: format!(
-                "{name}: half the mean square over all directions; shaded: 95 % of Gaussian heights"
-            ),
+            subtitle: if self.profile {
+                format!("{name}: half the mean square along the profile")
+            } else {
+                format!("{name}: half the mean square over all directions; shaded: 95 % of Gaussian heights")
+            },
             x_label: format!("distance $r${}", self.si("m")),
             y_label: format!("$A${}", self.si("m^2")),
             curves: vec![Curve {
-                label: "map".into(),
+                label: if self.profile { "profile".into() } else { "map".into() },
                 points: points(&d.distance, &d.half_square),
                 band: shaded(&d.distance, bands),
             }],
@@ -255,7 +267,11 @@ impl MapStatisticsTables {
         let curves: Vec<Curve> = self.scales.iter().map(|of| curve(of.axis, &of.slope)).collect();
         (!curves.is_empty()).then(|| Chart {
             title: "Slope by scale".into(),
-            subtitle: format!("{name}: rms of differences over a distance; shaded: 95 % of Gaussian heights"),
+            subtitle: if self.profile {
+                format!("{name}: rms of differences over a distance")
+            } else {
+                format!("{name}: rms of differences over a distance; shaded: 95 % of Gaussian heights")
+            },
             x_label: format!("distance $r${}", self.si("m")),
             y_label: "rms slope".into(),
             curves,

@@ -4,6 +4,7 @@ use crate::scenes::entries::System;
 use crate::scenes::error::Result;
 use crate::scenes::field_view::FieldView;
 use crate::scenes::page;
+use crate::scenes::pictures;
 use crate::scenes::statistics::MapStatisticsTables;
 use contact_model::HeightMap;
 use maud::{Markup, html};
@@ -54,7 +55,8 @@ impl SurfaceReport<'_> {
             p { "The map counts as a piece of a larger surface: it is not periodic, and spectra are under Hann's window. Bands and intervals are \
                  of Gaussian heights." }
         };
-        let map = html! { p { (page::READING) } div.fields { (self.field()?) } };
+        let map =
+            html! { @if !self.statistics.profile { p { (page::READING) } } div.fields { (self.field()?) } };
         let sections = [
             ("map", "Map", "The map", map),
             ("statistics", "Statistics", "Statistics", statistics),
@@ -93,6 +95,9 @@ impl SurfaceReport<'_> {
             range: None,
             contact: &[],
         };
+        if self.statistics.profile {
+            return page::chart(&pictures::row(&picture, view.row(map.size().x)));
+        }
         page::field(&picture, &view, "heights")
     }
 
@@ -122,7 +127,10 @@ impl SurfaceReport<'_> {
             subtitle: format!("{}: about the mean", self.name),
             x_label: "height over rms height".into(),
             y_label: "probability density".into(),
-            curves: vec![curve("map", found), curve("normal law", normal)],
+            curves: vec![
+                curve(if self.statistics.profile { "profile" } else { "map" }, found),
+                curve("normal law", normal),
+            ],
             logarithmic: false,
         }
     }
@@ -133,6 +141,7 @@ fn sources() -> Markup {
     html! { ul {
         @for (citation, what) in [
             ("ISO 25178-2:2021", "Sa to Spc"),
+            ("ISO 21920-2:2021", "Pa to Pz, of profiles"),
             ("Jacobs, Junge, Pastewka, Surf. Topogr. Metrol. Prop. 5, 013001 (2017)", "power spectra; here with 1/(2 pi)^2"),
             ("Sanner, Noehring, Thimons, Jacobs, Pastewka, Appl. Surf. Sci. Adv. 7, 100190 (2022)", "slope and curvature by scale"),
             ("Nayak, J. Lubr. Technol. 93, 398 (1971)", "Nayak's parameter"),

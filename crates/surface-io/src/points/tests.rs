@@ -103,11 +103,12 @@ fn cells_are_oblong_or_square_as_the_points_say() {
     assert!(dx.to_bits() == dy.to_bits() && (dx - 1.0).abs() < 1e-12);
     let exact = cell("0 0 1\n1 0 2\n2 0 3\n0 0.99 1\n1 0.99 2\n2 0.99 3\n0 1.98 1\n1 1.98 2\n2 1.98 3\n");
     assert_eq!(Size::from(exact), [1.0, 0.99].into());
-    // One row has no spacing along y unless somebody says it.
+    // One row has no spacing along y unless somebody says it: it is a profile.
     let row = "0 0 1\n1 0 2\n2 0 3\n";
-    assert_eq!(read(row).unwrap().metadata().cell, None);
+    assert!(read(row).unwrap().metadata().profile);
     let headed = format!("# Width: 3\n# Height: 0.5\n# Lateral units: none\n# Value units: none\n{row}");
     assert_eq!(Size::from(cell(&headed)), [1.0, 0.5].into());
+    assert!(!read(&headed).unwrap().metadata().profile);
     let declared = ReadOptions { cell: "1 x 0.25".parse().ok(), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.xyz", row.as_bytes(), &declared).unwrap();
     assert_eq!(Size::from(scan.metadata().size.unwrap().map(Quantity::value)), [3.0, 0.25].into());
@@ -188,4 +189,73 @@ fn profiles_are_lines() {
     }
     let npy = crate::npy(&[1, 2], &[1.0, 2.0]).unwrap();
     assert!(crate::profile_from_bytes("a.npy", &npy, &declared).unwrap_err().to_string().contains("NPY"));
+}
+
+#[test]
+fn profiles_are_maps_of_one_row() {
+    let declared = ReadOptions {
+        unit: "nm".parse().ok(),
+        lateral_unit: "um".parse().ok(),
+        format: Some(crate::Format::Profile),
+        ..ReadOptions::default()
+    };
+    let scan = |text: &str, declared: &ReadOptions| Scan::from_bytes("a.txt", text.as_bytes(), declared);
+    // Two points, of which the format has to be said; the cell along y is a square.
+    let two = scan("0 1\n2 4\n", &declared).unwrap();
+    let map = two.map(&crate::Preprocessing::default()).unwrap();
+    assert_eq!((map.columns(), map.rows(), map.dx(), map.dy()), (2, 1, 2e-6, 2e-6));
+    assert!((map.heights()[1] / 4e-9 - 1.0).abs() < 1e-12);
+    let wide = ReadOptions { size: "4 um x 1 mm".parse().ok(), ..declared.clone() };
+    let wide = scan("0 1\n2 4\n", &wide).unwrap();
+    assert!(wide.metadata().profile);
+    assert_eq!(wide.map(&crate::Preprocessing::default()).unwrap().dy().to_bits(), 1e-3_f64.to_bits());
+    // A size that contradicts x.
+    let wrong = ReadOptions { size: "5 um x 1 mm".parse().ok(), ..declared.clone() };
+    assert!(scan("0 1\n2 4\n", &wrong).unwrap_err().to_string().contains("size along x"));
+    // Undefined points are named, and filled on request; a tilt goes with the plane of one row.
+    let holed = scan("0 1\n1 nan\n2 3\n3 4\n5 6\n", &declared).unwrap();
+    assert_eq!(holed.metadata().undefined, 2);
+    assert!(holed.map(&crate::Preprocessing::default()).unwrap_err().to_string().contains("2 of 6"));
+    for fill in [crate::Fill::Neighbours, crate::Fill::Plane] {
+        let filled = crate::Preprocessing {
+            fill: Some(fill),
+            detrend: crate::Detrend::Plane,
+            ..crate::Preprocessing::default()
+        };
+        let map = holed.map(&filled).unwrap();
+        assert!(map.heights().iter().all(|h| h.abs() < 1e-20), "{:?}", map.heights());
+    }
+    let parabola = scan("0 0\n1 1\n2 4\n3 9\n4 16\n", &declared).unwrap();
+    let level = crate::Preprocessing { detrend: crate::Detrend::Quadric, ..crate::Preprocessing::default() };
+    assert!(parabola.map(&level).unwrap().heights().iter().all(|h| h.abs() < 1e-22));
+    for (preprocessing, expected) in [
+        (crate::Preprocessing { quarter_turns: 1, ..Default::default() }, "a profile has one row"),
+        (
+            crate::Preprocessing { crop: Some(crate::Crop::Centre), ..Default::default() },
+            "a profile has one row",
+        ),
+        (
+            crate::Preprocessing { detrend: crate::Detrend::Sphere, ..Default::default() },
+            "a profile has one row",
+        ),
+        (crate::Preprocessing { rows: Some(2), ..Default::default() }, "rows"),
+    ] {
+        let error = parabola.map(&preprocessing).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    for (text, expected) in [
+        ("0 1 2\n1 2 3\n", "line 1 has 3 values"),
+        ("0 1\n1e308 2\n", ""),
+        ("-1e308 1\n1e308 2\n", ""),
+        ("0 1\n1 1e400\n", ""),
+        ("5 1\n", "the step of the profile"),
+        ("nan 1\nnan 2\n", "line 1 has no x"),
+    ] {
+        let found = scan(text, &declared).and_then(|scan| scan.map(&crate::Preprocessing::default()));
+        let text = found.map_or_else(|e| e.to_string(), |map| format!("{:?}", map.size()));
+        assert!(text.contains(expected), "{text}");
+    }
+    // One row of a matrix whose file says both sides is a map.
+    let row = Scan::from_bytes("a.txt", b"# Width: 3 um\n# Height: 1 um\n1 2 3\n", &ReadOptions::default());
+    assert!(!row.unwrap().metadata().profile);
 }

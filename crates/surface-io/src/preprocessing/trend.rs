@@ -51,19 +51,19 @@ pub(super) struct Trend {
 }
 
 impl Detrend {
-    /// Unknowns of a polynomial; none where it is no polynomial.
-    fn unknowns(self) -> usize {
+    /// Unknowns of a polynomial in x and y, of x alone along one row; none where it is no polynomial.
+    fn unknowns(self, rows: usize) -> usize {
         match self {
             Self::Nothing | Self::Sphere | Self::Cylinder => 0,
             Self::Mean => 1,
-            Self::Plane => 3,
-            Self::Quadric => 6,
+            Self::Plane => 2 + usize::from(rows > 1),
+            Self::Quadric => 3 * (1 + usize::from(rows > 1)),
         }
     }
 
     /// Fits the heights that are not NaN; `None` for nothing to subtract.
     pub(super) fn fit(self, cells: Cells, heights: &[f64]) -> Result<Option<Trend>, ContentError> {
-        let unknowns = self.unknowns();
+        let unknowns = self.unknowns(cells.rows);
         if unknowns == 0 {
             return Ok(None);
         }
@@ -112,9 +112,13 @@ impl Trend {
     }
 }
 
-/// 1, x, y and the three products of second order, nearly orthogonal over the whole rectangle.
+/// 1, x, y and the three products of second order, nearly orthogonal over the whole rectangle; along one row 1, x and x^2.
 fn basis(row: usize, column: usize, cells: Cells) -> [f64; MOST] {
     let to_unit = |i: usize, count: usize| (2.0 * i as f64 + 1.0) / count as f64 - 1.0;
     let (x, y) = (to_unit(column, cells.columns), to_unit(row, cells.rows));
-    [1.0, x, y, 1.5 * x * x - 0.5, x * y, 1.5 * y * y - 0.5]
+    let square = 1.5 * x * x - 0.5;
+    if cells.rows == 1 {
+        return [1.0, x, square, 0.0, 0.0, 0.0];
+    }
+    [1.0, x, y, square, x * y, 1.5 * y * y - 0.5]
 }

@@ -322,15 +322,29 @@ fn a_count_has_a_height() {
 }
 
 #[test]
-fn a_profile_is_no_map() {
+fn two_columns_with_ascending_numbers_are_a_profile() {
     let line = |i: i32| format!("{:.3} {}\n", 0.1 * f64::from(i), (i * i) % 7);
     let text: String = (0..20).map(line).collect();
-    assert_eq!(problem(text.as_bytes()), ContentError::Profile { lines: 20 });
+    let scan = read(text.as_bytes()).unwrap();
+    let metadata = scan.metadata();
+    assert_eq!((metadata.format, metadata.profile), (crate::Format::Profile, true));
+    assert_eq!((metadata.rows, metadata.columns), (1, 20));
+    let shown = metadata.to_string();
+    assert!(shown.contains("a profile of 20 points") && shown.contains("uniform along y"), "{shown}");
+    // Down is up.
+    let down: String = (0..20).rev().map(line).collect();
+    assert_eq!(read(down.as_bytes()).unwrap().heights(), scan.heights());
     let declared = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
     let map = Scan::from_bytes("a.txt", text.as_bytes(), &declared).unwrap();
-    assert_eq!((map.metadata().rows, map.metadata().columns), (20, 2));
+    assert_eq!((map.metadata().rows, map.metadata().columns, map.metadata().profile), (20, 2, false));
     let uneven = (0..20).map(|i| format!("{} 1\n", i * i)).collect::<Vec<_>>().concat();
-    assert_eq!(problem(uneven.as_bytes()), ContentError::Profile { lines: 20 });
+    assert!(matches!(problem(uneven.as_bytes()), ContentError::Sparse { .. }));
+    let unequal = (0..20).map(|i| format!("{} 1\n", if i == 7 { 7.4 } else { f64::from(i) }));
+    let error = problem(unequal.collect::<String>().as_bytes());
+    assert!(matches!(error, ContentError::Irregular { axis: 'x', .. }), "{error}");
+    let unknown: String =
+        (0..20).map(|i| if i == 5 { "nan 1\n".into() } else { format!("{i} 1\n") }).collect();
+    assert_eq!(problem(unknown.as_bytes()), ContentError::Coordinate { axis: 'x', line: 6 });
     // Few lines, and a first column that does not ascend.
     for map in [(0..8).map(line).collect(), (0..20).map(|i| line((i * i) % 19)).collect::<String>()] {
         assert_eq!(read(map.as_bytes()).unwrap().metadata().columns, 2);

@@ -1,0 +1,51 @@
+//! Profiles: bodies that are uniform along y, in plane strain.
+
+use super::prepared::NAME;
+use crate::kernel::Medium;
+use contact_model::{Adhesion, Boundary, Conductance, Error, Outputs, Result, Scene, Surface};
+
+/// What deforms under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones the kernel of one row is
+/// that of plane strain by itself, because a pressure that repeats itself with the row has no wave along y.
+pub(super) fn medium(scene: &Scene) -> Medium {
+    match (&scene.surface, scene.effects.boundary) {
+        (Surface::Profile(_), Boundary::Free) => Medium::HalfPlane,
+        (_, boundary) => boundary.into(),
+    }
+}
+
+/// Refuses what profiles do not have.
+///
+/// # Errors
+/// [`Error::Unsupported`] for adhesion, and for a displacement or a conductance of a half-plane.
+pub(super) fn check(scene: &Scene) -> Result<()> {
+    if !matches!(scene.surface, Surface::Profile(_)) {
+        return Ok(());
+    }
+    if scene.effects.adhesion != Adhesion::Off {
+        let what = "adhesion of a profile: its attraction is corrected for fronts in three dimensions and was not checked in two";
+        return Err(Error::unsupported(NAME, what));
+    }
+    if medium(scene) != Medium::HalfPlane {
+        return Ok(());
+    }
+    let refused = |what: &str| {
+        let why = "displacements of a half-plane have no zero at infinity";
+        Err(Error::unsupported(NAME, format!("{what} of a profile with free boundaries: {why}")))
+    };
+    let Outputs { displacement, conductance, .. } = scene.outputs;
+    if displacement {
+        refused("a displacement")
+    } else if conductance != Conductance::Off {
+        refused("a conductance, which follows from the stiffness,")
+    } else {
+        Ok(())
+    }
+}
+
+/// The outputs of a medium: the stiffness of a half-plane depends on where displacements are counted from and is not claimed.
+pub(super) fn outputs(outputs: Outputs, medium: Medium) -> Outputs {
+    match medium {
+        Medium::HalfPlane => Outputs { stiffness: false, stiffness_fixed_area: false, ..outputs },
+        _ => outputs,
+    }
+}
