@@ -246,7 +246,7 @@ mod tests {
         assert_eq!("1,2,3,4".parse(), Ok(Crop::Window { row: 1, column: 2, rows: 3, columns: 4 }));
         assert_eq!("no_contact".parse(), Ok(Undefined::NoContact));
         for (text, error) in [
-            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz, gwy"),
+            ("jpeg".parse::<Format>().unwrap_err(), "format = \"jpeg\": expected npy, text, xyz, profile, gwy"),
             ("dot".parse::<Decimal>().unwrap_err(), "decimal = \"dot\": expected point or comma"),
             ("zx".parse::<Axes>().unwrap_err(), "axes = \"zx\": expected xy or yx"),
             ("tilt".parse::<Detrend>().unwrap_err(), "detrend = \"tilt\": expected none, mean, plane, quadric, sphere or cylinder"),

@@ -29,11 +29,15 @@
 //!   columns of more than eight lines, the first of ascending or descending numbers, are a profile. Other
 //!   files that people try (archives, pictures) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
-//!   Comments begin with `#` or `%`; lines before the numbers that begin with a word are a header like them. Of both count `Width`,
+//!   Comments begin with `#` or `%` at the beginning of a line or behind white space; lines before the numbers that begin with a word are a header like them. Of both count `Width`,
 //!   `Height`, `Value units` and `Lateral units`, as Gwyddion's exports and this crate write them, and the keys of SPIP, Nanoscope and
 //!   profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...); two that differ are an error, and so are other numbers of columns
 //!   or rows than there are. Decimal commas are read on request ([`Decimal::Comma`]), or where every comma can be nothing else. An
-//!   empty place between two delimiters, `nan` and words such as `---` or `BAD` are undefined points.
+//!   empty place between two delimiters, `nan`, words such as `---` or `BAD` and the C library's `1.#QNAN` are undefined points. A heading
+//!   or an empty line between numbers ends a map, and several maps are channels. A first line and a first column that may be coordinates
+//!   are asked about ([`ReadOptions::border`]).
+//! * **Notes.** What a file says and what is not used of it, and a value far from all others, stand in [`Metadata::notes`] and in the error
+//!   that asks for what is missing.
 //! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
 //!   is a header's width or height without the other, and two that are square cells within the decimals that
 //!   are printed. Cells whose sides differ by more than 1e4 are an error.
@@ -48,6 +52,7 @@
 //! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any
 //!   unit both stay as they are. What is given beside what the file says must agree with it within the digits
 //!   of a header (0.5 %).
+//! * **Channels** that cannot be read are listed with the reason beside those that can.
 //! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`] only.
 //!   Integers of an HDF5 file that have a unit of length and no scale are counts too.
 //! * **Axes.** Arrays without names of their axes (HDF5, MATLAB, NetCDF) are read by the custom of the format, which is noted;
@@ -85,7 +90,7 @@
 //!
 //! # What it does not do
 //!
-//! Surfaces in finer cells than measured, filters, formats that are not in [`Format`].
+//! Surfaces in finer cells than measured, formats that are not in [`Format`].
 
 mod channel;
 mod choice;
