@@ -41,7 +41,7 @@
 //! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
 //!   is a header's width or height without the other, and two that are square cells within the decimals that
 //!   are printed. Cells whose sides differ by more than 1e4 are an error.
-//! * **Profiles.** Points x, z with equal steps become a map of one row, as does any row whose file says its length along x alone
+//! * **Profiles.** Points x, z with equal steps become a map of one row, as does a row of an instrument whose file says its length along x alone
 //!   ([`Metadata::profile`]): a body that is uniform along y, on square cells.
 //! * **Points.** In any order; the spacing along each axis is the smallest step, refined over the whole
 //!   range, and one for both where they differ by no more than the points are off their places. A point may

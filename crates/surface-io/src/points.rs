@@ -2,9 +2,10 @@
 
 mod axis;
 mod profile;
+mod row;
 
-pub(crate) use profile::row;
 pub use profile::{profile, profile_from_bytes};
+pub(crate) use row::row;
 
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit, check_unit};
 use crate::error::ContentError;

@@ -25,7 +25,7 @@ pub struct Metadata {
     pub rows: usize,
     /// Columns.
     pub columns: usize,
-    /// Whether it is a profile: one row whose file says how far it reaches along x alone. It stands for a body that is uniform along y;
+    /// Whether it is a profile: one row whose file, no points x, y, z, says how far it reaches along x alone. It stands for a body that is uniform along y;
     /// its cells are squares unless the caller says otherwise, and a force on it is one on the side of a cell along y.
     pub profile: bool,
     /// Sides of the map along x and y; `None` where neither they nor the cells are known.
@@ -157,7 +157,8 @@ impl Scan {
         }
         notes.extend(lone_extremes(&heights));
         let count = [columns, rows];
-        let profile = rows == 1 && matches!(extent, [Some(_), None]);
+        // Points of a map may lie in one row by chance.
+        let profile = rows == 1 && format != Format::Xyz && matches!(extent, [Some(_), None]);
         let given = extent::given(declared, count)?;
         let extents = match (given, extent) {
             (Some(given), file) => {

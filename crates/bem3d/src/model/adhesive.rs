@@ -1,7 +1,8 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
 use super::options::Bem3d;
-use super::prepared::{NAME, PreparedBem3d, without_tangential};
+use super::options::NAME;
+use super::prepared::{PreparedBem3d, without_tangential};
 use super::state::GROWTH;
 use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;

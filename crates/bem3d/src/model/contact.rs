@@ -1,7 +1,7 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
-use super::options::bytes_per_cell;
-use super::prepared::{NAME, PreparedBem3d, Tangent};
+use super::options::{NAME, bytes_per_cell};
+use super::prepared::{PreparedBem3d, Tangent};
 use super::state::LoadError;
 use crate::active_set::{self, Limits, Solved, Target, is_saturated};
 use crate::geometry::{CellSet, Grid};

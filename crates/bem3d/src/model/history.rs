@@ -2,8 +2,9 @@
 
 use super::Bem3d;
 use super::adhesive::{AdhesiveContact, WithoutAdhesion};
+use super::options::NAME;
 use super::plastic_path::PlasticPath;
-use super::prepared::{NAME, refuse_together};
+use super::prepared::refuse_together;
 use super::profile;
 use crate::tuning::Tuning;
 use contact_model::{

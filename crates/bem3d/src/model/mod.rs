@@ -20,7 +20,8 @@ use contact_model::{
     Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, RequiredMemory, Result,
     Scene, Source, Surface,
 };
-use prepared::{NAME, PreparedBem3d, refuse_together};
+use options::NAME;
+use prepared::{PreparedBem3d, refuse_together};
 use std::sync::Arc;
 
 impl ContactModel for Bem3d {

@@ -2,6 +2,9 @@
 
 use contact_model::{Cells, RequiredMemory, Scene, Size, Surface};
 
+/// Name of the model.
+pub const NAME: &str = "bem3d";
+
 /// Memory of one surface under light loads, bytes for each cell, the drawing of the surface included: the largest of
 /// `peak_memory_bytes` in `data/bench/scaling.csv`, rounded up.
 pub const BYTES_PER_CELL: f64 = 50.0;

@@ -1,6 +1,6 @@
 //! One surface, ready to be loaded.
 
-use super::options::{Bem3d, Method};
+use super::options::{Bem3d, Method, NAME};
 use super::profile;
 use crate::active_set::{self, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
@@ -14,9 +14,6 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-/// Name of the model.
-pub const NAME: &str = "bem3d";
 
 /// What a path with a hardness remembers.
 #[derive(Debug)]

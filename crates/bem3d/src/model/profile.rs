@@ -1,6 +1,6 @@
 //! Profiles: bodies that are uniform along y, in plane strain.
 
-use super::prepared::NAME;
+use super::options::NAME;
 use crate::kernel::Medium;
 use contact_model::{Adhesion, Boundary, Conductance, Error, Outputs, Result, Scene, Surface};
 

@@ -103,9 +103,10 @@ fn cells_are_oblong_or_square_as_the_points_say() {
     assert!(dx.to_bits() == dy.to_bits() && (dx - 1.0).abs() < 1e-12);
     let exact = cell("0 0 1\n1 0 2\n2 0 3\n0 0.99 1\n1 0.99 2\n2 0.99 3\n0 1.98 1\n1 1.98 2\n2 1.98 3\n");
     assert_eq!(Size::from(exact), [1.0, 0.99].into());
-    // One row has no spacing along y unless somebody says it: it is a profile.
+    // One row has no spacing along y unless somebody says it: a map of one row is no profile.
     let row = "0 0 1\n1 0 2\n2 0 3\n";
-    assert!(read(row).unwrap().metadata().profile);
+    assert_eq!(read(row).unwrap().metadata().cell, None);
+    assert!(!read(row).unwrap().metadata().profile);
     let headed = format!("# Width: 3\n# Height: 0.5\n# Lateral units: none\n# Value units: none\n{row}");
     assert_eq!(Size::from(cell(&headed)), [1.0, 0.5].into());
     assert!(!read(&headed).unwrap().metadata().profile);
