@@ -193,7 +193,10 @@ fn a_line_of_a_stylus_has_the_distance_of_its_places() {
     let scan = Scan::read(&path, &ReadOptions::default()).unwrap();
     let metadata = scan.metadata();
     assert_eq!([metadata.columns, metadata.rows, metadata.undefined], [3001, 1, 0]);
-    assert_eq!((metadata.name.as_deref(), metadata.size), (Some("Raw Height"), None));
+    // A profile: one step wide along y.
+    let [length, width] = metadata.size.unwrap().map(surface_io::Quantity::value);
+    assert!(metadata.profile && (width * 3001.0 / length - 1.0).abs() < 1e-12);
+    assert_eq!(metadata.name.as_deref(), Some("Raw Height"));
     assert!((extent - 49.96669).abs() < 1e-5 && (double(24134) - extent).abs() <= 0.0);
     let unit = &metadata.unit.as_ref().unwrap().value;
     assert!((unit.to_si(scan.height(0, 0).unwrap()) - scale * first * 1e-6).abs() < 1e-20);

@@ -41,7 +41,7 @@ impl ProfileFit {
     /// use contact_model::{Boundary, HeightMap};
     /// use surface_statistics::ProfileFit;
     /// // Waves of amplitudes k^-1.3: C_1D ~ q^-2.6, H = 0.8.
-    /// let height = |x: f64| (1..100).map(|k| f64::from(k).powf(-1.3) * (f64::from(k) * x + f64::from(k * k)).cos()).sum();
+    /// let height = |x: f64| (1..=100).map(|k| f64::from(k).powf(-1.3) * (f64::from(k) * x + f64::from(k * k)).cos()).sum();
     /// let profile = HeightMap::from_fn([400, 1], [1.0, 0.0025], |i, _| height(std::f64::consts::TAU * i as f64 / 400.0))?;
     /// assert!((ProfileFit::new(&profile, Boundary::Periodic, None)?.hurst.value - 0.8).abs() < 1e-6);
     /// # Ok::<(), contact_model::Error>(())

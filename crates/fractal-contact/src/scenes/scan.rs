@@ -6,8 +6,8 @@ use crate::scenes::human_readable::number;
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{
-    AlignLines, Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror, Preprocessed,
-    Preprocessing, Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
+    AlignLines, Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror,
+    Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
 };
 
 /// A map from a file.
@@ -28,51 +28,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     let mut notes = Vec::new();
     let file = table.require("path", "\"heights.npy\"")?;
     let path = directory.join(file.text()?);
-    let mut declared = ReadOptions::default();
-    if let Some(entry) = table.find("format") {
-        declared.format = Some(entry.choice(&Format::ALL.map(|format| (format.word(), format)))?);
-    }
-    if let Some(entry) = table.find("channel") {
-        let number = |_| entry.count(0).map(|number| ChannelChoice::Number(number as usize));
-        declared.channel = Some(entry.text().map(|name| ChannelChoice::Name(name.into())).or_else(number)?);
-    }
-    let unit = |key: &'static str| -> Read<Option<Unit>> {
-        let Some(entry) = table.find(key) else { return Ok(None) };
-        let unit: Unit = entry.text()?.parse().map_err(|e| {
-            entry.diagnostic(format!("`{key}`: {e}")).with_help("a unit of length in quotes, such as \"nm\"")
-        })?;
-        Ok(Some(unit))
-    };
-    declared.unit = unit("unit")?;
-    declared.lateral_unit = unit("lateral_unit")?;
-    if let Some(entry) = table.find("height_scale") {
-        declared.height_scale = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
-    }
-    match table.one_of(&["size", "cell", "width"])? {
-        Some(("size", entry)) => declared.size = Some(sides(&entry, system)?),
-        Some(("cell", entry)) => declared.cell = Some(sides(&entry, system)?),
-        Some((_, entry)) => {
-            declared.width = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
-            let note = Diagnostic::note("`width` is now `size`").at(entry.key_span());
-            notes.push(note.with_help("write `size = [Lx, Ly]`, or one value where the map is square; `width` is Lx, with square cells"));
-        }
-        None => {}
-    }
-    if let Some(entry) = table.find("decimal") {
-        declared.decimal = entry.choice(&[("point", Decimal::Point), ("comma", Decimal::Comma)])?;
-    }
-    if let Some(entry) = table.find("axes") {
-        declared.axes = Some(entry.choice(&[("xy", Axes::Xy), ("yx", Axes::Yx)])?);
-    }
-    if let Some(entry) = table.find("border") {
-        declared.border = Some(entry.choice(&[("axes", Border::Axes), ("heights", Border::Heights)])?);
-    }
-    if let Some(entry) = table.find("missing") {
-        declared.missing = Some(entry.any_number()?);
-    }
-    if let Some(entry) = table.find("skip_lines") {
-        declared.skip_lines = entry.count(0)? as usize;
-    }
+    let declared = read_options(table, system, &mut notes)?;
     let preprocessing = read_treatment(table, system)?;
     table.known_only()?;
     let wrong = |e: surface_io::Error| {
@@ -128,6 +84,56 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         metadata += &format!("\nthen       {step}");
     }
     Ok(FileMap { map, metadata, reliable_from, notes, profile })
+}
+
+/// How the file is meant.
+fn read_options(table: &Entries<'_>, system: System, notes: &mut Vec<Diagnostic>) -> Read<ReadOptions> {
+    let mut declared = ReadOptions::default();
+    if let Some(entry) = table.find("format") {
+        declared.format = Some(entry.choice(&Format::ALL.map(|format| (format.word(), format)))?);
+    }
+    if let Some(entry) = table.find("channel") {
+        let number = |_| entry.count(0).map(|number| ChannelChoice::Number(number as usize));
+        declared.channel = Some(entry.text().map(|name| ChannelChoice::Name(name.into())).or_else(number)?);
+    }
+    let unit = |key: &'static str| -> Read<Option<Unit>> {
+        let Some(entry) = table.find(key) else { return Ok(None) };
+        let unit: Unit = entry.text()?.parse().map_err(|e| {
+            entry.diagnostic(format!("`{key}`: {e}")).with_help("a unit of length in quotes, such as \"nm\"")
+        })?;
+        Ok(Some(unit))
+    };
+    declared.unit = unit("unit")?;
+    declared.lateral_unit = unit("lateral_unit")?;
+    if let Some(entry) = table.find("height_scale") {
+        declared.height_scale = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
+    }
+    match table.one_of(&["size", "cell", "width"])? {
+        Some(("size", entry)) => declared.size = Some(sides(&entry, system)?),
+        Some(("cell", entry)) => declared.cell = Some(sides(&entry, system)?),
+        Some((_, entry)) => {
+            declared.width = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
+            let note = Diagnostic::note("`width` is now `size`").at(entry.key_span());
+            notes.push(note.with_help("write `size = [Lx, Ly]`, or one value where the map is square; `width` is Lx, with square cells"));
+        }
+        None => {}
+    }
+    if let Some(entry) = table.find("decimal") {
+        declared.decimal = entry.choice(&[("point", Decimal::Point), ("comma", Decimal::Comma)])?;
+    }
+    if let Some(entry) = table.find("axes") {
+        declared.axes = Some(entry.choice(&[("xy", Axes::Xy), ("yx", Axes::Yx)])?);
+    }
+    if let Some(entry) = table.find("border") {
+        declared.border = Some(entry.choice(&[("axes", Border::Axes), ("heights", Border::Heights)])?);
+    }
+    if let Some(entry) = table.find("missing") {
+        declared.missing = Some(entry.any_number()?);
+    }
+    if let Some(entry) = table.find("skip_lines") {
+        declared.skip_lines = entry.count(0)? as usize;
+    }
+    Ok(declared)
 }
 
 /// Reads the surface of the second body, lays it on the first face to face, and adds both.

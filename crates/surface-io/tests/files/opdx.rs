@@ -44,7 +44,7 @@ pub fn files() -> Vec<Small> {
     vec![
         small("opdx", map(&matrix), [3, 2], Some([3e-6, 1e-6]), &heights),
         small("opdx of a matrix without a name", map(&unnamed), [3, 2], Some([3e-6, 1e-6]), &heights),
-        small("opdx of a line", line, [3, 1], None, &[1.0, -2.0, 4.0]),
+        small("opdx of a line", line, [3, 1], Some([1.5e-6, 5e-7]), &[1.0, -2.0, 4.0]),
     ]
 }
 
