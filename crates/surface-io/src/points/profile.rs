@@ -21,7 +21,7 @@ use std::path::Path;
 /// given ([`ReadOptions::unit`] or [`ReadOptions::height_scale`], and [`ReadOptions::lateral_unit`]); `none` for both are plain numbers.
 ///
 /// # Errors
-/// [`Error::System`] where the system refuses; [`Error::Content`] for everything else.
+/// [`crate::Error::System`] where the system refuses; [`crate::Error::Content`] for everything else.
 ///
 /// ```
 /// use surface_io::{ReadOptions, profile_from_bytes};
