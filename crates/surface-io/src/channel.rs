@@ -449,6 +449,19 @@ impl StoredChannel {
         self.notes.push(note.into());
     }
 
+    /// Leaves the unit open where numbers are integers in a unit of length without a scale: a count need not be one of them.
+    pub(crate) fn check_counts(&mut self, number: NumberType, scaled: bool) {
+        if let (StoredUnit::Heights(unit), false, false) = (&self.unit, number.is_float(), scaled)
+            && *unit != Unit::none()
+        {
+            let (integers, unit) = (number.name(), unit.clone());
+            self.note(format!(
+                "the file has {integers} in {unit} and no scale: a count need not be 1 {unit}, height_scale says what it is"
+            ));
+            self.unit = StoredUnit::Unknown;
+        }
+    }
+
     /// Takes this for the order of the axes, of which the file says nothing, and tells why.
     pub(crate) fn assume(&mut self, axes: Axes, why: &str) {
         let (taken, other) = match axes {

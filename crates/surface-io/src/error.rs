@@ -393,8 +393,9 @@ pub enum ContentError {
     },
     /// Neither the file nor the caller states it.
     #[error(
-        "{what} is {}: {remedy}",
-        if .seen.is_empty() { "neither in the file nor given".to_owned() } else { format!("not known ({})", .seen.join("; ")) }
+        "{what} is {}: {remedy}{}",
+        if .seen.is_empty() { "neither in the file nor given" } else { "not known" },
+        if .seen.is_empty() { String::new() } else { format!(" (of the file: {})", .seen.join("; ")) }
     )]
     Unspecified {
         /// What.

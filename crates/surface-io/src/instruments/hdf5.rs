@@ -223,15 +223,7 @@ fn channel(
         channel.assume(axes, values.custom);
     }
     channel.notes.extend(values.notes);
-    if let (StoredUnit::Heights(unit), false, false) = (&channel.unit, number.is_float(), values.scaled)
-        && *unit != Unit::none()
-    {
-        let (integers, unit) = (number.name(), unit.clone());
-        channel.note(format!(
-            "the file has {integers} in {unit} and no scale: a count need not be 1 {unit}, height_scale says what it is"
-        ));
-        channel.unit = StoredUnit::Unknown;
-    }
+    channel.check_counts(number, values.scaled);
     Ok(Some(StoredChannel { extent: extent(&attributes), ..channel }.named(name)))
 }
 

@@ -127,6 +127,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let unit = StoredUnit::written(heights.attributes.unit.as_deref().unwrap_or_default());
     let mut channel = StoredChannel::of(stored, details, [rows, columns], unit);
     channel.axes = axes;
+    channel.check_counts(number, attributes.scale.is_some());
     if let FileAxes::Assumed(axes) = axes {
         channel.assume(axes, "as the conventions have it, the dimensions have other names than x and y");
     }
