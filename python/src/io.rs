@@ -5,7 +5,7 @@ use crate::height_map::HeightMap;
 use crate::pool;
 use crate::scene::optional;
 use fractal_contact::surface_io::{
-    self, Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, Quantity, ReadOptions,
+    self, Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, Quantity, ReadOptions, Scan,
     SurfaceFile, Undefined,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
