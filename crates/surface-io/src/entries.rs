@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::extent::Extent;
 use crate::fields::decoded;
 use crate::quantity::{Dimension, Quantity, Unit};
-use crate::source::Subject;
+use crate::subject::Subject;
 
 /// What a line of such a header is.
 pub(crate) enum HeaderLine<'l> {

@@ -95,6 +95,7 @@
 mod channel;
 mod choice;
 mod composite;
+mod cursor;
 mod describe;
 mod detect;
 mod entries;
@@ -119,6 +120,7 @@ mod reader;
 mod scan;
 mod sides;
 mod source;
+mod subject;
 mod surface_file;
 mod text;
 mod vti;

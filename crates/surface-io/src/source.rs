@@ -3,9 +3,10 @@
 use crate::error::{ContentError, Error, Result};
 use crate::fields::{ByteOrder, Fields, Stored};
 use crate::format::Format;
+use crate::subject::Subject;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom, Take};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -80,27 +81,6 @@ impl Seek for Detached {
     }
 }
 
-/// What errors are about: a file, and the format that it is read as.
-#[derive(Debug, Clone)]
-pub(crate) struct Subject(Arc<(PathBuf, Option<Format>)>);
-
-impl Subject {
-    pub(crate) fn new(path: &Path, format: Option<Format>) -> Self {
-        Self(Arc::new((path.to_owned(), format)))
-    }
-
-    /// An error about this file.
-    pub(crate) fn content(&self, problem: ContentError) -> Error {
-        Error::content(&self.0.0)(problem)
-    }
-
-    /// An error about what stands at an offset of a binary file.
-    pub(crate) fn wrong(&self, offset: u64, expected: impl Into<String>) -> Error {
-        let format = self.0.1.unwrap_or(Format::Text);
-        self.content(ContentError::Binary { format, offset, expected: expected.into() })
-    }
-}
-
 /// An opened file of a known length.
 pub(crate) struct Source<'a> {
     input: Box<dyn Input + 'a>,
@@ -123,7 +103,7 @@ impl<'a> Source<'a> {
     }
 
     pub(crate) fn path(&self) -> &Path {
-        &self.subject.0.0
+        self.subject.path()
     }
 
     /// Bytes of the file.
@@ -188,7 +168,7 @@ impl<'a> Source<'a> {
 
     /// The whole input from its beginning, for readers of other crates.
     pub(crate) fn whole(&mut self) -> Result<&mut (dyn Input + 'a)> {
-        self.input.seek(SeekFrom::Start(0)).map_err(Error::system("read", &self.subject.0.0))?;
+        self.input.seek(SeekFrom::Start(0)).map_err(Error::system("read", self.subject.path()))?;
         Ok(&mut *self.input)
     }
 
@@ -200,7 +180,7 @@ impl<'a> Source<'a> {
 
     /// A part of the input, for readers of other crates; the caller has compared its end with [`Source::length`].
     pub(crate) fn part(&mut self, offset: u64, length: u64) -> Result<Take<&mut (dyn Input + 'a)>> {
-        self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", &self.subject.0.0))?;
+        self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", self.subject.path()))?;
         Ok((&mut *self.input as &mut (dyn Input + 'a)).take(length))
     }
 

@@ -12,9 +12,10 @@
 //! map, profiles, the offset of the colour scale in block 0x71.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
+use crate::cursor::Cursor;
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::fields::{ByteOrder, Cursor};
+use crate::fields::ByteOrder;
 use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::reader::Reader;

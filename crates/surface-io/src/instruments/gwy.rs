@@ -8,9 +8,10 @@ mod write;
 pub use write::gwy;
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, masked};
+use crate::cursor::Cursor;
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::fields::{ByteOrder, Cursor};
+use crate::fields::ByteOrder;
 use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::reader::Reader;

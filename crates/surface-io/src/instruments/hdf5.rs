@@ -30,14 +30,14 @@
 //! The crate hdf5-pure reads the metadata; its own reading of chunks allocates what a damaged header claims (4 GB for a file of 4 kB), so
 //! numbers are decoded here.
 
+mod attributes;
 mod vendor;
 mod write;
 
 pub use write::hdf5;
 
 use crate::channel::{
-    AxisOrder, Bytes, FileAxes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined,
-    undefined_heights,
+    AxisOrder, Bytes, FileAxes, RawHeights, StoredChannel, StoredHeights, undefined_heights,
 };
 use crate::error::Result;
 use crate::extent::Extent;
@@ -48,12 +48,13 @@ use crate::options::Axes;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::{Budget, Source};
+use attributes::{Attributes, UNIT, Values, numbers, packed, text, unit};
 use flate2::read::ZlibDecoder;
 use hdf5_pure::{
     AttrValue, Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Group, Layout,
     ReadSeekSource,
 };
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{HashSet, VecDeque};
 use std::io::Read as _;
 
 const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
@@ -69,7 +70,6 @@ const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
 
 /// Attributes that this crate writes and reads.
-const UNIT: &str = "unit";
 const SIZE: &str = "size";
 const SIZE_UNIT: &str = "size_unit";
 const LABELS: &str = "DIMENSION_LABELS";
@@ -80,8 +80,6 @@ pub(crate) const READER: Reader = Reader {
     recognises: |start, _| start.starts_with(MAGIC) || start.get(512..).is_some_and(|s| s.starts_with(MAGIC)),
     channels,
 };
-
-type Attributes = HashMap<String, AttrValue>;
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let budget = Budget::new(source.length().saturating_mul(REREAD).saturating_add(LEAST));
@@ -227,20 +225,6 @@ fn channel(
     Ok(Some(StoredChannel { extent: extent(&attributes), ..channel }.named(name)))
 }
 
-/// What the numbers of a data set stand for.
-struct Values {
-    scale: f64,
-    shift: f64,
-    undefined: Undefined,
-    unit: StoredUnit,
-    /// Whether the file gives a scale.
-    scaled: bool,
-    /// Order of the axes where no label says it, and why.
-    axes: Axes,
-    custom: &'static str,
-    notes: Vec<String>,
-}
-
 /// Whole IEEE floats and integers; `None` for all else.
 fn number_type(datatype: &Datatype) -> Option<NumberType> {
     let little = |order: DatatypeByteOrder| match order {
@@ -288,43 +272,6 @@ fn axes(attributes: &Attributes) -> Option<FileAxes> {
     (text(attributes, "CLASS") == Some("IMAGE")).then_some(FileAxes::Said(Axes::Yx))
 }
 
-/// A text, alone or as the only one of an array.
-fn text<'a>(attributes: &'a Attributes, key: &str) -> Option<&'a str> {
-    let value = attributes.get(key)?;
-    let only = || match value.as_strings()? {
-        [one] => Some(one.as_str()),
-        _ => None,
-    };
-    value.as_str().or_else(only)
-}
-
-fn unit(attributes: &Attributes) -> StoredUnit {
-    match text(attributes, UNIT).or_else(|| text(attributes, "units")).map(str::trim) {
-        None => StoredUnit::Unknown,
-        Some("none") => StoredUnit::Heights(Unit::none()),
-        Some(text) => StoredUnit::written(text),
-    }
-}
-
-/// What is written as numbers of any type.
-fn numbers(attributes: &Attributes, key: &str) -> Option<Vec<f64>> {
-    let value = attributes.get(key)?;
-    let integers = || value.to_i64s().map(|all| all.into_iter().map(|n| n as f64).collect());
-    value.to_f64s().or_else(integers)
-}
-
-/// A number, where there is one; an error says what was expected.
-fn number(attributes: &Attributes, key: &str) -> std::result::Result<Option<f64>, String> {
-    if !attributes.contains_key(key) {
-        return Ok(None);
-    }
-    // Left out, heights would be others than those that are meant.
-    match numbers(attributes, key).as_deref() {
-        Some(&[number]) => Ok(Some(number)),
-        _ => Err(format!("one number as the attribute {key}")),
-    }
-}
-
 fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
     let sides = || {
         let unit = attributes.get(SIZE_UNIT)?.as_str()?.parse::<Unit>().ok()?;
@@ -334,23 +281,6 @@ fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
         Some([Extent::Side(side(x)?), Extent::Side(side(y)?)])
     };
     sides().map_or([None; 2], |[x, y]| [Some(x), Some(y)])
-}
-
-/// What is packed or marked as NetCDF defines it.
-fn packed(attributes: &Attributes) -> std::result::Result<Values, String> {
-    let of = |key: &str| number(attributes, key);
-    let mark = of("_FillValue")?.or(of("missing_value")?);
-    let scale = of("scale_factor")?;
-    Ok(Values {
-        scale: scale.unwrap_or(1.0),
-        shift: of("add_offset")?.unwrap_or(0.0),
-        undefined: mark.map_or(Undefined::None, Undefined::Equal),
-        unit: StoredUnit::Unknown,
-        scaled: scale.is_some(),
-        axes: Axes::Xy,
-        custom: "as SurfaceTopography and MATLAB write it, no label says it",
-        notes: Vec::new(),
-    })
 }
 
 /// A data set in chunks.

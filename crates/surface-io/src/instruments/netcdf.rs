@@ -18,9 +18,10 @@ pub use write::netcdf;
 use crate::channel::{
     AxisOrder, FileAxes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, masked,
 };
+use crate::cursor::Cursor;
 use crate::error::{ContentError, Result};
 use crate::extent::Extent;
-use crate::fields::{ByteOrder, Cursor, decoded};
+use crate::fields::{ByteOrder, decoded};
 use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::options::Axes;

@@ -17,9 +17,10 @@
 //! Not read: the settings of the measurement (`MetaData`), arrays of other numbers.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit};
+use crate::cursor::Cursor;
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::fields::{ByteOrder, Cursor, decoded};
+use crate::fields::{ByteOrder, decoded};
 use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::reader::Reader;

@@ -30,7 +30,7 @@ use crate::number_type::{NumberType, exact};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::reader::Reader;
 use crate::source::Source;
-use directory::Directories;
+use directory::{Directories, MOST};
 use jpk::Jpk;
 use quick_xml::events::Event;
 use std::collections::HashMap;
@@ -42,8 +42,6 @@ use tiff::{ColorType, TiffError, TiffResult};
 
 /// The beginning of TIFF and of its kind for more than 4 GB, in either byte order.
 const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
-/// Images in one file that are looked at.
-const MOST: usize = 1000;
 /// GDAL's mark of undefined points, as text.
 const NODATA: Tag = Tag::GdalNodata;
 /// Longest text or list in a directory, in bytes.

@@ -11,9 +11,10 @@
 //! words.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit};
+use crate::cursor::Cursor;
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::fields::{ByteOrder, Cursor};
+use crate::fields::ByteOrder;
 use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::reader::Reader;

@@ -1,6 +1,6 @@
 //! Attributes of single programs: what the numbers of their data sets stand for.
 
-use super::{Attributes, Values, number, packed, text, unit};
+use super::attributes::{Attributes, Values, number, packed, text, unit};
 use crate::channel::{StoredUnit, Undefined};
 use crate::options::Axes;
 use hdf5_pure::Dataset;

@@ -1,10 +1,12 @@
 //! Directories of a TIFF file, read before its images: their bounds, and private tags of instruments.
 
-use super::MOST;
 use crate::error::Result;
 use crate::fields::ByteOrder;
 use crate::number_type::NumberType;
 use crate::source::Source;
+
+/// Images in one file that are looked at.
+pub(super) const MOST: usize = 1000;
 
 /// The entries of each image, and the byte order.
 pub(super) struct Directories {
