@@ -37,7 +37,7 @@ pub(crate) struct Section {
 }
 
 impl Entries {
-    /// Reads lines up to one that ends the header; `None` where none does.
+    /// Reads lines up to one that ends the header, and whether one does.
     pub(crate) fn read(
         subject: &Subject,
         text: &[u8],

@@ -566,7 +566,9 @@ fn heights_that_may_be_others_are_refused() {
         ),
         (error(&other_mask), "GWY (Gwyddion), offset 655: expected a mask of as many columns and rows"),
     ] {
-        assert!(found.contains(expected), "{found}");
+        // Of a file, or of one channel of it.
+        let said = found.split_once("(not read: ").map_or(found.trim_start_matches("a: "), |(_, said)| said);
+        assert!(said.starts_with(expected), "{found}");
     }
 }
 
@@ -639,7 +641,8 @@ fn other_signals_are_no_heights() {
 
 #[test]
 fn the_valid_files_are_valid() {
-    for which in (0..13).chain([14]) {
+    // The last one is asked about.
+    for which in 0..15 {
         let declared = match which {
             3 => ReadOptions { decimal: Decimal::Comma, ..ReadOptions::default() },
             2 | 6 => ReadOptions { format: Some(Format::Xyz), ..ReadOptions::default() },

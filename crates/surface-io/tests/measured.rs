@@ -6,7 +6,7 @@
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use surface_io::{Axes, ReadOptions, Scan, SurfaceFile};
+use surface_io::{Axes, Border, ReadOptions, Scan, SurfaceFile};
 
 /// Relative differences of sizes, extrema and rms.
 const CLOSE: f64 = 1e-6;
@@ -225,4 +225,91 @@ fn reported_files_are_read() {
     let field = read("made.gsf", None);
     assert_eq!(field.metadata().size.map(|size| size.map(surface_io::Quantity::value)), Some([4e-6, 3e-6]));
     assert_eq!(field.height(1, 0).map(|h| (h * 1e10).round()), Some(40.0));
+}
+
+/// The values of `../shared/reports/expected.json`, or the refusal that it allows, of every file there.
+#[test]
+fn reports_have_their_expected_values() {
+    let Some(directory) = directory("reports") else { return };
+    let text = std::fs::read_to_string(directory.join("expected.json")).unwrap();
+    let all: serde_json::Map<String, Value> = serde_json::from_str(&text).unwrap();
+    let mut wrong = Vec::new();
+    for (name, expected) in &all {
+        let options = ReadOptions {
+            // Of several; a channel of no heights is described when it is asked for.
+            channel: matches!(name.as_str(), "gwy-concat.txt" | "nano-two.spm" | "nano-nosoft.spm")
+                .then(|| "0".parse().unwrap()),
+            border: matches!(name.as_str(), "pandas.csv" | "axes-matrix.txt").then_some(Border::Axes),
+            ..ReadOptions::default()
+        };
+        let found = match (name.as_str(), Scan::read(&directory.join(name), &options)) {
+            ("x3p-upsidedown.x3p", Err(error)) if error.to_string().contains("third axis") => Ok(()),
+            (_, Err(error)) => Err(error.to_string()),
+            ("nano-aspect-2to1.spm", Ok(scan)) if scan.metadata().size.is_none() => {
+                noted(&scan, "Aspect Ratio")
+            }
+            ("x3p-rotated.x3p", Ok(scan)) => noted(&scan, "rotated"),
+            ("x3p-zinc-float.x3p", Ok(scan)) => noted(&scan, "increment"),
+            ("nano-nosoft.spm", Ok(scan)) => {
+                scan.metadata().no_heights.is_some().then_some(()).ok_or_else(|| "heights".to_owned())
+            }
+            ("gwy-nounit.gwy", Ok(scan)) => noted(&scan, "without a unit"),
+            (_, Ok(scan)) => as_reported(expected, &scan),
+        };
+        wrong.extend(found.err().map(|problem| format!("{name}: {problem}")));
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), all.len(), wrong.join("\n"));
+}
+
+fn noted(scan: &Scan, what: &str) -> Result<(), String> {
+    let notes = &scan.metadata().notes;
+    notes
+        .iter()
+        .any(|note| note.contains(what))
+        .then_some(())
+        .ok_or_else(|| format!("no note of it: {notes:?}"))
+}
+
+/// Compares what an entry states; heights row by row, `null` where undefined.
+fn as_reported(expected: &Value, scan: &Scan) -> Result<(), String> {
+    let metadata = scan.metadata();
+    let same = |what: &str, found: &[f64], wanted: &[f64]| {
+        let near = found.len() == wanted.len()
+            && found
+                .iter()
+                .zip(wanted)
+                .all(|(a, b)| (a - b).abs() <= 1e-9 * b.abs() || a.is_nan() && b.is_nan());
+        near.then_some(()).ok_or_else(|| format!("{what} {found:?}, expected {wanted:?}"))
+    };
+    let lengths = |sides: Option<[surface_io::Quantity; 2]>| {
+        sides.map_or(Vec::new(), |sides| sides.map(surface_io::Quantity::value).to_vec())
+    };
+    if let Some(shape) = expected.get("shape") {
+        same("shape", &[metadata.rows as f64, metadata.columns as f64], &numbers(shape))?;
+    }
+    if let Some(undefined) = expected["undefined"].as_f64() {
+        same("undefined", &[metadata.undefined as f64], &[undefined])?;
+    }
+    if let Some(size) = expected.get("size") {
+        same("size", &lengths(metadata.size), &numbers(size))?;
+    }
+    let cell = metadata.cell.as_ref().map(|cell| cell.value);
+    for key in ["cell", "cell_m"] {
+        if let Some(sides) = expected.get(key) {
+            same(key, &lengths(cell), &numbers(sides))?;
+        }
+    }
+    let metric = metadata.unit.as_ref().map(|unit| unit.value.to_si(1.0));
+    if expected["unit"] == "m" && metric.is_none() {
+        return Err("no unit".into());
+    }
+    for (key, factor) in [("heights", 1.0), ("heights_m", metric.unwrap_or(1.0))] {
+        for (row, line) in expected[key].as_array().into_iter().flatten().enumerate() {
+            let wanted: Vec<f64> =
+                line.as_array().into_iter().flatten().map(|h| h.as_f64().unwrap_or(f64::NAN)).collect();
+            let of = |column| scan.height(row, column).map_or(f64::NAN, |h| factor * h);
+            same(key, &(0..metadata.columns).map(of).collect::<Vec<_>>(), &wanted)?;
+        }
+    }
+    Ok(())
 }

@@ -6,8 +6,8 @@
 //!
 //! - **ISO 1.0, 2.0.** Row j is profile j. The smallest number of a type is undefined (surfalize from the standard), of unsigned integers
 //!   of 16 and 32 bits the largest (SurfaceTopography from Gwyddion).
-//! - **BCR 0.0, 1.0.** The first profile is that of the largest y; the largest number of a type is undefined (K. J. Stout et al., The
-//!   development of methods for the characterisation of roughness in three dimensions, EUR 15178 EN, 1993).
+//! - **BCR 0.0, 1.0.** The first profile is that of the largest y; the largest number of a type is undefined: as users report of it
+//!   (surfalize, issue 33). Its description, EUR 15178 EN, was not at hand.
 //!
 //! Not read: compressed data, the trailer. `Micromap` states its scales in the trailer: the size of its maps is unknown here.
 

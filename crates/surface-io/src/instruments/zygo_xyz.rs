@@ -1,8 +1,9 @@
 //! Zygo XYZ, the text export of MetroPro: fourteen lines of a header between lines with `#`, then a line `column row height` for each point.
 //!
-//! Heights are micrometres; `No Data` is undefined (MetroPro Reference Guide, OMP-0347, "XYZ data format"). The fourth line has the
-//! place and the shape of the phase, the eighth the camera's resolution in metres as its seventh number, 0 where it is not calibrated. The
-//! row 0 is y = 0. Intensities are not in the file.
+//! No manual of the format was at hand: public readers agree on the lines of the header (the fourth has the place and the shape of the phase,
+//! the eighth as its seventh number the camera's resolution in metres, 0 where it is not calibrated), on `No Data` for undefined points and on
+//! micrometres as MetroPro writes them; one says that the later program Mx can be set to another unit, of which the file says nothing. That is
+//! noted. The row 0 is y = 0.
 
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit, undefined_heights};
 use crate::error::{ContentError, Result};
@@ -48,7 +49,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let read = move |source: &mut Source<'_>| points(source, behind, [left, top], [rows, columns]);
     let heights = StoredHeights::Deferred(Box::new(read));
     let unit = StoredUnit::written("um");
-    let channel = StoredChannel::of(heights, "points as text".to_owned(), [rows, columns], unit);
+    let mut channel = StoredChannel::of(heights, "points as text".to_owned(), [rows, columns], unit);
+    channel
+        .note("heights are taken for micrometres, as MetroPro writes them; the file does not say its unit");
     Ok(vec![StoredChannel { extent: [Extent::of_cell(resolution, "m"); 2], ..channel }])
 }
 

@@ -63,6 +63,9 @@ fn read(path: &Path, input: impl Input, length: u64, declared: &ReadOptions) -> 
     });
     let mut channel = channel.map_err(|e| source.content(e))?;
     drop(bytes);
+    if let Some(axes) = declared.axes {
+        channel.orient(axes).map_err(|e| source.content(e))?;
+    }
     let (heights, points) = (channel.read(&mut source)?, channel.columns);
     let scan = Scan::new(path, Format::Profile, (0, channel), heights, declared);
     let scan = scan.map_err(|e| source.content(e))?;
