@@ -65,7 +65,7 @@ impl Default for ReadOptions {
 /// What the first line and the first column of a text matrix are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Border {
-    /// Coordinates of the columns and of the rows.
+    /// Coordinates of the columns, of the rows, or of both, whichever are in equal steps.
     Axes,
     /// Heights like all others.
     Heights,

@@ -109,7 +109,7 @@ fn blocks_of_numbers_are_maps() {
 fn indices_and_axes_are_asked_about() {
     let frame = ",0,1,2,3\n0,0.0,1.0,4.0,9.0\n1,16.0,25.0,36.0,49.0\n2,64.0,81.0,100.0,121.0\n";
     let axes = "\t0\t0.5\t1.0\n0\t0.11\t0.12\t0.13\n0.5\t0.21\t0.22\t0.23\n1.0\t0.31\t0.32\t0.33\n";
-    let index = "0 0.1 0.2 0.3\n1 0.4 0.5 0.6\n2 0.7 0.8 0.9\n";
+    let index = "0 0.1 0.7 0.3\n1 0.4 0.5 0.6\n2 0.7 0.8 0.9\n";
     for text in [frame, axes, index] {
         let found = problem(text);
         assert!(matches!(found, ContentError::Border { .. }), "{found:?}");
@@ -127,6 +127,11 @@ fn indices_and_axes_are_asked_about() {
     assert_eq!(metres(&scan), Some([0.5e-6, 0.5e-6]));
     let taken = ReadOptions { border: Some(Border::Axes), ..ReadOptions::default() };
     assert_eq!(heights(&read_with(frame, &taken).unwrap())[..4], [0.0, 1.0, 4.0, 9.0]);
+    // An index along one side only: nothing else is taken out.
+    let scan = read_with(index, &taken).unwrap();
+    assert_eq!(heights(&scan), [0.1, 0.7, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]);
+    let scan = read_with("0,1,2,3\n0.1,0.9,0.3,0.4\n0.5,0.6,0.7,0.8\n", &taken).unwrap();
+    assert_eq!((scan.metadata().rows, scan.height(0, 1), scan.metadata().size), (2, Some(0.9), None));
     let other = read_with("1 5 2\n7 8 1\n2 4 9\n", &taken).unwrap_err();
     assert!(other.to_string().contains("no coordinates in equal steps"), "{other}");
 }
@@ -165,6 +170,8 @@ fn headings_of_programs_count() {
         read_with(exported, &micrometres).unwrap_err().problem(),
         Some(ContentError::Contradiction { .. })
     ));
+    // A unit of nothing in particular is told, and is no reason to refuse.
+    assert!(read("# Unit: V\n1 2\n3 4\n").metadata().notes[0].contains("Unit: V"));
     // What is said in words that are not known is told where it is missing.
     let scan = read("# Voxel size = 3 furlong\n1 2\n3 4\n");
     let error = scan.map(&Preprocessing::default()).unwrap_err().to_string();

@@ -55,23 +55,32 @@ fn border(table: &mut TextTable, declared: &ReadOptions) -> Result<[Option<Exten
             && values.enumerate().all(|(i, v)| (v - first - 1.0 - i as f64).abs() <= 0.0)
     };
     let whole = table.values.iter().all(|v| v.is_nan() || v.fract().abs() <= 0.0);
-    let what = match axes {
-        [Some(_), Some(_)] if corner => "first line and the first column have no corner, but",
-        _ if !whole && columns > 3 && counts(Box::new(first_line())) => "first line has",
-        _ if !whole && columns > 3 && counts(Box::new(first_column())) => "first column has",
-        [Some(_), Some(_)] if declared.border.is_some() => "",
-        _ if declared.border.is_some() => {
+    let [line_counts, column_counts] = [counts(Box::new(first_line())), counts(Box::new(first_column()))]
+        .map(|counts| counts && !whole && columns > 3);
+    let both = axes.iter().all(Option::is_some);
+    let what = match declared.border {
+        None if both && corner => "first line and the first column have no corner, but",
+        None if line_counts => "first line has",
+        None if column_counts => "first column has",
+        None => return Ok([None; 2]),
+        Some(_) if both || line_counts || column_counts => "",
+        Some(_) => {
             let reason = "the first line and the first column are no coordinates in equal steps";
             return Err(ContentError::Useless { what: "border", reason });
         }
-        _ => return Ok([None; 2]),
     };
     if declared.border.is_none() {
         return Err(ContentError::Border { what });
     }
-    table.values = table.values.chunks_exact(columns).skip(1).flat_map(|row| &row[1..]).copied().collect();
-    table.lines.remove(0);
-    table.columns -= 1;
+    // An index may stand along one side only.
+    let (lines, places) = (usize::from(both || line_counts), usize::from(both || column_counts));
+    let heights = table.values.chunks_exact(columns).skip(lines).flat_map(|row| &row[places..]);
+    table.values = heights.copied().collect();
+    table.lines.drain(..lines);
+    table.columns -= places;
+    if !both {
+        return Ok([None; 2]);
+    }
     let unit = table.heading.lateral_unit.clone().or_else(|| declared.lateral_unit.clone());
     let unit = unit.unwrap_or_else(Unit::none);
     Ok(axes.map(|step| Quantity::of(step?, &unit).ok().map(Extent::Cell)))

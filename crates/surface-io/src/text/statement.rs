@@ -44,6 +44,7 @@ pub(super) enum Axes {
 /// Kind, key and value of a line `key: value` or `key = value`, or with a tab between; `None` for what means nothing here.
 pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let text = text.trim().trim_start_matches(['\\', '@', '*']);
+    let quoted = text.starts_with('"');
     let text = &joined(text);
     let between = text.find([':', '=']).or_else(|| text.find('\t')).or_else(|| grid(text));
     let (key, value) = match between {
@@ -67,7 +68,8 @@ pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let words = name.to_lowercase().replace(['_', '-'], " ");
     let words: Vec<&str> = words.split_whitespace().collect();
     let words = words.join(" ");
-    let statement = known(&words)?;
+    // Of Keyence's tables the unit is that of the numbers; elsewhere it may be that of anything.
+    let statement = if words == "unit" && quoted { Statement::DataUnit } else { known(&words)? };
     if between.is_none() && statement != Statement::HeightUnit {
         return None;
     }
@@ -126,7 +128,7 @@ fn known(words: &str) -> Option<Statement> {
         | "z data" => Statement::HeightUnit,
         "lateral units" | "lateral unit" | "xy unit" | "xy units" | "x unit" | "x units" | "y unit"
         | "y units" => Statement::LateralUnit,
-        "data unit" | "unit" => Statement::DataUnit,
+        "data unit" => Statement::DataUnit,
         "nodata value" => Statement::Missing,
         "bit2nm" => Statement::BitToNm,
         _ => return None,
