@@ -47,7 +47,9 @@ fn border(table: &mut TextTable, declared: &ReadOptions) -> Result<[Option<Exten
     let first_line = || table.values[..columns].iter().copied();
     let first_column = || table.values.iter().step_by(columns).copied();
     let corner = table.values[0].is_nan();
-    let axes = [equal_steps(first_line().skip(1)), equal_steps(first_column().skip(1))];
+    // Two numbers always ascend in equal steps; without a number in the corner they are no heights.
+    let least = if corner { 2 } else { 3 };
+    let axes = [equal_steps(first_line().skip(1), least), equal_steps(first_column().skip(1), least)];
     // The index of a data frame, 0 or 1 and on, beside heights that are no whole numbers.
     let counts = |mut values: Box<dyn Iterator<Item = f64> + '_>| {
         let first = values.next().unwrap_or(f64::NAN);
@@ -86,13 +88,13 @@ fn border(table: &mut TextTable, declared: &ReadOptions) -> Result<[Option<Exten
     Ok(axes.map(|step| Quantity::of(step?, &unit).ok().map(Extent::Cell)))
 }
 
-/// The step of ascending numbers in equal steps, within the digits that are printed.
-fn equal_steps(mut values: impl Iterator<Item = f64>) -> Option<f64> {
+/// The step of `least` ascending numbers or more in equal steps, within the digits that are printed.
+fn equal_steps(mut values: impl Iterator<Item = f64>, least: usize) -> Option<f64> {
     let first = values.next()?;
     let all: Vec<f64> = values.collect();
     let step = (all.last()? - first) / all.len() as f64;
     let equal = all.iter().enumerate().all(|(i, v)| (v - first - (i + 1) as f64 * step).abs() <= 0.02 * step);
-    (step > 0.0 && equal).then_some(step)
+    (step > 0.0 && equal && all.len() + 1 >= least).then_some(step)
 }
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells
