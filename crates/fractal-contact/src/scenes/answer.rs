@@ -1,0 +1,315 @@
+//! From a scene to its files: planned, solved, told.
+
+use crate::scenes::plan::accuracy::SharedStop;
+use crate::scenes::plan::calibration;
+use crate::scenes::plan::cost::Cost;
+use crate::scenes::plan::model_on_surface::ModelOnSurface;
+use crate::scenes::plan::scene_plan::{ModelPlan, Plan};
+use crate::scenes::read::error::Result;
+use crate::scenes::read::human_readable::number;
+use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::read::words;
+use crate::scenes::run::field_pictures;
+use crate::scenes::run::outcome::{Options, SceneOutcome};
+use crate::scenes::run::scene_job::{scene_jobs, units};
+use crate::scenes::run::state_result::{ModelResult, StateResult};
+use crate::scenes::run::warnings::Warning;
+use crate::scenes::tell::columns;
+use crate::scenes::tell::distributions::{self, Solved};
+use crate::scenes::tell::ensemble;
+use crate::scenes::tell::manifest;
+use crate::scenes::tell::pictures;
+use crate::scenes::tell::report::Report;
+use crate::scenes::tell::result_folder::ResultFolder;
+use crate::scenes::tell::statistics::MapStatisticsTables;
+use crate::scenes::tell::summary;
+use analysis::{Column, Table, Value};
+use runs::cluster::{ShardPlan, ShardReport, run_shard};
+use runs::{Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
+use std::time::Instant;
+
+/// Answers a scene: every model on every surface under every load, and writes what is asked for.
+///
+/// `results.csv` and `manifest.json` always, `ensemble.csv` (means over the surfaces) where there are several; `patches.csv`, fields and
+/// curves where the scene asks for them. A theory, which is the same for every seed, has one surface.
+/// Finished states are kept in `OUT/.units` and reused by the next run of the same scene: with a state that is
+/// solved again, the ones after it differ from those of an uninterrupted run within the tolerance, no more. Where
+/// `stop` says so, the states so far are written and [`SceneOutcome::stopped`] is true.
+///
+/// The directory belongs to one run: what an earlier run wrote there and this one does not is removed.
+///
+/// # Errors
+/// As [`crate::scenes::check`]; [`crate::scenes::Error::Run`] for what only shows at full size, for a directory that another process
+/// is using or that holds files of somebody else under the names of results; files that cannot be written.
+pub fn run(
+    scene: &SceneFile,
+    plan: &Plan,
+    options: &Options,
+    progress: &dyn Progress,
+    stop: SharedStop<'_>,
+) -> Result<SceneOutcome> {
+    let start = Instant::now();
+    runs::reset_peak_memory();
+    let threads =
+        Threads { total: options.threads, jobs: calibration::jobs_in_memory(scene, options.threads)? };
+    runs::files::create_directory(&options.out)?;
+    let store = Store::open(&options.out, options.fresh)?;
+    runs::files::clean(&options.out)?;
+    let folder = ResultFolder::claim(&options.out, scene)?;
+    manifest::write_begun(scene, options, &folder.files(scene))?;
+    let columns = columns::columns(scene);
+    let units = units(scene);
+    let jobs = scene_jobs(scene, &options.out);
+    let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop);
+    let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
+    let mut outcome =
+        SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
+    let Tables { states: table, patches } = gather(scene, columns, &units, &results, options, &mut outcome)?;
+    let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &table) } else { Vec::new() };
+    let header = header(scene, plan);
+    let mut write = |name: &str, table: &Table| -> Result<()> {
+        let path = options.out.join(name);
+        write_csv(&path, table, &header)?;
+        outcome.files.push(path);
+        Ok(())
+    };
+    write("results.csv", &table)?;
+    if scene.requested.outputs.contact_patches {
+        write("patches.csv", &patches)?;
+    }
+    if !means.is_empty() {
+        let title = format!("{}: means over surfaces", title(scene));
+        let means = ensemble::table(title, table.columns(), &means);
+        write("ensemble.csv", &means.map_err(runs::Error::model("means over surfaces"))?)?;
+    }
+    let solved: Vec<Solved<'_>> = (units.iter().zip(&results))
+        .filter_map(|(unit, result)| {
+            Some((unit.numerics(scene).name(), unit.surface, result.as_ref()?.states.as_slice()))
+        })
+        .collect();
+    for &of in &scene.requested.distributions {
+        let title = format!("{}: distribution of {}", title(scene), of.name());
+        write(&format!("distribution-{}.csv", of.name()), &distributions::table(scene, of, title, &solved)?)?;
+    }
+    for &of in &scene.requested.distributions {
+        if let Some(chart) = distributions::chart(scene, of, &solved) {
+            outcome.files.extend(chart.save(&options.out, &format!("distribution-{}", of.name()))?);
+        }
+    }
+    if scene.requested.curves {
+        outcome.files.extend(pictures::curves(scene, &table, &means, &options.out)?);
+    }
+    let statistics = scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
+    if let Some(statistics) = &statistics {
+        outcome.files.extend(statistics.write(&options.out, &header, &words::scene_name(scene))?);
+        outcome.notes.extend(
+            statistics.notes.iter().chain(&statistics.remarks).map(|note| format!("statistics: {note}")),
+        );
+    }
+    outcome.summary = summary::summary(scene, &table, &means);
+    outcome.actual = actual(scene, &units, &results, &table);
+    outcome.peak_memory = runs::peak_memory();
+    outcome.seconds = start.elapsed().as_secs_f64();
+    let report = Report {
+        scene,
+        plan,
+        outcome: &outcome,
+        table: &table,
+        means: &means,
+        solved: &solved,
+        statistics: statistics.as_ref(),
+    }
+    .write(&options.out)?;
+    outcome.files.push(report);
+    outcome.files.push(options.out.join("manifest.json"));
+    if !outcome.stopped {
+        field_pictures::sweep(&options.out);
+    }
+    let removed = folder.remove_others(&outcome.files)?;
+    if removed > 0 {
+        let out = options.out.display();
+        outcome.notes.push(format!("{removed} files that an earlier run left in {out} were removed"));
+    }
+    manifest::write(scene, plan, options, &outcome)?;
+    Ok(outcome)
+}
+
+/// Does one shard of a scene and writes no table; [`crate::scenes::run`] in the same directory, when all shards are done, finds their results and does.
+///
+/// Shards of one scene may run at the same time, here or on other machines that share the directory. A job that is interrupted goes on from its last
+/// state: the states after it are then those of an undivided run within the tolerance, not to the last digit.
+///
+/// # Errors
+/// As [`crate::scenes::run`]; the first job that fails.
+pub fn run_scene_shard(
+    scene: &SceneFile,
+    plan: &ShardPlan,
+    shard: Shard,
+    options: &Options,
+    progress: &dyn Progress,
+    stop: SharedStop<'_>,
+) -> Result<ShardReport, Failure> {
+    runs::files::create_directory(&options.out)?;
+    // The files of an earlier run are this one's to replace, as for a run that is not divided.
+    let folder = ResultFolder::claim(&options.out, scene)?;
+    manifest::write_begun(scene, options, &folder.files(scene))?;
+    let jobs = scene_jobs(scene, &options.out);
+    run_shard(plan, &jobs, shard, (&options.out, options.threads), progress, stop)
+}
+
+/// The tables of a run.
+struct Tables {
+    states: Table,
+    patches: Table,
+}
+
+/// Rows of all results in their order; counts, notes and files of fields go to the outcome.
+fn gather(
+    scene: &SceneFile,
+    columns: Vec<Column>,
+    units: &[ModelOnSurface],
+    results: &[Option<ModelResult>],
+    options: &Options,
+    outcome: &mut SceneOutcome,
+) -> Result<Tables> {
+    let mut table = Table::new(title(scene), columns);
+    let mut patches = patches_table(scene);
+    let note = table.columns().iter().position(|c| c.name == "note");
+    let mut warned = [0; Warning::ALL.len()];
+    // A formula has no cells that a warning could be about.
+    let mut counted = 0;
+    for (unit, result) in units.iter().zip(results) {
+        let Some(result) = result else {
+            outcome.stopped = true;
+            continue;
+        };
+        outcome.stopped |= !result.complete;
+        outcome.kept += result.kept;
+        for state in &result.states {
+            outcome.failed += usize::from(state.failed);
+            counted += usize::from(unit.numerics(scene).size() > 0);
+            if let Some(Value::Text(text)) = note.and_then(|i| state.row.get(i)) {
+                let warnings: Vec<Warning> = Warning::in_note(text).collect();
+                if warnings.is_empty() && !outcome.notes.contains(text) {
+                    outcome.notes.push(text.clone());
+                }
+                for warning in warnings {
+                    warned[warning as usize] += 1;
+                }
+            }
+            table.push(state.row.clone()).map_err(runs::Error::model("a row"))?;
+            for area in &state.patches {
+                let row = vec![
+                    unit.numerics(scene).name().into(),
+                    unit.surface.into(),
+                    state.index.into(),
+                    (*area).into(),
+                ];
+                patches.push(row).map_err(runs::Error::model("a patch"))?;
+            }
+            let shown = state.files.iter().filter(|file| !file.is_hidden());
+            outcome.files.extend(shown.map(|file| options.out.join(&file.name)));
+        }
+    }
+    outcome.states = table.rows().len();
+    for (warning, count) in Warning::ALL.into_iter().zip(warned).filter(|(_, count)| *count > 0) {
+        outcome.notes.push(format!(
+            "{} ({count} of {counted} states): {}",
+            warning.as_str(),
+            warning.remedy()
+        ));
+    }
+    Ok(Tables { states: table, patches })
+}
+
+/// What the tables are called.
+pub(crate) fn title(scene: &SceneFile) -> String {
+    let name = scene.path.file_stem().map_or_else(|| "scene".into(), |n| n.to_string_lossy().into_owned());
+    format!("{name}: {}", scene.surface.describe())
+}
+
+fn header(scene: &SceneFile, plan: &Plan) -> Header {
+    let file =
+        scene.path.file_name().map_or_else(|| "scene.toml".into(), |n| n.to_string_lossy().into_owned());
+    let mut header = Header { command: format!("fractal-contact run {file}"), ..Header::default() };
+    for numerics in &scene.models {
+        header = header.with_sources(numerics.model().sources());
+    }
+    if !scene.comment().is_empty() {
+        header = header.with_note(scene.comment());
+    }
+    header = header.with_note(match scene.system {
+        crate::scenes::System::Si => "units: SI",
+        crate::scenes::System::None => "units: none; lengths, forces and moduli in the scene's own",
+    });
+    // Which file, and what was done to it.
+    let tables = scene.text.lines().skip_while(|line| line.trim() != "[scene.surface]").skip(1);
+    let surface = tables.take_while(|line| !line.trim_start().starts_with('['));
+    for line in surface.map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        header = header.with_note(format!("surface: {line}"));
+    }
+    let size = scene.surface.size();
+    header = header.with_note(format!(
+        "modulus: {} (E*); size: {} x {}",
+        number(scene.modulus),
+        number(size.x),
+        number(size.y)
+    ));
+    for ModelPlan { name, grid, accuracy, .. } in &plan.models {
+        header = header.with_note(format!("model {name}: grid: {grid}; {accuracy}"));
+    }
+    for line in crate::scenes::read::effects::effect_lines(&scene.effects) {
+        header = header.with_note(format!(
+            "effect {}: {} ({})",
+            line.name,
+            if line.on { "on" } else { "off" },
+            line.reason
+        ));
+    }
+    if scene.is_random() {
+        header = header.with_note(format!("seed: {}", scene.sampling.seed));
+    }
+    header
+}
+
+fn patches_table(scene: &SceneFile) -> Table {
+    let area = if scene.system == crate::scenes::System::Si { "m^2" } else { "scene" };
+    let column = |name, unit, meaning| Column { name, unit, meaning };
+    let columns = vec![
+        column("model", "-", "who answers"),
+        column("surface", "1", "number of the surface, from 0"),
+        column("state", "1", "number of the load, from 0"),
+        column("area", area, "of one connected contact, the largest first"),
+    ];
+    Table::new(format!("{}: connected contact areas", title(scene)), columns)
+}
+
+/// What each model did, summed over its rows.
+fn actual(
+    scene: &SceneFile,
+    units: &[ModelOnSurface],
+    results: &[Option<ModelResult>],
+    table: &Table,
+) -> Vec<(&'static str, Cost, u64)> {
+    let column = |name: &str| table.columns().iter().position(|c| c.name == name);
+    let places = ["applications", "linear_solves", "fields", "field_bytes"].map(column);
+    let mut list: Vec<(&'static str, Cost, u64)> =
+        scene.models.iter().map(|m| (m.name(), Cost::default(), 0)).collect();
+    for (unit, result) in units.iter().zip(results) {
+        let (Some(result), Some((_, cost, bytes))) = (result, list.get_mut(unit.model)) else { continue };
+        cost.seconds += result.seconds;
+        for StateResult { row, files, .. } in &result.states {
+            *bytes += files.iter().map(|file| file.bytes).sum::<u64>();
+            let count = |place: Option<usize>| match place.and_then(|i| row.get(i)) {
+                Some(Value::Count(n)) => *n as f64,
+                _ => 0.0,
+            };
+            let [applications, linear_solves, fields, field_bytes] = places.map(count);
+            cost.applications += applications;
+            cost.linear_solves += linear_solves;
+            cost.fields += fields;
+            cost.field_bytes += field_bytes;
+        }
+    }
+    list
+}

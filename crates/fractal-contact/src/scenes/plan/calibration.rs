@@ -1,0 +1,203 @@
+//! The cost of a run, predicted from small solves of the same kind.
+
+use crate::scenes::plan::cost::Cost;
+use crate::scenes::read::any_model::AnyModel;
+use crate::scenes::read::error::Result;
+use crate::scenes::read::loads::Loading;
+use crate::scenes::read::numerics::Numerics;
+use crate::scenes::read::sampled::sampled;
+use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::read::scene_file::cells;
+use bem3d::BYTES_PER_CELL;
+use contact_model::{Adhesion, Cells, ContactState, Surface};
+use mdr1d::BYTES_PER_ELEMENT;
+use std::time::{Duration, Instant};
+
+/// Cells a side, and elements, of the solves that the cost is predicted from.
+const CALIBRATION_CELLS: usize = 65;
+/// A large grid is predicted from a quarter of its cells a side, at most these.
+const LARGEST_CALIBRATION: usize = 257;
+const CALIBRATION_ELEMENTS: usize = 1 << 12;
+const WARM_CELLS: usize = 17;
+/// Loads solved for it at most, spread over those asked for.
+const CALIBRATION_LOADS: usize = 4;
+/// It stops by itself after this time.
+const CALIBRATION_TIME: Duration = Duration::from_secs(3);
+/// Time of one load over cells a side: N^1.9 to N^2.6 as measured by `cargo xtask bench --scaling`.
+pub(crate) const TIME_EXPONENT: f64 = 2.3;
+/// Applications of the operator over cells a side, as measured by the same.
+const APPLICATIONS_EXPONENT: f64 = 0.3;
+/// The same two with adhesion of short range, whose fronts move about a cell in a sweep: N^2.5 to N^3.7 and
+/// N^0.5 to N^1.4 as measured by the example `effects` of `bem3d`.
+const FRONTS_TIME_EXPONENT: f64 = 3.1;
+const FRONTS_APPLICATIONS_EXPONENT: f64 = 1.0;
+/// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from outside
+/// on that example.
+const ADHESION_BYTES: f64 = 300.0;
+
+/// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
+pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
+    let (grid, size) = (cells(scene, numerics), scene.surface.size());
+    let coarse = (grid.columns.max(grid.rows) / 4).clamp(CALIBRATION_CELLS, LARGEST_CALIBRATION);
+    let small = numerics.clone().reduced(coarse, CALIBRATION_ELEMENTS, size);
+    // Code and memory that are touched for the first time are no part of what grows with N.
+    let warm = numerics.clone().reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
+    let _ = small_solves(scene, &warm, (WARM_CELLS, grid), &contact_model::never);
+    let requested = scene.request.count();
+    let surfaces = if scene.surface.is_random_for(numerics) { scene.sampling.surfaces as f64 } else { 1.0 };
+    let total = requested as f64 * surfaces;
+    let begin = Instant::now();
+    let stop = || begin.elapsed() > CALIBRATION_TIME;
+    let timed = || small_solves(scene, &small, (coarse, grid), &stop);
+    let (solved, used) = runs::on_one_thread(timed).unwrap_or_default();
+    let mut cost = solved.cost;
+    let count = grid.columns as f64 * grid.rows as f64;
+    let per_state = total / (solved.states.max(1)) as f64;
+    let (time, applications) = match numerics {
+        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) if used > 0 => {
+            // Cells a side of the squares of as many cells.
+            let ratio = (count / used as f64).sqrt();
+            if let Adhesion::ShortRange { .. } = scene.effects.adhesion {
+                (ratio.powf(FRONTS_TIME_EXPONENT), ratio.powf(FRONTS_APPLICATIONS_EXPONENT))
+            } else {
+                (ratio.powf(TIME_EXPONENT), ratio.powf(APPLICATIONS_EXPONENT))
+            }
+        }
+        // Sorted once, in the preparation.
+        Numerics::Mdr1d(m) => {
+            ((m.elements as f64 / small.size().max(1) as f64).powf(0.5 * TIME_EXPONENT), 1.0)
+        }
+        _ => (1.0, 1.0),
+    };
+    // Each surface is prepared once and begins cold; the loads after the first one begin from the one before.
+    let later =
+        solved.later / solved.states.saturating_sub(1).max(1) as f64 * requested.saturating_sub(1) as f64;
+    cost.seconds =
+        surfaces * (solved.prepare * time.powf(2.0 / TIME_EXPONENT) + (solved.first + later) * time);
+    if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) {
+        cost.seconds *= 1.0 + 0.5f64.powf(TIME_EXPONENT) + 0.25f64.powf(TIME_EXPONENT);
+    }
+    cost.applications *= applications * per_state;
+    cost.linear_solves *= per_state;
+    cost.fields *= per_state;
+    let outputs = &scene.requested.outputs;
+    if let Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) = numerics {
+        let named = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
+        let fields = named.iter().filter(|f| **f).count() as f64;
+        cost.fields = fields * total;
+        cost.field_bytes = cost.fields * count * 8.0;
+        let adhesion = if scene.effects.adhesion == Adhesion::Off { 0.0 } else { ADHESION_BYTES };
+        cost.memory =
+            count * (BYTES_PER_CELL + bem3d::bytes_per_cell(solved.filled) + adhesion + 8.0 * fields);
+    }
+    cost
+}
+
+/// Memory that a model needs for one surface at least, bytes; at least 1.
+pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let Cells { columns, rows } = cells(scene, numerics);
+    let bytes = match numerics {
+        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) => {
+            BYTES_PER_CELL * columns as f64 * rows as f64
+        }
+        _ => BYTES_PER_ELEMENT * numerics.size() as f64,
+    };
+    bytes.max(1.0)
+}
+
+/// As many jobs at the same time as there is memory for.
+pub(crate) fn jobs_in_memory(scene: &SceneFile, most: usize) -> Result<usize> {
+    let mut jobs = most;
+    for numerics in &scene.models {
+        let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
+        let memory = least_memory(scene, numerics);
+        jobs = runs::threads_for_memory(jobs, memory, name, numerics.size())?;
+    }
+    Ok(jobs)
+}
+
+#[derive(Default)]
+struct PilotSolve {
+    states: usize,
+    /// Largest share of the cells in contact.
+    filled: f64,
+    /// Seconds of preparing a surface, of its first load, and of all others.
+    prepare: f64,
+    first: f64,
+    later: f64,
+    cost: Cost,
+}
+
+impl PilotSolve {
+    /// Counts a state that took so long.
+    fn count(&mut self, begun: Instant, state: &ContactState, cells: usize) {
+        let seconds = begun.elapsed().as_secs_f64();
+        *(if self.states == 0 { &mut self.first } else { &mut self.later }) += seconds;
+        self.states += 1;
+        let contact = state.report.contact_cells.unwrap_or(0) as f64;
+        self.filled = self.filled.max(contact / cells.max(1) as f64);
+        self.cost.applications += state.report.applications as f64;
+        self.cost.linear_solves += state.report.work.linear_solves as f64;
+    }
+}
+
+/// A few of the loads on a grid of at most `coarse` cells along its longer side, instead of `full`; the second
+/// number is that of its cells.
+fn small_solves(
+    scene: &SceneFile,
+    numerics: &Numerics,
+    (coarse, full): (usize, Cells),
+    stop: &dyn Fn() -> bool,
+) -> contact_model::Result<(PilotSolve, usize)> {
+    let seed = scene.seed(0);
+    let mut physics = scene.scene(numerics, seed)?;
+    let mut grid = numerics.boundary_elements().map(|elements| elements.grid(scene.surface.size()));
+    if let Surface::Heights(map) | Surface::Profile(map) = &physics.surface {
+        let thin = sampled(map, coarse)?;
+        grid = Some(thin.cells());
+        let thin = std::sync::Arc::new(thin);
+        physics.surface = match physics.surface {
+            Surface::Profile(_) => Surface::Profile(thin),
+            _ => Surface::Heights(thin),
+        };
+    }
+    // Larger cells resolve an attraction as well whose range is larger by the root of that: so it costs as many
+    // sweeps, and is not refused.
+    if let (Adhesion::FiniteRange { work, range, law }, Some(grid)) = (physics.effects.adhesion, grid) {
+        let larger = (full.columns as f64 / grid.columns as f64).max(full.rows as f64 / grid.rows as f64);
+        let range = range * larger.sqrt().max(1.0);
+        physics.effects.adhesion = Adhesion::FiniteRange { work, range, law };
+    }
+    let size = grid.and_then(Cells::checked_count).unwrap_or(0);
+    let (mut solved, begun) = (PilotSolve::default(), Instant::now());
+    match (numerics.model(), &scene.request) {
+        (AnyModel::Contact(model), Loading::Loads(loads)) => {
+            let mut contact = model.prepare(&physics, seed)?;
+            solved.prepare = begun.elapsed().as_secs_f64();
+            let normalisation = contact.normalisation();
+            let count = loads.values.len();
+            let used = count.min(CALIBRATION_LOADS);
+            for i in 0..used {
+                let requested = loads.values[i * (count - 1) / (used - 1).max(1)];
+                let begun = Instant::now();
+                let Ok(state) =
+                    loads.load(requested, &normalisation).and_then(|load| contact.solve_until(load, stop))
+                else {
+                    continue;
+                };
+                solved.count(begun, &state, size);
+            }
+        }
+        (AnyModel::History(model), Loading::Path(steps)) => {
+            let mut contact = model.prepare(&physics, seed)?;
+            solved.prepare = begun.elapsed().as_secs_f64();
+            for step in steps {
+                let begun = Instant::now();
+                let Ok(state) = contact.advance_until(*step, stop) else { break };
+                solved.count(begun, &state.normal, size);
+            }
+        }
+        _ => {}
+    }
+    Ok((solved, size))
+}

@@ -1,0 +1,85 @@
+//! One model and one surface: what is solved, stored and divided as a whole.
+
+use crate::scenes::read::any_model::AnyModel;
+use crate::scenes::read::numerics::Numerics;
+use crate::scenes::read::scene_file::{SceneFile, cells};
+use contact_model::{Cells, Scene};
+
+/// Number of the format of stored units; it changes with anything that changes a row.
+pub(crate) const FORMAT: u32 = 7;
+
+/// One model and one surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ModelOnSurface {
+    /// Which of the scene's models.
+    pub model: usize,
+    /// Number of the surface.
+    pub surface: usize,
+}
+
+impl ModelOnSurface {
+    pub fn numerics<'a>(&self, scene: &'a SceneFile) -> &'a Numerics {
+        &scene.models[self.model]
+    }
+
+    /// Everything that decides its numbers.
+    pub fn key(&self, scene: &SceneFile) -> String {
+        let surface = scene.surface.key();
+        let SceneFile { modulus, hardness, accuracy, pair, effects, request, requested, system, .. } = scene;
+        format!(
+            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
+             request {request:?}\noutputs {requested:?} {system:?}\nnumber {}\nseed {}\n",
+            bem3d::FORMAT,
+            env!("CARGO_PKG_VERSION"),
+            self.numerics(scene),
+            self.surface,
+            scene.seed(self.surface),
+        )
+    }
+
+    /// Predicted processor milliseconds: they order the work, divide it into shards and move the progress bar. A guess from the sizes alone, within
+    /// a factor of ten; those of one model, which are what is divided, have the same.
+    pub fn cost(&self, scene: &SceneFile) -> u64 {
+        let numerics = self.numerics(scene);
+        let n = numerics.size() as u64;
+        let Cells { columns, rows } = cells(scene, numerics);
+        let count = columns as u64 * rows as u64;
+        let states = scene.request.count() as u64;
+        match numerics {
+            // A microsecond for each cell and state.
+            Numerics::Bem3d(_) | Numerics::Bem3dPath(_) => 1 + count * states / 1000,
+            Numerics::Equivalent(_) => 1 + count * (states + 49) / 1000,
+            Numerics::Mdr1d(_) => 1 + n / 10_000,
+            _ => 1,
+        }
+    }
+
+    /// Bytes of its rows and of the fields that are asked for.
+    pub fn stored_bytes(&self, scene: &SceneFile, columns: usize) -> u64 {
+        let states = scene.request.count() as u64;
+        let fields: usize = scene.requested.fields().iter().map(|(_, formats)| formats.len()).sum();
+        let Cells { columns: x, rows: y } = cells(scene, self.numerics(scene));
+        1000 + states * (20 * columns as u64 + 8 * x as u64 * y as u64 * fields as u64)
+    }
+
+    /// Errors where this model cannot answer the scene, found out on a small grid; what that grid refuses for
+    /// its own sake is asked of the full one.
+    pub fn probe(&self, scene: &SceneFile) -> contact_model::Result<()> {
+        let numerics = self.numerics(scene);
+        match probe(scene, &numerics.probe(scene.surface.size())) {
+            Ok(()) => Ok(()),
+            Err(error @ contact_model::Error::Unsupported { .. }) => Err(error),
+            Err(_) => probe(scene, numerics),
+        }
+    }
+}
+
+/// Whether a model takes a scene.
+pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics) -> contact_model::Result<()> {
+    let seed = scene.seed(0);
+    let physics: Scene = scene.scene(numerics, seed)?;
+    match numerics.model() {
+        AnyModel::Contact(model) => model.prepare(&physics, seed).map(|_| ()),
+        AnyModel::History(model) => model.prepare(&physics, seed).map(|_| ()),
+    }
+}

@@ -1,0 +1,292 @@
+//! What will be computed, what will not and why, and what it will cost.
+
+use crate::scenes::plan::assumptions::Assumptions;
+use crate::scenes::plan::calibration;
+use crate::scenes::plan::cost::Cost;
+use crate::scenes::plan::model_on_surface::{ModelOnSurface, probe};
+use crate::scenes::read::diagnostic::Diagnostic;
+use crate::scenes::read::effects::{EffectLine, effect_lines};
+use crate::scenes::read::entries::System;
+use crate::scenes::read::error::Result;
+use crate::scenes::read::human_readable::short;
+use crate::scenes::read::human_readable::{memory, number, time};
+use crate::scenes::read::numerics::Numerics;
+use crate::scenes::read::scene_file::{SceneFile, cells};
+use contact_model::Cells;
+use std::fmt;
+
+/// What one model will do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelPlan {
+    /// Its name.
+    pub name: &'static str,
+    /// Its grid.
+    pub grid: String,
+    /// What to expect of its numbers.
+    pub accuracy: String,
+    /// An estimate for all surfaces and loads; `None` before calibration.
+    pub predicted: Option<Cost>,
+}
+
+/// What a scene will do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The comment at the head of the scene.
+    pub shows: String,
+    /// What is pressed.
+    pub surface: String,
+    /// Metadata of its file.
+    pub metadata: Option<String>,
+    /// The map of a file as it is solved: after crop, fill and detrend; `None` for other surfaces and for maps of more than 4096 x 4096
+    /// cells.
+    pub prepared: Option<surface_io::Description>,
+    /// Remarks on the scene.
+    pub notes: Vec<Diagnostic>,
+    /// E*.
+    pub modulus: f64,
+    /// Whether numbers are in SI.
+    pub units: &'static str,
+    /// Number of states for each surface, and of surfaces.
+    pub states: usize,
+    /// Surfaces.
+    pub surfaces: usize,
+    /// Every effect, on or off.
+    pub effects: Vec<EffectLine>,
+    /// Every output, asked for or not.
+    pub outputs: Vec<(&'static str, bool)>,
+    /// The models in their order.
+    pub models: Vec<ModelPlan>,
+}
+
+/// Checks that every model can answer the scene, on small grids.
+///
+/// # Errors
+/// [`crate::scenes::Error::Scene`] at the name of the first model that cannot, with those that can.
+pub fn check(scene: &SceneFile) -> Result<()> {
+    if scene.requested.outputs.mean_gap && scene.effects.boundary != contact_model::Boundary::Periodic {
+        let diagnostic = Diagnostic::new("a mean gap is asked for, but the boundary is free")
+            .with_help("add `boundary = \"periodic\"` to [effects], or ask for the `gap` field");
+        return Err(scene.at_output("mean_gap", diagnostic).into());
+    }
+    for model in 0..scene.models.len() {
+        let unit = ModelOnSurface { model, surface: 0 };
+        if let Err(error) = unit.probe(scene) {
+            return Err(scene.at_model(model, refused(scene, &error)).into());
+        }
+    }
+    Ok(())
+}
+
+fn refused(scene: &SceneFile, error: &contact_model::Error) -> Diagnostic {
+    if !matches!(error, contact_model::Error::Unsupported { .. }) {
+        return Diagnostic::new(error.to_string()).with_help("check the numbers of [scene] and of the model");
+    }
+    let able: Vec<&str> = Numerics::ALL
+        .iter()
+        .filter(|m| m.is_history() == scene.is_history())
+        .map(|m| m.probe(scene.surface.size()))
+        .filter(|m| probe(scene, m).is_ok())
+        .map(|m| m.name())
+        .collect();
+    let help = if able.is_empty() {
+        "no model answers all of it: remove an effect, an output or the model from `models`".to_owned()
+    } else {
+        format!("models that answer all of this scene: {}; or remove the effect or output", able.join(", "))
+    };
+    Diagnostic::new(error.to_string()).with_help(help)
+}
+
+impl Plan {
+    /// The plan of a scene without prediction.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub fn new(scene: &SceneFile) -> Result<Self> {
+        check(scene)?;
+        let assumptions = Assumptions::measured(scene);
+        let taken = |m: &Numerics| assumptions.as_ref().map_or_else(String::new, |a| a.taken(m));
+        let models = scene
+            .models
+            .iter()
+            .map(|m| ModelPlan {
+                name: m.name(),
+                grid: grid(scene, m),
+                accuracy: m.accuracy(scene.surface.is_rough(), cells(scene, m)) + &taken(m),
+                predicted: None,
+            })
+            .collect();
+        let prepared = prepared(scene);
+        let steep = steep(scene, prepared.as_ref());
+        Ok(Self {
+            shows: scene.comment(),
+            surface: scene.surface.describe(),
+            metadata: scene.metadata.clone(),
+            prepared,
+            notes: scene
+                .notes
+                .iter()
+                .cloned()
+                .chain(assumptions.iter().flat_map(|a| a.notes(scene)))
+                .chain(steep)
+                .collect(),
+            modulus: scene.modulus,
+            units: match scene.system {
+                crate::scenes::System::Si => "SI (m, N, Pa, s)",
+                crate::scenes::System::None => "none: the scene's own",
+            },
+            states: scene.request.count(),
+            surfaces: scene.sampling.surfaces,
+            effects: effect_lines(&scene.effects),
+            outputs: scene.requested.lines(),
+            models,
+        })
+    }
+
+    /// The plan with what it will cost, from small solves of the same kind here and now. Takes a few seconds
+    /// at most.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub fn calibrated(scene: &SceneFile) -> Result<Self> {
+        calibration::jobs_in_memory(scene, 1)?;
+        let mut plan = Self::new(scene)?;
+        for (numerics, model) in scene.models.iter().zip(&mut plan.models) {
+            model.predicted = Some(calibration::predict(scene, numerics));
+        }
+        Ok(plan)
+    }
+
+    /// The sum over the models.
+    pub fn predicted(&self) -> Option<Cost> {
+        self.models.iter().map(|m| m.predicted).try_fold(Cost::default(), |sum, cost| {
+            let cost = cost?;
+            Some(Cost {
+                seconds: sum.seconds + cost.seconds,
+                memory: sum.memory.max(cost.memory),
+                applications: sum.applications + cost.applications,
+                linear_solves: sum.linear_solves + cost.linear_solves,
+                fields: sum.fields + cost.fields,
+                field_bytes: sum.field_bytes + cost.field_bytes,
+            })
+        })
+    }
+}
+
+/// Its spectrum takes seconds and three times its memory on the largest map.
+const LARGEST_DESCRIBED: usize = 1 << 24;
+/// Largest rms slope of which linear elasticity of half-spaces is an approximation of some per cent.
+const SMALL_SLOPE: f64 = 0.3;
+
+/// Without units, heights may have a scale of their own.
+fn steep(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
+    let slope = map?.rms_slope;
+    let message =
+        format!("the rms slope of the map is {}, and every model here assumes small slopes", short(slope));
+    let help = "is the unit of the heights right? beyond 0.3 take the results as those of a linear theory";
+    (scene.system == System::Si && slope > SMALL_SLOPE).then(|| Diagnostic::note(message).with_help(help))
+}
+
+fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
+    let map = scene.surface.given_map().filter(|map| map.heights().len() <= LARGEST_DESCRIBED)?;
+    Some(surface_io::describe(map))
+}
+
+fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
+    match numerics {
+        Numerics::Bem3d(_) if scene.accuracy.is_some() && !scene.requested.grid_error => {
+            "chosen for the accuracy when it is planned".into()
+        }
+        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) => {
+            let (cells, size) = (cells(scene, numerics), scene.surface.size());
+            let Cells { columns, rows } = cells;
+            let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
+            if dx.to_bits() == dy.to_bits() {
+                format!("{columns} x {rows} cells of {dx:.4e}")
+            } else {
+                format!("{columns} x {rows} cells of {dx:.4e} x {dy:.4e}")
+            }
+        }
+        Numerics::Mdr1d(m) if scene.surface.is_rough() => format!("a line of {} elements", m.elements),
+        Numerics::Registered(_) => "the model's own".into(),
+        _ => "none: a formula".into(),
+    }
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}, {} operator applications, {} linear solves, {} fields ({})",
+            time(self.seconds),
+            whole(self.applications),
+            whole(self.linear_solves),
+            whole(self.fields),
+            memory(self.field_bytes)
+        )
+    }
+}
+
+fn whole(v: f64) -> String {
+    format!("{v:.0}")
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.shows.is_empty() {
+            writeln!(f, "{}\n", self.shows)?;
+        }
+        for note in &self.notes {
+            writeln!(f, "{note}\n")?;
+        }
+        writeln!(f, "surface   {}", self.surface)?;
+        for line in self.metadata.iter().flat_map(|u| u.lines()) {
+            writeln!(f, "          {line}")?;
+        }
+        if let Some(description) = &self.prepared {
+            writeln!(f, "as solved")?;
+            for line in description.to_string().lines() {
+                writeln!(f, "          {line}")?;
+            }
+        }
+        writeln!(f, "modulus   {} (E*)", number(self.modulus))?;
+        writeln!(f, "units     {}", self.units)?;
+        writeln!(f, "states    {} on each of {} surface(s)", self.states, self.surfaces)?;
+        writeln!(f, "\neffects")?;
+        for line in &self.effects {
+            writeln!(f, "  {:10} {:4} {}", line.name, if line.on { "on" } else { "off" }, line.reason)?;
+        }
+        let names = |requested: bool| {
+            let list: Vec<&str> =
+                self.outputs.iter().filter(|(_, a)| *a == requested).map(|(n, _)| *n).collect();
+            if list.is_empty() { "none".to_owned() } else { list.join(", ") }
+        };
+        writeln!(
+            f,
+            "\noutputs\n  computed   force, approach or gap prescribed with it, certificate; {}",
+            names(true)
+        )?;
+        writeln!(f, "  not asked for, so not computed or stored: {}", names(false))?;
+        writeln!(f, "\nmodels")?;
+        for model in &self.models {
+            writeln!(
+                f,
+                "  {}\n    grid       {}\n    accuracy   {}",
+                model.name, model.grid, model.accuracy
+            )?;
+            if let Some(cost) = &model.predicted {
+                writeln!(f, "    estimate   {cost}")?;
+            }
+        }
+        if let Some(cost) = self.predicted() {
+            write!(f, "\nestimate    {} on one thread", time(cost.seconds))?;
+            if cost.memory > 0.0 {
+                write!(f, ", {} of memory for each thread", memory(cost.memory))?;
+            }
+            writeln!(
+                f,
+                " (from small solves on this machine, scaled with the cells: within a factor of six; files and pictures come on top)"
+            )?;
+        }
+        Ok(())
+    }
+}

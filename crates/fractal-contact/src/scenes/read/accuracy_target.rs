@@ -1,0 +1,42 @@
+//! `accuracy` and `budget` of `[scene]`.
+
+use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use surface_io::Dimension;
+
+/// Seconds that an accuracy may cost where nothing is said.
+const BUDGET: f64 = 600.0;
+/// What `accuracy` asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AccuracyTarget {
+    /// Relative error of the grid that each state may have, of those among stiffness, corrected area, conductance and mean gap that are asked for.
+    pub share: f64,
+    /// Predicted seconds of one thread that it may take.
+    pub seconds: f64,
+}
+
+/// Reads `accuracy` and `budget`, with the place of the former.
+pub(crate) fn read_accuracy<'a>(scene: &Entries<'a>) -> Read<Option<(AccuracyTarget, Entry<'a>)>> {
+    let (accuracy, budget) = (scene.find("accuracy"), scene.find("budget"));
+    let Some(entry) = accuracy else {
+        return match budget {
+            Some(budget) => Err(budget
+                .diagnostic_at_key("`budget` is given, but no `accuracy`")
+                .with_help("it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it")),
+            None => Ok(None),
+        };
+    };
+    let share = match entry.as_word() {
+        Some(text) => {
+            text.trim().strip_suffix('%').and_then(|t| t.trim().parse().ok()).map(|p: f64| p / 100.0)
+        }
+        None => Some(entry.number()?),
+    };
+    let Some(share) = share.filter(|share| *share > 0.0 && *share < 1.0) else {
+        return Err(entry
+            .diagnostic(format!("`accuracy` = {}: expected a share above 0 and below 100 %", entry.shown()))
+            .with_help("such as \"1 %\" or 0.01"));
+    };
+    // A time of the one who waits: it has a unit in every scene.
+    let seconds = budget.map_or(Ok(BUDGET), |entry| entry.positive(Dimension::TIME, System::Si))?;
+    Ok(Some((AccuracyTarget { share, seconds }, entry)))
+}

@@ -1,0 +1,427 @@
+//! A table of a scene, read key by key: what nobody asks for is an error.
+
+use crate::scenes::read::diagnostic::Diagnostic;
+use std::cell::RefCell;
+use std::ops::Range;
+use surface_io::{Dimension, Quantity};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Result of reading.
+pub(crate) type Read<T> = Result<T, Diagnostic>;
+
+/// Whether numbers carry units.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum System {
+    /// Every dimensional number has its unit; results are in SI.
+    Si,
+    /// Plain numbers in any consistent units.
+    None,
+}
+
+/// One table.
+#[derive(Debug)]
+pub(crate) struct Entries<'a> {
+    name: String,
+    span: Option<Range<usize>>,
+    table: &'a DeTable<'a>,
+    known: RefCell<Vec<&'static str>>,
+}
+
+impl<'a> Entries<'a> {
+    pub fn root(table: &'a DeTable<'a>) -> Self {
+        Self { name: String::new(), span: None, table, known: RefCell::default() }
+    }
+
+    /// Name of the table, `[scene.surface]`.
+    pub fn title(&self) -> String {
+        if self.name.is_empty() { "the file".into() } else { format!("[{}]", self.name) }
+    }
+
+    fn path(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    /// The keys that are there.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.table.keys().map(|k| k.get_ref().as_ref())
+    }
+
+    /// A mistake of the table itself.
+    pub fn diagnostic(&self, message: impl Into<String>) -> Diagnostic {
+        let diagnostic = Diagnostic::new(message);
+        match &self.span {
+            Some(span) => diagnostic.at(span.clone()),
+            None => diagnostic,
+        }
+    }
+
+    /// The value of a key, if it is there.
+    pub fn find(&self, key: &'static str) -> Option<Entry<'a>> {
+        self.known.borrow_mut().push(key);
+        self.entry(key)
+    }
+
+    /// The value of any key without making it a known one.
+    pub fn entry(&self, key: &str) -> Option<Entry<'a>> {
+        let (key, value) = self.table.iter().find(|(k, _)| k.get_ref().as_ref() == key)?;
+        Some(Entry { path: self.path(key.get_ref()), key: Some(key.span()), value })
+    }
+
+    /// The value of a key that has to be there.
+    pub fn require(&self, key: &'static str, example: &str) -> Read<Entry<'a>> {
+        self.find(key).ok_or_else(|| {
+            let near = |name: &&str| distance(name, key) <= 1 + key.len() / 4;
+            if let Some(found) = self.keys().find(near).and_then(|name| self.entry(name)) {
+                return found
+                    .diagnostic_at_key(format!("`{key}` is missing in {}", self.title()))
+                    .with_help(format!("did you mean `{key}` here?"));
+            }
+            self.diagnostic(format!("`{key}` is missing in {}", self.title()))
+                .with_help(format!("add `{key} = {example}`"))
+        })
+    }
+
+    /// The key that one of these was probably meant by, as a mistake; what lacks them is `otherwise`.
+    pub fn misspelt_or(&self, keys: &[&str], otherwise: Diagnostic) -> Diagnostic {
+        let known = self.known.borrow();
+        let near = |name: &str| keys.iter().find(|key| distance(name, key) <= 1 + key.len() / 4);
+        let mut unknown = self.keys().filter(|name| !known.contains(name));
+        let Some((name, key)) = unknown.find_map(|name| Some((name, near(name)?))) else { return otherwise };
+        let unknown = self
+            .entry(name)
+            .map(|entry| entry.diagnostic_at_key(format!("unknown key `{name}` in {}", self.title())));
+        unknown.map_or(otherwise, |unknown| unknown.with_help(format!("did you mean `{key}`?")))
+    }
+
+    /// A table, if it is there.
+    pub fn table(&self, key: &'static str) -> Read<Option<Entries<'a>>> {
+        self.find(key).map(|entry| entry.table()).transpose()
+    }
+
+    /// At most one of these keys.
+    pub fn one_of(&self, keys: &[&'static str]) -> Read<Option<(&'static str, Entry<'a>)>> {
+        let mut found: Option<(&'static str, Entry<'a>)> = None;
+        for &key in keys {
+            let Some(entry) = self.find(key) else { continue };
+            if let Some((first, _)) = &found {
+                return Err(entry
+                    .diagnostic_at_key(format!("`{first}` and `{key}` are both given in {}", self.title()))
+                    .with_help(format!(
+                        "they say the same thing twice or contradict each other: keep `{first}` or `{key}`"
+                    )));
+            }
+            found = Some((key, entry));
+        }
+        Ok(found)
+    }
+
+    /// Errors where a key was given that nobody asked for.
+    pub fn finish(self) -> Read<()> {
+        self.known_only()
+    }
+
+    /// The same for a table that is read further.
+    pub fn known_only(&self) -> Read<()> {
+        let known = self.known.borrow();
+        for key in self.table.keys() {
+            let name = key.get_ref().as_ref();
+            if !known.contains(&name) {
+                let what = if self.name == "effects" { "effect" } else { "key" };
+                let what = if self.name.is_empty() {
+                    "table".to_owned()
+                } else {
+                    format!("{what} in {}", self.title())
+                };
+                // Names of older versions are read, not recommended.
+                let current: Vec<&str> =
+                    known.iter().copied().filter(|k| !["chance", "width"].contains(k)).collect();
+                return Err(Diagnostic::new(format!("`{name}` is no {what}"))
+                    .at(key.span())
+                    .with_help(suggestion(name, &current)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A quantity of this dimension, as it stands in a file.
+fn example(dimension: Dimension) -> String {
+    format!("\"{}\"", dimension.example().unwrap_or("1"))
+}
+
+/// The name that was probably meant, or all of them.
+pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
+    let near = known.iter().map(|k| (distance(name, k), *k)).min();
+    match near {
+        Some((d, k)) if d <= 1 + k.len() / 4 => {
+            format!("did you mean `{k}`? Known here: {}", known.join(", "))
+        }
+        _ => format!("known here: {}", known.join(", ")),
+    }
+}
+
+/// Levenshtein's distance.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().take(64).enumerate() {
+        let mut corner = i;
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let replaced = corner + usize::from(x != *y);
+            corner = row[j + 1];
+            row[j + 1] = replaced.min(corner + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// LengthOrPair along x and y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum LengthOrPair {
+    One(f64),
+    Two([f64; 2]),
+}
+
+/// One value.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry<'a> {
+    path: String,
+    key: Option<Range<usize>>,
+    value: &'a Spanned<DeValue<'a>>,
+}
+
+impl<'a> Entry<'a> {
+    /// Where the value stands.
+    pub fn span(&self) -> Range<usize> {
+        self.value.span()
+    }
+
+    /// Where the key stands.
+    pub fn key_span(&self) -> Range<usize> {
+        self.key.clone().unwrap_or_else(|| self.span())
+    }
+
+    /// A mistake of this value.
+    pub fn diagnostic(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(message).at(self.span())
+    }
+
+    /// A mistake of this key.
+    pub fn diagnostic_at_key(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(message).at(self.key_span())
+    }
+
+    fn wrong(&self, expected: &str, example: &str) -> Diagnostic {
+        self.diagnostic(format!("`{}` is {}: expected {expected}", self.path, self.kind()))
+            .with_help(format!("write {example}"))
+    }
+
+    fn kind(&self) -> &'static str {
+        match self.value.get_ref() {
+            DeValue::String(_) => "text",
+            DeValue::Integer(_) | DeValue::Float(_) => "a plain number",
+            DeValue::Boolean(_) => "true or false",
+            DeValue::Datetime(_) => "a date",
+            DeValue::Array(_) => "a list",
+            DeValue::Table(_) => "a table",
+        }
+    }
+
+    pub fn table(&self) -> Read<Entries<'a>> {
+        match self.value.get_ref() {
+            DeValue::Table(table) => {
+                let span = self.key.clone().or_else(|| Some(self.span()));
+                Ok(Entries { name: self.path.clone(), span, table, known: RefCell::default() })
+            }
+            _ => Err(self.wrong("a table", &format!("[{}] on a line of its own", self.path))),
+        }
+    }
+
+    pub fn is_table(&self) -> bool {
+        self.value.get_ref().is_table()
+    }
+
+    pub fn is_list(&self) -> bool {
+        self.value.get_ref().is_array()
+    }
+
+    pub fn is_text(&self) -> bool {
+        self.value.get_ref().is_str()
+    }
+
+    /// Elements of a list; one value is a list of one.
+    pub fn list(&self) -> Vec<Entry<'a>> {
+        match self.value.get_ref() {
+            DeValue::Array(array) => {
+                array.iter().map(|value| Entry { path: self.path.clone(), key: None, value }).collect()
+            }
+            _ => vec![self.clone()],
+        }
+    }
+
+    pub fn text(&self) -> Read<&'a str> {
+        self.value.get_ref().as_str().ok_or_else(|| self.wrong("text", "it in double quotes"))
+    }
+
+    /// The text, where it is one.
+    pub fn as_word(&self) -> Option<&'a str> {
+        self.value.get_ref().as_str()
+    }
+
+    pub fn flag(&self) -> Read<bool> {
+        self.value
+            .get_ref()
+            .as_bool()
+            .ok_or_else(|| self.wrong("true or false", "true or false, without quotes"))
+    }
+
+    /// One of these words.
+    pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Read<T> {
+        let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
+        let example = names.iter().map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(" or ");
+        let Some(text) = self.value.get_ref().as_str() else {
+            return Err(self.wrong("a word", &example));
+        };
+        words.iter().find(|(name, _)| *name == text).map(|(_, value)| *value).ok_or_else(|| {
+            self.diagnostic(format!("`{}` is \"{text}\": no word that is known here", self.path))
+                .with_help(suggestion(text, &names))
+        })
+    }
+
+    /// A finite plain number.
+    pub fn number(&self) -> Read<f64> {
+        let digits = match self.value.get_ref() {
+            DeValue::Float(v) => v.as_str().replace('_', ""),
+            DeValue::Integer(v) if v.radix() == 10 => v.as_str().replace('_', ""),
+            _ => return Err(self.wrong("a plain number", "a number such as 0.5 or 1e-3, without quotes")),
+        };
+        match digits.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.diagnostic(format!("`{}` = {digits}: expected a finite number", self.path))),
+        }
+    }
+
+    /// A number as [`Entry::number`], or an infinity: `inf`, `-inf`.
+    pub fn any_number(&self) -> Read<f64> {
+        match self.value.get_ref() {
+            DeValue::Float(v) if matches!(v.as_str(), "inf" | "+inf") => Ok(f64::INFINITY),
+            DeValue::Float(v) if v.as_str() == "-inf" => Ok(f64::NEG_INFINITY),
+            _ => self.number(),
+        }
+    }
+
+    /// A whole number from `least`.
+    pub fn count(&self, least: u64) -> Read<u64> {
+        let whole = match self.value.get_ref() {
+            DeValue::Integer(v) => {
+                u64::from_str_radix(&v.as_str().replace('_', ""), v.radix()).ok().filter(|v| *v >= least)
+            }
+            _ => None,
+        };
+        whole.ok_or_else(|| {
+            self.diagnostic(format!("`{}`: expected a whole number >= {least}", self.path))
+                .with_help("write it without a point, quotes or a sign")
+        })
+    }
+
+    /// A number with its unit in SI, or a plain number where the scene has none.
+    pub fn quantity(&self, dimension: Dimension, system: System) -> Read<f64> {
+        match (system, self.value.get_ref()) {
+            (System::None, DeValue::String(text)) => Err(self
+                .diagnostic(format!(
+                    "`{}` is the text \"{text}\", but the scene has `units = \"none\"`",
+                    self.path
+                ))
+                .with_help(
+                    "write a plain number, or remove `units = \"none\"` and give every quantity its unit",
+                )),
+            (System::None, _) => self.number(),
+            (System::Si, DeValue::String(text)) => Quantity::parse_as(text, dimension).map_err(|reason| {
+                self.diagnostic(format!("`{}`: {reason}", self.path))
+                    .with_help(format!("write {dimension} with its unit, such as {}", example(dimension)))
+            }),
+            (System::Si, DeValue::Integer(_) | DeValue::Float(_)) => {
+                let value = self.number()?;
+                Err(self.diagnostic(format!("`{}` = {value} has no unit: expected {dimension}", self.path)).with_help(format!(
+                    "write it with its unit, such as {}; a dimensionless scene says `units = \"none\"` in [scene]",
+                    example(dimension)
+                )))
+            }
+            (System::Si, _) => Err(self.wrong(&dimension.to_string(), &example(dimension))),
+        }
+    }
+
+    /// The same, > 0.
+    pub fn positive(&self, dimension: Dimension, system: System) -> Read<f64> {
+        self.above_zero(self.quantity(dimension, system)?)
+    }
+
+    /// One length > 0, or two in a list.
+    pub fn lengths(&self, system: System) -> Read<LengthOrPair> {
+        // As on the command line: "2 mm x 1 mm".
+        if let (Some((x, y)), System::Si) = (self.as_word().and_then(|text| text.split_once(" x ")), system) {
+            let side = |text: &str| {
+                let value = Quantity::parse_as(text.trim(), Dimension::LENGTH).map_err(|reason| {
+                    self.diagnostic(format!("`{}`: {reason}", self.path))
+                        .with_help("two lengths with their units: [\"2 mm\", \"1 mm\"] or \"2 mm x 1 mm\"")
+                })?;
+                self.above_zero(value)
+            };
+            return Ok(LengthOrPair::Two([side(x)?, side(y)?]));
+        }
+        if !self.is_list() {
+            return self.positive(Dimension::LENGTH, system).map(LengthOrPair::One);
+        }
+        let values = self.list();
+        let [x, y] = &values[..] else {
+            let example = if system == System::Si { "[\"2 mm\", \"1 mm\"]" } else { "[2, 1]" };
+            return Err(self
+                .diagnostic(format!("`{}` has {} values: expected one, or two", self.path, values.len()))
+                .with_help(format!(
+                    "along x, then along y, such as {example}; one value where both are the same"
+                )));
+        };
+        let length = |entry: &Self| entry.positive(Dimension::LENGTH, system);
+        Ok(LengthOrPair::Two([length(x)?, length(y)?]))
+    }
+
+    /// A plain number > 0.
+    pub fn positive_number(&self) -> Read<f64> {
+        self.above_zero(self.number()?)
+    }
+
+    fn above_zero(&self, value: f64) -> Read<f64> {
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self
+                .diagnostic(format!("`{}` = {}: expected a number > 0", self.path, self.shown()))
+                .with_help("check the sign; zero is not allowed here"))
+        }
+    }
+
+    /// The value as written.
+    pub fn shown(&self) -> String {
+        match self.value.get_ref() {
+            DeValue::String(text) => text.to_string(),
+            DeValue::Integer(v) => v.as_str().to_owned(),
+            DeValue::Float(v) => v.as_str().to_owned(),
+            DeValue::Boolean(v) => v.to_string(),
+            _ => self.kind().to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_are_suggested() {
+        assert_eq!(distance("kitten", "sitting"), 3);
+        assert!(suggestion("adhesoin", &["boundary", "adhesion"]).starts_with("did you mean `adhesion`?"));
+        assert_eq!(suggestion("plasticity", &["boundary"]), "known here: boundary");
+    }
+}

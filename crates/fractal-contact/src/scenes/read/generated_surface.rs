@@ -1,0 +1,133 @@
+//! Generated surfaces as files: self-affine ones, and twins of a map.
+
+use crate::scenes::read::error::{Error, Result};
+use crate::scenes::read::random_surface::{Drawn, RandomSpectrum, RandomSurface};
+use contact_model::{Amplitude, Cells, SelfAffine, Size};
+use std::f64::consts::PI;
+use std::path::Path;
+use std::sync::Arc;
+use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
+use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, Sides, describe, write_map};
+
+/// Memory of drawing a surface and writing it, bytes per cell.
+const BYTES: f64 = 24.0;
+/// Columns or rows: what fits is asked of the memory.
+const MOST: usize = 1 << 24;
+
+/// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneratedSurface {
+    /// Columns.
+    pub cells: usize,
+    /// Rows; `None`: as many as make the cells nearest to squares.
+    pub rows: Option<usize>,
+    /// Side of a square, `1 mm`, or both of a rectangle, `2 mm x 1 mm`.
+    pub size: String,
+    /// Fractal dimension in [2, 3].
+    pub fractal_dimension: f64,
+    /// Rms height.
+    pub rms_height: String,
+    /// Below waves of this length the spectrum is constant.
+    pub roll_off_wavelength: Option<String>,
+    /// The shortest wave.
+    pub shortest_wavelength: Option<String>,
+    /// Waves longer along a lay; `None`: isotropic.
+    pub anisotropy: Option<Anisotropy>,
+    /// Distribution of its heights; `None`: what the random phases give, nearly Gaussian.
+    pub heights: Option<HeightDistribution>,
+    /// Surface number 0 of this seed, as in a scene.
+    pub seed: u64,
+}
+
+impl GeneratedSurface {
+    /// Draws the surface, writes it by the name's ending ([`surface_io::write_map`]) and says in a few lines what it is.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Run`] for numbers
+    /// that make no sense, [`Error::Surface`] for another ending or a file that cannot be written.
+    pub fn write(&self, path: &Path) -> Result<String> {
+        let mut units: Option<Dimension> = None;
+        let wrong = |name: &'static str, e: surface_io::QuantityError| Error::Argument {
+            name,
+            reason: e.to_string(),
+        };
+        let mut known_length = |name: &'static str, quantity: Quantity| {
+            let dimension = quantity.dimension();
+            let known = *units.get_or_insert(dimension);
+            if dimension != known || !(dimension == Dimension::LENGTH || dimension == Dimension::NONE) {
+                return Err(Error::Argument {
+                    name,
+                    reason: format!(
+                        "`{quantity}`: give all lengths with a unit of length (\"1 mm\"), or none of them"
+                    ),
+                });
+            }
+            Ok(quantity.value())
+        };
+        let [x, y] = self.size.parse::<Sides>().map_err(|e| wrong("size", e))?.both();
+        let size = Size { x: known_length("size", x)?, y: known_length("size", y)? };
+        let mut length =
+            |name: &'static str, text: &str| known_length(name, text.parse().map_err(|e| wrong(name, e))?);
+        let rms = length("rms-height", &self.rms_height)?;
+        let mut wavenumber = |name, text: &Option<String>| -> Result<Option<f64>> {
+            text.as_deref().map(|t| Ok(2.0 * PI / length(name, t)?)).transpose()
+        };
+        let roll_off = wavenumber("roll-off-wavelength", &self.roll_off_wavelength)?;
+        let short_cutoff = wavenumber("shortest-wavelength", &self.shortest_wavelength)?;
+        let metric = if units == Some(Dimension::LENGTH) { Metric::Metres } else { Metric::Unitless };
+        let surface =
+            SelfAffine::new(self.fractal_dimension, size, rms).map_err(runs::Error::model("the surface"))?;
+        let surface = SelfAffine { amplitude: Amplitude::RmsHeight(rms), roll_off, short_cutoff, ..surface };
+        let seed = surface_gen::surface_seed(self.seed, 0);
+        let nearly_square = Cells::nearly_square(self.cells, size);
+        let cells = self.rows.map_or(nearly_square, |rows| Cells { rows, ..nearly_square });
+        for (name, count) in [("cells", cells.columns), ("rows", cells.rows)] {
+            if !(1..=MOST).contains(&count) {
+                let expected = format!("a whole number from 1 to {MOST}");
+                return Err(runs::Error::parameter(name, count, expected).into());
+            }
+        }
+        let memory = BYTES * cells.columns as f64 * cells.rows as f64;
+        runs::threads_for_memory(1, memory, "cells", format!("{} x {}", cells.columns, cells.rows))?;
+        let spectrum = RandomSpectrum::SelfAffine { surface, anisotropy: self.anisotropy };
+        let drawn = RandomSurface::new(spectrum, self.heights.clone()).draw(cells, seed);
+        write(path, &drawn.map_err(runs::Error::model("the surface"))?, metric)
+    }
+}
+
+/// Writes an artificial twin of a map into a file: its spectrum with the phases of a seed, and says what it is.
+///
+/// The map is that of a surface's file as `declared` and after `preprocessing`; where it is not periodic, take its trend off and lay a
+/// window over it. With `keep_heights` the twin has the distribution of its heights too.
+///
+/// # Errors
+/// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map without relief.
+pub fn write_twin(
+    path: &Path,
+    (declared, preprocessing): (&ReadOptions, &Preprocessing),
+    (like, keep_heights): (TwinSpectrum, bool),
+    seed: u64,
+    out: &Path,
+) -> Result<String> {
+    let scan = Scan::read(path, declared).map_err(Error::Surface)?;
+    let of = Arc::new(scan.map(preprocessing).map_err(Error::Surface)?);
+    let unit = scan.metadata().unit.as_ref().map_or(Ok(Metric::Unitless), |unit| Metric::of(&unit.value));
+    let metric = unit.map_err(|problem| Error::Argument { name: "unit", reason: problem.to_string() })?;
+    let (cells, heights) = (of.cells(), keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of))));
+    let twin = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
+    let drawn = twin.draw(cells, surface_gen::surface_seed(seed, 0));
+    write(out, &drawn.map_err(runs::Error::model("the twin"))?, metric)
+}
+
+/// Writes a surface and says what it is.
+fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) -> Result<String> {
+    write_map(path, map, metric).map_err(Error::Surface)?;
+    let unit = if metric == Metric::Metres { "m" } else { "none" };
+    let mut text = format!("{}\nunit               {unit}\n{}\n", path.display(), describe(map));
+    if let Some(residual) = spectrum_residual {
+        text += &format!(
+            "heights            as prescribed; amplitudes of the waves within {residual:.2e} of the rms height\n"
+        );
+    }
+    Ok(text)
+}

@@ -1,0 +1,287 @@
+//! What is prescribed: loads one by one, or a path.
+
+use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use contact_model::{Load, Normalisation, Step, Tangential};
+use surface_io::Dimension;
+
+/// Most loads of a range; more are a slip of the finger.
+const MOST: u64 = 10_000;
+
+/// What a list of loads prescribes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Prescribed {
+    /// Normal force F.
+    Force,
+    /// F over E* h L, with the measured rms height of each surface.
+    ForceBar,
+    /// Force over the nominal contact area Lx Ly, undefined points included.
+    MeanPressure,
+    /// Approach.
+    Approach,
+    /// Mean gap, with periodic boundaries.
+    MeanGap,
+}
+
+impl Prescribed {
+    /// Its key in the file.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::ForceBar => "force_bar",
+            Self::MeanPressure => "mean_pressure",
+            Self::Approach => "approach",
+            Self::MeanGap => "mean_gap",
+        }
+    }
+}
+
+/// Loads, solved one by one in this order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loads {
+    /// What the numbers are.
+    pub prescribed: Prescribed,
+    /// The numbers, in SI or the scene's own units.
+    pub values: Vec<f64>,
+}
+
+impl Loads {
+    /// The load of a number for a surface with this normalisation.
+    ///
+    /// # Errors
+    /// [`contact_model::Error::Domain`] for a normalised force of a surface without rms height.
+    pub fn load(&self, value: f64, normalisation: &Normalisation) -> contact_model::Result<Load> {
+        Ok(match self.prescribed {
+            Prescribed::Force => Load::Force(value),
+            Prescribed::ForceBar => Load::Force(normalisation.force(value)?),
+            Prescribed::MeanPressure => Load::Force(value * normalisation.length * normalisation.length),
+            Prescribed::Approach => Load::Approach(value),
+            Prescribed::MeanGap => Load::MeanGap(value),
+        })
+    }
+}
+
+/// What is asked of the models.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Loading {
+    /// States under loads.
+    Loads(Loads),
+    /// States along a path.
+    Path(Vec<Step>),
+}
+
+impl Loading {
+    /// Number of states.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Loads(loads) => loads.values.len(),
+            Self::Path(steps) => steps.len(),
+        }
+    }
+}
+
+impl Loading {
+    /// Whether an approach or a mean gap may be prescribed, of which the force is a result with an error.
+    pub(crate) fn prescribes_distance(&self) -> bool {
+        match self {
+            Self::Loads(loads) => matches!(loads.prescribed, Prescribed::Approach | Prescribed::MeanGap),
+            Self::Path(steps) => {
+                steps.iter().any(|step| matches!(step.normal, Load::Approach(_) | Load::MeanGap(_)))
+            }
+        }
+    }
+}
+
+const KEYS: [&str; 5] = ["force", "force_bar", "mean_pressure", "approach", "mean_gap"];
+
+/// Reads the loads or the path of `[scene]`. `pulls`: loads may be negative (adhesion).
+pub(crate) fn read_request<'a>(
+    scene: &Entries<'a>,
+    system: System,
+    pulls: bool,
+) -> Read<(Loading, Entry<'a>)> {
+    let loads = scene.one_of(&KEYS)?;
+    let path = scene.find("path");
+    match (loads, path) {
+        (Some((key, _)), Some(path)) => Err(path
+            .diagnostic_at_key(format!("`{key}` and `path` are both given in [scene]"))
+            .with_help(format!("loads one by one are `{key}`; a history (friction, rheology, indentation, adhesion) is `path`: keep one of them"))),
+        (None, None) => Err(scene.misspelt_or(&KEYS, scene
+            .diagnostic("nothing is pressed: [scene] has no load")
+            .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history"))),
+        (Some((key, entry)), None) => Ok((Loading::Loads(read_loads(key, &entry, system, pulls)?), entry)),
+        (None, Some(entry)) => Ok((Loading::Path(read_path(&entry, system, pulls)?), entry)),
+    }
+}
+
+fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read<Loads> {
+    let (prescribed, dimension) = match key {
+        "force" => (Prescribed::Force, Some(Dimension::FORCE)),
+        "force_bar" => (Prescribed::ForceBar, None),
+        "mean_pressure" => (Prescribed::MeanPressure, Some(Dimension::PRESSURE)),
+        "approach" => (Prescribed::Approach, Some(Dimension::LENGTH)),
+        _ => (Prescribed::MeanGap, Some(Dimension::LENGTH)),
+    };
+    let signed = pulls && matches!(prescribed, Prescribed::Force | Prescribed::Approach);
+    let number = |item: &Entry<'_>| {
+        let value = match dimension {
+            Some(dimension) => item.quantity(dimension, system)?,
+            None => item.number()?,
+        };
+        if value >= 0.0 || signed {
+            return Ok(value);
+        }
+        let help = "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull";
+        Err(item.diagnostic(format!("the load `{key}` = {} is negative", item.shown())).with_help(help))
+    };
+    let values = if entry.is_table() {
+        let range = entry.table()?;
+        let from = range.require("from", "...")?;
+        let to = range.require("to", "...")?;
+        let count = range.require("count", "9")?;
+        let even =
+            range.find("spacing").map_or(Ok(false), |e| e.choice(&[("log", false), ("linear", true)]))?;
+        range.finish()?;
+        let number_of = count.count(2)?;
+        if number_of > MOST {
+            return Err(count
+                .diagnostic(format!("{number_of} loads: expected at most {MOST}"))
+                .with_help("ask for fewer"));
+        }
+        let (low, high) = (number(&from)?, number(&to)?);
+        if !even && (low <= 0.0 || high <= 0.0) {
+            return Err(from
+                .diagnostic(format!(
+                    "a logarithmic range of `{key}` from {} to {} meets zero",
+                    from.shown(),
+                    to.shown()
+                ))
+                .with_help("both ends > 0, or `spacing = \"linear\"`"));
+        }
+        between(low, high, number_of as usize, even)
+    } else {
+        entry.list().iter().map(number).collect::<Read<Vec<f64>>>()?
+    };
+    if values.is_empty() {
+        return Err(entry
+            .diagnostic(format!("`{key}` is an empty list"))
+            .with_help("name at least one load"));
+    }
+    Ok(Loads { prescribed, values })
+}
+
+/// `count` >= 2 numbers with both ends exactly as given.
+fn between(low: f64, high: f64, count: usize, even: bool) -> Vec<f64> {
+    let last = count - 1;
+    let at = |i: usize| {
+        let t = i as f64 / last as f64;
+        match i {
+            0 => low,
+            i if i == last => high,
+            // So that a range through 0 meets it exactly.
+            _ if even => (low * (last - i) as f64 + high * i as f64) / last as f64,
+            _ => (low.ln() + (high.ln() - low.ln()) * t).exp(),
+        }
+    };
+    (0..count).map(at).collect()
+}
+
+fn read_path(entry: &Entry<'_>, system: System, pulls: bool) -> Read<Vec<Step>> {
+    if !entry.is_list() {
+        return Err(entry
+            .diagnostic_at_key("`path` is no list of steps")
+            .with_help("write [[scene.path]] once for each step"));
+    }
+    let mut steps: Vec<Step> = Vec::new();
+    let mut last = Step::normal(0.0, Load::Force(0.0));
+    for item in entry.list() {
+        let table = item.table()?;
+        let time = table.find("time").map_or(Ok(last.time), |e| e.quantity(Dimension::TIME, system))?;
+        let normal = match table.one_of(&["force", "approach", "mean_gap"])? {
+            Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
+            Some(("mean_gap", e)) => Load::MeanGap(e.quantity(Dimension::LENGTH, system)?),
+            Some((_, e)) => Load::Approach(e.quantity(Dimension::LENGTH, system)?),
+            None if steps.is_empty() => {
+                return Err(item
+                    .diagnostic("the first step of the path has no normal load")
+                    .with_help("give `force`, `approach` or (periodic) `mean_gap`"));
+            }
+            None => last.normal,
+        };
+        let tangential = match table.one_of(&["tangential_force", "tangential_displacement"])? {
+            Some(("tangential_force", e)) => Tangential::Force(e.quantity(Dimension::FORCE, system)?),
+            Some((_, e)) => Tangential::Displacement(e.quantity(Dimension::LENGTH, system)?),
+            None => last.tangential,
+        };
+        if steps.is_empty() {
+            last = beginning(normal, tangential);
+        }
+        let states = table.find("states");
+        let count = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
+        if let Some(entry) = states
+            && count.saturating_add(steps.len() as u64) > MOST
+        {
+            return Err(entry
+                .diagnostic(format!("{count} states: expected at most {MOST} along the whole path"))
+                .with_help("a step is exact however long it is: states in between are for looking at"));
+        }
+        table.finish()?;
+        let end = Step { time, normal, tangential };
+        let checked = if pulls { end.validated_with_adhesion(last.time) } else { end.validated(last.time) };
+        checked.map_err(|e| item.diagnostic(e.to_string()).with_help("times never decrease along a path"))?;
+        for i in 1..=count {
+            steps.push(if i == count { end } else { part(last, end, i as f64 / count as f64) });
+        }
+        last = end;
+    }
+    if steps.is_empty() {
+        return Err(entry
+            .diagnostic("the path has no step")
+            .with_help("write [[scene.path]] once for each step"));
+    }
+    Ok(steps)
+}
+
+/// No contact and no load, in the words of the first step.
+fn beginning(normal: Load, tangential: Tangential) -> Step {
+    let normal = match normal {
+        Load::Approach(_) => Load::Approach(0.0),
+        // The distance at first touch is not known here.
+        Load::MeanGap(gap) => Load::MeanGap(gap),
+        _ => Load::Force(0.0),
+    };
+    let tangential = match tangential {
+        Tangential::Displacement(_) => Tangential::Displacement(0.0),
+        _ => Tangential::Force(0.0),
+    };
+    Step { time: 0.0, normal, tangential }
+}
+
+/// A point of a straight piece; a quantity that is prescribed anew begins at its new value.
+fn part(from: Step, to: Step, t: f64) -> Step {
+    let mix = |a: f64, b: f64| a + (b - a) * t;
+    let normal = match (from.normal, to.normal) {
+        (Load::Force(a), Load::Force(b)) => Load::Force(mix(a, b)),
+        (Load::Approach(a), Load::Approach(b)) => Load::Approach(mix(a, b)),
+        (Load::MeanGap(a), Load::MeanGap(b)) => Load::MeanGap(mix(a, b)),
+        (_, other) => other,
+    };
+    let tangential = match (from.tangential, to.tangential) {
+        (Tangential::Force(a), Tangential::Force(b)) => Tangential::Force(mix(a, b)),
+        (Tangential::Displacement(a), Tangential::Displacement(b)) => Tangential::Displacement(mix(a, b)),
+        (_, other) => other,
+    };
+    Step { time: mix(from.time, to.time), normal, tangential }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_have_their_ends_exactly() {
+        let values = between(1e-6, 20.0, 5, false);
+        assert_eq!((values[0], values[4]), (1e-6, 20.0));
+        approx::assert_relative_eq!(values[1] / values[0], 2e7_f64.powf(0.25), max_relative = 1e-12);
+        assert_eq!(between(1.0, -1.0, 3, true), [1.0, 0.0, -1.0]);
+    }
+}

@@ -1,0 +1,203 @@
+//! `[outputs]`: what is not asked for is not computed and not stored.
+
+use crate::scenes::read::distributed::Distributed;
+use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use contact_model::{Conductance, Outputs};
+use surface_io::Dimension;
+
+/// A file format of a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldFormat {
+    /// Numbers as float64.
+    Npy,
+    /// A picture with axes and colour bar.
+    Png,
+    /// A grey-scale picture with a pixel for each cell and nothing else.
+    Pixels,
+    /// Image data of VTK, for ParaView.
+    Vti,
+}
+
+impl FieldFormat {
+    /// The end of the file's name.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Npy => "npy",
+            Self::Png => "png",
+            Self::Pixels => "pixels.png",
+            Self::Vti => "vti",
+        }
+    }
+}
+
+/// What is asked for: of the models, and as files.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RequestedOutputs {
+    /// Of the models.
+    pub outputs: Outputs,
+    /// Formats of the pressure field.
+    pub pressure: Vec<FieldFormat>,
+    /// Formats of the displacement field.
+    pub displacement: Vec<FieldFormat>,
+    /// Formats of the gap field.
+    pub gap: Vec<FieldFormat>,
+    /// Formats of the field of the plastic indentation.
+    pub plastic_depth: Vec<FieldFormat>,
+    /// Formats of the heights as they are solved: after crop, fill and detrend, or as drawn.
+    pub heights: Vec<FieldFormat>,
+    /// Distributions that are counted.
+    pub distributions: Vec<Distributed>,
+    /// Whether states of boundary elements are compared with those on coarser grids.
+    pub grid_error: bool,
+    /// Whether the surface is described: parameters, spectra, height differences.
+    pub statistics: bool,
+    /// Whether curves are drawn.
+    pub curves: bool,
+}
+
+impl RequestedOutputs {
+    /// The fields with their formats; the heights belong to the first state.
+    pub fn fields(&self) -> [(&'static str, &[FieldFormat]); 5] {
+        let Self { pressure, displacement, gap, plastic_depth, heights, .. } = self;
+        [
+            ("pressure", pressure),
+            ("displacement", displacement),
+            ("gap", gap),
+            ("plastic_depth", plastic_depth),
+            ("heights", heights),
+        ]
+    }
+
+    /// Every output with whether it is asked for.
+    pub fn lines(&self) -> Vec<(&'static str, bool)> {
+        let Outputs {
+            stiffness,
+            stiffness_fixed_area,
+            area,
+            mean_gap,
+            pressure,
+            displacement,
+            gap,
+            plastic_depth,
+            contact_patches,
+            conductance,
+        } = self.outputs;
+        vec![
+            ("stiffness", stiffness),
+            ("stiffness_fixed_area", stiffness_fixed_area),
+            ("area", area),
+            ("conductance", conductance != Conductance::Off),
+            ("contact_patches", contact_patches),
+            ("mean_gap", mean_gap),
+            ("pressure", pressure),
+            ("displacement", displacement),
+            ("gap", gap),
+            ("plastic_depth", plastic_depth),
+            ("heights", !self.heights.is_empty()),
+            ("distributions", !self.distributions.is_empty()),
+            ("grid_error", self.grid_error),
+            ("curves", self.curves),
+            ("statistics", self.statistics),
+        ]
+    }
+}
+
+/// Reads `[outputs]`.
+pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<RequestedOutputs> {
+    let mut requested = RequestedOutputs::default();
+    let Some(table) = table else { return Ok(requested) };
+    let flag = |key: &'static str| table.find(key).map_or(Ok(false), |e| e.flag());
+    let outputs = &mut requested.outputs;
+    outputs.stiffness = flag("stiffness")?;
+    outputs.stiffness_fixed_area = flag("stiffness_fixed_area")?;
+    outputs.area = flag("area")?;
+    outputs.contact_patches = flag("contact_patches")?;
+    requested.outputs.mean_gap = flag("mean_gap")?;
+    requested.grid_error = flag("grid_error")?;
+    requested.curves = flag("curves")?;
+    requested.statistics = flag("statistics")?;
+    let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
+    requested.pressure = formats("pressure")?;
+    requested.displacement = formats("displacement")?;
+    requested.gap = formats("gap")?;
+    requested.plastic_depth = formats("plastic_depth")?;
+    requested.heights = formats("heights")?;
+    if let Some(entry) = table.find("conductance") {
+        requested.outputs.conductance = read_conductance(&entry, system)?;
+    }
+    if let Some(entry) = table.find("distributions") {
+        for item in entry.list() {
+            let of = item.choice(&Distributed::ALL)?;
+            if !requested.distributions.contains(&of) {
+                requested.distributions.push(of);
+            }
+        }
+    }
+    let counted = |of: Distributed| requested.distributions.contains(&of);
+    // Pictures outline the contact.
+    let outlined = [&requested.gap, &requested.displacement, &requested.plastic_depth]
+        .iter()
+        .any(|f| f.contains(&FieldFormat::Png));
+    // Where there is contact, the gap is rounding.
+    requested.outputs.pressure = !requested.pressure.is_empty()
+        || outlined
+        || counted(Distributed::Pressure)
+        || counted(Distributed::Gap);
+    requested.outputs.displacement = !requested.displacement.is_empty();
+    requested.outputs.gap = !requested.gap.is_empty() || counted(Distributed::Gap);
+    requested.outputs.plastic_depth = !requested.plastic_depth.is_empty();
+    requested.outputs.contact_patches |= counted(Distributed::Patches);
+    table.finish()?;
+    Ok(requested)
+}
+
+/// `["npy", "png"]`, one of them, or `false`.
+fn read_formats(entry: &Entry<'_>) -> Read<Vec<FieldFormat>> {
+    if !entry.is_list() && !entry.is_text() {
+        return if entry.flag()? {
+            Err(entry
+                .diagnostic("a field is asked for without a format")
+                .with_help("name its files: `[\"npy\"]`, `[\"npy\", \"png\", \"vti\"]`"))
+        } else {
+            Ok(Vec::new())
+        };
+    }
+    let mut formats = Vec::new();
+    for item in entry.list() {
+        let format = item.choice(&[
+            ("npy", FieldFormat::Npy),
+            ("png", FieldFormat::Png),
+            ("pixels", FieldFormat::Pixels),
+            ("vti", FieldFormat::Vti),
+        ])?;
+        if !formats.contains(&format) {
+            formats.push(format);
+        }
+    }
+    Ok(formats)
+}
+
+fn read_conductance(entry: &Entry<'_>, system: System) -> Read<Conductance> {
+    let table = entry.table()?;
+    let electrical =
+        table.require("kind", "\"electrical\"")?.choice(&[("electrical", true), ("thermal", false)])?;
+    let (key, example, dimension) = if electrical {
+        ("resistivities", "[\"1.7e-8 ohm m\", \"1.7e-8 ohm m\"]", Dimension::RESISTIVITY)
+    } else {
+        ("conductivities", "[\"400 W/(m K)\", \"400 W/(m K)\"]", Dimension::THERMAL_CONDUCTIVITY)
+    };
+    let both = table.require(key, example)?;
+    let values = both.list();
+    let [first, second] = &values[..] else {
+        return Err(both
+            .diagnostic(format!("`{key}` has {} values", values.len()))
+            .with_help(format!("two, one for each body: {example}")));
+    };
+    let (first, second) = (first.positive(dimension, system)?, second.positive(dimension, system)?);
+    table.finish()?;
+    Ok(if electrical {
+        Conductance::Electrical { first, second }
+    } else {
+        Conductance::Thermal { first, second }
+    })
+}

@@ -1,0 +1,315 @@
+//! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
+
+use crate::scenes::read::diagnostic::Diagnostic;
+use crate::scenes::read::entries::{Entries, Entry, LengthOrPair, Read, System};
+use crate::scenes::read::human_readable::number;
+use contact_model::HeightMap;
+use std::path::Path;
+use surface_io::{
+    AlignLines, Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror,
+    Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
+};
+
+/// A map from a file.
+pub(crate) struct FileMap {
+    pub map: HeightMap,
+    /// Metadata of its file.
+    pub metadata: String,
+    /// From which distance on the tip of the instrument lets heights be seen.
+    pub reliable_from: Option<f64>,
+    /// Remarks on the keys.
+    pub notes: Vec<Diagnostic>,
+    /// Whether it is a profile: one row that stands for a body uniform along y.
+    pub profile: bool,
+}
+
+/// Reads the file of a surface.
+pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) -> Read<FileMap> {
+    let mut notes = Vec::new();
+    let file = table.require("path", "\"heights.npy\"")?;
+    let path = directory.join(file.text()?);
+    let declared = read_options(table, system, &mut notes)?;
+    let preprocessing = read_treatment(table, system)?;
+    table.known_only()?;
+    let wrong = |e: surface_io::Error| {
+        let diagnostic = file.diagnostic(e.to_string());
+        if e.problem().is_none() {
+            return diagnostic.with_help("a relative path counts from the folder of the scene");
+        }
+        diagnostic.with_help("`format`, `unit`, `size`, `cell`, `crop`, `fill`, `undefined`, `missing` in [scene.surface] say how it is meant")
+    };
+    let scan = Scan::read(&path, &declared).map_err(wrong)?;
+    let metadata = scan.metadata();
+    for note in &metadata.notes {
+        notes.push(Diagnostic::note(note.clone()).at(file.span()));
+    }
+    let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
+    let Preprocessed { map, steps, reliable_from, tapered, .. } =
+        scan.preprocessed(&preprocessing).map_err(wrong)?;
+    if metric != (system == System::Si) {
+        let (found, scene) = if metric { ("a unit", "none") } else { ("no unit", "units") };
+        return Err(file
+            .diagnostic(format!("the heights have {found}, but the scene has {scene}"))
+            .with_help("say `unit = \"nm\"` for heights of a scene with units, `unit = \"none\"` with `units = \"none\"`"));
+    }
+    if let (None, Some(share)) = (table.find("detrend"), tilt(&scan, &preprocessing, &map)) {
+        let message = format!(
+            "the map is tilted: from edge to edge by {share:.1} times its rms height without the tilt"
+        );
+        let help =
+            "its highest corner carries the load: `detrend = \"plane\"`, or \"none\" where the tilt is real";
+        notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
+    }
+    if let (Some(entry), Some([before, after])) = (table.find("window"), tapered) {
+        let [before, after] = [before, after].map(|h| number(format!("{h:.3e}").parse().unwrap_or(h)));
+        let message = format!(
+            "the map is tapered to its edges and divided by the rms of the taper: rms height {before} before, {after} after"
+        );
+        let help = "theories take the spectrum, which a homogeneous surface keeps; `bem3d` presses the tapered map, whose smooth edges carry \
+                    load: on self-affine maps its contact fraction was 0.4 to 2.6 times that without the window";
+        notes.push(Diagnostic::note(message).at(entry.span()).with_help(help));
+    }
+    if let Some((row, column, height)) = spike(&map) {
+        let message = format!(
+            "the highest point, in row {row}, column {column} (from 0) of the map as solved, stands {height:.0} times the rms height above the mean"
+        );
+        let help = "it carries the first load; where it is a spike of the measurement, `missing = HEIGHT` (as in the file) takes it out, and \
+                    `fill` or `undefined = \"no_contact\"` says what stands there instead";
+        notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
+    }
+    let profile = metadata.profile;
+    notes.extend(profile.then(|| uniform(&file, &map)));
+    let mut metadata = metadata.to_string();
+    for step in steps {
+        metadata += &format!("\nthen       {step}");
+    }
+    Ok(FileMap { map, metadata, reliable_from, notes, profile })
+}
+
+/// How the file is meant.
+fn read_options(table: &Entries<'_>, system: System, notes: &mut Vec<Diagnostic>) -> Read<ReadOptions> {
+    let mut declared = ReadOptions::default();
+    if let Some(entry) = table.find("format") {
+        declared.format = Some(entry.choice(&Format::ALL.map(|format| (format.word(), format)))?);
+    }
+    if let Some(entry) = table.find("channel") {
+        let number = |_| entry.count(0).map(|number| ChannelChoice::Number(number as usize));
+        declared.channel = Some(entry.text().map(|name| ChannelChoice::Name(name.into())).or_else(number)?);
+    }
+    let unit = |key: &'static str| -> Read<Option<Unit>> {
+        let Some(entry) = table.find(key) else { return Ok(None) };
+        let unit: Unit = entry.text()?.parse().map_err(|e| {
+            entry.diagnostic(format!("`{key}`: {e}")).with_help("a unit of length in quotes, such as \"nm\"")
+        })?;
+        Ok(Some(unit))
+    };
+    declared.unit = unit("unit")?;
+    declared.lateral_unit = unit("lateral_unit")?;
+    if let Some(entry) = table.find("height_scale") {
+        declared.height_scale = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
+    }
+    match table.one_of(&["size", "cell", "width"])? {
+        Some(("size", entry)) => declared.size = Some(sides(&entry, system)?),
+        Some(("cell", entry)) => declared.cell = Some(sides(&entry, system)?),
+        Some((_, entry)) => {
+            declared.width = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
+            let note = Diagnostic::note("`width` is now `size`").at(entry.key_span());
+            notes.push(note.with_help("write `size = [Lx, Ly]`, or one value where the map is square; `width` is Lx, with square cells"));
+        }
+        None => {}
+    }
+    if let Some(entry) = table.find("decimal") {
+        declared.decimal = entry.choice(&[("point", Decimal::Point), ("comma", Decimal::Comma)])?;
+    }
+    if let Some(entry) = table.find("axes") {
+        declared.axes = Some(entry.choice(&[("xy", Axes::Xy), ("yx", Axes::Yx)])?);
+    }
+    if let Some(entry) = table.find("border") {
+        declared.border = Some(entry.choice(&[("axes", Border::Axes), ("heights", Border::Heights)])?);
+    }
+    if let Some(entry) = table.find("missing") {
+        declared.missing = Some(entry.any_number()?);
+    }
+    if let Some(entry) = table.find("skip_lines") {
+        declared.skip_lines = entry.count(0)? as usize;
+    }
+    Ok(declared)
+}
+
+/// Reads the surface of the second body, lays it on the first face to face, and adds both.
+pub(crate) fn read_second(
+    table: &Entries<'_>,
+    first: &HeightMap,
+    system: System,
+    directory: &Path,
+) -> Read<FileMap> {
+    let facing = match table.find("facing") {
+        Some(entry) => entry.choice(&[("x", Some(Mirror::X)), ("y", Some(Mirror::Y)), ("none", None)])?,
+        None => Some(Mirror::X),
+    };
+    let offset = match table.find("offset") {
+        None => [0.0; 2],
+        Some(entry) => match &entry.list()[..] {
+            [x, y] => [x.quantity(Dimension::LENGTH, system)?, y.quantity(Dimension::LENGTH, system)?],
+            _ => {
+                return Err(entry
+                    .diagnostic("`offset` has not two values")
+                    .with_help("of the middle of the second surface from that of the first, along x and y: [\"5 um\", \"0 um\"]"));
+            }
+        },
+    };
+    let FileMap { map, mut metadata, reliable_from, notes, profile } = read_map(table, system, directory)?;
+    if profile {
+        return Err(table
+            .diagnostic("[scene.second_surface] is a profile")
+            .with_help("a profile is a body uniform along y, alone: bring both surfaces as maps"));
+    }
+    let (map, how) = match facing {
+        Some(mirror) => (mirror.of(&map), mirror.to_string()),
+        None => (map, "as it is seen through its body".to_owned()),
+    };
+    let sum = surface_io::composite(first, &map, offset).map_err(|e| table.diagnostic(e.to_string()))?;
+    metadata += &format!("\nthen       laid on the first: {how}, its middle moved by {offset:?}");
+    metadata += &format!(
+        "\ncomposite  {} rows of {} over {:e} x {:e}",
+        sum.rows(),
+        sum.columns(),
+        sum.size().x,
+        sum.size().y
+    );
+    Ok(FileMap { map: sum, metadata, reliable_from, notes, profile: false })
+}
+
+/// What a profile is taken for.
+fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
+    let help = "contact is that of plane strain: `bem3d` solves it, pressures do not depend on that width, and force over width is the force \
+                per length; theories of isotropic surfaces and `mdr1d` are refused";
+    let width = number(map.size().y);
+    let message = format!(
+        "a profile: the body is taken as uniform along y, and forces are those on a width of {width}"
+    );
+    Diagnostic::note(message).at(file.span()).with_help(help)
+}
+
+/// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points reaches 6.
+fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
+    const ALONE: f64 = 8.0;
+    let known: Vec<f64> = map.defined().collect();
+    let mean = known.iter().sum::<f64>() / known.len() as f64;
+    let (place, highest) = map.heights().iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    let above = (highest - mean) / surface_gen::rms_height(&known);
+    (above.is_finite() && above > ALONE).then(|| (place / map.columns(), place % map.columns(), above))
+}
+
+/// The tilt of a map over its whole size in rms heights of what is left without it, where that changes its contact.
+fn tilt(scan: &Scan, preprocessing: &Preprocessing, map: &HeightMap) -> Option<f64> {
+    /// A tilt below this is hidden by the roughness.
+    const HIDDEN: f64 = 1.0;
+    let level = scan.map(&Preprocessing { detrend: Detrend::Plane, ..preprocessing.clone() }).ok()?;
+    let differences = map.heights().iter().zip(level.heights()).map(|(h, level)| h - level);
+    let known = differences.filter(|d| d.is_finite());
+    let (low, high) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)));
+    let rest: Vec<f64> = level.defined().collect();
+    let share = (high - low) / surface_gen::rms_height(&rest);
+    (share.is_finite() && share > HIDDEN).then_some(share)
+}
+
+/// One length or two: sides of the map or of a cell.
+fn sides(entry: &Entry<'_>, system: System) -> Read<Sides> {
+    Ok(match entry.lengths(system)? {
+        LengthOrPair::One(side) => Sides::One(length(entry, side, system)?),
+        LengthOrPair::Two([x, y]) => Sides::Two([length(entry, x, system)?, length(entry, y, system)?]),
+    })
+}
+
+fn length(entry: &Entry<'_>, value: f64, system: System) -> Read<Quantity> {
+    let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
+    Quantity::new(value, dimension).map_err(|e| entry.diagnostic(e.to_string()))
+}
+
+fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
+    let mut preprocessing = Preprocessing::default();
+    if let Some(entry) = table.find("crop") {
+        preprocessing.crop = Some(if entry.is_table() {
+            let window = entry.table()?;
+            let number =
+                |key: &'static str, least: u64| window.require(key, "0")?.count(least).map(|v| v as usize);
+            let (rows, columns) = match window.one_of(&["cells", "rows"])? {
+                Some(("cells", cells)) => {
+                    let cells = cells.count(1)? as usize;
+                    (cells, cells)
+                }
+                _ => (number("rows", 1)?, number("columns", 1)?),
+            };
+            let crop = Crop::Window { row: number("row", 0)?, column: number("column", 0)?, rows, columns };
+            window.finish()?;
+            crop
+        } else {
+            entry.choice(&[("centre", Crop::Centre), ("defined", Crop::Defined)])?
+        });
+    }
+    if let Some(entry) = table.find("align_lines") {
+        let align = entry.choice(&AlignLines::ALL.map(|align| (align.word(), align)))?;
+        preprocessing.align_lines = Some(align);
+    }
+    if let Some(entry) = table.find("scars") {
+        preprocessing.scars = Some(entry.number()?);
+    }
+    if let Some(entry) = table.find("outliers") {
+        preprocessing.outliers = Some(entry.number()?);
+    }
+    if let Some(entry) = table.find("tip_radius") {
+        let radius = entry.positive(Dimension::LENGTH, system)?;
+        preprocessing.tip_radius = Some(length(&entry, radius, system)?);
+    }
+    match table.one_of(&["fill", "undefined"])? {
+        Some(("fill", entry)) => {
+            preprocessing.fill = Some(match entry.as_word() {
+                Some("neighbours") => Fill::Neighbours,
+                Some("plane") => Fill::Plane,
+                _ => {
+                    let value = entry.quantity(Dimension::LENGTH, system).map_err(|diagnostic| {
+                        diagnostic.with_help(
+                            "how undefined points are filled: \"neighbours\", \"plane\" or one height",
+                        )
+                    })?;
+                    Fill::Value(length(&entry, value, system)?)
+                }
+            });
+        }
+        Some((_, entry)) => {
+            preprocessing.undefined = Some(entry.choice(&[("no_contact", Undefined::NoContact)])?);
+        }
+        None => {}
+    }
+    if let Some(entry) = table.find("detrend") {
+        preprocessing.detrend = entry.choice(&Detrend::ALL.map(|detrend| (detrend.word(), detrend)))?;
+    }
+    if let Some(entry) = table.find("filter_across") {
+        let cut_off = entry.positive(Dimension::LENGTH, system)?;
+        preprocessing.filter_across = Some(length(&entry, cut_off, system)?);
+    }
+    if let Some(entry) = table.find("mirror") {
+        preprocessing.mirror = Some(entry.choice(&[("x", Mirror::X), ("y", Mirror::Y)])?);
+    }
+    if let Some(entry) = table.find("rotate") {
+        let degrees = entry.count(0)?;
+        if degrees % 90 != 0 || degrees > 270 {
+            return Err(entry
+                .diagnostic(format!("`rotate` is {degrees}"))
+                .with_help("degrees from x to y: 0, 90, 180 or 270"));
+        }
+        preprocessing.quarter_turns = (degrees / 90) as u8;
+    }
+    if let Some(entry) = table.find("window") {
+        preprocessing.window = Some(entry.choice(&[("hann", Window::Hann)])?);
+    }
+    if let Some(entry) = table.find("cells") {
+        preprocessing.cells = Some(entry.count(1)? as usize);
+    }
+    if let Some(entry) = table.find("rows") {
+        preprocessing.rows = Some(entry.count(1)? as usize);
+    }
+    Ok(preprocessing)
+}

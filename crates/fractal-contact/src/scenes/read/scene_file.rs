@@ -1,0 +1,615 @@
+//! A scene as it stands in a file.
+
+use crate::scenes::read::accuracy_target::{AccuracyTarget, read_accuracy};
+use crate::scenes::read::diagnostic::Diagnostic;
+use crate::scenes::read::effects::read_effects;
+use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use crate::scenes::read::error::Result;
+use crate::scenes::read::loads::{Loading, Prescribed, read_request};
+use crate::scenes::read::numerics::{MOST_CELLS, Numerics, read_models};
+use crate::scenes::read::outputs::{RequestedOutputs, read_outputs};
+use crate::scenes::read::registry::Registry;
+use crate::scenes::read::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
+use contact_model::{
+    Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Load, Pair, Rheology, Scene,
+};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use surface_io::Dimension;
+
+/// Longest scene; a longer file is something else.
+const LONGEST: u64 = 1 << 20;
+
+/// Most surfaces of a scene.
+const MOST_SURFACES: u64 = 1_000_000;
+
+/// One question with everything that decides its answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// Where it was read.
+    pub path: PathBuf,
+    /// The file itself.
+    pub text: String,
+    /// Whether numbers carry units; without them results are in the scene's own.
+    pub system: System,
+    /// The models in the order named.
+    pub models: Vec<Numerics>,
+    /// What is pressed.
+    pub surface: SceneSurface,
+    /// Effective modulus E*.
+    pub modulus: f64,
+    /// Pressure above which a state is marked; E*/10 where none is given.
+    pub hardness: Option<f64>,
+    /// Which accuracy the grid is chosen for ([`SceneFile::with_grid_for_accuracy`]).
+    pub accuracy: Option<AccuracyTarget>,
+    /// Both bodies, where they are named.
+    pub pair: Option<Pair>,
+    /// Effects, off unless named.
+    pub effects: Effects,
+    /// What is asked of the models.
+    pub request: Loading,
+    /// What is computed and stored.
+    pub requested: RequestedOutputs,
+    /// Seed and number of surfaces.
+    pub sampling: Sampling,
+    /// Metadata of the surface's file.
+    pub metadata: Option<String>,
+    /// From which distance on the tip of the instrument lets heights be seen, where the scene names one.
+    pub reliable_from: Option<f64>,
+    /// Remarks on what stands in the file, such as keys that have a new name.
+    pub notes: Vec<Diagnostic>,
+    places: Places,
+}
+
+/// `[sampling]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampling {
+    /// The master seed.
+    pub seed: u64,
+    /// Number of surfaces drawn from it.
+    pub surfaces: usize,
+}
+
+/// Where things stand in the text.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+struct Places {
+    models: Vec<Range<usize>>,
+    outputs: Vec<(&'static str, Range<usize>)>,
+    accuracy: Option<Range<usize>>,
+}
+
+impl SceneFile {
+    /// A scene built in code, in any consistent units: no effects, no outputs, one surface of seed 0.
+    /// Messages then have no line.
+    ///
+    /// ```
+    /// use contact_model::Surface;
+    /// use fractal_contact::scenes::{Loading, Loads, Numerics, Plan, Prescribed, SceneFile, SceneSurface};
+    /// let body = SceneSurface::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
+    /// let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
+    /// let mut scene = SceneFile::new(vec![Numerics::Hertz], body, 1.0, loads);
+    /// scene.requested.outputs.stiffness = true;
+    /// assert!(Plan::new(&scene).is_ok());
+    /// // A closed form has no pressure field.
+    /// scene.requested.outputs.pressure = true;
+    /// assert!(Plan::new(&scene).is_err());
+    /// ```
+    pub fn new(models: Vec<Numerics>, surface: SceneSurface, modulus: f64, request: Loading) -> Self {
+        Self {
+            path: PathBuf::new(),
+            text: String::new(),
+            system: System::None,
+            models,
+            surface,
+            modulus,
+            hardness: None,
+            accuracy: None,
+            pair: None,
+            effects: Effects::default(),
+            request,
+            requested: RequestedOutputs::default(),
+            sampling: Sampling { seed: 0, surfaces: 1 },
+            metadata: None,
+            reliable_from: None,
+            notes: Vec::new(),
+            places: Places::default(),
+        }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`crate::scenes::Error::Run`] where it cannot be read, [`crate::scenes::Error::Scene`] with the place of the first mistake.
+    pub fn read(path: &Path) -> Result<Self> {
+        Self::read_with(path, &Registry::new())
+    }
+
+    /// Reads a file whose models may be those of a registry.
+    ///
+    /// # Errors
+    /// As [`SceneFile::read`].
+    pub fn read_with(path: &Path, registry: &Registry) -> Result<Self> {
+        let about = std::fs::metadata(path).map_err(runs::Error::file("read", path))?;
+        let length = about.len();
+        if about.is_file() && length > LONGEST {
+            let message = format!("{length} bytes: a scene is a short text of at most {LONGEST}");
+            return Err(Diagnostic::new(message)
+                .with_help("is this the right file?")
+                .placed(path, "")
+                .into());
+        }
+        let bytes = runs::files::read(path, LONGEST)?;
+        let Ok(text) = String::from_utf8(bytes) else {
+            let help = "`fractal-contact info FILE` says what a surface or a result holds";
+            return Err(Diagnostic::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());
+        };
+        Self::parse_with(path, text, registry)
+    }
+
+    /// Reads a text; `path` is where messages say that it stands, and where its files are looked for.
+    ///
+    /// # Errors
+    /// [`crate::scenes::Error::Scene`] with the place of the first mistake.
+    ///
+    /// ```
+    /// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\"]\nmodulus = 1\nforce = [0.001, 1]\n\
+    ///             [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n";
+    /// let scene = fractal_contact::scenes::SceneFile::parse("hertz.toml".as_ref(), text.into())?;
+    /// assert_eq!(scene.models[0].name(), "hertz");
+    /// assert_eq!(scene.request.count(), 2);
+    /// # Ok::<(), fractal_contact::scenes::Error>(())
+    /// ```
+    pub fn parse(path: &Path, text: String) -> Result<Self> {
+        Self::parse_with(path, text, &Registry::new())
+    }
+
+    /// Reads a text whose models may be those of a registry: names of the library come first.
+    ///
+    /// # Errors
+    /// As [`SceneFile::parse`].
+    pub fn parse_with(path: &Path, text: String, registry: &Registry) -> Result<Self> {
+        let read = || -> Read<Self> {
+            let document = toml::de::DeTable::parse(&text).map_err(|e| syntax(&e))?;
+            let root = Entries::root(document.get_ref());
+            let scene = read_scene(&root, path.parent().unwrap_or(Path::new("")), registry)?;
+            root.finish()?;
+            Ok(scene)
+        };
+        let mut scene = read().map_err(|diagnostic| diagnostic.placed(path, &text))?;
+        path.clone_into(&mut scene.path);
+        scene.notes = scene.notes.into_iter().map(|note| note.placed(path, &text)).collect();
+        scene.text = text;
+        Ok(scene)
+    }
+
+    /// The physics that one model is given for one surface.
+    ///
+    /// # Errors
+    /// As [`SceneSurface::for_model`].
+    pub fn scene(&self, numerics: &Numerics, seed: u64) -> contact_model::Result<Scene> {
+        Ok(Scene {
+            surface: self.surface.for_model(numerics, seed)?,
+            modulus: self.modulus,
+            pair: self.pair,
+            effects: self.effects,
+            outputs: self.requested.outputs,
+        })
+    }
+
+    /// Seed of surface number `index`, the same that the figures use.
+    pub fn seed(&self, index: usize) -> u64 {
+        surface_gen::surface_seed(self.sampling.seed, index as u64)
+    }
+
+    /// A mistake at the name of a model.
+    pub(crate) fn at_model(&self, index: usize, diagnostic: Diagnostic) -> Diagnostic {
+        self.placed(diagnostic, self.places.models.get(index).cloned())
+    }
+
+    /// A mistake of an output.
+    pub(crate) fn at_output(&self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
+        self.placed(
+            diagnostic,
+            self.places.outputs.iter().find(|(n, _)| *n == name).map(|(_, span)| span.clone()),
+        )
+    }
+
+    /// A mistake of the accuracy that is asked for.
+    pub(crate) fn at_accuracy(&self, diagnostic: Diagnostic) -> Diagnostic {
+        self.placed(diagnostic, self.places.accuracy.clone())
+    }
+
+    fn placed(&self, diagnostic: Diagnostic, span: Option<Range<usize>>) -> Diagnostic {
+        let diagnostic = match span {
+            Some(span) => diagnostic.at(span),
+            None => diagnostic,
+        };
+        if self.text.is_empty() { diagnostic } else { diagnostic.placed(&self.path, &self.text) }
+    }
+
+    /// Whether a seed decides what a model is given or draws.
+    pub(crate) fn is_random(&self) -> bool {
+        let given = self.surface.given_map().is_some();
+        self.surface.is_random() || given && self.models.iter().any(|m| self.surface.is_random_for(m))
+    }
+
+    /// Whether it needs models that remember.
+    pub fn is_history(&self) -> bool {
+        matches!(self.request, Loading::Path(_))
+    }
+
+    /// The comment at the head of the file: what it shows.
+    pub fn comment(&self) -> String {
+        let lines = self.text.lines().take_while(|l| l.starts_with('#'));
+        lines.map(|l| l.trim_start_matches('#').trim()).collect::<Vec<_>>().join(" ")
+    }
+}
+
+fn syntax(error: &toml::de::Error) -> Diagnostic {
+    let message = error.message().lines().collect::<Vec<_>>().join(", ");
+    let diagnostic = Diagnostic::new(message)
+        .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once");
+    match error.span() {
+        Some(span) => diagnostic.at(span),
+        None => diagnostic,
+    }
+}
+
+fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read<SceneFile> {
+    let Some(scene) = root.table("scene")? else {
+        return Err(Diagnostic::new("there is no [scene]")
+            .with_help("a scene begins with [scene]: `models`, `modulus` and a load"));
+    };
+    let system = scene
+        .find("units")
+        .map_or(Ok(System::Si), |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
+    let options = root.table("models")?;
+    let models = read_models(&scene, options.as_ref(), registry.models())?;
+    let effects_table = root.table("effects")?;
+    let effects = read_effects(effects_table, system)?;
+    let outputs_table = root.table("outputs")?;
+    let output_places = places(outputs_table.as_ref());
+    let requested = read_outputs(outputs_table, system)?;
+    let (modulus, pair) = read_material(&scene, system)?;
+    let hardness_entry = scene.find("hardness");
+    let hardness = hardness_entry.as_ref().map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
+    if let Some(entry) = &hardness_entry
+        && effects.hardness != Hardness::Off
+    {
+        return Err(entry.diagnostic_at_key("`hardness` is given in [scene] and in [effects]").with_help(
+            "keep that of [effects], which limits the pressure; that of [scene] only marks states",
+        ));
+    }
+    let accuracy = read_accuracy(&scene)?;
+    let SurfaceEntry { surface, metadata, reliable_from, mut notes } =
+        read_surface(&scene, system, directory)?;
+    check_cells(options.as_ref(), &models, &surface)?;
+    if accuracy.is_some() {
+        check_no_grid(options.as_ref())?;
+    }
+    check_homogeneous(&scene, &models, &surface)?;
+    let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
+    let sampling = read_sampling(root, &scene, &models, &surface, &mut notes)?;
+    scene.finish()?;
+    let places = Places {
+        models: models.iter().map(|(_, entry)| entry.span()).collect(),
+        outputs: output_places,
+        accuracy: accuracy.as_ref().map(|(_, entry)| entry.key_span()),
+    };
+    check_request(&request, &request_entry, &surface, &effects)?;
+    check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
+    let along = matches!(request, Loading::Path(_)) && depends_on_path(&effects);
+    let models = models
+        .into_iter()
+        .map(|(numerics, entry)| (if along { numerics.along_path() } else { numerics }, entry))
+        .collect::<Vec<_>>();
+    check_histories(&models, &request, &request_entry, &effects)?;
+    let models = models.into_iter().map(|(numerics, _)| numerics).collect();
+    Ok(SceneFile {
+        path: PathBuf::new(),
+        text: String::new(),
+        system,
+        models,
+        surface,
+        modulus,
+        hardness,
+        accuracy: accuracy.map(|(target, _)| target),
+        pair,
+        effects,
+        request,
+        requested,
+        sampling,
+        metadata,
+        reliable_from,
+        notes,
+        places,
+    })
+}
+
+fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
+    const NAMES: [&str; 15] = [
+        "stiffness",
+        "stiffness_fixed_area",
+        "area",
+        "conductance",
+        "contact_patches",
+        "mean_gap",
+        "pressure",
+        "displacement",
+        "gap",
+        "plastic_depth",
+        "heights",
+        "distributions",
+        "grid_error",
+        "curves",
+        "statistics",
+    ];
+    let Some(table) = table else { return Vec::new() };
+    NAMES.iter().filter_map(|name| Some((*name, table.entry(name)?.key_span()))).collect()
+}
+
+/// E*, from itself or from both bodies.
+fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>)> {
+    match scene.one_of(&["modulus", "bodies"])? {
+        Some(("modulus", entry)) => Ok((entry.positive(Dimension::PRESSURE, system)?, None)),
+        Some((_, entry)) => {
+            let values = entry.list();
+            let [first, second] = &values[..] else {
+                return Err(entry
+                    .diagnostic(format!("`bodies` names {}", values.len()))
+                    .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
+            };
+            let pair = Pair { first: read_body(first, system)?, second: read_body(second, system)? };
+            let modulus = pair.modulus().map_err(|e| entry.diagnostic(e.to_string()))?;
+            Ok((modulus, Some(pair)))
+        }
+        None => Err(scene.misspelt_or(&["modulus", "bodies"], scene.diagnostic("[scene] has no material").with_help(
+            "add `modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
+        ))),
+    }
+}
+
+fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
+    if entry.is_text() {
+        return entry.choice(&[("rigid", Body::Rigid)]);
+    }
+    let table = entry.table()?;
+    let young = table.require("young", "\"70 GPa\"")?.positive(Dimension::PRESSURE, system)?;
+    let ratio = table.require("poisson", "0.33")?;
+    let poisson = ratio.number()?;
+    table.finish()?;
+    if !(0.0..=0.5).contains(&poisson) {
+        return Err(ratio
+            .diagnostic(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
+            .with_help("0.5 is incompressible"));
+    }
+    Ok(Body::Elastic { young, poisson })
+}
+
+fn read_sampling(
+    root: &Entries<'_>,
+    scene: &Entries<'_>,
+    models: &[(Numerics, Entry<'_>)],
+    surface: &SceneSurface,
+    notes: &mut Vec<Diagnostic>,
+) -> Read<Sampling> {
+    let line = models.iter().find(|(m, _)| surface.given_map().is_some() && surface.is_random_for(m));
+    let is_random = surface.is_random() || line.is_some();
+    let Some((name, entry)) = root.one_of(&["sampling", "chance"])? else {
+        if let Some((_, model)) = line {
+            return Err(model
+                .diagnostic("the line that stands for the map is random and no seed is given")
+                .with_help("add [sampling] with `seed = 1`; with `surfaces = 60` there are as many lines"));
+        }
+        if is_random {
+            return Err(scene
+                .diagnostic("the surface is random and no seed is given")
+                .with_help("add [sampling] with `seed = 1`: the same seed is the same surface"));
+        }
+        return Ok(Sampling { seed: 0, surfaces: 1 });
+    };
+    let table = entry.table()?;
+    if name == "chance" {
+        let note = Diagnostic::note("`[chance]` is now `[sampling]`").at(entry.key_span());
+        notes.push(note.with_help("rename the table; its keys are the same"));
+    }
+    let seed = table.require("seed", "1")?.count(0)?;
+    let surfaces = table.find("surfaces");
+    if let (Some(entry), false) = (&surfaces, is_random) {
+        return Err(entry
+            .diagnostic_at_key("`surfaces` is given, but nothing here is random")
+            .with_help("remove it: there is one surface"));
+    }
+    let count = surfaces.as_ref().map_or(Ok(1), |e| e.count(1))?;
+    if let (Some(entry), true) = (&surfaces, count > MOST_SURFACES) {
+        return Err(entry
+            .diagnostic(format!("{count} surfaces: expected at most {MOST_SURFACES}"))
+            .with_help("the mean of 1000 surfaces is good to a per cent"));
+    }
+    table.finish()?;
+    Ok(Sampling { seed, surfaces: count as usize })
+}
+
+/// What an accuracy chooses is not given.
+fn check_no_grid(options: Option<&Entries<'_>>) -> Read<()> {
+    let Some(entry) = options.and_then(|options| options.entry("bem3d")) else { return Ok(()) };
+    let table = entry.table()?;
+    for key in ["cells", "rows", "tolerance"] {
+        if let Some(given) = table.entry(key) {
+            return Err(given
+                .diagnostic_at_key(format!("`{key}` is given beside `accuracy`, which chooses it"))
+                .with_help("keep one of them"));
+        }
+    }
+    Ok(())
+}
+
+/// A map brings its own cells, and those of a generated surface are not too many.
+fn check_cells(
+    options: Option<&Entries<'_>>,
+    models: &[(Numerics, Entry<'_>)],
+    surface: &SceneSurface,
+) -> Read<()> {
+    let Some(own) = surface.own_cells() else {
+        for (numerics, name) in models {
+            let Some(elements) = numerics.boundary_elements() else { continue };
+            let cells = elements.grid(surface.size());
+            if cells.checked_count().is_none_or(|count| count > MOST_CELLS * MOST_CELLS) {
+                let (columns, rows, most) = (cells.columns, cells.rows, MOST_CELLS);
+                return Err(name
+                    .diagnostic(format!("{columns} x {rows} cells: expected at most {most} x {most}"))
+                    .with_help(format!(
+                        "give fewer `cells` (columns) or `rows` in [models.{}]; without `rows` cells are nearly square",
+                        numerics.name()
+                    )));
+            }
+        }
+        return Ok(());
+    };
+    let Some(options) = options else { return Ok(()) };
+    for model in ["bem3d", "equivalent"] {
+        let Some(table) = options.entry(model) else { continue };
+        for (key, own) in [("cells", own.columns), ("rows", own.rows)] {
+            if let Some(cells) = table.table()?.entry(key) {
+                return Err(cells
+                    .diagnostic_at_key(format!("`{key}` is given, but the map brings its own {own}"))
+                    .with_help(
+                        "remove it here; `cells` in [scene.surface] averages the map over larger cells",
+                    ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Theories of rough surfaces take a map, or none: heights of a body are no part of its statistics.
+fn check_homogeneous(
+    scene: &Entries<'_>,
+    models: &[(Numerics, Entry<'_>)],
+    surface: &SceneSurface,
+) -> Read<()> {
+    if surface.own_cells().is_none() || scene.entry("body").is_none() {
+        return Ok(());
+    }
+    let Some((numerics, name)) = models.iter().find(|(m, _)| m.is_statistical()) else { return Ok(()) };
+    let message =
+        format!("the model {} does not support a map on a body (it takes one or the other)", numerics.name());
+    Err(name.diagnostic(message).with_help("remove [scene.body], or the model from `models`"))
+}
+
+/// Loads that contradict the boundary or the surface.
+fn check_request(
+    request: &Loading,
+    entry: &Entry<'_>,
+    surface: &SceneSurface,
+    effects: &Effects,
+) -> Read<()> {
+    let Loading::Loads(loads) = request else { return Ok(()) };
+    let periodic = effects.boundary == Boundary::Periodic;
+    match loads.prescribed {
+        Prescribed::Approach if periodic => Err(entry
+            .diagnostic_at_key("an approach with periodic boundaries: there is no first touch to count from")
+            .with_help(
+                "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
+            )),
+        Prescribed::MeanGap if !periodic => Err(entry
+            .diagnostic_at_key("a mean gap with free boundaries")
+            .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]")),
+        Prescribed::ForceBar
+            if !surface.is_rough() || matches!(surface, SceneSurface::Drawn { body: Some(_), .. }) =>
+        {
+            Err(entry
+                .diagnostic_at_key(
+                    "`force_bar` counts forces in the rms height of a rough surface, which this body has not",
+                )
+                .with_help("prescribe `force` or `approach`"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What depends on where displacements of a half-plane are counted from: of a profile with free boundaries.
+fn check_half_plane(
+    request: &Loading,
+    entry: &Entry<'_>,
+    surface: &SceneSurface,
+    (effects, requested): (&Effects, &RequestedOutputs),
+    places: &Places,
+) -> Read<()> {
+    if !surface.is_profile() || effects.boundary == Boundary::Periodic {
+        return Ok(());
+    }
+    let why = "displacements under a body uniform along y have no zero at infinity";
+    let help = "prescribe `force` or `mean_pressure` and ask for area, pressure or gap; or add `boundary = \"periodic\"` to [effects], where a mean \
+                gap and its stiffness have a meaning";
+    let by_approach = match request {
+        Loading::Loads(loads) => loads.prescribed == Prescribed::Approach,
+        Loading::Path(steps) => steps.iter().any(|step| matches!(step.normal, Load::Approach(_))),
+    };
+    if by_approach {
+        let message = format!("an approach of a profile with free boundaries: {why}");
+        return Err(entry.diagnostic_at_key(message).with_help(help));
+    }
+    let outputs = &requested.outputs;
+    let asked = [
+        ("stiffness", outputs.stiffness),
+        ("stiffness_fixed_area", outputs.stiffness_fixed_area),
+        ("displacement", outputs.displacement),
+    ];
+    let Some((name, _)) = asked.iter().find(|(_, asked)| *asked) else { return Ok(()) };
+    let mut diagnostic = Diagnostic::new(format!("{name} of a profile with free boundaries: {why}"));
+    if let Some((_, span)) = places.outputs.iter().find(|(key, _)| key == name) {
+        diagnostic = diagnostic.at(span.clone());
+    }
+    Err(diagnostic.with_help(help))
+}
+
+/// Whether boundary elements have an effect that depends on the path.
+pub(crate) fn depends_on_path(effects: &Effects) -> bool {
+    effects.hardness != Hardness::Off || effects.adhesion != Adhesion::Off
+}
+
+/// Effects that remember need a path and models that follow one.
+fn check_histories(
+    models: &[(Numerics, Entry<'_>)],
+    request: &Loading,
+    entry: &Entry<'_>,
+    effects: &Effects,
+) -> Read<()> {
+    let remembers = effects.friction != Friction::Off
+        || effects.rheology != Rheology::Elastic
+        || depends_on_path(effects);
+    let path = matches!(request, Loading::Path(_));
+    if path && !remembers {
+        return Err(entry
+            .diagnostic_at_key("a path, but no effect that depends on it")
+            .with_help(
+                "add `hardness`, `adhesion`, `friction` or `rheology` to [effects], or prescribe `force` or `approach`",
+            ));
+    }
+    for (numerics, model) in models {
+        if numerics.is_history() && !path {
+            return Err(entry
+                .diagnostic_at_key(format!("\"{}\" follows a path, and here are loads one by one", numerics.name()))
+                .with_help("write [[scene.path]] with `time`, `force` (or `approach`) and `tangential_force` for each step"));
+        }
+        if !numerics.is_history() && path {
+            let follows = |m: &&Numerics| {
+                m.is_history() || (depends_on_path(effects) && (*m).clone().along_path().is_history())
+            };
+            let known: Vec<&str> = Numerics::ALL.iter().filter(follows).map(Numerics::name).collect();
+            return Err(model
+                .diagnostic(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
+                .with_help(format!("models that follow a path: {}", known.join(", "))));
+        }
+    }
+    Ok(())
+}
+/// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.
+pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> Cells {
+    match (scene.surface.own_cells(), numerics.boundary_elements()) {
+        (Some(own), _) => own,
+        (None, Some(elements)) => elements.grid(scene.surface.size()),
+        (None, None) => Cells { columns: numerics.size(), rows: 1 },
+    }
+}

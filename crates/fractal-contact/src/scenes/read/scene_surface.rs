@@ -1,0 +1,465 @@
+//! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
+
+use crate::scenes::read::diagnostic::Diagnostic;
+use crate::scenes::read::entries::{Entries, Entry, LengthOrPair, Read, System};
+use crate::scenes::read::human_readable::number;
+use crate::scenes::read::numerics::Numerics;
+use crate::scenes::read::random_surface::{
+    RandomSpectrum, RandomSurface, describe_self_affine, describe_sides, map_key,
+};
+use crate::scenes::read::sampled::sampled;
+use crate::scenes::read::scan;
+use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size, Surface};
+use std::f64::consts::PI;
+use std::path::Path;
+use std::sync::Arc;
+use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum, WaveGenerator};
+use surface_io::Dimension;
+
+/// What is pressed: a surface, or what a seed draws on cells, alone or on a body.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SceneSurface {
+    /// One surface.
+    Plain(Surface),
+    /// A random surface that is drawn on the cells of each model; heights of a body are added.
+    Drawn {
+        /// The random part.
+        rough: RandomSurface,
+        /// The body.
+        body: Option<Surface>,
+    },
+}
+
+impl SceneSurface {
+    /// Sides of the nominal contact area.
+    pub fn size(&self) -> Size {
+        match self {
+            Self::Plain(surface) => surface.size(),
+            Self::Drawn { rough, .. } => rough.size(),
+        }
+    }
+
+    /// Whether a seed decides what it looks like.
+    pub fn is_random(&self) -> bool {
+        matches!(self, Self::Plain(Surface::SelfAffine(_)) | Self::Drawn { .. })
+    }
+
+    /// Whether it is a profile: a body that is uniform along y.
+    pub fn is_profile(&self) -> bool {
+        matches!(self, Self::Plain(Surface::Profile(_)))
+    }
+
+    /// Whether a model has other numbers for other seeds: of a given map only the line that stands for it has.
+    pub(crate) fn is_random_for(&self, numerics: &Numerics) -> bool {
+        if self.is_profile() {
+            return false;
+        }
+        let given = matches!(self, Self::Plain(Surface::Heights(_)));
+        numerics.depends_on_realisation() && (!given || matches!(numerics, Numerics::Mdr1d(_)))
+    }
+
+    /// Whether it is rough: it has an rms height in which forces can be counted.
+    pub fn is_rough(&self) -> bool {
+        matches!(
+            self,
+            Self::Plain(
+                Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_) | Surface::Line { .. }
+            ) | Self::Drawn { .. }
+        )
+    }
+
+    /// The map of a file, as it is solved; that of a profile has one row.
+    pub fn given_map(&self) -> Option<&Arc<HeightMap>> {
+        match self {
+            Self::Plain(Surface::Heights(map) | Surface::Profile(map)) => Some(map),
+            _ => None,
+        }
+    }
+
+    /// Cells that it brings, whatever a model asks for: those of a given map, and of its twin.
+    pub(crate) fn own_cells(&self) -> Option<Cells> {
+        match self {
+            Self::Plain(Surface::Heights(map) | Surface::Profile(map)) => Some(map.cells()),
+            Self::Plain(_) => None,
+            Self::Drawn { rough, .. } => rough.own_cells(),
+        }
+    }
+
+    /// Whether a seed draws another surface on other cells, and not only more or fewer short waves of the same one.
+    pub(crate) fn differs_by_grid(&self) -> bool {
+        matches!(self, Self::Drawn { rough, .. } if rough.heights.is_some()) && self.own_cells().is_none()
+    }
+
+    /// The same surface on at most so many cells along its longer side, where a model has `cells` otherwise.
+    pub(crate) fn coarser(&self, cells: Cells, longer: usize) -> Result<Self> {
+        Ok(match self {
+            Self::Plain(Surface::Heights(map)) => {
+                Self::Plain(Surface::Heights(Arc::new(sampled(map, longer)?)))
+            }
+            Self::Plain(Surface::Profile(map)) => {
+                Self::Plain(Surface::Profile(Arc::new(sampled(map, longer)?)))
+            }
+            Self::Plain(_) => self.clone(),
+            Self::Drawn { rough, body } => {
+                Self::Drawn { rough: rough.coarser(cells, longer), body: body.clone() }
+            }
+        })
+    }
+
+    /// In a phrase.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Plain(Surface::SelfAffine(s)) => describe_self_affine(s),
+            Self::Plain(Surface::Heights(map)) => {
+                let sides = describe_sides(map.size());
+                let mut text = format!("a map of {} x {} cells, {sides}", map.columns(), map.rows());
+                if map.undefined() > 0 {
+                    text += &format!(", {} undefined points", map.undefined());
+                }
+                text
+            }
+            Self::Plain(Surface::Profile(map)) => {
+                let [length, width] = [map.size().x, map.size().y].map(number);
+                let undefined = if map.undefined() > 0 {
+                    format!(", {} undefined points", map.undefined())
+                } else {
+                    String::new()
+                };
+                format!(
+                    "a profile of {} points over {length}{undefined}; the body is uniform along y (plane strain), forces are those on {width} of it",
+                    map.columns()
+                )
+            }
+            Self::Plain(surface) => {
+                let size = surface.size();
+                let shape = if size.is_square() { "square" } else { "rectangle" };
+                format!("{} on a {shape} of {}", surface.kind(), describe_sides(size))
+            }
+            Self::Drawn { rough, body: None } => rough.describe(),
+            Self::Drawn { rough, body: Some(body) } => format!("{} on {}", rough.describe(), body.kind()),
+        }
+    }
+
+    /// Everything that decides its heights, but the seed, in a line.
+    pub(crate) fn key(&self) -> String {
+        match self {
+            Self::Plain(Surface::Heights(map)) => map_key(map),
+            Self::Plain(Surface::Profile(map)) => format!("profile {}", map_key(map)),
+            Self::Drawn { rough, body } => format!("{} on {body:?}", rough.key()),
+            Self::Plain(surface) => format!("{surface:?}"),
+        }
+    }
+
+    /// What a model is given: what is drawn is drawn on the model's own cells.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a model without cells and a surface that needs them, and what drawing it refuses.
+    pub fn for_model(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
+        let (rough, body) = match self {
+            Self::Plain(surface) => return Ok(surface.clone()),
+            Self::Drawn { rough, body } => (rough, body),
+        };
+        let elements = numerics.boundary_elements();
+        let cells = match (elements.map(|elements| elements.grid(rough.size())), rough.own_cells(), body) {
+            (Some(cells), ..) | (None, Some(cells), None) => cells,
+            (None, _, Some(_)) => {
+                let what = "a rough surface on a body (it takes one or the other)";
+                return Err(Error::unsupported(numerics.name(), what));
+            }
+            (None, None, None) => {
+                let what = "a lay or a distribution of heights: it draws no map";
+                return Err(Error::unsupported(numerics.name(), what));
+            }
+        };
+        let map = rough.draw(cells, seed)?.map;
+        Ok(Surface::Heights(Arc::new(match body {
+            Some(body) => add(&map, body)?,
+            None => map,
+        })))
+    }
+}
+
+/// Heights of a map plus those of a body on the same cells.
+pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
+    let body = surface_gen::height_map(body, map.cells(), 0)?;
+    let sum = |(a, b): (&f64, &f64)| if a.is_finite() { a + b } else { f64::NAN };
+    let heights = map.heights().iter().zip(body.heights()).map(sum).collect();
+    if map.undefined() > 0 {
+        HeightMap::with_undefined(map.cells(), map.size(), heights)
+    } else {
+        HeightMap::new(map.cells(), map.size(), heights)
+    }
+}
+
+/// `[scene.surface]` and `[scene.body]` as they were read.
+pub(crate) struct SurfaceEntry {
+    pub surface: SceneSurface,
+    /// Metadata of its file.
+    pub metadata: Option<String>,
+    /// From which distance on the tips of its instruments let heights be seen.
+    pub reliable_from: Option<f64>,
+    /// Remarks on the keys.
+    pub notes: Vec<Diagnostic>,
+}
+
+impl From<SceneSurface> for SurfaceEntry {
+    fn from(surface: SceneSurface) -> Self {
+        Self { surface, metadata: None, reliable_from: None, notes: Vec::new() }
+    }
+}
+
+/// Reads `[scene.surface]`, `[scene.second_surface]` and `[scene.body]`.
+pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path) -> Read<SurfaceEntry> {
+    let surface = scene.table("surface")?;
+    let second = scene.table("second_surface")?;
+    let body = scene.table("body")?;
+    let of_file = |table: &Entries<'_>| -> Read<bool> {
+        Ok(table.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == RoughKind::File)
+    };
+    if let Some(second) = &second
+        && !(of_file(second)? && surface.as_ref().map_or(Ok(false), &of_file)?)
+    {
+        return Err(second.diagnostic("[scene.second_surface] is added to a measured [scene.surface]").with_help(
+            "say `kind = \"file\"` in both; two independent random surfaces are one of the rms height sqrt(h1^2 + h2^2)",
+        ));
+    }
+    let Some(surface) = surface else {
+        let Some(body) = body else {
+            return Err(scene
+                .diagnostic("nothing is pressed: there is neither [scene.surface] nor [scene.body]")
+                .with_help(
+                    "describe one: [scene.surface] with `kind = \"self_affine\"` or \"file\", or [scene.body] with `kind = \"sphere\"`",
+                ));
+        };
+        return Ok(SceneSurface::Plain(read_body(&body, None, system)?).into());
+    };
+    if of_file(&surface)? {
+        let twin = read_twin(&surface, second.is_some())?;
+        let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes, profile } =
+            scan::read_map(&surface, system, directory)?;
+        if profile {
+            let twin = twin.map(|(entry, ..)| entry);
+            refuse_for_profile(scene, twin.as_ref(), second.is_some(), body.is_some())?;
+            let plain = SceneSurface::Plain(Surface::Profile(Arc::new(map)));
+            return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), reliable_from, notes });
+        }
+        if let Some(second) = second {
+            let other = scan::read_second(&second, &map, system, directory)?;
+            map = other.map;
+            reliable_from = [reliable_from, other.reliable_from].into_iter().flatten().reduce(f64::max);
+            metadata += &format!("\nsecond surface\n{}", other.metadata);
+            notes.extend(other.notes);
+        }
+        let body = body.map(|body| read_body(&body, Some(map.size()), system)).transpose()?;
+        if let Some((entry, like, keep_heights)) = twin {
+            let of = Arc::new(map);
+            // What stands in the way of a twin is found before anything is solved.
+            WaveGenerator::twin(&of, like).map_err(|e| {
+                entry.diagnostic(format!("no twin of this map: {e}")).with_help(
+                    "undefined points need `fill`; a map that is not periodic `detrend` and `window = \"hann\"`",
+                )
+            })?;
+            let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
+            let rough = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
+            let surface = SceneSurface::Drawn { rough, body };
+            return Ok(SurfaceEntry { surface, metadata: Some(metadata), reliable_from, notes });
+        }
+        let map = match body {
+            None => map,
+            Some(body) => add(&map, &body).map_err(|e| scene.diagnostic(e.to_string()))?,
+        };
+        let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
+        return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), reliable_from, notes });
+    }
+    let rough = read_self_affine(&surface, system)?;
+    let (anisotropy, heights) = (read_anisotropy(&surface)?, read_heights(&surface)?);
+    surface.known_only()?;
+    let body = body.map(|body| read_body(&body, Some(rough.size), system)).transpose()?;
+    if anisotropy.is_none() && heights.is_none() && body.is_none() {
+        return Ok(SceneSurface::Plain(Surface::SelfAffine(rough)).into());
+    }
+    let spectrum = RandomSpectrum::SelfAffine { surface: rough, anisotropy };
+    Ok(SceneSurface::Drawn { rough: RandomSurface::new(spectrum, heights), body }.into())
+}
+
+/// What a profile is not combined with.
+fn refuse_for_profile(
+    scene: &Entries<'_>,
+    twin: Option<&Entry<'_>>,
+    has_second: bool,
+    has_body: bool,
+) -> Read<()> {
+    let help = "remove it, or measure an area; a tilt or a bow of the profile goes with `detrend`";
+    if let Some(entry) = twin {
+        let message = "`twin` of a profile: a twin has the spectrum of a map in all directions";
+        return Err(entry.diagnostic_at_key(message).with_help(help));
+    }
+    for (name, given) in [("second_surface", has_second), ("body", has_body)] {
+        if let (true, Some(entry)) = (given, scene.entry(name)) {
+            let message = format!("[scene.{name}] beside a profile, which is a body uniform along y");
+            return Err(entry.diagnostic_at_key(message).with_help(help));
+        }
+    }
+    Ok(())
+}
+
+/// `twin` and `keep_heights`.
+fn read_twin<'a>(table: &Entries<'a>, is_second: bool) -> Read<Option<(Entry<'a>, TwinSpectrum, bool)>> {
+    let keep = table.find("keep_heights");
+    let Some(entry) = table.find("twin") else {
+        return match keep {
+            None => Ok(None),
+            Some(keep) => Err(keep
+                .diagnostic_at_key("`keep_heights` is given, but no `twin`")
+                .with_help("add `twin = \"waves\"`, or remove it: the map itself has its heights")),
+        };
+    };
+    let like = entry.choice(&[("waves", TwinSpectrum::EachWave), ("rings", TwinSpectrum::Rings)])?;
+    if is_second {
+        return Err(entry
+            .diagnostic_at_key("`twin` beside [scene.second_surface]")
+            .with_help("draw the twin into a file with `fractal-contact twin`, and read that file here"));
+    }
+    let keep_heights = keep.map_or(Ok(false), |keep| keep.flag())?;
+    Ok(Some((entry, like, keep_heights)))
+}
+
+/// `anisotropy` and `lay`.
+fn read_anisotropy(table: &Entries<'_>) -> Read<Option<Anisotropy>> {
+    let lay = table.find("lay");
+    let Some(ratio) = table.find("anisotropy") else {
+        return match lay {
+            None => Ok(None),
+            Some(lay) => Err(lay
+                .diagnostic_at_key("`lay` is given, but no `anisotropy`")
+                .with_help("add `anisotropy = 4`: waves along the lay are so many times as long as across")),
+        };
+    };
+    let lay = lay.map_or(Ok(0.0), |lay| lay.number())?;
+    Ok(Some(Anisotropy { ratio: ratio.positive_number()?, lay }))
+}
+
+/// `weibull`.
+fn read_heights(table: &Entries<'_>) -> Read<Option<HeightDistribution>> {
+    let shape = table.find("weibull").map(|shape| shape.positive_number()).transpose()?;
+    Ok(shape.map(|shape| HeightDistribution::Weibull { shape }))
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum RoughKind {
+    SelfAffine,
+    File,
+}
+
+const ROUGH: [(&str, RoughKind); 2] = [("self_affine", RoughKind::SelfAffine), ("file", RoughKind::File)];
+
+fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
+    let length =
+        |key: &'static str| table.find(key).map(|e| e.positive(Dimension::LENGTH, system)).transpose();
+    let size = read_size(table, system)?;
+    let hurst = match table.one_of(&["fractal_dimension", "hurst"])? {
+        Some(("hurst", e)) => within(&e, e.number()?, 0.0, 1.0)?,
+        Some((_, e)) => 3.0 - within(&e, e.number()?, 2.0, 3.0)?,
+        None => {
+            return Err(table
+                .diagnostic("`fractal_dimension` is missing in [scene.surface]")
+                .with_help("add `fractal_dimension = 2.4`, or `hurst = 0.6`"));
+        }
+    };
+    let rms = table.require("rms_height", "\"1 um\"")?.positive(Dimension::LENGTH, system)?;
+    let short = length("shortest_wavelength")?;
+    let long = table.find("roll_off_wavelength");
+    let roll_off = long.as_ref().map(|e| e.positive(Dimension::LENGTH, system)).transpose()?;
+    if let (Some(entry), Some(long), Some(short)) = (&long, roll_off, short)
+        && long < short
+    {
+        return Err(entry
+            .diagnostic("`roll_off_wavelength` is below `shortest_wavelength`")
+            .with_help("the roll-off is the longest wave of the fractal range"));
+    }
+    let wavenumber = |wavelength: f64| 2.0 * PI / wavelength;
+    Ok(SelfAffine {
+        size,
+        hurst,
+        amplitude: Amplitude::RmsHeight(rms),
+        roll_off: roll_off.map(wavenumber),
+        short_cutoff: short.map(wavenumber),
+    })
+}
+
+/// `side = s` or `size = [Lx, Ly]`.
+fn read_size(table: &Entries<'_>, system: System) -> Read<Size> {
+    match table.one_of(&["side", "size"])? {
+        Some(("size", entry)) => Ok(match entry.lengths(system)? {
+            LengthOrPair::One(side) => side.into(),
+            LengthOrPair::Two(sides) => sides.into(),
+        }),
+        Some((_, entry)) if entry.is_list() => Err(entry
+            .diagnostic(format!("`side` has {} values: it is the one of a square", entry.list().len()))
+            .with_help("both sides of a rectangle are `size = [Lx, Ly]`")),
+        Some((_, entry)) => entry.positive(Dimension::LENGTH, system).map(Size::from),
+        None => table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system).map(Size::from),
+    }
+}
+
+fn within(entry: &Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
+    if (low..=high).contains(&value) {
+        Ok(value)
+    } else {
+        Err(entry
+            .diagnostic(format!("{value} is outside [{low}, {high}]"))
+            .with_help("D_f = 3 - H lies in [2, 3], H in [0, 1]"))
+    }
+}
+
+#[derive(Clone, Copy)]
+enum BodyKind {
+    Sphere,
+    Cone,
+    PowerLaw,
+    FlatCircle,
+    Flat,
+    Sine,
+}
+
+const BODIES: [(&str, BodyKind); 7] = [
+    ("sphere", BodyKind::Sphere),
+    ("cone", BodyKind::Cone),
+    ("power_law", BodyKind::PowerLaw),
+    ("flat_circle", BodyKind::FlatCircle),
+    ("flat", BodyKind::Flat),
+    ("flat_square", BodyKind::Flat),
+    ("sine", BodyKind::Sine),
+];
+
+/// A body; on a rough surface it has that surface's size.
+fn read_body(table: &Entries<'_>, given: Option<Size>, system: System) -> Read<Surface> {
+    let length = |key: &'static str| table.require(key, "\"1 mm\"")?.positive(Dimension::LENGTH, system);
+    let kind = table.require("kind", "\"sphere\"")?.choice(&BODIES)?;
+    let size = match (given, table.one_of(&["side", "size"])?) {
+        (Some(_), Some((key, entry))) => {
+            return Err(entry
+                .diagnostic_at_key(format!("`{key}` is given for the body, which has that of the surface"))
+                .with_help("remove it in [scene.body]: the area is that of [scene.surface]"));
+        }
+        (Some(size), None) => size,
+        (None, _) => read_size(table, system)?,
+    };
+    let surface = match kind {
+        BodyKind::Sphere => Surface::Sphere { radius: length("radius")?, size },
+        BodyKind::Cone => Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size },
+        BodyKind::PowerLaw => {
+            // Two lengths instead of a coefficient whose unit depends on the exponent.
+            let exponent = table.require("exponent", "4")?.positive_number()?;
+            let (depth, radius) = (length("depth")?, length("radius")?);
+            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size }
+        }
+        BodyKind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, size },
+        BodyKind::Flat => Surface::Flat { size },
+        BodyKind::Sine => {
+            Surface::Sine { amplitude: length("amplitude")?, wavelength: length("wavelength")?, size }
+        }
+    };
+    table.known_only()?;
+    Ok(surface)
+}

@@ -1,0 +1,61 @@
+//! What scenes, loads, units and models are called in titles and labels.
+
+use crate::scenes::read::entries::System;
+use crate::scenes::read::human_readable::short;
+use crate::scenes::read::loads::{Loading, Prescribed};
+use crate::scenes::read::scene_file::SceneFile;
+
+/// The scene's name in a title.
+pub(crate) fn scene_name(scene: &SceneFile) -> String {
+    let file = scene.path.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    file.replace(['-', '_'], " ")
+}
+
+/// A load in words, with its unit.
+pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
+    let si = scene.system == System::Si;
+    match &scene.request {
+        Loading::Loads(loads) => {
+            let unit = match loads.prescribed {
+                Prescribed::ForceBar => "",
+                _ if !si => "",
+                Prescribed::Force => "N",
+                Prescribed::MeanPressure => "Pa",
+                Prescribed::Approach | Prescribed::MeanGap => "m",
+            };
+            let words = loads.prescribed.key().replace('_', " ");
+            let (unit, factor) = plots::prefixed(unit, loads.values[state]);
+            let value = short(factor * loads.values[state]);
+            format!("{words} {value} {unit}").trim_end().to_owned()
+        }
+        Loading::Path(_) => format!("step {state}"),
+    }
+}
+
+/// A unit with its powers raised: `m^2` and `W/K`.
+pub(crate) fn unit_label(unit: &str) -> String {
+    format!("$\\rm{{{unit}}}$")
+}
+
+/// What a model is called outside code.
+pub(crate) fn model_name(name: &str) -> &str {
+    match name {
+        "bem3d" => "3D boundary elements",
+        "mdr1d" => "1D reduction",
+        "mdr1d_partial_slip" => "1D reduction with partial slip",
+        "mdr1d_viscoelastic" => "viscoelastic 1D reduction",
+        "equivalent" => "equivalent profile",
+        "hertz" => "Hertz",
+        "jkr" => "Johnson, Kendall and Roberts",
+        "persson" => "Persson",
+        "greenwood_williamson" => "Greenwood and Williamson",
+        "westergaard" => "Westergaard",
+        "adhesive_wave" => "Johnson",
+        "maugis_dugdale" => "Maugis-Dugdale",
+        "cattaneo_mindlin" => "Cattaneo and Mindlin",
+        "power_law" => "power law of the paper",
+        "power_law_body" => "Galin",
+        "flat_punch" => "flat punch",
+        other => other,
+    }
+}

@@ -1,0 +1,202 @@
+//! Pictures of fields. They are drawn last, when the range of all loads is known: one surface has one scale.
+
+use crate::scenes::read::error::Result;
+use crate::scenes::read::words;
+use crate::scenes::run::field_view::FieldView;
+
+use crate::scenes::read::entries::System;
+use crate::scenes::read::outputs::FieldFormat;
+use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::run::state_result::{FieldFile, ModelResult, StoredFile};
+use contact_model::Cells;
+use plots::{Chart, Curve, FieldPicture, Shown};
+use std::io::Write as _;
+use std::path::Path;
+
+/// Where values wait for being drawn, beside the stored results.
+const WAITING: &str = ".units/";
+const EXTENSION: &str = "f64";
+/// Of what the report shows.
+const VIEW: &str = "view";
+
+impl StoredFile {
+    /// Whether it is of the program's own use only.
+    pub fn is_hidden(&self) -> bool {
+        self.name.starts_with(WAITING)
+    }
+}
+
+/// Whether a field of this name is drawn, or needed for drawing another one: contacts are outlined.
+pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
+    let drawn = |of: &str| {
+        let fields = scene.requested.fields();
+        fields.iter().any(|(field, formats)| *field == of && formats.contains(&FieldFormat::Png))
+    };
+    drawn(name) || name == "pressure" && (drawn("gap") || drawn("displacement") || drawn("plastic_depth"))
+}
+
+/// Keeps the values of a field, little-endian, row-major, until it is drawn.
+pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<StoredFile> {
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    keep_bytes(out, FieldFile { extension: EXTENSION, ..file }, &bytes)
+}
+
+/// Keeps what the report shows of a field.
+pub(crate) fn keep_view(out: &Path, file: FieldFile<'_>, view: &FieldView) -> Result<StoredFile> {
+    keep_bytes(out, FieldFile { extension: VIEW, ..file }, &view.encode())
+}
+
+/// What [`keep_view`] kept of a state.
+pub(crate) fn view(out: &Path, file: FieldFile<'_>) -> Option<FieldView> {
+    let name = format!("{WAITING}{}", FieldFile { extension: VIEW, ..file });
+    FieldView::decode(&runs::files::read(&out.join(name), u64::MAX).ok()?)
+}
+
+fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFile> {
+    let name = format!("{WAITING}{file}");
+    let path = out.join(&name);
+    // A new file, not what a link of this name leads to.
+    let _ = std::fs::remove_file(&path);
+    let file = std::fs::File::options().write(true).create_new(true).open(&path);
+    let written = file.and_then(|mut file| file.write_all(bytes));
+    written.map_err(runs::Error::file("write", &path))?;
+    StoredFile::of(out, name)
+}
+
+/// Draws the fields of all states, each quantity in one range; of a complete result the values kept for it are then removed.
+pub(crate) fn draw(
+    scene: &SceneFile,
+    (model, surface): (&str, usize),
+    cells: Cells,
+    out: &Path,
+    result: &mut ModelResult,
+) -> Result<()> {
+    let file = |field, state, extension| FieldFile { field, model, surface, state, extension };
+    let read = |field, state| -> Option<Vec<f64>> {
+        let name = format!("{WAITING}{}", file(field, state, EXTENSION));
+        let bytes = runs::files::read(&out.join(name), u64::MAX).ok()?;
+        let (values, rest) = bytes.as_chunks();
+        (rest.is_empty() && Some(values.len()) == cells.checked_count())
+            .then(|| values.iter().map(|v| f64::from_le_bytes(*v)).collect())
+    };
+    for (field, formats) in scene.requested.fields() {
+        if !formats.contains(&FieldFormat::Png) {
+            continue;
+        }
+        let states: Vec<usize> = result.states.iter().map(|state| state.index).collect();
+        let ends = states.iter().filter_map(|&state| Some(FieldPicture::ends(&read(field, state)?)));
+        let range = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        for state in &mut result.states {
+            let Some(values) = read(field, state.index) else { continue };
+            let pressure = if matches!(field, "gap" | "displacement" | "plastic_depth") {
+                read("pressure", state.index)
+            } else {
+                None
+            };
+            let contact: Vec<bool> = pressure.into_iter().flatten().map(|p| p > 0.0).collect();
+            let name = file(field, state.index, FieldFormat::Png.extension()).to_string();
+            let mut drawn = picture(scene, field, model, (surface, state.index), cells, &values);
+            if scene.surface.is_profile() {
+                let step = scene.surface.size().x / cells.columns as f64;
+                let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
+                let stem = name.strip_suffix(".png").unwrap_or(&name);
+                for path in row_chart(&drawn, points.collect()).save(out, stem)? {
+                    let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
+                    state.files.retain(|file| file.name != name);
+                    state.files.push(StoredFile::of(out, name.to_owned())?);
+                }
+                continue;
+            }
+            (drawn.range, drawn.contact) = (range, &contact);
+            if states.len() > 1 && field != "heights" {
+                drawn.subtitle += "; one scale for all loads";
+            }
+            drawn.save(&out.join(&name))?;
+            state.files.retain(|file| file.name != name);
+            state.files.push(StoredFile::of(out, name)?);
+        }
+    }
+    if result.complete {
+        for state in &mut result.states {
+            for file in state.files.extract_if(.., |file| file.name.ends_with(EXTENSION)) {
+                // It may be gone since it was read: nobody needs it any more.
+                let _ = std::fs::remove_file(out.join(file.name));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Removes what a run that was killed kept for drawing.
+pub(crate) fn sweep(out: &Path) {
+    let entries = std::fs::read_dir(out.join(WAITING)).into_iter().flatten().flatten();
+    for path in
+        entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == EXTENSION))
+    {
+        // It is the program's own folder; what cannot be removed does no harm.
+        let _ = std::fs::remove_file(path);
+    }
+}
+
+/// A field of a state, by number of the surface and of the load.
+pub(crate) fn picture<'a>(
+    scene: &SceneFile,
+    name: &str,
+    model: &str,
+    (surface, state): (usize, usize),
+    cells: Cells,
+    values: &'a [f64],
+) -> FieldPicture<'a> {
+    let si = scene.system == System::Si;
+    let (quantity, unit, shown) = match name {
+        "pressure" => ("pressure $p$", "Pa", Shown::Largest),
+        "displacement" => ("displacement $u$", "m", Shown::Middle),
+        "gap" => ("gap $g$", "m", Shown::Smallest),
+        "plastic_depth" => ("plastic indentation", "m", Shown::Largest),
+        _ => ("height", "m", Shown::Middle),
+    };
+    let load = if name == "heights" { "as solved".to_owned() } else { words::load(scene, state) };
+    let mut title = format!("{}, {}", name.replace('_', " "), words::model_name(model));
+    title[..1].make_ascii_uppercase();
+    let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
+    let subtitle = format!("{}{number}: {load}", words::scene_name(scene));
+    let [unit, length_unit] = if si { [unit, "m"] } else { [""; 2] };
+    let size = scene.surface.size();
+    FieldPicture {
+        title,
+        subtitle,
+        quantity: quantity.to_owned(),
+        unit,
+        length_unit,
+        cells,
+        size,
+        values,
+        shown,
+        range: None,
+        contact: &[],
+    }
+}
+
+/// A field of one row as a curve over x, instead of a picture one cell high; the points are (x, value), x in the scene's unit.
+pub(crate) fn row_chart(picture: &FieldPicture<'_>, points: Vec<(f64, f64)>) -> Chart {
+    let extreme = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        points.iter().map(|p| of(p).abs()).filter(|v| v.is_finite()).fold(0.0, f64::max)
+    };
+    let (length, per_length) = plots::prefixed(picture.length_unit, extreme(&|p| p.0));
+    let (unit, per_unit) = plots::prefixed(picture.unit, extreme(&|p| p.1));
+    let label = |words: &str, unit: &str| {
+        if unit.is_empty() { words.to_owned() } else { format!("{words} ({})", words::unit_label(unit)) }
+    };
+    Chart {
+        title: picture.title.replace("3D boundary elements", "boundary elements in plane strain"),
+        subtitle: picture.subtitle.clone(),
+        x_label: label("$x$", &length),
+        y_label: label(&picture.quantity, &unit),
+        curves: vec![Curve {
+            label: "profile".into(),
+            points: points.into_iter().map(|(x, v)| (per_length * x, per_unit * v)).collect(),
+            band: Vec::new(),
+        }],
+        logarithmic: false,
+    }
+}

@@ -1,0 +1,352 @@
+//! One model and one surface under all loads, or along the whole path.
+
+use crate::scenes::plan::grid_comparison::{GridComparison, solved_map};
+use crate::scenes::plan::model_on_surface::ModelOnSurface;
+use crate::scenes::read::any_model::AnyModel;
+use crate::scenes::read::distributed;
+use crate::scenes::read::error::{Error, Result};
+use crate::scenes::read::loads::Loading;
+use crate::scenes::read::numerics::Numerics;
+use crate::scenes::read::outputs::FieldFormat;
+use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::read::scene_file::cells;
+use crate::scenes::run::field_pictures;
+use crate::scenes::run::field_view::FieldView;
+use crate::scenes::run::state_result::{FieldFile, ModelResult, StateResult, StoredFile};
+use crate::scenes::run::warnings::Warning;
+use crate::scenes::tell::columns::{self, State};
+use contact_model::{Cells, ContactState, Field, Fields, Load, Step, Stop};
+use std::borrow::Cow;
+use std::path::Path;
+use std::time::Instant;
+
+impl ModelOnSurface {
+    /// Answers the loads that `result` lacks, in their order, and gives the result to `keep` after each. A load that a model refuses has its
+    /// row with the reason, and the others go on. A path begins anew.
+    ///
+    /// # Errors
+    /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is no
+    /// error: the result is then not complete.
+    pub fn solve(
+        &self,
+        scene: &SceneFile,
+        out: &Path,
+        mut result: ModelResult,
+        keep: &mut dyn FnMut(&ModelResult) -> Result<()>,
+        stop: Stop<'_>,
+    ) -> Result<ModelResult> {
+        let start = Instant::now();
+        let numerics = self.numerics(scene);
+        let what = || format!("{}, surface {}", numerics.name(), self.surface);
+        let seed = scene.seed(self.surface);
+        let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
+        let before = result.seconds;
+        match (numerics.model(), &scene.request) {
+            (AnyModel::Contact(model), Loading::Loads(_)) => {
+                let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
+                let mut keep = |result: &mut ModelResult| {
+                    result.seconds = before + start.elapsed().as_secs_f64();
+                    keep(result)
+                };
+                self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
+                field_pictures::draw(
+                    scene,
+                    (numerics.name(), self.surface),
+                    cells(scene, numerics),
+                    out,
+                    &mut result,
+                )?;
+            }
+            (AnyModel::History(model), Loading::Path(steps)) => {
+                let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
+                result = ModelResult::default();
+                self.path(scene, contact.as_mut(), (steps, out), stop, &mut result)?;
+                field_pictures::draw(
+                    scene,
+                    (numerics.name(), self.surface),
+                    cells(scene, numerics),
+                    out,
+                    &mut result,
+                )?;
+            }
+            // Reading a scene refuses these; one built in code may have them.
+            (AnyModel::Contact(model), Loading::Path(_)) => {
+                let refused =
+                    contact_model::Error::unsupported(model.name(), "a path: it answers loads one by one");
+                return Err(runs::Error::model(what())(refused).into());
+            }
+            (AnyModel::History(model), Loading::Loads(_)) => {
+                let refused =
+                    contact_model::Error::unsupported(model.name(), "loads one by one: it follows a path");
+                return Err(runs::Error::model(what())(refused).into());
+            }
+        }
+        result.seconds = before + start.elapsed().as_secs_f64();
+        Ok(result)
+    }
+
+    fn loads(
+        &self,
+        scene: &SceneFile,
+        contact: &mut dyn contact_model::PreparedContact,
+        out: &Path,
+        stop: Stop<'_>,
+        result: &mut ModelResult,
+        keep: &mut dyn FnMut(&mut ModelResult) -> Result<()>,
+    ) -> Result<()> {
+        let Loading::Loads(requests) = &scene.request else { return Ok(()) };
+        let normalisation = contact.normalisation();
+        let missing: Vec<usize> =
+            (0..requests.values.len()).filter(|&i| result.states.iter().all(|s| s.index != i)).collect();
+        let load = |&index: &usize| requests.load(requests.values[index], &normalisation);
+        let loads = missing.iter().map(load).collect::<contact_model::Result<Vec<Load>>>();
+        let numerics = self.numerics(scene);
+        let comparison = match &loads {
+            Ok(loads) if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) => {
+                match GridComparison::solve(scene, numerics, scene.seed(self.surface), loads, stop) {
+                    Err(contact_model::Error::Stopped { .. }) => return Ok(()),
+                    found => Some(found.map_err(|error| {
+                        runs::Error::model(format!("coarser grids of surface {}", self.surface))(error)
+                    })?),
+                }
+            }
+            _ => None,
+        };
+        let mut written = Ok(());
+        let mut answer = |place: usize, found: contact_model::Result<ContactState>| {
+            let index = missing[place];
+            let mut state = State {
+                model: self.numerics(scene).name(),
+                surface: self.surface,
+                index,
+                requested: requests.values[index],
+                normalisation: Some(normalisation),
+                ..State::default()
+            };
+            let mut kept = StateResult { index, ..StateResult::default() };
+            match found {
+                Ok(mut found) => {
+                    state.status = Some(found.report.status);
+                    if let Some(comparison) = &comparison {
+                        state.grid_errors = comparison.errors(place, &found);
+                        state.rms_slope = Some(comparison.rms_slope);
+                    }
+                    state.note = Warning::note(&Warning::of(scene, &found, &state.grid_errors));
+                    written = self.write_fields(scene, &mut found, out, &mut kept);
+                    state.normal = Some(found);
+                }
+                Err(contact_model::Error::NotConverged { best }) => {
+                    kept.failed = true;
+                    state.status = Some(best.report.status);
+                    state.normal = Some(best.with_fields(None).with_patches(None));
+                }
+                Err(other) => {
+                    kept.failed = true;
+                    state.note = Some(other.to_string());
+                }
+            }
+            if written.is_ok() {
+                kept.row = columns::row(scene, &state);
+                let place = result.states.partition_point(|s| s.index < index);
+                result.states.insert(place, kept);
+                written = keep(result);
+            }
+            // A file that cannot be written ends the sweep; its error is the one that is returned.
+            if written.is_ok() { Ok(()) } else { Err(contact_model::Error::Stopped { best: None }) }
+        };
+        let swept = match loads {
+            Ok(loads) => contact.sweep(&loads, stop, &mut answer),
+            // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
+            Err(error) => (0..missing.len()).try_for_each(|i| answer(i, Err(error.clone()))),
+        };
+        written?;
+        result.complete = swept.is_ok();
+        Ok(())
+    }
+
+    fn path(
+        &self,
+        scene: &SceneFile,
+        contact: &mut dyn contact_model::History,
+        (steps, out): (&[Step], &Path),
+        stop: Stop<'_>,
+        result: &mut ModelResult,
+    ) -> Result<()> {
+        for (index, step) in steps.iter().enumerate() {
+            let mut state = State {
+                model: self.numerics(scene).name(),
+                surface: self.surface,
+                index,
+                time: Some(step.time),
+                normalisation: Some(contact.normalisation()),
+                ..State::default()
+            };
+            let mut kept = StateResult { index, ..StateResult::default() };
+            kept.failed = match contact.advance_until(*step, stop) {
+                Ok(mut found) => {
+                    self.write_fields(scene, &mut found.normal, out, &mut kept)?;
+                    state.status = Some(found.normal.report.status);
+                    state.note = Warning::note(&Warning::of(scene, &found.normal, &state.grid_errors));
+                    state.normal = Some(found.normal.clone());
+                    state.history = Some(found);
+                    false
+                }
+                Err(contact_model::Error::Stopped { .. }) => return Ok(()),
+                Err(error) => {
+                    state.note = Some(error.to_string());
+                    true
+                }
+            };
+            let refused = kept.failed;
+            kept.row = columns::row(scene, &state);
+            result.states.push(kept);
+            if refused {
+                // What comes after a step that failed would be another path.
+                break;
+            }
+        }
+        result.complete = true;
+        Ok(())
+    }
+
+    /// Writes the fields that are asked for, counts distributions, and lets go of the fields.
+    fn write_fields(
+        &self,
+        scene: &SceneFile,
+        found: &mut ContactState,
+        out: &Path,
+        kept: &mut StateResult,
+    ) -> Result<()> {
+        if let Some(patches) = found.patches.as_ref() {
+            kept.patches = patches.areas().to_vec();
+        }
+        let Fields { pressure, displacement, gap, plastic_depth, .. } =
+            found.fields.take().unwrap_or_default();
+        let cell = scene.surface.size();
+        let cell = cell.x * cell.y / cells(scene, self.numerics(scene)).checked_count().unwrap_or(1) as f64;
+        let state = (pressure.as_ref(), gap.as_ref(), found.patches.as_ref());
+        kept.distributions = distributed::of_state(&scene.requested.distributions, state, cell);
+        let first = kept.index == 0 && !scene.requested.heights.is_empty();
+        let heights = if first { self.heights(scene)? } else { None };
+        let fields = [pressure, displacement, gap, plastic_depth, heights];
+        for ((name, formats), field) in scene.requested.fields().into_iter().zip(&fields) {
+            let Some(field) = field else { continue };
+            let values = &on_defined_points(name, field, scene);
+            let (model, surface, state) = (self.numerics(scene).name(), self.surface, kept.index);
+            let file = |extension| FieldFile { field: name, model, surface, state, extension };
+            if field_pictures::is_needed(scene, name) {
+                kept.files.push(field_pictures::keep(out, file(""), values)?);
+            }
+            // One surface is shown, and only fields that files are asked of.
+            if surface == 0 && !formats.is_empty() {
+                let view = FieldView::new(name, field.cells(), values);
+                kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
+            }
+            for &format in formats {
+                let file = file(format.extension()).to_string();
+                let path = out.join(&file);
+                match format {
+                    FieldFormat::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
+                    FieldFormat::Png => continue,
+                    FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), values)?,
+                    FieldFormat::Vti => write_vti(&path, name, scene, field.cells(), values)?,
+                }
+                kept.files.push(StoredFile::of(out, file)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// The heights that boundary elements solve, NaN where they are undefined; `None` for a model without cells.
+    fn heights(&self, scene: &SceneFile) -> Result<Option<Field>> {
+        let numerics = self.numerics(scene);
+        if numerics.boundary_elements().is_none() {
+            return Ok(None);
+        }
+        let draw = || {
+            let map = solved_map(scene, numerics, scene.seed(self.surface))?;
+            let known = |h: &f64| if h.is_finite() { *h } else { f64::NAN };
+            Field::new(map.cells(), map.size(), map.heights().iter().map(known).collect())
+        };
+        let what = || format!("heights of surface {}", self.surface);
+        Ok(Some(draw().map_err(|error| runs::Error::model(what())(error))?))
+    }
+}
+
+/// A field as files have it: there is no gap at an undefined point.
+fn on_defined_points<'a>(name: &str, field: &'a Field, scene: &SceneFile) -> Cow<'a, [f64]> {
+    match scene.surface.given_map() {
+        Some(map) if map.undefined() > 0 && name == "gap" => {
+            let defined = |(h, g): (&f64, &f64)| if h.is_finite() { *g } else { f64::NAN };
+            map.heights().iter().zip(field.values()).map(defined).collect()
+        }
+        _ => Cow::Borrowed(field.values()),
+    }
+}
+
+fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[f64]) -> Result<()> {
+    let unit = match (scene.system, name) {
+        (crate::scenes::System::None, _) => "",
+        (crate::scenes::System::Si, "pressure") => "Pa",
+        (crate::scenes::System::Si, _) => "m",
+    };
+    let field = surface_io::DataArray { name, unit, values };
+    let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
+        .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
+    Ok(runs::files::write_whole(path, &bytes)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::{Loads, Prescribed, SceneSurface};
+    use contact_model::{HeightMap, SolveReport};
+    use std::sync::Arc;
+
+    /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
+    #[test]
+    fn fields_are_arrays_of_rows_and_columns() {
+        let heights = vec![1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0];
+        let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
+        let surface = SceneSurface::Plain(contact_model::Surface::Heights(Arc::new(map)));
+        let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
+        let mut scene = SceneFile::new(vec![Numerics::ALL[0].clone()], surface, 1.0, loads);
+        let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];
+        (scene.requested.pressure, scene.requested.gap) = (all.clone(), all);
+        let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];
+        let gap = vec![0.5, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
+        let mut fields = Fields::default();
+        let field = |values: &[f64]| Field::new([3, 2], [6.0, 1.0], values.to_vec()).ok();
+        (fields.pressure, fields.gap) = (field(&pressure), field(&gap));
+        let mut state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
+        let dir = tempfile::tempdir().unwrap();
+        let mut kept = StateResult::default();
+        let unit = ModelOnSurface { model: 0, surface: 0 };
+        std::fs::create_dir(dir.path().join(".units")).unwrap();
+        unit.write_fields(&scene, &mut state, dir.path(), &mut kept).unwrap();
+        // Three files of each field, its values for the picture, and what the report shows of it.
+        assert_eq!((kept.files.len(), state.fields.is_none()), (10, true));
+        let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
+        field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result).unwrap();
+        let files = &result.states[0].files;
+        assert_eq!((files.len(), files.iter().filter(|file| file.is_hidden()).count()), (10, 2));
+        assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
+        assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 2);
+        let scan = |name: &str| {
+            surface_io::Scan::read(&dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
+        };
+        let read = scan("pressure-bem3d-0-000.npy");
+        assert_eq!((read.metadata().rows, read.metadata().columns), (2, 3));
+        let values: Vec<f64> = (0..6).filter_map(|i| read.height(i / 3, i % 3)).collect();
+        assert_eq!(values, pressure);
+        let read = scan("gap-bem3d-0-000.npy");
+        assert_eq!((read.height(1, 1), read.height(0, 0), read.metadata().undefined), (None, Some(0.5), 1));
+        let vti = std::fs::read_to_string(dir.path().join("gap-bem3d-0-000.vti")).unwrap();
+        assert!(vti.contains("WholeExtent=\"0 3 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"2 0.5 2\""), "{vti}");
+        assert!(vti.contains("vtkGhostType"));
+        // Width and height of a PNG stand after its first chunk's name; pixels are squares of 0.5.
+        let png = std::fs::read(dir.path().join("gap-bem3d-0-000.pixels.png")).unwrap();
+        let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+        assert_eq!((side(16), side(20)), (12, 2));
+    }
+}

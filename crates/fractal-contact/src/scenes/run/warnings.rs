@@ -1,0 +1,111 @@
+//! What may be wrong with a state though it is solved as well as it was asked for, and what to do about it.
+
+use crate::scenes::plan::accuracy::within;
+use crate::scenes::plan::grid_comparison::GridErrors;
+use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::read::scene_surface::SceneSurface;
+use contact_model::{ContactState, Hardness, Surface};
+
+/// Fewer cells in contact than this are those of the grid.
+const FEW_CELLS: usize = 10;
+/// A cell that carries more than this share of the load stands alone.
+const ALONE: f64 = 0.5;
+/// The boundary of a contact that is resolved changes its area by less than this share.
+const UNRESOLVED: f64 = 0.1;
+/// Pressure over E* from which metals, of hardness unknown, are beyond elasticity.
+const YIELD: f64 = 0.1;
+
+/// Something to beware of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Warning {
+    FewCells,
+    OneCell,
+    Edge,
+    Yield,
+    Area,
+    Accuracy,
+    Stiffness,
+}
+
+impl Warning {
+    pub const ALL: [Self; 7] =
+        [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area, Self::Accuracy, Self::Stiffness];
+
+    /// What stands in the row of the state.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::FewCells => "fewer than 10 contact cells",
+            Self::OneCell => "one cell carries most of the load",
+            Self::Edge => "contact at the edge of the rectangle",
+            Self::Yield => "pressure above the hardness (E*/10 where none is given)",
+            Self::Area => "area not resolved",
+            Self::Accuracy => "accuracy not reached",
+            Self::Stiffness => "stiffness not known",
+        }
+    }
+
+    /// What to do about it.
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::FewCells => "the numbers are those of the grid: a larger load or smaller cells",
+            Self::OneCell => {
+                "is it a spike of the measurement? `missing = HEIGHT` (as in the file) takes it out; else smaller cells"
+            }
+            Self::Edge => {
+                "the edge decides too: a larger map, a smaller load, `detrend`, or `boundary = \"periodic\"`"
+            }
+            Self::Yield => {
+                "bodies yield there, and these are elastic: take area and largest pressure as bounds"
+            }
+            Self::Area => {
+                "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells"
+            }
+            Self::Stiffness => {
+                "complete contact has none; at a jump or a kink of the path it is not claimed: take the difference of neighbouring states"
+            }
+            Self::Accuracy => {
+                "the columns `_grid_error` say what was: the grid was chosen on surface 0, others may need more cells (ask for an `accuracy` of half the share)"
+            }
+        }
+    }
+
+    /// All that concern a state.
+    pub fn of(scene: &SceneFile, state: &ContactState, errors: &GridErrors) -> Vec<Self> {
+        let mut found = Vec::new();
+        let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
+        let flat = matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. }));
+        // Below a hardness that limits the pressure nothing is marked.
+        let limited = scene.effects.hardness != Hardness::Off;
+        let hardness = if limited { f64::INFINITY } else { scene.hardness.unwrap_or(YIELD * scene.modulus) };
+        let resolution = state.resolution;
+        let wanted = scene.requested.outputs.stiffness && state.report.contact_cells.is_some();
+        let holds = |warning: Self| match (warning, resolution) {
+            (Self::FewCells, _) => few,
+            (Self::Stiffness, _) => wanted && state.stiffness.is_none(),
+            (_, None) => false,
+            (Self::Accuracy, _) => scene.accuracy.is_some_and(|target| !within(scene, errors, target.share)),
+            (Self::OneCell, Some(r)) => r.largest_share > ALONE,
+            (Self::Edge, Some(r)) => r.edge_cells > 0 && !flat,
+            (Self::Yield, Some(r)) => r.largest_pressure > hardness,
+            (Self::Area, Some(r)) => {
+                state.area.zip(r.corrected_area).is_some_and(|(a, corrected)| a - corrected > UNRESOLVED * a)
+            }
+        };
+        found.extend(Self::ALL.into_iter().filter(|&warning| holds(warning)));
+        found
+    }
+
+    /// All of them as one note; `None` for none.
+    pub fn note(all: &[Self]) -> Option<String> {
+        let texts: Vec<&str> = all.iter().map(|warning| warning.as_str()).collect();
+        (!texts.is_empty()).then(|| texts.join(SEPARATOR))
+    }
+
+    /// Those that stand in a note.
+    pub fn in_note(note: &str) -> impl Iterator<Item = Self> + '_ {
+        note.split(SEPARATOR)
+            .filter_map(|text| Self::ALL.into_iter().find(|warning| warning.as_str() == text))
+    }
+}
+
+const SEPARATOR: &str = "; ";

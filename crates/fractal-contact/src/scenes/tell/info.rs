@@ -1,0 +1,194 @@
+//! What a file holds: a scene, a surface or a table of results.
+
+use crate::scenes::plan::scene_plan::Plan;
+use crate::scenes::read::entries::System;
+use crate::scenes::read::error::{Error, Result};
+use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::tell::statistics::MapStatisticsTables;
+use crate::scenes::tell::surface_report::SurfaceReport;
+use contact_model::Boundary;
+use runs::Header;
+use std::path::Path;
+use surface_io::{
+    Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, SurfaceFile, describe,
+};
+
+/// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
+/// (anything else).
+///
+/// `declared` is what the caller says about a surface's file, `preprocessing` what is done to its map before it is described.
+///
+/// # Errors
+/// As [`SceneFile::read`] and [`crate::scenes::check`] for scenes; [`Error::Run`] and [`Error::Surface`] with
+/// what is wrong with the file.
+pub fn info(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    match ending {
+        "toml" => Ok(Plan::new(&SceneFile::read(path)?)?.to_string()),
+        "csv" if explains_itself(path) => table(path),
+        _ => surface(path, declared, preprocessing),
+    }
+}
+
+fn explains_itself(path: &Path) -> bool {
+    runs::files::read(path, u64::MAX)
+        .is_ok_and(|bytes| bytes.starts_with(b"# ") && bytes.windows(10).any(|w| w == b"\n# column "))
+}
+
+fn table(path: &Path) -> Result<String> {
+    let file = runs::CsvFile::read(path)?;
+    let mut text = format!("{} rows of {} columns\n\n", file.rows.len(), file.columns.len());
+    for line in &file.comments {
+        text += &format!("{line}\n");
+    }
+    text.push('\n');
+    for name in &file.columns {
+        let values: Vec<f64> = file.numbers(name)?.into_iter().flatten().collect();
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if values.is_empty() {
+            let mut words: Vec<&str> = file.texts(name)?;
+            words.sort_unstable();
+            words.dedup();
+            words.retain(|w| !w.is_empty());
+            let some: Vec<&str> = words.iter().copied().take(6).collect();
+            let more = if words.len() > some.len() { ", ..." } else { "" };
+            text += &format!(
+                "{name:24} {}{more}\n",
+                if some.is_empty() { "empty".into() } else { some.join(", ") }
+            );
+        } else {
+            let [low, high] = [low, high].map(crate::scenes::read::human_readable::number);
+            text += &format!("{name:24} {low} to {high}, {} of {} rows\n", values.len(), file.rows.len());
+        }
+    }
+    Ok(text)
+}
+
+fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
+    let file = SurfaceFile::open(path, declared).map_err(Error::Surface)?;
+    if file.len() > 1 && declared.channel.is_none() {
+        return each(file);
+    }
+    let scan = file.scan().map_err(Error::Surface)?;
+    Ok(match scan.preprocessed(preprocessing) {
+        Ok(found) => described(&scan, &found),
+        // What stands in the way of a map is part of the answer.
+        Err(error) => format!("{}\n\nno map as it is: {error}\n", scan.metadata()),
+    })
+}
+
+/// As [`info`] of a surface, and its statistics: tables and pictures of parameters, spectra and height differences and `report.html`
+/// in a directory, the parameters as lines.
+///
+/// The map is taken as a piece of a larger surface: not periodic.
+///
+/// # Errors
+/// [`Error::Surface`] with what is wrong with the file or stands in the way of a map; [`Error::Run`] for files that cannot be written.
+pub fn info_statistics(
+    path: &Path,
+    declared: &ReadOptions,
+    preprocessing: &Preprocessing,
+    out: &Path,
+) -> Result<String> {
+    let ending = path.extension().and_then(|e| e.to_str());
+    if ending == Some("toml") || ending == Some("csv") && explains_itself(path) {
+        let reason = format!("{} is no surface: statistics are of the heights in a file", path.display());
+        return Err(Error::Argument { name: "out", reason });
+    }
+    let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan).map_err(Error::Surface)?;
+    let found = scan.preprocessed(preprocessing).map_err(Error::Surface)?;
+    let metric = scan.metadata().unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
+    let system = if metric { System::Si } else { System::None };
+    let statistics = MapStatisticsTables::new(
+        &found.map,
+        scan.metadata().profile,
+        Boundary::Free,
+        found.reliable_from,
+        system,
+    );
+    let name = path.file_name().map_or_else(|| "surface".into(), |name| name.to_string_lossy().into_owned());
+    let mut header = Header { command: format!("fractal-contact info {name}"), ..Header::default() };
+    for step in &found.steps {
+        header = header.with_note(step.clone());
+    }
+    runs::files::create_directory(out)?;
+    let mut files = statistics.write(out, &header, &name)?;
+    let report = SurfaceReport {
+        name: &name,
+        metadata: scan.metadata(),
+        steps: &found.steps,
+        map: &found.map,
+        statistics: &statistics,
+    };
+    files.push(report.write(out)?);
+    let names: Vec<String> = runs::file_names(&files);
+    let text = described(&scan, &found);
+    Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
+}
+
+/// What was understood of a file, what was done to its map, and what the map is.
+fn described(scan: &Scan, found: &Preprocessed) -> String {
+    let steps: String = found.steps.iter().map(|step| format!("then       {step}\n")).collect();
+    format!("{}\n{steps}\n{}\n", scan.metadata(), describe(&found.map))
+}
+
+/// What is known of each channel of a file of several.
+fn each(file: SurfaceFile<'_>) -> Result<String> {
+    let mut text = format!("{} channels; --channel NUMBER or NAME describes one\n", file.len());
+    for scan in file.scans() {
+        match scan {
+            Ok(scan) => text += &format!("\n{}\n", scan.metadata()),
+            // The others are told all the same.
+            Err(error) if error.problem().is_some() => text += &format!("\nnot read   {error}\n"),
+            Err(error) => return Err(Error::Surface(error)),
+        }
+    }
+    Ok(text)
+}
+
+/// All channels of a surface's file as JSON: `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "unit", "undefined", "minimum",
+/// "maximum", "rms"}]}`.
+///
+/// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is "m"; values of another or no unit
+/// stand as they are in the file. `rms` is about the mean, `undefined` a share of the points; what the file does not say and `declared` does
+/// not either is null. A channel that is not read beside others is `{"error"}`; `notes` are remarks on what the file says.
+///
+/// # Errors
+/// [`Error::Surface`] with what is wrong with the file.
+pub fn info_json(path: &Path, declared: &ReadOptions) -> Result<String> {
+    let file = SurfaceFile::open(path, declared).map_err(Error::Surface)?;
+    let mut channels = Vec::with_capacity(file.len());
+    for scan in file.scans() {
+        channels.push(match scan {
+            Ok(scan) => channel(scan.metadata()),
+            Err(error) if error.problem().is_some() => serde_json::json!({ "error": error.to_string() }),
+            Err(error) => return Err(Error::Surface(error)),
+        });
+    }
+    Ok(format!("{:#}\n", serde_json::json!({ "channels": channels })))
+}
+
+fn channel(metadata: &Metadata) -> serde_json::Value {
+    let unit = metadata.unit.as_ref().map(|unit| &unit.value);
+    let metric = unit.filter(|unit| unit.dimension() == Dimension::LENGTH);
+    let height = |value: f64| metric.map_or(value, |unit| unit.to_si(value));
+    let unit = match (metric, &metadata.no_heights) {
+        (Some(_), _) => Some("m"),
+        (None, Some(unit)) if !unit.is_empty() => Some(unit.as_str()),
+        _ => None,
+    };
+    serde_json::json!({
+        "name": metadata.name,
+        "columns": metadata.columns,
+        "rows": metadata.rows,
+        "profile": metadata.profile,
+        "size": metadata.size.map(|size| size.map(Quantity::value)),
+        "unit": unit,
+        "undefined": metadata.undefined_share(),
+        "minimum": metadata.range.map(|[low, _]| height(low)),
+        "maximum": metadata.range.map(|[_, high]| height(high)),
+        "rms": metadata.rms_height.map(height),
+        "notes": metadata.notes,
+    })
+}

@@ -1,0 +1,342 @@
+//! Statistics of a map as tables and pictures: `statistics.csv`, `spectrum.csv`, `height-difference.csv`, `scale-dependence.csv`.
+
+use crate::scenes::plan::grid_comparison::solved_map;
+use crate::scenes::read::entries::System;
+use crate::scenes::read::error::Result;
+use crate::scenes::read::human_readable::short;
+use crate::scenes::read::scene_file::SceneFile;
+use contact_model::{Boundary, HeightMap};
+use std::sync::Arc;
+use surface_statistics::{
+    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightDifference, HeightParameters,
+    HybridParameters, Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters,
+    SpectrumFit, Taper, Wavelength, texture_direction,
+};
+
+/// Bins in a decade of wavenumbers and of distances.
+const PER_DECADE: f64 = 10.0;
+/// Of the bands.
+pub(crate) const LEVEL: f64 = 0.95;
+/// The files.
+pub(crate) const FILES: [&str; 10] = [
+    "statistics.csv",
+    "spectrum.csv",
+    "height-difference.csv",
+    "scale-dependence.csv",
+    "spectrum.svg",
+    "spectrum.png",
+    "height-difference.svg",
+    "height-difference.png",
+    "slope.svg",
+    "slope.png",
+];
+
+/// One number.
+pub(crate) struct Parameter {
+    pub symbol: &'static str,
+    pub value: Option<f64>,
+    /// Ends of the 95 % interval; one of them for a bound.
+    pub ends: [Option<f64>; 2],
+    /// Power of the length in its unit; `None` for an angle.
+    pub power: Option<i32>,
+    pub meaning: &'static str,
+}
+
+/// Limits over each distance, where they are known.
+pub(crate) type Bands = Vec<Option<[f64; 2]>>;
+
+/// Slope and curvature along one axis.
+pub(crate) struct Scale {
+    pub axis: &'static str,
+    pub slope: (ScaleDependence, Bands),
+    pub curvature: (ScaleDependence, Bands),
+}
+
+/// What a map is, and why some of it is not known.
+pub(crate) struct MapStatisticsTables {
+    pub system: System,
+    /// Whether they are of a profile.
+    pub profile: bool,
+    pub parameters: Vec<Parameter>,
+    pub spectra: Vec<(&'static str, PowerSpectrum)>,
+    pub differences: Option<(HeightDifference, Bands)>,
+    pub scales: Vec<Scale>,
+    /// Shortest and longest wavelength that can be trusted.
+    pub reliable: Option<[f64; 2]>,
+    /// Reasons why a part is missing.
+    pub notes: Vec<String>,
+    /// What was done to the map for a part.
+    pub remarks: Vec<String>,
+}
+
+impl MapStatisticsTables {
+    /// Measures a map: of a periodic surface without a window, else under Hann's over its deviation from the mean. Of a `profile` what one
+    /// row says.
+    pub fn new(
+        map: &HeightMap,
+        profile: bool,
+        boundary: Boundary,
+        instrument: Option<f64>,
+        system: System,
+    ) -> Self {
+        let mut found = Self {
+            system,
+            profile,
+            parameters: Vec::new(),
+            spectra: Vec::new(),
+            differences: None,
+            scales: Vec::new(),
+            reliable: None,
+            notes: Vec::new(),
+            remarks: Vec::new(),
+        };
+        if profile {
+            found.measure_profile(map, boundary, instrument);
+            return found;
+        }
+        found.heights(map);
+        found.spectra(map, boundary);
+        found.fit(map, boundary, instrument);
+        found.distances(map, boundary);
+        found
+    }
+
+    fn distances(&mut self, map: &HeightMap, boundary: Boundary) {
+        let bands = self.known("bands over distances", DifferenceBands::new(map, boundary));
+        let limits = |of: &dyn Fn(&DifferenceBands) -> contact_model::Result<Bands>| -> Bands {
+            bands.as_ref().and_then(|bands| of(bands).ok()).unwrap_or_default()
+        };
+        let differences = DifferenceMap::new(map, boundary);
+        let radial = Bins::of_distances(map, PER_DECADE).and_then(|bins| differences.radial(&bins));
+        if let Some(found) = self.known("height differences", radial) {
+            let limits = limits(&|bands| bands.of_differences(&found, LEVEL));
+            self.differences = Some((found, limits));
+        }
+        let along = [
+            (
+                "x",
+                ScaleDependence::slope_along_x(map, boundary),
+                ScaleDependence::curvature_along_x(map, boundary),
+            ),
+            (
+                "y",
+                ScaleDependence::slope_along_y(map, boundary),
+                ScaleDependence::curvature_along_y(map, boundary),
+            ),
+        ];
+        for (i, (axis, slope, curvature)) in along.into_iter().enumerate() {
+            let slope = self.known("slope by scale", slope);
+            if let Some((slope, curvature)) = slope.zip(self.known("curvature by scale", curvature)) {
+                let of_slope = limits(&|bands| bands.of_slopes(&slope, i, LEVEL));
+                let of_curvature = limits(&|bands| bands.of_curvatures(&curvature, i, LEVEL));
+                self.scales.push(Scale {
+                    axis,
+                    slope: (slope, of_slope),
+                    curvature: (curvature, of_curvature),
+                });
+            }
+        }
+    }
+
+    /// Sq, Pq of a profile.
+    pub fn rms_height(&self) -> Option<f64> {
+        self.parameters.iter().find(|p| matches!(p.symbol, "Sq" | "Pq"))?.value
+    }
+
+    pub(super) fn known<T>(&mut self, what: &str, found: contact_model::Result<T>) -> Option<T> {
+        found.map_err(|reason| self.notes.push(format!("{what}: {reason}"))).ok()
+    }
+
+    pub(super) fn push(
+        &mut self,
+        symbol: &'static str,
+        value: Option<f64>,
+        power: i32,
+        meaning: &'static str,
+    ) {
+        self.parameters.push(Parameter { symbol, value, ends: [None; 2], power: Some(power), meaning });
+    }
+
+    fn heights(&mut self, map: &HeightMap) {
+        if let Some(h) = self.known("height parameters", HeightParameters::new(map)) {
+            for (symbol, value, power, meaning) in [
+                ("Sa", h.sa, 1, "mean absolute height"),
+                ("Sq", h.sq, 1, "rms height"),
+                ("Ssk", h.ssk, 0, "skewness of the heights"),
+                ("Sku", h.sku, 0, "kurtosis of the heights; 3 for Gaussian ones"),
+                ("Sp", h.sp, 1, "highest point above the mean"),
+                ("Sv", h.sv, 1, "lowest point below the mean"),
+                ("Sz", h.sz, 1, "Sp + Sv"),
+            ] {
+                self.push(symbol, Some(value), power, meaning);
+            }
+        }
+        if let Some(h) = self.known("hybrid parameters", HybridParameters::new(map)) {
+            self.push("Sdq", Some(h.sdq), 0, "rms gradient");
+            self.push("Sdr", Some(h.sdr), 0, "surface in excess of its projection, over the projection");
+        }
+        if let Some(s) = self.known("spatial parameters", SpatialParameters::new(map)) {
+            self.push("Sal", s.sal, 1, "shortest distance at which the autocorrelation has fallen to 0.2");
+            self.push("Str", s.str, 0, "that over the longest one: 1 for an isotropic surface");
+        }
+        if let Some(std) = self.known("texture direction", texture_direction(map)) {
+            let meaning =
+                "direction of the waves that have most of the variance, from x towards y; the lay is across";
+            self.parameters.push(Parameter {
+                symbol: "Std",
+                value: Some(std),
+                ends: [None; 2],
+                power: None,
+                meaning,
+            });
+        }
+        if let Some(f) = self.known("feature parameters", FeatureParameters::new(map)) {
+            self.push("Spd", Some(f.spd), -2, "density of hills that are higher than 5 % of Sz");
+            self.push("Spc", f.spc, -1, "mean curvature of their peaks");
+            if f.filled > 0 {
+                self.remarks.push(format!(
+                    "Spd and Spc: {} undefined points in patches of at most 16 were given the mean height of their neighbours",
+                    f.filled
+                ));
+            }
+        }
+        if let Some(d) = self.known("derivatives", Derivatives::new(map, Boundary::Free)) {
+            self.push("rms gradient", Some(d.rms_gradient), 0, "from differences of neighbouring cells");
+            self.push("rms curvature", Some(d.rms_curvature), -1, "half the Laplacian, likewise");
+        }
+        if let Some(statistics) = self.known("Nayak's parameter", surface_gen::MapStatistics::new(map)) {
+            let nayak = surface_statistics::nayak_parameter(&statistics);
+            self.push(
+                "alpha",
+                Some(nayak).filter(|a| a.is_finite()),
+                0,
+                "Nayak's parameter m0 m4/m2^2, at least 1.5: the wider the spectrum, the larger",
+            );
+        }
+    }
+
+    fn spectra(&mut self, map: &HeightMap, boundary: Boundary) {
+        let taper = if boundary == Boundary::Periodic { Taper::None } else { Taper::Hann };
+        let radial =
+            Bins::of_wavenumbers(map, PER_DECADE).and_then(|bins| PowerSpectrum::radial(map, taper, &bins));
+        let of = [
+            ("radial", radial),
+            ("x", PowerSpectrum::along_x(map, taper)),
+            ("y", PowerSpectrum::along_y(map, taper)),
+        ];
+        for (direction, spectrum) in of {
+            if let Some(spectrum) = self.known("spectrum", spectrum) {
+                self.spectra.push((direction, spectrum));
+            }
+        }
+        self.notes.dedup();
+    }
+
+    fn fit(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>) {
+        // Of the tip's distance the stencil has two.
+        let instrument = instrument.map(|distance| 2.0 * distance);
+        // Where nothing is left between both limits, the limits are known all the same.
+        let longest = map.size().x.min(map.size().y) * if boundary == Boundary::Free { 0.5 } else { 1.0 };
+        self.reliable = instrument.map(|shortest| [shortest, longest]);
+        let Some(reliable) = self.known("wavelengths", ReliableWavelengths::new(map, boundary, instrument))
+        else {
+            return;
+        };
+        self.reliable = Some([reliable.shortest, reliable.longest]);
+        self.push("shortest", Some(reliable.shortest), 1, "wavelength down to which the map can be trusted");
+        self.push("longest", Some(reliable.longest), 1, "wavelength up to which it can");
+        let Some(fit) = self
+            .known("fit of a self-affine spectrum", SpectrumFit::new(map, &reliable.fit_options(boundary)))
+        else {
+            return;
+        };
+        let of = |interval: &Interval| (Some(interval.value), [Some(interval.low), Some(interval.high)]);
+        let wavelength = |found: &Wavelength| match found {
+            Wavelength::Interval(interval) => of(interval),
+            Wavelength::AtLeast(bound) => (None, [Some(*bound), None]),
+            Wavelength::AtMost(bound) => (None, [None, Some(*bound)]),
+            _ => (None, [None; 2]),
+        };
+        for (symbol, (value, ends), power, meaning) in [
+            ("H", of(&fit.hurst), 0, "Hurst exponent of the fitted spectrum"),
+            ("roll-off", wavelength(&fit.roll_off), 1, "longest wavelength of its power law"),
+            ("cut-off", wavelength(&fit.cut_off), 1, "its shortest wavelength"),
+        ] {
+            self.parameters.push(Parameter { symbol, value, ends, power: Some(power), meaning });
+        }
+        self.push(
+            "goodness",
+            Some(fit.goodness),
+            0,
+            "probability of a worse fit of a Gaussian surface; below 0.01 the intervals say nothing",
+        );
+    }
+
+    pub fn unit(&self, power: i32) -> &'static str {
+        match (self.system, power) {
+            (_, 0) => "1",
+            (System::None, _) => "scene",
+            (_, 1) => "m",
+            (_, -1) => "1/m",
+            (_, -2) => "1/m^2",
+            (_, 3) => "m^3",
+            _ => "m^4",
+        }
+    }
+
+    /// Of the first surface of a scene, as it is solved.
+    ///
+    /// # Errors
+    /// A surface that cannot be drawn.
+    pub fn of_scene(scene: &SceneFile) -> Result<Self> {
+        let of_file = scene.surface.given_map().map(Arc::clone);
+        let with_cells = scene.models.iter().find(|model| model.boundary_elements().is_some());
+        let drawn = with_cells.map(|model| solved_map(scene, model, scene.seed(0))).transpose();
+        let Some(map) = drawn.map_err(runs::Error::model("statistics"))?.or(of_file) else {
+            let refused = contact_model::Error::unsupported(
+                "statistics",
+                "a surface that no model here solves on cells",
+            );
+            return Err(runs::Error::model("statistics")(refused).into());
+        };
+        let profile = scene.surface.is_profile();
+        Ok(Self::new(&map, profile, scene.effects.boundary, scene.reliable_from, scene.system))
+    }
+
+    /// The parameters as texts: symbol, value, interval, meaning.
+    pub fn rows(&self) -> impl Iterator<Item = [String; 4]> {
+        self.parameters.iter().map(|p| {
+            let unit = p.power.map_or(" degrees".to_owned(), |power| match self.unit(power) {
+                "1" | "scene" => String::new(),
+                unit => format!(" {unit}"),
+            });
+            let known = |v: f64| format!("{}{unit}", short(v));
+            let (value, interval) = match (p.value, p.ends) {
+                (Some(v), [Some(low), Some(high)]) => {
+                    (known(v), format!("{} to {}", short(low), short(high)))
+                }
+                (Some(v), _) => (known(v), String::new()),
+                (None, [Some(low), None]) => (format!("at least {}", known(low)), String::new()),
+                (None, [None, Some(high)]) => (format!("at most {}", known(high)), String::new()),
+                (None, _) => ("not found".to_owned(), String::new()),
+            };
+            [p.symbol.to_owned(), value, interval, p.meaning.to_owned()]
+        })
+    }
+
+    /// The parameters as aligned lines, what is missing below.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for [symbol, value, interval, meaning] in self.rows() {
+            let value = if interval.is_empty() { value } else { format!("{value} ({interval})") };
+            text += &format!("{symbol:14} {value:36} {meaning}\n");
+        }
+        for note in &self.notes {
+            text += &format!("not known      {note}\n");
+        }
+        for remark in &self.remarks {
+            text += &format!("note           {remark}\n");
+        }
+        text
+    }
+}

@@ -1,0 +1,281 @@
+//! Files of the statistics of a map: tables as CSV, pictures of spectrum, height differences and slopes.
+
+use crate::scenes::read::entries::System;
+use crate::scenes::read::error::Result;
+use crate::scenes::tell::statistics::{Bands, FILES, LEVEL, MapStatisticsTables};
+use analysis::{Column, Table, Value};
+use plots::{Chart, Curve};
+use runs::{Header, write_csv};
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+/// The ends of a band in a table.
+fn limits(bands: &[Option<[f64; 2]>], index: usize) -> [Value; 2] {
+    let limits = bands.get(index).copied().flatten();
+    [limits.map(|[low, _]| low).into(), limits.map(|[_, high]| high).into()]
+}
+
+/// A band in a picture.
+fn shaded(x: &[f64], bands: &[Option<[f64; 2]>]) -> Vec<(f64, f64, f64)> {
+    x.iter().zip(bands).filter_map(|(&x, band)| band.map(|[low, high]| (x, low, high))).collect()
+}
+
+fn points(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
+    x.iter().copied().zip(y.iter().copied()).collect()
+}
+
+impl MapStatisticsTables {
+    /// Writes the tables, and pictures of spectra and height differences.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub(crate) fn write(&self, out: &Path, header: &Header, name: &str) -> Result<Vec<PathBuf>> {
+        let tables =
+            [self.parameter_table()?, self.spectrum_table()?, self.difference_table()?, self.scale_table()?];
+        let mut files = Vec::new();
+        for (file, table) in FILES.iter().zip(tables) {
+            let path = out.join(file);
+            write_csv(&path, &table, header)?;
+            files.push(path);
+        }
+        for (file, chart) in self.charts(name) {
+            files.extend(chart.save(out, file)?);
+        }
+        Ok(files)
+    }
+
+    fn parameter_table(&self) -> Result<Table> {
+        let column = |name, unit, meaning| Column { name, unit, meaning };
+        let columns = vec![
+            column("quantity", "-", "symbol"),
+            column("value", "of its row", "empty where there is only a bound, or nothing"),
+            column("low", "of its row", "lower end of the 95 % interval, where there is one"),
+            column("high", "of its row", "its upper end"),
+            column("unit", "-", "of the row"),
+            column("meaning", "-", "what it is"),
+        ];
+        let mut table = Table::new(
+            if self.profile { "Statistics of a profile" } else { "Statistics of a surface" },
+            columns,
+        );
+        for p in &self.parameters {
+            let unit = p.power.map_or("degrees", |power| self.unit(power));
+            let row = vec![
+                p.symbol.into(),
+                p.value.into(),
+                p.ends[0].into(),
+                p.ends[1].into(),
+                unit.into(),
+                p.meaning.into(),
+            ];
+            table.push(row).map_err(runs::Error::model("statistics"))?;
+        }
+        Ok(table)
+    }
+
+    fn spectrum_table(&self) -> Result<Table> {
+        let column = |name, unit, meaning| Column { name, unit, meaning };
+        let columns = vec![
+            column(
+                "direction",
+                "-",
+                "radial: averaged over rings, in length^4; x and y: of profiles, averaged, in length^3",
+            ),
+            column("wavenumber", self.unit(-1), "q = 2 pi/wavelength"),
+            column(
+                "density",
+                "of its row",
+                "two-sided: its integral over all q is the variance of the heights",
+            ),
+            column("low", "of its row", "lower end of the 95 % band of Gaussian heights"),
+            column("high", "of its row", "its upper end"),
+            column("degrees_of_freedom", "1", "of the mean"),
+        ];
+        let mut table = Table::new("Power spectral densities", columns);
+        for (direction, s) in &self.spectra {
+            let bands = s.band(LEVEL).unwrap_or_default();
+            for (i, (&q, &density)) in s.wavenumber.iter().zip(&s.density).enumerate() {
+                let [low, high] = bands
+                    .get(i)
+                    .map_or([None; 2], |band| band.map(Some))
+                    .map(|v| v.filter(|v| v.is_finite()));
+                let freedom = s.degrees_of_freedom.get(i).copied();
+                let row: Vec<Value> = vec![
+                    (*direction).into(),
+                    q.into(),
+                    density.into(),
+                    low.into(),
+                    high.into(),
+                    freedom.into(),
+                ];
+                table.push(row).map_err(runs::Error::model("a spectrum"))?;
+            }
+        }
+        Ok(table)
+    }
+
+    fn difference_table(&self) -> Result<Table> {
+        let column = |name, unit, meaning| Column { name, unit, meaning };
+        let square = if self.system == System::Si { "m^2" } else { "scene" };
+        let columns = vec![
+            column("distance", self.unit(1), "between two points, in any direction"),
+            column("half_square", square, "<[h(x + r) - h(x)]^2>/2: the variance less the autocorrelation"),
+            column(
+                "low",
+                square,
+                "lower end of its 95 % band of Gaussian heights; empty beyond half the side of a free map",
+            ),
+            column("high", square, "its upper end"),
+            column("autocorrelation", "1", "1 - half_square/Sq^2"),
+            column("slope", "1", "rms slope over that distance: sqrt(2 half_square)/distance"),
+            column("pairs", "1", "of points"),
+        ];
+        let mut table = Table::new("Height differences", columns);
+        let variance = self.rms_height().map(|rms| rms * rms).filter(|variance| *variance > 0.0);
+        if let Some((d, bands)) = &self.differences {
+            let values = d.distance.iter().zip(&d.half_square).zip(d.slope()).zip(&d.pairs);
+            for (i, (((&r, &a), slope), &pairs)) in values.enumerate() {
+                let [low, high] = limits(bands, i);
+                let autocorrelation = variance.map(|variance| 1.0 - a / variance);
+                let row =
+                    vec![r.into(), a.into(), low, high, autocorrelation.into(), slope.into(), pairs.into()];
+                table.push(row).map_err(runs::Error::model("differences"))?;
+            }
+        }
+        Ok(table)
+    }
+
+    fn scale_table(&self) -> Result<Table> {
+        let column = |name, unit, meaning| Column { name, unit, meaning };
+        let curvature = self.unit(-1);
+        let columns = vec![
+            column("axis", "-", "along which differences are taken"),
+            column("distance", self.unit(1), "over which they are taken"),
+            column("rms_slope", "1", "of first differences over that distance"),
+            column(
+                "slope_low",
+                "1",
+                "lower end of its 95 % band of Gaussian heights; empty beyond half the side of a free map",
+            ),
+            column("slope_high", "1", "its upper end"),
+            column(
+                "rms_curvature",
+                curvature,
+                "of second differences over it; empty where the map is too short",
+            ),
+            column("curvature_low", curvature, "lower end of its 95 % band"),
+            column("curvature_high", curvature, "its upper end"),
+        ];
+        let mut table = Table::new("Slope and curvature by scale", columns);
+        for of in &self.scales {
+            let ((slope, slope_bands), (curvature, curvature_bands)) = (&of.slope, &of.curvature);
+            for (i, (&distance, &rms)) in slope.distance.iter().zip(&slope.rms).enumerate() {
+                let [low, high] = limits(slope_bands, i);
+                let at = curvature.distance.iter().position(|d| (d - distance).abs() <= 1e-9 * distance);
+                let [curved_low, curved_high] = limits(curvature_bands, at.unwrap_or(usize::MAX));
+                let curved: Value = at.and_then(|at| curvature.rms.get(at)).copied().into();
+                let row = vec![
+                    of.axis.into(),
+                    distance.into(),
+                    rms.into(),
+                    low,
+                    high,
+                    curved,
+                    curved_low,
+                    curved_high,
+                ];
+                table.push(row).map_err(runs::Error::model("scales"))?;
+            }
+        }
+        Ok(table)
+    }
+
+    /// The pictures, by the names of their files.
+    pub(crate) fn charts(&self, name: &str) -> Vec<(&'static str, Chart)> {
+        let charts = [
+            ("spectrum", self.spectrum_chart(name)),
+            ("height-difference", self.difference_chart(name)),
+            ("slope", self.slope_chart(name)),
+        ];
+        charts.into_iter().filter_map(|(file, chart)| Some((file, chart?))).collect()
+    }
+
+    /// A unit behind a symbol.
+    fn si(&self, unit: &str) -> String {
+        if self.system == System::Si { format!(" ($\\rm{{{unit}}}$)") } else { String::new() }
+    }
+
+    fn spectrum_chart(&self, name: &str) -> Option<Chart> {
+        let shown = if self.profile { "x" } else { "radial" };
+        let (_, s) = self.spectra.iter().find(|(direction, _)| *direction == shown)?;
+        let (averaged, symbol, unit) = if self.profile {
+            ("of the profile", "$C_{1D}$", "m^3")
+        } else {
+            ("averaged over rings", "$C_{2D}$", "m^4")
+        };
+        let bands = s.band(LEVEL).unwrap_or_default();
+        let band = s.wavenumber.iter().zip(bands).map(|(&q, [low, high])| (q, low, high)).collect();
+        let [shortest, longest] = self.reliable.unwrap_or([0.0, f64::INFINITY]);
+        let trusted = |q: f64| (shortest..=longest).contains(&(TAU / q));
+        let (sure, unsure): (Vec<_>, Vec<_>) =
+            points(&s.wavenumber, &s.density).into_iter().partition(|&(q, _)| trusted(q));
+        let unsure_label = "waves not to be trusted";
+        let label = if self.profile { "profile" } else { "map" };
+        let mut curves = vec![Curve { label: label.into(), points: sure, band }];
+        if curves[0].points.is_empty() {
+            curves[0].label = unsure_label.into();
+            curves[0].points = unsure;
+        } else if !unsure.is_empty() {
+            curves.push(Curve { label: unsure_label.into(), points: unsure, band: Vec::new() });
+        }
+        Some(Chart {
+            title: "Power spectral density".into(),
+            subtitle: format!("{name}: {averaged}, two-sided; shaded: 95 % of Gaussian heights"),
+            x_label: format!("wavenumber $q${}", self.si("1/m")),
+            y_label: format!("{symbol}{}", self.si(unit)),
+            curves,
+            logarithmic: true,
+        })
+    }
+
+    fn difference_chart(&self, name: &str) -> Option<Chart> {
+        let (d, bands) = self.differences.as_ref()?;
+        Some(Chart {
+            title: "Height differences".into(),
+            subtitle: if self.profile {
+                format!("{name}: half the mean square along the profile")
+            } else {
+                format!("{name}: half the mean square over all directions; shaded: 95 % of Gaussian heights")
+            },
+            x_label: format!("distance $r${}", self.si("m")),
+            y_label: format!("$A${}", self.si("m^2")),
+            curves: vec![Curve {
+                label: if self.profile { "profile".into() } else { "map".into() },
+                points: points(&d.distance, &d.half_square),
+                band: shaded(&d.distance, bands),
+            }],
+            logarithmic: true,
+        })
+    }
+
+    fn slope_chart(&self, name: &str) -> Option<Chart> {
+        let curve = |axis: &str, (slope, bands): &(surface_statistics::ScaleDependence, Bands)| Curve {
+            label: format!("along {axis}"),
+            points: points(&slope.distance, &slope.rms),
+            band: shaded(&slope.distance, bands),
+        };
+        let curves: Vec<Curve> = self.scales.iter().map(|of| curve(of.axis, &of.slope)).collect();
+        (!curves.is_empty()).then(|| Chart {
+            title: "Slope by scale".into(),
+            subtitle: if self.profile {
+                format!("{name}: rms of differences over a distance")
+            } else {
+                format!("{name}: rms of differences over a distance; shaded: 95 % of Gaussian heights")
+            },
+            x_label: format!("distance $r${}", self.si("m")),
+            y_label: "rms slope".into(),
+            curves,
+            logarithmic: true,
+        })
+    }
+}
