@@ -6,7 +6,7 @@ use analytic::maugis_dugdale::MaugisSphere;
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Bem3dPath};
 use contact_model::{
-    Adhesion, AdhesionLaw, ContactModel, ContactState, History, HistoryModel, Load, Scene, Step, Surface,
+    Adhesion, AdhesionLaw, ContactModel, ContactState, Load, PreparedContact, Scene, Step, Surface,
 };
 use mdr1d::Mdr1d;
 use std::f64::consts::PI;
@@ -127,7 +127,7 @@ fn adhesion_draws_in_and_holds_more_the_stronger_it_is() {
 /// Dugdale's law on a sphere with R = E* = 1, on cells.
 struct OnCells {
     exact: MaugisSphere,
-    path: Box<dyn History>,
+    path: Box<dyn PreparedContact>,
     /// Maugis's unit of radii, `(3 pi w R^2/(4 E*))^(1/3)`; its square is that of approaches.
     unit: f64,
     /// pi w R.
@@ -149,14 +149,14 @@ impl OnCells {
         scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale };
         (scene.outputs.area, scene.outputs.stiffness) = (true, false);
         let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
-        let path = HistoryModel::prepare(&Bem3dPath(model), &scene, 0).unwrap();
+        let path = ContactModel::prepare(&Bem3dPath(model), &scene, 0).unwrap();
         Self { exact, path, unit, force: PI * work, cell: 2.0 * half / cells as f64 }
     }
 
     /// Force over pi w R and contact radius in units at an approach in units, the next one of a path.
     fn at(&mut self, approach: f64) -> (f64, f64) {
         let load = Load::Approach(approach * self.unit * self.unit);
-        let state = self.path.advance(Step::normal(0.0, load)).unwrap().normal;
+        let state = self.path.advance(Step::normal(0.0, load)).unwrap();
         (state.force / self.force, (state.area.unwrap() / PI).sqrt() / self.unit)
     }
 

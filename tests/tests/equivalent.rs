@@ -4,8 +4,8 @@ use analytic::{CattaneoMindlin, Hertz, PowerLaw};
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
 use contact_model::{
-    Body, ContactModel, Effects, Friction, History, HistoryModel, HistoryState, Load, Outputs, Pair,
-    Relaxing, Result, Rheology, Scene, Step, Surface, Tangential,
+    Body, ContactModel, ContactState, Effects, Friction, Load, Outputs, Pair, PreparedContact, Relaxing,
+    Result, Rheology, Scene, Step, Surface, Tangential,
 };
 use mdr1d::{Equivalent, Viscoelastic};
 use tests::{order, rough};
@@ -44,7 +44,7 @@ fn fractal() -> Surface {
 }
 
 /// Pressed to d = 0.04 (a = 0.2) and sheared by shares of mu F; both models.
-fn sheared(model: &dyn HistoryModel) -> Vec<HistoryState> {
+fn sheared(model: &dyn ContactModel) -> Vec<ContactState> {
     let force = 4.0 / 3.0 * 4.0 * 0.008;
     let mut history = model.prepare(&sliding(sphere()), 0).unwrap();
     let path = [0.0, 0.25, 0.5, 0.9, -0.4, 0.6].map(|share| Step {
@@ -56,7 +56,7 @@ fn sheared(model: &dyn HistoryModel) -> Vec<HistoryState> {
 }
 
 /// Root mean square relative error of the displacement and of the dissipated energy against Cattaneo, Mindlin and Deresiewicz.
-fn errors(model: &dyn HistoryModel) -> [f64; 2] {
+fn errors(model: &dyn ContactModel) -> [f64; 2] {
     let exact = sheared(&CattaneoMindlin);
     let found = sheared(model);
     let mut squares = [0.0; 2];
@@ -115,7 +115,7 @@ fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, 
         let step = Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::Displacement(u) };
         let state = history.advance(step).unwrap();
         // The normal part is the model's own, to its tolerance: a warm start may differ.
-        assert_relative_eq!(state.normal.force, top.force, max_relative = 1e-6);
+        assert_relative_eq!(state.force, top.force, max_relative = 1e-6);
         let tangential = state.tangential.unwrap();
         let below = direct.solve(Load::Approach((1.0 - share) * d)).unwrap();
         let force = (tangential.force - MU * (top.force - below.force)) / (MU * top.force);
@@ -147,7 +147,12 @@ fn rough_surfaces_slip_as_a_difference_of_normal_contacts() {
 }
 
 /// A cycle of the tangential displacement.
-fn cycle(history: &mut dyn History, normal: Load, amplitude: f64, segments: i32) -> Result<(Vec<f64>, f64)> {
+fn cycle(
+    history: &mut dyn PreparedContact,
+    normal: Load,
+    amplitude: f64,
+    segments: i32,
+) -> Result<(Vec<f64>, f64)> {
     let mut forces = Vec::new();
     let (mut work, mut last) = (0.0, (0.0, 0.0));
     let mut lost = 0.0;
@@ -211,7 +216,7 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
         let state = history.advance(Step::normal(time, Load::Approach(d))).unwrap();
         // F(t) = E*(t)/E* F.
         let modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
-        assert_relative_eq!(state.normal.force, modulus * own.force, max_relative = 1e-9);
+        assert_relative_eq!(state.force, modulus * own.force, max_relative = 1e-9);
     }
     // Under a force: glassy at once, relaxed in the end; both are elastic states of the model.
     history.restart();
@@ -221,7 +226,7 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
         let there = direct.solve(Load::Force(share * force)).unwrap();
         let scale = history.normalisation().height.unwrap();
         assert_relative_eq!(
-            state.normal.approach.unwrap(),
+            state.approach.unwrap(),
             there.approach.unwrap(),
             max_relative = 1e-5,
             epsilon = 1e-5 * scale
@@ -238,7 +243,7 @@ fn a_table_of_hertz_relaxes_as_the_body() {
     let error = |per_decade: u32| {
         let model = Equivalent { per_decade, ..Equivalent::new(Hertz) };
         let found = model.prepare(&scene, 0).unwrap().follow(&path).unwrap();
-        let errors = found.iter().zip(&exact).map(|(a, b)| (a.normal.force / b.normal.force - 1.0).abs());
+        let errors = found.iter().zip(&exact).map(|(a, b)| (a.force / b.force - 1.0).abs());
         errors.fold(0.0, f64::max)
     };
     let pairs = [4, 8, 16].map(|n| (n as usize, error(n)));
@@ -254,7 +259,7 @@ fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
     let shear = pair().shear_modulus().unwrap() / pair().modulus().unwrap();
     // k_x/k_z = (2 - 2 nu)/(2 - nu) = 2/3, until mu F.
     assert_relative_eq!(shear, 2.0 / 3.0, max_relative = 1e-14);
-    let reach = MU * 1e-3 / (shear * state.normal.stiffness.unwrap());
+    let reach = MU * 1e-3 / (shear * state.stiffness.unwrap());
     for (share, force) in [(0.5, 0.5), (0.99, 0.99), (1.5, 1.0)] {
         history.restart();
         history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
@@ -285,9 +290,8 @@ fn history_in_time_and_in_load_give_the_same_rough_contact() {
         let mut last = 0.0;
         for i in 0..=segments {
             let time = 4.0 * f64::from(i) / f64::from(segments);
-            let d =
-                by_force.advance(Step::normal(time, Load::Force(force))).unwrap().normal.approach.unwrap();
-            last = by_approach.advance(Step::normal(time, Load::Approach(d))).unwrap().normal.force;
+            let d = by_force.advance(Step::normal(time, Load::Force(force))).unwrap().approach.unwrap();
+            last = by_approach.advance(Step::normal(time, Load::Approach(d))).unwrap().force;
         }
         (last / force - 1.0).abs()
     };
@@ -331,7 +335,7 @@ fn hard_surfaces_have_profiles() {
             let mut last = 0.0;
             for (time, share) in [(0.0, 1.0), (1.0, 1.0), (10.0, 2.0), (1e3, 2.0)] {
                 let state = creeps.advance(Step::normal(time, Load::Force(share * force))).unwrap();
-                let d = state.normal.approach.unwrap();
+                let d = state.approach.unwrap();
                 assert!(d >= last, "{which} {force} {time}");
                 last = d;
             }

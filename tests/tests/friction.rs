@@ -3,7 +3,7 @@
 use analytic::CattaneoMindlin;
 use approx::assert_relative_eq;
 use contact_model::{
-    Body, Friction, History, HistoryModel, HistoryState, Load, Pair, Scene, Step, Surface, Tangential,
+    Body, ContactModel, ContactState, Friction, Load, Pair, PreparedContact, Scene, Step, Surface, Tangential,
 };
 use mdr1d::PartialSlip;
 
@@ -21,10 +21,10 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
     ] {
         let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair).unwrap();
         scene.effects.friction = Friction::Coulomb { coefficient: 0.35 };
-        let models: [&dyn HistoryModel; 2] = [&CattaneoMindlin, &PartialSlip];
+        let models: [&dyn ContactModel; 2] = [&CattaneoMindlin, &PartialSlip];
         let [mut closed, mut springs] = models.map(|model| model.prepare(&scene, 0).unwrap());
         let normal = Load::Approach(0.01);
-        let limit = 0.35 * closed.advance(Step::normal(0.0, normal)).unwrap().normal.force;
+        let limit = 0.35 * closed.advance(Step::normal(0.0, normal)).unwrap().force;
         springs.advance(Step::normal(0.0, normal)).unwrap();
         // Turns inside turns, loops that close, gross slip and back.
         let shares = [0.5, 0.8, -0.2, 0.3, -0.1, 0.9, -0.9, 0.0, 0.95, -1.0, 0.4, 1.0, 0.0];
@@ -62,9 +62,9 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
 }
 
 /// A sphere, pressed and sheared; both models with a coefficient.
-fn models(coefficient: f64) -> [Box<dyn History>; 2] {
+fn models(coefficient: f64) -> [Box<dyn PreparedContact>; 2] {
     let scene = &scene(coefficient);
-    [&CattaneoMindlin as &dyn HistoryModel, &PartialSlip].map(|model| model.prepare(scene, 0).unwrap())
+    [&CattaneoMindlin as &dyn ContactModel, &PartialSlip].map(|model| model.prepare(scene, 0).unwrap())
 }
 
 fn scene(coefficient: f64) -> Scene {
@@ -79,7 +79,7 @@ fn scene(coefficient: f64) -> Scene {
 const SHEAR: f64 = 1.4 / 1.7;
 const D: f64 = 0.01;
 
-fn shear(history: &mut dyn History, tangential: Tangential) -> HistoryState {
+fn shear(history: &mut dyn PreparedContact, tangential: Tangential) -> ContactState {
     history.advance(Step { time: 0.0, normal: Load::Approach(D), tangential }).unwrap()
 }
 
@@ -92,7 +92,7 @@ fn without_slip_it_is_mindlins_stiffness() {
             let normal = shear(&mut *history, Tangential::Force(0.0));
             let state = shear(&mut *history, Tangential::Displacement(u));
             let tangential = state.tangential.unwrap();
-            let sticking = SHEAR * normal.normal.stiffness.unwrap() * u;
+            let sticking = SHEAR * normal.stiffness.unwrap() * u;
             assert!(tangential.dissipated >= 0.0 && tangential.dissipated <= sticking * u / coefficient);
             assert_relative_eq!(
                 tangential.stick_radius.unwrap(),
@@ -117,7 +117,7 @@ fn little_friction_is_gross_slip_and_none_is_none() {
     let u = 1e-3;
     for coefficient in [1e-3, 1e-6] {
         for mut history in models(coefficient) {
-            let force = shear(&mut *history, Tangential::Force(0.0)).normal.force;
+            let force = shear(&mut *history, Tangential::Force(0.0)).force;
             let tangential = shear(&mut *history, Tangential::Displacement(u)).tangential.unwrap();
             assert_relative_eq!(tangential.force, coefficient * force, max_relative = EXACT);
             assert!(tangential.stick_radius.unwrap() <= 0.0);
@@ -138,7 +138,7 @@ fn little_friction_is_gross_slip_and_none_is_none() {
 fn work_along_any_path_is_stored_or_lost() {
     // What friction has lost never falls and never exceeds the work done; after a closed loop of u at T = T the work is the loss.
     for mut history in models(0.4) {
-        let force = shear(&mut *history, Tangential::Force(0.0)).normal.force;
+        let force = shear(&mut *history, Tangential::Force(0.0)).force;
         let reach = 0.4 * D / SHEAR;
         let (mut work, mut lost, mut last) = (0.0, 0.0, [0.0, 0.0]);
         let segments = 200;

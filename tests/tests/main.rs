@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 
+mod abilities;
 mod adhesion;
 mod committed;
+mod documents;
 mod ensembles;
 mod equivalent;
 mod exact_bodies;

@@ -10,8 +10,8 @@
 use bem3d::{Bem3d, Bem3dPath};
 use contact_model::{
     Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Error, Friction,
-    Hardness, HeightMap, HistoryModel, HistoryState, Load, Pair, PronySeries, Relaxing, Rheology, Scene,
-    Status, Step, Surface, Tangential,
+    Hardness, HeightMap, Load, Pair, PronySeries, Relaxing, Rheology, Scene, Status, Step, Surface,
+    Tangential,
 };
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -276,7 +276,7 @@ fn elastic(seed: u64) -> Result<Faults, Error> {
 }
 
 /// Walks a path from nothing; the state at its end.
-fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Result<HistoryState, Error> {
+fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Result<ContactState, Error> {
     let mut history = Bem3dPath(model).prepare(scene, 0)?;
     let mut last = None;
     for (i, &load) in loads.iter().enumerate() {
@@ -311,7 +311,7 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     }
     let loads = |forces: &[f64]| forces.iter().map(|&f| Load::Force(f)).collect::<Vec<_>>();
     let tight = model(1e-9);
-    let state = walked(tight, &scene, &loads(&forces))?.normal;
+    let state = walked(tight, &scene, &loads(&forces))?;
     let depth = state.fields.as_ref().unwrap().plastic_depth.clone().unwrap().into_values();
     fields(&scene, &state, Some(&depth), &mut faults);
     let (plastic, cell) = (state.plastic.unwrap(), map_of(&scene).dx() * map_of(&scene).dy());
@@ -351,7 +351,7 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     for step in [1e-5, 1e-4, 3e-4] {
         let mut further = forces.clone();
         further.push(force * (1.0 + if grows { step } else { -step }));
-        let other = walked(tight, &scene, &loads(&further))?.normal;
+        let other = walked(tight, &scene, &loads(&further))?;
         quotients.push((other.force - state.force) / (plane(&other) - plane(&state)));
     }
     // Cells begin to flow or to touch within the steps: then the smallest decides.
@@ -382,11 +382,11 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     let most = most.min(0.7 * capacity);
     let mut history = Bem3dPath(model(1e-8)).prepare(&scene, 0)?;
     // First touch of the virgin surface, and that of the indented one, have no force.
-    let mut last = history.advance(Step::normal(0.0, Load::Force(0.0)))?.normal;
+    let mut last = history.advance(Step::normal(0.0, Load::Force(0.0)))?;
     let (mut work, mut state) = (0.0, last.clone());
     for i in 1..=2 * STEPS {
         let share = 1.0 - (i as f64 / STEPS as f64 - 1.0).abs();
-        state = history.advance(Step::normal(i as f64, Load::Force(most * share * share)))?.normal;
+        state = history.advance(Step::normal(i as f64, Load::Force(most * share * share)))?;
         work += 0.5 * (state.force + last.force) * (plane(&state) - plane(&last));
         last = state.clone();
     }
@@ -438,7 +438,7 @@ fn exponential(seed: u64) -> Result<Faults, Error> {
     }
     let loads = |planes: &[f64]| planes.iter().map(|&p| load_at(&scene, p)).collect::<Vec<_>>();
     let mut faults = Vec::new();
-    let state = walked(model(TOLERANCE), &scene, &loads(&planes))?.normal;
+    let state = walked(model(TOLERANCE), &scene, &loads(&planes))?;
     fields(&scene, &state, None, &mut faults);
     let last = *planes.last().unwrap();
     check(&mut faults, "prescribed plane", plane(&state), last, ROUNDING);
@@ -447,7 +447,7 @@ fn exponential(seed: u64) -> Result<Faults, Error> {
     for change in [-1e-6, 1e-6] {
         let mut further = planes.clone();
         further.push(last + change);
-        let other = walked(model(TOLERANCE), &scene, &loads(&further))?.normal;
+        let other = walked(model(TOLERANCE), &scene, &loads(&further))?;
         quotients.push((other.force - state.force) / (plane(&other) - plane(&state)));
     }
     let error = state.report.certificate.stiffness_error.unwrap();
@@ -469,7 +469,7 @@ fn exponential(seed: u64) -> Result<Faults, Error> {
         check(&mut faults, "stiffness of the held area", found, expected, 1e-6 * expected);
     }
     // The force of a loose solve with its error.
-    let loose = walked(model(1e-4), &scene, &loads(&planes))?.normal;
+    let loose = walked(model(1e-4), &scene, &loads(&planes))?;
     if let Some(error) = loose.report.certificate.force_error {
         let own = 1e-6 * k.abs() * 1e-2;
         check(&mut faults, "force at a plane", loose.force, state.force, error * loose.force.abs() + own);
@@ -490,7 +490,7 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
     }
     let loads = |planes: &[f64]| planes.iter().map(|&p| load_at(&scene, p)).collect::<Vec<_>>();
     let mut faults = Vec::new();
-    let state = walked(model(1e-8), &scene, &loads(&planes))?.normal;
+    let state = walked(model(1e-8), &scene, &loads(&planes))?;
     fields(&scene, &state, None, &mut faults);
     let last = *planes.last().unwrap();
     check(&mut faults, "prescribed plane", plane(&state), last, ROUNDING);
@@ -532,11 +532,11 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
         let Ok(next) = history.advance(Step::normal(1e3, load_at(&scene, last + way))) else {
             return Ok((faults, None));
         };
-        let moved = (next.normal.area.unwrap() - area).abs() / (0.12 * state.area.unwrap());
-        area = next.normal.area.unwrap();
+        let moved = (next.area.unwrap() - area).abs() / (0.12 * state.area.unwrap());
+        area = next.area.unwrap();
         advanced += moved;
         step *= if moved > 0.0 { (0.08 / moved).clamp(0.5, 2.0) } else { 2.0 };
-        points.push((way, next.normal.force - state.force));
+        points.push((way, next.force - state.force));
     }
     if points.len() < 6 {
         return Ok((faults, None));
@@ -592,13 +592,13 @@ fn friction(seed: u64) -> Result<Faults, Error> {
     let coefficient = draw.between(0.1, 0.8);
     scene.effects.friction = Friction::Coulomb { coefficient };
     let normal = Load::Approach(draw.between(1e-3, 2e-2));
-    let models: [&dyn HistoryModel; 2] = [&analytic::CattaneoMindlin, &mdr1d::PartialSlip];
+    let models: [&dyn ContactModel; 2] = [&analytic::CattaneoMindlin, &mdr1d::PartialSlip];
     let mut faults = Vec::new();
     for model in models {
         let mut history = model.prepare(&scene, 0)?;
-        let force = history.advance(Step::normal(0.0, normal))?.normal.force;
+        let force = history.advance(Step::normal(0.0, normal))?.force;
         let share = draw.between(0.3, 0.95);
-        let loop_work = |history: &mut dyn contact_model::History| -> Result<(f64, f64), Error> {
+        let loop_work = |history: &mut dyn contact_model::PreparedContact| -> Result<(f64, f64), Error> {
             let mut last: Option<contact_model::TangentialState> = None;
             let (mut work, mut begin, mut end) = (0.0, 0.0, 0.0);
             for i in 0..=STEPS {
@@ -634,7 +634,7 @@ fn rheology(seed: u64) -> Result<Faults, Error> {
     let mut scene = Scene::new(Surface::Sphere { radius, size: 2.0.into() }, modulus);
     scene.outputs = contact_model::Outputs { area: true, ..Default::default() };
     scene.effects.rheology = Rheology::Prony(PronySeries::new(&arms)?);
-    let mut history = HistoryModel::prepare(&mdr1d::Viscoelastic, &scene, 0)?;
+    let mut history = ContactModel::prepare(&mdr1d::Viscoelastic, &scene, 0)?;
     let elastic = |d: f64| 4.0 / 3.0 * modulus * radius.sqrt() * d.powf(1.5);
     let mut faults = Vec::new();
     let (mut time, mut d) = (0.0, 0.0);
@@ -653,10 +653,10 @@ fn rheology(seed: u64) -> Result<Faults, Error> {
         (time, d) = (time + lasts, d + grows);
         let state = history.advance(Step::normal(time, Load::Approach(d)))?;
         let expected = elastic(d) + held.iter().sum::<f64>();
-        check(&mut faults, "force", state.normal.force, expected, 1e-5 * expected);
+        check(&mut faults, "force", state.force, expected, 1e-5 * expected);
         let a = state.contact_radius.unwrap();
         check(&mut faults, "contact radius", a, (radius * d).sqrt(), ROUNDING * a);
-        check(&mut faults, "area", state.normal.area.unwrap(), PI * a * a, ROUNDING * a * a);
+        check(&mut faults, "area", state.area.unwrap(), PI * a * a, ROUNDING * a * a);
     }
     Ok(faults)
 }

@@ -6,7 +6,7 @@ use analytic::{
 use bem3d::Bem3d;
 use contact_model::{
     Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, Effects, Error, Friction, Hardness,
-    HistoryModel, Line, Load, Outputs, Pair, Rheology, Scene, Step, Surface,
+    Line, Load, Outputs, Pair, Rheology, Scene, Step, Surface,
 };
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 use std::sync::Arc;
@@ -186,7 +186,7 @@ fn histories() {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 0.75, poisson: 0.5 } };
     let cells = Equivalent::new(Bem3d { cells: 9, ..Bem3d::default() });
     let springs = Equivalent::new(Mdr1d { elements: 64 });
-    let models: [(&dyn HistoryModel, &[&str], &str); 5] = [
+    let models: [(&dyn ContactModel, &[&str], &str); 5] = [
         //                            rough map line sphere cone power circle square sine
         (&CattaneoMindlin, &["friction"], "---x-----"),
         (&PartialSlip, &["friction"], "---xxxx--"),
@@ -211,7 +211,7 @@ fn histories() {
                 assert!(refused(&both));
                 let mut contact = model.prepare(&scene, 0).unwrap();
                 let state = contact.advance(Step::normal(1.0, Load::Force(1e-3))).unwrap();
-                assert!(state.normal.stiffness.is_none() && state.normal.area.is_none());
+                assert!(state.stiffness.is_none() && state.area.is_none());
                 assert!(state.contact_radius.unwrap() > 0.0 && !model.sources().is_empty());
                 assert_eq!(state.tangential.is_some(), name == "friction");
             }

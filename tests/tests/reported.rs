@@ -4,12 +4,12 @@ use analytic::jkr::AdhesiveSphere;
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Bem3dPath};
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, Conductance, ContactModel, Error, Hardness, HeightMap, HistoryModel,
-    HistoryState, Load, Scene, SelfAffine, Step, Surface,
+    Adhesion, AdhesionLaw, Boundary, Conductance, ContactModel, ContactState, Error, Hardness, HeightMap,
+    Load, Scene, SelfAffine, Step, Surface,
 };
 use std::sync::Arc;
 
-fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Vec<HistoryState> {
+fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
     let mut history = Bem3dPath(model).prepare(scene, 0).unwrap();
     let mut time = 0.0;
     let mut step = |&load: &Load| {
@@ -33,7 +33,7 @@ fn stiffness_of_a_sphere_with_short_range_is_the_slope_of_its_branch() {
     let approaches: Vec<f64> = (0..8).map(|i| 1.333e-3 - 1.2e-4 * f64::from(i)).collect();
     let loads: Vec<Load> = approaches.iter().map(|&d| Load::Approach(d)).collect();
     for (state, d) in walked(Bem3d { cells: 52, ..Bem3d::default() }, &scene, &loads).iter().zip(approaches) {
-        let (state, a) = (&state.normal, sphere.radius_at_approach(d).unwrap());
+        let (state, a) = (&state, sphere.radius_at_approach(d).unwrap());
         let (k, error) = (state.stiffness.unwrap(), state.report.certificate.quotient_error.unwrap());
         let exact = sphere.slope(a).unwrap();
         assert!((k / exact - 1.0).abs() <= error && error < 0.2, "{d}: {k} {exact} {error}");
@@ -87,7 +87,7 @@ fn a_reload_to_an_old_load_is_as_the_first_time() {
     let loads = [load, 0.0, load, load, 0.5 * load, load, load * 1.01, load].map(Load::Force);
     for tolerance in [1e-5, 1e-6, 1e-8] {
         let model = Bem3d { cells: 65, tolerance, ..Bem3d::default() };
-        let states: Vec<_> = walked(model, &scene, &loads).into_iter().map(|s| s.normal).collect();
+        let states: Vec<_> = walked(model, &scene, &loads).into_iter().collect();
         let k: Vec<f64> = states.iter().map(|s| s.stiffness.unwrap()).collect();
         let area = |i: usize| states[i].plastic.unwrap().area;
         for again in [2, 3, 5] {
@@ -139,7 +139,7 @@ fn complete_contact_with_adhesion_has_no_stiffness() {
         Adhesion::FiniteRange { work: 0.01, range: 0.1, law: AdhesionLaw::Dugdale },
     ] {
         scene.effects.adhesion = adhesion;
-        let state = &walked(Bem3d { cells: 32, ..Bem3d::default() }, &scene, &[Load::Force(0.2)])[0].normal;
+        let state = &walked(Bem3d { cells: 32, ..Bem3d::default() }, &scene, &[Load::Force(0.2)])[0];
         assert_eq!((state.stiffness, state.stiffness_fixed_area), (None, None), "{adhesion:?}");
         assert_eq!(state.mean_gap, Some(0.0), "{adhesion:?}");
         // Of a short range the shares of closed cells, to the tolerance.
@@ -161,8 +161,8 @@ fn every_mean_gap_of_a_periodic_contact_with_adhesion_has_a_state() {
         let loads = gaps.map(Load::MeanGap);
         let states = walked(Bem3d { cells: 64, ..Bem3d::default() }, &scene, &loads);
         for (state, gap) in states.iter().zip(gaps) {
-            assert_relative_eq!(state.normal.mean_gap.unwrap(), gap, max_relative = 1e-9);
-            assert!(state.normal.adhesive.unwrap().stability > 0.0);
+            assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = 1e-9);
+            assert!(state.adhesive.unwrap().stability > 0.0);
         }
     }
 }

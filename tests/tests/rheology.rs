@@ -2,9 +2,7 @@
 
 use analytic::{FlatPunch, Hertz};
 use approx::assert_relative_eq;
-use contact_model::{
-    ContactModel, HistoryModel, Load, Outputs, PronySeries, Relaxing, Rheology, Scene, Step, Surface,
-};
+use contact_model::{ContactModel, Load, Outputs, PronySeries, Relaxing, Rheology, Scene, Step, Surface};
 use mdr1d::{Equivalent, Viscoelastic};
 
 const MODULUS: f64 = 4.0;
@@ -36,15 +34,15 @@ fn elastic(d: f64) -> f64 {
     4.0 / 3.0 * MODULUS * d.powf(1.5)
 }
 
-fn models() -> [(Box<dyn HistoryModel>, f64); 2] {
+fn models() -> [(Box<dyn ContactModel>, f64); 2] {
     [(Box::new(Viscoelastic), EXACT), (Box::new(Equivalent::new(Hertz)), TABLE)]
 }
 
 /// Forces along a path of (time, approach).
-fn forces(model: &dyn HistoryModel, scene: &Scene, path: &[(f64, f64)]) -> Vec<f64> {
+fn forces(model: &dyn ContactModel, scene: &Scene, path: &[(f64, f64)]) -> Vec<f64> {
     let mut history = model.prepare(scene, 0).unwrap();
     let step = |&(time, d): &(f64, f64)| history.advance(Step::normal(time, Load::Approach(d))).unwrap();
-    path.iter().map(step).map(|state| state.normal.force).collect()
+    path.iter().map(step).map(|state| state.force).collect()
 }
 
 #[test]
@@ -108,7 +106,7 @@ fn a_face_answers_linearly() {
     let punch = Surface::FlatCircle { radius: 0.3, size: 2.0.into() };
     let times = [0.0, 0.3, 1.0, 5.0, 40.0];
     let (one, other) = ([1e-3, 2e-3, 2e-3, 5e-3, 5e-3], [0.0, 4e-3, 7e-3, 7e-3, 9e-3]);
-    let models: [Box<dyn HistoryModel>; 2] =
+    let models: [Box<dyn ContactModel>; 2] =
         [Box::new(Viscoelastic), Box::new(Equivalent::new(&FlatPunch as &'static dyn ContactModel))];
     for model in models {
         let scene = scene(punch.clone(), &series());

@@ -5,8 +5,8 @@ use analytic::adhesive_wave::WavyContact;
 use analytic::jkr::AdhesiveSphere;
 use bem3d::{Bem3d, Bem3dPath};
 use contact_model::{
-    Adhesion, Boundary, Branch, Cells, ContactState, Error, HeightMap, History, HistoryModel, Load, Scene,
-    Size, Step, Surface,
+    Adhesion, Boundary, Branch, Cells, ContactModel, ContactState, Error, HeightMap, Load, PreparedContact,
+    Scene, Size, Step, Surface,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -21,12 +21,12 @@ fn scene(map: HeightMap) -> Scene {
     scene
 }
 
-fn path(scene: &Scene) -> Box<dyn History> {
+fn path(scene: &Scene) -> Box<dyn PreparedContact> {
     Bem3dPath(Bem3d { tolerance: 1e-6, ..Bem3d::default() }).prepare(scene, 0).unwrap()
 }
 
-fn at(history: &mut dyn History, load: Load) -> Result<ContactState, Error> {
-    history.advance(Step::normal(0.0, load)).map(|state| state.normal)
+fn at(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState, Error> {
+    history.advance(Step::normal(0.0, load))
 }
 
 /// Contact radius of a sphere R = E* = 1 without load.

@@ -3,8 +3,8 @@
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Body, Boundary, Conductance, ContactModel, ContactState, Effects, Friction, HistoryModel, Load, Outputs,
-    Pair, Scene, Step, Surface, Work,
+    Body, Boundary, Conductance, ContactModel, ContactState, Effects, Friction, Load, Outputs, Pair, Scene,
+    Step, Surface, Work,
 };
 use mdr1d::{Equivalent, Mdr1d};
 use std::sync::Arc;
@@ -151,7 +151,7 @@ fn a_history_pays_for_its_table_once() {
         let mut contact = model.prepare(&Scene { outputs, ..scene.clone() }, 3).unwrap();
         let force = contact.normalisation().force(0.3).unwrap();
         let step = Step::normal(0.0, Load::Force(force));
-        [contact.advance(step).unwrap(), contact.advance(step).unwrap()].map(|state| counts(&state.normal))
+        [contact.advance(step).unwrap(), contact.advance(step).unwrap()].map(|state| counts(&state))
     };
     let [first, second] = run(Outputs::default());
     assert!(first.1 > 5 * second.1 && second.1 > 0, "{first:?} {second:?}");

@@ -6,7 +6,7 @@ const SAFETY: f64 = 1.5;
 const MOST_TO_COME: f64 = 3.0;
 
 /// Estimated discretisation error of a number.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct GridError {
     /// Relative half-width of an interval about the number on the finest grid; an estimate, not a bound.

@@ -1,6 +1,6 @@
 //! Named columns with units; no input or output.
 
-use contact_model::{Error, Result};
+use contact_model::{Error, Result, Value};
 
 /// A column: its name, its unit and what it holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -11,63 +11,6 @@ pub struct Column {
     pub unit: &'static str,
     /// One phrase on what it holds.
     pub meaning: &'static str,
-}
-
-/// One entry of a table.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    /// Text.
-    Text(String),
-    /// A finite number.
-    Number(f64),
-    /// A whole number.
-    Count(u64),
-    /// True or false.
-    Flag(bool),
-    /// Absent: not claimed, not computed, not defined.
-    Empty,
-}
-
-impl From<f64> for Value {
-    fn from(v: f64) -> Self {
-        Self::Number(v)
-    }
-}
-
-impl From<usize> for Value {
-    fn from(v: usize) -> Self {
-        Self::Count(v as u64)
-    }
-}
-
-impl From<u64> for Value {
-    fn from(v: u64) -> Self {
-        Self::Count(v)
-    }
-}
-
-impl From<bool> for Value {
-    fn from(v: bool) -> Self {
-        Self::Flag(v)
-    }
-}
-
-impl From<&str> for Value {
-    fn from(v: &str) -> Self {
-        Self::Text(v.to_owned())
-    }
-}
-
-impl From<String> for Value {
-    fn from(v: String) -> Self {
-        Self::Text(v)
-    }
-}
-
-impl<T: Into<Value>> From<Option<T>> for Value {
-    fn from(v: Option<T>) -> Self {
-        v.map_or(Self::Empty, Into::into)
-    }
 }
 
 /// A table whose every number is finite and whose every row fits its columns.

@@ -6,8 +6,8 @@ use crate::jkr::signed;
 use crate::westergaard::whole_waves;
 use crate::{closed, periodic};
 use contact_model::{
-    Adhesion, ContactModel, ContactState, Effects, Error, Load, Nondimensionalisation, Normalisation,
-    Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop,
+    Abilities, Adhesion, Boundary, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation,
+    Normalisation, Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop, SurfaceKind,
 };
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 use strips::{Strips, between, limits};
@@ -269,15 +269,24 @@ impl ContactModel for AdhesiveWave {
         }]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::Sine],
+            boundaries: &[Boundary::Periodic],
+            loads: periodic::LOADS,
+            effects: &[Effect::ShortRangeAdhesion],
+            outputs: closed::PERIODIC,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        self.abilities().refuse(NAME, scene)?;
         let work = match scene.effects.adhesion {
             Adhesion::Off => 0.0,
             Adhesion::ShortRange { work } => work,
             other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
         };
-        let effects = Effects { adhesion: Adhesion::Off, ..scene.effects };
-        periodic::check(&Scene { effects, ..scene.clone() }, NAME)?;
-        scene.effects.validate()?;
         let (amplitude, waves, size) = whole_waves(scene, NAME)?;
         let wave = WavyContact::new(amplitude, size.x / waves, scene.modulus, work)?;
         let (modulus, length) = (scene.modulus, size.length());

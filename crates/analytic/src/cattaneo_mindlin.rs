@@ -1,11 +1,12 @@
 //! Cattaneo and Mindlin: a sphere under a constant normal and a changing tangential load; Mindlin and Deresiewicz: its memory.
 
-use crate::closed::ROUNDED_UP;
+use crate::closed::{self, ROUNDED_UP};
 use crate::hertz::Hertz;
 use crate::memory::{Goal, SlipCurve, held, lost, reached};
 use contact_model::{
-    ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Normalisation, Outputs,
-    PreparedContact, Result, Scene, Source, Step, Surface, Tangential, TangentialState,
+    Abilities, ContactModel, ContactState, Effect, Effects, Error, Friction, Load, Normalisation, Outputs,
+    Paths, PreparedContact, Result, Scene, Source, Step, Stop, Surface, SurfaceKind, Tangential,
+    TangentialState,
 };
 
 const NAME: &str = "cattaneo_mindlin";
@@ -24,7 +25,7 @@ const NAME: &str = "cattaneo_mindlin";
 ///
 /// ```
 /// use analytic::CattaneoMindlin;
-/// use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
+/// use contact_model::{Body, ContactModel, Friction, Load, Pair, Scene, Step, Surface, Tangential};
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
 /// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
@@ -39,7 +40,7 @@ const NAME: &str = "cattaneo_mindlin";
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CattaneoMindlin;
 
-impl HistoryModel for CattaneoMindlin {
+impl ContactModel for CattaneoMindlin {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -57,11 +58,19 @@ impl HistoryModel for CattaneoMindlin {
         ]
     }
 
-    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
-        scene.validate()?;
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::Sphere],
+            effects: &[Effect::Friction],
+            paths: Paths::Remembered,
+            outputs: closed::WITH_AREA,
+            ..Abilities::ELASTIC
+        }
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
+        self.abilities().refuse(NAME, scene)?;
         let friction = scene.effects.friction;
-        let rest = Effects { friction: Friction::Off, ..scene.effects };
-        rest.refuse(NAME)?;
         let Friction::Coulomb { coefficient } = friction else {
             return Err(Error::unsupported(NAME, format!("friction ({friction:?}): it needs Coulomb's")));
         };
@@ -83,7 +92,7 @@ impl HistoryModel for CattaneoMindlin {
             ..scene.clone()
         };
         Ok(Box::new(PreparedCattaneoMindlin {
-            normal: contact_model::ContactModel::prepare(&Hertz, &elastic, seed)?,
+            normal: ContactModel::prepare(&Hertz, &elastic, seed)?,
             shear_modulus: pair.shear_modulus()?,
             coefficient,
             outputs: scene.outputs,
@@ -233,12 +242,20 @@ impl PreparedCattaneoMindlin {
     }
 }
 
-impl History for PreparedCattaneoMindlin {
+impl PreparedContact for PreparedCattaneoMindlin {
     fn normalisation(&self) -> Normalisation {
         self.normal.normalisation()
     }
 
-    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        self.advance_until(Step::normal(0.0, load), stop)
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
         /// A normal load that comes back through a conversion is the same one.
         const SAME: f64 = 1e-12;
         let step = step.validated(self.at.time)?;
@@ -279,7 +296,7 @@ impl History for PreparedCattaneoMindlin {
         };
         self.at = SlipPathEnd { time: step.time, pressed: Some((state.clone(), sphere)), curve };
         let radius = sphere.map_or(0.0, |sphere| sphere.contact_radius);
-        Ok(HistoryState::new(step.time, state).with_contact_radius(radius).with_tangential(tangential))
+        Ok(state.with_time(step.time).with_contact_radius(radius).with_tangential(tangential))
     }
 
     fn restart(&mut self) {
@@ -310,7 +327,7 @@ mod tests {
         Step { time: 0.0, normal: Load::Force(FORCE), tangential }
     }
 
-    fn tangential(contact: &mut dyn History, load: Tangential) -> TangentialState {
+    fn tangential(contact: &mut dyn PreparedContact, load: Tangential) -> TangentialState {
         contact.advance(at(load)).unwrap().tangential.unwrap()
     }
 
@@ -322,7 +339,7 @@ mod tests {
             let state = contact.advance(at(Tangential::Force(share * MU * FORCE))).unwrap();
             let stick = state.tangential.unwrap().stick_radius.unwrap();
             assert_relative_eq!(stick / state.contact_radius.unwrap(), ratio, max_relative = 2.0 * PRINTED);
-            assert!(state.normal.stiffness.is_some() && state.normal.area.is_none());
+            assert!(state.stiffness.is_some() && state.area.is_none());
         }
     }
 

@@ -1,8 +1,8 @@
 //! What all closed forms share: a law in units of its own becomes a [`PreparedContact`].
 
 use contact_model::{
-    ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene,
-    Size, SolveReport, Stop, Surface,
+    ContactState, Error, Load, Nondimensionalisation, Normalisation, Output, Outputs, PreparedContact,
+    Result, Scene, Size, SolveReport, Stop, Surface,
 };
 use std::f64::consts::PI;
 
@@ -122,29 +122,12 @@ pub(crate) fn refuse_profile(scene: &Scene, model: &'static str) -> Result<()> {
     Ok(())
 }
 
-/// Checks a scene against what closed forms of elastic contact lack: effects and fields.
-///
-/// # Errors
-/// [`Error::Unsupported`] and the errors of [`Scene::validate`].
-pub(crate) fn check(scene: &Scene, model: &'static str) -> Result<()> {
-    scene.validate()?;
-    scene.refuse_effects(model)?;
-    refuse_fields(scene, model)
-}
-
-/// Errors where a field or patches are asked for.
-///
-/// # Errors
-/// [`Error::Unsupported`].
-pub(crate) fn refuse_fields(scene: &Scene, model: &'static str) -> Result<()> {
-    if scene.outputs.any_field() {
-        return Err(Error::unsupported(model, "fields: a closed form has no cells"));
-    }
-    if scene.outputs.contact_patches {
-        return Err(Error::unsupported(model, "contact patches: a closed form has no cells"));
-    }
-    Ok(())
-}
+/// Outputs of closed forms that have an area.
+pub(crate) const WITH_AREA: &[Output] =
+    &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area];
+/// Those of periodic ones.
+pub(crate) const PERIODIC: &[Output] =
+    &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area, Output::MeanGap];
 
 /// Units and normalisation of a body without rms height: everything is counted in `L = sqrt(Lx Ly)`.
 ///

@@ -1,7 +1,9 @@
 //! Rigid flat punches: the circle (Boussinesq) and the square.
 
 use crate::closed::{self, ClosedLaw, ClosedState};
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Source, Surface};
+use contact_model::{
+    Abilities, ContactModel, Error, PreparedContact, Result, Scene, Source, Surface, SurfaceKind,
+};
 use std::f64::consts::PI;
 
 const NAME: &str = "flat_punch";
@@ -52,8 +54,16 @@ impl ContactModel for FlatPunch {
         ]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::FlatCircle, SurfaceKind::Flat],
+            outputs: closed::WITH_AREA,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        closed::check(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let (law, strategy, stiffness_error) = match scene.surface {
             Surface::FlatCircle { radius, size } => {
                 let radius = radius / size.length();

@@ -6,8 +6,8 @@ use crate::quadrature::Gauss;
 use crate::root;
 use crate::spectrum::Spectrum;
 use contact_model::{
-    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Source,
-    Surface,
+    Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
+    Scene, Source, Surface, SurfaceKind,
 };
 use std::f64::consts::PI;
 use surface_gen::MapStatistics;
@@ -127,9 +127,19 @@ impl ContactModel for GreenwoodWilliamson {
         ]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::SelfAffine, SurfaceKind::Heights],
+            boundaries: &[Boundary::Periodic],
+            loads: periodic::LOADS,
+            outputs: closed::PERIODIC,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::refuse_profile(scene, NAME)?;
-        periodic::check(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let (moments, height) = match &scene.surface {
             Surface::SelfAffine(surface) => {
                 let spectrum = Spectrum::new(surface)?;

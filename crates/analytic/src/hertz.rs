@@ -1,7 +1,9 @@
 //! Hertz: a sphere (paraboloid `z = r^2 / (2 R)`).
 
 use crate::closed::{self, ClosedLaw, ClosedState};
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
+use contact_model::{
+    Abilities, ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface, SurfaceKind,
+};
 
 const NAME: &str = "hertz";
 
@@ -33,8 +35,12 @@ impl ContactModel for Hertz {
         }]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities { surfaces: &[SurfaceKind::Sphere], outputs: closed::WITH_AREA, ..Abilities::ELASTIC }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        closed::check(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };

@@ -2,8 +2,9 @@
 
 use crate::closed;
 use contact_model::{
-    Adhesion, ContactModel, ContactState, Effects, Error, Load, Nondimensionalisation, Normalisation,
-    Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface,
+    Abilities, Adhesion, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation,
+    Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface,
+    SurfaceKind,
 };
 use std::f64::consts::PI;
 
@@ -53,10 +54,17 @@ impl ContactModel for Jkr {
         }]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::Sphere],
+            effects: &[Effect::ShortRangeAdhesion],
+            outputs: closed::WITH_AREA,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        scene.validate()?;
-        Effects { adhesion: Adhesion::Off, ..scene.effects }.refuse(NAME)?;
-        closed::refuse_fields(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };

@@ -1,5 +1,4 @@
-//! Closed forms, one theory per file, each a [`contact_model::ContactModel`] (with friction a
-//! [`contact_model::HistoryModel`]) that names its sources.
+//! Closed forms, one theory per file, each a [`contact_model::ContactModel`] that names its sources.
 //!
 //! | model | surfaces | claims |
 //! |---|---|---|

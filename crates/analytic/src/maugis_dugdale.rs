@@ -5,8 +5,9 @@ mod curve;
 use crate::jkr::{PullOff, signed};
 use crate::{Hertz, closed, root};
 use contact_model::{
-    Adhesion, AdhesionLaw, ContactModel, ContactState, Effects, Error, Load, Nondimensionalisation,
-    Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface,
+    Abilities, Adhesion, AdhesionLaw, ContactModel, ContactState, Effect, Effects, Error, Load,
+    Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source,
+    Stop, Surface, SurfaceKind,
 };
 use curve::{Curve, Point};
 use std::f64::consts::PI;
@@ -56,11 +57,17 @@ impl ContactModel for MaugisDugdale {
         }]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::Sphere],
+            effects: &[Effect::DugdaleAdhesion],
+            outputs: closed::WITH_AREA,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
-        scene.validate()?;
-        let elastic = Effects { adhesion: Adhesion::Off, ..scene.effects };
-        elastic.refuse(NAME)?;
-        closed::refuse_fields(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(NAME, scene.surface.kind()));
         };
@@ -69,7 +76,10 @@ impl ContactModel for MaugisDugdale {
                 MaugisSphere::new(radius, scene.modulus, work, range)?
             }
             Adhesion::Off | Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => {
-                return Hertz.prepare(&Scene { effects: elastic, ..scene.clone() }, seed);
+                return Hertz.prepare(
+                    &Scene { effects: Effects { adhesion: Adhesion::Off, ..scene.effects }, ..scene.clone() },
+                    seed,
+                );
             }
             other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
         };

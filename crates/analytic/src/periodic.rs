@@ -1,9 +1,8 @@
 //! What all theories of periodic contact share: a law in the mean pressure becomes a [`PreparedContact`].
 
-use crate::closed;
 use contact_model::{
-    Boundary, ContactState, Effects, Error, Load, Nondimensionalisation, Normalisation, Outputs,
-    PreparedContact, Result, Scene, SolveReport, Stop,
+    ContactState, Error, Load, LoadKind, Nondimensionalisation, Normalisation, Outputs, PreparedContact,
+    Result, SolveReport, Stop,
 };
 
 /// A theory of a periodic contact in the mean pressure p, in units of `E* h / L`: h is the unit of heights of its [`Periodic`].
@@ -101,18 +100,5 @@ impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
     }
 }
 
-/// Checks a scene against what the periodic theories here lack: free boundaries, other effects, fields.
-///
-/// # Errors
-/// [`Error::Unsupported`] and the errors of [`Scene::validate`].
-pub(crate) fn check(scene: &Scene, model: &'static str) -> Result<()> {
-    scene.validate()?;
-    Effects { boundary: Boundary::Free, ..scene.effects }.refuse(model)?;
-    closed::refuse_fields(scene, model)?;
-    if scene.effects.boundary == Boundary::Periodic {
-        Ok(())
-    } else {
-        let what = format!("the boundary {:?} (the theory is periodic)", scene.effects.boundary);
-        Err(Error::unsupported(model, what))
-    }
-}
+/// What may be prescribed: a periodic contact has a mean gap and no approach.
+pub(crate) const LOADS: &[LoadKind] = &[LoadKind::Force, LoadKind::MeanGap];

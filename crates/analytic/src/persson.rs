@@ -7,8 +7,8 @@ use crate::root;
 use crate::special::{erf, exponential_integral, exponential_integral_of_square};
 use crate::spectrum::Spectrum;
 use contact_model::{
-    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Source,
-    Surface,
+    Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
+    Scene, Source, Surface, SurfaceKind,
 };
 use std::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 use surface_gen::MapStatistics;
@@ -78,9 +78,19 @@ impl ContactModel for Persson {
         ]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::SelfAffine, SurfaceKind::Heights],
+            boundaries: &[Boundary::Periodic],
+            loads: periodic::LOADS,
+            outputs: closed::PERIODIC,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::refuse_profile(scene, NAME)?;
-        periodic::check(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let gamma = self.checked()?;
         let (law, height) = match &scene.surface {
             Surface::SelfAffine(surface) => {

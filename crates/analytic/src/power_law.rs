@@ -2,8 +2,8 @@
 
 use crate::closed::{self, Closed, ClosedLaw, ClosedState, ROUNDED_UP};
 use contact_model::{
-    Amplitude, ContactModel, Error, Nondimensionalisation, Normalisation, PAPER_STIFFNESS_FACTOR,
-    PreparedContact, Result, Scene, SelfAffine, Source, Surface,
+    Abilities, Amplitude, ContactModel, Error, Nondimensionalisation, Normalisation, PAPER_STIFFNESS_FACTOR,
+    PreparedContact, Result, Scene, SelfAffine, Source, Surface, SurfaceKind,
 };
 use surface_gen::{MapStatistics, SelfAffineFit};
 
@@ -137,9 +137,13 @@ impl ContactModel for PowerLaw {
         }]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities { surfaces: &[SurfaceKind::SelfAffine, SurfaceKind::Heights], ..Abilities::ELASTIC }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::refuse_profile(scene, NAME)?;
-        closed::check(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let (fractal_dimension, height) = match &scene.surface {
             Surface::SelfAffine(surface) => (surface.fractal_dimension(), paper_height(surface)?),
             Surface::Heights(map) => {
@@ -148,9 +152,6 @@ impl ContactModel for PowerLaw {
             }
             other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        if scene.outputs.area {
-            return Err(Error::unsupported(NAME, "the area"));
-        }
         let (modulus, length) = (scene.modulus, scene.surface.size().length());
         Ok(Box::new(Closed {
             model: NAME,

@@ -2,7 +2,9 @@
 
 use crate::closed::{self, ClosedLaw, ClosedState};
 use crate::gamma::half_step_ratio;
-use contact_model::{ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface};
+use contact_model::{
+    Abilities, ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface, SurfaceKind,
+};
 use std::f64::consts::PI;
 
 const NAME: &str = "power_law_body";
@@ -43,8 +45,16 @@ impl ContactModel for PowerLawBody {
         ]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::PowerLaw, SurfaceKind::Cone, SurfaceKind::Sphere],
+            outputs: closed::WITH_AREA,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        closed::check(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         // c L^(n - 1), the depth at r = L over L.
         let (exponent, depth) = match scene.surface {
             Surface::PowerLaw { coefficient, exponent, size } => {

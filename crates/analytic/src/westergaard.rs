@@ -1,12 +1,13 @@
 //! Westergaard: a sinusoidal wave, periodic; and the limits of the product of two waves (Johnson, Greenwood,
 //! Higginson).
 
+use crate::closed;
 use crate::closed::ROUNDED_UP;
 use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::root;
 use contact_model::{
-    ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result, Scene, Size, Source,
-    Surface,
+    Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
+    Scene, Size, Source, Surface, SurfaceKind,
 };
 use std::f64::consts::{PI, SQRT_2};
 
@@ -55,8 +56,18 @@ impl ContactModel for Westergaard {
         }]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::Sine],
+            boundaries: &[Boundary::Periodic],
+            loads: periodic::LOADS,
+            outputs: closed::PERIODIC,
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        periodic::check(scene, NAME)?;
+        self.abilities().refuse(NAME, scene)?;
         let (height, whole, size) = whole_waves(scene, NAME)?;
         let (modulus, length) = (scene.modulus, size.length());
         Ok(Box::new(Periodic {

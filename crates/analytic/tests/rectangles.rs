@@ -7,8 +7,8 @@ use analytic::{
 };
 use approx::assert_relative_eq;
 use contact_model::{
-    Adhesion, Body, Boundary, ContactModel, Error, Friction, HistoryModel, Load, Pair, Scene, SelfAffine,
-    Size, Step, Surface, Tangential,
+    Adhesion, Body, Boundary, ContactModel, Error, Friction, Load, Pair, Scene, SelfAffine, Size, Step,
+    Surface, Tangential,
 };
 
 /// A handful of products.

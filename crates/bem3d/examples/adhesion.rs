@@ -11,8 +11,8 @@
 //! without and with adhesion; side, longest wave and range in nm.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactModel, ContactState, Error, HeightMap,
-    HistoryModel, Load, Scene, SelfAffine, Step, Surface,
+    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactModel, ContactState, Error, HeightMap, Load,
+    Scene, SelfAffine, Step, Surface,
 };
 use std::error::Error as StdError;
 use std::f64::consts::{PI, TAU};
@@ -63,7 +63,7 @@ fn jkr(cells: f64, off: f64, steps: u32) -> Result<(), Box<dyn StdError>> {
     (scene.outputs.area, scene.outputs.stiffness) = (true, false);
     scene.effects.adhesion = Adhesion::ShortRange { work };
     let model = Bem3d { tolerance: 1e-6, ..Bem3d::default() };
-    let mut history = HistoryModel::prepare(&Bem3dPath(model), &scene, 0)?;
+    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, 0)?;
     let (first, last) = (radius * radius / 3.0, -0.75 * (PI * PI * work * work).cbrt());
     let (mut lowest, mut applications) = (0.0f64, 0);
     let start = Instant::now();
@@ -73,7 +73,7 @@ fn jkr(cells: f64, off: f64, steps: u32) -> Result<(), Box<dyn StdError>> {
     for i in 0..=steps {
         let clock = Instant::now();
         let approach = first + (1.05 * last - first) * f64::from(i) / f64::from(steps);
-        let state = history.advance(Step::normal(0.0, Load::Approach(approach)))?.normal;
+        let state = history.advance(Step::normal(0.0, Load::Approach(approach)))?;
         let force = state.force / (1.5 * PI * work);
         let in_radius = (state.area.unwrap_or(0.0) / PI).sqrt() / cell;
         lowest = lowest.min(force);
@@ -108,7 +108,7 @@ fn sphere(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> R
     scene.outputs.area = true;
     scene.effects.adhesion = Adhesion::FiniteRange { work, range, law };
     let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
-    let mut history = HistoryModel::prepare(&Bem3dPath(model), &scene, 0)?;
+    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, 0)?;
     let mut lowest = f64::INFINITY;
     println!(
         "approach force radius stiffness branch stability energy cells sweep-steps applications seconds"
@@ -117,7 +117,7 @@ fn sphere(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> R
         let approach = 1.0 - 3.5 * i as f64 / steps as f64;
         let start = Instant::now();
         let state = match history.advance(Step::normal(i as f64, Load::Approach(approach * approach_unit))) {
-            Ok(state) => state.normal,
+            Ok(state) => state,
             Err(Error::NotConverged { best }) => {
                 println!("NOT CONVERGED {}", best.report.certificate);
                 *best
@@ -151,12 +151,12 @@ fn map(
         Adhesion::ShortRange { work }
     };
     let model = Bem3d { cells, tolerance, ..Bem3d::default() };
-    let mut history = HistoryModel::prepare(&Bem3dPath(model), &scene, seed)?;
+    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, seed)?;
     println!("force stiffness branch stability energy cells steps applications seconds");
     for (i, &force) in forces.iter().enumerate() {
         let start = Instant::now();
         match history.advance(Step::normal(i as f64, Load::Force(force))) {
-            Ok(state) => println!("{force} {}", line(&state.normal, start)),
+            Ok(state) => println!("{force} {}", line(&state, start)),
             Err(error) => println!("{force} {error}"),
         }
     }

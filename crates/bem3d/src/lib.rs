@@ -46,7 +46,7 @@
 //! touches nothing attracts over `g0 = 2.9 sqrt(w a/E*)`, a the longer side of a cell, which is how far from touch a contact snaps in.
 //!
 //! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is `p - s(g)`, p >= 0 still with
-//! p g = 0. Approach and withdrawal differ, so that such a scene is a path ([`HistoryModel`]); a single load is the path from no contact to it.
+//! p g = 0. Approach and withdrawal differ, so that such a scene is a path ([`ContactModel`]); a single load is the path from no contact to it.
 //! Each state says on which branch it lies, its energy, and how stable it is ([`AdhesiveState::stability`]: `1 - rho` for the exponential
 //! law, see `adhesion`; for Dugdale's law, whose states are stable between the jumps of single cells, the smallest distance of the gap of a
 //! cell from the range, in ranges). Forces that nothing holds end the path with an error that has the last stable state. Cells too

@@ -128,9 +128,9 @@ fn a_path_remembers_its_indentation() {
         let scene = rough(Some(hardness), boundary);
         let mut path = Bem3dPath(TIGHT).prepare(&scene, 5).unwrap();
         let mut time = 0.0;
-        let mut go = |path: &mut dyn History, force: f64| {
+        let mut go = |path: &mut dyn PreparedContact, force: f64| {
             time += 1.0;
-            path.advance(Step::normal(time, Load::Force(force))).unwrap().normal
+            path.advance(Step::normal(time, Load::Force(force))).unwrap()
         };
         let mut steps = Vec::new();
         for load in loads {
@@ -161,7 +161,7 @@ fn a_path_remembers_its_indentation() {
         let more = go(path.as_mut(), 1.2 * loads[2]);
         assert!(more.plastic.unwrap().volume > stepped.volume && more.stiffness.is_some());
         path.restart();
-        let anew = path.advance(Step::normal(0.0, Load::Force(loads[0]))).unwrap().normal;
+        let anew = path.advance(Step::normal(0.0, Load::Force(loads[0]))).unwrap();
         close(anew.plastic.unwrap().volume, steps[0].plastic.unwrap().volume, "after a restart");
     }
 }
@@ -172,7 +172,7 @@ fn a_path_is_drawn_off_its_indentation() {
     let mut scene = rough(Some(4.0), Boundary::Periodic);
     scene.outputs.mean_gap = true;
     let mut path = Bem3dPath(Bem3d { cells: 32, ..TIGHT }).prepare(&scene, 5).unwrap();
-    let mut go = |load: Load| path.advance(Step::normal(0.0, load)).unwrap().normal;
+    let mut go = |load: Load| path.advance(Step::normal(0.0, load)).unwrap();
     let virgin = go(Load::Force(0.0)).mean_gap.unwrap();
     let pressed = go(Load::Force(2.0)).plastic.unwrap();
     let touching = go(Load::Force(0.0)).mean_gap.unwrap();
@@ -203,7 +203,7 @@ fn a_loop_balances_its_energy() {
     let (mut work, mut last, mut unloaded) = (0.0, (0.0, 0.0), 0.0);
     for i in 1..=2 * STEPS {
         let d = deepest * (if i <= STEPS { i } else { 2 * STEPS - i }) as f64 / STEPS as f64;
-        let state = path.advance(Step::normal(i as f64, Load::Approach(d))).unwrap().normal;
+        let state = path.advance(Step::normal(i as f64, Load::Approach(d))).unwrap();
         work += 0.5 * (state.force + last.0) * (d - last.1);
         last = (state.force, d);
         unloaded = state.plastic.unwrap().dissipated;

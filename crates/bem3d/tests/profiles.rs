@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests.
 
-use bem3d::{
-    Bem3d, Bem3dPath, ContactModel, ContactState, Hardness, HistoryModel, Load, Method, Scene, Step, Surface,
-};
+use bem3d::{Bem3d, Bem3dPath, ContactModel, ContactState, Hardness, Load, Method, Scene, Step, Surface};
 use contact_model::{Adhesion, Boundary, Conductance, HeightMap};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -273,8 +271,8 @@ fn a_path_with_hardness_keeps_its_indentation() {
     let mut body = scene(200, 1.0, Boundary::Free, |x| -(x - 0.5).powi(2));
     body.effects.hardness = Hardness::Limit { pressure: 0.1 };
     let mut path = Bem3dPath(Bem3d::default()).prepare(&body, 0).unwrap();
-    let loaded = path.advance(Step::normal(1.0, Load::Force(0.02))).unwrap().normal;
-    let unloaded = path.advance(Step::normal(2.0, Load::Force(0.0))).unwrap().normal;
+    let loaded = path.advance(Step::normal(1.0, Load::Force(0.02))).unwrap();
+    let unloaded = path.advance(Step::normal(2.0, Load::Force(0.0))).unwrap();
     assert!(loaded.plastic.unwrap().area > 0.0 && loaded.approach.is_none());
     assert!((unloaded.plastic.unwrap().volume / loaded.plastic.unwrap().volume - 1.0).abs() < 1e-12);
 }

@@ -217,7 +217,7 @@ proptest! {
             .map(|i| deepest * (if i <= STEPS { i } else { i.abs_diff(2 * STEPS) }) as f64 / STEPS as f64)
             .collect();
         let states: Vec<ContactState> = depths[1..].iter().enumerate()
-            .map(|(i, d)| path.advance(Step::normal(i as f64, Load::Approach(*d))).unwrap().normal)
+            .map(|(i, d)| path.advance(Step::normal(i as f64, Load::Approach(*d))).unwrap())
             .collect();
         let (mut force, mut energy, mut dissipated) = (0.0, 0.0, 0.0);
         for (state, d) in states.iter().zip(depths.windows(2)) {
@@ -281,12 +281,12 @@ fn with_adhesion(scene: &Scene, work: f64, range: f64) -> Scene {
     scene
 }
 
-fn path(scene: &Scene) -> Box<dyn History> {
-    HistoryModel::prepare(&Bem3dPath(model()), scene, 0).unwrap()
+fn path(scene: &Scene) -> Box<dyn PreparedContact> {
+    ContactModel::prepare(&Bem3dPath(model()), scene, 0).unwrap()
 }
 
-fn at(path: &mut dyn History, d: f64) -> ContactState {
-    path.advance(Step::normal(0.0, Load::Approach(d))).unwrap().normal
+fn at(path: &mut dyn PreparedContact, d: f64) -> ContactState {
+    path.advance(Step::normal(0.0, Load::Approach(d))).unwrap()
 }
 
 proptest! {

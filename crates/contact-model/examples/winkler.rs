@@ -13,8 +13,8 @@
 //! ```
 
 use contact_model::{
-    ContactModel, ContactState, Error, HeightMap, Load, Normalisation, Outputs, PreparedContact, Result,
-    Scene, Size, SolveReport, Source, Stop, Surface,
+    Abilities, ContactModel, ContactState, Error, HeightMap, Load, Normalisation, Output, Outputs,
+    PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface, SurfaceKind,
 };
 use std::f64::consts::PI;
 
@@ -32,12 +32,16 @@ impl ContactModel for Winkler {
         &[Source { citation: "K. L. Johnson, Contact Mechanics, Cambridge (1985)", what: "Sec. 4.3" }]
     }
 
-    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        scene.validate()?;
-        scene.refuse_effects(self.name())?;
-        if scene.outputs.any_field() || scene.outputs.contact_patches {
-            return Err(Error::unsupported(self.name(), "fields and patches"));
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::Heights],
+            outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area],
+            ..Abilities::ELASTIC
         }
+    }
+
+    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        self.abilities().refuse(self.name(), scene)?;
         let Surface::Heights(map) = &scene.surface else {
             return Err(Error::unsupported(self.name(), scene.surface.kind()));
         };

@@ -1,6 +1,7 @@
 //! Fields on the cells of a map.
 
 use crate::cells::{Cells, Size};
+use crate::quantities::Output;
 
 /// One number per cell of a rectangle, row-major (`values[iy * columns + ix]`: rows along y, as NPY arrays `[row, column]`).
 ///
@@ -92,4 +93,17 @@ pub struct Fields {
     pub gap: Option<Field>,
     /// Depth of the plastic indentation >= 0.
     pub plastic_depth: Option<Field>,
+}
+
+impl Fields {
+    /// The field of an output; `None` for an output that is no field, and where it was not asked for.
+    pub fn get(&self, output: Output) -> Option<&Field> {
+        match output {
+            Output::Pressure => self.pressure.as_ref(),
+            Output::Displacement => self.displacement.as_ref(),
+            Output::Gap => self.gap.as_ref(),
+            Output::PlasticDepth => self.plastic_depth.as_ref(),
+            _ => None,
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! The shared words of fractal-contact.
 //!
 //! Three words organise everything: **physics** ([`Scene`]), **numerics** (each model's own options) and **chance** (the
-//! `seed` of [`ContactModel::prepare`]). This crate defines the first, the traits that join them, and what comes back: a
+//! `seed` of [`ContactModel::prepare`]). This crate defines the first, the trait that joins them, and what comes back: a
 //! [`ContactState`] that always carries its evidence in a [`SolveReport`]. It has no numerics, no input or output, and no
-//! dependency besides `std`.
+//! dependency besides `std` (with the feature `serde`, states can be stored).
 //!
 //! # Conventions
 //!
@@ -15,7 +15,8 @@
 //! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
 //!   Names that end in `_bar` are normalised ([`Normalisation`] is the only place that does it).
 //! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative derivative of the force in it.
-//! * What depends on the path of the loads (friction, rheology) is a [`History`], taken [`Step`] by step.
+//! * What depends on the path of the loads (friction, rheology, indentation, adhesion) is followed [`Step`] by step.
+//! * What is reported of a state stands in one table ([`quantities::QUANTITIES`]), what a model can do in another ([`Abilities`]).
 //! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: not asked for, not computed, and the [`Work`] in
 //!   the report shows it.
 //! * `None` means "this model does not claim it" or "not asked for". It is never NaN and never a silent 0.
@@ -29,45 +30,52 @@
 //! # Ok::<(), contact_model::Error>(())
 //! ```
 
+mod abilities;
 mod cells;
+mod conductance;
 mod error;
 mod fields;
 mod height_map;
 mod heights;
-mod history;
 mod line;
 mod load;
 mod model;
 mod nondimensionalisation;
 mod normalisation;
-mod outputs;
 mod pair;
 mod patches;
+pub mod quantities;
 mod rheology;
 mod scene;
 mod state;
+mod step;
 mod validation;
+mod value;
 mod work;
 
+pub use abilities::{Abilities, LoadKind, Paths, SurfaceKind};
 pub use cells::{Cells, Size};
+pub use conductance::Conductance;
 pub use error::{Error, Result};
 pub use fields::{Field, Fields};
 pub use height_map::HeightMap;
-pub use history::{History, HistoryModel, HistoryState, Step, Tangential, TangentialState};
 pub use line::Line;
 pub use load::Load;
 pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, never};
 pub use nondimensionalisation::Nondimensionalisation;
 pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
-pub use outputs::{Conductance, Outputs};
 pub use pair::{Body, Pair};
 pub use patches::Patches;
+pub use quantities::{Output, Outputs};
 pub use rheology::{PronySeries, Relaxing, Rheology};
 pub use scene::{
-    Adhesion, AdhesionLaw, Amplitude, Boundary, Effects, Friction, Hardness, Scene, SelfAffine, Surface,
-    line_length,
+    Adhesion, AdhesionLaw, Amplitude, Boundary, Effect, Effects, Friction, Hardness, Scene, SelfAffine,
+    Surface, line_length,
 };
 pub use state::{
     AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, SolveReport, Status,
+    TangentialState,
 };
+pub use step::{Step, Tangential};
+pub use value::Value;
 pub use work::Work;

@@ -1,10 +1,12 @@
-//! The two traits: plan once, solve often.
+//! The trait of models and that of planned contacts: plan once, solve often, follow paths.
 
+use crate::abilities::Abilities;
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::normalisation::Normalisation;
 use crate::scene::Scene;
 use crate::state::ContactState;
+use crate::step::{Step, Tangential};
 use std::borrow::Cow;
 
 /// A work that a model is built on. Goes into the header of every CSV.
@@ -41,6 +43,9 @@ pub trait ContactModel: Send + Sync {
     /// What it is built on.
     fn sources(&self) -> &'static [Source];
 
+    /// What it can do. [`Abilities::refuse`] checks a scene against it, and help, tables and refusals follow from it.
+    fn abilities(&self) -> Abilities;
+
     /// Checks the scene against what this model can do, and plans: draws the surface from `seed` where the scene
     /// calls for one, builds tables.
     ///
@@ -67,6 +72,10 @@ impl<M: ContactModel + ?Sized> ContactModel for &M {
         (**self).sources()
     }
 
+    fn abilities(&self) -> Abilities {
+        (**self).abilities()
+    }
+
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         (**self).prepare(scene, seed)
     }
@@ -81,11 +90,11 @@ pub trait PreparedContact: Send {
     /// The normalisation of this very surface (its own measured rms height).
     fn normalisation(&self) -> Normalisation;
 
-    /// Solves for one load; `stop` is polled between iterations.
+    /// Solves for one load from no contact; `stop` is polled between iterations.
     ///
-    /// The result does not depend on the loads solved before beyond the stated tolerance; a path of increasing loads is
-    /// the fastest order. That holds with a hardness too: each load is solved from the virgin surface, whatever was indented before. A
-    /// [`crate::HistoryModel`] follows the indentation along a path.
+    /// The result does not depend on the loads solved before beyond the stated tolerance; increasing loads are the fastest order. That
+    /// holds with effects that remember too: each load is reached from the virgin surface in one step, and a path that was followed is
+    /// forgotten. [`PreparedContact::advance_until`] goes on from where the contact is.
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the model does not hold,
@@ -99,6 +108,41 @@ pub trait PreparedContact: Send {
     fn solve(&mut self, load: Load) -> Result<ContactState> {
         self.solve_until(load, &never)
     }
+
+    /// Goes to the end of the next step of a path; `stop` is polled between iterations. **A step that fails leaves the contact as it was
+    /// before.**
+    ///
+    /// A contact that remembers nothing solves for the normal load of the step, whatever came before.
+    ///
+    /// # Errors
+    /// As [`PreparedContact::solve_until`], and [`Step::validated`]; [`Error::OutOfRange`] for steps beyond what the model holds for (gross
+    /// slip, a time from which the contact would shrink), [`Error::Unsupported`] for a tangential load without friction.
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
+        if step.tangential != Tangential::default() {
+            return Err(Error::unsupported("of frictionless contact", "a tangential load"));
+        }
+        let Step { time, normal, .. } = step.validated_with_adhesion(f64::NEG_INFINITY)?;
+        Ok(self.solve_until(normal, stop)?.with_time(time))
+    }
+
+    /// Goes to the end of the next step of a path.
+    ///
+    /// # Errors
+    /// As [`PreparedContact::advance_until`].
+    fn advance(&mut self, step: Step) -> Result<ContactState> {
+        self.advance_until(step, &never)
+    }
+
+    /// Goes along a whole path from where it is, one state per step.
+    ///
+    /// # Errors
+    /// As [`PreparedContact::advance_until`], at the first step that fails; the contact then stands at the end of the step before it.
+    fn follow(&mut self, path: &[Step]) -> Result<Vec<ContactState>> {
+        path.iter().map(|step| self.advance(*step)).collect()
+    }
+
+    /// Forgets the path: back to no contact at time 0.
+    fn restart(&mut self) {}
 
     /// What a solve for this load needs beyond what the contact holds, about; `None` where that does not grow with a grid. As
     /// [`ContactModel::least_memory`], for callers that compare it with what there is.

@@ -11,6 +11,7 @@ pub const PAPER_STIFFNESS_FACTOR: f64 = 1.1419;
 
 /// Normalisation of one surface: what turns forces and stiffnesses into `F_bar` and `k_bar`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Normalisation {
     /// Effective modulus E* (force per length squared).
     pub modulus: f64,

@@ -4,6 +4,7 @@
 ///
 /// Two cells belong to one patch when they share an edge (four neighbours; a common corner has no length that could carry anything).
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Patches {
     areas: Vec<f64>,
 }

@@ -4,8 +4,8 @@ use crate::cells::Size;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::height_map::HeightMap;
 use crate::line::Line;
-use crate::outputs::Outputs;
 use crate::pair::Pair;
+use crate::quantities::Outputs;
 use crate::rheology::Rheology;
 use std::sync::Arc;
 
@@ -73,14 +73,6 @@ impl Scene {
             return Err(Error::unsupported("of elastic contact", what));
         }
         self.surface.validate()
-    }
-
-    /// Errors unless every effect is off: for models of linear elastic contact with free boundaries.
-    ///
-    /// # Errors
-    /// [`Error::Unsupported`] naming the model and the effect.
-    pub fn refuse_effects(&self, model: &'static str) -> Result<()> {
-        self.effects.refuse(model)
     }
 }
 
@@ -304,8 +296,8 @@ pub fn line_length(side: f64) -> f64 {
 pub struct Effects {
     /// What lies outside the square.
     pub boundary: Boundary,
-    /// Largest pressure that the bodies carry. A [`crate::PreparedContact`] solves each load from the virgin surface; the indentation of
-    /// a path is followed by a [`crate::HistoryModel`] (`bem3d::Bem3dPath`).
+    /// Largest pressure that the bodies carry. A load is solved from the virgin surface; the indentation of a path stays from step to
+    /// step ([`crate::PreparedContact::advance_until`]).
     pub hardness: Hardness,
     /// Attraction between the surfaces.
     pub adhesion: Adhesion,
@@ -340,35 +332,102 @@ impl Effects {
         self.rheology.validate()
     }
 
-    /// Errors unless every effect is off. A model that has one asks this of the others.
-    ///
-    /// # Errors
-    /// [`Error::Unsupported`] naming the model and the effect.
+    /// The effects that are on; the boundary is none of them ([`Effects::boundary`]).
     ///
     /// ```
-    /// use contact_model::{Adhesion, Effects};
+    /// use contact_model::{Adhesion, Effect, Effects};
     /// let effects = Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() };
-    /// assert!(effects.refuse("hertz").is_err());
-    /// assert!(Effects { adhesion: Adhesion::Off, ..effects }.refuse("jkr").is_ok());
+    /// assert_eq!(effects.named().collect::<Vec<_>>(), [Effect::ShortRangeAdhesion]);
     /// ```
-    pub fn refuse(self, model: &'static str) -> Result<()> {
-        let Self { boundary, hardness, adhesion, friction, rheology } = self;
-        if boundary != Boundary::Free {
-            return Err(Error::unsupported(model, format!("the boundary {boundary:?}")));
+    pub fn named(&self) -> impl Iterator<Item = Effect> + use<> {
+        // All fields, so that a new effect is not forgotten.
+        let Self { boundary: _, hardness, adhesion, friction, rheology } = self;
+        let hardness = match hardness {
+            Hardness::Off => None,
+            Hardness::Limit { .. } => Some(Effect::Hardness),
+        };
+        let adhesion = match adhesion {
+            Adhesion::Off => None,
+            Adhesion::ShortRange { .. } => Some(Effect::ShortRangeAdhesion),
+            Adhesion::FiniteRange { law: AdhesionLaw::Exponential, .. } => Some(Effect::ExponentialAdhesion),
+            Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => Some(Effect::DugdaleAdhesion),
+        };
+        let friction = match friction {
+            Friction::Off => None,
+            Friction::Coulomb { .. } => Some(Effect::Friction),
+        };
+        let rheology = match rheology {
+            Rheology::Elastic => None,
+            Rheology::KelvinVoigt { .. } => Some(Effect::KelvinVoigt),
+            Rheology::Maxwell { .. } => Some(Effect::Maxwell),
+            Rheology::StandardSolid { .. } => Some(Effect::StandardSolid),
+            Rheology::Prony(_) => Some(Effect::PronySeries),
+        };
+        [hardness, adhesion, friction, rheology].into_iter().flatten()
+    }
+}
+
+/// An effect that is on, without its numbers: what a model can or cannot do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Effect {
+    /// [`Hardness::Limit`].
+    Hardness,
+    /// [`Adhesion::ShortRange`].
+    ShortRangeAdhesion,
+    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Exponential`].
+    ExponentialAdhesion,
+    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Dugdale`].
+    DugdaleAdhesion,
+    /// [`Friction::Coulomb`].
+    Friction,
+    /// [`Rheology::KelvinVoigt`].
+    KelvinVoigt,
+    /// [`Rheology::Maxwell`].
+    Maxwell,
+    /// [`Rheology::StandardSolid`].
+    StandardSolid,
+    /// [`Rheology::Prony`].
+    PronySeries,
+}
+
+impl Effect {
+    /// All of them.
+    pub const ALL: &'static [Self] = &[
+        Self::Hardness,
+        Self::ShortRangeAdhesion,
+        Self::ExponentialAdhesion,
+        Self::DugdaleAdhesion,
+        Self::Friction,
+        Self::KelvinVoigt,
+        Self::Maxwell,
+        Self::StandardSolid,
+        Self::PronySeries,
+    ];
+
+    /// Its key in `[effects]` of a scene and in Python.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Hardness => "hardness",
+            Self::ShortRangeAdhesion | Self::ExponentialAdhesion | Self::DugdaleAdhesion => "adhesion",
+            Self::Friction => "friction",
+            Self::KelvinVoigt | Self::Maxwell | Self::StandardSolid | Self::PronySeries => "rheology",
         }
-        if hardness != Hardness::Off {
-            return Err(Error::unsupported(model, format!("a hardness ({hardness:?})")));
+    }
+
+    /// What it is, for refusals and tables.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Hardness => "a hardness",
+            Self::ShortRangeAdhesion => "adhesion of short range",
+            Self::ExponentialAdhesion => "adhesion by the exponential law",
+            Self::DugdaleAdhesion => "adhesion by Dugdale's law",
+            Self::Friction => "friction",
+            Self::KelvinVoigt => "the rheology of Kelvin and Voigt",
+            Self::Maxwell => "the rheology of Maxwell",
+            Self::StandardSolid => "the rheology of a standard solid",
+            Self::PronySeries => "the rheology of a Prony series",
         }
-        if adhesion != Adhesion::Off {
-            return Err(Error::unsupported(model, format!("adhesion ({adhesion:?})")));
-        }
-        if friction != Friction::Off {
-            return Err(Error::unsupported(model, format!("friction ({friction:?})")));
-        }
-        if rheology != Rheology::Elastic {
-            return Err(Error::unsupported(model, format!("the rheology {rheology:?}")));
-        }
-        Ok(())
     }
 }
 
@@ -461,12 +520,12 @@ mod tests {
     }
 
     #[test]
-    fn effects_are_refused_by_name() {
+    fn effects_are_named() {
         let mut scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
-        assert!(scene.refuse_effects("m").is_ok());
+        assert_eq!(scene.effects.named().count(), 0);
         scene.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
-        let text = scene.refuse_effects("m").unwrap_err().to_string();
-        assert!(text.contains("adhesion"), "{text}");
+        let named: Vec<&str> = scene.effects.named().map(Effect::words).collect();
+        assert_eq!(named, ["adhesion of short range"]);
         scene.modulus = f64::NAN;
         assert!(scene.validate().is_err());
     }

@@ -16,7 +16,10 @@ use std::fmt;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactState {
+    /// Time at the end of the step that led to it, of states along a path.
+    pub time: Option<f64>,
     /// Normal force F; negative where adhesion holds against a pull.
     pub force: f64,
     /// Approach d from first touch; `None` with periodic boundaries.
@@ -44,7 +47,12 @@ pub struct ContactState {
     pub adhesive: Option<AdhesiveState>,
     /// What the cells of the contact say about how well they resolve it, where the model has cells.
     pub resolution: Option<ContactResolution>,
-    /// Fields, where asked for.
+    /// Contact radius, of round contacts; of an equivalent profile that of the round contact of the same stiffness, `k/(2 E*)`.
+    pub contact_radius: Option<f64>,
+    /// The tangential part, of contacts with friction.
+    pub tangential: Option<TangentialState>,
+    /// Fields, where asked for; they are not stored with the state.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub fields: Option<Fields>,
     /// How it was reached and how far it can be trusted.
     pub report: SolveReport,
@@ -54,6 +62,7 @@ impl ContactState {
     /// A state of which only the force is known yet.
     pub fn new(force: f64, report: SolveReport) -> Self {
         Self {
+            time: None,
             force,
             approach: None,
             mean_gap: None,
@@ -65,9 +74,17 @@ impl ContactState {
             plastic: None,
             adhesive: None,
             resolution: None,
+            contact_radius: None,
+            tangential: None,
             fields: None,
             report,
         }
+    }
+
+    /// At the end of a step of a path.
+    #[must_use]
+    pub fn with_time(self, time: f64) -> Self {
+        Self { time: Some(time), ..self }
     }
 
     /// With an approach; `None` takes it away.
@@ -132,6 +149,18 @@ impl ContactState {
         Self { resolution: resolution.into(), ..self }
     }
 
+    /// With a contact radius.
+    #[must_use]
+    pub fn with_contact_radius(self, radius: impl Into<Option<f64>>) -> Self {
+        Self { contact_radius: radius.into(), ..self }
+    }
+
+    /// With a tangential part.
+    #[must_use]
+    pub fn with_tangential(self, tangential: impl Into<Option<TangentialState>>) -> Self {
+        Self { tangential: tangential.into(), ..self }
+    }
+
     /// Pressure, where asked for.
     pub fn pressure(&self) -> Option<&Field> {
         self.fields.as_ref()?.pressure.as_ref()
@@ -154,9 +183,45 @@ impl ContactState {
     }
 }
 
+/// The tangential part of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TangentialState {
+    /// Tangential force.
+    pub force: f64,
+    /// Tangential displacement.
+    pub displacement: f64,
+    /// Radius inside which the traction is below what friction can hold, of round contacts (of an equivalent profile as the contact
+    /// radius): the contact radius without any slip, 0 in full slip.
+    pub stick_radius: Option<f64>,
+    /// Energy that friction has dissipated since the first step, >= 0.
+    pub dissipated: f64,
+}
+
+impl TangentialState {
+    /// A state in which nothing slipped yet and no stick radius is known.
+    pub fn new(force: f64, displacement: f64) -> Self {
+        Self { force, displacement, stick_radius: None, dissipated: 0.0 }
+    }
+
+    /// With a stick radius.
+    #[must_use]
+    pub fn with_stick_radius(self, radius: impl Into<Option<f64>>) -> Self {
+        Self { stick_radius: radius.into(), ..self }
+    }
+
+    /// With the energy that friction has dissipated since the first step.
+    #[must_use]
+    pub fn with_dissipated(self, dissipated: f64) -> Self {
+        Self { dissipated, ..self }
+    }
+}
+
 /// What has yielded in a contact with a hardness p_s ([`crate::Hardness`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlasticState {
     /// Area under the pressure p_s.
     pub area: f64,
@@ -176,6 +241,7 @@ impl PlasticState {
 /// The adhesive part of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdhesiveState {
     /// On which branch the state lies.
     pub branch: Branch,
@@ -185,6 +251,7 @@ pub struct AdhesiveState {
     ///
     /// The smallest curvature of the energy, over that without adhesion. With Dugdale's law, whose states are stable between the jumps of
     /// single cells, the smallest distance of the gap of a cell from the range, in ranges.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
     pub stability: f64,
 }
 
@@ -197,6 +264,7 @@ impl AdhesiveState {
 
 /// On which branch of a path with adhesion a state lies: between snap-in and pull-off both are stable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Branch {
     /// The bodies came nearer since the contact area last shrank.
     Approach,
@@ -217,6 +285,7 @@ impl Branch {
 /// What the cells of a contact say about how well they resolve it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactResolution {
     /// Largest pressure of a cell: the mean over that cell, which grows as cells get smaller until they resolve the shortest wave.
     pub largest_pressure: f64,
@@ -252,6 +321,7 @@ impl ContactResolution {
 /// The evidence that travels with every state.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolveReport {
     /// How the solve ended.
     pub status: Status,
@@ -292,6 +362,7 @@ impl SolveReport {
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// All numbers of the certificate are within the tolerance asked for.
     Converged,
@@ -320,15 +391,20 @@ impl Status {
 /// All are relative and dimensionless; `s` is the measured rms height (the approach for a body without one). A tolerance `t` is
 /// met when every one of them that it bounds is at most `t` ([`Certificate::meets`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certificate {
     /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form. With a hardness p_s the minimum of
     /// `sum q g` over all `0 <= q <= p_s` of the same force takes the place of `F min g`.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
     pub duality_gap: f64,
     /// `max(0, -min g) / s`. With a hardness of cells below p_s, and beside it the largest gap left under a cell at p_s.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
     pub penetration: f64,
     /// `sum p |g| / (F s)`; of cells at the hardness p_s only a positive gap counts.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
     pub complementarity: f64,
     /// `|F - F_asked| / F_asked`; of a mean gap its miss over s; 0 when the approach was prescribed.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
     pub load_error: f64,
     /// Estimated relative error of the stiffness, and of that of the held contact area where both are computed; `None` where none is,
     /// or where the stiffness is a difference quotient ([`Certificate::quotient_error`]).
@@ -343,6 +419,12 @@ pub struct Certificate {
     /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over `work/range`; `None` without
     /// adhesion of finite range.
     pub equilibrium: Option<f64>,
+}
+
+/// A residual that is not finite is stored as nothing, and nothing is known of it.
+#[cfg(feature = "serde")]
+fn known_or_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> std::result::Result<f64, D::Error> {
+    <Option<f64> as serde::Deserialize>::deserialize(from).map(|known| known.unwrap_or(f64::INFINITY))
 }
 
 impl Certificate {
@@ -397,7 +479,7 @@ impl fmt::Display for Certificate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outputs::Outputs;
+    use crate::quantities::Outputs;
 
     #[test]
     fn completed_states_have_what_was_asked_for() {

@@ -7,6 +7,7 @@ use std::ops::AddAssign;
 ///
 /// What is not asked for adds nothing: without fields `fields` and `bytes` are 0, without the stiffness its `linear_solves` are missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
     /// Linear systems solved on the grid itself: factors made and runs of an iteration.
     pub linear_solves: usize,

@@ -282,6 +282,9 @@ mod tests {
         fn sources(&self) -> &'static [Source] {
             &[]
         }
+        fn abilities(&self) -> contact_model::Abilities {
+            contact_model::Abilities::ELASTIC
+        }
         fn prepare(&self, _: &Scene, _: u64) -> ModelResult<Box<dyn PreparedContact>> {
             Ok(Box::new(FailingContact))
         }

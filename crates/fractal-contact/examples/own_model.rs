@@ -6,8 +6,8 @@
 
 use fractal_contact::scenes::{Options, Plan, Registry, Result, SceneFile, run};
 use fractal_contact::{
-    ContactModel, ContactState, Error, Load, Normalisation, Outputs, PreparedContact, Scene, SolveReport,
-    Source, Stop, never,
+    Abilities, ContactModel, ContactState, Error, Load, Normalisation, Output, Outputs, PreparedContact,
+    Scene, SolveReport, Source, Stop, SurfaceKind, never,
 };
 use runs::{CsvFile, Silent};
 use std::path::{Path, PathBuf};
@@ -30,12 +30,16 @@ impl ContactModel for Winkler {
         &[Source { citation: "K. L. Johnson, Contact Mechanics, Cambridge (1985)", what: "Sec. 4.3" }]
     }
 
-    fn prepare(&self, scene: &Scene, seed: u64) -> fractal_contact::Result<Box<dyn PreparedContact>> {
-        scene.validate()?;
-        scene.refuse_effects(NAME)?;
-        if scene.outputs.any_field() || scene.outputs.contact_patches {
-            return Err(Error::unsupported(NAME, "fields and patches"));
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[SurfaceKind::SelfAffine, SurfaceKind::Heights, SurfaceKind::Sphere],
+            outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area],
+            ..Abilities::ELASTIC
         }
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> fractal_contact::Result<Box<dyn PreparedContact>> {
+        self.abilities().refuse(NAME, scene)?;
         let map = surface_gen::height_map(&scene.surface, self.cells, seed)?;
         let highest = map.highest();
         let mut depths: Vec<f64> = map.defined().map(|h| highest - h).collect();

@@ -45,6 +45,7 @@ pub use bem3d::Bem3d;
 pub use mdr1d::{Equivalent, Mdr1d};
 pub use {analysis, analytic, bem3d, mdr1d, surface_gen, surface_io, surface_statistics};
 
+pub mod models;
 #[cfg(feature = "scenes")]
 pub mod scenes;
 #[cfg(feature = "scenes")]

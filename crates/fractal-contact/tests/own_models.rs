@@ -58,18 +58,18 @@ fn names_are_resolved_or_refused() {
     assert!(keys.contains("[models.winkler]"), "{keys}");
     let scene = read(SCENE.to_owned()).unwrap();
     assert_eq!(scene.models[1], Numerics::Registered(registry.models()[0].clone()));
-    assert!(scene.models[1].is_stored() && !scene.models[1].is_history());
+    assert!(scene.models[1].is_stored());
     // What it lacks is said at its name.
     let lacking = read(SCENE.replace("stiffness = true", "contact_patches = true")).unwrap();
     let refused = Plan::new(&lacking).unwrap_err().to_string();
-    assert!(refused.contains("the model winkler does not support fields and patches"), "{refused}");
+    assert!(refused.contains("the model winkler does not support the output `contact_patches`"), "{refused}");
     assert!(refused.contains("--> a.toml:3:20"), "{refused}");
 
     let twice = registry.clone().with(LAYER, "2").unwrap_err().to_string();
     assert!(twice.contains("\"winkler\" is registered twice"), "{twice}");
     let clash = Registry::new().with(analytic::Hertz, "1").unwrap_err().to_string();
     assert!(clash.contains("\"hertz\" is the name of a model of the library"), "{clash}");
-    let history = Registry::new().with_history(analytic::CattaneoMindlin, "1").unwrap_err().to_string();
+    let history = Registry::new().with(analytic::CattaneoMindlin, "1").unwrap_err().to_string();
     assert!(history.contains("\"cattaneo_mindlin\" is the name of a model"), "{history}");
     assert!(Registry::new().with(LAYER, "").unwrap_err().to_string().contains("has no version"));
 }

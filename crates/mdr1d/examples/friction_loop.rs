@@ -16,7 +16,7 @@
 //! ```
 
 use mdr1d::{
-    Body, Friction, HistoryModel, Load, Pair, PartialSlip, Result, Scene, Step, Surface, Tangential,
+    Body, ContactModel, Friction, Load, Pair, PartialSlip, Result, Scene, Step, Surface, Tangential,
 };
 
 fn main() -> Result<()> {

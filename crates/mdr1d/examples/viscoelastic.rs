@@ -14,7 +14,7 @@
 //! refused: the contact would shrink from t = 100 tau on
 //! ```
 
-use mdr1d::{Error, HistoryModel, Load, Relaxing, Result, Rheology, Scene, Step, Surface, Viscoelastic};
+use mdr1d::{ContactModel, Error, Load, Relaxing, Result, Rheology, Scene, Step, Surface, Viscoelastic};
 
 fn main() -> Result<()> {
     // E*(t) = E* (1 + w exp(-t/tau)): ten times as stiff at first as in the end.
@@ -31,8 +31,8 @@ fn main() -> Result<()> {
         let w = arm.weight;
         let creep = (1.0 - w / (1.0 + w) * (-time / (arm.time * (1.0 + w))).exp()) / modulus;
         let exact = (0.75 * radius * force * creep).cbrt();
-        let (a, d) = (state.contact_radius.unwrap_or(0.0), state.normal.approach.unwrap_or(0.0));
-        println!("{time:>6} {d:>10.6} {a:>10.6} {:>10.6} {exact:>12.6}", state.normal.area.unwrap_or(0.0));
+        let (a, d) = (state.contact_radius.unwrap_or(0.0), state.approach.unwrap_or(0.0));
+        println!("{time:>6} {d:>10.6} {a:>10.6} {:>10.6} {exact:>12.6}", state.area.unwrap_or(0.0));
         assert!((a / exact - 1.0).abs() < 1e-10);
     }
     // The theory holds while the contact grows: unloading is refused, and the history stays where it was.

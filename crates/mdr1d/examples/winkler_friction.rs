@@ -17,8 +17,8 @@
 //! ```
 
 use mdr1d::{
-    Body, ContactModel, ContactState, Equivalent, Error, Friction, HistoryModel, Load, Normalisation, Pair,
-    PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Surface, Tangential,
+    Abilities, Body, ContactModel, ContactState, Equivalent, Error, Friction, Load, Normalisation, Pair,
+    PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Surface, SurfaceKind, Tangential,
 };
 use std::f64::consts::PI;
 
@@ -38,8 +38,12 @@ impl ContactModel for Winkler {
         &[Source { citation: "K. L. Johnson, Contact Mechanics, Cambridge (1985)", what: "Sec. 4.3" }]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities { surfaces: &[SurfaceKind::Sphere], ..Abilities::ELASTIC }
+    }
+
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        scene.refuse_effects(self.name())?; // `Equivalent` keeps friction to itself
+        self.abilities().refuse(self.name(), scene)?; // `Equivalent` keeps friction to itself
         let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(self.name(), scene.surface.kind()));
         };
@@ -70,7 +74,7 @@ fn main() -> Result<()> {
     scene.effects.friction = Friction::Coulomb { coefficient: 0.3 };
     let mut contact = Equivalent::new(Winkler { thickness: 0.05 }).prepare(&scene, 0)?;
     let normal = Load::Approach(0.02);
-    let force = contact.advance(Step::normal(0.0, normal))?.normal.force;
+    let force = contact.advance(Step::normal(0.0, normal))?.force;
     // Full slip from this displacement on.
     let largest = 0.3 * 0.02 * scene.modulus / pair.shear_modulus()?;
     println!("{:>7} {:>10} {:>12} {:>12}", "u/u_max", "T/mu F", "closed form", "dissipated");

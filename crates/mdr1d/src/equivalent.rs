@@ -10,9 +10,9 @@ use crate::relaxation::{Relaxation, check_pair};
 use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
-    Adhesion, ContactModel, Effects, Error, Friction, Hardness, History, HistoryModel, HistoryState, Load,
-    Normalisation, Outputs, RequiredMemory, Result, Rheology, Scene, Source, Step, Stop, Surface, Tangential,
-    TangentialState, never,
+    Abilities, Adhesion, ContactModel, ContactState, Effect, Effects, Error, Friction, Hardness, Load,
+    Normalisation, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, Step, Stop,
+    Surface, Tangential, TangentialState, never,
 };
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ use std::sync::Arc;
 /// the round contact of the same stiffness, `k/(2 E*)`.
 ///
 /// The nodes lie on one logarithmic lattice of approaches (in rms heights, in sides for bodies without), so histories share
-/// them; the table begins so many decades below the first load after a [`History::restart`] and follows the loads upwards. Its error falls with the
+/// them; the table begins so many decades below the first load after a [`PreparedContact::restart`] and follows the loads upwards. Its error falls with the
 /// third (x) and fourth (F) order of the spacing where k(d) is smooth; [`Tabulated::uncertainty`] at the step's approach is in the report's strategy. A pressure field
 /// is refused with rheology (M's is that of an elastic body), and so is a stiffness.
 ///
@@ -39,7 +39,7 @@ use std::sync::Arc;
 /// 257 x 257 cells at F_bar = 1 the first step takes 0.3 s, each further one 10 ms (tolerance 1e-4).
 ///
 /// ```
-/// use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
+/// use contact_model::{Body, Friction, ContactModel, Load, Pair, Scene, Step, Surface, Tangential};
 /// use mdr1d::{Equivalent, Mdr1d};
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
@@ -120,7 +120,7 @@ impl<M: ContactModel> Equivalent<M> {
     }
 }
 
-impl<M: ContactModel> HistoryModel for Equivalent<M> {
+impl<M: ContactModel> ContactModel for Equivalent<M> {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -148,15 +148,27 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
         self.model.least_memory(scene)
     }
 
-    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
-        scene.validate()?;
+    /// Those of the model that presses, without effects of its own.
+    fn abilities(&self) -> Abilities {
+        const EFFECTS: &[Effect] = &[
+            Effect::Friction,
+            Effect::KelvinVoigt,
+            Effect::Maxwell,
+            Effect::StandardSolid,
+            Effect::PronySeries,
+        ];
+        let Abilities { surfaces, outputs, .. } = self.model.abilities();
+        Abilities { surfaces, outputs, effects: EFFECTS, paths: Paths::Remembered, ..Abilities::ELASTIC }
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         let Effects { friction, rheology, .. } = scene.effects;
         if scene.effects.hardness != Hardness::Off || scene.effects.adhesion != Adhesion::Off {
             let what = "hardness or adhesion: an equivalent profile has one k(d), and with them k depends on the path";
             return Err(Error::unsupported(NAME, what));
         }
-        Effects { friction: Friction::Off, rheology: Rheology::Elastic, ..scene.effects }.refuse(NAME)?;
-        let effect = match (friction, Material::new(&rheology, scene.modulus, NAME)?) {
+        self.abilities().refuse(NAME, scene)?;
+        let memory = match (friction, Material::new(&rheology, scene.modulus, NAME)?) {
             (Friction::Coulomb { coefficient }, None) => {
                 let Some(pair) = scene.pair else {
                     let what = "a scene without both bodies (Scene::of_pair): friction needs G*";
@@ -164,7 +176,7 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
                 };
                 let shear = pair.shear_modulus()? / scene.modulus;
                 let table = Arc::new(Tabulated::new(&[])?);
-                Effect::Slip { springs: Springs::new(table, coefficient, shear), coefficient, time: 0.0 }
+                Memory::Slip { springs: Springs::new(table, coefficient, shear), coefficient, time: 0.0 }
             }
             (Friction::Off, Some(material)) => {
                 if let Some(pair) = &scene.pair {
@@ -177,7 +189,7 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
                     let what = "the stiffness with rheology (it depends on how fast one pushes)";
                     return Err(Error::unsupported(NAME, what));
                 }
-                Effect::Relax(Relaxation::new(material, NAME))
+                Memory::Relax(Relaxation::new(material, NAME))
             }
             (Friction::Off, None) => {
                 return Err(Error::unsupported(
@@ -190,39 +202,40 @@ impl<M: ContactModel> HistoryModel for Equivalent<M> {
                 return Err(Error::unsupported(NAME, what));
             }
         };
-        Ok(Box::new(PreparedEquivalent { normal: self.normal(scene, seed)?, effect }))
+        Ok(Box::new(PreparedEquivalent { normal: self.normal(scene, seed)?, memory }))
     }
 }
 
-enum Effect {
+enum Memory {
     Slip { springs: Springs<Arc<Tabulated>>, coefficient: f64, time: f64 },
     Relax(Relaxation),
 }
 
 struct PreparedEquivalent {
     normal: Normal,
-    effect: Effect,
+    memory: Memory,
 }
 
-impl History for PreparedEquivalent {
+impl PreparedContact for PreparedEquivalent {
     fn normalisation(&self) -> Normalisation {
         self.normal.normalisation
     }
 
-    fn advance(&mut self, step: Step) -> Result<HistoryState> {
-        self.advance_until(step, &never)
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        self.advance_until(Step::normal(0.0, load), stop)
     }
 
-    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         let normal = &mut self.normal;
-        match &mut self.effect {
-            Effect::Slip { springs, coefficient, time } => {
+        match &mut self.memory {
+            Memory::Slip { springs, coefficient, time } => {
                 let step = step.validated(*time)?;
                 let (next, state) = slip(normal, springs, *coefficient, step, stop)?;
                 (*springs, *time) = (next, step.time);
                 Ok(state)
             }
-            Effect::Relax(relaxation) => {
+            Memory::Relax(relaxation) => {
                 let step = step.validated(relaxation.at.time)?;
                 relax(normal, relaxation, step, stop)
             }
@@ -230,9 +243,9 @@ impl History for PreparedEquivalent {
     }
 
     fn restart(&mut self) {
-        match &mut self.effect {
-            Effect::Slip { springs, time, .. } => (*springs, *time) = (springs.unloaded(), 0.0),
-            Effect::Relax(relaxation) => relaxation.restart(),
+        match &mut self.memory {
+            Memory::Slip { springs, time, .. } => (*springs, *time) = (springs.unloaded(), 0.0),
+            Memory::Relax(relaxation) => relaxation.restart(),
         }
     }
 }
@@ -244,7 +257,7 @@ fn slip(
     coefficient: f64,
     step: Step,
     stop: Stop<'_>,
-) -> Result<(Springs<Arc<Tabulated>>, HistoryState)> {
+) -> Result<(Springs<Arc<Tabulated>>, ContactState)> {
     let (state, node) = normal.solve(step.normal, stop)?;
     normal.reach(node, springs.approach() <= 0.0, stop)?;
     let springs = springs.on(Arc::clone(&normal.table));
@@ -274,7 +287,9 @@ fn slip(
     .with_stick_radius(nondimensional.approach(next.stick_radius())?)
     // E* L^3: a force times a length.
     .with_dissipated(nondimensional.approach(nondimensional.force(next.dissipated())?)?);
-    let state = HistoryState::new(step.time, normal.reported(state, node.approach))
+    let state = normal
+        .reported(state, node.approach)
+        .with_time(step.time)
         .with_contact_radius(nondimensional.approach(node.radius)?)
         .with_tangential(tangential);
     Ok((next, state))
@@ -286,7 +301,7 @@ fn relax(
     relaxation: &mut Relaxation,
     step: Step,
     stop: Stop<'_>,
-) -> Result<HistoryState> {
+) -> Result<ContactState> {
     if step.tangential != Tangential::Force(0.0) {
         return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
     }
@@ -330,8 +345,7 @@ fn relax(
     let certificate = &mut state.report.certificate;
     certificate.load_error = certificate.load_error.max(at.residual);
     let radius = nondimensional.approach(at.contact.radius)?;
-    let state =
-        HistoryState::new(step.time, normal.reported(state, at.contact.approach)).with_contact_radius(radius);
+    let state = normal.reported(state, at.contact.approach).with_time(step.time).with_contact_radius(radius);
     relaxation.at = at;
     Ok(state)
 }

@@ -4,9 +4,9 @@ use crate::adhesion::{Adhesive, Failure};
 use crate::axisymmetric::{Profile, RoundContact, check_radius};
 use crate::bearing::Bearing;
 use contact_model::{
-    Adhesion, ContactModel, ContactState, Effects, Error, Line, Load, Nondimensionalisation, Normalisation,
-    Outputs, PreparedContact, RequiredMemory, Result, Scene, SelfAffine, Size, SolveReport, Source, Stop,
-    Surface,
+    Abilities, Adhesion, ContactModel, ContactState, Effect, Error, Line, Load, Nondimensionalisation,
+    Normalisation, Output, Outputs, PreparedContact, RequiredMemory, Result, Scene, SelfAffine, Size,
+    SolveReport, Source, Stop, Surface, SurfaceKind,
 };
 use std::sync::{Arc, Mutex};
 use surface_gen::LineGenerator;
@@ -75,16 +75,29 @@ impl ContactModel for Mdr1d {
         ]
     }
 
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[
+                SurfaceKind::SelfAffine,
+                SurfaceKind::Heights,
+                SurfaceKind::Line,
+                SurfaceKind::Sphere,
+                SurfaceKind::Cone,
+                SurfaceKind::PowerLaw,
+                SurfaceKind::FlatCircle,
+            ],
+            effects: &[Effect::ShortRangeAdhesion],
+            outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area],
+            ..Abilities::ELASTIC
+        }
+    }
+
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
-        scene.validate()?;
-        Effects { adhesion: Adhesion::Off, ..scene.effects }.refuse(NAME)?;
+        if let Surface::Profile(_) = scene.surface {
+            return Err(Error::unsupported(NAME, PROFILE));
+        }
+        self.abilities().refuse(NAME, scene)?;
         let outputs = scene.outputs;
-        if outputs.any_field() {
-            return Err(Error::unsupported(NAME, "pressure, displacement and gap fields"));
-        }
-        if outputs.contact_patches {
-            return Err(Error::unsupported(NAME, "contact patches (a line and a profile have no cells)"));
-        }
         let (length, modulus) = (scene.surface.size().length(), scene.modulus);
         if let Some(profile) = Profile::new(&scene.surface)? {
             let nondimensional = Nondimensionalisation::new(modulus, length, length)?;
@@ -127,7 +140,6 @@ impl ContactModel for Mdr1d {
                 let line = LineGenerator::of_map(map, self.elements)?.line(seed)?;
                 Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, modulus, outputs)))
             }
-            Surface::Profile(_) => Err(Error::unsupported(NAME, PROFILE)),
             other => Err(Error::unsupported(NAME, other.kind())),
         }
     }
@@ -186,6 +198,10 @@ impl ContactModel for Ensemble {
         self.model.sources()
     }
 
+    fn abilities(&self) -> Abilities {
+        self.model.abilities()
+    }
+
     /// As [`Mdr1d`]; scenes of other surfaces are solved too, without anything kept.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         let outputs = scene.outputs;
@@ -196,8 +212,10 @@ impl ContactModel for Ensemble {
         {
             return self.model.prepare(scene, seed);
         }
-        scene.validate()?;
-        scene.refuse_effects(NAME)?;
+        self.abilities().refuse(NAME, scene)?;
+        if scene.effects.named().next().is_some() {
+            return self.model.prepare(scene, seed);
+        }
         let line = self.generator.line(seed)?;
         let spare = self.spare.lock().ok().and_then(|mut spare| spare.pop());
         let mut bearing = spare.unwrap_or_else(Bearing::empty);

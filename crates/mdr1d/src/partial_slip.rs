@@ -3,8 +3,9 @@
 use crate::axisymmetric::{Profile, check_radius};
 use crate::slip::Springs;
 use contact_model::{
-    ContactState, Effects, Error, Friction, History, HistoryModel, HistoryState, Load, Nondimensionalisation,
-    Normalisation, Outputs, Result, Scene, Size, SolveReport, Source, Step, Tangential, TangentialState,
+    Abilities, ContactModel, ContactState, Effect, Error, Friction, Load, Nondimensionalisation,
+    Normalisation, Output, Outputs, Paths, PreparedContact, Result, Scene, Size, SolveReport, Source, Step,
+    Stop, SurfaceKind, Tangential, TangentialState,
 };
 
 const NAME: &str = "mdr1d_partial_slip";
@@ -23,7 +24,7 @@ const NAME: &str = "mdr1d_partial_slip";
 /// load everywhere, which it has not quite for nu > 0.
 ///
 /// ```
-/// use contact_model::{Body, Friction, HistoryModel, Load, Pair, Scene, Step, Surface, Tangential};
+/// use contact_model::{Body, Friction, ContactModel, Load, Pair, Scene, Step, Surface, Tangential};
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
 /// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
@@ -39,7 +40,7 @@ const NAME: &str = "mdr1d_partial_slip";
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PartialSlip;
 
-impl HistoryModel for PartialSlip {
+impl ContactModel for PartialSlip {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -57,19 +58,27 @@ impl HistoryModel for PartialSlip {
         ]
     }
 
-    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn History>> {
-        scene.validate()?;
-        Effects { friction: Friction::Off, ..scene.effects }.refuse(NAME)?;
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[
+                SurfaceKind::Sphere,
+                SurfaceKind::Cone,
+                SurfaceKind::PowerLaw,
+                SurfaceKind::FlatCircle,
+            ],
+            effects: &[Effect::Friction],
+            paths: Paths::Remembered,
+            outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area],
+            ..Abilities::ELASTIC
+        }
+    }
+
+    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        self.abilities().refuse(NAME, scene)?;
         let Friction::Coulomb { coefficient } = scene.effects.friction else {
             let what = format!("friction ({:?}): it needs Coulomb's", scene.effects.friction);
             return Err(Error::unsupported(NAME, what));
         };
-        if scene.outputs.any_field() {
-            return Err(Error::unsupported(NAME, "pressure, displacement and gap fields"));
-        }
-        if scene.outputs.contact_patches {
-            return Err(Error::unsupported(NAME, "contact patches (a profile has no cells)"));
-        }
         let Some(profile) = Profile::new(&scene.surface)? else {
             let what = format!("{}: friction by springs needs a round contact", scene.surface.kind());
             return Err(Error::unsupported(NAME, what));
@@ -120,12 +129,20 @@ impl PreparedPartialSlip {
     }
 }
 
-impl History for PreparedPartialSlip {
+impl PreparedContact for PreparedPartialSlip {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }
 
-    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        self.advance_until(Step::normal(0.0, load), stop)
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
         let step = step.validated(self.time)?;
         let nondimensional = self.nondimensional;
         let (contact, loaded) = match step.normal {
@@ -180,7 +197,7 @@ impl History for PreparedPartialSlip {
         // E* L^3: a force times a length.
         .with_dissipated(nondimensional.approach(nondimensional.force(springs.dissipated())?)?);
         (self.time, self.springs) = (step.time, springs);
-        Ok(HistoryState::new(step.time, normal).with_contact_radius(radius).with_tangential(tangential))
+        Ok(normal.with_time(step.time).with_contact_radius(radius).with_tangential(tangential))
     }
 
     fn restart(&mut self) {

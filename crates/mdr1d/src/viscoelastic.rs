@@ -4,8 +4,9 @@ use crate::axisymmetric::{Profile, check_radius};
 use crate::material::Material;
 use crate::relaxation::{Relaxation, check_pair};
 use contact_model::{
-    ContactState, Effects, Error, History, HistoryModel, HistoryState, Load, Nondimensionalisation,
-    Normalisation, Outputs, Result, Rheology, Scene, Size, SolveReport, Source, Step, Tangential,
+    Abilities, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation, Normalisation, Output,
+    Outputs, Paths, PreparedContact, Result, Scene, Size, SolveReport, Source, Step, Stop, SurfaceKind,
+    Tangential,
 };
 
 const NAME: &str = "mdr1d_viscoelastic";
@@ -28,7 +29,7 @@ const NAME: &str = "mdr1d_viscoelastic";
 /// stiffness is claimed: it depends on how fast one pushes.
 ///
 /// ```
-/// use contact_model::{HistoryModel, Load, Rheology, Scene, Step, Surface};
+/// use contact_model::{ContactModel, Load, Rheology, Scene, Step, Surface};
 /// use mdr1d::Viscoelastic;
 /// // Kelvin-Voigt under a flat-ended cylinder: d = F/(8 G a) (1 - exp(-G t/eta)), with G = 1 (E* = 4), eta = 2, a = 0.5, F = 1.
 /// let mut scene = Scene::new(Surface::FlatCircle { radius: 0.5, size: 2.0.into() }, 4.0);
@@ -38,13 +39,17 @@ const NAME: &str = "mdr1d_viscoelastic";
 /// contact.advance(Step::normal(0.0, Load::Force(1.0)))?;
 /// let state = contact.advance(Step::normal(3.0, Load::Force(1.0)))?;
 /// let exact = 0.25 * (1.0 - (-1.5_f64).exp());
-/// assert!((state.normal.approach.unwrap_or(0.0) - exact).abs() < 1e-14);
+/// assert!((state.approach.unwrap_or(0.0) - exact).abs() < 1e-14);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Viscoelastic;
 
-impl HistoryModel for Viscoelastic {
+/// What relaxes.
+pub(crate) const RHEOLOGIES: &[Effect] =
+    &[Effect::KelvinVoigt, Effect::Maxwell, Effect::StandardSolid, Effect::PronySeries];
+
+impl ContactModel for Viscoelastic {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -62,24 +67,32 @@ impl HistoryModel for Viscoelastic {
         ]
     }
 
-    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn History>> {
-        scene.validate()?;
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            surfaces: &[
+                SurfaceKind::Sphere,
+                SurfaceKind::Cone,
+                SurfaceKind::PowerLaw,
+                SurfaceKind::FlatCircle,
+            ],
+            effects: RHEOLOGIES,
+            paths: Paths::Needed,
+            outputs: &[Output::Area, Output::Conductance],
+            ..Abilities::ELASTIC
+        }
+    }
+
+    fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
+        if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
+            return Err(Error::unsupported(NAME, "the stiffness (it depends on how fast one pushes)"));
+        }
+        self.abilities().refuse(NAME, scene)?;
         let rheology = scene.effects.rheology;
-        Effects { rheology: Rheology::Elastic, ..scene.effects }.refuse(NAME)?;
         let Some(material) = Material::new(&rheology, scene.modulus, NAME)? else {
             return Err(Error::unsupported(NAME, "an elastic material (there is nothing to remember)"));
         };
         if let Some(pair) = &scene.pair {
             check_pair(pair, &rheology, NAME)?;
-        }
-        if scene.outputs.any_field() {
-            return Err(Error::unsupported(NAME, "pressure, displacement and gap fields"));
-        }
-        if scene.outputs.contact_patches {
-            return Err(Error::unsupported(NAME, "contact patches (a profile has no cells)"));
-        }
-        if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
-            return Err(Error::unsupported(NAME, "the stiffness (it depends on how fast one pushes)"));
         }
         let Some(profile) = Profile::new(&scene.surface)? else {
             let what = format!("{}: relaxing springs need a round contact", scene.surface.kind());
@@ -106,12 +119,20 @@ struct PreparedViscoelastic {
     relaxation: Relaxation,
 }
 
-impl History for PreparedViscoelastic {
+impl PreparedContact for PreparedViscoelastic {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }
 
-    fn advance(&mut self, step: Step) -> Result<HistoryState> {
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        self.advance_until(Step::normal(0.0, load), stop)
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
         let step = step.validated(self.relaxation.at.time)?;
         if step.tangential != Tangential::Force(0.0) {
             return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
@@ -152,7 +173,7 @@ impl History for PreparedViscoelastic {
         let stiffness = nondimensional.stiffness(at.contact.stiffness())?;
         normal.conductance = self.outputs.conductance.of(stiffness, self.normalisation.modulus)?;
         self.relaxation.at = at;
-        Ok(HistoryState::new(step.time, normal).with_contact_radius(radius))
+        Ok(normal.with_time(step.time).with_contact_radius(radius))
     }
 
     fn restart(&mut self) {

@@ -5,8 +5,8 @@
 
 use approx::assert_relative_eq;
 use contact_model::{
-    Body, ContactModel, Error, Friction, HeightMap, HistoryModel, Line, Load, Pair, Rheology, Scene,
-    SelfAffine, Size, Step, Surface, Tangential,
+    Body, ContactModel, Error, Friction, HeightMap, Line, Load, Pair, Rheology, Scene, SelfAffine, Size,
+    Step, Surface, Tangential,
 };
 use mdr1d::{Ensemble, Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 use std::sync::Arc;
@@ -73,7 +73,7 @@ fn histories_leave_the_shorter_side_too() {
     creeps.effects.rheology = Rheology::Maxwell { viscosity: 2.0 };
     creeps.outputs.stiffness = false;
     let equivalent = Equivalent::new(Mdr1d::default());
-    let models: [(&dyn HistoryModel, &Scene); 3] =
+    let models: [(&dyn ContactModel, &Scene); 3] =
         [(&PartialSlip, &slides), (&Viscoelastic, &creeps), (&equivalent, &slides)];
     for (model, scene) in models {
         let mut history = model.prepare(scene, 0).unwrap();

@@ -9,8 +9,8 @@ use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
 use crate::tuning::Tuning;
 use contact_model::{
-    Adhesion, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, History, HistoryState, Load,
-    Normalisation, PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
+    Adhesion, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, Load, Normalisation,
+    PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
 };
 use std::f64::consts::PI;
 
@@ -347,41 +347,31 @@ fn attraction(inner: &PreparedBem3d, adhesion: Adhesion) -> Result<Attraction> {
     Ok(attraction)
 }
 
-impl History for AdhesiveContact {
+impl PreparedContact for AdhesiveContact {
     fn normalisation(&self) -> Normalisation {
         self.inner.normalisation
     }
 
-    fn advance(&mut self, step: Step) -> Result<HistoryState> {
-        self.advance_until(step, &contact_model::never)
+    /// A single load: from no contact on the branch of approach.
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        Ok(self.next(load, stop)?.state)
     }
 
-    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         let step = step.validated_with_adhesion(self.time)?;
         without_tangential(step)?;
         if stop() {
             return Err(Error::Stopped { best: None });
         }
         let next = self.next(step.normal, stop)?;
-        let state = HistoryState::new(step.time, next.state.clone());
+        let state = (next.state.clone()).with_time(step.time);
         (self.last, self.time) = (Some(next), step.time);
         Ok(state)
     }
 
     fn restart(&mut self) {
         (self.last, self.time) = (None, 0.0);
-    }
-}
-
-/// A single load: from no contact on the branch of approach.
-impl PreparedContact for AdhesiveContact {
-    fn normalisation(&self) -> Normalisation {
-        self.inner.normalisation
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.restart();
-        Ok(self.next(load, stop)?.state)
     }
 }
 
@@ -397,19 +387,19 @@ impl WithoutAdhesion {
     }
 }
 
-impl History for WithoutAdhesion {
+impl PreparedContact for WithoutAdhesion {
     fn normalisation(&self) -> Normalisation {
         self.contact.normalisation()
     }
 
-    fn advance(&mut self, step: Step) -> Result<HistoryState> {
-        self.advance_until(step, &contact_model::never)
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.contact.solve_until(load, stop)
     }
 
-    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         let step = step.validated(self.time)?;
         without_tangential(step)?;
-        let state = HistoryState::new(step.time, self.contact.solve_until(step.normal, stop)?);
+        let state = (self.contact.solve_until(step.normal, stop)?).with_time(step.time);
         self.time = step.time;
         Ok(state)
     }

@@ -8,26 +8,27 @@ use super::prepared::refuse_together;
 use super::profile;
 use crate::tuning::Tuning;
 use contact_model::{
-    Adhesion, ContactModel, Error, Hardness, History, HistoryModel, RequiredMemory, Result, Scene, Source,
+    Abilities, Adhesion, ContactModel, Error, Hardness, PreparedContact, RequiredMemory, Result, Scene,
+    Source,
 };
 
 /// The boundary-element model along a path of loads, for effects that remember it: hardness and adhesion.
 ///
 /// ```
-/// use bem3d::{Bem3d, Bem3dPath, Hardness, HistoryModel, Load, Scene, Step, Surface};
+/// use bem3d::{Bem3d, Bem3dPath, ContactModel, Hardness, Load, Scene, Step, Surface};
 /// // A sphere is pressed until its middle flows, and unloaded: the indentation stays.
 /// let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
 /// scene.effects.hardness = Hardness::Limit { pressure: 0.1 };
 /// let mut path = Bem3dPath(Bem3d { cells: 32, ..Bem3d::default() }).prepare(&scene, 0)?;
-/// let loaded = path.advance(Step::normal(1.0, Load::Force(0.02)))?.normal.plastic.unwrap();
-/// let unloaded = path.advance(Step::normal(2.0, Load::Force(0.0)))?.normal.plastic.unwrap();
+/// let loaded = path.advance(Step::normal(1.0, Load::Force(0.02)))?.plastic.unwrap();
+/// let unloaded = path.advance(Step::normal(2.0, Load::Force(0.0)))?.plastic.unwrap();
 /// assert!(loaded.area > 0.0 && unloaded.area == 0.0 && unloaded.volume == loaded.volume);
 /// # Ok::<(), bem3d::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bem3dPath(pub Bem3d);
 
-impl HistoryModel for Bem3dPath {
+impl ContactModel for Bem3dPath {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -36,7 +37,11 @@ impl HistoryModel for Bem3dPath {
         self.0.sources()
     }
 
-    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
+    fn abilities(&self) -> Abilities {
+        self.0.abilities()
+    }
+
+    fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         scene.validate()?;
         refuse_together(&scene.effects)?;
         profile::check(scene)?;

@@ -17,8 +17,8 @@ pub use options::{BYTES_PER_CELL, Bem3d, Method, bytes_per_cell};
 use crate::tuning::Tuning;
 use adhesive::{AdhesiveContact, without_adhesion};
 use contact_model::{
-    Adhesion, Boundary, ContactModel, Effects, Error, Hardness, PreparedContact, RequiredMemory, Result,
-    Scene, Source, Surface,
+    Abilities, Adhesion, Boundary, ContactModel, Effect, Error, LoadKind, Output, Paths, PreparedContact,
+    RequiredMemory, Result, Scene, Source, Surface, SurfaceKind,
 };
 use options::NAME;
 use prepared::{PreparedBem3d, refuse_together};
@@ -42,6 +42,33 @@ impl ContactModel for Bem3d {
         ]
     }
 
+    fn abilities(&self) -> Abilities {
+        const SURFACES: &[SurfaceKind] = &[
+            SurfaceKind::SelfAffine,
+            SurfaceKind::Heights,
+            SurfaceKind::Profile,
+            SurfaceKind::Sphere,
+            SurfaceKind::Cone,
+            SurfaceKind::PowerLaw,
+            SurfaceKind::FlatCircle,
+            SurfaceKind::Flat,
+            SurfaceKind::Sine,
+        ];
+        Abilities {
+            surfaces: SURFACES,
+            boundaries: &[Boundary::Free, Boundary::Periodic],
+            effects: &[
+                Effect::Hardness,
+                Effect::ShortRangeAdhesion,
+                Effect::ExponentialAdhesion,
+                Effect::DugdaleAdhesion,
+            ],
+            loads: LoadKind::ALL,
+            paths: Paths::Remembered,
+            outputs: Output::ALL,
+        }
+    }
+
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.prepare_tuned(scene, seed, &Tuning::DEFAULT)
     }
@@ -59,8 +86,8 @@ impl Bem3d {
         seed: u64,
         tuning: &Tuning,
     ) -> Result<Box<dyn PreparedContact>> {
+        self.abilities().refuse(NAME, scene)?;
         refuse_together(&scene.effects)?;
-        scene.validate()?;
         profile::check(scene)?;
         Ok(match scene.effects.adhesion {
             Adhesion::Off => Box::new(self.prepared(scene, seed, tuning)?),
@@ -77,12 +104,8 @@ impl Bem3d {
 
     /// A surface without adhesion, ready to be loaded.
     fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
-        scene.validate()?;
+        self.abilities().refuse(NAME, scene)?;
         profile::check(scene)?;
-        if !matches!(scene.effects.boundary, Boundary::Free | Boundary::Periodic) {
-            scene.refuse_effects(NAME)?;
-        }
-        Effects { boundary: Boundary::Free, hardness: Hardness::Off, ..scene.effects }.refuse(NAME)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }

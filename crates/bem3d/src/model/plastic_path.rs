@@ -3,8 +3,7 @@
 use super::prepared::{Memory, PreparedBem3d, without_tangential};
 use crate::active_set::Candidates;
 use contact_model::{
-    Error, History, HistoryState, Load, Normalisation, PreparedContact, RequiredMemory, Result, Step, Stop,
-    never,
+    ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Step, Stop,
 };
 use std::sync::Arc;
 
@@ -32,7 +31,7 @@ impl PlasticPath {
     }
 }
 
-impl History for PlasticPath {
+impl PreparedContact for PlasticPath {
     fn normalisation(&self) -> Normalisation {
         self.contact.normalisation()
     }
@@ -41,11 +40,12 @@ impl History for PlasticPath {
         self.contact.required_memory(load)
     }
 
-    fn advance(&mut self, step: Step) -> Result<HistoryState> {
-        self.advance_until(step, &never)
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        self.advance_until(Step::normal(0.0, load), stop)
     }
 
-    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<HistoryState> {
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         let step = step.validated(self.time)?;
         without_tangential(step)?;
         if stop() {
@@ -56,7 +56,7 @@ impl History for PlasticPath {
             memory.advance(0.0, 0.0);
         }
         self.time = step.time;
-        Ok(HistoryState::new(step.time, state))
+        Ok(state.with_time(step.time))
     }
 
     fn restart(&mut self) {

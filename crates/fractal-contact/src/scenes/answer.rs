@@ -12,10 +12,10 @@ use crate::scenes::read::words;
 use crate::scenes::run::field_pictures;
 use crate::scenes::run::outcome::{Options, SceneOutcome};
 use crate::scenes::run::scene_job::{scene_jobs, units};
-use crate::scenes::run::state_result::{ModelResult, StateResult};
+use crate::scenes::run::state_result::{Answer, ModelResult, SolvedUnit};
 use crate::scenes::run::warnings::Warning;
 use crate::scenes::tell::columns;
-use crate::scenes::tell::distributions::{self, Solved};
+use crate::scenes::tell::distributions;
 use crate::scenes::tell::ensemble;
 use crate::scenes::tell::manifest;
 use crate::scenes::tell::pictures;
@@ -23,7 +23,7 @@ use crate::scenes::tell::report::Report;
 use crate::scenes::tell::result_folder::ResultFolder;
 use crate::scenes::tell::statistics::MapStatisticsTables;
 use crate::scenes::tell::summary;
-use analysis::{Column, Table, Value};
+use analysis::{Column, Table};
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
 use runs::{Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
 use std::time::Instant;
@@ -57,15 +57,21 @@ pub fn run(
     runs::files::clean(&options.out)?;
     let folder = ResultFolder::claim(&options.out, scene)?;
     manifest::write_begun(scene, options, &folder.files(scene))?;
-    let columns = columns::columns(scene);
     let units = units(scene);
     let jobs = scene_jobs(scene, &options.out);
     let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop);
     let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
     let mut outcome =
         SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
-    let Tables { states: table, patches } = gather(scene, columns, &units, &results, options, &mut outcome)?;
-    let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &table) } else { Vec::new() };
+    let solved: Vec<SolvedUnit<'_>> = (units.iter().zip(&results))
+        .filter_map(|(unit, result)| {
+            let (model, surface) = (unit.numerics(scene).name(), unit.surface);
+            Some(SolvedUnit { model, surface, states: result.as_ref()?.states.as_slice() })
+        })
+        .collect();
+    count(scene, &units, &results, options, &mut outcome);
+    let Tables { states: table, patches } = tables(scene, &solved)?;
+    let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &solved) } else { Vec::new() };
     let header = header(scene, plan);
     let mut write = |name: &str, table: &Table| -> Result<()> {
         let path = options.out.join(name);
@@ -79,14 +85,9 @@ pub fn run(
     }
     if !means.is_empty() {
         let title = format!("{}: means over surfaces", title(scene));
-        let means = ensemble::table(title, table.columns(), &means);
+        let means = ensemble::table(scene, title, &means);
         write("ensemble.csv", &means.map_err(runs::Error::model("means over surfaces"))?)?;
     }
-    let solved: Vec<Solved<'_>> = (units.iter().zip(&results))
-        .filter_map(|(unit, result)| {
-            Some((unit.numerics(scene).name(), unit.surface, result.as_ref()?.states.as_slice()))
-        })
-        .collect();
     for &of in &scene.requested.distributions {
         let title = format!("{}: distribution of {}", title(scene), of.name());
         write(&format!("distribution-{}.csv", of.name()), &distributions::table(scene, of, title, &solved)?)?;
@@ -97,7 +98,7 @@ pub fn run(
         }
     }
     if scene.requested.curves {
-        outcome.files.extend(pictures::curves(scene, &table, &means, &options.out)?);
+        outcome.files.extend(pictures::curves(scene, &solved, &means, &options.out)?);
     }
     let statistics = scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
     if let Some(statistics) = &statistics {
@@ -106,17 +107,16 @@ pub fn run(
             statistics.notes.iter().chain(&statistics.remarks).map(|note| format!("statistics: {note}")),
         );
     }
-    outcome.summary = summary::summary(scene, &table, &means);
-    outcome.actual = actual(scene, &units, &results, &table);
+    outcome.summary = summary::summary(scene, &solved, &means);
+    outcome.actual = actual(scene, &units, &results);
     outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
     let report = Report {
         scene,
         plan,
         outcome: &outcome,
-        table: &table,
         means: &means,
-        solved: &solved,
+        units: &solved,
         statistics: statistics.as_ref(),
     }
     .write(&options.out)?;
@@ -163,18 +163,14 @@ struct Tables {
     patches: Table,
 }
 
-/// Rows of all results in their order; counts, notes and files of fields go to the outcome.
-fn gather(
+/// Counts, notes and files of all results, for the outcome.
+fn count(
     scene: &SceneFile,
-    columns: Vec<Column>,
     units: &[ModelOnSurface],
     results: &[Option<ModelResult>],
     options: &Options,
     outcome: &mut SceneOutcome,
-) -> Result<Tables> {
-    let mut table = Table::new(title(scene), columns);
-    let mut patches = patches_table(scene);
-    let note = table.columns().iter().position(|c| c.name == "note");
+) {
     let mut warned = [0; Warning::ALL.len()];
     // A formula has no cells that a warning could be about.
     let mut counted = 0;
@@ -185,39 +181,47 @@ fn gather(
         };
         outcome.stopped |= !result.complete;
         outcome.kept += result.kept;
-        for state in &result.states {
-            outcome.failed += usize::from(state.failed);
+        for record in &result.states {
+            outcome.states += 1;
+            outcome.failed += usize::from(record.converged().is_none());
             counted += usize::from(unit.numerics(scene).size() > 0);
-            if let Some(Value::Text(text)) = note.and_then(|i| state.row.get(i)) {
-                let warnings: Vec<Warning> = Warning::in_note(text).collect();
-                if warnings.is_empty() && !outcome.notes.contains(text) {
-                    outcome.notes.push(text.clone());
+            match &record.answer {
+                Answer::Refused(reason) if !outcome.notes.contains(reason) => {
+                    outcome.notes.push(reason.clone())
                 }
-                for warning in warnings {
-                    warned[warning as usize] += 1;
+                Answer::Refused(_) => {}
+                Answer::State(solved) => {
+                    for &warning in &solved.warnings {
+                        warned[warning as usize] += 1;
+                    }
                 }
             }
-            table.push(state.row.clone()).map_err(runs::Error::model("a row"))?;
-            for area in &state.patches {
-                let row = vec![
-                    unit.numerics(scene).name().into(),
-                    unit.surface.into(),
-                    state.index.into(),
-                    (*area).into(),
-                ];
-                patches.push(row).map_err(runs::Error::model("a patch"))?;
-            }
-            let shown = state.files.iter().filter(|file| !file.is_hidden());
+            let shown = record.files.iter().filter(|file| !file.is_hidden());
             outcome.files.extend(shown.map(|file| options.out.join(&file.name)));
         }
     }
-    outcome.states = table.rows().len();
     for (warning, count) in Warning::ALL.into_iter().zip(warned).filter(|(_, count)| *count > 0) {
         outcome.notes.push(format!(
             "{} ({count} of {counted} states): {}",
             warning.as_str(),
             warning.remedy()
         ));
+    }
+}
+
+/// Rows of all states in their order, and of the connected contacts of each.
+fn tables(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Result<Tables> {
+    let mut table = Table::new(title(scene), columns::columns(scene));
+    let mut patches = patches_table(scene);
+    for unit in units {
+        for record in unit.states {
+            table.push(columns::row(scene, unit, record)).map_err(runs::Error::model("a row"))?;
+            let areas = record.solved().and_then(|solved| solved.state.patches.as_ref());
+            for area in areas.map_or(&[][..], contact_model::Patches::areas) {
+                let row = vec![unit.model.into(), unit.surface.into(), record.index.into(), (*area).into()];
+                patches.push(row).map_err(runs::Error::model("a patch"))?;
+            }
+        }
     }
     Ok(Tables { states: table, patches })
 }
@@ -284,31 +288,25 @@ fn patches_table(scene: &SceneFile) -> Table {
     Table::new(format!("{}: connected contact areas", title(scene)), columns)
 }
 
-/// What each model did, summed over its rows.
+/// What each model did, summed over its states.
 fn actual(
     scene: &SceneFile,
     units: &[ModelOnSurface],
     results: &[Option<ModelResult>],
-    table: &Table,
 ) -> Vec<(&'static str, Cost, u64)> {
-    let column = |name: &str| table.columns().iter().position(|c| c.name == name);
-    let places = ["applications", "linear_solves", "fields", "field_bytes"].map(column);
     let mut list: Vec<(&'static str, Cost, u64)> =
         scene.models.iter().map(|m| (m.name(), Cost::default(), 0)).collect();
     for (unit, result) in units.iter().zip(results) {
         let (Some(result), Some((_, cost, bytes))) = (result, list.get_mut(unit.model)) else { continue };
         cost.seconds += result.seconds;
-        for StateResult { row, files, .. } in &result.states {
-            *bytes += files.iter().map(|file| file.bytes).sum::<u64>();
-            let count = |place: Option<usize>| match place.and_then(|i| row.get(i)) {
-                Some(Value::Count(n)) => *n as f64,
-                _ => 0.0,
-            };
-            let [applications, linear_solves, fields, field_bytes] = places.map(count);
-            cost.applications += applications;
-            cost.linear_solves += linear_solves;
-            cost.fields += fields;
-            cost.field_bytes += field_bytes;
+        for record in &result.states {
+            *bytes += record.files.iter().map(|file| file.bytes).sum::<u64>();
+            let Some(solved) = record.solved() else { continue };
+            let report = &solved.state.report;
+            cost.applications += report.applications as f64;
+            cost.linear_solves += report.work.linear_solves as f64;
+            cost.fields += report.work.fields as f64;
+            cost.field_bytes += report.work.bytes as f64;
         }
     }
     list

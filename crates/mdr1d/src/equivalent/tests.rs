@@ -2,8 +2,8 @@ use super::*;
 use crate::{Mdr1d, PartialSlip, Viscoelastic};
 use approx::assert_relative_eq;
 use contact_model::{
-    Adhesion, Body, Conductance, ContactState, Pair, PreparedContact, PronySeries, Relaxing, SelfAffine,
-    SolveReport, Surface,
+    Abilities, Adhesion, Body, Conductance, ContactModel, ContactState, Load, Output, Pair, PreparedContact,
+    PronySeries, Relaxing, Rheology, SelfAffine, SolveReport, Step, Stop, Surface, SurfaceKind,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -64,7 +64,7 @@ fn difference(surface: &Surface, per_decade: u32) -> [f64; 4] {
     let scene = sliding(surface.clone());
     let exact = PartialSlip.prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let found = equivalent(per_decade).prepare(&scene, 0).unwrap().follow(&path).unwrap();
-    let numbers = |state: &HistoryState| {
+    let numbers = |state: &ContactState| {
         let t = state.tangential.unwrap();
         [t.force, t.displacement, t.stick_radius.unwrap(), t.dissipated]
     };
@@ -110,7 +110,7 @@ fn a_step_of_a_viscoelastic_sphere_is_the_models_own_force_times_the_modulus() {
     for time in [0.0, 0.3, 4.0, 1e5] {
         let state = contact.advance(Step::normal(time, Load::Approach(0.01))).unwrap();
         let modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
-        assert_relative_eq!(state.normal.force, modulus * elastic, max_relative = 1e-12);
+        assert_relative_eq!(state.force, modulus * elastic, max_relative = 1e-12);
     }
     // A ramp needs the profile: the difference from exact springs falls with the nodes.
     let arms = [Relaxing { weight: 2.0, time: 0.1 }, Relaxing { weight: 1.0, time: 3.0 }];
@@ -119,10 +119,7 @@ fn a_step_of_a_viscoelastic_sphere_is_the_models_own_force_times_the_modulus() {
     let exact = Viscoelastic.prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let error = |per_decade: u32| {
         let found = equivalent(per_decade).prepare(&scene, 0).unwrap().follow(&path).unwrap();
-        found
-            .iter()
-            .zip(&exact)
-            .fold(0.0_f64, |worst, (a, b)| worst.max((a.normal.force / b.normal.force - 1.0).abs()))
+        found.iter().zip(&exact).fold(0.0_f64, |worst, (a, b)| worst.max((a.force / b.force - 1.0).abs()))
     };
     let (coarse, fine) = (error(4), error(16));
     assert!(coarse / fine > 30.0 && fine < 1e-6, "{coarse:e} {fine:e}");
@@ -131,7 +128,7 @@ fn a_step_of_a_viscoelastic_sphere_is_the_models_own_force_times_the_modulus() {
     let exact = Viscoelastic.prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let found = equivalent(4).prepare(&scene, 0).unwrap().follow(&path).unwrap();
     for (a, b) in found.iter().zip(&exact) {
-        assert_relative_eq!(a.normal.approach.unwrap(), b.normal.approach.unwrap(), max_relative = 1e-11);
+        assert_relative_eq!(a.approach.unwrap(), b.approach.unwrap(), max_relative = 1e-11);
     }
 }
 
@@ -147,7 +144,7 @@ fn the_normal_part_is_the_models_own() {
     assert_eq!(own.normalisation(), contact.normalisation());
     for normal in [1e-3, 4e-3, 2e-3, 0.0, 1e-2] {
         let normal = contact.normalisation().force(normal).unwrap();
-        let state = contact.advance(step(normal, Tangential::Force(0.3 * MU * normal))).unwrap().normal;
+        let state = contact.advance(step(normal, Tangential::Force(0.3 * MU * normal))).unwrap();
         let there = own.solve(Load::Force(normal)).unwrap();
         assert_eq!(
             (state.force, state.approach, state.stiffness),
@@ -167,7 +164,7 @@ fn limits_of_friction_on_a_rough_surface() {
         let normal = contact.normalisation().force(0.05).unwrap();
         let first = contact.advance(step(normal, Tangential::Force(0.0))).unwrap();
         let then = contact.advance(Step { time: 0.0, normal: Load::Force(normal), tangential });
-        (first.normal, then)
+        (first, then)
     };
     let shear = rubber().shear_modulus().unwrap() / rubber().modulus().unwrap();
     // mu -> infinity: a spring with k_x = (G*/E*) k, and no loss. The difference falls as 1/mu.
@@ -211,8 +208,11 @@ impl ContactModel for Scripted {
     fn sources(&self) -> &'static [Source] {
         &[]
     }
+    fn abilities(&self) -> Abilities {
+        Abilities { surfaces: SurfaceKind::ALL, outputs: Output::ALL, ..Abilities::ELASTIC }
+    }
     fn prepare(&self, scene: &Scene, _: u64) -> Result<Box<dyn PreparedContact>> {
-        scene.refuse_effects("told")?;
+        self.abilities().refuse("told", scene)?;
         assert!(!scene.outputs.any_field());
         Ok(Box::new(ScriptedContact { factor: self.factor, solves: self.solves }))
     }
@@ -320,14 +320,14 @@ fn growth_in_time_is_checked() {
     let late = contact.advance(Step::normal(1e6, Load::Approach(unit))).unwrap();
     let elastic = Scene { effects: Effects::default(), ..creeping(rough(), SOLID) };
     let own = Mdr1d { elements: 1 << 12 }.prepare(&elastic, 3).unwrap().solve(Load::Approach(unit)).unwrap();
-    assert_relative_eq!(late.normal.force, own.force, max_relative = 1e-12);
-    assert!(state.normal.force > late.normal.force);
+    assert_relative_eq!(late.force, own.force, max_relative = 1e-12);
+    assert!(state.force > late.force);
     // Creep of a fluid goes on beyond every table that was there before.
     let mut contact =
         equivalent(8).prepare(&creeping(rough(), Rheology::Maxwell { viscosity: 1.0 }), 3).unwrap();
     let force = contact.normalisation().force(1e-3).unwrap();
     let depths = [0.0, 1.0, 100.0, 1e4]
-        .map(|t| contact.advance(Step::normal(t, Load::Force(force))).unwrap().normal.approach.unwrap());
+        .map(|t| contact.advance(Step::normal(t, Load::Force(force))).unwrap().approach.unwrap());
     assert!(depths.windows(2).all(|d| d[1] > d[0]), "{depths:?}");
 }
 

@@ -1,6 +1,8 @@
 use super::*;
 use approx::assert_relative_eq;
-use contact_model::{Adhesion, Boundary, Conductance, Effects, HeightMap, SelfAffine, line_length};
+use contact_model::{
+    Adhesion, Boundary, Conductance, Effects, HeightMap, Load, PreparedContact, SelfAffine, line_length,
+};
 use std::sync::Arc;
 
 /// Rounding of a root and a handful of products.

@@ -1,6 +1,8 @@
 use super::*;
 use approx::assert_relative_eq;
-use contact_model::{Body, Friction, Pair, PronySeries, Relaxing, SelfAffine, Surface};
+use contact_model::{
+    Body, Friction, Load, Pair, PreparedContact, PronySeries, Relaxing, Rheology, SelfAffine, Step, Surface,
+};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -20,18 +22,18 @@ fn sphere() -> Surface {
 }
 
 #[allow(clippy::large_types_passed_by_value)]
-fn prepare(surface: Surface, rheology: Rheology) -> Box<dyn History> {
+fn prepare(surface: Surface, rheology: Rheology) -> Box<dyn PreparedContact> {
     Viscoelastic.prepare(&scene(surface, rheology), 0).unwrap()
 }
 
-fn force(contact: &mut dyn History, time: f64, approach: f64) -> f64 {
-    contact.advance(Step::normal(time, Load::Approach(approach))).unwrap().normal.force
+fn force(contact: &mut dyn PreparedContact, time: f64, approach: f64) -> f64 {
+    contact.advance(Step::normal(time, Load::Approach(approach))).unwrap().force
 }
 
-fn approach(contact: &mut dyn History, time: f64, force: f64) -> f64 {
+fn approach(contact: &mut dyn PreparedContact, time: f64, force: f64) -> f64 {
     let state = contact.advance(Step::normal(time, Load::Force(force))).unwrap();
-    assert!(state.normal.report.certificate.load_error < 1e-11);
-    state.normal.approach.unwrap()
+    assert!(state.report.certificate.load_error < 1e-11);
+    state.approach.unwrap()
 }
 
 const SOLID: Rheology = Rheology::StandardSolid { arm: Relaxing { weight: 3.0, time: 2.0 } };
@@ -119,7 +121,7 @@ fn in_any_units() {
         let mut contact = Viscoelastic.prepare(&scene, 0).unwrap();
         let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
         let force = nondimensional.force(1e-3).unwrap();
-        contact.advance(Step::normal(1.0, Load::Force(force))).unwrap().normal.approach.unwrap() / length
+        contact.advance(Step::normal(1.0, Load::Force(force))).unwrap().approach.unwrap() / length
     };
     for (length, modulus) in [(1e-150, 1e150), (1e150, 1e-150), (1e-3, 1e6)] {
         assert_relative_eq!(run(length, modulus), run(1.0, 1.0), max_relative = ROUNDING);
@@ -138,7 +140,7 @@ fn the_time_of_shrinking_is_named() {
     // Up to there it can be followed; there the speed is 0: Phi' = (F - E* Phi)/(4 eta).
     let force = 0.01 * (11.0 - max) / 10.0;
     let state = contact.advance(Step::normal(max, Load::Force(force))).unwrap();
-    let d = state.normal.approach.unwrap();
+    let d = state.approach.unwrap();
     assert_relative_eq!(16.0 / 3.0 * d.powf(1.5), force, max_relative = 1e-9);
     assert!(contact.advance(Step::normal(max + 0.01, Load::Force(force - 1e-5))).is_err());
 

@@ -6,8 +6,8 @@ use crate::maps::{map, rough_map, scene};
 use crate::plain::PlainSum;
 use bem3d::{Bem3d, Bem3dPath};
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, ContactState, Error, HeightMap, History, HistoryModel, Load, Result,
-    Scene, Step,
+    Adhesion, AdhesionLaw, Boundary, ContactModel, ContactState, Error, HeightMap, Load, PreparedContact,
+    Result, Scene, Step,
 };
 
 /// Tolerance of the solves.
@@ -59,12 +59,12 @@ fn attracted(map: &HeightMap, work: f64, range: f64) -> Scene {
     scene
 }
 
-pub(super) fn path(scene: &Scene) -> Result<Box<dyn History>> {
+pub(super) fn path(scene: &Scene) -> Result<Box<dyn PreparedContact>> {
     Bem3dPath(Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }).prepare(scene, 0)
 }
 
-pub(super) fn go(history: &mut dyn History, load: Load) -> Result<ContactState> {
-    Ok(history.advance(Step::normal(0.0, load))?.normal)
+pub(super) fn go(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState> {
+    Ok(history.advance(Step::normal(0.0, load))?)
 }
 
 /// What a state with free boundaries leaves open: of open cells the difference between the traction and the law of the gap, of closed ones

@@ -1,9 +1,8 @@
 //! `accuracy` in `[scene]`: the grid that an accuracy asks for, instead of the other way round.
 
 use crate::scenes::plan::calibration;
-use crate::scenes::plan::grid_comparison::{COMPARED, GridErrors, Quantities, on_grid, solve};
+use crate::scenes::plan::grid_comparison::{GridErrors, Numbers, compared, on_grid, solve};
 use crate::scenes::read::accuracy_target::AccuracyTarget;
-use crate::scenes::read::any_model::AnyModel;
 use crate::scenes::read::diagnostic::Diagnostic;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::human_readable::short;
@@ -14,7 +13,8 @@ use crate::scenes::read::scene_file::{SceneFile, cells};
 use crate::scenes::read::words;
 use analysis::grid_error;
 use bem3d::Bem3d;
-use contact_model::{Boundary, Cells, Conductance, Load};
+use contact_model::quantities::{AskedBy, Quantity};
+use contact_model::{Boundary, Cells, Load};
 use std::time::Instant;
 
 /// Polled from any thread, between iterations: `true` means stop now.
@@ -33,23 +33,19 @@ pub(crate) fn within(scene: &SceneFile, errors: &GridErrors, share: f64) -> bool
     largest(scene, errors).is_some_and(|error| error <= share)
 }
 
-/// Which numbers an accuracy is about: places in [`COMPARED`].
-fn controlled(scene: &SceneFile) -> Vec<usize> {
-    let outputs = &scene.requested.outputs;
-    let asked = [
-        ("stiffness", outputs.stiffness),
-        ("stiffness_fixed_area", outputs.stiffness_fixed_area),
-        ("area_corrected", outputs.area),
-        ("conductance", outputs.conductance != Conductance::Off),
-        ("mean_gap", outputs.mean_gap),
-    ];
-    let place = |name: &str| COMPARED.iter().position(|compared| *compared == name);
-    asked.into_iter().filter(|(_, asked)| *asked).filter_map(|(name, _)| place(name)).collect()
+/// Which numbers an accuracy is about: those asked for whose error of the grid is estimated. Of the area it is the corrected one, and
+/// the largest pressure, which every scene has, is none of them.
+fn controlled(scene: &SceneFile) -> Vec<&'static str> {
+    let asked = |quantity: &&Quantity| match quantity.asked_by {
+        AskedBy::Output(output) => scene.requested.outputs.asks(output),
+        _ => false,
+    };
+    compared().filter(asked).map(|quantity| quantity.name).filter(|name| *name != "area").collect()
 }
 
 /// The largest error of what an accuracy is about; `None` where one is unknown.
 fn largest(scene: &SceneFile, errors: &GridErrors) -> Option<f64> {
-    controlled(scene).into_iter().try_fold(0.0_f64, |largest, i| Some(largest.max(errors[i]?.error)))
+    controlled(scene).into_iter().try_fold(0.0_f64, |largest, name| Some(largest.max(errors.of(name)?.error)))
 }
 
 impl SceneFile {
@@ -120,7 +116,7 @@ impl SceneFile {
         let loads = loads(self, &model, normalised_on.copied().unwrap_or(COARSEST)).map_err(failed)?;
         let runs = WITH_COARSER * self.sampling.surfaces as f64;
         let begun = Instant::now();
-        let mut solved: Vec<Vec<Option<Quantities>>> = Vec::new();
+        let mut solved: Vec<Vec<Option<Numbers>>> = Vec::new();
         let (mut took, mut before): (f64, Option<Worst>) = (0.0, None);
         for (rung, &longer) in rungs.iter().enumerate() {
             let grown = longer as f64 / rungs[rung.saturating_sub(1)] as f64;
@@ -193,18 +189,17 @@ struct Chosen {
 /// The largest error of a grid.
 struct Worst {
     error: f64,
-    /// Place in [`COMPARED`], and number of the load.
-    quantity: usize,
+    /// Name of the quantity, and number of the load.
+    quantity: &'static str,
     load: usize,
 }
 
 impl Worst {
     /// Of the last grid, compared with the two before it; loads that a grid refuses are left out: the run says so.
-    fn of(quantities: &[usize], solved: &[Vec<Option<Quantities>>]) -> Option<Self> {
+    fn of(quantities: &[&'static str], solved: &[Vec<Option<Numbers>>]) -> Option<Self> {
         let [.., quarter, half, fine] = solved else { return None };
-        let one = |(load, quantity): (usize, usize)| {
-            let number =
-                |grid: &Vec<Option<Quantities>>| grid[load].as_ref().and_then(|found| found[quantity]);
+        let one = |(load, quantity): (usize, &'static str)| {
+            let number = |grid: &Vec<Option<Numbers>>| grid[load].as_ref()?.get(quantity).copied();
             let error = grid_error(number(fine)?, number(half)?, number(quarter)?)?.error;
             Some(Self { error, quantity, load })
         };
@@ -213,7 +208,7 @@ impl Worst {
     }
 
     fn words(&self, scene: &SceneFile) -> String {
-        format!("`{}` under {}", COMPARED[self.quantity], words::load(scene, self.load))
+        format!("`{}` under {}", self.quantity, words::load(scene, self.load))
     }
 }
 
@@ -254,10 +249,9 @@ fn rungs(scene: &SceneFile) -> Vec<usize> {
 /// The loads of a scene for surface 0 on a grid, in its own normalisation.
 fn loads(scene: &SceneFile, model: &Numerics, longer: usize) -> contact_model::Result<Vec<Load>> {
     let grid = on_grid(scene, model, longer)?;
-    let (Loading::Loads(loads), AnyModel::Contact(model)) = (&scene.request, grid.models[0].model()) else {
-        return Ok(Vec::new());
-    };
+    let Loading::Loads(loads) = &scene.request else { return Ok(Vec::new()) };
     let seed = scene.seed(0);
-    let normalisation = model.prepare(&grid.scene(&grid.models[0], seed)?, seed)?.normalisation();
+    let normalisation =
+        grid.models[0].model().prepare(&grid.scene(&grid.models[0], seed)?, seed)?.normalisation();
     loads.values.iter().map(|&value| loads.load(value, &normalisation)).collect()
 }

@@ -28,7 +28,7 @@ impl Assumptions {
         if !periodic && !scene.models.iter().any(Numerics::is_statistical) {
             return None;
         }
-        let fits = scene.models.iter().any(|m| matches!(m, Numerics::PowerLaw));
+        let fits = scene.models.iter().any(|m| m.name() == "power_law");
         let fit = if fits { SelfAffineFit::new(map).ok() } else { None };
         Some(Self(MapStatistics::new(map).ok()?, fit))
     }
@@ -45,7 +45,7 @@ impl Assumptions {
                 let [count, radius, scatter] = [count, radius, scatter].map(number);
                 format!("{count} summits of radius {radius}, scatter {scatter} ({how}; m4 is that of the shortest waves)")
             }
-            Numerics::PowerLaw => fit.map_or_else(String::new, |SelfAffineFit { hurst, fitted, .. }| {
+            Numerics::Formula(record) if record.name() == "power_law" => fit.map_or_else(String::new, |SelfAffineFit { hurst, fitted, .. }| {
                 let [long, short] = fitted.map(|q| number(TAU / q));
                 format!("D_f = {:.3}, fitted to waves of length {long} to {short}", 3.0 - hurst)
             }),

@@ -1,7 +1,6 @@
 //! The cost of a run, predicted from small solves of the same kind.
 
 use crate::scenes::plan::cost::Cost;
-use crate::scenes::read::any_model::AnyModel;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::loads::Loading;
 use crate::scenes::read::numerics::Numerics;
@@ -54,7 +53,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let count = grid.columns as f64 * grid.rows as f64;
     let per_state = total / (solved.states.max(1)) as f64;
     let (time, applications) = match numerics {
-        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) if used > 0 => {
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) if used > 0 => {
             // Cells a side of the squares of as many cells.
             let ratio = (count / used as f64).sqrt();
             if let Adhesion::ShortRange { .. } = scene.effects.adhesion {
@@ -81,7 +80,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     cost.linear_solves *= per_state;
     cost.fields *= per_state;
     let outputs = &scene.requested.outputs;
-    if let Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) = numerics {
+    if let Numerics::Bem3d(_) | Numerics::Equivalent(_) = numerics {
         let named = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
         let fields = named.iter().filter(|f| **f).count() as f64;
         cost.fields = fields * total;
@@ -97,9 +96,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
 pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let Cells { columns, rows } = cells(scene, numerics);
     let bytes = match numerics {
-        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) => {
-            BYTES_PER_CELL * columns as f64 * rows as f64
-        }
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) => BYTES_PER_CELL * columns as f64 * rows as f64,
         _ => BYTES_PER_ELEMENT * numerics.size() as f64,
     };
     bytes.max(1.0)
@@ -170,10 +167,10 @@ fn small_solves(
     }
     let size = grid.and_then(Cells::checked_count).unwrap_or(0);
     let (mut solved, begun) = (PilotSolve::default(), Instant::now());
-    match (numerics.model(), &scene.request) {
-        (AnyModel::Contact(model), Loading::Loads(loads)) => {
-            let mut contact = model.prepare(&physics, seed)?;
-            solved.prepare = begun.elapsed().as_secs_f64();
+    let mut contact = numerics.prepare(&physics, seed, scene.is_history())?;
+    solved.prepare = begun.elapsed().as_secs_f64();
+    match &scene.request {
+        Loading::Loads(loads) => {
             let normalisation = contact.normalisation();
             let count = loads.values.len();
             let used = count.min(CALIBRATION_LOADS);
@@ -188,16 +185,13 @@ fn small_solves(
                 solved.count(begun, &state, size);
             }
         }
-        (AnyModel::History(model), Loading::Path(steps)) => {
-            let mut contact = model.prepare(&physics, seed)?;
-            solved.prepare = begun.elapsed().as_secs_f64();
+        Loading::Path(steps) => {
             for step in steps {
                 let begun = Instant::now();
                 let Ok(state) = contact.advance_until(*step, stop) else { break };
-                solved.count(begun, &state.normal, size);
+                solved.count(begun, &state, size);
             }
         }
-        _ => {}
     }
     Ok((solved, size))
 }

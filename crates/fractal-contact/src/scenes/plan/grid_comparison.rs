@@ -1,57 +1,68 @@
 //! What the grid does to a state: the same load on the same surface with cells twice and four times as large.
 
-use crate::scenes::read::any_model::AnyModel;
 use crate::scenes::read::numerics::Numerics;
 use crate::scenes::read::scene_file::{SceneFile, cells};
 use analysis::{GridError, grid_error};
-use contact_model::{Boundary, Cells, ContactState, Error, HeightMap, Load, Result, Scene, Stop, Surface};
+use contact_model::quantities::{Compared, QUANTITIES, Quantity};
+use contact_model::{
+    Boundary, Cells, ContactState, Error, HeightMap, Load, Normalisation, Output, Result, Scene, Stop,
+    Surface,
+};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Grids with fewer cells along their longer side say nothing.
 const FEWEST_CELLS: usize = 16;
 
-/// Names of what is compared, in the order of [`Quantities`]; the table has columns for those that it holds.
-pub(crate) const COMPARED: [&str; 8] = [
-    "stiffness",
-    "stiffness_fixed_area",
-    "area",
-    "area_corrected",
-    "conductance",
-    "mean_gap",
-    LARGEST_PRESSURE,
-    "rms_slope",
-];
+/// Name of the slope of a surface in tables of what a grid does.
+pub(crate) const RMS_SLOPE: &str = "rms_slope";
 
-/// At an edge of a free rectangle, and at a spike, this grows without limit as cells shrink: its error there is not known.
-const LARGEST_PRESSURE: &str = "largest_pressure";
+/// Numbers of one state on one grid, by their names; those that the model does not claim are absent.
+pub(crate) type Numbers = BTreeMap<&'static str, f64>;
 
-/// Numbers of one state on one grid.
-pub(crate) type Quantities = [Option<f64>; COMPARED.len()];
+/// What the grid does to a state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct GridErrors {
+    /// Rms slope of the surface on its own grid.
+    pub rms_slope: f64,
+    /// Errors by the names of quantities, and of the slope.
+    pub errors: BTreeMap<String, GridError>,
+}
 
-/// Their errors.
-pub(crate) type GridErrors = [Option<GridError>; COMPARED.len()];
+impl GridErrors {
+    /// The error of a quantity, where it is known.
+    pub fn of(&self, name: &str) -> Option<GridError> {
+        self.errors.get(name).copied()
+    }
+}
 
-fn quantities(state: &ContactState, rms_slope: f64) -> Quantities {
-    let (corrected, pressure) =
-        (state.resolution.and_then(|r| r.corrected_area), state.resolution.map(|r| r.largest_pressure));
-    [
-        state.stiffness,
-        state.stiffness_fixed_area,
-        state.area,
-        corrected,
-        state.conductance,
-        state.mean_gap,
-        pressure,
-        Some(rms_slope),
-    ]
+/// The quantities that are compared, where a scene asks for them.
+pub(crate) fn compared() -> impl Iterator<Item = &'static Quantity> {
+    QUANTITIES.iter().filter(|quantity| quantity.compared != Compared::No)
+}
+
+fn numbers(state: &ContactState, normalisation: &Normalisation, rms_slope: f64) -> Numbers {
+    let found = compared().filter_map(|q| Some((q.name, q.number(state, normalisation)?)));
+    found.chain([(RMS_SLOPE, rms_slope)]).collect()
 }
 
 /// Their errors from three grids, where they are known to hold.
-fn errors(boundary: Boundary, fine: &Quantities, half: &Quantities, quarter: &Quantities) -> GridErrors {
-    std::array::from_fn(|i| {
-        let known = COMPARED[i] != LARGEST_PRESSURE || boundary == Boundary::Periodic;
-        known.then(|| grid_error(fine[i]?, half[i]?, quarter[i]?)).flatten()
-    })
+fn errors(
+    boundary: Boundary,
+    fine: &Numbers,
+    half: &Numbers,
+    quarter: &Numbers,
+) -> BTreeMap<String, GridError> {
+    let unknown = |name: &str| {
+        boundary != Boundary::Periodic
+            && Quantity::named(name).is_some_and(|quantity| quantity.compared == Compared::Periodic)
+    };
+    let error = |(&name, &fine): (&&'static str, &f64)| {
+        let error = grid_error(fine, *half.get(name)?, *quarter.get(name)?)?;
+        (!unknown(name)).then(|| (name.to_owned(), error))
+    };
+    fine.iter().filter_map(error).collect()
 }
 
 /// The states of a surface on coarser grids.
@@ -60,7 +71,7 @@ pub(crate) struct GridComparison {
     pub rms_slope: f64,
     boundary: Boundary,
     /// Under each load, with cells twice and four times as large; `None` where a grid does not answer.
-    coarser: Vec<Option<[Quantities; 2]>>,
+    coarser: Vec<Option<[Numbers; 2]>>,
 }
 
 impl GridComparison {
@@ -90,13 +101,14 @@ impl GridComparison {
     }
 
     /// The errors of a state under load number `index`.
-    pub fn errors(&self, index: usize, state: &ContactState) -> GridErrors {
-        match self.coarser.get(index) {
+    pub fn errors(&self, index: usize, state: &ContactState, normalisation: &Normalisation) -> GridErrors {
+        let errors = match self.coarser.get(index) {
             Some(Some([half, quarter])) => {
-                errors(self.boundary, &quantities(state, self.rms_slope), half, quarter)
+                errors(self.boundary, &numbers(state, normalisation, self.rms_slope), half, quarter)
             }
-            _ => GridErrors::default(),
-        }
+            _ => BTreeMap::new(),
+        };
+        GridErrors { rms_slope: self.rms_slope, errors }
     }
 }
 
@@ -114,17 +126,20 @@ pub(crate) fn solve(
     seed: u64,
     loads: &[Load],
     stop: Stop<'_>,
-) -> Result<Vec<Option<Quantities>>> {
+) -> Result<Vec<Option<Numbers>>> {
     let numerics = &scene.models[0];
     let slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
     let mut found = vec![None; loads.len()];
-    let AnyModel::Contact(model) = numerics.model() else { return Ok(found) };
     let mut outputs = scene.requested.outputs;
-    (outputs.pressure, outputs.displacement, outputs.gap, outputs.contact_patches) =
-        (false, false, false, false);
+    for &output in Output::ALL.iter().filter(|output| output.is_field() || **output == Output::ContactPatches)
+    {
+        outputs.ask(output, false);
+    }
     let physics = Scene { outputs, ..scene.scene(numerics, seed)? };
-    model.prepare(&physics, seed)?.sweep(loads, stop, &mut |i, state| {
-        found[i] = state.ok().map(|state| quantities(&state, slope));
+    let mut contact = numerics.prepare(&physics, seed, false)?;
+    let normalisation = contact.normalisation();
+    contact.sweep(loads, stop, &mut |i, state| {
+        found[i] = state.ok().map(|state| numbers(&state, &normalisation, slope));
         Ok(())
     })?;
     Ok(found)
@@ -159,17 +174,13 @@ mod tests {
     /// With free edges 37 of 54 errors of the largest pressure were inside their estimates, of the other numbers 94 to 98 %.
     #[test]
     fn the_largest_pressure_has_no_error_where_its_limit_may_be_infinite() {
-        let [fine, half, quarter] = [1.0, 1.1, 1.3].map(|value| [Some(value); COMPARED.len()]);
-        let known = |boundary| {
+        let all = || compared().map(|quantity| quantity.name).chain([RMS_SLOPE]);
+        let [fine, half, quarter] = [1.0, 1.1, 1.3].map(|value| all().map(|name| (name, value)).collect());
+        let unknown = |boundary| {
             let errors = errors(boundary, &fine, &half, &quarter);
-            COMPARED
-                .into_iter()
-                .zip(errors)
-                .filter(|(_, error)| error.is_none())
-                .map(|(name, _)| name)
-                .collect()
+            all().filter(|name| !errors.contains_key(*name)).collect()
         };
-        let (free, periodic): (Vec<_>, Vec<_>) = (known(Boundary::Free), known(Boundary::Periodic));
-        assert_eq!((free, periodic), (vec![LARGEST_PRESSURE], vec![]));
+        let (free, periodic): (Vec<_>, Vec<_>) = (unknown(Boundary::Free), unknown(Boundary::Periodic));
+        assert_eq!((free, periodic), (vec!["largest_pressure"], vec![]));
     }
 }

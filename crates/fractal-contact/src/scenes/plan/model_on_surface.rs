@@ -1,12 +1,11 @@
 //! One model and one surface: what is solved, stored and divided as a whole.
 
-use crate::scenes::read::any_model::AnyModel;
 use crate::scenes::read::numerics::Numerics;
 use crate::scenes::read::scene_file::{SceneFile, cells};
 use contact_model::{Cells, Scene};
 
-/// Number of the format of stored units; it changes with anything that changes a row.
-pub(crate) const FORMAT: u32 = 7;
+/// Number of the format of stored units; it changes with anything that changes a state.
+pub(crate) const FORMAT: u32 = 8;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,19 +46,19 @@ impl ModelOnSurface {
         let states = scene.request.count() as u64;
         match numerics {
             // A microsecond for each cell and state.
-            Numerics::Bem3d(_) | Numerics::Bem3dPath(_) => 1 + count * states / 1000,
+            Numerics::Bem3d(_) => 1 + count * states / 1000,
             Numerics::Equivalent(_) => 1 + count * (states + 49) / 1000,
             Numerics::Mdr1d(_) => 1 + n / 10_000,
             _ => 1,
         }
     }
 
-    /// Bytes of its rows and of the fields that are asked for.
-    pub fn stored_bytes(&self, scene: &SceneFile, columns: usize) -> u64 {
+    /// Bytes of its states and of the fields that are asked for.
+    pub fn stored_bytes(&self, scene: &SceneFile) -> u64 {
         let states = scene.request.count() as u64;
         let fields: usize = scene.requested.fields().iter().map(|(_, formats)| formats.len()).sum();
         let Cells { columns: x, rows: y } = cells(scene, self.numerics(scene));
-        1000 + states * (20 * columns as u64 + 8 * x as u64 * y as u64 * fields as u64)
+        1000 + states * (1000 + 8 * x as u64 * y as u64 * fields as u64)
     }
 
     /// Errors where this model cannot answer the scene, found out on a small grid; what that grid refuses for
@@ -78,8 +77,5 @@ impl ModelOnSurface {
 pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics) -> contact_model::Result<()> {
     let seed = scene.seed(0);
     let physics: Scene = scene.scene(numerics, seed)?;
-    match numerics.model() {
-        AnyModel::Contact(model) => model.prepare(&physics, seed).map(|_| ()),
-        AnyModel::History(model) => model.prepare(&physics, seed).map(|_| ()),
-    }
+    numerics.prepare(&physics, seed, scene.is_history()).map(|_| ())
 }

@@ -81,9 +81,7 @@ fn refused(scene: &SceneFile, error: &contact_model::Error) -> Diagnostic {
     if !matches!(error, contact_model::Error::Unsupported { .. }) {
         return Diagnostic::new(error.to_string()).with_help("check the numbers of [scene] and of the model");
     }
-    let able: Vec<&str> = Numerics::ALL
-        .iter()
-        .filter(|m| m.is_history() == scene.is_history())
+    let able: Vec<&str> = Numerics::all()
         .map(|m| m.probe(scene.surface.size()))
         .filter(|m| probe(scene, m).is_ok())
         .map(|m| m.name())
@@ -196,7 +194,7 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
         Numerics::Bem3d(_) if scene.accuracy.is_some() && !scene.requested.grid_error => {
             "chosen for the accuracy when it is planned".into()
         }
-        Numerics::Bem3d(_) | Numerics::Bem3dPath(_) | Numerics::Equivalent(_) => {
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) => {
             let (cells, size) = (cells(scene, numerics), scene.surface.size());
             let Cells { columns, rows } = cells;
             let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);

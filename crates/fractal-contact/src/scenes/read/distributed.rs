@@ -5,7 +5,7 @@ use contact_model::{Field, Patches};
 /// Bins of pressures and gaps: the square root of the number of values, within these.
 const BINS: (usize, usize) = (4, 50);
 /// What may be distributed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Distributed {
     /// The pressure of the cells in contact, as a density over the nominal area: its integral is the contact fraction.
     Pressure,

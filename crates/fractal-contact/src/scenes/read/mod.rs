@@ -1,7 +1,6 @@
 //! A scene as it was written: from TOML to typed values, with the place of each mistake.
 
 pub(crate) mod accuracy_target;
-pub(crate) mod any_model;
 pub(crate) mod diagnostic;
 pub(crate) mod distributed;
 pub(crate) mod effects;
@@ -13,6 +12,7 @@ pub(crate) mod loads;
 pub(crate) mod numerics;
 pub(crate) mod outputs;
 pub(crate) mod random_surface;
+pub(crate) mod registered_model;
 pub(crate) mod registry;
 pub(crate) mod sampled;
 pub(crate) mod scan;

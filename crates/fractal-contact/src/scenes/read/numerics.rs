@@ -1,15 +1,13 @@
 //! The models by name, and what `[models.NAME]` says about their numerics.
 
-use crate::scenes::read::any_model::{AnyModel, RegisteredModel};
+use crate::models::{MODELS, ModelRecord};
 use crate::scenes::read::entries::{Entries, Entry, Read, suggestion};
+use crate::scenes::read::registered_model::RegisteredModel;
 use analytic::greenwood_williamson::SummitHeights;
-use analytic::{
-    AdhesiveWave, CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, MaugisDugdale, Persson,
-    PowerLaw, PowerLawBody, Westergaard,
-};
+use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::{Bem3d, Bem3dPath, Method};
-use contact_model::{Cells, Size};
-use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
+use contact_model::{Cells, ContactModel, PreparedContact, Scene, Size};
+use mdr1d::{Equivalent, Mdr1d};
 use std::sync::Arc;
 
 /// Largest grids: 54 GB for a light load (the square of this many cells), 4 GB for a line.
@@ -26,38 +24,16 @@ const PROBE_ELEMENTS: usize = 1 << 10;
 pub enum Numerics {
     /// Boundary elements in three dimensions.
     Bem3d(Bem3d),
-    /// The same along a path, a history: what `bem3d` is in a scene with one.
-    Bem3dPath(Bem3dPath),
     /// The method of reduction of dimensionality.
     Mdr1d(Mdr1d),
-    /// A sphere.
-    Hertz,
-    /// Bodies r^n.
-    PowerLawBody,
-    /// Flat faces.
-    FlatPunch,
-    /// A sphere with adhesion.
-    Jkr,
-    /// A sphere with adhesion of finite range.
-    MaugisDugdale,
-    /// The paper's fit.
-    PowerLaw,
-    /// Waves.
-    Westergaard,
-    /// Waves with adhesion.
-    AdhesiveWave,
     /// Persson's theory.
     Persson(Persson),
     /// Independent summits.
     GreenwoodWilliamson(GreenwoodWilliamson),
-    /// A sphere with friction, a history.
-    CattaneoMindlin,
-    /// Axisymmetric bodies with friction, a history.
-    PartialSlip,
-    /// Axisymmetric viscoelastic bodies, a history.
-    Viscoelastic,
-    /// Friction or rheology of any surface that boundary elements can press, a history.
+    /// Friction and rheology on the k(d) of boundary elements.
     Equivalent(Equivalent<Bem3d>),
+    /// A model without options, of [`crate::models::MODELS`].
+    Formula(&'static ModelRecord),
     /// A model of the user's own.
     Registered(RegisteredModel),
 }
@@ -73,85 +49,64 @@ fn reduced(model: Bem3d, most: usize, size: Size) -> Bem3d {
     Bem3d { cells: fewer(columns), rows: model.rows.map(|_| fewer(rows)), ..model }
 }
 
-/// What `[models.bem3d]` says by default.
-const BEM3D: Bem3d =
-    Bem3d { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto };
-
 impl Numerics {
-    /// Every model with its defaults.
-    pub const ALL: [Self; 16] = [
-        Self::Bem3d(BEM3D),
-        Self::Mdr1d(Mdr1d { elements: 1 << 16 }),
-        Self::Hertz,
-        Self::PowerLawBody,
-        Self::FlatPunch,
-        Self::Jkr,
-        Self::MaugisDugdale,
-        Self::PowerLaw,
-        Self::Westergaard,
-        Self::AdhesiveWave,
-        Self::Persson(Persson { gamma: 0.45 }),
-        Self::GreenwoodWilliamson(GreenwoodWilliamson { heights: SummitHeights::Gaussian }),
-        Self::CattaneoMindlin,
-        Self::PartialSlip,
-        Self::Viscoelastic,
-        Self::Equivalent(Equivalent { model: BEM3D, per_decade: 16, decades: 3 }),
-    ];
+    /// Every model of the library with its defaults, in the order of [`MODELS`].
+    pub fn all() -> impl Iterator<Item = Self> {
+        MODELS.iter().map(|record| match record.name() {
+            "bem3d" => Self::Bem3d(Bem3d::default()),
+            "mdr1d" => Self::Mdr1d(Mdr1d::default()),
+            "persson" => Self::Persson(Persson::default()),
+            "greenwood_williamson" => Self::GreenwoodWilliamson(GreenwoodWilliamson::default()),
+            "equivalent" => Self::Equivalent(Equivalent::new(Bem3d::default())),
+            _ => Self::Formula(record),
+        })
+    }
+
+    /// The model of the library of this name, with its defaults.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().find(|numerics| numerics.name() == name)
+    }
 
     /// The model itself.
-    pub fn model(&self) -> AnyModel {
+    pub fn model(&self) -> Arc<dyn ContactModel> {
         match *self {
+            Self::Bem3d(model) => Arc::new(model),
+            Self::Mdr1d(model) => Arc::new(model),
+            Self::Persson(model) => Arc::new(model),
+            Self::GreenwoodWilliamson(model) => Arc::new(model),
+            Self::Equivalent(model) => Arc::new(model),
+            Self::Formula(record) => Arc::new(record.model),
             Self::Registered(ref own) => own.model(),
-            Self::Bem3d(model) => AnyModel::Contact(Arc::new(model)),
-            Self::Bem3dPath(model) => AnyModel::History(Arc::new(model)),
-            Self::Mdr1d(model) => AnyModel::Contact(Arc::new(model)),
-            Self::Hertz => AnyModel::Contact(Arc::new(Hertz)),
-            Self::PowerLawBody => AnyModel::Contact(Arc::new(PowerLawBody)),
-            Self::FlatPunch => AnyModel::Contact(Arc::new(FlatPunch)),
-            Self::Jkr => AnyModel::Contact(Arc::new(Jkr)),
-            Self::MaugisDugdale => AnyModel::Contact(Arc::new(MaugisDugdale)),
-            Self::PowerLaw => AnyModel::Contact(Arc::new(PowerLaw)),
-            Self::Westergaard => AnyModel::Contact(Arc::new(Westergaard)),
-            Self::AdhesiveWave => AnyModel::Contact(Arc::new(AdhesiveWave)),
-            Self::Persson(model) => AnyModel::Contact(Arc::new(model)),
-            Self::GreenwoodWilliamson(model) => AnyModel::Contact(Arc::new(model)),
-            Self::CattaneoMindlin => AnyModel::History(Arc::new(CattaneoMindlin)),
-            Self::PartialSlip => AnyModel::History(Arc::new(PartialSlip)),
-            Self::Viscoelastic => AnyModel::History(Arc::new(Viscoelastic)),
-            Self::Equivalent(model) => AnyModel::History(Arc::new(model)),
+        }
+    }
+
+    /// A contact of a scene, for loads one by one or for a path.
+    ///
+    /// # Errors
+    /// As [`ContactModel::prepare`].
+    pub fn prepare(
+        &self,
+        scene: &Scene,
+        seed: u64,
+        path: bool,
+    ) -> contact_model::Result<Box<dyn PreparedContact>> {
+        match *self {
+            Self::Bem3d(model) if path => Bem3dPath(model).prepare(scene, seed),
+            _ => self.model().prepare(scene, seed),
         }
     }
 
     /// Its name, the same in code, CSV and README.
     pub fn name(&self) -> &'static str {
-        match self.model() {
-            AnyModel::Contact(model) => model.name(),
-            AnyModel::History(model) => model.name(),
+        match self {
+            Self::Registered(own) => own.name(),
+            other => other.model().name(),
         }
     }
 
-    /// Whether it follows a path rather than answers loads.
-    pub fn is_history(&self) -> bool {
-        match self {
-            Self::Registered(own) => own.is_history(),
-            _ => matches!(
-                self,
-                Self::CattaneoMindlin
-                    | Self::PartialSlip
-                    | Self::Viscoelastic
-                    | Self::Equivalent(_)
-                    | Self::Bem3dPath(_)
-            ),
-        }
-    }
-
-    /// The same along a path, where the model has an effect that depends on it.
-    #[must_use]
-    pub(crate) fn along_path(self) -> Self {
-        match self {
-            Self::Bem3d(model) => Self::Bem3dPath(Bem3dPath(model)),
-            other => other,
-        }
+    /// What is said of a model of the library.
+    fn record(&self) -> Option<&'static ModelRecord> {
+        ModelRecord::named(self.name())
     }
 
     /// Whether it answers for one surface rather than for the spectrum that it was drawn from: a theory gives the same for every seed.
@@ -161,7 +116,7 @@ impl Numerics {
 
     /// Whether it takes of a rough map what is measured on it, not the map.
     pub(crate) fn is_statistical(&self) -> bool {
-        matches!(self, Self::Persson(_) | Self::GreenwoodWilliamson(_) | Self::PowerLaw | Self::Mdr1d(_))
+        self.record().is_some_and(|record| record.is_statistical)
     }
 
     /// Whether its states cost enough to be kept on disk; a formula is evaluated again, so that no version
@@ -173,9 +128,7 @@ impl Numerics {
     /// Columns of a grid, elements of a line; 0 for a formula, and for a registered model.
     pub fn size(&self) -> usize {
         match self {
-            Self::Bem3d(numerics)
-            | Self::Bem3dPath(Bem3dPath(numerics))
-            | Self::Equivalent(Equivalent { model: numerics, .. }) => numerics.cells,
+            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => numerics.cells,
             Self::Mdr1d(model) => model.elements,
             _ => 0,
         }
@@ -184,9 +137,7 @@ impl Numerics {
     /// The numerics of boundary elements, where they press.
     pub fn boundary_elements(&self) -> Option<&Bem3d> {
         match self {
-            Self::Bem3d(numerics)
-            | Self::Bem3dPath(Bem3dPath(numerics))
-            | Self::Equivalent(Equivalent { model: numerics, .. }) => Some(numerics),
+            Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => Some(numerics),
             _ => None,
         }
     }
@@ -197,7 +148,6 @@ impl Numerics {
     pub fn reduced(self, cells: usize, elements: usize, size: Size) -> Self {
         match self {
             Self::Bem3d(model) => Self::Bem3d(reduced(model, cells, size)),
-            Self::Bem3dPath(Bem3dPath(model)) => Self::Bem3dPath(Bem3dPath(reduced(model, cells, size))),
             Self::Mdr1d(model) => Self::Mdr1d(Mdr1d { elements: model.elements.min(elements) }),
             Self::Equivalent(outer) => {
                 let model = reduced(outer.model, cells, size);
@@ -217,31 +167,19 @@ impl Numerics {
     pub fn accuracy(&self, rough: bool, cells: Cells) -> String {
         let Cells { columns, rows } = cells;
         match self {
-            Self::Bem3d(numerics) | Self::Bem3dPath(Bem3dPath(numerics)) => format!(
+            Self::Bem3d(numerics) => format!(
                 "every state is certified to {:e} (penetration, complementarity, load, and the stiffness where it is no difference quotient) on its {columns} x {rows} cells; the cells \
                  themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
                 numerics.tolerance
             ),
             Self::Mdr1d(_) if rough => "exact for its line; against three dimensions 7 to 18 % too stiff near F_bar = 1, exponents as 1/(1+H)".into(),
-            Self::Mdr1d(_) | Self::Hertz | Self::PowerLawBody | Self::Westergaard | Self::Jkr | Self::MaugisDugdale | Self::AdhesiveWave => "exact, to about 1e-13".into(),
-            Self::FlatPunch => "exact for the circle; the square's constant to 1e-6".into(),
-            Self::PowerLaw => "a fit: within the scatter of surfaces, 8 to 28 % at F_bar = 0.086".into(),
-            Self::Persson(_) => "a theory of an infinite random surface: beside the solved one of data/scenes/periodic-theories.toml its stiffness is up \
-                to a third low, its area 30 to 45 % low"
-                .into(),
-            Self::GreenwoodWilliamson(_) => "a theory of independent summits, for light loads: beside the solved surface of \
-                data/scenes/periodic-theories.toml its stiffness and area are off by up to 30 %"
-                .into(),
-            Self::CattaneoMindlin | Self::PartialSlip => {
-                "exact within Cattaneo's and Mindlin's assumptions (no coupling, slip along the load)".into()
-            }
             Self::Equivalent(_) => format!(
                 "the normal part is that of bem3d on {columns} x {rows} cells; tangential results are exact for round contacts, a few per cent off for \
                  others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
                  bodies, about two for rough ones (its uncertainty is in `strategy`)"
             ),
-            Self::Viscoelastic => "exact while the contact grows, which is checked; 1e-12".into(),
             Self::Registered(own) => format!("that of a model of the user's own, version \"{}\"", own.version()),
+            other => other.record().map_or_else(String::new, |record| record.accuracy.to_owned()),
         }
     }
 }
@@ -254,7 +192,7 @@ pub(crate) fn read_models<'a>(
 ) -> Read<Vec<(Numerics, Entry<'a>)>> {
     let entry = scene.require("models", "[\"bem3d\"]")?;
     let own = registered.iter().cloned().map(Numerics::Registered);
-    let known: Vec<Numerics> = Numerics::ALL.into_iter().chain(own).collect();
+    let known: Vec<Numerics> = Numerics::all().chain(own).collect();
     let names: Vec<&str> = known.iter().map(Numerics::name).collect();
     let mut models: Vec<(Numerics, Entry<'a>)> = Vec::new();
     for item in entry.list() {
@@ -383,19 +321,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_of_all_models_has_their_defaults() {
-        assert!(Numerics::ALL.contains(&Numerics::Bem3d(Bem3d::default())));
-        let Equivalent { per_decade, decades, .. } = Equivalent::new(Bem3d::default());
-        assert!(Numerics::ALL.contains(&Numerics::Equivalent(Equivalent {
-            model: BEM3D,
-            per_decade,
-            decades
-        })));
-        assert!(Numerics::ALL.contains(&Numerics::Mdr1d(Mdr1d::default())));
-        assert!(Numerics::ALL.contains(&Numerics::Persson(Persson::default())));
-        assert!(Numerics::ALL.contains(&Numerics::GreenwoodWilliamson(GreenwoodWilliamson::default())));
-        for numerics in Numerics::ALL {
-            assert_eq!(numerics.is_history(), matches!(numerics.model(), AnyModel::History(_)));
+    fn models_with_options_are_variants_and_have_the_numbers_of_their_records() {
+        for (numerics, record) in Numerics::all().zip(MODELS) {
+            assert_eq!(numerics.name(), record.name());
+            assert_eq!(matches!(numerics, Numerics::Formula(_)), !record.has_options, "{record:?}");
+            assert_eq!(numerics.model().abilities(), record.model.abilities());
         }
     }
 

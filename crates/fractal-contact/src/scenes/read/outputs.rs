@@ -2,7 +2,7 @@
 
 use crate::scenes::read::distributed::Distributed;
 use crate::scenes::read::entries::{Entries, Entry, Read, System};
-use contact_model::{Conductance, Outputs};
+use contact_model::{Conductance, Output, Outputs};
 use surface_io::Dimension;
 
 /// A file format of a field.
@@ -35,14 +35,8 @@ impl FieldFormat {
 pub struct RequestedOutputs {
     /// Of the models.
     pub outputs: Outputs,
-    /// Formats of the pressure field.
-    pub pressure: Vec<FieldFormat>,
-    /// Formats of the displacement field.
-    pub displacement: Vec<FieldFormat>,
-    /// Formats of the gap field.
-    pub gap: Vec<FieldFormat>,
-    /// Formats of the field of the plastic indentation.
-    pub plastic_depth: Vec<FieldFormat>,
+    /// Fields that files are asked of, with their formats.
+    pub files: Vec<(Output, Vec<FieldFormat>)>,
     /// Formats of the heights as they are solved: after crop, fill and detrend, or as drawn.
     pub heights: Vec<FieldFormat>,
     /// Distributions that are counted.
@@ -57,49 +51,36 @@ pub struct RequestedOutputs {
 
 impl RequestedOutputs {
     /// The fields with their formats; the heights belong to the first state.
-    pub fn fields(&self) -> [(&'static str, &[FieldFormat]); 5] {
-        let Self { pressure, displacement, gap, plastic_depth, heights, .. } = self;
-        [
-            ("pressure", pressure),
-            ("displacement", displacement),
-            ("gap", gap),
-            ("plastic_depth", plastic_depth),
-            ("heights", heights),
-        ]
+    pub fn fields(&self) -> Vec<(&'static str, &[FieldFormat])> {
+        let fields = Output::ALL.iter().filter(|output| output.is_field());
+        fields
+            .map(|&output| (output.name(), self.formats(output)))
+            .chain([("heights", &self.heights[..])])
+            .collect()
+    }
+
+    /// Formats of the files of a field.
+    pub fn formats(&self, field: Output) -> &[FieldFormat] {
+        self.files.iter().find(|(output, _)| *output == field).map_or(&[], |(_, formats)| formats)
     }
 
     /// Every output with whether it is asked for.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
-        let Outputs {
-            stiffness,
-            stiffness_fixed_area,
-            area,
-            mean_gap,
-            pressure,
-            displacement,
-            gap,
-            plastic_depth,
-            contact_patches,
-            conductance,
-        } = self.outputs;
-        vec![
-            ("stiffness", stiffness),
-            ("stiffness_fixed_area", stiffness_fixed_area),
-            ("area", area),
-            ("conductance", conductance != Conductance::Off),
-            ("contact_patches", contact_patches),
-            ("mean_gap", mean_gap),
-            ("pressure", pressure),
-            ("displacement", displacement),
-            ("gap", gap),
-            ("plastic_depth", plastic_depth),
+        let of_models = Output::ALL.iter().map(|&output| (output.name(), self.outputs.asks(output)));
+        let files = [
             ("heights", !self.heights.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
             ("curves", self.curves),
             ("statistics", self.statistics),
-        ]
+        ];
+        of_models.chain(files).collect()
     }
+}
+
+/// The keys of `[outputs]`.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    RequestedOutputs::default().lines().into_iter().map(|(name, _)| name)
 }
 
 /// Reads `[outputs]`.
@@ -107,24 +88,27 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     let mut requested = RequestedOutputs::default();
     let Some(table) = table else { return Ok(requested) };
     let flag = |key: &'static str| table.find(key).map_or(Ok(false), |e| e.flag());
-    let outputs = &mut requested.outputs;
-    outputs.stiffness = flag("stiffness")?;
-    outputs.stiffness_fixed_area = flag("stiffness_fixed_area")?;
-    outputs.area = flag("area")?;
-    outputs.contact_patches = flag("contact_patches")?;
-    requested.outputs.mean_gap = flag("mean_gap")?;
+    let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
+    for &output in Output::ALL {
+        match output {
+            Output::Conductance => {
+                if let Some(entry) = table.find("conductance") {
+                    requested.outputs.conductance = read_conductance(&entry, system)?;
+                }
+            }
+            field if field.is_field() => {
+                let formats = formats(field.name())?;
+                if !formats.is_empty() {
+                    requested.files.push((field, formats));
+                }
+            }
+            number => requested.outputs.ask(number, flag(number.name())?),
+        }
+    }
     requested.grid_error = flag("grid_error")?;
     requested.curves = flag("curves")?;
     requested.statistics = flag("statistics")?;
-    let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
-    requested.pressure = formats("pressure")?;
-    requested.displacement = formats("displacement")?;
-    requested.gap = formats("gap")?;
-    requested.plastic_depth = formats("plastic_depth")?;
     requested.heights = formats("heights")?;
-    if let Some(entry) = table.find("conductance") {
-        requested.outputs.conductance = read_conductance(&entry, system)?;
-    }
     if let Some(entry) = table.find("distributions") {
         for item in entry.list() {
             let of = item.choice(&Distributed::ALL)?;
@@ -134,19 +118,18 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
         }
     }
     let counted = |of: Distributed| requested.distributions.contains(&of);
-    // Pictures outline the contact.
-    let outlined = [&requested.gap, &requested.displacement, &requested.plastic_depth]
-        .iter()
-        .any(|f| f.contains(&FieldFormat::Png));
-    // Where there is contact, the gap is rounding.
-    requested.outputs.pressure = !requested.pressure.is_empty()
-        || outlined
-        || counted(Distributed::Pressure)
-        || counted(Distributed::Gap);
-    requested.outputs.displacement = !requested.displacement.is_empty();
-    requested.outputs.gap = !requested.gap.is_empty() || counted(Distributed::Gap);
-    requested.outputs.plastic_depth = !requested.plastic_depth.is_empty();
-    requested.outputs.contact_patches |= counted(Distributed::Patches);
+    // Pictures outline the contact, and where there is contact, the gap is rounding.
+    let outlined = requested.files.iter().any(|(_, formats)| formats.contains(&FieldFormat::Png));
+    let pressure = outlined || counted(Distributed::Pressure) || counted(Distributed::Gap);
+    let gap = counted(Distributed::Gap);
+    let patches = counted(Distributed::Patches);
+    for &field in Output::ALL.iter().filter(|output| output.is_field()) {
+        let asked = !requested.formats(field).is_empty();
+        requested.outputs.ask(field, asked);
+    }
+    requested.outputs.pressure |= pressure;
+    requested.outputs.gap |= gap;
+    requested.outputs.contact_patches |= patches;
     table.finish()?;
     Ok(requested)
 }

@@ -1,9 +1,9 @@
 //! Models written by the user, under names that scenes may use.
 
-use crate::scenes::read::any_model::{AnyModel, RegisteredModel};
+use crate::models::ModelRecord;
 use crate::scenes::read::error::{Error, Result};
-use crate::scenes::read::numerics::Numerics;
-use contact_model::{ContactModel, HistoryModel};
+use crate::scenes::read::registered_model::RegisteredModel;
+use contact_model::ContactModel;
 use std::sync::Arc;
 
 /// Models written by the user, which scenes name beside those of the library.
@@ -23,6 +23,9 @@ use std::sync::Arc;
 ///     }
 ///     fn sources(&self) -> &'static [contact_model::Source] {
 ///         &[]
+///     }
+///     fn abilities(&self) -> contact_model::Abilities {
+///         analytic::Hertz.abilities()
 ///     }
 ///     fn prepare(
 ///         &self,
@@ -58,20 +61,7 @@ impl Registry {
     /// `a` to `z`, digits and `_` (it is part of names of files), and an empty version.
     pub fn with(self, model: impl ContactModel + 'static, version: impl Into<String>) -> Result<Self> {
         let name = model.name();
-        self.added(RegisteredModel::new(name, version.into(), AnyModel::Contact(Arc::new(model))))
-    }
-
-    /// Adds a model that follows a path.
-    ///
-    /// # Errors
-    /// As [`Registry::with`].
-    pub fn with_history(
-        self,
-        model: impl HistoryModel + 'static,
-        version: impl Into<String>,
-    ) -> Result<Self> {
-        let name = model.name();
-        self.added(RegisteredModel::new(name, version.into(), AnyModel::History(Arc::new(model))))
+        self.added(RegisteredModel::new(name, version.into(), Arc::new(model)))
     }
 
     fn added(mut self, model: RegisteredModel) -> Result<Self> {
@@ -89,7 +79,7 @@ impl Registry {
         if model.version().is_empty() {
             return refused("has no version: give one, and another one whenever results change");
         }
-        if Numerics::ALL.iter().any(|m| m.name() == name) {
+        if ModelRecord::named(name).is_some() {
             return refused("is the name of a model of the library: choose another one");
         }
         if self.models.iter().any(|m| m.name() == name) {

@@ -7,11 +7,11 @@ use crate::scenes::read::entries::{Entries, Entry, Read, System};
 use crate::scenes::read::error::Result;
 use crate::scenes::read::loads::{Loading, Prescribed, read_request};
 use crate::scenes::read::numerics::{MOST_CELLS, Numerics, read_models};
-use crate::scenes::read::outputs::{RequestedOutputs, read_outputs};
+use crate::scenes::read::outputs::{self, RequestedOutputs, read_outputs};
 use crate::scenes::read::registry::Registry;
 use crate::scenes::read::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
 use contact_model::{
-    Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Load, Pair, Rheology, Scene,
+    Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Load, Pair, Paths, Rheology, Scene,
 };
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -87,7 +87,7 @@ impl SceneFile {
     /// use fractal_contact::scenes::{Loading, Loads, Numerics, Plan, Prescribed, SceneFile, SceneSurface};
     /// let body = SceneSurface::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
     /// let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
-    /// let mut scene = SceneFile::new(vec![Numerics::Hertz], body, 1.0, loads);
+    /// let mut scene = SceneFile::new(vec![Numerics::named("hertz").unwrap()], body, 1.0, loads);
     /// scene.requested.outputs.stiffness = true;
     /// assert!(Plan::new(&scene).is_ok());
     /// // A closed form has no pressure field.
@@ -298,11 +298,6 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     };
     check_request(&request, &request_entry, &surface, &effects)?;
     check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
-    let along = matches!(request, Loading::Path(_)) && depends_on_path(&effects);
-    let models = models
-        .into_iter()
-        .map(|(numerics, entry)| (if along { numerics.along_path() } else { numerics }, entry))
-        .collect::<Vec<_>>();
     check_histories(&models, &request, &request_entry, &effects)?;
     let models = models.into_iter().map(|(numerics, _)| numerics).collect();
     Ok(SceneFile {
@@ -327,25 +322,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
 }
 
 fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
-    const NAMES: [&str; 15] = [
-        "stiffness",
-        "stiffness_fixed_area",
-        "area",
-        "conductance",
-        "contact_patches",
-        "mean_gap",
-        "pressure",
-        "displacement",
-        "gap",
-        "plastic_depth",
-        "heights",
-        "distributions",
-        "grid_error",
-        "curves",
-        "statistics",
-    ];
     let Some(table) = table else { return Vec::new() };
-    NAMES.iter().filter_map(|name| Some((*name, table.entry(name)?.key_span()))).collect()
+    outputs::names().filter_map(|name| Some((name, table.entry(name)?.key_span()))).collect()
 }
 
 /// E*, from itself or from both bodies.
@@ -587,24 +565,30 @@ fn check_histories(
                 "add `hardness`, `adhesion`, `friction` or `rheology` to [effects], or prescribe `force` or `approach`",
             ));
     }
+    // Time and tangential loads are part of a path only.
+    let needs_path = effects.friction != Friction::Off || effects.rheology != Rheology::Elastic;
     for (numerics, model) in models {
-        if numerics.is_history() && !path {
+        let follows = |numerics: &Numerics| numerics.model().abilities().paths != Paths::Forgotten;
+        if follows(numerics) && needs_path && !path {
             return Err(entry
                 .diagnostic_at_key(format!("\"{}\" follows a path, and here are loads one by one", numerics.name()))
                 .with_help("write [[scene.path]] with `time`, `force` (or `approach`) and `tangential_force` for each step"));
         }
-        if !numerics.is_history() && path {
-            let follows = |m: &&Numerics| {
-                m.is_history() || (depends_on_path(effects) && (*m).clone().along_path().is_history())
+        if !follows(numerics) && path {
+            let has_effects = |m: &Numerics| {
+                let abilities = m.model().abilities();
+                effects.named().all(|effect| abilities.effects.contains(&effect))
             };
-            let known: Vec<&str> = Numerics::ALL.iter().filter(follows).map(Numerics::name).collect();
+            let known: Vec<&str> =
+                Numerics::all().filter(|m| follows(m) && has_effects(m)).map(|m| m.name()).collect();
             return Err(model
                 .diagnostic(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
-                .with_help(format!("models that follow a path: {}", known.join(", "))));
+                .with_help(format!("models that follow a path with these effects: {}", known.join(", "))));
         }
     }
     Ok(())
 }
+
 /// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.
 pub(crate) fn cells(scene: &SceneFile, numerics: &Numerics) -> Cells {
     match (scene.surface.own_cells(), numerics.boundary_elements()) {

@@ -1,5 +1,6 @@
 //! What scenes, loads, units and models are called in titles and labels.
 
+use crate::models::ModelRecord;
 use crate::scenes::read::entries::System;
 use crate::scenes::read::human_readable::short;
 use crate::scenes::read::loads::{Loading, Prescribed};
@@ -39,23 +40,5 @@ pub(crate) fn unit_label(unit: &str) -> String {
 
 /// What a model is called outside code.
 pub(crate) fn model_name(name: &str) -> &str {
-    match name {
-        "bem3d" => "3D boundary elements",
-        "mdr1d" => "1D reduction",
-        "mdr1d_partial_slip" => "1D reduction with partial slip",
-        "mdr1d_viscoelastic" => "viscoelastic 1D reduction",
-        "equivalent" => "equivalent profile",
-        "hertz" => "Hertz",
-        "jkr" => "Johnson, Kendall and Roberts",
-        "persson" => "Persson",
-        "greenwood_williamson" => "Greenwood and Williamson",
-        "westergaard" => "Westergaard",
-        "adhesive_wave" => "Johnson",
-        "maugis_dugdale" => "Maugis-Dugdale",
-        "cattaneo_mindlin" => "Cattaneo and Mindlin",
-        "power_law" => "power law of the paper",
-        "power_law_body" => "Galin",
-        "flat_punch" => "flat punch",
-        other => other,
-    }
+    ModelRecord::named(name).map_or(name, |record| record.title)
 }

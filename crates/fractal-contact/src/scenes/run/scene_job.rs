@@ -2,12 +2,9 @@
 
 use crate::scenes::plan::calibration;
 use crate::scenes::plan::model_on_surface::ModelOnSurface;
-use crate::scenes::read::distributed::{Bin, Distributed};
 use crate::scenes::read::error::{Error, Result};
 use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::state_result::{ModelResult, StateResult, StoredFile};
-use crate::scenes::tell::columns;
-use analysis::Value;
+use crate::scenes::run::state_result::ModelResult;
 use contact_model::Stop;
 use runs::{Job, JobList};
 use std::path::Path;
@@ -22,8 +19,6 @@ pub(crate) struct SceneJob<'a> {
     pub scene: &'a SceneFile,
     /// Directory of the results.
     pub out: &'a Path,
-    /// Number of columns of a row.
-    pub columns: usize,
 }
 
 impl Job for SceneJob<'_> {
@@ -47,7 +42,7 @@ impl Job for SceneJob<'_> {
     }
 
     fn stored_bytes(&self) -> u64 {
-        self.unit.stored_bytes(self.scene, self.columns)
+        self.unit.stored_bytes(self.scene)
     }
 
     fn is_stored(&self) -> bool {
@@ -64,7 +59,7 @@ impl Job for SceneJob<'_> {
         store: &dyn Fn(&str) -> runs::Result<()>,
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
-        let mut begun = stored.and_then(|text| parse(text, self.columns)).unwrap_or_default();
+        let mut begun = stored.and_then(|text| decode(text)).unwrap_or_default();
         begun.states.retain(|state| state.is_whole(self.out));
         begun.kept = begun.states.len();
         let mut last = Instant::now();
@@ -79,97 +74,24 @@ impl Job for SceneJob<'_> {
     }
 
     fn encode(&self, result: &ModelResult) -> String {
-        format(result)
+        encode(result)
     }
 
     /// A result with a state or a file missing or changed is as good as absent.
     fn decode(&self, text: &str) -> Option<ModelResult> {
-        let result = parse(text, self.columns).filter(|result| result.complete)?;
+        let result = decode(text).filter(|result| result.complete)?;
         let whole = result.states.iter().all(|state| state.is_whole(self.out));
         whole.then_some(ModelResult { kept: result.states.len(), ..result })
     }
 }
 
-fn format(result: &ModelResult) -> String {
-    let mut text = format!("complete {}\nseconds {:?}\n", result.complete, result.seconds);
-    for state in &result.states {
-        let cells: Vec<String> = state.row.iter().map(cell).collect();
-        text += &format!("state {} {}\nrow {}\n", state.index, state.failed, cells.join("\t"));
-        if !state.patches.is_empty() {
-            let areas: Vec<String> = state.patches.iter().map(|a| format!("{a:?}")).collect();
-            text += &format!("patches {}\n", areas.join(" "));
-        }
-        for (of, bins) in &state.distributions {
-            let bins: Vec<String> = bins.iter().map(|[a, b, d]| format!("{a:?},{b:?},{d:?}")).collect();
-            text += &format!("distribution {} {}\n", of.name(), bins.join(" "));
-        }
-        for StoredFile { name, bytes, digest } in &state.files {
-            text += &format!("file {digest:032x} {bytes} {name}\n");
-        }
-    }
-    text
+fn encode(result: &ModelResult) -> String {
+    // A value of our own types is always text.
+    serde_json::to_string(result).unwrap_or_default()
 }
 
-fn cell(value: &Value) -> String {
-    match value {
-        Value::Text(t) => format!("t{}", t.replace(['\t', '\n', '\r'], " ")),
-        Value::Number(v) => format!("n{v:?}"),
-        Value::Count(n) => format!("c{n}"),
-        Value::Flag(b) => format!("b{b}"),
-        Value::Empty => String::new(),
-    }
-}
-
-fn parse_cell(text: &str) -> Option<Value> {
-    let Some(kind) = text.chars().next() else { return Some(Value::Empty) };
-    let rest = &text[kind.len_utf8()..];
-    Some(match kind {
-        't' => Value::Text(rest.to_owned()),
-        'n' => Value::Number(rest.parse().ok()?),
-        'c' => Value::Count(rest.parse().ok()?),
-        'b' => Value::Flag(rest.parse().ok()?),
-        _ => return None,
-    })
-}
-
-fn parse(text: &str, columns: usize) -> Option<ModelResult> {
-    let mut result = ModelResult::default();
-    for line in text.lines() {
-        let (word, rest) = line.split_once(' ')?;
-        match (word, result.states.last_mut()) {
-            ("complete", None) => result.complete = rest.parse().ok()?,
-            ("seconds", None) => result.seconds = rest.parse().ok()?,
-            ("state", _) => {
-                let (index, failed) = rest.split_once(' ')?;
-                let (index, failed) = (index.parse().ok()?, failed.parse().ok()?);
-                result.states.push(StateResult { index, failed, ..StateResult::default() });
-            }
-            ("row", Some(state)) => {
-                state.row = rest.split('\t').map(parse_cell).collect::<Option<Vec<_>>>()?;
-            }
-            ("patches", Some(state)) => {
-                state.patches = rest.split(' ').map(|a| a.parse().ok()).collect::<Option<Vec<f64>>>()?;
-            }
-            ("distribution", Some(state)) => {
-                let (name, bins) = rest.split_once(' ')?;
-                let (_, of) = Distributed::ALL.into_iter().find(|(known, _)| *known == name)?;
-                let bin = |text: &str| -> Option<Bin> {
-                    let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.parse().ok()).collect();
-                    numbers?.try_into().ok()
-                };
-                let bins: Option<Vec<Bin>> = bins.split(' ').filter(|bin| !bin.is_empty()).map(bin).collect();
-                state.distributions.push((of, bins?));
-            }
-            ("file", Some(state)) => {
-                let mut words = rest.splitn(3, ' ');
-                let digest = u128::from_str_radix(words.next()?, 16).ok()?;
-                let (bytes, name) = (words.next()?.parse().ok()?, words.next()?.to_owned());
-                state.files.push(StoredFile { name, bytes, digest });
-            }
-            _ => return None,
-        }
-    }
-    result.states.iter().all(|state| state.row.len() == columns).then_some(result)
+fn decode(text: &str) -> Option<ModelResult> {
+    serde_json::from_str(text).ok()
 }
 
 /// Every model of a scene on every surface, in the order of the tables. A theory, which is the same for every seed, has one surface.
@@ -184,8 +106,7 @@ pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
 
 /// The same as jobs that write their fields into `out`.
 pub(crate) fn scene_jobs<'a>(scene: &'a SceneFile, out: &'a Path) -> Vec<SceneJob<'a>> {
-    let columns = columns::columns(scene).len();
-    units(scene).into_iter().map(|unit| SceneJob { unit, scene, out, columns }).collect()
+    units(scene).into_iter().map(|unit| SceneJob { unit, scene, out }).collect()
 }
 
 /// The jobs of a scene whose results go to `out`: each model on each surface.
@@ -196,28 +117,39 @@ pub fn jobs<'a>(scene: &'a SceneFile, out: &'a Path) -> Box<dyn JobList + 'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenes::plan::grid_comparison::GridErrors;
+    use crate::scenes::read::distributed::Distributed;
+    use crate::scenes::run::state_result::{Answer, Solved, StateRecord, StoredFile};
+    use crate::scenes::run::warnings::Warning;
+    use contact_model::{Branch, ContactState, Normalisation, Patches, SolveReport, Status};
 
     #[test]
     fn results_come_back_bit_for_bit() {
-        let row = vec![Value::Text("a b".into()), Value::Number(1.0 / 3.0), Value::Count(7), Value::Empty];
-        let file = StoredFile { name: "a b.npy".into(), bytes: 3, digest: 7 };
-        let first = StateResult { row: row.clone(), patches: vec![1e-300, 0.1], ..StateResult::default() };
-        let distributions = vec![
-            (Distributed::Gap, vec![[0.0, 0.1, 1e-300], [0.1, 0.2, 3.0]]),
-            (Distributed::Pressure, vec![]),
-        ];
-        let first = StateResult { distributions, ..first };
-        let second = StateResult { index: 2, failed: true, row, files: vec![file], ..StateResult::default() };
-        let result = ModelResult {
-            seconds: 0.25,
-            states: vec![first, second],
-            complete: false,
-            ..ModelResult::default()
+        let mut report = SolveReport::new(Status::Stagnated, "fft");
+        report.certificate.duality_gap = 1.0 / 3.0;
+        report.certificate.penetration = f64::INFINITY;
+        let adhesive = contact_model::AdhesiveState::new(Branch::Withdrawal, -0.1, f64::INFINITY);
+        let state = ContactState::new(0.1 + 0.2, report)
+            .with_time(5e-324)
+            .with_patches(Patches::new(vec![1e-300, 0.1]))
+            .with_adhesive(adhesive);
+        let normalisation = Normalisation { modulus: 1.0, length: 2.0, height: None };
+        let grid = GridErrors {
+            rms_slope: 0.1,
+            errors: [("area".to_owned(), analysis::grid_error(1.0, 1.1, 1.3).unwrap())].into(),
         };
-        let text = format(&result);
-        assert_eq!(parse(&text, 4), Some(result));
-        assert_eq!(parse(&text, 5), None);
-        assert_eq!(parse(&text.replace("n0.3", "x0.3"), 4), None);
-        assert_eq!(parse("row \n", 1), None);
+        let warnings = vec![Warning::Edge, Warning::Area];
+        let solved = Solved { state, normalisation, warnings, grid: Some(grid) };
+        let mut first = StateRecord::new(0, Answer::State(Box::new(solved)));
+        first.distributions.push((Distributed::Gap, vec![[0.0, 0.1, 1e-300], [0.1, 0.2, 3.0]]));
+        first.files.push(StoredFile { name: "a b.npy".into(), bytes: 3, digest: u128::MAX - 7 });
+        let second = StateRecord::new(2, Answer::Refused("too much\n".into()));
+        let result = ModelResult { seconds: 0.25, states: vec![first, second], complete: false, kept: 0 };
+        let text = encode(&result);
+        assert_eq!(decode(&text), Some(result));
+        for cut in 0..text.len() {
+            assert_eq!(decode(&text[..cut]), None);
+        }
+        assert_eq!(decode(&text.replace("0.25", "x")), None);
     }
 }

@@ -2,7 +2,6 @@
 
 use crate::scenes::plan::grid_comparison::{GridComparison, solved_map};
 use crate::scenes::plan::model_on_surface::ModelOnSurface;
-use crate::scenes::read::any_model::AnyModel;
 use crate::scenes::read::distributed;
 use crate::scenes::read::error::{Error, Result};
 use crate::scenes::read::loads::Loading;
@@ -12,10 +11,9 @@ use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::read::scene_file::cells;
 use crate::scenes::run::field_pictures;
 use crate::scenes::run::field_view::FieldView;
-use crate::scenes::run::state_result::{FieldFile, ModelResult, StateResult, StoredFile};
+use crate::scenes::run::state_result::{Answer, FieldFile, ModelResult, Solved, StateRecord, StoredFile};
 use crate::scenes::run::warnings::Warning;
-use crate::scenes::tell::columns::{self, State};
-use contact_model::{Cells, ContactState, Field, Fields, Load, Step, Stop};
+use contact_model::{Cells, ContactState, Field, Load, Output, Step, Stop};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -41,46 +39,23 @@ impl ModelOnSurface {
         let seed = scene.seed(self.surface);
         let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
         let before = result.seconds;
-        match (numerics.model(), &scene.request) {
-            (AnyModel::Contact(model), Loading::Loads(_)) => {
-                let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
+        let prepared = numerics.prepare(&physics, seed, scene.is_history());
+        let mut contact = prepared.map_err(runs::Error::model(what()))?;
+        match &scene.request {
+            Loading::Loads(_) => {
                 let mut keep = |result: &mut ModelResult| {
                     result.seconds = before + start.elapsed().as_secs_f64();
                     keep(result)
                 };
                 self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
-                field_pictures::draw(
-                    scene,
-                    (numerics.name(), self.surface),
-                    cells(scene, numerics),
-                    out,
-                    &mut result,
-                )?;
             }
-            (AnyModel::History(model), Loading::Path(steps)) => {
-                let mut contact = model.prepare(&physics, seed).map_err(runs::Error::model(what()))?;
+            Loading::Path(steps) => {
                 result = ModelResult::default();
                 self.path(scene, contact.as_mut(), (steps, out), stop, &mut result)?;
-                field_pictures::draw(
-                    scene,
-                    (numerics.name(), self.surface),
-                    cells(scene, numerics),
-                    out,
-                    &mut result,
-                )?;
-            }
-            // Reading a scene refuses these; one built in code may have them.
-            (AnyModel::Contact(model), Loading::Path(_)) => {
-                let refused =
-                    contact_model::Error::unsupported(model.name(), "a path: it answers loads one by one");
-                return Err(runs::Error::model(what())(refused).into());
-            }
-            (AnyModel::History(model), Loading::Loads(_)) => {
-                let refused =
-                    contact_model::Error::unsupported(model.name(), "loads one by one: it follows a path");
-                return Err(runs::Error::model(what())(refused).into());
             }
         }
+        let of = (numerics.name(), self.surface);
+        field_pictures::draw(scene, of, cells(scene, numerics), out, &mut result)?;
         result.seconds = before + start.elapsed().as_secs_f64();
         Ok(result)
     }
@@ -115,42 +90,30 @@ impl ModelOnSurface {
         let mut written = Ok(());
         let mut answer = |place: usize, found: contact_model::Result<ContactState>| {
             let index = missing[place];
-            let mut state = State {
-                model: self.numerics(scene).name(),
-                surface: self.surface,
-                index,
-                requested: requests.values[index],
-                normalisation: Some(normalisation),
-                ..State::default()
-            };
-            let mut kept = StateResult { index, ..StateResult::default() };
-            match found {
+            let record = match found {
                 Ok(mut found) => {
-                    state.status = Some(found.report.status);
-                    if let Some(comparison) = &comparison {
-                        state.grid_errors = comparison.errors(place, &found);
-                        state.rms_slope = Some(comparison.rms_slope);
-                    }
-                    state.note = Warning::note(&Warning::of(scene, &found, &state.grid_errors));
-                    written = self.write_fields(scene, &mut found, out, &mut kept);
-                    state.normal = Some(found);
+                    let grid = comparison
+                        .as_ref()
+                        .map(|comparison| comparison.errors(place, &found, &normalisation));
+                    let warnings = Warning::of(scene, &found, grid.as_ref());
+                    self.recorded(scene, &mut found, out, index).map(|record| {
+                        let state = found.with_fields(None);
+                        let solved = Solved { state, normalisation, warnings, grid };
+                        StateRecord { answer: Answer::State(Box::new(solved)), ..record }
+                    })
                 }
                 Err(contact_model::Error::NotConverged { best }) => {
-                    kept.failed = true;
-                    state.status = Some(best.report.status);
-                    state.normal = Some(best.with_fields(None).with_patches(None));
+                    let state = best.with_fields(None).with_patches(None);
+                    let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+                    Ok(StateRecord::new(index, Answer::State(Box::new(solved))))
                 }
-                Err(other) => {
-                    kept.failed = true;
-                    state.note = Some(other.to_string());
-                }
-            }
-            if written.is_ok() {
-                kept.row = columns::row(scene, &state);
+                Err(other) => Ok(StateRecord::new(index, Answer::Refused(other.to_string()))),
+            };
+            written = record.and_then(|record| {
                 let place = result.states.partition_point(|s| s.index < index);
-                result.states.insert(place, kept);
-                written = keep(result);
-            }
+                result.states.insert(place, record);
+                keep(result)
+            });
             // A file that cannot be written ends the sweep; its error is the one that is returned.
             if written.is_ok() { Ok(()) } else { Err(contact_model::Error::Stopped { best: None }) }
         };
@@ -167,39 +130,26 @@ impl ModelOnSurface {
     fn path(
         &self,
         scene: &SceneFile,
-        contact: &mut dyn contact_model::History,
+        contact: &mut dyn contact_model::PreparedContact,
         (steps, out): (&[Step], &Path),
         stop: Stop<'_>,
         result: &mut ModelResult,
     ) -> Result<()> {
+        let normalisation = contact.normalisation();
         for (index, step) in steps.iter().enumerate() {
-            let mut state = State {
-                model: self.numerics(scene).name(),
-                surface: self.surface,
-                index,
-                time: Some(step.time),
-                normalisation: Some(contact.normalisation()),
-                ..State::default()
-            };
-            let mut kept = StateResult { index, ..StateResult::default() };
-            kept.failed = match contact.advance_until(*step, stop) {
+            let record = match contact.advance_until(*step, stop) {
                 Ok(mut found) => {
-                    self.write_fields(scene, &mut found.normal, out, &mut kept)?;
-                    state.status = Some(found.normal.report.status);
-                    state.note = Warning::note(&Warning::of(scene, &found.normal, &state.grid_errors));
-                    state.normal = Some(found.normal.clone());
-                    state.history = Some(found);
-                    false
+                    let record = self.recorded(scene, &mut found, out, index)?;
+                    let warnings = Warning::of(scene, &found, None);
+                    let state = found.with_fields(None);
+                    let solved = Solved { state, normalisation, warnings, grid: None };
+                    StateRecord { answer: Answer::State(Box::new(solved)), ..record }
                 }
                 Err(contact_model::Error::Stopped { .. }) => return Ok(()),
-                Err(error) => {
-                    state.note = Some(error.to_string());
-                    true
-                }
+                Err(error) => StateRecord::new(index, Answer::Refused(error.to_string())),
             };
-            let refused = kept.failed;
-            kept.row = columns::row(scene, &state);
-            result.states.push(kept);
+            let refused = record.solved().is_none();
+            result.states.push(record);
             if refused {
                 // What comes after a step that failed would be another path.
                 break;
@@ -209,27 +159,27 @@ impl ModelOnSurface {
         Ok(())
     }
 
-    /// Writes the fields that are asked for, counts distributions, and lets go of the fields.
-    fn write_fields(
+    /// A record, its answer to come, of a state: the fields that are asked for as files, and the distributions. The fields go.
+    fn recorded(
         &self,
         scene: &SceneFile,
         found: &mut ContactState,
         out: &Path,
-        kept: &mut StateResult,
-    ) -> Result<()> {
-        if let Some(patches) = found.patches.as_ref() {
-            kept.patches = patches.areas().to_vec();
-        }
-        let Fields { pressure, displacement, gap, plastic_depth, .. } =
-            found.fields.take().unwrap_or_default();
+        index: usize,
+    ) -> Result<StateRecord> {
+        let mut kept = StateRecord::new(index, Answer::Refused(String::new()));
+        let fields = found.fields.take().unwrap_or_default();
         let cell = scene.surface.size();
         let cell = cell.x * cell.y / cells(scene, self.numerics(scene)).checked_count().unwrap_or(1) as f64;
-        let state = (pressure.as_ref(), gap.as_ref(), found.patches.as_ref());
+        let state = (fields.pressure.as_ref(), fields.gap.as_ref(), found.patches.as_ref());
         kept.distributions = distributed::of_state(&scene.requested.distributions, state, cell);
         let first = kept.index == 0 && !scene.requested.heights.is_empty();
         let heights = if first { self.heights(scene)? } else { None };
-        let fields = [pressure, displacement, gap, plastic_depth, heights];
-        for ((name, formats), field) in scene.requested.fields().into_iter().zip(&fields) {
+        let of_models =
+            Output::ALL.iter().filter(|output| output.is_field()).map(|&output| fields.get(output));
+        for ((name, formats), field) in
+            scene.requested.fields().into_iter().zip(of_models.chain([heights.as_ref()]))
+        {
             let Some(field) = field else { continue };
             let values = &on_defined_points(name, field, scene);
             let (model, surface, state) = (self.numerics(scene).name(), self.surface, kept.index);
@@ -254,7 +204,7 @@ impl ModelOnSurface {
                 kept.files.push(StoredFile::of(out, file)?);
             }
         }
-        Ok(())
+        Ok(kept)
     }
 
     /// The heights that boundary elements solve, NaN where they are undefined; `None` for a model without cells.
@@ -300,7 +250,7 @@ fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[
 mod tests {
     use super::*;
     use crate::scenes::{Loads, Prescribed, SceneSurface};
-    use contact_model::{HeightMap, SolveReport};
+    use contact_model::{Fields, HeightMap, SolveReport};
     use std::sync::Arc;
 
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
@@ -310,9 +260,9 @@ mod tests {
         let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
         let surface = SceneSurface::Plain(contact_model::Surface::Heights(Arc::new(map)));
         let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
-        let mut scene = SceneFile::new(vec![Numerics::ALL[0].clone()], surface, 1.0, loads);
+        let mut scene = SceneFile::new(vec![Numerics::Bem3d(bem3d::Bem3d::default())], surface, 1.0, loads);
         let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];
-        (scene.requested.pressure, scene.requested.gap) = (all.clone(), all);
+        scene.requested.files = vec![(Output::Pressure, all.clone()), (Output::Gap, all)];
         let pressure = vec![0.0, 1.0, 2.0, 3.0, 0.0, 5.0];
         let gap = vec![0.5, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
         let mut fields = Fields::default();
@@ -320,10 +270,9 @@ mod tests {
         (fields.pressure, fields.gap) = (field(&pressure), field(&gap));
         let mut state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
-        let mut kept = StateResult::default();
         let unit = ModelOnSurface { model: 0, surface: 0 };
         std::fs::create_dir(dir.path().join(".units")).unwrap();
-        unit.write_fields(&scene, &mut state, dir.path(), &mut kept).unwrap();
+        let kept = unit.recorded(&scene, &mut state, dir.path(), 0).unwrap();
         // Three files of each field, its values for the picture, and what the report shows of it.
         assert_eq!((kept.files.len(), state.fields.is_none()), (10, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };

@@ -1,44 +1,112 @@
 //! What is kept of a model's states, and the names of their files.
 
+use crate::scenes::plan::grid_comparison::GridErrors;
 use crate::scenes::read::distributed::{Bin, Distributed};
 use crate::scenes::read::error::Result;
-use analysis::Value;
+use crate::scenes::run::warnings::Warning;
+use contact_model::{ContactState, Normalisation, Status};
 use runs::fnv1a_128;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
 /// What one model gave on one surface.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct ModelResult {
     /// Of all runs that had a part in it.
     pub seconds: f64,
-    /// States in the order of the loads.
-    pub states: Vec<StateResult>,
     /// Whether nothing is left to be solved.
     pub complete: bool,
+    /// States in the order of the loads.
+    pub states: Vec<StateRecord>,
     /// How many states an earlier run had kept.
+    #[serde(skip)]
     pub kept: usize,
 }
 
-/// One state as it is kept.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct StateResult {
+/// One state as it is kept. All that is told of it is a view of this.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct StateRecord {
     /// Number of the load or step.
     pub index: usize,
-    /// Whether it was refused or missed its tolerance.
-    pub failed: bool,
-    /// The row of the table.
-    pub row: Vec<Value>,
-    /// Areas of the connected contacts.
-    pub patches: Vec<f64>,
-    /// Distributions.
+    pub answer: Answer,
+    /// Distributions that are asked for.
     pub distributions: Vec<(Distributed, Vec<Bin>)>,
     /// Files of fields.
     pub files: Vec<StoredFile>,
 }
 
+/// What a model gave for a load.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Answer {
+    /// A state; also the best one of a solve that missed its tolerance, which its status says.
+    State(Box<Solved>),
+    /// Why there is none.
+    Refused(String),
+}
+
+/// A state with what is found out about it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Solved {
+    /// Without fields, which are files.
+    pub state: ContactState,
+    /// Of its surface.
+    pub normalisation: Normalisation,
+    /// What may be wrong with it all the same.
+    pub warnings: Vec<Warning>,
+    /// Where it was compared with coarser grids.
+    pub grid: Option<GridErrors>,
+}
+
+impl StateRecord {
+    /// A record without files.
+    pub fn new(index: usize, answer: Answer) -> Self {
+        Self { index, answer, distributions: Vec::new(), files: Vec::new() }
+    }
+
+    /// The state, where there is one.
+    pub fn solved(&self) -> Option<&Solved> {
+        match &self.answer {
+            Answer::State(solved) => Some(solved),
+            Answer::Refused(_) => None,
+        }
+    }
+
+    /// The state, where it reached its tolerance.
+    pub fn converged(&self) -> Option<&Solved> {
+        self.solved().filter(|solved| solved.state.report.status == Status::Converged)
+    }
+
+    /// How it ended, in the word of tables.
+    pub fn status(&self) -> &'static str {
+        self.solved().map_or("refused", |solved| solved.state.report.status.as_str())
+    }
+
+    /// Why a model refused the load, or what to beware of.
+    pub fn note(&self) -> Option<String> {
+        match &self.answer {
+            Answer::Refused(reason) => Some(reason.clone()),
+            Answer::State(solved) => Warning::note(&solved.warnings),
+        }
+    }
+
+    /// Whether all its files are still what they were.
+    pub fn is_whole(&self, out: &Path) -> bool {
+        self.files.iter().all(|file| file.is_whole(out))
+    }
+}
+
+/// One model on one surface with its states.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SolvedUnit<'a> {
+    /// Name of the model.
+    pub model: &'static str,
+    pub surface: usize,
+    pub states: &'a [StateRecord],
+}
+
 /// A file that belongs to a state.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StoredFile {
     /// Relative to the directory of the results.
     pub name: String,
@@ -58,13 +126,6 @@ impl StoredFile {
     /// Whether the file is still what it was.
     pub fn is_whole(&self, out: &Path) -> bool {
         Self::of(out, self.name.clone()).is_ok_and(|found| found == *self)
-    }
-}
-
-impl StateResult {
-    /// Whether all its files are still what they were.
-    pub fn is_whole(&self, out: &Path) -> bool {
-        self.files.iter().all(|file| file.is_whole(out))
     }
 }
 

@@ -5,6 +5,7 @@ use crate::scenes::plan::grid_comparison::GridErrors;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::read::scene_surface::SceneSurface;
 use contact_model::{ContactState, Hardness, Surface};
+use serde::{Deserialize, Serialize};
 
 /// Fewer cells in contact than this are those of the grid.
 const FEW_CELLS: usize = 10;
@@ -16,7 +17,7 @@ const UNRESOLVED: f64 = 0.1;
 const YIELD: f64 = 0.1;
 
 /// Something to beware of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Warning {
     FewCells,
     OneCell,
@@ -70,7 +71,7 @@ impl Warning {
     }
 
     /// All that concern a state.
-    pub fn of(scene: &SceneFile, state: &ContactState, errors: &GridErrors) -> Vec<Self> {
+    pub fn of(scene: &SceneFile, state: &ContactState, errors: Option<&GridErrors>) -> Vec<Self> {
         let mut found = Vec::new();
         let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
         let flat = matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. }));
@@ -83,7 +84,9 @@ impl Warning {
             (Self::FewCells, _) => few,
             (Self::Stiffness, _) => wanted && state.stiffness.is_none(),
             (_, None) => false,
-            (Self::Accuracy, _) => scene.accuracy.is_some_and(|target| !within(scene, errors, target.share)),
+            (Self::Accuracy, _) => scene
+                .accuracy
+                .is_some_and(|target| !errors.is_some_and(|errors| within(scene, errors, target.share))),
             (Self::OneCell, Some(r)) => r.largest_share > ALONE,
             (Self::Edge, Some(r)) => r.edge_cells > 0 && !flat,
             (Self::Yield, Some(r)) => r.largest_pressure > hardness,
@@ -98,14 +101,6 @@ impl Warning {
     /// All of them as one note; `None` for none.
     pub fn note(all: &[Self]) -> Option<String> {
         let texts: Vec<&str> = all.iter().map(|warning| warning.as_str()).collect();
-        (!texts.is_empty()).then(|| texts.join(SEPARATOR))
-    }
-
-    /// Those that stand in a note.
-    pub fn in_note(note: &str) -> impl Iterator<Item = Self> + '_ {
-        note.split(SEPARATOR)
-            .filter_map(|text| Self::ALL.into_iter().find(|warning| warning.as_str() == text))
+        (!texts.is_empty()).then(|| texts.join("; "))
     }
 }
-
-const SEPARATOR: &str = "; ";

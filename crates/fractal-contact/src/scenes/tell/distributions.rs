@@ -5,7 +5,7 @@ use crate::scenes::read::entries::System;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::read::words;
-use crate::scenes::run::state_result::StateResult;
+use crate::scenes::run::state_result::SolvedUnit;
 use analysis::{Column, Table};
 use plots::{Chart, Curve};
 
@@ -18,18 +18,15 @@ pub(crate) fn files(scene: &SceneFile) -> Vec<String> {
     names.flat_map(|name| ["csv", "svg", "png"].map(|end| format!("distribution-{name}.{end}"))).collect()
 }
 
-/// One model on one surface with its states.
-pub(crate) type Solved<'a> = (&'static str, usize, &'a [StateResult]);
-
 /// The distribution of all states as a table.
 pub(crate) fn table(
     scene: &SceneFile,
     of: Distributed,
     title: String,
-    solved: &[Solved<'_>],
+    units: &[SolvedUnit<'_>],
 ) -> Result<Table> {
     let (_, unit, per_unit) = of.words();
-    let units = if scene.system == System::Si { [unit, per_unit] } else { ["scene"; 2] };
+    let shown = if scene.system == System::Si { [unit, per_unit] } else { ["scene"; 2] };
     let density = match of {
         Distributed::Patches => "contacts per area: its integral is their number",
         _ => "share of the nominal area per unit: its integral is the share of the cells above zero",
@@ -39,12 +36,12 @@ pub(crate) fn table(
         column("model", "-", "who answers"),
         column("surface", "1", "number of the surface, from 0"),
         column("state", "1", "number of the load, from 0"),
-        column("lower", units[0], "lower end of the bin"),
-        column("upper", units[0], "upper end of the bin"),
-        column("density", units[1], density),
+        column("lower", shown[0], "lower end of the bin"),
+        column("upper", shown[0], "upper end of the bin"),
+        column("density", shown[1], density),
     ];
     let mut table = Table::new(title, columns);
-    for &(model, surface, states) in solved {
+    for &SolvedUnit { model, surface, states } in units {
         for state in states {
             for [lower, upper, density] in state.distributions.iter().filter(|d| d.0 == of).flat_map(|d| &d.1)
             {
@@ -64,9 +61,9 @@ pub(crate) fn table(
 }
 
 /// The distribution under a few loads on surface 0; `None` without any.
-pub(crate) fn chart(scene: &SceneFile, of: Distributed, solved: &[Solved<'_>]) -> Option<Chart> {
+pub(crate) fn chart(scene: &SceneFile, of: Distributed, units: &[SolvedUnit<'_>]) -> Option<Chart> {
     let mut curves = Vec::new();
-    for &(model, _, states) in solved.iter().filter(|(_, surface, _)| *surface == 0) {
+    for &SolvedUnit { model, states, .. } in units.iter().filter(|unit| unit.surface == 0) {
         let with: Vec<(usize, &Vec<Bin>)> = states
             .iter()
             .filter_map(|s| Some((s.index, &s.distributions.iter().find(|d| d.0 == of)?.1)))

@@ -2,135 +2,128 @@
 
 use crate::scenes::read::loads::Loading;
 use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::run::state_result::{Solved, SolvedUnit};
+use crate::scenes::tell::columns;
 use analysis::{Column, Table, Value, mean_and_deviation};
-use contact_model::Status;
-
-/// A quantity that is averaged, with the columns of the standard error of the mean and of the standard deviation of one surface.
-type Quantity = [&'static str; 3];
-
-macro_rules! quantities {
-    ($($name:literal),*) => { [$([$name, concat!($name, "_se"), concat!($name, "_sd")]),*] };
-}
+use contact_model::quantities::{Average, Quantity};
 
 /// A mean, and the standard deviation of one number where there are two.
 type MeanAndDeviation = (f64, Option<f64>);
 
-/// What is averaged, where the table has it.
-const QUANTITIES: [Quantity; 18] = quantities!(
-    "force",
-    "force_bar",
-    "approach",
-    "mean_gap",
-    "stiffness",
-    "stiffness_bar",
-    "stiffness_fixed_area",
-    "area",
-    "area_corrected",
-    "contact_fraction",
-    "conductance",
-    "largest_pressure",
-    "stiffness_grid_error",
-    "stiffness_fixed_area_grid_error",
-    "area_grid_error",
-    "area_corrected_grid_error",
-    "conductance_grid_error",
-    "mean_gap_grid_error"
-);
+/// A quantity, or what the grid leaves in it.
+type Averaged = (&'static Quantity, bool);
+
+/// What is averaged over the surfaces of a scene, in the order of columns: quantities, then errors of the grid.
+fn averaged(scene: &SceneFile) -> Vec<Averaged> {
+    let quantities = columns::asked(scene).filter(|quantity| quantity.average != Average::No);
+    // Where a pressure has no limit there is no error to be averaged.
+    let errors = columns::with_grid_errors(scene)
+        .filter(|quantity| quantity.compared == contact_model::quantities::Compared::Yes);
+    quantities.map(|quantity| (quantity, false)).chain(errors.map(|quantity| (quantity, true))).collect()
+}
 
 /// One model under one load, over the surfaces on which it reached its tolerance.
 pub(crate) struct Mean {
     pub model: &'static str,
     pub state: usize,
     /// The number that the load prescribes; none along a path.
-    pub prescribed: Value,
+    pub prescribed: Option<f64>,
     pub surfaces: usize,
-    /// Mean and standard deviation of each quantity of the table; `None` where a surface does not have it.
-    values: Vec<(Quantity, Option<MeanAndDeviation>)>,
+    /// Mean and standard deviation of each quantity; `None` where a surface does not have it.
+    values: Vec<(Averaged, Option<MeanAndDeviation>)>,
 }
 
 impl Mean {
-    /// Mean and, for two surfaces or more, its standard error.
-    pub fn of(&self, name: &str) -> Option<MeanAndDeviation> {
-        if let ("prescribed", Value::Number(value)) = (name, &self.prescribed) {
-            return Some((*value, None));
-        }
-        let (_, value) = self.values.iter().find(|([quantity, ..], _)| *quantity == name)?;
+    /// Mean and, for two surfaces or more, its standard error, of a quantity.
+    pub fn of(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
+        self.find(quantity, false)
+    }
+
+    /// The same of the error that the grid leaves in it.
+    pub fn grid_error(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
+        self.find(quantity, true)
+    }
+
+    fn find(&self, quantity: &Quantity, of_grid: bool) -> Option<MeanAndDeviation> {
+        let is = |(of, grid): &Averaged| of.name == quantity.name && *grid == of_grid;
+        let (_, value) = self.values.iter().find(|(of, _)| is(of))?;
         let (mean, deviation) = (*value)?;
         Some((mean, deviation.map(|deviation| deviation / (self.surfaces as f64).sqrt())))
     }
 }
 
 /// The means in the order of models and loads.
-pub(crate) fn means(scene: &SceneFile, table: &Table) -> Vec<Mean> {
-    let place = |name: &str| table.columns().iter().position(|c| c.name == name);
-    let (Some(model), Some(state), Some(status)) = (place("model"), place("state"), place("status")) else {
-        return Vec::new();
-    };
-    let quantities: Vec<(Quantity, usize)> =
-        QUANTITIES.into_iter().filter_map(|quantity| Some((quantity, place(quantity[0])?))).collect();
-    let count = scene.request.count();
+pub(crate) fn means(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Vec<Mean> {
+    let averaged = averaged(scene);
     let prescribed = match &scene.request {
         Loading::Loads(loads) => loads.values.as_slice(),
         Loading::Path(_) => &[],
     };
-    let mut found = vec![Vec::new(); scene.models.len() * count];
-    for row in table.rows() {
-        let of = scene.models.iter().position(|m| row[model] == Value::from(m.name()));
-        if let (Some(of), Value::Count(state)) = (of, &row[state])
-            && row[status] == Value::from(Status::Converged.as_str())
-        {
-            found[of * count + *state as usize].push(row);
+    let mut means = Vec::new();
+    for model in scene.models.iter().map(crate::scenes::Numerics::name) {
+        for state in 0..scene.request.count() {
+            let of_model = units.iter().filter(|unit| unit.model == model);
+            let records = of_model.filter_map(|unit| unit.states.iter().find(|record| record.index == state));
+            let solved: Vec<&Solved> = records.filter_map(|record| record.converged()).collect();
+            let value = |&(quantity, of_grid): &Averaged| {
+                let number = |solved: &&Solved| {
+                    if of_grid {
+                        return Some(solved.grid.as_ref()?.of(quantity.name)?.error);
+                    }
+                    quantity.number(&solved.state, &solved.normalisation)
+                };
+                let numbers: Option<Vec<f64>> = solved.iter().map(number).collect();
+                ((quantity, of_grid), numbers.and_then(|numbers| mean_and_deviation(&numbers)))
+            };
+            means.push(Mean {
+                model,
+                state,
+                prescribed: prescribed.get(state).copied(),
+                surfaces: solved.len(),
+                values: averaged.iter().map(value).collect(),
+            });
         }
     }
-    let mean = |(at, rows): (usize, &Vec<&Vec<Value>>)| {
-        let value = |&(quantity, column): &(Quantity, usize)| {
-            let number = |row: &&Vec<Value>| match row[column] {
-                Value::Number(v) => Some(v),
-                _ => None,
-            };
-            let numbers: Option<Vec<f64>> = rows.iter().map(number).collect();
-            (quantity, numbers.and_then(|numbers| mean_and_deviation(&numbers)))
-        };
-        let (model, state) = (scene.models[at / count].name(), at % count);
-        let prescribed = prescribed.get(state).copied().into();
-        Mean {
-            model,
-            state,
-            prescribed,
-            surfaces: rows.len(),
-            values: quantities.iter().map(value).collect(),
-        }
-    };
-    found.iter().enumerate().map(mean).collect()
+    means
 }
 
 /// The means as a table: `surfaces`, and for each quantity its mean, standard error and standard deviation.
-pub(crate) fn table(title: String, columns: &[Column], means: &[Mean]) -> contact_model::Result<Table> {
-    let prescribed = columns.iter().find(|c| c.name == "prescribed").map_or("1", |c| c.unit);
+pub(crate) fn table(scene: &SceneFile, title: String, means: &[Mean]) -> contact_model::Result<Table> {
     let mut all = vec![
         Column { name: "model", unit: "-", meaning: "who answers" },
         Column { name: "state", unit: "1", meaning: "number of the load or step, from 0" },
         Column {
             name: "prescribed",
-            unit: prescribed,
+            unit: columns::prescribed(scene).map_or("1", |column| column.unit),
             meaning: "what the load prescribes; empty along a path",
         },
         Column { name: "surfaces", unit: "1", meaning: "surfaces on which the state reached its tolerance" },
     ];
-    for [mean, error, deviation] in QUANTITIES {
-        let Some(column) = columns.iter().find(|c| c.name == mean) else { continue };
-        all.push(column.clone());
-        all.push(Column { name: error, unit: column.unit, meaning: "standard error of this mean" });
-        all.push(Column { name: deviation, unit: column.unit, meaning: "standard deviation of one surface" });
+    let averaged = averaged(scene);
+    for &(quantity, of_grid) in &averaged {
+        let [se, sd, error, _, error_se, error_sd] = quantity.columns;
+        let column = columns::column(scene, quantity);
+        let (name, [se, sd], unit) =
+            if of_grid { (error, [error_se, error_sd], "1") } else { (quantity.name, [se, sd], column.unit) };
+        let meaning =
+            if of_grid { "mean of the estimated relative error of the grid" } else { column.meaning };
+        all.push(Column { name, unit, meaning });
+        if quantity.average == Average::Mean {
+            all.push(Column { name: se, unit, meaning: "standard error of this mean" });
+            all.push(Column { name: sd, unit, meaning: "standard deviation of one surface" });
+        }
     }
     let mut table = Table::new(title, all);
     for of in means {
         let mut row: Vec<Value> =
-            vec![of.model.into(), of.state.into(), of.prescribed.clone(), of.surfaces.into()];
-        for (_, value) in &of.values {
+            vec![of.model.into(), of.state.into(), of.prescribed.into(), of.surfaces.into()];
+        for ((quantity, _), value) in &of.values {
             let deviation = value.and_then(|(_, deviation)| deviation);
             let error = deviation.map(|deviation| deviation / (of.surfaces as f64).sqrt());
-            row.extend([value.map(|(mean, _)| mean).into(), error.into(), deviation.into()]);
+            row.push(value.map(|(mean, _)| mean).into());
+            if quantity.average == Average::Mean {
+                row.extend([error.into(), deviation.into()]);
+            }
         }
         table.push(row)?;
     }

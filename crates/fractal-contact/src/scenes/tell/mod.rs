@@ -14,3 +14,75 @@ pub(crate) mod statistics;
 pub(crate) mod statistics_files;
 pub(crate) mod summary;
 pub(crate) mod surface_report;
+
+#[cfg(test)]
+mod tests {
+    use super::{columns, ensemble, pictures, report, summary};
+    use crate::scenes::{Loading, Loads, Numerics, Prescribed, SceneFile, SceneSurface};
+    use contact_model::quantities::{AskedBy, Average, QUANTITIES, Role};
+    use contact_model::{
+        Adhesion, Boundary, Conductance, Effect, Friction, Hardness, Load, Output, Rheology, SelfAffine,
+        Step, Surface,
+    };
+
+    /// A scene that asks for what this asks for, and for as little else as it can.
+    fn asking(asked: AskedBy) -> SceneFile {
+        let rough = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.01).unwrap());
+        let loads = Loading::Loads(Loads { prescribed: Prescribed::Approach, values: vec![0.1, 0.2] });
+        let models = vec![Numerics::named("bem3d").unwrap()];
+        let mut scene = SceneFile::new(models, SceneSurface::Plain(rough), 1.0, loads);
+        scene.sampling.surfaces = 2;
+        scene.requested.grid_error = true;
+        let (effects, outputs) = (&mut scene.effects, &mut scene.requested.outputs);
+        match asked {
+            AskedBy::Output(Output::Conductance) | AskedBy::AnyStiffness => {
+                outputs.conductance = Conductance::Electrical { first: 1.0, second: 1.0 };
+            }
+            AskedBy::Output(output) => {
+                outputs.ask(output, true);
+                if output == Output::MeanGap {
+                    effects.boundary = Boundary::Periodic;
+                    scene.request =
+                        Loading::Loads(Loads { prescribed: Prescribed::MeanPressure, values: vec![0.1, 0.2] });
+                }
+            }
+            AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },
+            AskedBy::Effect("adhesion") => effects.adhesion = Adhesion::ShortRange { work: 1.0 },
+            AskedBy::Effect("friction") => effects.friction = Friction::Coulomb { coefficient: 0.3 },
+            AskedBy::Effect("rheology") => effects.rheology = Rheology::Maxwell { viscosity: 1.0 },
+            AskedBy::Effect(key) => assert!(Effect::ALL.iter().any(|effect| effect.key() == key), "{key}"),
+            AskedBy::Path => {
+                scene.request = Loading::Path(vec![Step::normal(0.0, Load::Force(1.0)); 2]);
+            }
+            AskedBy::Always | AskedBy::RoughSurface | AskedBy::FreeBoundary | AskedBy::PrescribedDistance => {
+            }
+        }
+        scene
+    }
+
+    /// A quantity of the table that a scene asks for is in its CSV, in the table of the console and of the report, in the means and the
+    /// curves.
+    #[test]
+    fn every_quantity_is_told_everywhere() {
+        for quantity in QUANTITIES {
+            let (name, scene) = (quantity.name, asking(quantity.asked_by));
+            assert!(columns::asked(&scene).any(|asked| asked.name == name), "{name} is not asked for");
+            let csv = columns::columns(&scene);
+            assert!(csv.iter().any(|column| column.name == name), "{name} is not in results.csv");
+            let shown = summary::names(&scene).any(|shown| shown == name);
+            assert_eq!(shown, quantity.role == Role::Answer, "{name} in the tables of console and report");
+            let means = ensemble::table(&scene, String::new(), &[]).unwrap();
+            let averaged = means.columns().iter().any(|column| column.name == name);
+            assert_eq!(averaged, quantity.average != Average::No, "{name} in ensemble.csv");
+            let drawn = pictures::curve_files(&scene).contains(&format!("curve-{name}.svg"));
+            // What is prescribed, or stands along the other axis, is not drawn over itself.
+            assert!(drawn == quantity.drawn || ["approach", "force"].contains(&name), "{name} as a curve");
+            let proven = report::residuals(&scene).any(|residual| residual.name == name);
+            assert_eq!(
+                proven,
+                matches!(quantity.role, Role::Residual(_)),
+                "{name} among the certificates of the report"
+            );
+        }
+    }
+}

@@ -1,79 +1,90 @@
-//! Curves drawn from the rows of the table.
+//! Curves drawn from the states.
 
 use crate::scenes::read::error::Result;
 use crate::scenes::read::loads::{Loading, Prescribed};
 use crate::scenes::read::scene_file::{SceneFile, depends_on_path};
 use crate::scenes::read::words;
+use crate::scenes::run::state_result::SolvedUnit;
+use crate::scenes::tell::columns;
 use crate::scenes::tell::ensemble::Mean;
-use analysis::{Table, Value};
 use contact_model::Boundary;
+use contact_model::quantities::Quantity;
 use plots::{Chart, Curve};
 use std::path::{Path, PathBuf};
 
-/// What is drawn over what: of loads, and of paths.
-const OVER_LOAD: [&str; 8] = [
-    "force",
-    "stiffness",
-    "stiffness_fixed_area",
-    "area",
-    "conductance",
-    "approach",
-    "mean_gap",
-    "largest_pressure",
-];
-const OVER_TIME: [&str; 2] = ["force", "approach"];
+/// What stands along the horizontal axis.
+#[derive(Clone, Copy)]
+enum Axis {
+    Quantity(&'static Quantity),
+    /// The number that the loads prescribe, where it is no quantity: a mean pressure.
+    Prescribed,
+}
 
-/// `curve-Y.svg` and `.png` for every column that the scene asked for.
-pub(crate) fn curves(scene: &SceneFile, table: &Table, means: &[Mean], out: &Path) -> Result<Vec<PathBuf>> {
+/// `curve-Y.svg` and `.png` for every quantity that the scene asked for.
+pub(crate) fn curves(
+    scene: &SceneFile,
+    units: &[SolvedUnit<'_>],
+    means: &[Mean],
+    out: &Path,
+) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    for (y, chart) in charts(scene, table, means) {
+    for (y, chart) in charts(scene, units, means) {
         files.extend(chart.save(out, &format!("curve-{y}"))?);
     }
     Ok(files)
 }
 
-/// A chart for every column that the scene asked for and that varies, by the column's name.
-pub(crate) fn charts(scene: &SceneFile, table: &Table, means: &[Mean]) -> Vec<(&'static str, Chart)> {
-    let has = |name: &str| table.columns().iter().any(|c| c.name == name);
-    let drawn = pairs(scene).into_iter().filter(|(x, y)| has(x) && has(y));
-    drawn
-        .map(|(x, y)| (y, chart(scene, table, means, x, y)))
+/// A chart for every quantity that the scene asked for and that varies, by its name.
+pub(crate) fn charts(
+    scene: &SceneFile,
+    units: &[SolvedUnit<'_>],
+    means: &[Mean],
+) -> Vec<(&'static str, Chart)> {
+    pairs(scene)
+        .into_iter()
+        .map(|(x, y)| (y.name, chart(scene, units, means, x, y)))
         .filter(|(_, chart)| chart.curves.iter().any(|c| varies(&c.points)))
         .collect()
 }
 
 /// The names of all files that [`curves`] may write.
 pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
-    pairs(scene).iter().flat_map(|(_, y)| ["svg", "png"].map(|end| format!("curve-{y}.{end}"))).collect()
+    let names = pairs(scene).into_iter().map(|(_, y)| y.name);
+    names.flat_map(|y| ["svg", "png"].map(|end| format!("curve-{y}.{end}"))).collect()
 }
 
-/// What is drawn over what, where the table has it.
-fn pairs(scene: &SceneFile) -> Vec<(&'static str, &'static str)> {
+/// What is drawn over what: every quantity that is drawn, over the load, the time, or what a loop is drawn over.
+fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
+    let drawn = || columns::asked(scene).filter(|quantity| quantity.drawn);
+    let named = |name: &str| columns::asked(scene).find(|quantity| quantity.name == name);
+    let over = |x: &'static str| -> Vec<(Axis, &'static Quantity)> {
+        let Some(axis) = named(x) else { return Vec::new() };
+        drawn().filter(|y| y.name != x).map(|y| (Axis::Quantity(axis), y)).collect()
+    };
     if let Loading::Loads(loads) = &scene.request {
-        let x = match loads.prescribed {
-            Prescribed::Force => "force",
-            Prescribed::ForceBar => "force_bar",
-            Prescribed::MeanPressure => "prescribed",
-            Prescribed::Approach => "approach",
-            Prescribed::MeanGap => "mean_gap",
-        };
         // A force that is prescribed in other words is no answer.
-        let answers = match loads.prescribed {
-            Prescribed::Approach | Prescribed::MeanGap => &OVER_LOAD[..],
-            _ => &OVER_LOAD[1..],
+        let answers = |pairs: Vec<(Axis, &'static Quantity)>| {
+            pairs.into_iter().filter(|(_, y)| y.name != "force").collect()
         };
-        return answers.iter().filter(|y| **y != x).map(|y| (x, *y)).collect();
+        return match loads.prescribed {
+            Prescribed::Force => over("force"),
+            Prescribed::ForceBar => answers(over("force_bar")),
+            Prescribed::MeanPressure => answers(drawn().map(|y| (Axis::Prescribed, y)).collect()),
+            Prescribed::Approach => over("approach"),
+            Prescribed::MeanGap => over("mean_gap"),
+        };
     }
     if depends_on_path(&scene.effects) {
-        return match scene.effects.boundary {
-            Boundary::Periodic => vec![("mean_gap", "force"), ("force", "area")],
-            _ => vec![("approach", "force"), ("force", "area")],
-        };
+        // The loop of the force, and everything else over the force.
+        let distance = if scene.effects.boundary == Boundary::Periodic { "mean_gap" } else { "approach" };
+        let rest = over("force").into_iter().filter(|(_, y)| y.name != distance);
+        let axis = named(distance).zip(named("force")).map(|(d, force)| (Axis::Quantity(d), force));
+        return axis.into_iter().chain(rest).collect();
     }
     if scene.effects.friction == contact_model::Friction::Off {
-        return OVER_TIME.map(|y| ("time", y)).to_vec();
+        return over("time");
     }
-    vec![("tangential_displacement", "tangential_force")]
+    over("tangential_displacement")
 }
 
 /// A constant, such as a force that is held, is no picture.
@@ -82,51 +93,98 @@ fn varies(points: &[(f64, f64)]) -> bool {
     points.len() == 1 || points.iter().any(|p| p.1.total_cmp(&first.1).is_ne())
 }
 
-fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> Chart {
-    let place = |name: &str| table.columns().iter().position(|c| c.name == name);
-    let label = |name: &str| {
-        let unit = place(name).map_or("1", |i| table.columns()[i].unit);
-        let (words, symbol) = quantity(scene, name);
+impl Axis {
+    /// In words, with its symbol.
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Quantity(quantity) => (quantity.words, quantity.symbol),
+            Self::Prescribed => ("mean pressure", "\\bar{p}"),
+        }
+    }
+
+    fn unit(self, scene: &SceneFile) -> &'static str {
+        match self {
+            Self::Quantity(quantity) => columns::column(scene, quantity).unit,
+            Self::Prescribed => columns::prescribed(scene).map_or("1", |column| column.unit),
+        }
+    }
+
+    fn label(self, scene: &SceneFile) -> String {
+        let (words, symbol) = self.words();
         let label = if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") };
-        match unit {
+        match self.unit(scene) {
             "1" | "-" => label,
             "scene" => format!("{label} (units of the scene)"),
             unit => format!("{label} ({})", words::unit_label(unit)),
         }
-    };
-    let number = |row: &[Value], name: &str| match place(name).and_then(|i| row.get(i)) {
-        Some(Value::Number(v)) => Some(*v),
-        _ => None,
-    };
-    let shown = |(x, y): &(f64, f64)| scene.is_history() || (*x != 0.0 && *y != 0.0);
-    let grid_error = format!("{y}_grid_error");
-    let curve = |model: &'static str| {
-        let label = words::model_name(model).to_owned();
-        let of = || means.iter().filter(move |mean| mean.model == model && mean.surfaces > 0);
-        if means.is_empty() {
-            let rows = table.rows().iter().filter(|row| row.first() == Some(&Value::from(model)));
-            let row = |row: &Vec<Value>| Some(((number(row, x)?, number(row, y)?), number(row, &grid_error)));
-            let states: Vec<_> = rows.filter_map(row).filter(|(point, _)| shown(point)).collect();
-            // By a factor, because an error of more than the number itself has no lower end on these axes.
-            let end = |((x, y), error): &((f64, f64), Option<f64>)| {
-                error.map(|error| (*x, y / (1.0 + error), y * (1.0 + error)))
-            };
-            let band = states.iter().filter_map(end).collect();
-            return Curve { label, points: states.iter().map(|(point, _)| *point).collect(), band };
+    }
+
+    fn of_mean(self, mean: &Mean) -> Option<f64> {
+        match self {
+            Self::Quantity(quantity) => Some(mean.of(quantity)?.0),
+            Self::Prescribed => mean.prescribed,
         }
-        let points = of().filter_map(|mean| Some((mean.of(x)?.0, mean.of(y)?.0)));
-        let band = of().filter_map(|mean| {
-            let ((x, _), (y, error)) = (mean.of(x)?, mean.of(y)?);
-            Some((x, y - 2.0 * error?, y + 2.0 * error?))
-        });
-        Curve { label, points: points.filter(shown).collect(), band: band.collect() }
-    };
-    let curves: Vec<Curve> =
-        scene.models.iter().map(|m| curve(m.name())).filter(|curve| !curve.points.is_empty()).collect();
-    let mut title = format!("{} over {}", quantity(scene, y).0, quantity(scene, x).0);
+    }
+}
+
+/// The states of one model.
+fn curve(
+    scene: &SceneFile,
+    (units, means): (&[SolvedUnit<'_>], &[Mean]),
+    model: &'static str,
+    (x, y): (Axis, &'static Quantity),
+) -> Curve {
+    let shown = |(x, y): &(f64, f64)| scene.is_history() || (*x != 0.0 && *y != 0.0);
+    let label = words::model_name(model).to_owned();
+    if means.is_empty() {
+        let records = units.iter().filter(|unit| unit.model == model).flat_map(|unit| unit.states);
+        let state = |record: &crate::scenes::run::state_result::StateRecord| {
+            let solved = record.solved()?;
+            let number =
+                |of: &Quantity| of.number(&solved.state, &solved.normalisation).filter(|v| v.is_finite());
+            let x = match (x, &scene.request) {
+                (Axis::Quantity(quantity), _) => number(quantity)?,
+                (Axis::Prescribed, Loading::Loads(loads)) => *loads.values.get(record.index)?,
+                (Axis::Prescribed, Loading::Path(_)) => return None,
+            };
+            let error = solved.grid.as_ref().and_then(|grid| grid.of(y.name)).map(|error| error.error);
+            Some(((x, number(y)?), error))
+        };
+        let states: Vec<_> = records.filter_map(state).filter(|(point, _)| shown(point)).collect();
+        // By a factor, because an error of more than the number itself has no lower end on these axes.
+        let end = |((x, y), error): &((f64, f64), Option<f64>)| {
+            error.map(|error| (*x, y / (1.0 + error), y * (1.0 + error)))
+        };
+        let band = states.iter().filter_map(end).collect();
+        return Curve { label, points: states.iter().map(|(point, _)| *point).collect(), band };
+    }
+    let of = || means.iter().filter(move |mean| mean.model == model && mean.surfaces > 0);
+    let points = of().filter_map(|mean| Some((x.of_mean(mean)?, mean.of(y)?.0)));
+    let band = of().filter_map(|mean| {
+        let (x, (y, error)) = (x.of_mean(mean)?, mean.of(y)?);
+        Some((x, y - 2.0 * error?, y + 2.0 * error?))
+    });
+    Curve { label, points: points.filter(shown).collect(), band: band.collect() }
+}
+
+fn chart(
+    scene: &SceneFile,
+    units: &[SolvedUnit<'_>],
+    means: &[Mean],
+    x: Axis,
+    y: &'static Quantity,
+) -> Chart {
+    let curves: Vec<Curve> = scene
+        .models
+        .iter()
+        .map(|m| curve(scene, (units, means), m.name(), (x, y)))
+        .filter(|curve| !curve.points.is_empty())
+        .collect();
+    let mut title = format!("{} over {}", y.words, x.words().0);
     title[..1].make_ascii_uppercase();
+    let has_error = columns::with_grid_errors(scene).any(|compared| compared.name == y.name);
     let surfaces = match scene.sampling.surfaces {
-        1 if place(&grid_error).is_some() => ", shaded: the factor 1 + grid error".to_owned(),
+        1 if has_error => ", shaded: the factor 1 + grid error".to_owned(),
         1 => String::new(),
         asked => {
             // A run that was interrupted has fewer.
@@ -145,32 +203,9 @@ fn chart(scene: &SceneFile, table: &Table, means: &[Mean], x: &str, y: &str) -> 
     Chart {
         title,
         subtitle: format!("scene: {}{surfaces}", words::scene_name(scene)),
-        x_label: label(x),
-        y_label: label(y),
+        x_label: x.label(scene),
+        y_label: Axis::Quantity(y).label(scene),
         curves,
         logarithmic: !scene.is_history(),
-    }
-}
-
-/// A column in words, and its symbol of the glossary.
-fn quantity<'a>(scene: &SceneFile, column: &'a str) -> (&'a str, &'a str) {
-    let of_pressure =
-        matches!(&scene.request, Loading::Loads(loads) if loads.prescribed == Prescribed::MeanPressure);
-    match column {
-        "prescribed" if of_pressure => ("mean pressure", "\\bar{p}"),
-        "force_bar" => ("force", "\\bar{F}"),
-        "force" => ("force", "F"),
-        "approach" => ("approach", "d"),
-        "mean_gap" => ("mean gap", "\\bar{g}"),
-        "stiffness" => ("stiffness", "k"),
-        "stiffness_fixed_area" => ("stiffness of the held area", "k"),
-        "area" => ("contact area", "A"),
-        "conductance" => ("conductance", "Λ"),
-        "largest_pressure" => ("largest pressure", "p_{\\rm{max}}"),
-        "time" => ("time", "t"),
-        "tangential_force" => ("tangential force", "T"),
-        "tangential_displacement" => ("tangential displacement", "u_x"),
-        "dissipated" => ("dissipated energy", ""),
-        other => (other, ""),
     }
 }

@@ -11,14 +11,16 @@ use crate::scenes::read::words;
 use crate::scenes::run::field_pictures;
 use crate::scenes::run::field_view::FieldView;
 use crate::scenes::run::outcome::SceneOutcome;
-use crate::scenes::run::state_result::FieldFile;
-use crate::scenes::tell::distributions::{self, Solved};
+use crate::scenes::run::state_result::{FieldFile, SolvedUnit};
+use crate::scenes::tell::columns;
+use crate::scenes::tell::distributions;
 use crate::scenes::tell::ensemble::Mean;
 use crate::scenes::tell::page;
 use crate::scenes::tell::pictures;
 use crate::scenes::tell::statistics::MapStatisticsTables;
 use crate::scenes::tell::summary;
-use analysis::{Table, Value};
+use analysis::Value;
+use contact_model::quantities::{Quantity, Role};
 use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve};
 use std::path::{Path, PathBuf};
@@ -31,9 +33,8 @@ pub(crate) struct Report<'a> {
     pub scene: &'a SceneFile,
     pub plan: &'a Plan,
     pub outcome: &'a SceneOutcome,
-    pub table: &'a Table,
     pub means: &'a [Mean],
-    pub solved: &'a [Solved<'a>],
+    pub units: &'a [SolvedUnit<'a>],
     pub statistics: Option<&'a MapStatisticsTables>,
 }
 
@@ -96,7 +97,7 @@ impl Report<'_> {
 
     fn states(&self) -> Markup {
         html! {
-            @for model in summary::of_models(self.scene, self.table, self.means) {
+            @for model in summary::of_models(self.scene, self.units, self.means) {
                 div.scroll tabindex="0" role="region" aria-label={ "States of " (words::model_name(model.name)) } {
                     table {
                         caption {
@@ -115,14 +116,14 @@ impl Report<'_> {
     }
 
     fn curves(&self) -> Result<Markup> {
-        let charts = pictures::charts(self.scene, self.table, self.means);
+        let charts = pictures::charts(self.scene, self.units, self.means);
         let drawn = charts.iter().map(|(_, c)| page::chart(c)).collect::<Result<Vec<_>>>()?;
         Ok(html! { @for figure in drawn { (figure) } })
     }
 
     fn distributions(&self) -> Result<Markup> {
         let asked = &self.scene.requested.distributions;
-        let charts = asked.iter().filter_map(|&of| distributions::chart(self.scene, of, self.solved));
+        let charts = asked.iter().filter_map(|&of| distributions::chart(self.scene, of, self.units));
         let drawn = charts.map(|c| page::chart(&c)).collect::<Result<Vec<_>>>()?;
         Ok(
             html! { @if !drawn.is_empty() { h3 { "Distributions" } div.charts { @for figure in drawn { (figure) } } } },
@@ -164,18 +165,19 @@ impl Report<'_> {
 
     /// The largest of each residual over all states, with what it means.
     fn certificates(&self) -> Markup {
-        let place = |name: &str| self.table.columns().iter().position(|c| c.name == name);
-        let largest = |name: &str| {
-            let values = self.table.rows().iter().filter_map(|row| match row.get(place(name)?)? {
-                Value::Number(v) => Some(*v),
+        let largest = |quantity: &Quantity| {
+            let records = self.units.iter().flat_map(|unit| unit.states);
+            let values = records.filter_map(|record| match columns::value(record, quantity) {
+                Value::Number(v) => Some(v),
                 _ => None,
             });
             values.reduce(f64::max)
         };
-        let found: Vec<(&str, &str, f64)> = CERTIFICATES
-            .into_iter()
-            .filter_map(|(name, words)| Some((name, words, largest(name)?)))
-            .collect();
+        let proves = |quantity: &'static Quantity| match quantity.role {
+            Role::Residual(proves) => Some((quantity.name, proves, largest(quantity)?)),
+            _ => None,
+        };
+        let found: Vec<(&str, &str, f64)> = residuals(self.scene).filter_map(proves).collect();
         html! {
             @if found.is_empty() {
                 p { "No model here has a residual: the formulas are exact for what they assume." }
@@ -245,7 +247,7 @@ impl Report<'_> {
     /// steps spread over a path.
     fn fields(&self, out: &Path) -> Result<Markup> {
         let mut views: Vec<(FieldView, &str, &str, usize)> = Vec::new();
-        for &(model, surface, states) in self.solved.iter().filter(|of| of.1 == 0) {
+        for &SolvedUnit { model, surface, states } in self.units.iter().filter(|of| of.surface == 0) {
             let order = if self.scene.is_history() {
                 spread(states.len())
             } else {
@@ -300,6 +302,11 @@ impl Report<'_> {
     }
 }
 
+/// The residuals that a scene has.
+pub(crate) fn residuals(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
+    columns::asked(scene).filter(|quantity| matches!(quantity.role, Role::Residual(_)))
+}
+
 /// The numbers below `count` in an order whose beginnings are spread over all of them: strides of falling powers of 2.
 fn spread(count: usize) -> Vec<usize> {
     let mut order = Vec::with_capacity(count);
@@ -313,25 +320,6 @@ fn spread(count: usize) -> Vec<usize> {
     }
     order
 }
-
-const CERTIFICATES: [(&str, &str); 7] = [
-    (
-        "duality_gap",
-        "the pressure minimises the elastic energy: by how much it could still fall, over force times rms height",
-    ),
-    ("penetration", "no cell penetrates the other body: the deepest, over the rms height"),
-    ("complementarity", "where there is pressure there is no gap"),
-    ("load_error", "the force, or the mean gap, is the one that was asked for"),
-    (
-        "force_error",
-        "a bound of the relative error of the force under a prescribed approach or mean gap; an estimate with adhesion",
-    ),
-    (
-        "equilibrium",
-        "the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction",
-    ),
-    ("stiffness_error", "an estimate of the relative error of the stiffness, on these cells"),
-];
 
 #[cfg(test)]
 mod tests {

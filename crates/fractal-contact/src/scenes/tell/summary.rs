@@ -1,39 +1,18 @@
 //! The states of a run as a table for a terminal.
 
 use crate::scenes::read::human_readable::short;
+use crate::scenes::read::loads::Loading;
 use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::run::state_result::{SolvedUnit, StateRecord};
+use crate::scenes::tell::columns;
 use crate::scenes::tell::ensemble::Mean;
-use analysis::{Table, Value};
+use analysis::Value;
+use contact_model::quantities::{Quantity, Role};
 
-/// Columns that are shown where the table has them: each number that a scene can ask for, and what its effects add.
-const SHOWN: [&str; 24] = [
-    "prescribed",
-    "time",
-    "force",
-    "approach",
-    "mean_gap",
-    "mean_gap_grid_error",
-    "stiffness",
-    "stiffness_grid_error",
-    "stiffness_fixed_area",
-    "stiffness_fixed_area_grid_error",
-    "area",
-    "area_corrected",
-    "area_corrected_grid_error",
-    "contact_fraction",
-    "conductance",
-    "conductance_grid_error",
-    "patches",
-    "largest_patch",
-    "plastic_area",
-    "plastic_volume",
-    "branch",
-    "stability",
-    "largest_pressure",
-    "contact_cells",
-];
 /// More states of a model than these are left to the files.
 const MOST: usize = 24;
+/// What stands where there is nothing.
+const NOTHING: &str = "-";
 
 /// A few columns of the states of a model.
 pub(crate) struct ModelStates {
@@ -45,9 +24,9 @@ pub(crate) struct ModelStates {
 }
 
 /// The states of each model as aligned text.
-pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> String {
+pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> String {
     let mut text = String::new();
-    for ModelStates { name, lines, left_out } in of_models(scene, table, means) {
+    for ModelStates { name, lines, left_out } in of_models(scene, units, means) {
         let brackets = if means.is_empty() { "" } else { ": means over surfaces (standard error)" };
         text += &format!("{name}{brackets}\n");
         let columns = lines.first().map_or(0, Vec::len);
@@ -66,50 +45,114 @@ pub(crate) fn summary(scene: &SceneFile, table: &Table, means: &[Mean]) -> Strin
     text
 }
 
-/// A few columns of the states of each model; of several surfaces their means with the standard errors in brackets.
-pub(crate) fn of_models(scene: &SceneFile, table: &Table, means: &[Mean]) -> Vec<ModelStates> {
-    let place = |name: &str| table.columns().iter().position(|c| c.name == name);
-    let mut of_models = Vec::new();
-    for model in scene.models.iter().map(crate::scenes::Numerics::name) {
-        let rows: Vec<&Vec<Value>> =
-            table.rows().iter().filter(|row| row.first() == Some(&Value::from(model))).collect();
-        let of: Vec<&Mean> = means.iter().filter(|mean| mean.model == model).collect();
-        let mut lines: Vec<Vec<String>> = Vec::new();
-        let shown: Vec<(&str, usize)> =
-            SHOWN.into_iter().filter_map(|name| Some((name, place(name)?))).collect();
-        if means.is_empty() {
-            let cell = |row: &Vec<Value>, at: usize| match &row[at] {
-                Value::Number(v) => short(*v),
-                Value::Count(n) => n.to_string(),
-                _ => "-".to_owned(),
-            };
-            lines.extend(rows.iter().map(|row| shown.iter().map(|&(_, at)| cell(row, at)).collect()));
-        } else {
-            let cell = |mean: &Mean, name: &str| match (name, &mean.prescribed, mean.of(name)) {
-                ("prescribed", Value::Number(v), _) => short(*v),
-                // The force is what is prescribed, or its error is rounding.
-                (_, _, Some((mean, Some(error)))) if error < 1e-9 * mean.abs() => short(mean),
-                (.., of) => match of {
-                    Some((mean, Some(error))) => format!("{} ({})", short(mean), error_of(error, mean)),
-                    Some((mean, None)) => short(mean),
-                    None => "-".to_owned(),
-                },
-            };
-            lines.extend(of.iter().map(|mean| shown.iter().map(|&(name, _)| cell(mean, name)).collect()));
+/// What is shown of a state: an answer, or what the grid leaves in it.
+#[derive(Clone, Copy)]
+enum Shown {
+    Answer(&'static Quantity),
+    GridError(&'static Quantity),
+}
+
+/// Every answer that a scene asks for, each with the error of its grid.
+fn shown(scene: &SceneFile) -> Vec<Shown> {
+    let mut shown = Vec::new();
+    for quantity in columns::asked(scene).filter(|quantity| quantity.role == Role::Answer) {
+        shown.push(Shown::Answer(quantity));
+        if columns::with_grid_errors(scene).any(|compared| compared.name == quantity.name) {
+            shown.push(Shown::GridError(quantity));
         }
-        // A column without a number says nothing.
-        let kept: Vec<usize> =
-            (0..shown.len()).filter(|&i| lines.iter().any(|line| line[i] != "-")).collect();
-        let unit = |at: usize| match table.columns()[at].unit {
-            "1" | "-" => String::new(),
-            unit => format!(" [{unit}]"),
+    }
+    shown
+}
+
+/// Names of the answers that are shown.
+#[cfg(test)]
+pub(crate) fn names(scene: &SceneFile) -> impl Iterator<Item = &'static str> {
+    shown(scene).into_iter().filter_map(|of| match of {
+        Shown::Answer(quantity) => Some(quantity.name),
+        Shown::GridError(_) => None,
+    })
+}
+
+impl Shown {
+    fn head(self, scene: &SceneFile) -> String {
+        match self {
+            Self::Answer(quantity) => with_unit(quantity.name, columns::column(scene, quantity).unit),
+            Self::GridError(quantity) => quantity.columns[2].to_owned(),
+        }
+    }
+
+    fn of_state(self, record: &StateRecord) -> String {
+        let value = match self {
+            Self::Answer(quantity) => columns::value(record, quantity),
+            Self::GridError(quantity) => {
+                let grid = record.solved().and_then(|solved| solved.grid.as_ref());
+                grid.and_then(|grid| grid.of(quantity.name)).map(|error| error.error).into()
+            }
         };
-        let mut all: Vec<Vec<String>> =
-            vec![shown.iter().map(|&(name, at)| format!("{name}{}", unit(at))).collect()];
-        let states = lines.len();
-        all.extend(lines.into_iter().take(MOST));
-        let lines = all.iter().map(|line| kept.iter().map(|&i| line[i].clone()).collect()).collect();
-        of_models.push(ModelStates { name: model, lines, left_out: states.saturating_sub(MOST) });
+        match value {
+            Value::Number(v) => short(v),
+            Value::Count(n) => n.to_string(),
+            Value::Text(word) => word,
+            _ => NOTHING.to_owned(),
+        }
+    }
+
+    fn of_mean(self, mean: &Mean) -> String {
+        let found = match self {
+            Self::Answer(quantity) => mean.of(quantity),
+            Self::GridError(quantity) => mean.grid_error(quantity),
+        };
+        match found {
+            // The force is what is prescribed, or its error is rounding.
+            Some((mean, Some(error))) if error < 1e-9 * mean.abs() => short(mean),
+            Some((mean, Some(error))) => format!("{} ({})", short(mean), error_of(error, mean)),
+            Some((mean, None)) => short(mean),
+            None => NOTHING.to_owned(),
+        }
+    }
+}
+
+fn with_unit(name: &str, unit: &str) -> String {
+    match unit {
+        "1" | "-" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
+}
+
+/// The answers of each model; of several surfaces their means with the standard errors in brackets.
+pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<ModelStates> {
+    let shown = shown(scene);
+    let prescribed = columns::prescribed(scene);
+    let load = |value: Option<f64>| value.map_or_else(|| NOTHING.to_owned(), short);
+    let mut of_models = Vec::new();
+    for name in scene.models.iter().map(crate::scenes::Numerics::name) {
+        let mut lines: Vec<Vec<String>> = Vec::new();
+        if means.is_empty() {
+            for record in units.iter().filter(|unit| unit.model == name).flat_map(|unit| unit.states) {
+                let prescribed = match &scene.request {
+                    Loading::Loads(loads) => loads.values.get(record.index).copied(),
+                    Loading::Path(_) => None,
+                };
+                let mut line = vec![load(prescribed)];
+                line.extend(shown.iter().map(|of| of.of_state(record)));
+                lines.push(line);
+            }
+        } else {
+            for mean in means.iter().filter(|mean| mean.model == name) {
+                let mut line = vec![load(mean.prescribed)];
+                line.extend(shown.iter().map(|of| of.of_mean(mean)));
+                lines.push(line);
+            }
+        }
+        // A column without anything says nothing.
+        let kept: Vec<usize> =
+            (0..=shown.len()).filter(|&i| lines.iter().any(|line| line[i] != NOTHING)).collect();
+        let mut head = vec![prescribed.as_ref().map_or_else(String::new, |c| with_unit(c.name, c.unit))];
+        head.extend(shown.iter().map(|of| of.head(scene)));
+        let left_out = lines.len().saturating_sub(MOST);
+        let lines = std::iter::once(head).chain(lines.into_iter().take(MOST));
+        let lines = lines.map(|line| kept.iter().map(|&i| line[i].clone()).collect()).collect();
+        of_models.push(ModelStates { name, lines, left_out });
     }
     of_models
 }

@@ -1,50 +1,6 @@
-//! What is asked for.
+//! Conductance through a contact.
 
 use crate::error::{Error, Result, non_negative, positive};
-use crate::state::ContactState;
-
-/// What is computed besides force and approach. What is not asked for is not computed and not stored.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[allow(clippy::struct_excessive_bools)] // A set of names, each either asked for or not.
-pub struct Outputs {
-    /// Stiffness k = dF/dd along the branch.
-    pub stiffness: bool,
-    /// Stiffness of the whole contact area, held.
-    pub stiffness_fixed_area: bool,
-    /// Real contact area.
-    pub area: bool,
-    /// Mean gap; with periodic boundaries only, where a state has no approach.
-    pub mean_gap: bool,
-    /// Pressure field.
-    pub pressure: bool,
-    /// Displacement field.
-    pub displacement: bool,
-    /// Gap field.
-    pub gap: bool,
-    /// Field of the plastic indentation; with a hardness only.
-    pub plastic_depth: bool,
-    /// Connected contact areas, their number and sizes ([`crate::Patches`]).
-    pub contact_patches: bool,
-    /// Conductance through the contact.
-    pub conductance: Conductance,
-}
-
-impl Outputs {
-    /// Whether any field (pressure, displacement, gap, plastic indentation) is asked for.
-    pub fn any_field(&self) -> bool {
-        self.pressure || self.displacement || self.gap || self.plastic_depth
-    }
-
-    /// Whether a stiffness has to be computed, of either kind: all that an elastic model has to know.
-    pub fn needs_stiffness(&self) -> bool {
-        self.stiffness || self.needs_fixed_area()
-    }
-
-    /// Whether the stiffness of the held contact area has to be computed: for itself or for the conductance.
-    pub fn needs_fixed_area(&self) -> bool {
-        self.stiffness_fixed_area || self.conductance != Conductance::Off
-    }
-}
 
 /// Conductance through the contact of two half-spaces: `Lambda = 2 k/(E* (rho_1 + rho_2))` (Barber 2003; Eq. 13 of the paper), with the
 /// stiffness k of the whole contact area, held ([`ContactState::stiffness_fixed_area`]).
@@ -124,24 +80,6 @@ impl Conductance {
         } else {
             Err(Error::domain("conductance", conductance, "a number within the range of f64"))
         }
-    }
-}
-
-impl ContactState {
-    /// The state with what follows from the stiffness of its contact area, and without a stiffness that was not asked for itself.
-    ///
-    /// The last thing that a model does: it computes the stiffnesses where [`Outputs::needs_stiffness`] and
-    /// [`Outputs::needs_fixed_area`] say so.
-    ///
-    /// # Errors
-    /// As [`Conductance::of`].
-    pub fn completed(mut self, outputs: &Outputs, modulus: f64) -> Result<Self> {
-        if let Some(stiffness) = self.stiffness_fixed_area {
-            self.conductance = outputs.conductance.of(stiffness, modulus)?;
-        }
-        self.stiffness = self.stiffness.filter(|_| outputs.stiffness);
-        self.stiffness_fixed_area = self.stiffness_fixed_area.filter(|_| outputs.stiffness_fixed_area);
-        Ok(self)
     }
 }
 

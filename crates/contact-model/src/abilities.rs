@@ -1,0 +1,216 @@
+//! What a model can do, as data: refusals, help and tables of models follow from it.
+
+use crate::error::{Error, Result};
+use crate::load::Load;
+use crate::quantities::Output;
+use crate::scene::{Boundary, Effect, Scene, Surface};
+
+/// A kind of surface, without its numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SurfaceKind {
+    /// [`Surface::SelfAffine`].
+    SelfAffine,
+    /// [`Surface::Heights`].
+    Heights,
+    /// [`Surface::Profile`].
+    Profile,
+    /// [`Surface::Line`].
+    Line,
+    /// [`Surface::Sphere`].
+    Sphere,
+    /// [`Surface::Cone`].
+    Cone,
+    /// [`Surface::PowerLaw`].
+    PowerLaw,
+    /// [`Surface::FlatCircle`].
+    FlatCircle,
+    /// [`Surface::Flat`].
+    Flat,
+    /// [`Surface::Sine`].
+    Sine,
+}
+
+impl SurfaceKind {
+    /// All of them.
+    pub const ALL: &'static [Self] = &[
+        Self::SelfAffine,
+        Self::Heights,
+        Self::Profile,
+        Self::Line,
+        Self::Sphere,
+        Self::Cone,
+        Self::PowerLaw,
+        Self::FlatCircle,
+        Self::Flat,
+        Self::Sine,
+    ];
+
+    /// The kind of a surface.
+    pub fn of(surface: &Surface) -> Self {
+        match surface {
+            Surface::SelfAffine(_) => Self::SelfAffine,
+            Surface::Heights(_) => Self::Heights,
+            Surface::Profile(_) => Self::Profile,
+            Surface::Line { .. } => Self::Line,
+            Surface::Sphere { .. } => Self::Sphere,
+            Surface::Cone { .. } => Self::Cone,
+            Surface::PowerLaw { .. } => Self::PowerLaw,
+            Surface::FlatCircle { .. } => Self::FlatCircle,
+            Surface::Flat { .. } => Self::Flat,
+            Surface::Sine { .. } => Self::Sine,
+        }
+    }
+
+    /// Its name in scenes and in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SelfAffine => "self_affine",
+            Self::Heights => "height map",
+            Self::Profile => "profile",
+            Self::Line => "line",
+            Self::Sphere => "sphere",
+            Self::Cone => "cone",
+            Self::PowerLaw => "power_law",
+            Self::FlatCircle => "flat_circle",
+            Self::Flat => "flat",
+            Self::Sine => "sine",
+        }
+    }
+}
+
+/// A kind of load, without its number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum LoadKind {
+    /// [`Load::Force`].
+    Force,
+    /// [`Load::Approach`].
+    Approach,
+    /// [`Load::MeanGap`].
+    MeanGap,
+}
+
+impl LoadKind {
+    /// All of them.
+    pub const ALL: &'static [Self] = &[Self::Force, Self::Approach, Self::MeanGap];
+
+    /// The kind of a load.
+    pub fn of(load: Load) -> Self {
+        match load {
+            Load::Force(_) => Self::Force,
+            Load::Approach(_) => Self::Approach,
+            Load::MeanGap(_) => Self::MeanGap,
+        }
+    }
+
+    /// Its name in scenes and in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::Approach => "approach",
+            Self::MeanGap => "mean_gap",
+        }
+    }
+}
+
+/// What a path of loads is to a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Paths {
+    /// Nothing depends on it: each step is solved for its load.
+    Forgotten,
+    /// It is remembered where an effect asks for it; single loads are reached from no contact.
+    Remembered,
+    /// Time or the tangential load is all that the model is about: loads one by one have no answer.
+    Needed,
+}
+
+/// What a model can do. A scene that asks for more is refused by [`Abilities::refuse`] before anything is planned.
+///
+/// These are necessary: what depends on several of them together, or on numbers, a model refuses itself, in `prepare`.
+///
+/// ```
+/// use contact_model::{Abilities, Boundary, Effect, LoadKind, Output, Paths, Scene, Surface, SurfaceKind};
+/// let abilities = Abilities {
+///     surfaces: &[SurfaceKind::Sphere],
+///     outputs: &[Output::Stiffness, Output::Area],
+///     ..Abilities::ELASTIC
+/// };
+/// let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
+/// assert!(abilities.refuse("mine", &scene).is_ok());
+/// scene.outputs.pressure = true;
+/// let refused = abilities.refuse("mine", &scene).unwrap_err().to_string();
+/// assert_eq!(refused, "the model mine does not support the output `pressure`");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::exhaustive_structs)] // A model writes all of it, or begins with `ELASTIC`.
+pub struct Abilities {
+    /// Surfaces that it takes.
+    pub surfaces: &'static [SurfaceKind],
+    /// Boundaries.
+    pub boundaries: &'static [Boundary],
+    /// Effects.
+    pub effects: &'static [Effect],
+    /// Loads that may be prescribed.
+    pub loads: &'static [LoadKind],
+    /// What a path of loads is to it.
+    pub paths: Paths,
+    /// Outputs.
+    pub outputs: &'static [Output],
+}
+
+impl Abilities {
+    /// Linear elastic normal contact with free boundaries, under a force or an approach, with the stiffness and what follows from it:
+    /// no surface yet.
+    pub const ELASTIC: Self = Self {
+        surfaces: &[],
+        boundaries: &[Boundary::Free],
+        effects: &[],
+        loads: &[LoadKind::Force, LoadKind::Approach],
+        paths: Paths::Forgotten,
+        outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance],
+    };
+
+    /// Errors where a scene asks for what is not among them, and for numbers of the scene that make no sense.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] naming the model and what it lacks; those of [`Scene::validate`].
+    pub fn refuse(&self, model: &'static str, scene: &Scene) -> Result<()> {
+        scene.validate()?;
+        match self.lacks(scene).next() {
+            Some(what) => Err(Error::unsupported(model, what)),
+            None => Ok(()),
+        }
+    }
+
+    /// Everything that a scene asks for and that is not among them, in words.
+    pub fn lacks(&self, scene: &Scene) -> impl Iterator<Item = String> + use<> {
+        let mut lacks = Vec::new();
+        let boundary = scene.effects.boundary;
+        if !self.boundaries.contains(&boundary) {
+            lacks.push(format!("the boundary {boundary:?}"));
+        }
+        for effect in scene.effects.named().filter(|effect| !self.effects.contains(effect)) {
+            lacks.push(effect.words().to_owned());
+        }
+        if !self.surfaces.contains(&SurfaceKind::of(&scene.surface)) {
+            lacks.push(scene.surface.kind().to_owned());
+        }
+        for output in scene.outputs.asked().filter(|output| !self.outputs.contains(output)) {
+            lacks.push(format!("the output `{}`", output.name()));
+        }
+        lacks.into_iter()
+    }
+
+    /// Errors where a load is of a kind that is not among them.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] naming the model and the load.
+    pub fn refuse_load(&self, model: &'static str, load: Load) -> Result<()> {
+        if self.loads.contains(&LoadKind::of(load)) {
+            Ok(())
+        } else {
+            Err(Error::unsupported(model, format!("the load {load:?}")))
+        }
+    }
+}

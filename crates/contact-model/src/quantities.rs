@@ -1,0 +1,554 @@
+//! THE table of quantities: what can be asked of a model, and each number and word that is reported of a state.
+//!
+//! Every table, file, picture and page that shows numbers of states iterates over [`QUANTITIES`], so a quantity that stands here is told
+//! everywhere: CSV, console, report, means over surfaces, curves, Python, glossary. Units are those of SI; without units a
+//! dimensional number is in the scene's own.
+
+use crate::conductance::Conductance;
+use crate::error::Result;
+use crate::normalisation::Normalisation;
+use crate::scene::{Boundary, Effects};
+use crate::state::ContactState;
+use crate::value::Value;
+
+macro_rules! outputs {
+    ($($(#[doc = $doc:literal])+ $variant:ident $field:ident: $kind:ident,)+) => {
+        /// Something that is computed where it is asked for.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum Output {
+            $($(#[doc = $doc])+ $variant,)+
+            /// Conductance through the contact; it follows from the stiffness of the held area.
+            Conductance,
+        }
+
+        /// What is computed besides force and approach. What is not asked for is not computed and not stored.
+        #[derive(Debug, Clone, Copy, PartialEq, Default)]
+        #[allow(clippy::struct_excessive_bools)] // A set of names, each either asked for or not.
+        pub struct Outputs {
+            $($(#[doc = $doc])+ pub $field: bool,)+
+            /// Conductance through the contact.
+            pub conductance: Conductance,
+        }
+
+        impl Output {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)+ Self::Conductance];
+
+            /// Its name: the key in `[outputs]` of a scene, and the word in Python.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => stringify!($field),)+
+                    Self::Conductance => "conductance",
+                }
+            }
+
+            /// What it is, in a sentence.
+            pub fn sentence(self) -> &'static str {
+                match self {
+                    $(Self::$variant => concat!($($doc),+).trim_ascii(),)+
+                    Self::Conductance => "Conductance through the contact; it follows from the stiffness of the held area.",
+                }
+            }
+
+            /// Whether it is a field over the cells.
+            pub fn is_field(self) -> bool {
+                match self {
+                    $(Self::$variant => matches!(Kind::$kind, Kind::Field),)+
+                    Self::Conductance => false,
+                }
+            }
+        }
+
+        impl Outputs {
+            /// Whether it is asked for.
+            pub fn asks(&self, output: Output) -> bool {
+                match output {
+                    $(Output::$variant => self.$field,)+
+                    Output::Conductance => self.conductance != Conductance::Off,
+                }
+            }
+
+            /// Asks for it, or no longer; the conductance is asked for with its bodies instead ([`Outputs::conductance`]).
+            pub fn ask(&mut self, output: Output, asked: bool) {
+                match output {
+                    $(Output::$variant => self.$field = asked,)+
+                    Output::Conductance => {}
+                }
+            }
+        }
+    };
+}
+
+enum Kind {
+    Number,
+    Field,
+}
+
+// A new output: a line here, its quantities in the table below, and a field of the state.
+outputs! {
+    /// Stiffness k = dF/dd along the branch of states.
+    Stiffness stiffness: Number,
+    /// Stiffness of the whole contact area, held.
+    StiffnessFixedArea stiffness_fixed_area: Number,
+    /// Real contact area.
+    Area area: Number,
+    /// Mean gap; with periodic boundaries only, where a state has no approach.
+    MeanGap mean_gap: Number,
+    /// Pressure field.
+    Pressure pressure: Field,
+    /// Displacement field.
+    Displacement displacement: Field,
+    /// Gap field.
+    Gap gap: Field,
+    /// Field of the plastic indentation; with a hardness only.
+    PlasticDepth plastic_depth: Field,
+    /// Connected contact areas, their number and sizes.
+    ContactPatches contact_patches: Number,
+}
+
+impl Outputs {
+    /// All that are asked for.
+    pub fn asked(&self) -> impl Iterator<Item = Output> + '_ {
+        Output::ALL.iter().copied().filter(|output| self.asks(*output))
+    }
+
+    /// Whether any field is asked for.
+    pub fn any_field(&self) -> bool {
+        self.asked().any(Output::is_field)
+    }
+
+    /// Whether a stiffness has to be computed, of either kind: all that an elastic model has to know.
+    pub fn needs_stiffness(&self) -> bool {
+        self.stiffness || self.needs_fixed_area()
+    }
+
+    /// Whether the stiffness of the held contact area has to be computed: for itself or for the conductance.
+    pub fn needs_fixed_area(&self) -> bool {
+        self.stiffness_fixed_area || self.conductance != Conductance::Off
+    }
+}
+
+impl ContactState {
+    /// The state with what follows from the stiffness of its contact area, and without a stiffness that was not asked for itself.
+    ///
+    /// The last thing that a model does: it computes the stiffnesses where [`Outputs::needs_stiffness`] and
+    /// [`Outputs::needs_fixed_area`] say so.
+    ///
+    /// # Errors
+    /// As [`Conductance::of`].
+    pub fn completed(mut self, outputs: &Outputs, modulus: f64) -> Result<Self> {
+        if let Some(stiffness) = self.stiffness_fixed_area {
+            self.conductance = outputs.conductance.of(stiffness, modulus)?;
+        }
+        self.stiffness = self.stiffness.filter(|_| outputs.stiffness);
+        self.stiffness_fixed_area = self.stiffness_fixed_area.filter(|_| outputs.stiffness_fixed_area);
+        Ok(self)
+    }
+}
+
+/// What decides whether a quantity is told of the states of a scene.
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Effects that are on.
+    pub effects: &'a Effects,
+    /// Outputs that are asked for.
+    pub outputs: &'a Outputs,
+    /// Whether the surface has an rms height, in which forces are counted.
+    pub rough: bool,
+    /// Whether the states lie along a path.
+    pub path: bool,
+    /// Whether an approach or a mean gap is prescribed.
+    pub prescribes_distance: bool,
+}
+
+/// What brings a quantity into the tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AskedBy {
+    /// Every scene.
+    Always,
+    /// Surfaces with an rms height.
+    RoughSurface,
+    /// Free boundaries.
+    FreeBoundary,
+    /// A path.
+    Path,
+    /// A prescribed approach or mean gap.
+    PrescribedDistance,
+    /// An output.
+    Output(Output),
+    /// A stiffness of either kind, or what follows from one.
+    AnyStiffness,
+    /// An effect, by its key in `[effects]`.
+    Effect(&'static str),
+}
+
+impl AskedBy {
+    /// Whether this question asks for it.
+    pub fn holds(self, question: &Question<'_>) -> bool {
+        match self {
+            Self::Always => true,
+            Self::RoughSurface => question.rough,
+            Self::FreeBoundary => question.effects.boundary == Boundary::Free,
+            Self::Path => question.path,
+            Self::PrescribedDistance => question.prescribes_distance,
+            Self::Output(output) => question.outputs.asks(output),
+            Self::AnyStiffness => question.outputs.needs_stiffness(),
+            Self::Effect(key) => question.effects.named().any(|effect| effect.key() == key),
+        }
+    }
+
+    /// In words, for documents.
+    pub fn words(self) -> String {
+        match self {
+            Self::Always => "every scene".into(),
+            Self::RoughSurface => "a rough surface".into(),
+            Self::FreeBoundary => "free boundaries".into(),
+            Self::Path => "a path".into(),
+            Self::PrescribedDistance => "a prescribed approach or mean gap".into(),
+            Self::Output(output) => format!("`{}` in [outputs]", output.name()),
+            Self::AnyStiffness => "a stiffness or the conductance in [outputs]".into(),
+            Self::Effect(key) => format!("`{key}` in [effects]"),
+        }
+    }
+}
+
+/// Unit of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// Text.
+    Word,
+    /// A pure number or a count.
+    One,
+    /// Of SI.
+    Si(&'static str),
+    /// Of the conductance that is asked for: electrical or thermal.
+    Conductance,
+}
+
+impl Unit {
+    /// In SI (`1` for a pure number, `-` for text).
+    pub fn si(self, outputs: &Outputs) -> &'static str {
+        match self {
+            Self::Word => "-",
+            Self::One => "1",
+            Self::Si(unit) => unit,
+            Self::Conductance if matches!(outputs.conductance, Conductance::Thermal { .. }) => "W/K",
+            Self::Conductance => "S",
+        }
+    }
+
+    /// For documents.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Word => "-",
+            Self::One => "1",
+            Self::Si(unit) => unit,
+            Self::Conductance => "S, W/K",
+        }
+    }
+}
+
+/// What a quantity is for, which decides where it is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// An answer to what was asked: shown wherever states are.
+    Answer,
+    /// An answer in other units or over something else: in files, not in short tables.
+    Normalised,
+    /// How exactly the equations hold; with what it proves when it is small.
+    Residual(&'static str),
+    /// How the answer was found, and what that cost.
+    Work,
+}
+
+/// How a quantity is averaged over surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Average {
+    /// Arithmetic mean, with its standard error and the standard deviation of one surface.
+    Mean,
+    /// The same on every surface.
+    Same,
+    /// Not at all.
+    No,
+}
+
+/// Whether the error that the cells leave in a quantity can be estimated from coarser grids.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Compared {
+    /// With any boundary.
+    Yes,
+    /// With periodic boundaries only: elsewhere it may have no limit as cells shrink.
+    Periodic,
+    /// Not compared.
+    No,
+}
+
+/// One quantity: all that is said of it anywhere.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct Quantity {
+    /// Its name in code, CSV, JSON and Python.
+    pub name: &'static str,
+    /// What it is called in titles.
+    pub words: &'static str,
+    /// Its symbol, in the commands of TeX; may be empty.
+    pub symbol: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+    /// What it is, in one sentence.
+    pub meaning: &'static str,
+    /// The work that defines it, where it is not common knowledge; may be empty.
+    pub source: &'static str,
+    /// What brings it into the tables.
+    pub asked_by: AskedBy,
+    /// What it is for.
+    pub role: Role,
+    /// How it is averaged.
+    pub average: Average,
+    /// Whether the error of the grid is estimated.
+    pub compared: Compared,
+    /// Whether it is drawn over the load.
+    pub drawn: bool,
+    /// Takes it from a state; empty where the model does not claim it.
+    pub value: fn(&ContactState, &Normalisation) -> Value,
+    /// Names of the columns that belong to it: standard error of the mean, standard deviation of one surface; error of the grid, order of
+    /// convergence; standard error and deviation of the mean error of the grid.
+    pub columns: [&'static str; 6],
+}
+
+impl Quantity {
+    /// The quantity of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        QUANTITIES.iter().find(|quantity| quantity.name == name)
+    }
+
+    /// Its number of a state, where it has one.
+    pub fn number(&self, state: &ContactState, normalisation: &Normalisation) -> Option<f64> {
+        match (self.value)(state, normalisation) {
+            Value::Number(number) => Some(number),
+            Value::Count(count) => Some(count as f64),
+            _ => None,
+        }
+    }
+
+    /// Names of all columns of tables that may hold something of it.
+    pub fn column_names(&self) -> impl Iterator<Item = &'static str> {
+        std::iter::once(self.name).chain(self.columns)
+    }
+}
+
+macro_rules! quantities {
+    ($($name:literal $words:literal $symbol:literal $unit:expr; $asked:expr; $meaning:literal
+       $({ $($field:ident: $setting:expr),+ $(,)? })?
+       => $value:expr;)+) => {
+        [$(Quantity {
+            $($($field: $setting,)+)?
+            ..Quantity {
+                name: $name,
+                words: $words,
+                symbol: $symbol,
+                unit: $unit,
+                meaning: $meaning,
+                source: "",
+                asked_by: $asked,
+                role: Role::Answer,
+                average: Average::Mean,
+                compared: Compared::No,
+                drawn: true,
+                value: $value,
+                columns: [
+                    concat!($name, "_se"),
+                    concat!($name, "_sd"),
+                    concat!($name, "_grid_error"),
+                    concat!($name, "_grid_order"),
+                    concat!($name, "_grid_error_se"),
+                    concat!($name, "_grid_error_sd"),
+                ],
+            }
+        },)+]
+    };
+}
+
+use AskedBy::{Always, AnyStiffness, Effect, FreeBoundary, Path, PrescribedDistance, RoughSurface};
+use Unit::{One, Si, Word};
+
+/// Every quantity, in the order of the columns of tables.
+pub static QUANTITIES: &[Quantity] = &quantities! {
+    "time" "time" "t" Si("s"); Path; "time at the end of the step"
+        { average: Average::Same, drawn: false }
+        => |s, _| s.time.into();
+    "force" "force" "F" Si("N"); Always; "normal force; negative where adhesion holds against a pull"
+        => |s, _| s.force.into();
+    "force_bar" "force" "\\bar{F}" One; RoughSurface; "F/(E* h L), L = sqrt(Lx Ly)"
+        { role: Role::Normalised, source: "Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012), Eq. 10", drawn: false }
+        => |s, n| n.force_bar(s.force).ok().into();
+    "approach" "approach" "d" Si("m"); FreeBoundary; "from first touch of the highest point"
+        => |s, _| s.approach.into();
+    "mean_gap" "mean gap" "\\bar{g}" Si("m"); AskedBy::Output(Output::MeanGap);
+        "distance between the mean plane of the defined heights and that of the deformed half-space; without undefined points the mean \
+         of the gap field; with them it may be negative"
+        { compared: Compared::Yes }
+        => |s, _| s.mean_gap.into();
+    "contact_radius" "contact radius" "a" Si("m"); Path;
+        "of a round contact; of an equivalent profile that of the round contact of the same stiffness, k/(2 E*)"
+        => |s, _| s.contact_radius.into();
+    "tangential_force" "tangential force" "T" Si("N"); Effect("friction"); "tangential force"
+        => |s, _| s.tangential.map(|t| t.force).into();
+    "tangential_displacement" "tangential displacement" "u_x" Si("m"); Effect("friction");
+        "of the bodies relative to each other, far from the contact"
+        => |s, _| s.tangential.map(|t| t.displacement).into();
+    "stick_radius" "stick radius" "c" Si("m"); Effect("friction"); "inside it nothing slips"
+        => |s, _| s.tangential.and_then(|t| t.stick_radius).into();
+    "dissipated" "energy dissipated by friction" "" Si("J"); Effect("friction"); "energy lost to friction since the first step"
+        => |s, _| s.tangential.map(|t| t.dissipated).into();
+    "plastic_area" "area under the hardness" "" Si("m^2"); Effect("hardness"); "area under the hardness"
+        => |s, _| s.plastic.map(|p| p.area).into();
+    "plastic_volume" "volume of the plastic indentation" "" Si("m^3"); Effect("hardness");
+        "volume of the plastic indentation, since the virgin surface"
+        => |s, _| s.plastic.map(|p| p.volume).into();
+    "plastic_work" "plastic work" "" Si("J"); Effect("hardness"); "energy dissipated in the plastic indentation, hardness times volume"
+        => |s, _| s.plastic.map(|p| p.dissipated).into();
+    "branch" "branch" "" Word; Effect("adhesion"); "whether the bodies were brought nearer or drawn apart"
+        { average: Average::No, drawn: false }
+        => |s, _| s.adhesive.map(|a| a.branch.as_str()).into();
+    "energy" "energy" "" Si("J"); Effect("adhesion"); "elastic energy less the work of adhesion done"
+        => |s, _| s.adhesive.map(|a| a.energy).into();
+    "stability" "stability" "" One; Effect("adhesion");
+        "a minimum of the energy where > 0: its least curvature over that without adhesion"
+        { drawn: false }
+        => |s, _| s.adhesive.map(|a| a.stability).into();
+    "stiffness" "stiffness" "k" Si("N/m"); AskedBy::Output(Output::Stiffness);
+        "dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an adhesive contact move, saturated cells flow"
+        { compared: Compared::Yes }
+        => |s, _| s.stiffness.into();
+    "stiffness_bar" "stiffness" "\\bar{k}" One; AskedBy::Output(Output::Stiffness);
+        "k/(1.1419 E* L) of this stiffness, L = sqrt(Lx Ly)"
+        { role: Role::Normalised, source: "Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012), Eq. 8", drawn: false }
+        => |s, n| s.stiffness.map(|k| n.stiffness_bar(k)).into();
+    "stiffness_fixed_area" "stiffness of the held area" "k" Si("N/m"); AskedBy::Output(Output::StiffnessFixedArea);
+        "stiffness of the whole contact area, held (periodic: -dF/d(mean gap))"
+        { compared: Compared::Yes }
+        => |s, _| s.stiffness_fixed_area.into();
+    "area" "contact area" "A" Si("m^2"); AskedBy::Output(Output::Area); "real contact area"
+        { compared: Compared::Yes }
+        => |s, _| s.area.into();
+    "area_corrected" "corrected area" "A" Si("m^2"); AskedBy::Output(Output::Area);
+        "area less what cells add at its boundary (Yastrebov et al. 2017)"
+        { compared: Compared::Yes, source: "Yastrebov, Anciaux, Molinari, Tribol. Int. 114, 161 (2017)", drawn: false }
+        => |s, _| s.resolution.and_then(|r| r.corrected_area).into();
+    "contact_fraction" "contact fraction" "A/A_0" One; AskedBy::Output(Output::Area); "A/(Lx Ly), undefined points included"
+        { drawn: false }
+        => |s, n| s.area.map(|a| n.contact_fraction(a)).into();
+    "conductance" "conductance" "Λ" Unit::Conductance; AskedBy::Output(Output::Conductance);
+        "2 k/(E* (rho_1 + rho_2)) with the stiffness of the whole contact area, held (Barber)"
+        { compared: Compared::Yes, source: "Barber, Proc. R. Soc. A 459, 53 (2003)" }
+        => |s, _| s.conductance.into();
+    "patches" "number of contacts" "" One; AskedBy::Output(Output::ContactPatches); "connected contact areas, cells joined by an edge"
+        => |s, _| s.patches.as_ref().map(crate::Patches::count).into();
+    "largest_patch" "area of the largest contact" "" Si("m^2"); AskedBy::Output(Output::ContactPatches); "area of the largest"
+        => |s, _| s.patches.as_ref().and_then(|p| p.areas().first().copied()).into();
+    "largest_pressure" "largest pressure" "p_{\\rm{max}}" Si("Pa"); Always;
+        "of a cell; grows with smaller cells until they resolve the shortest wave, at an edge of the rectangle or a spike without limit"
+        { compared: Compared::Periodic }
+        => |s, _| s.resolution.map(|r| r.largest_pressure).into();
+    "status" "status" "" Word; Always; "how the solve ended"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.report.status.as_str().into();
+    "strategy" "strategy" "" Word; Always; "which way the solver took"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.report.strategy.as_str().into();
+    "contact_cells" "contact cells" "" One; Always; "cells or elements in contact; fewer than 10 are the grid's own"
+        { average: Average::No, drawn: false }
+        => |s, _| s.report.contact_cells.into();
+    "iterations" "iterations" "" One; Always; "of the linear solvers"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.report.iterations.into();
+    "applications" "operator applications" "" One; Always; "of the elastic operator"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.report.applications.into();
+    "linear_solves" "linear solves" "" One; Always; "linear systems solved"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.report.work.linear_solves.into();
+    "fields" "fields" "" One; Always; "fields over the grid that the state holds"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.report.work.fields.into();
+    "field_bytes" "bytes of fields" "" One; Always; "their bytes"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.report.work.bytes.into();
+    "duality_gap" "duality gap" "" One; Always; "sum p (g - min g)/(F s)"
+        { role: Role::Residual("the pressure minimises the elastic energy: by how much it could still fall, over force times rms height"),
+          average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.duality_gap.into();
+    "penetration" "penetration" "" One; Always; "max(0, -min g)/s"
+        { role: Role::Residual("no cell penetrates the other body: the deepest, over the rms height"), average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.penetration.into();
+    "complementarity" "complementarity" "" One; Always; "sum p |g|/(F s)"
+        { role: Role::Residual("where there is pressure there is no gap"), average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.complementarity.into();
+    "load_error" "load error" "" One; Always; "|F - F_asked|/F_asked; of a mean gap its miss over s"
+        { role: Role::Residual("the force, or the mean gap, is the one that was asked for"), average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.load_error.into();
+    "force_error" "error of the force" "" One; PrescribedDistance;
+        "bound of the relative error of the force under a prescribed approach or mean gap; an estimate with adhesion"
+        { role: Role::Residual("a bound of the relative error of the force under a prescribed approach or mean gap; an estimate with adhesion"),
+          average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.force_error.into();
+    "equilibrium" "equilibrium" "" One; Effect("adhesion");
+        "largest difference of an attraction from the law of its gap, over the traction in contact"
+        { role: Role::Residual("the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction"),
+          average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.equilibrium.into();
+    "stiffness_error" "error of the stiffness" "" One; AnyStiffness;
+        "estimated relative error of the stiffness; that of a difference quotient with adhesion of short range and Dugdale's law, where \
+         the cells decide it and not the tolerance"
+        { role: Role::Residual("an estimate of the relative error of the stiffness, on these cells"), average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.error_of_stiffness().into();
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Effect as NamedEffect;
+
+    #[test]
+    fn names_are_words_and_stand_once() {
+        let mut names: Vec<&str> = QUANTITIES.iter().flat_map(Quantity::column_names).collect();
+        let letter = |c: char| c.is_ascii_lowercase() || c == '_';
+        assert!(names.iter().all(|name| name.chars().all(letter)), "{names:?}");
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+
+    #[test]
+    fn every_quantity_says_what_it_is_and_is_asked_for_by_something() {
+        for quantity in QUANTITIES {
+            assert!(!quantity.meaning.is_empty() && !quantity.words.is_empty(), "{}", quantity.name);
+            if let Effect(key) = quantity.asked_by {
+                assert!(NamedEffect::ALL.iter().any(|effect| effect.key() == key), "{key}");
+            }
+            // A text is neither averaged nor drawn.
+            let text = quantity.unit == Word;
+            assert!(!text || quantity.average == Average::No && !quantity.drawn, "{}", quantity.name);
+        }
+    }
+
+    #[test]
+    fn every_output_but_a_field_has_a_quantity() {
+        for &output in Output::ALL.iter().filter(|output| !output.is_field()) {
+            assert!(
+                QUANTITIES.iter().any(|quantity| quantity.asked_by == AskedBy::Output(output)),
+                "{}: no quantity in the table is asked for by it",
+                output.name()
+            );
+        }
+        let mut outputs = Outputs::default();
+        for &output in Output::ALL {
+            assert!(!outputs.asks(output));
+            outputs.ask(output, true);
+            assert_eq!(outputs.asks(output), output != Output::Conductance);
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! What models declare is what they do: each ability is tried, and each thing that is not among them is refused.
+
+use contact_model::quantities::{AskedBy, QUANTITIES};
+use contact_model::{
+    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Effect, Error, Friction,
+    Hardness, HeightMap, Line, Load, LoadKind, Output, Pair, PreparedContact, PronySeries, Relaxing,
+    Rheology, Scene, SelfAffine, Step, Surface, SurfaceKind, Tangential,
+};
+use fractal_contact::models::MODELS;
+use std::sync::Arc;
+
+fn surface(kind: SurfaceKind) -> Surface {
+    let size = 2.0.into();
+    let wave = |ix: usize, iy: usize| 0.01 * (((7 * ix + 3 * iy) % 16) as f64).sin();
+    match kind {
+        SurfaceKind::SelfAffine => {
+            let mut rough = SelfAffine::new(2.2, size, 0.01).unwrap();
+            rough.roll_off = Some(12.0);
+            rough.short_cutoff = Some(30.0);
+            Surface::SelfAffine(rough)
+        }
+        SurfaceKind::Heights => {
+            let map = surface_gen::height_map(&surface(SurfaceKind::SelfAffine), 33, 1).unwrap();
+            Surface::Heights(map)
+        }
+        SurfaceKind::Profile => {
+            Surface::Profile(Arc::new(HeightMap::from_fn([64, 1], [2.0, 0.1], wave).unwrap()))
+        }
+        SurfaceKind::Line => {
+            let line = Line::new(2.0, (0..64).map(|i| 0.01 * f64::from(i).sin()).collect()).unwrap();
+            Surface::Line { line: Arc::new(line), size }
+        }
+        SurfaceKind::Sphere => Surface::Sphere { radius: 1.0, size },
+        SurfaceKind::Cone => Surface::Cone { slope: 0.1, size },
+        SurfaceKind::PowerLaw => Surface::PowerLaw { coefficient: 0.5, exponent: 3.0, size },
+        SurfaceKind::FlatCircle => Surface::FlatCircle { radius: 0.5, size },
+        SurfaceKind::Flat => Surface::Flat { size },
+        SurfaceKind::Sine => Surface::Sine { amplitude: 0.01, wavelength: 1.0, size },
+        other => panic!("a surface of the kind {other:?} for this test"),
+    }
+}
+
+fn with_effect(mut scene: Scene, effect: Option<Effect>) -> Scene {
+    let arm = Relaxing { weight: 1.0, time: 1.0 };
+    let effects = &mut scene.effects;
+    match effect {
+        None => {}
+        Some(Effect::Hardness) => effects.hardness = Hardness::Limit { pressure: 0.05 },
+        Some(Effect::ShortRangeAdhesion) => effects.adhesion = Adhesion::ShortRange { work: 1e-4 },
+        Some(Effect::ExponentialAdhesion) => {
+            effects.adhesion =
+                Adhesion::FiniteRange { work: 1e-4, range: 0.02, law: AdhesionLaw::Exponential };
+        }
+        Some(Effect::DugdaleAdhesion) => {
+            effects.adhesion = Adhesion::FiniteRange { work: 1e-4, range: 0.02, law: AdhesionLaw::Dugdale };
+        }
+        Some(Effect::Friction) => effects.friction = Friction::Coulomb { coefficient: 0.3 },
+        Some(Effect::KelvinVoigt) => effects.rheology = Rheology::KelvinVoigt { viscosity: 1.0 },
+        Some(Effect::Maxwell) => effects.rheology = Rheology::Maxwell { viscosity: 1.0 },
+        Some(Effect::StandardSolid) => effects.rheology = Rheology::StandardSolid { arm },
+        Some(Effect::PronySeries) => effects.rheology = Rheology::Prony(PronySeries::new(&[arm]).unwrap()),
+        Some(other) => panic!("the effect {other:?} for this test"),
+    }
+    scene
+}
+
+/// A scene of one surface, boundary and effect, with nothing asked for.
+fn scene(kind: SurfaceKind, boundary: Boundary, effect: Option<Effect>) -> Scene {
+    let body = Body::Elastic { young: 1.5, poisson: 0.5 };
+    let rigid = effect.is_some_and(|effect| effect.key() == "rheology");
+    let pair = Pair { first: if rigid { Body::Rigid } else { body }, second: body };
+    let mut scene = Scene::of_pair(surface(kind), pair).unwrap();
+    if !matches!(effect, Some(Effect::Friction)) {
+        scene.pair = None;
+    }
+    scene.outputs.stiffness = false;
+    scene.effects.boundary = boundary;
+    with_effect(scene, effect)
+}
+
+fn ask(scene: &mut Scene, output: Output) {
+    if output == Output::Conductance {
+        scene.outputs.conductance = Conductance::Electrical { first: 1.0, second: 1.0 };
+    } else {
+        scene.outputs.ask(output, true);
+    }
+}
+
+/// The model on a small grid.
+fn prepared(model: &dyn ContactModel, scene: &Scene) -> Result<Box<dyn PreparedContact>, Error> {
+    match model.name() {
+        "bem3d" => bem3d::Bem3d { cells: 33, ..bem3d::Bem3d::default() }.prepare(scene, 1),
+        "equivalent" => {
+            let press = bem3d::Bem3d { cells: 33, ..bem3d::Bem3d::default() };
+            mdr1d::Equivalent::new(press).prepare(scene, 1)
+        }
+        "mdr1d" => mdr1d::Mdr1d { elements: 1 << 10 }.prepare(scene, 1),
+        _ => model.prepare(scene, 1),
+    }
+}
+
+/// A state under a light load.
+fn pressed(contact: &mut dyn PreparedContact, scene: &Scene) -> Result<ContactState, Error> {
+    let normal = Load::Force(0.002);
+    let needs_path = scene.effects.named().any(|effect| ["friction", "rheology"].contains(&effect.key()));
+    if !needs_path {
+        return contact.solve(normal);
+    }
+    contact.advance(Step::normal(0.0, normal))?;
+    let friction = scene.effects.friction != Friction::Off;
+    let tangential = if friction { Tangential::Force(1e-4) } else { Tangential::default() };
+    contact.advance(Step { time: 1.0, normal, tangential })
+}
+
+/// Every scene that its abilities name, with one surface, boundary and effect each.
+fn declared(model: &dyn ContactModel) -> impl Iterator<Item = Scene> {
+    let abilities = model.abilities();
+    let effects = || abilities.effects.iter().copied().map(Some).chain([None]);
+    let boundaries = abilities.boundaries.iter().copied();
+    abilities.surfaces.iter().flat_map(move |&kind| {
+        boundaries
+            .clone()
+            .flat_map(move |boundary| effects().map(move |effect| scene(kind, boundary, effect)))
+    })
+}
+
+/// Each surface, boundary, effect and output that a model declares is part of a scene that it answers, and the answer has what was
+/// asked for.
+#[test]
+fn what_is_declared_is_done() {
+    for record in MODELS {
+        let (model, name) = (record.model, record.name());
+        let abilities = model.abilities();
+        let answers = |wanted: &dyn Fn(&Scene) -> bool| {
+            declared(model).filter(|scene| wanted(scene)).any(|scene| {
+                prepared(model, &scene).and_then(|mut contact| pressed(contact.as_mut(), &scene)).is_ok()
+            })
+        };
+        for &kind in abilities.surfaces {
+            assert!(answers(&|scene| SurfaceKind::of(&scene.surface) == kind), "{name}: {kind:?}");
+        }
+        for &boundary in abilities.boundaries {
+            assert!(answers(&|scene| scene.effects.boundary == boundary), "{name}: {boundary:?}");
+        }
+        for &effect in abilities.effects {
+            assert!(
+                answers(&|scene| scene.effects.named().any(|named| named == effect)),
+                "{name}: {effect:?}"
+            );
+        }
+        for &output in abilities.outputs {
+            let tells = declared(model).any(|mut scene| {
+                ask(&mut scene, output);
+                let Ok(mut contact) = prepared(model, &scene) else { return false };
+                let Ok(state) = pressed(contact.as_mut(), &scene) else { return false };
+                let normalisation = contact.normalisation();
+                let mut told =
+                    QUANTITIES.iter().filter(|quantity| quantity.asked_by == AskedBy::Output(output));
+                if output.is_field() {
+                    return state.fields.as_ref().is_some_and(|fields| fields.get(output).is_some());
+                }
+                // A closed form has no cells whose boundary could be corrected.
+                told.all(|quantity| {
+                    quantity.name == "area_corrected" || quantity.number(&state, &normalisation).is_some()
+                })
+            });
+            assert!(tells, "{name}: nothing is told of `{}`, which it declares", output.name());
+        }
+    }
+}
+
+/// One thing that is not among the abilities is enough to be refused, and the refusal names it.
+#[test]
+fn what_is_not_declared_is_refused_by_name() {
+    for record in MODELS {
+        let (model, name) = (record.model, record.name());
+        let abilities = model.abilities();
+        let base = || scene(abilities.surfaces[0], abilities.boundaries[0], None);
+        let refused = |scene: &Scene, word: &str| match model.prepare(scene, 1).map(|_| ()) {
+            Err(Error::Unsupported { model, what }) => {
+                assert!(model == name && what.contains(word), "{name}: {what:?} does not name {word:?}");
+            }
+            other => panic!("{name}: {word} is not refused: {other:?}"),
+        };
+        for &kind in SurfaceKind::ALL.iter().filter(|kind| !abilities.surfaces.contains(kind)) {
+            let other = Scene { surface: surface(kind), ..base() };
+            refused(&other, if kind == SurfaceKind::Profile { "profile" } else { other.surface.kind() });
+        }
+        for &effect in Effect::ALL.iter().filter(|effect| !abilities.effects.contains(effect)) {
+            let word = if name == "equivalent" { "" } else { effect.words() };
+            refused(&with_effect(base(), Some(effect)), word);
+        }
+        for &output in Output::ALL.iter().filter(|output| !abilities.outputs.contains(output)) {
+            let mut scene = base();
+            ask(&mut scene, output);
+            // Those that no model can answer in this scene at all.
+            if scene.validate().is_err() {
+                continue;
+            }
+            refused(&scene, if name == "mdr1d_viscoelastic" { "" } else { output.name() });
+        }
+    }
+}
+
+/// Loads of a kind that is declared are answered, others are refused.
+#[test]
+fn loads_are_those_that_are_declared() {
+    for record in MODELS {
+        let (model, abilities) = (record.model, record.model.abilities());
+        let Some((mut contact, scene)) = declared(model).find_map(|scene| {
+            let contact = prepared(model, &scene).ok()?;
+            Some((contact, scene))
+        }) else {
+            panic!("{record:?} prepares nothing")
+        };
+        let gap = pressed(contact.as_mut(), &scene).ok().and_then(|state| state.mean_gap).unwrap_or(0.01);
+        for &kind in LoadKind::ALL {
+            let load = match kind {
+                LoadKind::Force => Load::Force(0.001),
+                LoadKind::Approach => Load::Approach(1e-4),
+                LoadKind::MeanGap => Load::MeanGap(gap),
+                other => panic!("a load of the kind {other:?}"),
+            };
+            // Of the two distances the boundary decides which there is.
+            let periodic = scene.effects.boundary == Boundary::Periodic;
+            if kind != LoadKind::Force && periodic != (kind == LoadKind::MeanGap) {
+                continue;
+            }
+            let answered = contact.solve(load);
+            match answered {
+                Err(Error::Unsupported { .. }) => {
+                    assert!(!abilities.loads.contains(&kind), "{record:?}: {load:?}")
+                }
+                _ => assert!(abilities.loads.contains(&kind), "{record:?}: {load:?}"),
+            }
+        }
+    }
+}

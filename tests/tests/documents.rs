@@ -1,0 +1,188 @@
+//! Pages and tables that follow from the table of quantities and that of models. With `UPDATE_DOCUMENTS=1` they are written anew.
+
+use contact_model::Boundary;
+use contact_model::quantities::{AskedBy, Average, Compared, QUANTITIES, Quantity, Role};
+use contact_model::{Effect, Paths};
+use fractal_contact::models::{MODELS, ModelRecord, abilities};
+use std::path::PathBuf;
+
+const BEGIN: &str = "<!-- generated: ";
+const END: &str = "<!-- end of what is generated -->";
+
+/// The symbol of a quantity without commands of TeX.
+fn symbol(quantity: &Quantity) -> String {
+    let mut symbol = quantity.symbol.replace("\\rm", "");
+    while let Some(at) = symbol.find("\\bar{") {
+        let end = symbol[at..].find('}').map_or(symbol.len(), |end| at + end);
+        symbol = format!("{}{}_bar{}", &symbol[..at], &symbol[at + 5..end], &symbol[end + 1..]);
+    }
+    symbol.replace(['{', '}'], "")
+}
+
+/// The models whose states may have a quantity.
+fn claimed_by(quantity: &Quantity) -> String {
+    let claims = |record: &&ModelRecord| {
+        let abilities = record.model.abilities();
+        match quantity.asked_by {
+            AskedBy::Always | AskedBy::RoughSurface | AskedBy::PrescribedDistance => true,
+            AskedBy::FreeBoundary => abilities.boundaries.contains(&Boundary::Free),
+            AskedBy::Path => abilities.paths != Paths::Forgotten,
+            AskedBy::Output(output) => abilities.outputs.contains(&output),
+            AskedBy::AnyStiffness => abilities.outputs.contains(&contact_model::Output::Stiffness),
+            AskedBy::Effect(key) => abilities.effects.iter().any(|effect: &Effect| effect.key() == key),
+        }
+    };
+    let names: Vec<&str> = MODELS.iter().filter(claims).map(ModelRecord::name).collect();
+    if names.len() == MODELS.len() { "all".into() } else { names.join(", ") }
+}
+
+fn row(cells: &[&str]) -> String {
+    format!("| {} |\n", cells.iter().map(|cell| cell.replace('|', "\\|")).collect::<Vec<_>>().join(" | "))
+}
+
+fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut text = row(heads) + &"|---".repeat(heads.len()) + "|\n";
+    for cells in rows {
+        text += &row(&cells.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+    text
+}
+
+/// Rows of the glossary.
+fn glossary() -> String {
+    let told = QUANTITIES.iter().filter(|quantity| !matches!(quantity.role, Role::Work));
+    let cells = |quantity: &Quantity| {
+        let name = format!("`{}`", quantity.name);
+        vec![name, symbol(quantity), quantity.unit.words().into(), quantity.meaning.into()]
+    };
+    table(&["quantity", "symbol", "unit", "meaning"], told.map(cells))
+}
+
+fn quantities_page() -> String {
+    let average = |quantity: &Quantity| match quantity.average {
+        Average::Mean => "mean, standard error, deviation",
+        Average::Same => "the same on all",
+        Average::No => "",
+    };
+    let compared = |quantity: &Quantity| match quantity.compared {
+        Compared::Yes => "yes",
+        Compared::Periodic => "periodic",
+        Compared::No => "",
+    };
+    let rows = |wanted: &dyn Fn(Role) -> bool| {
+        let cells = |quantity: &Quantity| {
+            vec![
+                format!("`{}`", quantity.name),
+                symbol(quantity),
+                quantity.unit.words().to_owned(),
+                quantity.meaning.to_owned(),
+                quantity.asked_by.words(),
+                claimed_by(quantity),
+                average(quantity).to_owned(),
+                compared(quantity).to_owned(),
+            ]
+        };
+        let heads =
+            ["column", "symbol", "unit", "meaning", "asked for by", "models", "over surfaces", "grid error"];
+        table(&heads, QUANTITIES.iter().filter(|quantity| wanted(quantity.role)).map(cells))
+    };
+    let sources: String = QUANTITIES
+        .iter()
+        .filter(|quantity| !quantity.source.is_empty())
+        .map(|quantity| format!("- `{}`: {}\n", quantity.name, quantity.source))
+        .collect();
+    let proves = QUANTITIES.iter().filter_map(|quantity| match quantity.role {
+        Role::Residual(proves) => Some(vec![format!("`{}`", quantity.name), proves.to_owned()]),
+        _ => None,
+    });
+    format!(
+        "# What is told of a state\n\n\
+         This page lists every quantity that a scene or a model can tell of a state. One table in `contact_model::quantities` has\n\
+         them; CSV, console, report, means over surfaces, curves, Python and this page follow from it, and a test compares the page\n\
+         with the table. Units are SI; with `units = \"none\"` a dimensional number is in the scene's own.\n\n\
+         Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends with `note`.\n\
+         `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one surface. With\n\
+         `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order` too.\n\n\
+         ## Answers\n\n{}\n## Residuals\n\nSmall numbers prove that the equations were solved:\n\n{}\n{}\n\
+         ## How it was found, and what it cost\n\n{}\n## Sources\n\n{sources}",
+        rows(&|role| matches!(role, Role::Answer | Role::Normalised)),
+        rows(&|role| matches!(role, Role::Residual(_))),
+        table(&["residual", "what it proves"], proves),
+        rows(&|role| matches!(role, Role::Work)),
+    )
+}
+
+fn models_page() -> String {
+    let cells = |record: &ModelRecord| {
+        let mut cells = vec![format!("`{}`", record.name())];
+        cells.extend(abilities(record.model).into_iter().map(|(_, words)| words.join(", ")));
+        cells
+    };
+    let about = |record: &ModelRecord| {
+        vec![format!("`{}`", record.name()), record.about.to_owned(), record.accuracy.to_owned()]
+    };
+    format!(
+        "# What each model can do\n\n\
+         This page lists the abilities that each model declares as data (`ContactModel::abilities`): what a scene may ask of it.\n\
+         A scene that asks for more is refused before anything is computed, with the models that can. Combinations that a model\n\
+         cannot do together it refuses itself. Python has the same as `model.supports`.\n\n{}\n## What they are\n\n{}",
+        table(
+            &["model", "surfaces", "boundaries", "effects", "loads", "paths", "outputs"],
+            MODELS.iter().map(cells)
+        ),
+        table(&["model", "what it is", "what to expect of its numbers"], MODELS.iter().map(about)),
+    )
+}
+
+fn readme() -> String {
+    let effects = |record: &ModelRecord| {
+        let keys: Vec<&str> = record.model.abilities().effects.iter().map(|effect| effect.key()).collect();
+        let mut keys = keys;
+        keys.dedup();
+        keys.join(", ")
+    };
+    let cells =
+        |record: &ModelRecord| vec![format!("`{}`", record.name()), record.about.to_owned(), effects(record)];
+    table(&["model", "what it is", "effects"], MODELS.iter().map(cells))
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The text with this part between its marks.
+fn with_part(text: &str, name: &str, part: &str) -> String {
+    let begin = format!("{BEGIN}{name} -->\n");
+    let (before, rest) = text.split_once(&begin).unwrap_or_else(|| panic!("no mark {begin:?}"));
+    let (_, after) = rest.split_once(END).unwrap_or_else(|| panic!("no end after {begin:?}"));
+    format!("{before}{begin}{part}{END}{after}")
+}
+
+#[test]
+fn documents_follow_from_the_tables() {
+    let update = std::env::var_os("UPDATE_DOCUMENTS").is_some();
+    let part = |file: &str, name: &str, part: String| {
+        let text = std::fs::read_to_string(root().join(file)).unwrap();
+        (file.to_owned(), with_part(&text, name, &part), text)
+    };
+    let page = |file: &str, page: String| {
+        let text = std::fs::read_to_string(root().join(file)).unwrap_or_default();
+        (file.to_owned(), page, text)
+    };
+    let documents = [
+        part("GLOSSARY.md", "quantities", glossary()),
+        part("README.md", "models", readme()),
+        page("book/src/quantities.md", quantities_page()),
+        page("book/src/models.md", models_page()),
+    ];
+    for (file, expected, found) in documents {
+        if update {
+            std::fs::write(root().join(&file), &expected).unwrap();
+        } else {
+            assert!(
+                expected == found,
+                "{file} is not what the tables say: run `UPDATE_DOCUMENTS=1 cargo test -p tests --test physics documents`"
+            );
+        }
+    }
+}
