@@ -27,8 +27,10 @@
 mod cgroup;
 pub mod cluster;
 mod csv_file;
+mod encoding;
 mod error;
 pub mod files;
+mod finite;
 mod jobs;
 mod manifest;
 mod meters;
@@ -41,6 +43,7 @@ mod terminal;
 mod threads;
 
 pub use csv_file::{CsvFile, Header, number, write_csv};
+pub use encoding::ResultKind;
 pub use error::{Error, Result};
 pub use jobs::{Failure, Job, JobList, Threads, collect, on_one_thread, run_jobs, run_stored};
 pub use manifest::{file_names, machine, write_manifest};
