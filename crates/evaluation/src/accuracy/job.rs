@@ -1,12 +1,12 @@
 //! One part of the study, as a job that is stored: a problem in every way, or an ensemble under all loads.
 
 use super::depth::Depth;
-use super::every_way::{QUANTITIES, solve_problem};
+use super::every_way::solve_problem;
 use super::limit::Limit;
-use super::means::{ClosedForm, EnsembleMeans, FORMULAS, closed_forms, discretisations, ensemble, unit};
+use super::means::{ClosedForm, EnsembleMeans, closed_forms, discretisations, ensemble, unit};
 use super::problem::{CELLS_PER_WAVE, DIMENSIONS, LOADS, PAPER_CELLS, RADIUS, StudyProblem};
-use super::row::{Answer, Parts, StudyRow, Way};
-use super::sizes::{Order, StudySizes};
+use super::row::{Answer, Formula, Parts, StudyRow, Way};
+use super::sizes::{Order, Quantity, StudySizes};
 use super::stored::{Word, Words, line};
 use crate::realisation::{Discretisation, FORMAT, Realisation};
 use analysis::Statistics;
@@ -90,7 +90,7 @@ impl StudyJob {
     /// Every way in which a problem may be solved.
     fn ways(&self) -> Vec<Way> {
         let mut ways = self.sizes.solids();
-        ways.extend([Way::Line { elements: self.sizes.elements[0] }, Way::Formula("hertz")]);
+        ways.extend([Way::Line { elements: self.sizes.elements[0] }, Way::Formula(Formula::Hertz)]);
         ways
     }
 }
@@ -313,14 +313,14 @@ fn read_row(problem: &StudyProblem, ways: &[Way], line: &str) -> Option<StudyRow
 fn read_form(line: &str) -> Option<ClosedForm> {
     let mut words = Words::of(line);
     let load = words.word().filter(|load| *load < LOADS.len())?;
-    let way = read_way(&FORMULAS.map(Way::Formula), &mut words)?;
+    let way = read_way(&[Formula::PowerLaw, Formula::Plateau].map(Way::Formula), &mut words)?;
     let answer = read_answer(&mut words)?;
     words.end()?;
     Some(ClosedForm { load, way, answer })
 }
 
 fn order_line(order: &Order) -> String {
-    let quantity = order.quantity.to_owned();
+    let quantity = order.quantity.as_str().to_owned();
     let [coarsest, finest] = &order.errors;
     let (value, uncertainty) = (order.limit.map(|l| l.value), order.limit.map(|l| l.uncertainty));
     let extrapolated = order.limit.and_then(|l| l.order);
@@ -339,7 +339,7 @@ fn order_line(order: &Order) -> String {
 fn read_order(problem: &StudyProblem, line: &str) -> Option<Order> {
     let mut words = Words::of(line);
     let quantity: String = words.word()?;
-    let quantity = QUANTITIES.into_iter().find(|of| *of == quantity)?;
+    let quantity = Quantity::ALL.into_iter().find(|of| of.as_str() == quantity)?;
     let (power, established) = (words.word()?, words.word()?);
     let (value, uncertainty, order): (Option<f64>, Option<f64>, _) =
         (words.word()?, words.word()?, words.word()?);

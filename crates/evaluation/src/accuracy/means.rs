@@ -2,8 +2,8 @@
 
 use super::limit::{Limit, limit, slope};
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
-use super::row::{Answer, Parts, StudyRow, Way, measure, unless_stopped};
-use super::sizes::{Order, StudySizes};
+use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
+use super::sizes::{Order, Quantity, StudySizes};
 use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
@@ -167,14 +167,11 @@ fn at_load(
     rows
 }
 
-/// Names of the closed forms of a mean.
-pub(crate) const FORMULAS: [&str; 2] = ["power_law", "plateau"];
-
 /// Eq. 12 where it is claimed to hold, and the plateau of the rigid square under the largest load.
 pub(crate) fn closed_forms(d: f64, stop: Stop<'_>) -> Result<Vec<ClosedForm>> {
     let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model("Eq. 12"))?;
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
-    let [law, plateau] = FORMULAS.map(Way::Formula);
+    let [law, plateau] = [Formula::PowerLaw, Formula::Plateau].map(Way::Formula);
     let mut all = Vec::new();
     for (load, force_bar) in LOADS.into_iter().enumerate() {
         unless_stopped(stop)?;
@@ -193,7 +190,7 @@ fn order(problem: ProblemKey, limit: Limit, sequence: &[(f64, f64)]) -> Order {
     let errors: Vec<(f64, f64)> = sequence.iter().map(|&(h, v)| (h, limit.distance(v))).collect();
     Order {
         problem,
-        quantity: "stiffness",
+        quantity: Quantity::Stiffness,
         power: limit.order.or_else(|| slope(&errors[..errors.len().saturating_sub(1)])),
         established: limit.order.is_some(),
         limit: Some(limit),

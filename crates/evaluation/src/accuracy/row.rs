@@ -4,6 +4,27 @@ use super::problem::ProblemKey;
 use contact_model::{ContactModel, ContactState, Field, Load, Scene, Stop};
 use runs::{Error, Result, cpu_seconds, on_one_thread, peak_memory, reset_peak_memory, resident_memory};
 
+/// A closed form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Formula {
+    /// Hertz's sphere.
+    Hertz,
+    /// Eq. 12.
+    PowerLaw,
+    /// The stiffness of the rigid square.
+    Plateau,
+}
+
+impl Formula {
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Hertz => "hertz",
+            Self::PowerLaw => "power_law",
+            Self::Plateau => "plateau",
+        }
+    }
+}
+
 /// How an answer is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Way {
@@ -11,8 +32,8 @@ pub(crate) enum Way {
     Solid { cells: usize, tolerance: f64, method: bem3d::Method },
     /// The one-dimensional reduction.
     Line { elements: usize },
-    /// A closed form, by name.
-    Formula(&'static str),
+    /// A closed form.
+    Formula(Formula),
 }
 
 impl Way {
@@ -20,7 +41,7 @@ impl Way {
         match self {
             Self::Solid { .. } => "bem3d",
             Self::Line { .. } => "mdr1d",
-            Self::Formula(name) => name,
+            Self::Formula(formula) => formula.as_str(),
         }
     }
 
@@ -207,7 +228,7 @@ mod tests {
         let row = |seconds, error, family| {
             let answer =
                 Answer { cpu_seconds: Some(seconds), status: "converged".into(), ..Answer::default() };
-            let mut row = StudyRow::new(ProblemKey::body(family), Way::Formula("f"), answer);
+            let mut row = StudyRow::new(ProblemKey::body(family), Way::Formula(Formula::Hertz), answer);
             row.errors[0] = Some(error);
             row
         };
