@@ -10,6 +10,7 @@ use analytic::PowerLaw;
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Stop, Surface, never};
 use runs::{Error, Result, cpu_seconds, on_one_thread};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Tolerance of the ensembles: far below their scatter.
@@ -18,26 +19,13 @@ const TOLERANCE: f64 = crate::run::TOLERANCE;
 const PAPER_SURFACES: f64 = 60.0;
 
 /// One ensemble: statistics of k/(E* L) and mean approach at each load, with the cost of all its surfaces.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnsembleMeans {
     pub way: Way,
     pub stiffness: Vec<Option<Statistics>>,
     pub approach: Vec<Option<f64>>,
     pub answer: Answer,
     pub surfaces: usize,
-}
-
-impl EnsembleMeans {
-    /// Without any load yet.
-    pub fn new(discretisation: Discretisation, surfaces: usize, answer: Answer) -> Self {
-        let way = match discretisation {
-            Discretisation::Bem3d { cells, tolerance } => {
-                Way::Solid { cells, tolerance, method: bem3d::Method::Auto }
-            }
-            Discretisation::Mdr1d { elements } => Way::Line { elements },
-        };
-        Self { way, stiffness: Vec::new(), approach: Vec::new(), answer, surfaces }
-    }
 }
 
 /// How the ensembles of one fractal dimension are solved.
@@ -48,7 +36,7 @@ pub(crate) fn discretisations(sizes: &StudySizes) -> Vec<Discretisation> {
 }
 
 /// What a closed form says of a mean.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ClosedForm {
     /// Number of the load.
     pub load: usize,
@@ -113,7 +101,7 @@ pub(crate) fn ensemble(
     answer.applications /= LOADS.len();
     let stiffness = k.iter().map(|k| statistics(k)).collect();
     let approach = approach.iter().map(|d| statistics(d).map(|s| s.mean)).collect();
-    Ok(EnsembleMeans { stiffness, approach, ..EnsembleMeans::new(discretisation, surfaces, answer) })
+    Ok(EnsembleMeans { way: Way::of(discretisation), stiffness, approach, answer, surfaces })
 }
 
 fn at_load(

@@ -2,6 +2,7 @@
 
 use super::limit::Limit;
 use super::problem::ProblemKey;
+use serde::{Deserialize, Serialize};
 
 /// StudySizes of a study.
 #[derive(Debug, Clone)]
@@ -27,7 +28,7 @@ pub(crate) struct StudySizes {
 }
 
 /// A number that has a sequence of grids.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Quantity {
     Stiffness,
     Approach,
@@ -50,7 +51,7 @@ impl Quantity {
 }
 
 /// Where a number goes on ever finer grids.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Order {
     pub problem: ProblemKey,
     pub quantity: Quantity,

@@ -8,7 +8,8 @@ use crate::scenes::scene_file::SceneFile;
 use crate::scenes::state_result::{ModelResult, StateResult, StoredFile};
 use analysis::Value;
 use contact_model::Stop;
-use runs::Job;
+use runs::{Job, ResultKind};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -28,6 +29,8 @@ pub(crate) struct SceneJob<'a> {
 impl Job for SceneJob<'_> {
     type Output = ModelResult;
     type Error = Error;
+
+    const KIND: ResultKind = ResultKind::new("scene", 1);
 
     fn key(&self) -> String {
         self.unit.key(self.scene)
@@ -59,17 +62,17 @@ impl Job for SceneJob<'_> {
 
     fn resume(
         &self,
-        stored: Option<&str>,
-        store: &dyn Fn(&str) -> runs::Result<()>,
+        stored: Option<ModelResult>,
+        store: &dyn Fn(&ModelResult) -> runs::Result<()>,
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
-        let mut begun = stored.and_then(|text| parse(text, self.columns)).unwrap_or_default();
-        begun.states.retain(|state| state.is_whole(self.out));
+        let mut begun = stored.unwrap_or_default();
+        begun.states.retain(|state| self.has_whole(state));
         begun.kept = begun.states.len();
         let mut last = Instant::now();
         let mut keep = |result: &ModelResult| {
             if last.elapsed() >= KEEP_EVERY && self.is_stored() {
-                store(&self.encode(result))?;
+                store(result)?;
                 last = Instant::now();
             }
             Ok(())
@@ -77,15 +80,30 @@ impl Job for SceneJob<'_> {
         self.unit.solve(self.scene, self.out, begun, &mut keep, stop)
     }
 
-    fn encode(&self, result: &ModelResult) -> String {
-        format(result)
-    }
-
     /// A result with a state or a file missing or changed is as good as absent.
-    fn decode(&self, text: &str) -> Option<ModelResult> {
-        let result = parse(text, self.columns).filter(|result| result.complete)?;
-        let whole = result.states.iter().all(|state| state.is_whole(self.out));
-        whole.then_some(ModelResult { kept: result.states.len(), ..result })
+    fn is_whole(&self, result: &ModelResult) -> bool {
+        result.complete && result.states.iter().all(|state| self.has_whole(state))
+    }
+}
+
+impl SceneJob<'_> {
+    /// Whether a stored state has all columns, and its files are what they were.
+    fn has_whole(&self, state: &StateResult) -> bool {
+        state.row.len() == self.columns && state.is_whole(self.out)
+    }
+}
+
+impl Serialize for ModelResult {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        serializer.serialize_str(&format(self))
+    }
+}
+
+impl<'de> Deserialize<'de> for ModelResult {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let result = parse(&text).ok_or_else(|| D::Error::custom("not the states of a model"))?;
+        Ok(Self { kept: result.states.len(), ..result })
     }
 }
 
@@ -131,7 +149,7 @@ fn parse_cell(text: &str) -> Option<Value> {
     })
 }
 
-fn parse(text: &str, columns: usize) -> Option<ModelResult> {
+fn parse(text: &str) -> Option<ModelResult> {
     let mut result = ModelResult::default();
     for line in text.lines() {
         let (word, rest) = line.split_once(' ')?;
@@ -168,7 +186,7 @@ fn parse(text: &str, columns: usize) -> Option<ModelResult> {
             _ => return None,
         }
     }
-    result.states.iter().all(|state| state.row.len() == columns).then_some(result)
+    Some(result)
 }
 
 #[cfg(test)]
@@ -193,9 +211,8 @@ mod tests {
             ..ModelResult::default()
         };
         let text = format(&result);
-        assert_eq!(parse(&text, 4), Some(result));
-        assert_eq!(parse(&text, 5), None);
-        assert_eq!(parse(&text.replace("n0.3", "x0.3"), 4), None);
-        assert_eq!(parse("row \n", 1), None);
+        assert_eq!(parse(&text), Some(result));
+        assert_eq!(parse(&text.replace("n0.3", "x0.3")), None);
+        assert_eq!(parse("row \n"), None);
     }
 }
