@@ -3,7 +3,7 @@
 use serde::de::value::Error;
 use serde::ser::{self, Error as _, Serialize, Serializer};
 
-/// Whether no number in a value is NaN or infinite. JSON writes both as `null`, which is what it writes for `None`.
+/// Whether no number in a value is NaN or infinite: JSON would hold `null` in its place, as for `None`.
 pub(crate) fn all_finite<T: Serialize>(value: &T) -> bool {
     value.serialize(Finite).is_ok()
 }

@@ -117,7 +117,8 @@ pub trait Job: Sync {
     /// What its results are called in a store, and the number of their format.
     const KIND: ResultKind;
 
-    /// Everything that decides the numbers, as text. Two jobs of a kind with the same key have the same output.
+    /// Everything that decides the numbers, as text. Two jobs of a kind with the same key have the same
+    /// output.
     fn key(&self) -> String;
 
     /// What a person calls it.
@@ -142,8 +143,9 @@ pub trait Job: Sync {
     /// Whatever ends the whole command.
     fn solve(&self, stop: Stop<'_>) -> Result<Self::Output, Self::Error>;
 
-    /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::is_whole`] refused, such as the part that
-    /// was done before an interruption; `store` replaces it at any moment. A job without parts begins anew.
+    /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::is_whole`] refused, such as
+    /// the part that was done before an interruption; `store` replaces it at any moment. A job without parts begins
+    /// anew.
     ///
     /// # Errors
     /// Whatever ends the whole command.
@@ -162,8 +164,8 @@ pub trait Job: Sync {
         true
     }
 
-    /// Whether an output that was read back is all that this job gives: of its own loads, and not a part of one. Its
-    /// numbers are finite.
+    /// Whether an output that was read back is all that this job gives: of its own loads, and not a part of one.
+    /// Its numbers are finite.
     fn is_whole(&self, output: &Self::Output) -> bool {
         let _ = output;
         true
@@ -188,7 +190,8 @@ pub trait Job: Sync {
 /// Does all jobs that the store does not hold, the most expensive first, and gives the results in the order of `jobs`; `None` where a
 /// failure or `stop` came first. The results do not depend on `threads`.
 ///
-/// Each finished job is stored at once: an interruption loses those in flight.
+/// Each finished job is stored at once: an interruption loses those in flight. Results that another version of the program stored in
+/// another format are not used, and `progress` is told of them once.
 ///
 /// Errors of single jobs are in their places.
 #[allow(clippy::type_complexity)] // A list of what became of each job.
@@ -200,6 +203,7 @@ pub fn run_stored<J: Job>(
     progress: &dyn Progress,
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Vec<Option<Result<J::Output, J::Error>>> {
+    store.tell_unused(progress);
     progress.begin(what, jobs.iter().map(Job::cost).sum());
     let order = largest_first(jobs.len(), |i| jobs[i].cost());
     let done = run_jobs(threads, &order, stop, |i, stop| solve_stored(&jobs[i], store, progress, stop));

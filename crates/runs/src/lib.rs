@@ -4,8 +4,8 @@
 //!
 //! A [`Job`] is one independent piece of work with a key (everything that decides its numbers) and a cost. [`run_stored`] does a list
 //! of them, one per thread, the most expensive first. Each finished job is kept in the [`Store`] at once, whole or not at all, and
-//! checked on reading: a damaged or foreign result is computed again. Results have the same bytes for any number of threads. They
-//! are stored as JSON that names their [`ResultKind`] and keeps every bit of their numbers.
+//! checked on reading: a damaged or foreign result is computed again. Results have the same bytes for any number of threads.
+//! They are stored as JSON that names their [`ResultKind`] and keeps every bit of their numbers.
 //!
 //! # Files
 //!

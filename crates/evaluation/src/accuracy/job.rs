@@ -12,8 +12,8 @@ use runs::{Error, Job, JobList, Result, ResultKind};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Number of the format of stored parts. Raise it when [`StudyPart`] changes, or how limits, errors and references
-/// come about, or the closed forms.
+/// Number of the format of stored parts. Raise it when [`StudyPart`] changes, or how limits, errors and
+/// references come about, or the closed forms.
 const STORED: u32 = 2;
 
 /// Predicted processor milliseconds of one load on one grid, solved from nothing: the problems of

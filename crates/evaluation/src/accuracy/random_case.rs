@@ -12,8 +12,8 @@ use runs::{Error, Job, Result, ResultKind};
 use serde::{Deserialize, Serialize};
 use surface_gen::surface_seed;
 
-/// Number of the format of stored cases. Raise it when [`RandomCase`] changes, or how cases are drawn and budgets
-/// predicted.
+/// Number of the format of stored cases. Raise it when [`RandomCase`] changes, or how cases are drawn and
+/// budgets predicted.
 const STORED: u32 = 2;
 /// Tolerance of the references.
 pub(super) const REFERENCE: f64 = 1e-10;
