@@ -12,10 +12,29 @@ pub(crate) fn all_finite<T: Serialize>(value: &T) -> bool {
 #[derive(Clone, Copy)]
 struct Finite;
 
-macro_rules! of_any_value {
-    ($($method:ident $type:ty),*) => {
-        $(fn $method(self, _: $type) -> Result<(), Error> {
+/// Methods for what holds no float.
+macro_rules! without_float {
+    ($($method:ident($($argument:ty),*))*) => {
+        $(fn $method(self, $(_: $argument),*) -> Result<(), Error> {
             Ok(())
+        })*
+    };
+}
+
+/// Methods for what holds one value.
+macro_rules! of_one_value {
+    ($($method:ident($($argument:ty),*))*) => {
+        $(fn $method<T: Serialize + ?Sized>(self, $(_: $argument,)* value: &T) -> Result<(), Error> {
+            value.serialize(self)
+        })*
+    };
+}
+
+/// Methods that begin what holds several values.
+macro_rules! of_several_values {
+    ($($method:ident($($argument:ty),*))*) => {
+        $(fn $method(self, $(_: $argument),*) -> Result<Self, Error> {
+            Ok(self)
         })*
     };
 }
@@ -31,11 +50,6 @@ impl Serializer for Finite {
     type SerializeStruct = Self;
     type SerializeStructVariant = Self;
 
-    of_any_value!(serialize_bool bool, serialize_char char, serialize_str &str, serialize_bytes &[u8]);
-    of_any_value!(serialize_i8 i8, serialize_i16 i16, serialize_i32 i32, serialize_i64 i64, serialize_i128 i128);
-    of_any_value!(serialize_u8 u8, serialize_u16 u16, serialize_u32 u32, serialize_u64 u64, serialize_u128 u128);
-    of_any_value!(serialize_unit_struct &'static str);
-
     fn serialize_f32(self, v: f32) -> Result<(), Error> {
         self.serialize_f64(v.into())
     }
@@ -44,83 +58,30 @@ impl Serializer for Finite {
         if v.is_finite() { Ok(()) } else { Err(Error::custom("not a finite number")) }
     }
 
-    fn serialize_none(self) -> Result<(), Error> {
-        Ok(())
+    without_float! {
+        serialize_bool(bool) serialize_char(char) serialize_str(&str) serialize_bytes(&[u8])
+        serialize_i8(i8) serialize_i16(i16) serialize_i32(i32) serialize_i64(i64) serialize_i128(i128)
+        serialize_u8(u8) serialize_u16(u16) serialize_u32(u32) serialize_u64(u64) serialize_u128(u128)
+        serialize_none() serialize_unit() serialize_unit_struct(&'static str)
+        serialize_unit_variant(&'static str, u32, &'static str)
     }
 
-    fn serialize_unit(self) -> Result<(), Error> {
-        Ok(())
+    of_one_value! {
+        serialize_some() serialize_newtype_struct(&'static str)
+        serialize_newtype_variant(&'static str, u32, &'static str)
     }
 
-    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), Error> {
-        value.serialize(self)
-    }
-
-    fn serialize_unit_variant(self, _: &'static str, _: u32, _: &'static str) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn serialize_newtype_struct<T: Serialize + ?Sized>(
-        self,
-        _: &'static str,
-        value: &T,
-    ) -> Result<(), Error> {
-        value.serialize(self)
-    }
-
-    fn serialize_newtype_variant<T: Serialize + ?Sized>(
-        self,
-        _: &'static str,
-        _: u32,
-        _: &'static str,
-        value: &T,
-    ) -> Result<(), Error> {
-        value.serialize(self)
-    }
-
-    fn serialize_seq(self, _: Option<usize>) -> Result<Self, Error> {
-        Ok(self)
-    }
-
-    fn serialize_tuple(self, _: usize) -> Result<Self, Error> {
-        Ok(self)
-    }
-
-    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self, Error> {
-        Ok(self)
-    }
-
-    fn serialize_tuple_variant(
-        self,
-        _: &'static str,
-        _: u32,
-        _: &'static str,
-        _: usize,
-    ) -> Result<Self, Error> {
-        Ok(self)
-    }
-
-    fn serialize_map(self, _: Option<usize>) -> Result<Self, Error> {
-        Ok(self)
-    }
-
-    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self, Error> {
-        Ok(self)
-    }
-
-    fn serialize_struct_variant(
-        self,
-        _: &'static str,
-        _: u32,
-        _: &'static str,
-        _: usize,
-    ) -> Result<Self, Error> {
-        Ok(self)
+    of_several_values! {
+        serialize_seq(Option<usize>) serialize_tuple(usize) serialize_map(Option<usize>)
+        serialize_tuple_struct(&'static str, usize) serialize_struct(&'static str, usize)
+        serialize_tuple_variant(&'static str, u32, &'static str, usize)
+        serialize_struct_variant(&'static str, u32, &'static str, usize)
     }
 }
 
-macro_rules! of_parts {
-    ($($part:ident: $($method:ident($($name:ty)?)),*;)*) => {
+/// The traits of what holds several values.
+macro_rules! of_each_value {
+    ($($part:ident: $($method:ident($($name:ty)?))*;)*) => {
         $(impl ser::$part for Finite {
             type Ok = ();
             type Error = Error;
@@ -136,12 +97,12 @@ macro_rules! of_parts {
     };
 }
 
-of_parts! {
+of_each_value! {
     SerializeSeq: serialize_element();
     SerializeTuple: serialize_element();
     SerializeTupleStruct: serialize_field();
     SerializeTupleVariant: serialize_field();
-    SerializeMap: serialize_key(), serialize_value();
+    SerializeMap: serialize_key() serialize_value();
     SerializeStruct: serialize_field(&'static str);
     SerializeStructVariant: serialize_field(&'static str);
 }

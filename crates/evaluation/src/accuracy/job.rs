@@ -173,6 +173,12 @@ impl Job for StudyJob {
         }
     }
 
+    fn stored_bytes(&self) -> u64 {
+        // A row takes about 800 bytes, and so does a closed form of every load, or an ensemble.
+        let rows = if self.is_problem() { self.ways().len() } else { 4 };
+        1000 * (1 + rows as u64)
+    }
+
     fn solve(&self, stop: Stop<'_>) -> Result<StudyPart> {
         // The peak of memory is that of the whole process, and another measurement would share the caches:
         // they take turns, also in a shard that has more threads.
