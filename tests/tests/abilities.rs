@@ -1,12 +1,13 @@
 //! What models declare is what they do: each ability is tried, and each thing that is not among them is refused.
 
-use contact_model::quantities::{AskedBy, QUANTITIES};
+use contact_model::quantities::{AskedBy, QUANTITIES, Quantity};
 use contact_model::{
     Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Effect, Error, Friction,
     Hardness, HeightMap, Line, Load, LoadKind, Output, Pair, PreparedContact, PronySeries, Relaxing,
-    Rheology, Scene, SelfAffine, Step, Surface, SurfaceKind, Tangential,
+    Rheology, Scene, SelfAffine, Step, Surface, SurfaceKind, Tangential, Value,
 };
 use fractal_contact::models::MODELS;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 fn surface(kind: SurfaceKind) -> Surface {
@@ -94,6 +95,14 @@ fn prepared(model: &dyn ContactModel, scene: &Scene) -> Result<Box<dyn PreparedC
             let press = bem3d::Bem3d { cells: 33, ..bem3d::Bem3d::default() };
             mdr1d::Equivalent::new(press).prepare(scene, 1)
         }
+        // The spectrum of the paper goes to the end of the grid.
+        "power_law" => {
+            let mut scene = scene.clone();
+            if let Surface::SelfAffine(rough) = &mut scene.surface {
+                (rough.roll_off, rough.short_cutoff) = (None, None);
+            }
+            model.prepare(&scene, 1)
+        }
         "mdr1d" => mdr1d::Mdr1d { elements: 1 << 10 }.prepare(scene, 1),
         _ => model.prepare(scene, 1),
     }
@@ -122,6 +131,38 @@ fn declared(model: &dyn ContactModel) -> impl Iterator<Item = Scene> {
             .clone()
             .flat_map(move |boundary| effects().map(move |effect| scene(kind, boundary, effect)))
     })
+}
+
+/// Names of the quantities that a model tells of some state of the scenes that it declares.
+pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
+    let mut told = BTreeSet::new();
+    for mut scene in declared(model) {
+        let outputs = model.abilities().outputs;
+        let rheology = scene.effects.rheology != Rheology::Elastic;
+        for &output in outputs {
+            // Those that the scene itself excludes.
+            let mut more = scene.clone();
+            ask(&mut more, output);
+            let relaxing = rheology
+                && matches!(output, Output::Stiffness | Output::StiffnessFixedArea | Output::Pressure);
+            if !relaxing && prepared(model, &more).is_ok() {
+                scene = more;
+            }
+        }
+        let Ok(mut contact) = prepared(model, &scene) else { continue };
+        let Ok(state) = pressed(contact.as_mut(), &scene) else { continue };
+        let normalisation = contact.normalisation();
+        let has = |quantity: &&Quantity| (quantity.value)(&state, &normalisation) != Value::Empty;
+        told.extend(QUANTITIES.iter().filter(has).map(|quantity| quantity.name));
+        // An error of the force is known where a distance is prescribed.
+        if contact
+            .solve(Load::Approach(1e-4))
+            .is_ok_and(|state| state.report.certificate.force_error.is_some())
+        {
+            told.insert("force_error");
+        }
+    }
+    told
 }
 
 /// Each surface, boundary, effect and output that a model declares is part of a scene that it answers, and the answer has what was

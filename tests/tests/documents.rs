@@ -1,9 +1,9 @@
 //! Pages and tables that follow from the table of quantities and that of models. With `UPDATE_DOCUMENTS=1` they are written anew.
 
-use contact_model::Boundary;
-use contact_model::quantities::{AskedBy, Average, Compared, QUANTITIES, Quantity, Role};
-use contact_model::{Effect, Paths};
+use crate::abilities::told;
+use contact_model::quantities::{Average, Compared, QUANTITIES, Quantity, Role};
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 const BEGIN: &str = "<!-- generated: ";
@@ -19,20 +19,10 @@ fn symbol(quantity: &Quantity) -> String {
     symbol.replace(['{', '}'], "")
 }
 
-/// The models whose states may have a quantity.
-fn claimed_by(quantity: &Quantity) -> String {
-    let claims = |record: &&ModelRecord| {
-        let abilities = record.model.abilities();
-        match quantity.asked_by {
-            AskedBy::Always | AskedBy::RoughSurface | AskedBy::PrescribedDistance => true,
-            AskedBy::FreeBoundary => abilities.boundaries.contains(&Boundary::Free),
-            AskedBy::Path => abilities.paths != Paths::Forgotten,
-            AskedBy::Output(output) => abilities.outputs.contains(&output),
-            AskedBy::AnyStiffness => abilities.outputs.contains(&contact_model::Output::Stiffness),
-            AskedBy::Effect(key) => abilities.effects.iter().any(|effect: &Effect| effect.key() == key),
-        }
-    };
-    let names: Vec<&str> = MODELS.iter().filter(claims).map(ModelRecord::name).collect();
+/// The models that tell a quantity of some state, each tried.
+fn claimed_by(quantity: &Quantity, told: &[BTreeSet<&'static str>]) -> String {
+    let claims = MODELS.iter().zip(told).filter(|(_, told)| told.contains(quantity.name));
+    let names: Vec<&str> = claims.map(|(record, _)| record.name()).collect();
     if names.len() == MODELS.len() { "all".into() } else { names.join(", ") }
 }
 
@@ -69,6 +59,7 @@ fn quantities_page() -> String {
         Compared::Periodic => "periodic",
         Compared::No => "",
     };
+    let told: Vec<BTreeSet<&str>> = MODELS.iter().map(|record| told(record.model)).collect();
     let rows = |wanted: &dyn Fn(Role) -> bool| {
         let cells = |quantity: &Quantity| {
             vec![
@@ -77,7 +68,7 @@ fn quantities_page() -> String {
                 quantity.unit.words().to_owned(),
                 quantity.meaning.to_owned(),
                 quantity.asked_by.words(),
-                claimed_by(quantity),
+                claimed_by(quantity, &told),
                 average(quantity).to_owned(),
                 compared(quantity).to_owned(),
             ]
@@ -99,7 +90,7 @@ fn quantities_page() -> String {
         "# What is told of a state\n\n\
          This page lists every quantity that a scene or a model can tell of a state. One table in `contact_model::quantities` has\n\
          them; CSV, console, report, means over surfaces, curves, Python and this page follow from it, and a test compares the page\n\
-         with the table. Units are SI; with `units = \"none\"` a dimensional number is in the scene's own.\n\n\
+         with the table. `models` are those that tell it of some state, each tried. Units are SI; with `units = \"none\"` a dimensional number is in the scene's own.\n\n\
          Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends with `note`.\n\
          `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one surface. With\n\
          `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order` too.\n\n\

@@ -89,7 +89,7 @@ fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     let round = !matches!(surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. });
     match effect {
         // A range that the cells resolve.
-        "boundary" | "hardness" | "FiniteRange" => model == "bem3d",
+        "boundary" | "hardness" | "exponential" => model == "bem3d",
         "adhesion" => model == "bem3d" || model == "jkr" || (model == "mdr1d" && round),
         _ => false,
     }
@@ -102,7 +102,7 @@ fn each_effect() -> [(&'static str, Effects); 6] {
         ("boundary", Effects { boundary: Boundary::Periodic, ..Effects::default() }),
         ("adhesion", Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() }),
         ("hardness", Effects { hardness: Hardness::Limit { pressure: 0.1 }, ..Effects::default() }),
-        ("FiniteRange", Effects { adhesion: range, ..Effects::default() }),
+        ("exponential", Effects { adhesion: range, ..Effects::default() }),
         ("friction", Effects { friction: Friction::Coulomb { coefficient: 0.3 }, ..Effects::default() }),
         ("rheology", Effects { rheology: Rheology::KelvinVoigt { viscosity: 1.0 }, ..Effects::default() }),
     ]

@@ -1,9 +1,10 @@
 //! k_bar of many surfaces at common forces.
 
 use contact_model::{Error, Result};
+use serde::{Deserialize, Serialize};
 
 /// What one surface gives at one force.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StiffnessSample {
     /// `k_bar` (Eq. 8), dimensionless.
     pub stiffness_bar: f64,

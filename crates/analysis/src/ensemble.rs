@@ -2,9 +2,10 @@
 
 use crate::curves::Curves;
 use crate::sum::sum;
+use serde::{Deserialize, Serialize};
 
 /// Mean, standard error and log mean of a handful of positive numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Arithmetic mean.
     pub mean: f64,

@@ -251,7 +251,7 @@ pub struct AdhesiveState {
     ///
     /// The smallest curvature of the energy, over that without adhesion. With Dugdale's law, whose states are stable between the jumps of
     /// single cells, the smallest distance of the gap of a cell from the range, in ranges.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub stability: f64,
 }
 
@@ -395,16 +395,16 @@ impl Status {
 pub struct Certificate {
     /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form. With a hardness p_s the minimum of
     /// `sum q g` over all `0 <= q <= p_s` of the same force takes the place of `F min g`.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub duality_gap: f64,
     /// `max(0, -min g) / s`. With a hardness of cells below p_s, and beside it the largest gap left under a cell at p_s.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub penetration: f64,
     /// `sum p |g| / (F s)`; of cells at the hardness p_s only a positive gap counts.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub complementarity: f64,
     /// `|F - F_asked| / F_asked`; of a mean gap its miss over s; 0 when the approach was prescribed.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "known_or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub load_error: f64,
     /// Estimated relative error of the stiffness, and of that of the held contact area where both are computed; `None` where none is,
     /// or where the stiffness is a difference quotient ([`Certificate::quotient_error`]).
@@ -423,8 +423,16 @@ pub struct Certificate {
 
 /// A residual that is not finite is stored as nothing, and nothing is known of it.
 #[cfg(feature = "serde")]
-fn known_or_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> std::result::Result<f64, D::Error> {
-    <Option<f64> as serde::Deserialize>::deserialize(from).map(|known| known.unwrap_or(f64::INFINITY))
+mod known_or_infinite {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {
+        number.is_finite().then_some(number).serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Option::deserialize(from).map(|known| known.unwrap_or(f64::INFINITY))
+    }
 }
 
 impl Certificate {

@@ -73,7 +73,7 @@ pub use outcome::Outcome;
 pub use realisation::{Discretisation, FORMAT, Models, Realisation, RealisationResult};
 pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, list};
 pub use runs::{Error, Result};
-pub use sample::{FIELDS, FLOOR_CELLS, Sample};
+pub use sample::{FLOOR_CELLS, Sample};
 pub use session::Session;
 pub use sweep::{RealisationJob, realisation_jobs, sweep};
 pub use table_of::TableOf;

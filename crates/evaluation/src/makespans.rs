@@ -14,10 +14,8 @@ use runs::{Error, Job, JobList, Result, Store};
 /// [`Error::Parameter`] where the store holds no unit of the study.
 pub fn replayed_seconds(units: &[Realisation], store: &Store) -> Result<Vec<f64>> {
     let jobs = realisation_jobs(units.to_vec());
-    let measured: Vec<Option<f64>> = jobs
-        .iter()
-        .map(|job| store.texts(&job.key()).find_map(|text| job.decode(&text)).map(|result| result.seconds))
-        .collect();
+    let measured: Vec<Option<f64>> =
+        jobs.iter().map(|job| job.stored(store).map(|result| result.seconds)).collect();
     let found = || measured.iter().enumerate().filter_map(|(i, seconds)| Some((i, (*seconds)?)));
     let (seconds, predicted) =
         found().fold((0.0, 0.0), |sum, (i, seconds)| (sum.0 + seconds, sum.1 + 1e-3 * jobs[i].cost() as f64));

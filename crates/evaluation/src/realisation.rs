@@ -8,12 +8,13 @@ use contact_model::{
 };
 use mdr1d::{Ensemble, Mdr1d};
 use runs::{Error, Result};
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 /// Number of the format of stored units. Raise it when the numbers of `surface-gen` or `mdr1d`, or the fields of a [`Sample`],
 /// change; `bem3d` has its own number, which enters the key too.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// How a surface is discretised, and by which model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -150,7 +151,7 @@ pub struct Realisation {
 }
 
 /// What a unit gave.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RealisationResult {
     /// Measured rms height of this surface, in which F_bar is counted.
     pub rms_height: f64,

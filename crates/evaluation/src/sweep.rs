@@ -1,9 +1,10 @@
 //! Units in parallel, results in order.
 
-use crate::realisation::{Discretisation, Models, Realisation, RealisationResult};
-use crate::sample::{FIELDS, Sample};
+use crate::realisation::{Discretisation, FORMAT, Models, Realisation, RealisationResult};
 use contact_model::{Stop, never};
-use runs::{Error, Job, Progress, Result, Store, Threads, collect, number, run_stored, threads_for_memory};
+use runs::{
+    Error, Job, Progress, Result, ResultKind, Store, Threads, collect, run_stored, threads_for_memory,
+};
 use std::sync::Arc;
 
 /// Solves all units that the store does not hold, the largest first, and gives the results in the order of
@@ -39,6 +40,11 @@ pub fn realisation_jobs(units: Vec<Realisation>) -> Vec<RealisationJob> {
     units.into_iter().map(|unit| RealisationJob { unit, models: Arc::clone(&models) }).collect()
 }
 
+/// Whether the store holds a result of this unit; its numbers are not read.
+pub(crate) fn is_solved(unit: &Realisation, store: &Store) -> bool {
+    store.load(&RealisationJob::KIND.stored_key(&unit.key())).is_some()
+}
+
 /// A unit with what all of them share.
 #[derive(Debug, Clone)]
 pub struct RealisationJob {
@@ -49,6 +55,8 @@ pub struct RealisationJob {
 impl Job for RealisationJob {
     type Output = RealisationResult;
     type Error = Error;
+
+    const KIND: ResultKind = ResultKind::new("realisation", FORMAT);
 
     fn key(&self) -> String {
         self.unit.key()
@@ -71,43 +79,17 @@ impl Job for RealisationJob {
     }
 
     fn stored_bytes(&self) -> u64 {
-        1000 + 250 * self.unit.forces.len() as u64
+        1000 + 500 * self.unit.forces.len() as u64
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
         self.unit.solve_among(&self.models, stop)
     }
 
-    fn encode(&self, result: &RealisationResult) -> String {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        // Writing into memory does not fail; what it would leave is no result when it is read.
-        let _ = table.write_record(FIELDS);
-        for sample in &result.samples {
-            let _ = table.write_record(sample.fields());
-        }
-        let table = String::from_utf8(table.into_inner().unwrap_or_default()).unwrap_or_default();
-        let (height, seconds) = (number(result.rms_height), number(result.seconds));
-        format!("# measured_rms_height {height}\n# seconds {seconds}\n{table}")
-    }
-
-    fn decode(&self, text: &str) -> Option<RealisationResult> {
-        let (height, rest) = text.strip_prefix("# measured_rms_height ")?.split_once('\n')?;
-        let (seconds, table) = rest.strip_prefix("# seconds ")?.split_once('\n')?;
-        let finite = |t: &str| t.parse::<f64>().ok().filter(|v| v.is_finite());
-        let mut reader = csv::Reader::from_reader(table.as_bytes());
-        if reader.headers().ok()?.iter().ne(FIELDS) {
-            return None;
-        }
-        let samples: Vec<Sample> = reader
-            .records()
-            .map(|record| record.ok().and_then(|r| Sample::from_fields(r.iter())))
-            .collect::<Option<_>>()?;
-        // The loads are part of the key; the rows must be those loads.
-        let solved = samples.iter().map(|s| s.force_bar.to_bits());
-        if solved.ne(self.unit.forces.iter().map(|f| f.to_bits())) {
-            return None;
-        }
-        Some(RealisationResult { rms_height: finite(height)?, seconds: finite(seconds)?, samples })
+    /// The loads are part of the key; the samples must be of those loads.
+    fn is_whole(&self, result: &RealisationResult) -> bool {
+        let solved = result.samples.iter().map(|sample| sample.force_bar.to_bits());
+        solved.eq(self.unit.forces.iter().map(|force| force.to_bits()))
     }
 }
 
@@ -117,7 +99,7 @@ mod tests {
     use crate::sample::tests::sample;
 
     #[test]
-    fn units_come_back_bit_for_bit() {
+    fn units_come_back_bit_for_bit_and_damage_does_not() {
         let discretisation = Discretisation::Mdr1d { elements: 64 };
         let unit = Realisation {
             discretisation,
@@ -132,14 +114,24 @@ mod tests {
             seconds: 0.25,
             samples: vec![sample(0.1), sample(1.0)],
         };
-        let text = job.encode(&result);
-        assert_eq!(job.decode(&text), Some(result));
-        let without_a_row: String =
-            text.lines().filter(|l| !l.starts_with("0.1,")).flat_map(|l| [l, "\n"]).collect();
-        for bad in
-            [without_a_row, text.replace("0.25", "inf"), text.replace("force_bar", "load"), String::new()]
-        {
+        let text = RealisationJob::KIND.encode(&result);
+        assert_eq!(job.decode(&text).as_ref(), Some(&result));
+        for cut in 0..text.len() {
+            assert_eq!(job.decode(&text[..cut]), None, "{cut} bytes");
+        }
+        for bad in [text.replace("0.25", "inf"), text.replace("force_bar", "load"), format!("{text}\n")] {
             assert_eq!(job.decode(&bad), None, "{bad}");
         }
+        let encoded = |result| RealisationJob::KIND.encode(&result);
+        let of = |forces: &[f64]| RealisationResult {
+            samples: forces.iter().copied().map(sample).collect(),
+            ..result.clone()
+        };
+        for other in [of(&[1.0]), of(&[1.0, 0.1]), of(&[0.1, 1.0, 2.0])] {
+            assert_eq!(job.decode(&encoded(other)), None);
+        }
+        let mut not_a_number = of(&[0.1, 1.0]);
+        not_a_number.samples[1].stiffness_bar = Some(f64::NAN);
+        assert_eq!(job.decode(&encoded(not_a_number)), None);
     }
 }

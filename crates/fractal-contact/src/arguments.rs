@@ -37,6 +37,7 @@ Examples:
   fractal-contact run scene.toml               results.csv, manifest.json and what the scene asks for, in out/scene/
   fractal-contact run scene.toml --out DIR --threads 2
   fractal-contact submit scene.toml --engine slurm --tasks 20 --now      its surfaces on a cluster; then status, merge
+  fractal-contact models                       what each model can do
   fractal-contact info results.csv             also scenes and surfaces
   fractal-contact surface rough.txt --seed 1 --size '1 mm' --rms-height '1 um'
   fractal-contact completions bash > /etc/bash_completion.d/fractal-contact
@@ -68,6 +69,11 @@ pub enum Command {
         node_cores: Option<u16>,
         #[command(flatten)]
         division: Division,
+    },
+    /// The models, and what each can do: surfaces, boundaries, effects, loads, paths, outputs.
+    Models {
+        /// One of them alone.
+        name: Option<String>,
     },
     /// Computes what the scene asks for.
     Run {

@@ -6,6 +6,7 @@ mod start;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
+use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::{
     Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run,
     write_twin,
@@ -114,6 +115,10 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             runs::print(format_args!("{text}"));
             Ok(ExitCode::SUCCESS)
         }
+        Command::Models { name } => {
+            runs::print(format_args!("{}", models(name.as_deref())?));
+            Ok(ExitCode::SUCCESS)
+        }
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Arguments::command(), "fractal-contact", &mut script);
@@ -121,6 +126,25 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
     }
+}
+
+/// The models of the library, or one of them, with their abilities.
+fn models(name: Option<&str>) -> Result<String> {
+    let chosen: Vec<&ModelRecord> =
+        MODELS.iter().filter(|record| name.is_none_or(|name| record.name() == name)).collect();
+    if let (Some(name), true) = (name, chosen.is_empty()) {
+        let known: Vec<&str> = MODELS.iter().map(ModelRecord::name).collect();
+        let reason = format!("there is no model \"{name}\": there are {}", known.join(", "));
+        return Err(Error::Argument { name: "model", reason });
+    }
+    let mut text = String::new();
+    for record in chosen {
+        text += &format!("{}: {}\n", record.name(), record.about);
+        for (of, words) in abilities(record.model).into_iter().filter(|(_, words)| !words.is_empty()) {
+            text += &format!("  {of:<10} {}\n", words.join(", "));
+        }
+    }
+    Ok(text)
 }
 
 fn all_threads() -> usize {

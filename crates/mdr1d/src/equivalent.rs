@@ -11,8 +11,8 @@ use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     Abilities, Adhesion, ContactModel, ContactState, Effect, Effects, Error, Friction, Hardness, Load,
-    Normalisation, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, Step, Stop,
-    Surface, Tangential, TangentialState, never,
+    Normalisation, Output, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, Step,
+    Stop, Surface, Tangential, TangentialState, never,
 };
 use std::sync::Arc;
 
@@ -148,7 +148,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
         self.model.least_memory(scene)
     }
 
-    /// Those of the model that presses, without effects of its own.
+    /// The surfaces of the model that presses, without effects of its own.
     fn abilities(&self) -> Abilities {
         const EFFECTS: &[Effect] = &[
             Effect::Friction,
@@ -157,8 +157,25 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             Effect::StandardSolid,
             Effect::PronySeries,
         ];
-        let Abilities { surfaces, outputs, .. } = self.model.abilities();
-        Abilities { surfaces, outputs, effects: EFFECTS, paths: Paths::Remembered, ..Abilities::ELASTIC }
+        // Those of an elastic contact with free boundaries; M refuses what it lacks of them itself.
+        const OUTPUTS: &[Output] = &[
+            Output::Stiffness,
+            Output::StiffnessFixedArea,
+            Output::Area,
+            Output::Pressure,
+            Output::Displacement,
+            Output::Gap,
+            Output::ContactPatches,
+            Output::Conductance,
+        ];
+        let surfaces = self.model.abilities().surfaces;
+        Abilities {
+            surfaces,
+            outputs: OUTPUTS,
+            effects: EFFECTS,
+            paths: Paths::Remembered,
+            ..Abilities::ELASTIC
+        }
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {

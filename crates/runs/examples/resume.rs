@@ -11,7 +11,7 @@
 //! ```
 
 use contact_model::{SelfAffine, Stop};
-use runs::{Error, Job, Result, Silent, Store, Threads, collect, number, run_stored};
+use runs::{Error, Job, Result, ResultKind, Silent, Store, Threads, collect, run_stored};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use surface_gen::self_affine_map;
@@ -26,8 +26,10 @@ impl Job for Summit<'_> {
     type Output = f64;
     type Error = Error;
 
+    const KIND: ResultKind = ResultKind::new("example summit", 1);
+
     fn key(&self) -> String {
-        format!("example summit 1\nD_f 2.4, 129 cells, seed {}", self.seed)
+        format!("D_f 2.4, 129 cells, seed {}", self.seed)
     }
 
     fn name(&self) -> String {
@@ -42,14 +44,6 @@ impl Job for Summit<'_> {
         self.solved.fetch_add(1, Ordering::Relaxed);
         let draw = || self_affine_map(&SelfAffine::new(2.4, 1.0, 1.0)?, 129, self.seed);
         Ok(draw().map_err(Error::model(format!("surface {}", self.seed)))?.highest())
-    }
-
-    fn encode(&self, highest: &f64) -> String {
-        number(*highest) + "\n"
-    }
-
-    fn decode(&self, text: &str) -> Option<f64> {
-        text.trim().parse().ok()
     }
 }
 

@@ -1,11 +1,14 @@
 //! Jobs in parallel, results in their places; finished ones kept in a result store.
 
+use crate::encoding::ResultKind;
 use crate::error::Error;
 use crate::progress::Progress;
 use crate::shard::largest_first;
 use crate::store::Store;
 use crate::threads::granted_pool;
 use contact_model::Stop;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -106,12 +109,16 @@ pub fn collect<T>(done: Vec<Option<Result<T, Error>>>) -> Result<Vec<T>, Error> 
 
 /// One independent piece of work, kept in a result store.
 pub trait Job: Sync {
-    /// What it gives.
-    type Output: Send + Sync;
+    /// What it gives; stored as [`ResultKind::encode`] writes it.
+    type Output: Serialize + DeserializeOwned + Send + Sync;
     /// Why it fails.
     type Error: From<Error> + Send + Sync;
 
-    /// Everything that decides the numbers, as text. Two jobs with the same key have the same output.
+    /// What its results are called in a store, and the number of their format.
+    const KIND: ResultKind;
+
+    /// Everything that decides the numbers, as text. Two jobs of a kind with the same key have the same
+    /// output.
     fn key(&self) -> String;
 
     /// What a person calls it.
@@ -136,15 +143,16 @@ pub trait Job: Sync {
     /// Whatever ends the whole command.
     fn solve(&self, stop: Stop<'_>) -> Result<Self::Output, Self::Error>;
 
-    /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::decode`] refused, such as the part that was done
-    /// before an interruption; `store` replaces it at any moment. A job without parts begins anew.
+    /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::is_whole`] refused, such as
+    /// the part that was done before an interruption; `store` replaces it at any moment. A job without parts begins
+    /// anew.
     ///
     /// # Errors
     /// Whatever ends the whole command.
     fn resume(
         &self,
-        stored: Option<&str>,
-        store: &dyn Fn(&str) -> Result<(), Error>,
+        stored: Option<Self::Output>,
+        store: &dyn Fn(&Self::Output) -> Result<(), Error>,
         stop: Stop<'_>,
     ) -> Result<Self::Output, Self::Error> {
         let _ = (stored, store);
@@ -156,17 +164,34 @@ pub trait Job: Sync {
         true
     }
 
-    /// The output as lines of text that [`Job::decode`] reads back bit for bit.
-    fn encode(&self, output: &Self::Output) -> String;
+    /// Whether an output that was read back is all that this job gives: of its own loads, and not a part of one.
+    /// Its numbers are finite.
+    fn is_whole(&self, output: &Self::Output) -> bool {
+        let _ = output;
+        true
+    }
 
-    /// Reads an output back; `None` where the text is no output of this job, or a part of one.
-    fn decode(&self, text: &str) -> Option<Self::Output>;
+    /// The key under which its output is stored.
+    fn stored_key(&self) -> String {
+        Self::KIND.stored_key(&self.key())
+    }
+
+    /// Reads an output back; `None` where the text is no whole output of this job.
+    fn decode(&self, text: &str) -> Option<Self::Output> {
+        Self::KIND.decode(text).filter(|output| self.is_whole(output))
+    }
+
+    /// Its whole output, where the store holds it.
+    fn stored(&self, store: &Store) -> Option<Self::Output> {
+        store.texts(&self.stored_key()).find_map(|text| self.decode(&text))
+    }
 }
 
 /// Does all jobs that the store does not hold, the most expensive first, and gives the results in the order of `jobs`; `None` where a
 /// failure or `stop` came first. The results do not depend on `threads`.
 ///
-/// Each finished job is stored at once: an interruption loses those in flight.
+/// Each finished job is stored at once: an interruption loses those in flight. Results that another version of the program stored in
+/// another format are not used, and `progress` is told of them once.
 ///
 /// Errors of single jobs are in their places.
 #[allow(clippy::type_complexity)] // A list of what became of each job.
@@ -178,6 +203,7 @@ pub fn run_stored<J: Job>(
     progress: &dyn Progress,
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Vec<Option<Result<J::Output, J::Error>>> {
+    store.tell_unused(progress);
     progress.begin(what, jobs.iter().map(Job::cost).sum());
     let order = largest_first(jobs.len(), |i| jobs[i].cost());
     let done = run_jobs(threads, &order, stop, |i, stop| solve_stored(&jobs[i], store, progress, stop));
@@ -192,16 +218,19 @@ fn solve_stored<J: Job>(
     progress: &dyn Progress,
     stop: Stop<'_>,
 ) -> Result<J::Output, J::Error> {
-    let key = job.key();
-    let stored: Vec<String> = store.texts(&key).collect();
-    if let Some(output) = stored.iter().find_map(|text| job.decode(text)) {
-        progress.advance(job.cost(), true);
-        return Ok(output);
+    let key = job.stored_key();
+    let mut newest_part = None;
+    for output in store.texts(&key).filter_map(|text| J::KIND.decode(&text)) {
+        if job.is_whole(&output) {
+            progress.advance(job.cost(), true);
+            return Ok(output);
+        }
+        newest_part.get_or_insert(output);
     }
-    let newest = stored.first().map(String::as_str);
-    let output = job.resume(newest, &|text| store.save(&key, text), stop)?;
+    let save = |output: &J::Output| store.save(&key, &J::KIND.encode(output));
+    let output = job.resume(newest_part, &save, stop)?;
     if job.is_stored() {
-        store.save(&key, &job.encode(&output))?;
+        save(&output)?;
     }
     progress.advance(job.cost(), false);
     Ok(output)
@@ -214,7 +243,7 @@ pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 pub trait JobList: Sync {
     /// Their number.
     fn count(&self) -> usize;
-    /// As [`Job::key`].
+    /// As [`Job::stored_key`].
     fn key(&self, job: usize) -> String;
     /// As [`Job::name`].
     fn name(&self, job: usize) -> String;
@@ -226,8 +255,8 @@ pub trait JobList: Sync {
     fn stored_bytes(&self, job: usize) -> u64;
     /// As [`Job::is_stored`].
     fn is_stored(&self, job: usize) -> bool;
-    /// Whether a text is a whole output of this job.
-    fn is_output(&self, job: usize, text: &str) -> bool;
+    /// Whether the store holds the whole output of this job.
+    fn is_done(&self, job: usize, store: &Store) -> bool;
     /// Does those of `which` that the store does not hold, and keeps no output in memory.
     ///
     /// # Errors
@@ -251,7 +280,7 @@ where
     }
 
     fn key(&self, job: usize) -> String {
-        self[job].key()
+        self[job].stored_key()
     }
 
     fn name(&self, job: usize) -> String {
@@ -274,8 +303,8 @@ where
         self[job].is_stored()
     }
 
-    fn is_output(&self, job: usize, text: &str) -> bool {
-        self[job].decode(text).is_some()
+    fn is_done(&self, job: usize, store: &Store) -> bool {
+        self[job].stored(store).is_some()
     }
 
     fn work(
@@ -358,6 +387,8 @@ mod tests {
         type Output = usize;
         type Error = Error;
 
+        const KIND: ResultKind = ResultKind::new("double", 1);
+
         fn key(&self) -> String {
             format!("double {}\n", self.0)
         }
@@ -378,12 +409,8 @@ mod tests {
             self.0 < 2
         }
 
-        fn encode(&self, output: &usize) -> String {
-            format!("{output}\n")
-        }
-
-        fn decode(&self, text: &str) -> Option<usize> {
-            text.trim().parse().ok()
+        fn is_whole(&self, output: &usize) -> bool {
+            output.is_multiple_of(2)
         }
     }
 
@@ -413,8 +440,75 @@ mod tests {
             (counter.0.into_inner(), counter.1.into_inner())
         };
         assert_eq!([run(), run()], [(3, 0), (3, 2)]);
-        store.save(&jobs[1].key(), "no number\n").unwrap();
-        assert_eq!([run(), run()], [(3, 1), (3, 2)]);
+        let text = Doubled::KIND.encode(&2);
+        let damaged = ["no number\n".to_owned(), text.replace('1', "2"), text.repeat(2)];
+        for bad in damaged.into_iter().chain([Doubled::KIND.encode(&3)]) {
+            store.save(&jobs[1].stored_key(), &bad).unwrap();
+            assert_eq!([run(), run()], [(3, 1), (3, 2)], "{bad}");
+        }
+    }
+
+    /// Counts to its number, two steps in a run.
+    struct Counted(usize);
+
+    impl Job for Counted {
+        type Output = Vec<usize>;
+        type Error = Error;
+
+        const KIND: ResultKind = ResultKind::new("count", 1);
+
+        fn key(&self) -> String {
+            self.0.to_string()
+        }
+
+        fn name(&self) -> String {
+            format!("to {}", self.0)
+        }
+
+        fn cost(&self) -> u64 {
+            1
+        }
+
+        fn solve(&self, stop: Stop<'_>) -> Result<Vec<usize>, Error> {
+            self.resume(None, &|_| Ok(()), stop)
+        }
+
+        fn resume(
+            &self,
+            stored: Option<Vec<usize>>,
+            store: &dyn Fn(&Vec<usize>) -> Result<(), Error>,
+            _: Stop<'_>,
+        ) -> Result<Vec<usize>, Error> {
+            let mut counted = stored.unwrap_or_default();
+            for number in (counted.len()..self.0).take(2) {
+                counted.push(number);
+                store(&counted)?;
+            }
+            if self.is_whole(&counted) {
+                return Ok(counted);
+            }
+            Err(Error::model("a count")(contact_model::Error::Stopped { best: None }))
+        }
+
+        fn is_whole(&self, counted: &Vec<usize>) -> bool {
+            counted.len() == self.0
+        }
+    }
+
+    #[test]
+    fn a_job_goes_on_with_the_part_that_is_stored() {
+        let dir = tempfile::tempdir().unwrap();
+        let jobs = vec![Counted(5)];
+        let run = || {
+            let store = Store::open(dir.path(), false).unwrap();
+            let done = run_stored("counts", &jobs, &store, Threads::all(1), &Counter::default(), &never);
+            (collect(done).ok(), JobList::is_done(&jobs, 0, &store))
+        };
+        let counted = Some(vec![vec![0, 1, 2, 3, 4]]);
+        assert_eq!(
+            [(); 4].map(|()| run()),
+            [(None, false), (None, false), (counted.clone(), true), (counted, true)]
+        );
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! A [`Job`] is one independent piece of work with a key (everything that decides its numbers) and a cost. [`run_stored`] does a list
 //! of them, one per thread, the most expensive first. Each finished job is kept in the [`Store`] at once, whole or not at all, and
 //! checked on reading: a damaged or foreign result is computed again. Results have the same bytes for any number of threads.
+//! They are stored as JSON that names their [`ResultKind`] and keeps every bit of their numbers.
 //!
 //! # Files
 //!
@@ -27,8 +28,10 @@
 mod cgroup;
 pub mod cluster;
 mod csv_file;
+mod encoding;
 mod error;
 pub mod files;
+mod finite;
 mod jobs;
 mod manifest;
 mod meters;
@@ -41,6 +44,7 @@ mod terminal;
 mod threads;
 
 pub use csv_file::{CsvFile, Header, number, write_csv};
+pub use encoding::ResultKind;
 pub use error::{Error, Result};
 pub use jobs::{Failure, Job, JobList, Threads, collect, on_one_thread, run_jobs, run_stored};
 pub use manifest::{file_names, machine, write_manifest};

@@ -94,4 +94,8 @@ impl Progress for Reporter {
             );
         });
     }
+
+    fn note(&self, text: &str) {
+        crate::err!("note: {text}");
+    }
 }

@@ -7,6 +7,7 @@
 
 use crate::error::{Error, Result};
 use crate::files;
+use crate::progress::Progress;
 use std::collections::HashMap;
 use std::fs::{self, File, TryLockError};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -14,12 +15,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
-/// First words of a pack.
-const PACK: &str = "# fractal-contact results 1\n";
+/// First words of a pack; the number of its format follows.
+const PACK: &str = "# fractal-contact results ";
+/// Number of the format of packs. Raise it when results of all kinds are written in another way: packs of another format
+/// are not read, and a run is told of them.
+const FORMAT: u32 = 2;
 /// First words of each result in it; the hash of its key and the bytes after this line follow.
 const RESULT: &str = "# fractal-contact result ";
 /// Before the digest of a result, its last line.
 const DIGEST: &str = "# whole ";
+/// Packs that a note names before "and N more".
+const LISTED: usize = 5;
 /// Ending of a pack's name.
 const ENDING: &str = "pack";
 /// Results are brought to the disk at most so often: a crash of the machine, not of the process, loses what is younger.
@@ -42,11 +48,13 @@ impl PackHead {
     fn text(&self) -> String {
         let Self { plan, shard, instructions } = self;
         let or = |word: &Option<String>| word.clone().unwrap_or_else(|| "-".to_owned());
-        format!("{PACK}# plan {}\n# shard {}\n# instructions {instructions}\n", or(plan), or(shard))
+        let (plan, shard) = (or(plan), or(shard));
+        format!("{PACK}{FORMAT}\n# plan {plan}\n# shard {shard}\n# instructions {instructions}\n")
     }
 
     fn parse(text: &str) -> Option<Self> {
-        let mut lines = text.strip_prefix(PACK)?.lines();
+        let mut lines = text.lines();
+        format_of(lines.next()?).filter(|format| *format == FORMAT)?;
         let mut next =
             |word: &str| Some(lines.next()?.strip_prefix("# ")?.strip_prefix(word)?.trim().to_owned());
         let given = |word: String| (word != "-").then_some(word);
@@ -56,6 +64,23 @@ impl PackHead {
             instructions: next("instructions")?,
         })
     }
+}
+
+/// The format of a pack, from its first line.
+fn format_of(line: &str) -> Option<u32> {
+    line.strip_prefix(PACK)?.parse().ok()
+}
+
+/// Whether a file is a pack of another format.
+fn is_of_another_format(path: &Path) -> bool {
+    // A pipe would wait for its other end.
+    if !path.metadata().is_ok_and(|about| about.is_file()) {
+        return false;
+    }
+    let mut start = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEADER).read_to_end(&mut start));
+    let text = String::from_utf8_lossy(&start);
+    read.is_ok() && text.lines().next().and_then(format_of).is_some_and(|format| format != FORMAT)
 }
 
 /// Where a result lies.
@@ -101,6 +126,8 @@ struct Packs {
     /// Places of each key, the newest last.
     places: HashMap<u128, Vec<Place>>,
     own: Option<Own>,
+    /// Packs of another format, which are not read.
+    unused: Vec<PathBuf>,
 }
 
 /// The pack that this process writes.
@@ -168,6 +195,34 @@ impl Store {
         };
         let packs = Packs::read(&directory, &|found| !of_others(found))?;
         Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: None })))
+    }
+
+    /// Tells of packs that are not used because they are of another format; once in a process, which may open a directory
+    /// for each of its tables.
+    pub(crate) fn tell_unused(&self, progress: &dyn Progress) {
+        static TOLD: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+        let unused = std::mem::take(&mut self.held().unused);
+        let names: Vec<_> = unused.iter().filter_map(|path| path.file_name()?.to_str()).collect();
+        let directory = &self.0.directory;
+        let is_told = || {
+            let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+            told.contains(directory) || {
+                told.push(directory.clone());
+                false
+            }
+        };
+        if names.is_empty() || is_told() {
+            return;
+        }
+        let mut list = names[..names.len().min(LISTED)].join(", ");
+        if names.len() > LISTED {
+            list += &format!(" and {} more", names.len() - LISTED);
+        }
+        progress.note(&format!(
+            "{} holds results in the format of another version of the program. They are not used, and solved again \
+             where they are needed; the files can be removed: {list}",
+            directory.display()
+        ));
     }
 
     /// What a directory holds, to read; nothing is made or removed.
@@ -328,7 +383,12 @@ impl Packs {
     fn read(directory: &Path, wanted: &dyn Fn(&PackHead) -> bool) -> Result<Self> {
         let mut packs = Self::default();
         for path in names(directory)? {
-            let Some((pack, places)) = Pack::read(&path, wanted)? else { continue };
+            let Some((pack, places)) = Pack::read(&path, wanted)? else {
+                if is_of_another_format(&path) {
+                    packs.unused.push(path);
+                }
+                continue;
+            };
             let number = packs.paths.len();
             packs.paths.push(path);
             for (hash, (offset, bytes)) in pack.results.into_iter().zip(places) {
@@ -626,6 +686,50 @@ mod tests {
         assert_eq!(read(), (false, false));
         fs::write(&path, &all).unwrap();
         assert_eq!(read(), (true, true));
+    }
+
+    #[test]
+    fn packs_of_another_format_are_told_once_and_not_used() {
+        #[derive(Default)]
+        struct Notes(Mutex<Vec<String>>);
+        impl Progress for Notes {
+            fn begin(&self, _: &str, _: u64) {}
+            fn advance(&self, _: u64, _: bool) {}
+            fn end(&self) {}
+            fn note(&self, text: &str) {
+                self.0.lock().unwrap().push(text.to_owned());
+            }
+        }
+        let dir = tempfile::tempdir().unwrap();
+        let notes = |store: &Store| {
+            let notes = Notes::default();
+            store.tell_unused(&notes);
+            notes.0.into_inner().unwrap()
+        };
+        let store = Store::open(dir.path(), false).unwrap();
+        store.save(KEY, TEXT).unwrap();
+        drop(store);
+        let path = pack_of(dir.path());
+        let text = fs::read_to_string(&path).unwrap();
+        let earlier = text.replacen(&format!("{PACK}{FORMAT}"), &format!("{PACK}{}", FORMAT - 1), 1);
+        fs::write(&path, earlier).unwrap();
+        for i in 1..LISTED + 3 {
+            fs::copy(&path, path.with_file_name(format!("{i:08}.{ENDING}"))).unwrap();
+        }
+        // No pack at all.
+        fs::write(path.with_file_name(format!("00000099.{ENDING}")), "# fractal-contact results\n").unwrap();
+        assert_eq!(Store::count(dir.path()), 0);
+        // Nothing is read, nothing is told.
+        assert_eq!(notes(&Store::open(dir.path(), true).unwrap()), [""; 0]);
+        let store = Store::open(dir.path(), false).unwrap();
+        assert_eq!(store.load(KEY), None);
+        let told = notes(&store);
+        assert!(told.len() == 1 && told[0].contains("another version"), "{told:?}");
+        assert!(told[0].ends_with("00000003.pack, 00000004.pack and 3 more"), "{told:?}");
+        store.save(KEY, TEXT).unwrap();
+        drop(store);
+        let shard = Store::open_shared(dir.path(), "p", Shard { index: 0, count: 2 }).unwrap();
+        assert_eq!((shard.load(KEY).as_deref(), notes(&shard).len()), (Some(TEXT), 0));
     }
 
     #[test]

@@ -3,17 +3,14 @@
 use super::limit::{Limit, limit, slope};
 use super::pressure;
 use super::problem::{Family, StudyProblem};
-use super::row::{Answer, Parts, StudyRow, Way, measure, unless_stopped};
-use super::sizes::{Order, StudySizes};
+use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
+use super::sizes::{Order, Quantity, StudySizes};
 use analytic::Hertz;
 use analytic::flat_punch::SQUARE_STIFFNESS_UNCERTAINTY;
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, Stop};
 use mdr1d::Mdr1d;
 use runs::Result;
-
-/// Quantities that have a sequence.
-pub(crate) const QUANTITIES: [&str; 4] = ["stiffness", "approach", "area", "pressure"];
 
 /// One problem in every way; asks `stop` between the ways.
 pub(crate) fn solve_problem(
@@ -51,7 +48,7 @@ fn others(problem: &StudyProblem, sizes: &StudySizes) -> Result<Vec<StudyRow>> {
     let mut ways: Vec<(Way, Box<dyn ContactModel>)> =
         vec![(Way::Line { elements }, Box::new(Mdr1d { elements }))];
     if problem.key.family == Family::Sphere {
-        ways.push((Way::Formula("hertz"), Box::new(Hertz)));
+        ways.push((Way::Formula(Formula::Hertz), Box::new(Hertz)));
     }
     let mut rows = Vec::new();
     for (way, model) in ways {
@@ -161,7 +158,7 @@ fn order(
     let extrapolated = limit.and_then(|l| l.order);
     Order {
         problem: problem.key,
-        quantity: QUANTITIES[q],
+        quantity: Quantity::ALL[q],
         power: extrapolated.or_else(|| slope(&far)),
         established: exact || extrapolated.is_some(),
         limit,

@@ -1,22 +1,20 @@
 //! One part of the study, as a job that is stored: a problem in every way, or an ensemble under all loads.
 
 use super::depth::Depth;
-use super::every_way::{QUANTITIES, solve_problem};
-use super::limit::Limit;
-use super::means::{ClosedForm, EnsembleMeans, FORMULAS, closed_forms, discretisations, ensemble, unit};
+use super::every_way::solve_problem;
+use super::means::{ClosedForm, EnsembleMeans, closed_forms, discretisations, ensemble, unit};
 use super::problem::{CELLS_PER_WAVE, DIMENSIONS, LOADS, PAPER_CELLS, RADIUS, StudyProblem};
-use super::row::{Answer, Parts, StudyRow, Way};
+use super::row::{Formula, StudyRow, Way};
 use super::sizes::{Order, StudySizes};
-use super::stored::{Word, Words, line};
 use crate::realisation::{Discretisation, FORMAT, Realisation};
-use analysis::Statistics;
 use contact_model::Stop;
-use runs::{Error, Job, JobList, Result};
+use runs::{Error, Job, JobList, Result, ResultKind};
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Number of the format of stored parts. Raise it when their lines change, or how limits, errors and references
-/// come about, or the closed forms.
-const STORED: u32 = 1;
+/// Number of the format of stored parts. Raise it when [`StudyPart`] changes, or how limits, errors and
+/// references come about, or the closed forms.
+const STORED: u32 = 2;
 
 /// Predicted processor milliseconds of one load on one grid, solved from nothing: the problems of
 /// `data/accuracy` took between 0.4 and 1.3 of it, cases of the check that are not drawn again between 0.8 and 2.2.
@@ -39,7 +37,7 @@ enum StudyTask {
 }
 
 /// What a task gave.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) enum StudyPart {
     /// Of a problem; the rows are without their pressures.
     Problem(Vec<StudyRow>, Vec<Order>),
@@ -90,7 +88,7 @@ impl StudyJob {
     /// Every way in which a problem may be solved.
     fn ways(&self) -> Vec<Way> {
         let mut ways = self.sizes.solids();
-        ways.extend([Way::Line { elements: self.sizes.elements[0] }, Way::Formula("hertz")]);
+        ways.extend([Way::Line { elements: self.sizes.elements[0] }, Way::Formula(Formula::Hertz)]);
         ways
     }
 }
@@ -99,11 +97,13 @@ impl Job for StudyJob {
     type Output = StudyPart;
     type Error = Error;
 
+    const KIND: ResultKind = ResultKind::new("accuracy", STORED);
+
     fn key(&self) -> String {
         let Self { sizes, seed, task } = self;
         match task {
             StudyTask::Problem(problem) => format!(
-                "accuracy problem {STORED}\nformat {FORMAT}\nmodel_format {}\nproblem {:?}\nradius {RADIUS:?}\n\
+                "problem\nformat {FORMAT}\nmodel_format {}\nproblem {:?}\nradius {RADIUS:?}\n\
                  cells_per_wave {CELLS_PER_WAVE:?}\npaper_cells {PAPER_CELLS}\nsizes {sizes:?}\nways {:?}\nseed {seed}\n",
                 bem3d::FORMAT,
                 problem.key,
@@ -111,12 +111,12 @@ impl Job for StudyJob {
             ),
             // The first surface stands for all of them: their seeds follow from the master seed.
             StudyTask::Ensemble(d, discretisation) => format!(
-                "accuracy ensemble {STORED}\nsurfaces {}\nmaster_seed {seed}\n{}",
+                "ensemble\nsurfaces {}\nmaster_seed {seed}\n{}",
                 sizes.surfaces,
                 unit(*discretisation, *d, 0, *seed).key(),
             ),
             StudyTask::ClosedForms(d) => {
-                format!("accuracy closed forms {STORED}\nfractal_dimension {d:?}\nforce_bar {LOADS:?}\n")
+                format!("closed forms\nfractal_dimension {d:?}\nforce_bar {LOADS:?}\n")
             }
         }
     }
@@ -173,6 +173,12 @@ impl Job for StudyJob {
         }
     }
 
+    fn stored_bytes(&self) -> u64 {
+        // A row takes about 800 bytes, and so does a closed form of every load, or an ensemble.
+        let rows = if self.is_problem() { self.ways().len() } else { 4 };
+        1000 * (1 + rows as u64)
+    }
+
     fn solve(&self, stop: Stop<'_>) -> Result<StudyPart> {
         // The peak of memory is that of the whole process, and another measurement would share the caches:
         // they take turns, also in a shard that has more threads.
@@ -190,163 +196,24 @@ impl Job for StudyJob {
         }
     }
 
-    fn encode(&self, part: &StudyPart) -> String {
-        match part {
-            StudyPart::Problem(rows, orders) => {
-                let lines: String = rows.iter().map(row_line).chain(orders.iter().map(order_line)).collect();
-                line(&[&rows.len(), &orders.len()]) + &lines
+    fn is_whole(&self, part: &StudyPart) -> bool {
+        match (&self.task, part) {
+            (StudyTask::Problem(problem), StudyPart::Problem(rows, orders)) => {
+                let ways = self.ways();
+                rows.iter().all(|row| row.problem == problem.key && ways.contains(&row.way))
+                    && orders.iter().all(|order| order.problem == problem.key)
             }
-            StudyPart::Ensemble(means) => {
-                let loads = means.stiffness.iter().zip(&means.approach);
-                let load = |(k, d): (&Option<Statistics>, &Option<f64>)| match k {
-                    Some(k) => line(&[d, &k.mean, &k.standard_error, &k.log_mean, &k.count]),
-                    None => line(&[d, &None::<f64>]),
-                };
-                answer_line(&means.answer) + &loads.map(load).collect::<String>()
+            (StudyTask::Ensemble(_, discretisation), StudyPart::Ensemble(means)) => {
+                means.way == Way::of(*discretisation)
+                    && means.surfaces == self.sizes.surfaces
+                    && [means.stiffness.len(), means.approach.len()] == [LOADS.len(); 2]
             }
-            StudyPart::ClosedForms(forms) => {
-                let form = |f: &ClosedForm| format!("{} {} {}", f.load, f.way.name(), answer_line(&f.answer));
-                line(&[&forms.len()]) + &forms.iter().map(form).collect::<String>()
+            (StudyTask::ClosedForms(_), StudyPart::ClosedForms(forms)) => {
+                forms.iter().all(|form| form.load < LOADS.len() && matches!(form.way, Way::Formula(_)))
             }
+            _ => false,
         }
     }
-
-    fn decode(&self, text: &str) -> Option<StudyPart> {
-        let mut lines = text.strip_suffix('\n')?.split('\n');
-        let part = match &self.task {
-            StudyTask::Problem(problem) => {
-                let mut counts = Words::of(lines.next()?);
-                let (rows, orders): (usize, usize) = (counts.word()?, counts.word()?);
-                counts.end()?;
-                let ways = self.ways();
-                let mut found = (Vec::new(), Vec::new());
-                for _ in 0..rows {
-                    found.0.push(read_row(problem, &ways, lines.next()?)?);
-                }
-                for _ in 0..orders {
-                    found.1.push(read_order(problem, lines.next()?)?);
-                }
-                StudyPart::Problem(found.0, found.1)
-            }
-            StudyTask::Ensemble(_, discretisation) => {
-                let mut words = Words::of(lines.next()?);
-                let answer = read_answer(&mut words)?;
-                words.end()?;
-                let mut found = EnsembleMeans::new(*discretisation, self.sizes.surfaces, answer);
-                for _ in LOADS {
-                    let mut words = Words::of(lines.next()?);
-                    found.approach.push(words.word()?);
-                    found.stiffness.push(match words.word()? {
-                        Some(mean) => {
-                            let (standard_error, log_mean) = (words.word()?, words.word()?);
-                            Some(Statistics { mean, standard_error, log_mean, count: words.word()? })
-                        }
-                        None => None,
-                    });
-                    words.end()?;
-                }
-                StudyPart::Ensemble(found)
-            }
-            StudyTask::ClosedForms(_) => {
-                let count = usize::read(lines.next()?)?;
-                let forms = (0..count).map(|_| read_form(lines.next()?)).collect::<Option<_>>()?;
-                StudyPart::ClosedForms(forms)
-            }
-        };
-        lines.next().is_none().then_some(part)
-    }
-}
-
-fn answer_line(answer: &Answer) -> String {
-    let Answer { stiffness, approach, area, contact_cells, cpu_seconds, bytes, .. } = answer;
-    let Answer { iterations, applications, status, .. } = answer;
-    line(&[stiffness, approach, area, contact_cells, cpu_seconds, bytes, iterations, applications, status])
-}
-
-fn read_answer(words: &mut Words<'_>) -> Option<Answer> {
-    // In the order of `answer_line`.
-    Some(Answer {
-        stiffness: words.word()?,
-        approach: words.word()?,
-        area: words.word()?,
-        pressure: None,
-        contact_cells: words.word()?,
-        cpu_seconds: words.word()?,
-        bytes: words.word()?,
-        iterations: words.word()?,
-        applications: words.word()?,
-        status: words.word()?,
-    })
-}
-
-/// The way of a name, among those that there are.
-fn read_way(ways: &[Way], words: &mut Words<'_>) -> Option<Way> {
-    let name: String = words.word()?;
-    ways.iter().copied().find(|way| way.name() == name)
-}
-
-fn row_line(row: &StudyRow) -> String {
-    let [stiffness, approach, area, pressure] = &row.errors;
-    let Parts { algebraic, discretisation, model, ensemble } = &row.parts;
-    let errors = [stiffness, approach, area, pressure, &row.reference_error];
-    let parts = [algebraic, discretisation, model, ensemble];
-    let words: Vec<&dyn Word> = errors.into_iter().chain(parts).map(|v| v as &dyn Word).collect();
-    format!("{} {} {}", row.way.name(), line(&words).trim_end(), answer_line(&row.answer))
-}
-
-fn read_row(problem: &StudyProblem, ways: &[Way], line: &str) -> Option<StudyRow> {
-    let mut words = Words::of(line);
-    let way = read_way(ways, &mut words)?;
-    let errors = [words.word()?, words.word()?, words.word()?, words.word()?];
-    let reference_error = words.word()?;
-    let parts = Parts {
-        algebraic: words.word()?,
-        discretisation: words.word()?,
-        model: words.word()?,
-        ensemble: words.word()?,
-    };
-    let answer = read_answer(&mut words)?;
-    words.end()?;
-    Some(StudyRow { errors, reference_error, parts, ..StudyRow::new(problem.key, way, answer) })
-}
-
-fn read_form(line: &str) -> Option<ClosedForm> {
-    let mut words = Words::of(line);
-    let load = words.word().filter(|load| *load < LOADS.len())?;
-    let way = read_way(&FORMULAS.map(Way::Formula), &mut words)?;
-    let answer = read_answer(&mut words)?;
-    words.end()?;
-    Some(ClosedForm { load, way, answer })
-}
-
-fn order_line(order: &Order) -> String {
-    let quantity = order.quantity.to_owned();
-    let [coarsest, finest] = &order.errors;
-    let (value, uncertainty) = (order.limit.map(|l| l.value), order.limit.map(|l| l.uncertainty));
-    let extrapolated = order.limit.and_then(|l| l.order);
-    line(&[
-        &quantity,
-        &order.power,
-        &order.established,
-        &value,
-        &uncertainty,
-        &extrapolated,
-        coarsest,
-        finest,
-    ])
-}
-
-fn read_order(problem: &StudyProblem, line: &str) -> Option<Order> {
-    let mut words = Words::of(line);
-    let quantity: String = words.word()?;
-    let quantity = QUANTITIES.into_iter().find(|of| *of == quantity)?;
-    let (power, established) = (words.word()?, words.word()?);
-    let (value, uncertainty, order): (Option<f64>, Option<f64>, _) =
-        (words.word()?, words.word()?, words.word()?);
-    let limit = value.zip(uncertainty).map(|(value, uncertainty)| Limit { value, uncertainty, order });
-    let errors = [words.word()?, words.word()?];
-    words.end()?;
-    Some(Order { problem: problem.key, quantity, power, established, limit, errors })
 }
 
 #[cfg(test)]
@@ -377,23 +244,21 @@ mod tests {
     fn parts_come_back_bit_for_bit_and_damage_does_not() {
         for job in some() {
             let part = job.solve(&never).unwrap();
-            let text = job.encode(&part);
+            let text = StudyJob::KIND.encode(&part);
             let back = job.decode(&text).unwrap();
-            // The words hold every bit, the sign of a zero too.
-            assert_eq!(job.encode(&back), text);
+            // The text holds every bit, the sign of a zero too.
+            assert_eq!(StudyJob::KIND.encode(&back), text);
             assert_eq!(back, part);
             for cut in 0..text.len() {
                 assert!(job.decode(&text[..cut]).is_none(), "{}: {cut} of {} bytes", job.name(), text.len());
             }
-            let (first, rest) = text.split_once('\n').unwrap();
-            let word = |to: &str| text.replacen(rest.split([' ', '\n']).nth(1).unwrap(), to, 1);
-            for bad in
-                [word("NaN"), word("inf"), format!("{text}-\n"), format!("{first} -\n{rest}"), word("x")]
-            {
+            let last = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
+            let digit = |to: &str| text[..last].to_owned() + to + &text[last + 1..];
+            for bad in [digit("NaN"), digit("1e999"), digit("x"), format!("{text}-\n"), format!("-{text}")] {
                 assert!(job.decode(&bad).is_none(), "{}: {bad}", job.name());
             }
             for other in some().iter().filter(|other| other.key() != job.key()) {
-                assert!(other.is_problem() == job.is_problem() || other.decode(&text).is_none());
+                assert!(other.decode(&text).is_none(), "{} as {}", job.name(), other.name());
             }
         }
     }

@@ -1,5 +1,7 @@
 //! The limit of a sequence of grids: where the observed order is established, the extrapolated value, and how certain it is.
 
+use serde::{Deserialize, Serialize};
+
 /// Orders that are looked for: the square root of a cell (slower is no order that five grids can show) to the fourth power.
 const ORDERS: (f64, f64) = (0.5, 4.0);
 /// Step of the search.
@@ -10,7 +12,7 @@ const REACH: f64 = 0.5;
 const FOLLOWS: f64 = 0.25;
 
 /// Where a sequence goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Limit {
     /// The extrapolated value, or that of the finest grid where no order is established.
     pub value: f64,

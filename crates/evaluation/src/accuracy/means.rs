@@ -2,14 +2,15 @@
 
 use super::limit::{Limit, limit, slope};
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
-use super::row::{Answer, Parts, StudyRow, Way, measure, unless_stopped};
-use super::sizes::{Order, StudySizes};
+use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
+use super::sizes::{Order, Quantity, StudySizes};
 use crate::realisation::{Discretisation, Models, Realisation};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Stop, Surface, never};
 use runs::{Error, Result, cpu_seconds, on_one_thread};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Tolerance of the ensembles: far below their scatter.
@@ -18,26 +19,13 @@ const TOLERANCE: f64 = crate::run::TOLERANCE;
 const PAPER_SURFACES: f64 = 60.0;
 
 /// One ensemble: statistics of k/(E* L) and mean approach at each load, with the cost of all its surfaces.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnsembleMeans {
     pub way: Way,
     pub stiffness: Vec<Option<Statistics>>,
     pub approach: Vec<Option<f64>>,
     pub answer: Answer,
     pub surfaces: usize,
-}
-
-impl EnsembleMeans {
-    /// Without any load yet.
-    pub fn new(discretisation: Discretisation, surfaces: usize, answer: Answer) -> Self {
-        let way = match discretisation {
-            Discretisation::Bem3d { cells, tolerance } => {
-                Way::Solid { cells, tolerance, method: bem3d::Method::Auto }
-            }
-            Discretisation::Mdr1d { elements } => Way::Line { elements },
-        };
-        Self { way, stiffness: Vec::new(), approach: Vec::new(), answer, surfaces }
-    }
 }
 
 /// How the ensembles of one fractal dimension are solved.
@@ -48,7 +36,7 @@ pub(crate) fn discretisations(sizes: &StudySizes) -> Vec<Discretisation> {
 }
 
 /// What a closed form says of a mean.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ClosedForm {
     /// Number of the load.
     pub load: usize,
@@ -113,7 +101,7 @@ pub(crate) fn ensemble(
     answer.applications /= LOADS.len();
     let stiffness = k.iter().map(|k| statistics(k)).collect();
     let approach = approach.iter().map(|d| statistics(d).map(|s| s.mean)).collect();
-    Ok(EnsembleMeans { stiffness, approach, ..EnsembleMeans::new(discretisation, surfaces, answer) })
+    Ok(EnsembleMeans { way: Way::of(discretisation), stiffness, approach, answer, surfaces })
 }
 
 fn at_load(
@@ -167,14 +155,11 @@ fn at_load(
     rows
 }
 
-/// Names of the closed forms of a mean.
-pub(crate) const FORMULAS: [&str; 2] = ["power_law", "plateau"];
-
 /// Eq. 12 where it is claimed to hold, and the plateau of the rigid square under the largest load.
 pub(crate) fn closed_forms(d: f64, stop: Stop<'_>) -> Result<Vec<ClosedForm>> {
     let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model("Eq. 12"))?;
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
-    let [law, plateau] = FORMULAS.map(Way::Formula);
+    let [law, plateau] = [Formula::PowerLaw, Formula::Plateau].map(Way::Formula);
     let mut all = Vec::new();
     for (load, force_bar) in LOADS.into_iter().enumerate() {
         unless_stopped(stop)?;
@@ -193,7 +178,7 @@ fn order(problem: ProblemKey, limit: Limit, sequence: &[(f64, f64)]) -> Order {
     let errors: Vec<(f64, f64)> = sequence.iter().map(|&(h, v)| (h, limit.distance(v))).collect();
     Order {
         problem,
-        quantity: "stiffness",
+        quantity: Quantity::Stiffness,
         power: limit.order.or_else(|| slope(&errors[..errors.len().saturating_sub(1)])),
         established: limit.order.is_some(),
         limit: Some(limit),

@@ -17,7 +17,6 @@ mod problem;
 mod random_case;
 mod row;
 mod sizes;
-mod stored;
 mod study;
 mod table;
 mod text;

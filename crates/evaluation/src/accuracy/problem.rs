@@ -3,6 +3,7 @@
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Amplitude, Line, Load, Scene, SelfAffine, Surface, line_length};
 use runs::{Error, Result};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use surface_gen::MapGenerator;
@@ -22,7 +23,7 @@ pub(crate) const LOADS: [f64; 4] = [1e-2, 0.1, 1.0, 20.0];
 pub(crate) const DIMENSIONS: [f64; 3] = [2.0, 2.4, 2.8];
 
 /// Groups of problems that share a meaning of "error".
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Family {
     /// Hertz's sphere: every number is known.
     Sphere,
@@ -49,7 +50,7 @@ impl Family {
 }
 
 /// Which problem a row is about.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ProblemKey {
     pub family: Family,
     pub fractal_dimension: Option<f64>,

@@ -1,34 +1,74 @@
 //! One way to answer one problem: what it gave, what it cost, how far off it is.
 
 use super::problem::ProblemKey;
+use crate::realisation::Discretisation;
 use contact_model::{ContactModel, ContactState, Field, Load, Scene, Stop};
 use runs::{Error, Result, cpu_seconds, on_one_thread, peak_memory, reset_peak_memory, resident_memory};
+use serde::{Deserialize, Serialize};
+
+/// A closed form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Formula {
+    /// Hertz's sphere.
+    Hertz,
+    /// Eq. 12.
+    PowerLaw,
+    /// The stiffness of the rigid square.
+    Plateau,
+}
+
+impl Formula {
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Hertz => "hertz",
+            Self::PowerLaw => "power_law",
+            Self::Plateau => "plateau",
+        }
+    }
+}
 
 /// How an answer is found.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Way {
     /// Boundary elements.
-    Solid { cells: usize, tolerance: f64, method: bem3d::Method },
+    Solid {
+        cells: usize,
+        tolerance: f64,
+        #[serde(with = "StoredMethod")]
+        method: bem3d::Method,
+    },
     /// The one-dimensional reduction.
     Line { elements: usize },
-    /// A closed form, by name.
-    Formula(&'static str),
+    /// A closed form.
+    Formula(Formula),
+}
+
+/// [`bem3d::Method`] as it is stored.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "bem3d::Method")]
+enum StoredMethod {
+    Auto,
+    Iterative,
+    SingleLevel,
 }
 
 impl Way {
+    /// That of the surfaces of an ensemble.
+    pub fn of(discretisation: Discretisation) -> Self {
+        match discretisation {
+            Discretisation::Bem3d { cells, tolerance } => {
+                Self::Solid { cells, tolerance, method: bem3d::Method::Auto }
+            }
+            Discretisation::Mdr1d { elements } => Self::Line { elements },
+        }
+    }
+
     pub fn model(&self) -> &'static str {
         match self {
             Self::Solid { .. } => "bem3d",
             Self::Line { .. } => "mdr1d",
-            Self::Formula(name) => name,
+            Self::Formula(formula) => formula.as_str(),
         }
-    }
-
-    /// All of it as one word.
-    pub fn name(&self) -> String {
-        let size = self.size().map(|n| format!("/{n}")).unwrap_or_default();
-        let tolerance = self.tolerance().map(|t| format!("/{t:?}/{}", self.method())).unwrap_or_default();
-        format!("{}{size}{tolerance}", self.model())
     }
 
     pub fn size(&self) -> Option<usize> {
@@ -57,7 +97,7 @@ impl Way {
 }
 
 /// What a way gave and what it cost.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Answer {
     /// k in units of E* L.
     pub stiffness: Option<f64>,
@@ -65,6 +105,8 @@ pub(crate) struct Answer {
     pub approach: Option<f64>,
     /// Contact area over A0.
     pub area: Option<f64>,
+    /// Compared within a job; not stored.
+    #[serde(skip)]
     pub pressure: Option<Vec<f64>>,
     pub contact_cells: Option<usize>,
     pub cpu_seconds: Option<f64>,
@@ -75,7 +117,7 @@ pub(crate) struct Answer {
 }
 
 /// The four contributions to the error of k, relative.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Parts {
     /// What the tightest tolerance on the same grid changes.
     pub algebraic: Option<f64>,
@@ -88,7 +130,7 @@ pub(crate) struct Parts {
 }
 
 /// A row of the table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StudyRow {
     pub problem: ProblemKey,
     pub way: Way,
@@ -207,7 +249,7 @@ mod tests {
         let row = |seconds, error, family| {
             let answer =
                 Answer { cpu_seconds: Some(seconds), status: "converged".into(), ..Answer::default() };
-            let mut row = StudyRow::new(ProblemKey::body(family), Way::Formula("f"), answer);
+            let mut row = StudyRow::new(ProblemKey::body(family), Way::Formula(Formula::Hertz), answer);
             row.errors[0] = Some(error);
             row
         };

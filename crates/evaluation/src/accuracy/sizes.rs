@@ -2,6 +2,7 @@
 
 use super::limit::Limit;
 use super::problem::ProblemKey;
+use serde::{Deserialize, Serialize};
 
 /// StudySizes of a study.
 #[derive(Debug, Clone)]
@@ -26,12 +27,34 @@ pub(crate) struct StudySizes {
     pub ensembles: &'static [usize],
 }
 
+/// A number that has a sequence of grids.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Quantity {
+    Stiffness,
+    Approach,
+    Area,
+    /// The L2 norm of the pressure.
+    Pressure,
+}
+
+impl Quantity {
+    pub const ALL: [Self; 4] = [Self::Stiffness, Self::Approach, Self::Area, Self::Pressure];
+
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Stiffness => "stiffness",
+            Self::Approach => "approach",
+            Self::Area => "area",
+            Self::Pressure => "pressure",
+        }
+    }
+}
+
 /// Where a number goes on ever finer grids.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Order {
     pub problem: ProblemKey,
-    /// `stiffness`, `approach`, `area`, `pressure`.
-    pub quantity: &'static str,
+    pub quantity: Quantity,
     /// Order in the cell: of the extrapolation where established, else the slope of the errors.
     pub power: Option<f64>,
     /// Whether errors are known against an exact answer or an established order.

@@ -80,7 +80,7 @@ pub(crate) fn orders(study: &Study) -> Result<Table> {
     const ESTABLISHED: &str = "true against an exact answer, or where four grids or more follow one power";
     const LIMIT: &str = "the reference: exact, extrapolated where established, else the finest grid's";
     of_problems(TITLE, &study.orders, |o| o.problem)
-        .column("quantity", "-", "stiffness, approach, area, or pressure (L2)", |o| o.quantity)
+        .column("quantity", "-", "stiffness, approach, area, or pressure (L2)", |o| o.quantity.as_str())
         .column("order", "1", ORDER, |o| o.power)
         .column("established", "-", ESTABLISHED, |o| o.established)
         .column("limit", "E* L, h, 1", LIMIT, |o| o.limit.map(|l| l.value))

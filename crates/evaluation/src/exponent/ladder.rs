@@ -3,7 +3,7 @@
 use crate::forces::Forces;
 use crate::limits::{self, within};
 use crate::realisation::{Discretisation, Realisation, RealisationResult};
-use crate::sweep::sweep;
+use crate::sweep::{is_solved, sweep};
 use runs::{Error, Progress, Result, Store};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -133,7 +133,7 @@ impl Ladder {
                 [true, false]
                     .into_iter()
                     .filter(|fine| *fine || level > 0)
-                    .all(|fine| store.load(&self.unit(d, seed, level, index, fine).key()).is_some())
+                    .all(|fine| is_solved(&self.unit(d, seed, level, index, fine), store))
             })
         };
         (0..self.surfaces[level]).take_while(|&index| is_there(index)).count()

@@ -5,11 +5,11 @@ use analysis::StiffnessSample;
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, ContactState, Stop};
 use evaluation::{Discretisation, Realisation};
-use runs::{Error, Job, Result, number};
+use runs::{Error, Job, Result, ResultKind};
 use std::sync::Arc;
 
-/// Raised when the meaning of the stored lines changes.
-const FORMAT: u32 = 1;
+/// Number of the format of stored solves. Raise it when [`CaseSolve`] changes, or what its numbers mean.
+const FORMAT: u32 = 2;
 
 /// One surface of one case under all loads.
 #[derive(Debug, Clone)]
@@ -30,11 +30,13 @@ impl Job for CaseJob {
     type Output = Solves;
     type Error = Error;
 
+    const KIND: ResultKind = ResultKind::new("two cases", FORMAT);
+
     fn key(&self) -> String {
         let Self { study, case, seed } = self;
         let forces: Vec<String> = study.forces.values().iter().map(|f| format!("{f:?}")).collect();
         format!(
-            "two cases {FORMAT}\nmodel bem3d\nmodel_format {}\ncells {}\ntolerance {:?}\nboundary {:?}\nfractal_dimension {:?}\n\
+            "model bem3d\nmodel_format {}\ncells {}\ntolerance {:?}\nboundary {:?}\nfractal_dimension {:?}\n\
              roll_off {:?}\nshortest {:?}\nseed {seed}\nforce_bar {}\n",
             bem3d::FORMAT,
             study.cells,
@@ -68,7 +70,7 @@ impl Job for CaseJob {
     }
 
     fn stored_bytes(&self) -> u64 {
-        1000 + 60 * self.study.forces.values().len() as u64
+        1000 + 120 * self.study.forces.values().len() as u64
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<Solves> {
@@ -97,35 +99,49 @@ impl Job for CaseJob {
         Ok(solves)
     }
 
-    fn encode(&self, solves: &Solves) -> String {
-        let line = |solve: &CaseSolve| match solve {
-            CaseSolve::StiffnessSample(sample, area) => {
-                let cells = sample.contact_cells.map_or_else(|| "-".to_owned(), |n| n.to_string());
-                format!("{} {} {cells}\n", number(sample.stiffness_bar), number(*area))
-            }
-            CaseSolve::FullContact => "full contact\n".to_owned(),
-            CaseSolve::NotConverged => "not converged\n".to_owned(),
-        };
-        solves.iter().map(line).collect()
+    fn is_whole(&self, solves: &Solves) -> bool {
+        solves.len() == self.study.forces.values().len()
     }
+}
 
-    fn decode(&self, text: &str) -> Option<Solves> {
-        let finite = |word: &str| word.parse::<f64>().ok().filter(|v| v.is_finite());
-        let solve = |line: &str| match line {
-            "full contact" => Some(CaseSolve::FullContact),
-            "not converged" => Some(CaseSolve::NotConverged),
-            _ => {
-                let mut words = line.split(' ');
-                let (stiffness_bar, area) = (finite(words.next()?)?, finite(words.next()?)?);
-                let contact_cells = match words.next()? {
-                    "-" => None,
-                    count => Some(count.parse().ok()?),
-                };
-                let sample = StiffnessSample { stiffness_bar, contact_cells };
-                words.next().is_none().then_some(CaseSolve::StiffnessSample(sample, area))
-            }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use evaluation::Forces;
+
+    #[test]
+    fn solves_come_back_bit_for_bit_and_damage_does_not() {
+        let study = TwoCases {
+            cells: 64,
+            cells_per_wave: 8,
+            surfaces: 1,
+            fractal_dimensions: vec![2.2],
+            roll_offs: Vec::new(),
+            forces: Forces::parse("0.1,1,10,20").unwrap(),
+            tolerance: 1e-3,
+            seed: 1,
+            threads: 1,
         };
-        let solves: Solves = text.lines().map(solve).collect::<Option<_>>()?;
-        (solves.len() == self.study.forces.values().len()).then_some(solves)
+        let case = study.cases()[0];
+        let job = CaseJob { study: Arc::new(study), case, seed: 1 };
+        let sample = |stiffness_bar, contact_cells| StiffnessSample { stiffness_bar, contact_cells };
+        let solves = vec![
+            CaseSolve::StiffnessSample(sample(0.1 + 0.2, Some(12)), 5e-324),
+            CaseSolve::StiffnessSample(sample(1e308, None), -0.0),
+            CaseSolve::NotConverged,
+            CaseSolve::FullContact,
+        ];
+        let text = CaseJob::KIND.encode(&solves);
+        let back = job.decode(&text).unwrap();
+        // The text holds every bit, the sign of a zero too.
+        assert_eq!(CaseJob::KIND.encode(&back), text);
+        assert_eq!(back, solves);
+        for cut in 0..text.len() {
+            assert_eq!(job.decode(&text[..cut]), None, "{cut} bytes");
+        }
+        let nan = CaseSolve::StiffnessSample(sample(f64::NAN, None), 1.0);
+        for other in [solves[1..].to_vec(), [&solves[..], &solves[..1]].concat(), vec![nan; 4]] {
+            assert_eq!(job.decode(&CaseJob::KIND.encode(&other)), None);
+        }
     }
 }

@@ -5,6 +5,7 @@ use contact_model::{Boundary, Scene, SelfAffine, Surface};
 use evaluation::limits::{self, within};
 use evaluation::{Estimate, Forces, list};
 use runs::{Error, Result};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 pub(crate) const NAME: &str = "two-cases";
@@ -183,7 +184,7 @@ impl TwoCases {
 }
 
 /// What one solve gave.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) enum CaseSolve {
     /// A stiffness and the share of the square in contact.
     StiffnessSample(StiffnessSample, f64),

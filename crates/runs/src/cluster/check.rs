@@ -55,10 +55,9 @@ pub fn check(plan: &ShardPlan, jobs: &dyn JobList, out: &Path) -> Result<Complet
     let states: Vec<JobState> = (0..jobs.count())
         .into_par_iter()
         .map(|job| {
-            let key = jobs.key(job);
-            if !jobs.is_stored(job) || store.texts(&key).any(|text| jobs.is_output(job, &text)) {
+            if !jobs.is_stored(job) || jobs.is_done(job, &store) {
                 JobState::Done
-            } else if store.has(&key) {
+            } else if store.has(&jobs.key(job)) {
                 JobState::Damaged
             } else {
                 JobState::Missing

@@ -68,6 +68,7 @@ pub fn run_shard(
         groups.entry(room).or_default().push(job);
     }
     let what = format!("shard {shard}: {} of {} jobs", mine.len(), jobs.count());
+    store.tell_unused(progress);
     progress.begin(&what, mine.iter().map(|&job| jobs.cost(job)).sum());
     for (room, group) in groups {
         jobs.work(&group, &store, Threads { total: threads, jobs: room }, progress, stop)?;

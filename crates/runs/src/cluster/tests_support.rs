@@ -1,5 +1,6 @@
 //! Jobs for the tests of this module.
 
+use crate::encoding::ResultKind;
 use crate::error::{Error, Result};
 use crate::jobs::Job;
 use contact_model::Stop;
@@ -28,6 +29,8 @@ impl Job for Squares {
     type Output = usize;
     type Error = Error;
 
+    const KIND: ResultKind = ResultKind::new("square", 1);
+
     fn key(&self) -> String {
         format!("the square of {}\n", self.number)
     }
@@ -43,13 +46,5 @@ impl Job for Squares {
     fn solve(&self, _: Stop<'_>) -> Result<usize> {
         self.solved.fetch_add(1, Ordering::Relaxed);
         Ok(self.number * self.number)
-    }
-
-    fn encode(&self, output: &usize) -> String {
-        format!("{output}\n")
-    }
-
-    fn decode(&self, text: &str) -> Option<usize> {
-        text.trim().parse().ok()
     }
 }

@@ -1,12 +1,12 @@
 //! A model and a surface as a job, and its result as text.
 
 use crate::scenes::plan::calibration;
-use crate::scenes::plan::model_on_surface::ModelOnSurface;
+use crate::scenes::plan::model_on_surface::{FORMAT, ModelOnSurface};
 use crate::scenes::read::error::{Error, Result};
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::ModelResult;
 use contact_model::Stop;
-use runs::{Job, JobList};
+use runs::{Job, JobList, ResultKind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -24,6 +24,8 @@ pub(crate) struct SceneJob<'a> {
 impl Job for SceneJob<'_> {
     type Output = ModelResult;
     type Error = Error;
+
+    const KIND: ResultKind = ResultKind::new("scene", FORMAT);
 
     fn key(&self) -> String {
         self.unit.key(self.scene)
@@ -55,17 +57,17 @@ impl Job for SceneJob<'_> {
 
     fn resume(
         &self,
-        stored: Option<&str>,
-        store: &dyn Fn(&str) -> runs::Result<()>,
+        stored: Option<ModelResult>,
+        store: &dyn Fn(&ModelResult) -> runs::Result<()>,
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
-        let mut begun = stored.and_then(|text| decode(text)).unwrap_or_default();
+        let mut begun = stored.unwrap_or_default();
         begun.states.retain(|state| state.is_whole(self.out));
         begun.kept = begun.states.len();
         let mut last = Instant::now();
         let mut keep = |result: &ModelResult| {
             if last.elapsed() >= KEEP_EVERY && self.is_stored() {
-                store(&self.encode(result))?;
+                store(result)?;
                 last = Instant::now();
             }
             Ok(())
@@ -73,25 +75,10 @@ impl Job for SceneJob<'_> {
         self.unit.solve(self.scene, self.out, begun, &mut keep, stop)
     }
 
-    fn encode(&self, result: &ModelResult) -> String {
-        encode(result)
-    }
-
     /// A result with a state or a file missing or changed is as good as absent.
-    fn decode(&self, text: &str) -> Option<ModelResult> {
-        let result = decode(text).filter(|result| result.complete)?;
-        let whole = result.states.iter().all(|state| state.is_whole(self.out));
-        whole.then_some(ModelResult { kept: result.states.len(), ..result })
+    fn is_whole(&self, result: &ModelResult) -> bool {
+        result.complete && result.states.iter().all(|state| state.is_whole(self.out))
     }
-}
-
-fn encode(result: &ModelResult) -> String {
-    // A value of our own types is always text.
-    serde_json::to_string(result).unwrap_or_default()
-}
-
-fn decode(text: &str) -> Option<ModelResult> {
-    serde_json::from_str(text).ok()
 }
 
 /// Every model of a scene on every surface, in the order of the tables. A theory, which is the same for every seed, has one surface.
@@ -145,11 +132,12 @@ mod tests {
         first.files.push(StoredFile { name: "a b.npy".into(), bytes: 3, digest: u128::MAX - 7 });
         let second = StateRecord::new(2, Answer::Refused("too much\n".into()));
         let result = ModelResult { seconds: 0.25, states: vec![first, second], complete: false, kept: 0 };
-        let text = encode(&result);
-        assert_eq!(decode(&text), Some(result));
+        let kind = ResultKind::new("scene", FORMAT);
+        let text = kind.encode(&result);
+        assert_eq!(kind.decode(&text), Some(result));
         for cut in 0..text.len() {
-            assert_eq!(decode(&text[..cut]), None);
+            assert_eq!(kind.decode::<ModelResult>(&text[..cut]), None);
         }
-        assert_eq!(decode(&text.replace("0.25", "x")), None);
+        assert_eq!(kind.decode::<ModelResult>(&text.replace("0.25", "x")), None);
     }
 }

@@ -42,8 +42,10 @@ mod tests {
                 outputs.ask(output, true);
                 if output == Output::MeanGap {
                     effects.boundary = Boundary::Periodic;
-                    scene.request =
-                        Loading::Loads(Loads { prescribed: Prescribed::MeanPressure, values: vec![0.1, 0.2] });
+                    scene.request = Loading::Loads(Loads {
+                        prescribed: Prescribed::MeanPressure,
+                        values: vec![0.1, 0.2],
+                    });
                 }
             }
             AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },
