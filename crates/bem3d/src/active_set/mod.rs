@@ -1,8 +1,8 @@
 //! The complementarity problem at one load.
 
+mod bounds;
 mod candidates;
 mod descent;
-mod hardness;
 mod initial_guess;
 mod progress;
 mod residuals;
@@ -10,8 +10,8 @@ mod solver;
 mod state;
 mod undecided;
 
+pub use bounds::is_saturated;
 pub use candidates::Candidates;
-pub use hardness::is_saturated;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;
 pub use solver::{resume, solve};

@@ -1,7 +1,7 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating cells.
 
+use super::bounds;
 use super::descent::{Feasible, descend};
-use super::hardness;
 use super::progress::{Decision, Evaluated, OuterProgress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
@@ -143,7 +143,7 @@ impl<'a> Solver<'a> {
 
     /// Whether any cell is saturated.
     fn is_saturated(&self) -> bool {
-        hardness::is_saturated(&self.now.p, self.problem.hardness)
+        bounds::is_saturated(&self.now.p, self.problem.hardness)
     }
 
     /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it makes.
@@ -157,18 +157,18 @@ impl<'a> Solver<'a> {
             Target::Force(force) => Some(force),
             Target::Approach(_) => None,
         };
-        hardness::saturate(&mut now.contact, &mut now.p, force, hardness);
+        bounds::saturate(&mut now.contact, &mut now.p, force, hardness);
         if let Some(force) = force
-            && !hardness::is_saturated(&now.p, hardness)
+            && !bounds::is_saturated(&now.p, hardness)
         {
             rescale(&mut now.p, force);
         }
-        let saturated = hardness::is_saturated(&now.p, hardness);
+        let saturated = bounds::is_saturated(&now.p, hardness);
         let mut joined = false;
         if saturated {
             each(&mut now.p, |p| *p = p.min(hardness));
             if let Some(force) = force {
-                joined = hardness::bring_to(&mut now.contact, &mut now.p, force, hardness, candidates);
+                joined = bounds::bring_to(&mut now.contact, &mut now.p, force, hardness, candidates);
             }
         }
         // Later contact sets are subsets of the candidates that the first one is joined to.
@@ -191,7 +191,7 @@ impl<'a> Solver<'a> {
         {
             let old = (at.checked.carry(&before.contact, &before.p), &at.gap[..], before.d);
             let mut p = checked.carry(&now.contact, &now.p);
-            share = hardness::shorten(old, (&mut p, gap), tuning.whole_step);
+            share = bounds::shorten(old, (&mut p, gap), tuning.whole_step);
             self.inner_steps =
                 if share.is_some() { tuning.short_steps } else { self.inner_steps.saturating_mul(2) };
             if share.is_some() {
@@ -200,11 +200,11 @@ impl<'a> Solver<'a> {
                 now.p = p;
             }
         }
-        let saturated = hardness::is_saturated(&now.p, hardness);
+        let saturated = bounds::is_saturated(&now.p, hardness);
         now.contact.carry_to(checked, gap, left);
         let force = sum(&now.p);
         match *target {
-            Target::Force(_) if saturated => now.d = hardness::approach(&now.p, left, gap, hardness),
+            Target::Force(_) if saturated => now.d = bounds::approach(&now.p, left, gap, hardness),
             // The mean weighted by the pressure: the gap is then right where it carries.
             Target::Force(_) if now.q.is_none() && force > 0.0 => {
                 now.d = sum_of_pairs(&now.p, left, |p, g| p / force * g);
@@ -220,7 +220,7 @@ impl<'a> Solver<'a> {
         *reach = tuning.candidates * now.d;
         let height = limits.height.unwrap_or(now.d);
         let residuals = if saturated {
-            hardness::residuals(&checked.carry(&now.contact, &now.p), gap, hardness, height)
+            bounds::residuals(&checked.carry(&now.contact, &now.p), gap, hardness, height)
         } else {
             Residuals::measure(&now.p, left, smallest(gap), height)
         };
@@ -238,15 +238,15 @@ impl<'a> Solver<'a> {
         let tuning = *problem.operators.tuning();
         let Continuation { checked, gap, .. } = &*state;
         let hardness = problem.hardness;
-        let saturated = hardness::is_saturated(&now.p, hardness);
+        let saturated = bounds::is_saturated(&now.p, hardness);
         let noise = tuning.noise
             * if saturated {
-                root_mean_square(&hardness::of_elastic(&now.p, left, hardness))
+                root_mean_square(&bounds::of_elastic(&now.p, left, hardness))
             } else {
                 root_mean_square(left)
             };
         let mut set = checked.filter(gap, |g| g < -noise).union(&now.contact);
-        let kept = saturated.then(|| hardness::kept(&now.contact, &now.p, left, hardness, noise));
+        let kept = saturated.then(|| bounds::kept(&now.contact, &now.p, left, hardness, noise));
         if let Some(kept) = &kept {
             set = set.without(kept);
         }
@@ -256,7 +256,7 @@ impl<'a> Solver<'a> {
             && !saturated
             && planner.factors(set.len(), recipe.window)
             && let Some(exact) = eliminate(problem, &set, *target)
-            && !hardness::is_saturated(&exact.p, hardness)
+            && !bounds::is_saturated(&exact.p, hardness)
         {
             self.reach = tuning.candidates * exact.d;
             self.advance(exact);
@@ -274,11 +274,11 @@ impl<'a> Solver<'a> {
         set.add_carried(&now.contact, &now.p, &mut change);
         let mut contact = set.filter(&change, |p| p > 0.0);
         change.retain(|&p| p > 0.0);
-        if saturated || hardness::is_saturated(&change, hardness) {
+        if saturated || bounds::is_saturated(&change, hardness) {
             match target {
                 Target::Force(force) => {
                     let held = kept.as_ref().map_or(0, CellSet::len) as f64 * hardness;
-                    hardness::scale_to(&mut change, *force - held, hardness);
+                    bounds::scale_to(&mut change, *force - held, hardness);
                     contact = contact.filter(&change, |p| p > 0.0);
                     change.retain(|&p| p > 0.0);
                 }

@@ -1,7 +1,7 @@
 //! What is solved, from where, how well, and what comes of it.
 
+use super::bounds::elastic;
 use super::candidates::Candidates;
-use super::hardness::elastic;
 use super::residuals::Residuals;
 use super::undecided::undecided;
 use crate::geometry::{CellSet, Grid};
