@@ -4,13 +4,14 @@ mod bounds;
 mod candidates;
 mod descent;
 mod initial_guess;
+mod line_search;
 mod progress;
 mod residuals;
 mod solver;
 mod state;
 mod undecided;
 
-pub use bounds::is_saturated;
+pub use bounds::Bounds;
 pub use candidates::Candidates;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;

@@ -3,7 +3,7 @@
 use super::options::{NAME, bytes_per_cell};
 use super::prepared::{PreparedBem3d, Tangent};
 use super::state::LoadError;
-use crate::active_set::{self, Limits, Solved, Target, is_saturated};
+use crate::active_set::{self, Limits, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, timed};
 use crate::stiffness::{self, Responding, Stiffness};
@@ -121,9 +121,7 @@ impl PreparedBem3d {
         let tuning = *self.problem.operators.tuning();
         let guess = self.guess(target, limits, stop);
         let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
-        // Complete contact of a periodic surface has no finite stiffness.
-        let full = self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness);
-        if full || !self.outputs.needs_stiffness() {
+        if self.is_complete(&solved) || !self.outputs.needs_stiffness() {
             return (solved, None);
         }
         // The last state is not needed any more, and as large as the contact.
@@ -172,7 +170,7 @@ impl PreparedBem3d {
         let another = responding.cells.len() != solved.contact.len();
         let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
         let whole = wanted.then(|| {
-            let whole = Responding::whole(solved, self.problem.hardness);
+            let whole = Responding::whole(solved, self.problem.bounds);
             self.stiffness(solved, &whole, of_whole, None, stop)
         });
         Tangent { stiffness, cells: responding.cells.into_owned(), whole }
@@ -211,7 +209,7 @@ impl PreparedBem3d {
     /// The stiffness to a few per cent, from above; infinite where the contact is complete.
     pub(super) fn rough_stiffness(&mut self, solved: &Solved, stop: Stop<'_>) -> f64 {
         const ROUGH: f64 = 0.02;
-        if self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness) {
+        if self.is_complete(solved) {
             return f64::INFINITY;
         }
         let responding = self.responding(solved);
@@ -223,15 +221,15 @@ impl PreparedBem3d {
     /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path, cells of the indentation that
     /// are at the hardness again flow when the load grows, and do not when it falls.
     fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
-        let hardness = self.problem.hardness;
-        let mut responding = Responding::elastic(solved, hardness);
+        let bounds = self.problem.bounds;
+        let mut responding = Responding::free(solved, bounds);
         let Some(memory) = &self.memory else { return responding };
         let decided = self.flowing_again(solved);
         if !decided.is_empty() {
             let rises = memory.rises_to(solved.p.iter().sum(), self.options.tolerance);
             let cells = &*responding.cells;
             let cells = if rises { cells.without(&decided) } else { cells.union(&decided) };
-            responding = Responding { cells: Cow::Owned(cells), limit: hardness, decided };
+            responding = Responding { cells: Cow::Owned(cells), bounds, decided };
         }
         responding
     }
@@ -240,7 +238,7 @@ impl PreparedBem3d {
     /// leaves open.
     pub(super) fn flowing_again(&self, solved: &Solved) -> CellSet {
         let Some(memory) = &self.memory else { return CellSet::default() };
-        let (table, hardness) = (self.problem.operators.table(), self.problem.hardness);
+        let (table, hardness) = (self.problem.operators.table(), self.problem.bounds.upper());
         let accuracy = self.options.tolerance * self.limits().height.unwrap_or(solved.d);
         let margin = 2.0 * accuracy / table.smallest_eigenvalue();
         let (left, grid) = (solved.gap_on(&solved.contact), self.problem.grid());

@@ -2,7 +2,7 @@
 
 use super::prepared::PreparedBem3d;
 use super::state::LoadError;
-use crate::active_set::{Solved, Target, is_saturated};
+use crate::active_set::{Bounds, Solved, Target};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
@@ -11,7 +11,7 @@ impl PreparedBem3d {
     /// whose displacement under the kernel of zero mean has none. Undefined points or a plastic indentation may bring the planes beyond each
     /// other.
     pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
-        if self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness) {
+        if self.is_complete(solved) {
             return 0.0;
         }
         let force: f64 = solved.p.iter().sum();
@@ -20,7 +20,7 @@ impl PreparedBem3d {
 
     /// Whether the mean gap of any force is above zero: no points are undefined, and nothing flows.
     fn has_complete_contact(&self) -> bool {
-        self.problem.hardness.is_infinite() && self.defined == self.problem.grid().count()
+        self.problem.bounds == Bounds::Unlimited && self.defined == self.problem.grid().count()
     }
 
     /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and secants where it is not: the gap

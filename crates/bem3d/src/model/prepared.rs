@@ -2,7 +2,7 @@
 
 use super::options::{Bem3d, Method, NAME};
 use super::profile;
-use crate::active_set::{self, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
+use crate::active_set::{self, Bounds, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::Medium;
 use crate::real::{each, sum_of_pairs, update};
@@ -114,11 +114,12 @@ impl PreparedBem3d {
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         if let Hardness::Limit { pressure } = scene.effects.hardness {
-            problem.hardness = nondimensional.pressure_in(pressure) / PI;
-            if !(problem.hardness.is_finite() && problem.hardness > 0.0) {
+            let upper = nondimensional.pressure_in(pressure) / PI;
+            if !(upper.is_finite() && upper > 0.0) {
                 let expected = "a pressure nearer to E* times the slope of the surface";
                 return Err(Error::domain("hardness", pressure, expected));
             }
+            problem.bounds = Bounds::UpTo(upper);
         }
         let normalisation =
             Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
@@ -190,9 +191,14 @@ impl PreparedBem3d {
         self.is_periodic() && contact.len() == self.problem.grid().count()
     }
 
+    /// Whether a state is complete contact without an indentation: it has no gap and no finite stiffness.
+    pub(super) fn is_complete(&self, solved: &Solved) -> bool {
+        self.is_full(&solved.contact) && !self.problem.bounds.is_reached(&solved.p)
+    }
+
     /// The force of all defined cells at the hardness, nondimensional; infinite without one.
     pub(super) fn capacity(&self) -> f64 {
-        self.problem.hardness * self.defined as f64
+        self.problem.bounds.upper() * self.defined as f64
     }
 
     /// Adds the indentation of saturated cells to that of the path.

@@ -1,7 +1,7 @@
 //! From a solution to the state that is returned.
 
 use super::prepared::{PreparedBem3d, Tangent};
-use crate::active_set::{Continuation, Solved, is_saturated};
+use crate::active_set::{Bounds, Continuation, Solved};
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
 use contact_model::{
@@ -63,7 +63,7 @@ impl PreparedBem3d {
             Status::Converged => Status::Stagnated,
             other => other,
         };
-        let (saturated, depth) = plastic_depth(&solved, self.problem.hardness);
+        let (saturated, depth) = plastic_depth(&solved, self.problem.bounds);
         let fields = self.fields((&solved.contact, &solved.p), solved.d, (&saturated, &depth))?;
         let units = self.nondimensional;
         let mut report = SolveReport::new(status, self.strategy(&solved));
@@ -135,18 +135,10 @@ impl PreparedBem3d {
     ///
     /// The force is that of a surface whose heights differ by no more than those gaps, and it grows with every height.
     pub(super) fn force_error(&self, solved: &Solved, k: f64, miss: f64) -> LoadError {
-        let hardness = self.problem.hardness;
+        let bounds = self.problem.bounds;
         let Continuation { checked, gap, .. } = &solved.continuation;
         let left = (checked.carry(&solved.contact, &solved.p).iter().zip(gap))
-            .map(|(&p, &g)| {
-                if p >= hardness {
-                    g.max(0.0)
-                } else if p > 0.0 {
-                    g.abs()
-                } else {
-                    (-g).max(0.0)
-                }
-            })
+            .map(|(&p, &g)| bounds.violation(p, g))
             .fold(0.0, f64::max);
         let force: f64 = solved.p.iter().sum();
         let known = force > 0.0 && k.is_finite();
@@ -155,10 +147,8 @@ impl PreparedBem3d {
 
     /// What has yielded, with a hardness: the number of cells at it, and the depths of new indentation.
     fn plastic(&self, saturated: usize, depth: &[f64]) -> Result<Option<PlasticState>> {
-        let (units, hardness) = (self.nondimensional, self.problem.hardness);
-        if hardness.is_infinite() {
-            return Ok(None);
-        }
+        let units = self.nondimensional;
+        let Bounds::UpTo(hardness) = self.problem.bounds else { return Ok(None) };
         let area = units.area(saturated as f64)?;
         let before: f64 = self.memory.as_ref().map_or(0.0, |memory| memory.indentation.iter().sum());
         let volume = units.area(1.0)? * units.approach(before + depth.iter().sum::<f64>())?;
@@ -310,11 +300,11 @@ impl PreparedBem3d {
 }
 
 /// The saturated cells and the depth of their indentation.
-fn plastic_depth(solved: &Solved, hardness: f64) -> (CellSet, Vec<f64>) {
-    if !is_saturated(&solved.p, hardness) {
+fn plastic_depth(solved: &Solved, bounds: Bounds) -> (CellSet, Vec<f64>) {
+    if !bounds.is_reached(&solved.p) {
         return (CellSet::default(), Vec::new());
     }
-    let saturated = solved.contact.filter(&solved.p, |p| p >= hardness);
+    let saturated = solved.contact.filter(&solved.p, |p| p >= bounds.upper());
     let mut depth = solved.gap_on(&saturated);
     for g in &mut depth {
         *g = (-*g).max(0.0);
