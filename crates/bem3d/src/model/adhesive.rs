@@ -2,7 +2,7 @@
 
 use super::options::Bem3d;
 use super::options::NAME;
-use super::prepared::{PreparedBem3d, without_tangential};
+use super::prepared::{PreparedSurface, without_tangential};
 use super::state::GROWTH;
 use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
@@ -25,7 +25,7 @@ const ON_BRANCH: f64 = 1e-3;
 /// One surface with adhesion of finite range, on its path.
 #[derive(Debug)]
 pub struct AdhesiveContact {
-    pub(super) inner: PreparedBem3d,
+    pub(super) inner: PreparedSurface,
     pub(super) attraction: Attraction,
     time: f64,
     last: Option<Last>,
@@ -310,7 +310,7 @@ pub(super) fn without_adhesion(scene: &Scene) -> Scene {
 ///
 /// # Errors
 /// Cells that do not resolve the range; numbers that overflow.
-fn attraction(inner: &PreparedBem3d, adhesion: Adhesion) -> Result<Attraction> {
+fn attraction(inner: &PreparedSurface, adhesion: Adhesion) -> Result<Attraction> {
     let units = inner.nondimensional;
     let unit = PI * units.pressure(1.0)?;
     let (dx, dy) = inner.cell();

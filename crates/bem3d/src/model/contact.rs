@@ -1,7 +1,7 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
 use super::options::{NAME, bytes_per_cell};
-use super::prepared::{PreparedBem3d, Tangent};
+use super::prepared::{PreparedSurface, Tangent};
 use super::state::LoadError;
 use crate::active_set::{self, Limits, Solved, Target};
 use crate::geometry::{CellSet, Grid};
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// How far the force of all cells at the hardness may be rounded on its way through units.
 const CAPACITY_ROUNDING: f64 = 1e-12;
 
-impl PreparedContact for PreparedBem3d {
+impl PreparedContact for PreparedSurface {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }
@@ -73,7 +73,7 @@ impl PreparedContact for PreparedBem3d {
     }
 }
 
-impl PreparedBem3d {
+impl PreparedSurface {
     /// About which share of the cells a load brings into contact.
     fn expected_contact(&self, load: Load) -> f64 {
         let z = self.problem.candidates.z();

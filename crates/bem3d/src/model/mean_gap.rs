@@ -1,12 +1,12 @@
 //! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
 
-use super::prepared::PreparedBem3d;
+use super::prepared::PreparedSurface;
 use super::state::LoadError;
 use crate::active_set::{Bounds, Solved, Target};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
-impl PreparedBem3d {
+impl PreparedSurface {
     /// Mean gap of a state, nondimensional: the distance between the mean plane of the defined heights and that of the deformed half-space,
     /// whose displacement under the kernel of zero mean has none. Undefined points or a plastic indentation may bring the planes beyond each
     /// other.

@@ -21,7 +21,7 @@ use contact_model::{
     Scene, Source, Surface,
 };
 use options::NAME;
-use prepared::{PreparedBem3d, refuse_together};
+use prepared::{PreparedSurface, refuse_together};
 use std::sync::Arc;
 
 impl ContactModel for Bem3d {
@@ -76,7 +76,7 @@ impl Bem3d {
     }
 
     /// A surface without adhesion, ready to be loaded.
-    fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
+    fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedSurface> {
         scene.validate()?;
         profile::check(scene)?;
         if !matches!(scene.effects.boundary, Boundary::Free | Boundary::Periodic) {
@@ -93,7 +93,7 @@ impl Bem3d {
         };
         let has_rms =
             matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
-        PreparedBem3d::new(*self, scene, &map, has_rms, tuning)
+        PreparedSurface::new(*self, scene, &map, has_rms, tuning)
     }
 }
 
@@ -140,10 +140,10 @@ mod tests {
             |value| Stiffness { value, solve_error: 0.01, set_error: 0.02, q: Vec::new(), steps: 0 };
         let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);
         let tuning = &Tuning::DEFAULT;
-        let free = PreparedBem3d::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
+        let free = PreparedSurface::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
         approx::assert_relative_eq!(free.stiffness_error(&tangent(3.0)), 0.03);
         scene.effects.boundary = Boundary::Periodic;
-        let periodic = PreparedBem3d::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
+        let periodic = PreparedSurface::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
         // k = k'/(1 - c k') is four times k' where c k' = 3/4, and so is its relative error.
         let value = 0.75 / periodic.problem.operators.table().shift();
         approx::assert_relative_eq!(periodic.stiffness_error(&tangent(value)), 0.12, max_relative = 1e-12);

@@ -1,6 +1,6 @@
 //! A path with a hardness: the indentation stays, and what is unloaded is elastic until the old pressures are reached again.
 
-use super::prepared::{Memory, PreparedBem3d, without_tangential};
+use super::prepared::{Memory, PreparedSurface, without_tangential};
 use crate::active_set::Candidates;
 use contact_model::{
     Error, History, HistoryState, Load, Normalisation, PreparedContact, RequiredMemory, Result, Step, Stop,
@@ -18,14 +18,14 @@ use std::sync::Arc;
 /// load that goes on in the direction of its last change. On the way up they flow, on the way down they do not.
 #[derive(Debug)]
 pub struct PlasticPath {
-    contact: PreparedBem3d,
+    contact: PreparedSurface,
     virgin: Arc<Vec<f64>>,
     time: f64,
 }
 
 impl PlasticPath {
     /// The path begins with the virgin surface, at time 0.
-    pub fn new(mut contact: PreparedBem3d) -> Self {
+    pub fn new(mut contact: PreparedSurface) -> Self {
         let virgin = contact.problem.candidates.shared();
         contact.memory = Some(Memory::new(virgin.len()));
         Self { contact, virgin, time: 0.0 }

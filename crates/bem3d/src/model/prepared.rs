@@ -65,7 +65,7 @@ impl Tangent {
 
 /// One surface, ready to be loaded.
 #[derive(Debug)]
-pub struct PreparedBem3d {
+pub struct PreparedSurface {
     pub(super) options: Bem3d,
     pub(super) outputs: Outputs,
     pub(super) problem: Problem,
@@ -86,7 +86,7 @@ pub struct PreparedBem3d {
     pub(super) is_profile: bool,
 }
 
-impl PreparedBem3d {
+impl PreparedSurface {
     pub(super) fn new(
         options: Bem3d,
         scene: &Scene,

@@ -1,6 +1,6 @@
 //! From a solution to the state that is returned.
 
-use super::prepared::{PreparedBem3d, Tangent};
+use super::prepared::{PreparedSurface, Tangent};
 use crate::active_set::{Bounds, Continuation, Solved};
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
@@ -30,7 +30,7 @@ impl LoadError {
     }
 }
 
-impl PreparedBem3d {
+impl PreparedSurface {
     pub(super) fn state(
         &mut self,
         solved: Solved,
