@@ -1,16 +1,17 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
+use super::certificate::GROWTH;
 use super::options::Bem3d;
 use super::options::NAME;
 use super::prepared::{PreparedSurface, without_tangential};
-use super::state::GROWTH;
+use super::state::{Assembly, returned};
 use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
 use crate::tuning::Tuning;
 use contact_model::{
     Adhesion, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, History, HistoryState, Load,
-    Normalisation, PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
+    Normalisation, PreparedContact, Result, Scene, Status, Step, Stop,
 };
 use std::f64::consts::PI;
 
@@ -217,9 +218,6 @@ impl AdhesiveContact {
         let stiffness = self.stiffness(&equilibrium, &response, branch, stop);
         let force_error = self.force_error(control, &equilibrium, &response);
         let inner = &mut self.inner;
-        let units = inner.nondimensional;
-        let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));
-        let net = equilibrium.force();
         let residuals = equilibrium.residuals;
         let certificate = Certificate {
             duality_gap: residuals.duality_gap,
@@ -231,54 +229,34 @@ impl AdhesiveContact {
             equilibrium: Some(equilibrium.mismatch),
             force_error,
         };
-        let status = match status {
-            Status::Converged if certificate.meets(inner.options.tolerance) => Status::Converged,
-            Status::Converged if stop() => Status::Stopped,
-            Status::Converged => Status::Stagnated,
-            other => other,
-        };
+        let units = inner.nondimensional;
         let stored = PI * energy(&inner.problem, &self.attraction, &equilibrium);
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
         let contact = equilibrium.contact();
-        let fields = inner.fields(
-            (&equilibrium.cells, &equilibrium.net()),
-            equilibrium.d,
-            (&CellSet::default(), &[]),
-        )?;
-        let mut report = SolveReport::new(
-            status,
-            format!("attraction on {} cells, {} sweeps", equilibrium.cells.len(), equilibrium.sweeps),
-        );
-        report.work = Work::of(std::mem::take(&mut inner.problem.operators.solves), fields.as_ref());
-        report.iterations = equilibrium.steps + response.steps + stiffness.steps;
-        report.applications = std::mem::take(&mut inner.problem.operators.applications);
-        report.contact_cells = Some(contact.len());
-        report.certificate = certificate;
-        let length = |value: f64| signed(value, &|v| units.approach(v));
-        let plane = equilibrium.plane(inner.problem.operators.table().shift());
-        let approach = (!inner.is_periodic()).then(|| length(equilibrium.d)).transpose()?;
-        // Rounding where the contact is complete.
-        let gap = if inner.is_full(&contact) { 0.0 } else { inner.mean - plane };
-        let mean_gap = inner.outputs.mean_gap.then(|| length(gap)).transpose()?;
-        let held = |k: Option<f64>| k.map(|k| signed(PI * k, &|v| units.stiffness(v))).transpose();
-        let area = self.attraction.area(&contact, &equilibrium.gap);
-        let area = inner.outputs.area.then(|| units.area(area)).transpose()?;
-        let state = ContactState::new(signed(PI * net, &|v| units.force(v))?, report)
-            .with_approach(approach)
-            .with_mean_gap(mean_gap)
-            .with_stiffness(held(stiffness.along_the_branch)?)
-            .with_stiffness_fixed_area(held(stiffness.fixed_area)?)
-            .with_area(area)
-            .with_patches(inner.patches(&contact)?)
-            .with_adhesive(AdhesiveState::new(branch, stored, response.stability))
-            .with_fields(fields)
-            .completed(&inner.outputs, inner.normalisation.modulus)?;
-        match status {
-            Status::Converged => Ok(Last { equilibrium, branch, state }),
-            Status::Stopped => Err(Error::Stopped { best: Some(Box::new(state)) }),
-            _ => Err(Error::NotConverged { best: Box::new(state) }),
-        }
+        let state = inner.assemble(Assembly {
+            status: inner.ended(status, &certificate, stop),
+            strategy: format!(
+                "attraction on {} cells, {} sweeps",
+                equilibrium.cells.len(),
+                equilibrium.sweeps
+            ),
+            iterations: equilibrium.steps + response.steps + stiffness.steps,
+            certificate,
+            force: equilibrium.force(),
+            d: equilibrium.d,
+            complete: inner.is_full(&contact),
+            contact: &contact,
+            pressure: (&equilibrium.cells, &equilibrium.net()),
+            indented: (&CellSet::default(), &[]),
+            yielded: 0,
+            area: self.attraction.area(&contact, &equilibrium.gap),
+            stiffness: stiffness.along_the_branch.map(|k| PI * k),
+            fixed_area: stiffness.fixed_area.map(|k| PI * k),
+            adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
+            resolution: None,
+        })?;
+        Ok(Last { equilibrium, branch, state: returned(state)? })
     }
 
     /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest

@@ -1,8 +1,8 @@
 //! A prepared surface behind the common trait: from a load to pressure and stiffness.
 
+use super::certificate::LoadError;
 use super::options::{NAME, bytes_per_cell};
 use super::prepared::{PreparedSurface, Tangent};
-use super::state::LoadError;
 use crate::active_set::{self, Limits, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, timed};

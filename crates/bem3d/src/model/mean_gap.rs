@@ -1,21 +1,15 @@
 //! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
 
+use super::certificate::LoadError;
 use super::prepared::PreparedSurface;
-use super::state::LoadError;
 use crate::active_set::{Bounds, Solved, Target};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 impl PreparedSurface {
-    /// Mean gap of a state, nondimensional: the distance between the mean plane of the defined heights and that of the deformed half-space,
-    /// whose displacement under the kernel of zero mean has none. Undefined points or a plastic indentation may bring the planes beyond each
-    /// other.
-    pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
-        if self.is_complete(solved) {
-            return 0.0;
-        }
-        let force: f64 = solved.p.iter().sum();
-        self.mean - (solved.d - self.problem.operators.table().shift() * force)
+    /// Mean gap of a solved state, nondimensional.
+    fn gap_of(&self, solved: &Solved) -> f64 {
+        self.mean_gap(self.is_complete(solved), solved.d, solved.p.iter().sum())
     }
 
     /// Whether the mean gap of any force is above zero: no points are undefined, and nothing flows.

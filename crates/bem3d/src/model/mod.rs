@@ -2,6 +2,7 @@
 
 mod adhesive;
 mod adhesive_stiffness;
+mod certificate;
 mod contact;
 mod history;
 mod mean_gap;
