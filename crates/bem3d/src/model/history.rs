@@ -1,11 +1,7 @@
 //! Paths of loads: what the contact remembers.
 
 use super::Bem3d;
-use super::adhesive::{AdhesiveContact, WithoutAdhesion};
 use super::options::NAME;
-use super::plastic_path::PlasticPath;
-use super::prepared::refuse_together;
-use super::profile;
 use crate::tuning::Tuning;
 use contact_model::{
     Adhesion, ContactModel, Error, Hardness, History, HistoryModel, RequiredMemory, Result, Scene, Source,
@@ -38,23 +34,11 @@ impl HistoryModel for Bem3dPath {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn History>> {
         scene.validate()?;
-        refuse_together(&scene.effects)?;
-        profile::check(scene)?;
-        match scene.effects.adhesion {
-            Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work > 0.0 => {
-                Ok(Box::new(AdhesiveContact::new(&self.0, scene, seed, &Tuning::DEFAULT)?))
-            }
-            Adhesion::ShortRange { .. } | Adhesion::FiniteRange { .. } => {
-                Ok(Box::new(WithoutAdhesion::new(ContactModel::prepare(&self.0, scene, seed)?)))
-            }
-            Adhesion::Off if scene.effects.hardness == Hardness::Off => {
-                Err(Error::unsupported(NAME, "a path without hardness or adhesion: nothing depends on it"))
-            }
-            Adhesion::Off => {
-                Ok(Box::new(PlasticPath::new(self.0.prepared(scene, seed, &Tuning::DEFAULT)?)))
-            }
-            other => Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
+        if scene.effects.hardness == Hardness::Off && scene.effects.adhesion == Adhesion::Off {
+            let what = "a path without hardness or adhesion: nothing depends on it";
+            return Err(Error::unsupported(NAME, what));
         }
+        Ok(Box::new(self.0.prepared(scene, seed, &Tuning::DEFAULT)?))
     }
 
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
