@@ -4,7 +4,7 @@
 use analytic::Jkr;
 use analytic::maugis_dugdale::MaugisSphere;
 use approx::assert_relative_eq;
-use bem3d::{Bem3d, Bem3dPath};
+use bem3d::Bem3d;
 use contact_model::{
     Adhesion, AdhesionLaw, ContactModel, ContactState, Load, PreparedContact, Scene, Step, Surface,
 };
@@ -149,7 +149,7 @@ impl OnCells {
         scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale };
         (scene.outputs.area, scene.outputs.stiffness) = (true, false);
         let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
-        let path = ContactModel::prepare(&Bem3dPath(model), &scene, 0).unwrap();
+        let path = ContactModel::prepare(&model, &scene, 0).unwrap();
         Self { exact, path, unit, force: PI * work, cell: 2.0 * half / cells as f64 }
     }
 

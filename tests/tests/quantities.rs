@@ -7,7 +7,7 @@
 //! More states than the default:
 //! `QUANTITIES=20 cargo test --release -p tests --test physics quantities -- --nocapture`.
 
-use bem3d::{Bem3d, Bem3dPath};
+use bem3d::Bem3d;
 use contact_model::{
     Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Error, Friction,
     Hardness, HeightMap, Load, Pair, PronySeries, Relaxing, Rheology, Scene, Status, Step, Surface,
@@ -277,7 +277,7 @@ fn elastic(seed: u64) -> Result<Faults, Error> {
 
 /// Walks a path from nothing; the state at its end.
 fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Result<ContactState, Error> {
-    let mut history = Bem3dPath(model).prepare(scene, 0)?;
+    let mut history = model.prepare(scene, 0)?;
     let mut last = None;
     for (i, &load) in loads.iter().enumerate() {
         last = Some(history.advance(Step::normal(i as f64, load))?);
@@ -380,7 +380,7 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     let capacity =
         pressure * map_of(&scene).heights().len() as f64 * map_of(&scene).dx() * map_of(&scene).dy();
     let most = most.min(0.7 * capacity);
-    let mut history = Bem3dPath(model(1e-8)).prepare(&scene, 0)?;
+    let mut history = model(1e-8).prepare(&scene, 0)?;
     // First touch of the virgin surface, and that of the indented one, have no force.
     let mut last = history.advance(Step::normal(0.0, Load::Force(0.0)))?;
     let (mut work, mut state) = (0.0, last.clone());
@@ -520,7 +520,7 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
         },
         ..scene.clone()
     };
-    let mut history = Bem3dPath(model(1e-7)).prepare(&bare, 0)?;
+    let mut history = model(1e-7).prepare(&bare, 0)?;
     for (i, load) in loads(&planes).into_iter().enumerate() {
         history.advance(Step::normal(i as f64, load))?;
     }

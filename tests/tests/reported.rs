@@ -2,7 +2,7 @@
 
 use analytic::jkr::AdhesiveSphere;
 use approx::assert_relative_eq;
-use bem3d::{Bem3d, Bem3dPath};
+use bem3d::Bem3d;
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Conductance, ContactModel, ContactState, Error, Hardness, HeightMap,
     Load, Scene, SelfAffine, Step, Surface,
@@ -10,7 +10,7 @@ use contact_model::{
 use std::sync::Arc;
 
 fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
-    let mut history = Bem3dPath(model).prepare(scene, 0).unwrap();
+    let mut history = model.prepare(scene, 0).unwrap();
     let mut time = 0.0;
     let mut step = |&load: &Load| {
         time += 1.0;

@@ -3,7 +3,7 @@
 
 use analytic::adhesive_wave::WavyContact;
 use analytic::jkr::AdhesiveSphere;
-use bem3d::{Bem3d, Bem3dPath};
+use bem3d::Bem3d;
 use contact_model::{
     Adhesion, Boundary, Branch, Cells, ContactModel, ContactState, Error, HeightMap, Load, PreparedContact,
     Scene, Size, Step, Surface,
@@ -22,7 +22,7 @@ fn scene(map: HeightMap) -> Scene {
 }
 
 fn path(scene: &Scene) -> Box<dyn PreparedContact> {
-    Bem3dPath(Bem3d { tolerance: 1e-6, ..Bem3d::default() }).prepare(scene, 0).unwrap()
+    Bem3d { tolerance: 1e-6, ..Bem3d::default() }.prepare(scene, 0).unwrap()
 }
 
 fn at(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState, Error> {

@@ -11,8 +11,8 @@
 //! without and with adhesion; side, longest wave and range in nm.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, ContactModel, ContactState, Error, HeightMap, Load,
-    Scene, SelfAffine, Step, Surface,
+    Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Error, HeightMap, Load, Scene,
+    SelfAffine, Step, Surface,
 };
 use std::error::Error as StdError;
 use std::f64::consts::{PI, TAU};
@@ -63,7 +63,7 @@ fn jkr(cells: f64, off: f64, steps: u32) -> Result<(), Box<dyn StdError>> {
     (scene.outputs.area, scene.outputs.stiffness) = (true, false);
     scene.effects.adhesion = Adhesion::ShortRange { work };
     let model = Bem3d { tolerance: 1e-6, ..Bem3d::default() };
-    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, 0)?;
+    let mut history = ContactModel::prepare(&model, &scene, 0)?;
     let (first, last) = (radius * radius / 3.0, -0.75 * (PI * PI * work * work).cbrt());
     let (mut lowest, mut applications) = (0.0f64, 0);
     let start = Instant::now();
@@ -108,7 +108,7 @@ fn sphere(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> R
     scene.outputs.area = true;
     scene.effects.adhesion = Adhesion::FiniteRange { work, range, law };
     let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
-    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, 0)?;
+    let mut history = ContactModel::prepare(&model, &scene, 0)?;
     let mut lowest = f64::INFINITY;
     println!(
         "approach force radius stiffness branch stability energy cells sweep-steps applications seconds"
@@ -151,7 +151,7 @@ fn map(
         Adhesion::ShortRange { work }
     };
     let model = Bem3d { cells, tolerance, ..Bem3d::default() };
-    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, seed)?;
+    let mut history = ContactModel::prepare(&model, &scene, seed)?;
     println!("force stiffness branch stability energy cells steps applications seconds");
     for (i, &force) in forces.iter().enumerate() {
         let start = Instant::now();

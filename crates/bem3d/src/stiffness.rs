@@ -1,6 +1,6 @@
 //! The incremental stiffness on a given contact set: one linear solve with two-sided bounds.
 
-use crate::active_set::{Problem, Solved};
+use crate::active_set::{Bounds, Problem, Solved};
 use crate::geometry::CellSet;
 use crate::kernel::KernelTable;
 use crate::linear::{Energy, Fixed, StoppingCriteria};
@@ -40,23 +40,23 @@ impl Stiffness {
 pub struct Responding<'a> {
     /// The cells.
     pub cells: Cow<'a, CellSet>,
-    /// A pressure at which they would no longer follow; infinite where nothing limits it.
-    pub limit: f64,
-    /// Cells that cannot be on the wrong side, whatever is left of their gaps: saturated ones of a contact that is held as a whole; those at
-    /// the limit without a gap, where the direction of the load decides.
+    /// The bounds at which their pressure would no longer follow.
+    pub bounds: Bounds,
+    /// Cells that cannot be on the wrong side, whatever is left of their gaps: those at the upper bound in a contact that is held as a
+    /// whole; those at the bound without a gap, where the direction of the load decides.
     pub decided: CellSet,
 }
 
 impl<'a> Responding<'a> {
-    /// The cells below the hardness.
-    pub fn elastic(state: &'a Solved, hardness: f64) -> Self {
-        Self { cells: state.elastic(hardness), limit: hardness, decided: CellSet::default() }
+    /// The free cells.
+    pub fn free(state: &'a Solved, bounds: Bounds) -> Self {
+        Self { cells: bounds.free(&state.contact, &state.p), bounds, decided: CellSet::default() }
     }
 
-    /// The whole contact, held.
-    pub fn whole(state: &'a Solved, hardness: f64) -> Self {
-        let decided = state.contact.without(&state.elastic(hardness));
-        Self { cells: Cow::Borrowed(&state.contact), limit: f64::INFINITY, decided }
+    /// The whole contact, held: the upper bound limits nothing.
+    pub fn whole(state: &'a Solved, bounds: Bounds) -> Self {
+        let decided = state.contact.without(&bounds.free(&state.contact, &state.p));
+        Self { cells: Cow::Borrowed(&state.contact), bounds: Bounds::Unlimited, decided }
     }
 }
 
@@ -95,7 +95,7 @@ pub fn solve(
         let known = contact.carry(&responding.decided, &vec![true; responding.decided.len()]);
         left.iter_mut().zip(known).filter(|(_, known)| *known).for_each(|(left, _)| *left = 0.0);
     }
-    let mut room = state.room(contact, responding.limit).into_owned();
+    let mut room = state.room(contact, responding.bounds).into_owned();
     let mut undecided = state.undecided(grid, contact, &left, &tuning);
     if !responding.decided.is_empty() {
         undecided = undecided.without(&responding.decided);

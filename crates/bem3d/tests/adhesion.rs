@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp)] // Tests.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Bem3dPath, Boundary, Branch, ContactModel, ContactState, Effects, Error,
-    Hardness, HeightMap, Load, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
+    Adhesion, AdhesionLaw, Bem3d, Boundary, Branch, ContactModel, ContactState, Effects, Error, Hardness,
+    HeightMap, Load, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ fn map(cells: usize, side: f64, height: impl Fn(usize, usize) -> f64) -> Surface
 }
 
 fn history(model: Bem3d, scene: &Scene) -> Box<dyn PreparedContact> {
-    ContactModel::prepare(&Bem3dPath(model), scene, 1).unwrap()
+    ContactModel::prepare(&model, scene, 1).unwrap()
 }
 
 fn at(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState, Error> {
@@ -74,7 +74,7 @@ fn nothing_attracts_without_work() {
     let expected = ContactModel::prepare(&model, &elastic, 3).unwrap().solve(load).unwrap();
     for without in [without, short] {
         assert_eq!(ContactModel::prepare(&model, &without, 3).unwrap().solve(load).unwrap(), expected);
-        let mut history = ContactModel::prepare(&Bem3dPath(model), &without, 3).unwrap();
+        let mut history = ContactModel::prepare(&model, &without, 3).unwrap();
         assert_eq!(at(&mut *history, load).unwrap(), expected.clone().with_time(0.0));
         assert!(at(&mut *history, Load::Force(-0.1)).is_err());
     }
@@ -91,7 +91,7 @@ fn a_single_load_is_on_the_branch_of_approach() {
     contact.solve(Load::Approach(2.0)).unwrap();
     let again = contact.solve(Load::Approach(0.2)).unwrap();
     assert_eq!((again.force, again.adhesive.unwrap().branch), (first.force, Branch::Approach));
-    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, 3).unwrap();
+    let mut history = ContactModel::prepare(&model, &scene, 3).unwrap();
     at(&mut *history, Load::Approach(2.0)).unwrap();
     let withdrawn = at(&mut *history, Load::Approach(0.2)).unwrap();
     assert_eq!(withdrawn.adhesive.unwrap().branch, Branch::Withdrawal);
@@ -105,7 +105,7 @@ fn stiffness_of_a_periodic_contact_is_the_slope_of_its_force() {
     scene.effects.boundary = Boundary::Periodic;
     scene.outputs.mean_gap = true;
     let model = Bem3d { cells: 32, tolerance: 1e-9, ..Bem3d::default() };
-    let mut history = ContactModel::prepare(&Bem3dPath(model), &scene, 3).unwrap();
+    let mut history = ContactModel::prepare(&model, &scene, 3).unwrap();
     let [low, middle, high] = [0.999, 1.0, 1.001].map(|f| at(&mut *history, Load::Force(0.5 * f)).unwrap());
     let slope = (high.force - low.force) / (low.mean_gap.unwrap() - high.mean_gap.unwrap());
     let k = middle.stiffness.unwrap();
@@ -283,8 +283,7 @@ fn a_single_pull_begins_in_contact() {
 #[test]
 fn what_makes_no_sense_is_refused() {
     let flat = || Surface::Flat { size: 1.0.into() };
-    let prepared =
-        |scene: &Scene| ContactModel::prepare(&Bem3dPath(Bem3d { cells: 8, ..Bem3d::default() }), scene, 0);
+    let prepared = |scene: &Scene| ContactModel::prepare(&Bem3d { cells: 8, ..Bem3d::default() }, scene, 0);
     for (work, range) in [(f64::NAN, 0.1), (-1.0, 0.1), (0.1, 0.0), (0.1, f64::NAN), (f64::INFINITY, 0.1)] {
         assert!(matches!(prepared(&with(flat(), work, range, DUGDALE)), Err(Error::Domain { .. })));
     }

@@ -126,7 +126,7 @@ fn a_path_remembers_its_indentation() {
         [(Boundary::Free, 4.0, [0.3, 0.8, 1.5]), (Boundary::Periodic, 6.0, [0.5, 1.0, 2.5])]
     {
         let scene = rough(Some(hardness), boundary);
-        let mut path = Bem3dPath(TIGHT).prepare(&scene, 5).unwrap();
+        let mut path = TIGHT.prepare(&scene, 5).unwrap();
         let mut time = 0.0;
         let mut go = |path: &mut dyn PreparedContact, force: f64| {
             time += 1.0;
@@ -171,7 +171,7 @@ fn a_path_remembers_its_indentation() {
 fn a_path_is_drawn_off_its_indentation() {
     let mut scene = rough(Some(4.0), Boundary::Periodic);
     scene.outputs.mean_gap = true;
-    let mut path = Bem3dPath(Bem3d { cells: 32, ..TIGHT }).prepare(&scene, 5).unwrap();
+    let mut path = Bem3d { cells: 32, ..TIGHT }.prepare(&scene, 5).unwrap();
     let mut go = |load: Load| path.advance(Step::normal(0.0, load)).unwrap();
     let virgin = go(Load::Force(0.0)).mean_gap.unwrap();
     let pressed = go(Load::Force(2.0)).plastic.unwrap();
@@ -198,7 +198,7 @@ const STEPS: usize = 200;
 fn a_loop_balances_its_energy() {
     let mut scene = rough(Some(2.0), Boundary::Free);
     scene.outputs = Outputs::default();
-    let mut path = Bem3dPath(Bem3d { cells: 32, ..TIGHT }).prepare(&scene, 5).unwrap();
+    let mut path = Bem3d { cells: 32, ..TIGHT }.prepare(&scene, 5).unwrap();
     let deepest = 1.0;
     let (mut work, mut last, mut unloaded) = (0.0, (0.0, 0.0), 0.0);
     for i in 1..=2 * STEPS {
@@ -234,9 +234,9 @@ fn what_is_refused() {
     ] {
         both.effects.adhesion = adhesion;
         assert!(matches!(ContactModel::prepare(&TIGHT, &both, 5), Err(Error::Unsupported { .. })));
-        assert!(matches!(Bem3dPath(TIGHT).prepare(&both, 5), Err(Error::Unsupported { .. })));
+        assert!(matches!(TIGHT.prepare(&both, 5), Err(Error::Unsupported { .. })));
     }
-    let mut path = Bem3dPath(TIGHT).prepare(&scene, 5).unwrap();
+    let mut path = TIGHT.prepare(&scene, 5).unwrap();
     path.advance(Step::normal(1.0, Load::Force(0.5))).unwrap();
     for step in [
         Step { tangential: Tangential::Force(0.1), ..Step::normal(2.0, Load::Force(0.5)) },

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests.
 
-use bem3d::{Bem3d, Bem3dPath, ContactModel, ContactState, Hardness, Load, Method, Scene, Step, Surface};
+use bem3d::{Bem3d, ContactModel, ContactState, Hardness, Load, Method, Scene, Step, Surface};
 use contact_model::{Adhesion, Boundary, Conductance, HeightMap};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -259,7 +259,7 @@ fn what_a_half_plane_has_not_is_refused_with_the_reason() {
         let mut sticky = scene(32, 1.0, boundary, rough);
         sticky.effects.adhesion = Adhesion::ShortRange { work: 1e-3 };
         assert!(refused(&sticky).contains("adhesion of a profile"));
-        assert!(Bem3dPath(Bem3d::default()).prepare(&sticky, 0).is_err());
+        assert!(Bem3d::default().prepare(&sticky, 0).is_err());
     }
     // A profile has one row.
     let map = HeightMap::new([2, 2], 1.0, vec![0.0; 4]).unwrap();
@@ -270,7 +270,7 @@ fn what_a_half_plane_has_not_is_refused_with_the_reason() {
 fn a_path_with_hardness_keeps_its_indentation() {
     let mut body = scene(200, 1.0, Boundary::Free, |x| -(x - 0.5).powi(2));
     body.effects.hardness = Hardness::Limit { pressure: 0.1 };
-    let mut path = Bem3dPath(Bem3d::default()).prepare(&body, 0).unwrap();
+    let mut path = Bem3d::default().prepare(&body, 0).unwrap();
     let loaded = path.advance(Step::normal(1.0, Load::Force(0.02))).unwrap();
     let unloaded = path.advance(Step::normal(2.0, Load::Force(0.0))).unwrap();
     assert!(loaded.plastic.unwrap().area > 0.0 && loaded.approach.is_none());

@@ -212,7 +212,7 @@ proptest! {
     fn a_loop_stores_and_dissipates_the_work(map in any_map(), deepest in 0.1_f64..1.5, share in 0.05_f64..0.9) {
         let (scene, cell) = (elastic(&map, Boundary::Free), map.dx() * map.dx());
         let hardness = share * highest(&solved(&scene, Load::Approach(deepest)));
-        let mut path = Bem3dPath(model()).prepare(&with_hardness(&scene, hardness), 0).unwrap();
+        let mut path = model().prepare(&with_hardness(&scene, hardness), 0).unwrap();
         let depths: Vec<f64> = (0..=3 * STEPS)
             .map(|i| deepest * (if i <= STEPS { i } else { i.abs_diff(2 * STEPS) }) as f64 / STEPS as f64)
             .collect();
@@ -282,7 +282,7 @@ fn with_adhesion(scene: &Scene, work: f64, range: f64) -> Scene {
 }
 
 fn path(scene: &Scene) -> Box<dyn PreparedContact> {
-    ContactModel::prepare(&Bem3dPath(model()), scene, 0).unwrap()
+    ContactModel::prepare(&model(), scene, 0).unwrap()
 }
 
 fn at(path: &mut dyn PreparedContact, d: f64) -> ContactState {

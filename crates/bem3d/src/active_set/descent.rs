@@ -1,5 +1,6 @@
 //! The fall-back of the outer iteration: steps along which the energy falls, whatever they begin with.
 
+use super::bounds::Bounds;
 use crate::geometry::CellSet;
 use crate::operator::Operators;
 use crate::real::{dot, each, sum, sum_of_pairs, update};
@@ -10,11 +11,11 @@ const PASSES: usize = 200;
 /// A sum is met where it is off by less than this share: the rounding of a sum.
 const ROUNDING: f64 = 1e-15;
 
-/// The pressures `0 <= p <= p_s`, of a given sum where the force is prescribed.
+/// The pressures between their bounds, of a given sum where the force is prescribed.
 #[derive(Debug, Clone, Copy)]
 pub struct Feasible {
-    /// Largest pressure, p_s; infinite without a hardness.
-    pub hardness: f64,
+    /// The bounds.
+    pub bounds: Bounds,
     /// The sum, where it is prescribed.
     pub force: Option<f64>,
 }
@@ -24,9 +25,9 @@ impl Feasible {
     ///
     /// The sum rises with mu and is piecewise linear: Newton's method within a bracket, which is halved where Newton's step leaves it.
     fn project(self, y: &mut [f64]) {
-        let hardness = self.hardness;
+        let upper = self.bounds.upper();
         let Some(force) = self.force else {
-            return each(y, |y| *y = y.clamp(0.0, hardness));
+            return each(y, |y| *y = y.clamp(0.0, upper));
         };
         // The sum is 0 at the lower end. At the upper end each cell carries its share of the force, or p_s where that is less.
         let (smallest, largest) =
@@ -38,8 +39,8 @@ impl Feasible {
             let (mut total, mut between) = (0.0, 0.0);
             for y in y.iter() {
                 let p = y + shift;
-                if p >= hardness {
-                    total += hardness;
+                if p >= upper {
+                    total += upper;
                 } else if p > 0.0 {
                     total += p;
                     between += 1.0;
@@ -61,15 +62,15 @@ impl Feasible {
             }
             shift = next;
         }
-        each(y, |y| *y = (*y + shift).clamp(0.0, hardness));
+        each(y, |y| *y = (*y + shift).clamp(0.0, upper));
         // Where y is large and p_s small, the shift has fewer digits than the pressures.
-        let between = |y: f64| y > 0.0 && y < hardness;
+        let between = |y: f64| y > 0.0 && y < upper;
         let count = y.iter().filter(|&&y| between(y)).count();
         let missing = (force - sum(y)) / count as f64;
         if count > 0 {
             each(y, |y| {
                 if between(*y) {
-                    *y = (*y + missing).clamp(0.0, hardness);
+                    *y = (*y + missing).clamp(0.0, upper);
                 }
             });
         }
@@ -98,7 +99,7 @@ pub fn descend(
     steps: usize,
     stop: Stop<'_>,
 ) -> usize {
-    let hardness = feasible.hardness;
+    let upper = feasible.bounds.upper();
     let (mut target, mut displaced) = (Vec::new(), Vec::new());
     let (mut change, mut residual) = (vec![0.0; p.len()], vec![0.0; p.len()]);
     let mut length = 1.0 / operators.table().own();
@@ -113,7 +114,7 @@ pub fn descend(
         let limit = if on_face {
             let beta = conjugate.map_or(0.0, |last| inside / last);
             update(&mut change, &residual, |change, r| *change = beta * *change - r);
-            room(p, &change, hardness)
+            room(p, &change, upper)
         } else {
             target.clear();
             target.extend(p.iter().zip(&*gap).map(|(p, gap)| p - length * (gap - plane)));
@@ -142,11 +143,11 @@ pub fn descend(
         if !on_face && share >= 1.0 {
             p.copy_from_slice(&target);
         } else {
-            update(p, &change, |p, change| *p = (*p + share * change).clamp(0.0, hardness));
+            update(p, &change, |p, change| *p = (*p + share * change).clamp(0.0, upper));
         }
         conjugate = (on_face && share < limit).then_some(inside);
         if on_face && share >= limit {
-            meet(p, &change, hardness);
+            meet(p, &change, upper);
         }
         update(gap, &displaced, |gap, u| *gap += share * u);
     }
@@ -156,10 +157,11 @@ pub fn descend(
 /// The gradient on the cells between their bounds, less its mean where the force is prescribed, zero on all others. Its square, that of the
 /// gradient on cells at a bound that they would leave, and the mean.
 fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [f64]) -> (f64, f64, f64) {
-    let Feasible { hardness, force } = feasible;
+    let Feasible { bounds, force } = feasible;
+    let upper = bounds.upper();
     let (mut total, mut count) = (0.0, 0.0);
     for (&p, gap) in p.iter().zip(gap) {
-        if p > 0.0 && p < hardness {
+        if p > 0.0 && p < upper {
             (total, count) = (total + gap, count + 1.0);
         }
     }
@@ -173,7 +175,7 @@ fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [
         if p <= 0.0 {
             outside += r.min(0.0).powi(2);
             *r = 0.0;
-        } else if p >= hardness {
+        } else if p >= upper {
             outside += r.max(0.0).powi(2);
             *r = 0.0;
         }
@@ -182,12 +184,12 @@ fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [
 }
 
 /// How many times a change can be added before a pressure meets a bound.
-fn room(p: &[f64], change: &[f64], hardness: f64) -> f64 {
+fn room(p: &[f64], change: &[f64], upper: f64) -> f64 {
     let steps = p.iter().zip(change).map(|(p, &change)| {
         if change < 0.0 {
             -p / change
         } else if change > 0.0 {
-            (hardness - p) / change
+            (upper - p) / change
         } else {
             f64::INFINITY
         }
@@ -196,14 +198,14 @@ fn room(p: &[f64], change: &[f64], hardness: f64) -> f64 {
 }
 
 /// Puts the pressures that a step brought to a bound, up to rounding, exactly there.
-fn meet(p: &mut [f64], change: &[f64], hardness: f64) {
+fn meet(p: &mut [f64], change: &[f64], upper: f64) {
     let largest = p.iter().copied().fold(0.0, f64::max);
     let near = 1e-14 * largest;
     update(p, change, |p, &change| {
         if change < 0.0 && *p <= near {
             *p = 0.0;
-        } else if change > 0.0 && *p >= hardness - near {
-            *p = hardness;
+        } else if change > 0.0 && *p >= upper - near {
+            *p = upper;
         }
     });
 }

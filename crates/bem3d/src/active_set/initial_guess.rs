@@ -193,7 +193,7 @@ fn coarser(problem: &Problem) -> Problem {
         }
     });
     let mut coarse = Problem::new(grid, Arc::new(z), problem.operators.table().medium(), &tuning);
-    coarse.hardness = problem.hardness * pressure_ratio(fine, &tuning);
+    coarse.bounds = problem.bounds.scaled(pressure_ratio(fine, &tuning));
     coarse
 }
 

@@ -1,17 +1,18 @@
 //! The complementarity problem at one load.
 
+mod bounds;
 mod candidates;
 mod descent;
-mod hardness;
 mod initial_guess;
+mod line_search;
 mod progress;
 mod residuals;
 mod solver;
 mod state;
 mod undecided;
 
+pub use bounds::Bounds;
 pub use candidates::Candidates;
-pub use hardness::is_saturated;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;
 pub use solver::{resume, solve};

@@ -15,8 +15,8 @@ pub struct Evaluated {
     pub complete: bool,
     /// Whether p and d are exact on the set, up to rounding.
     pub factored: bool,
-    /// Whether nothing was left of a step that was shortened.
-    pub jammed: bool,
+    /// How much was left of the step that led here, where it was shortened.
+    pub step: Option<f64>,
 }
 
 /// How to go on.
@@ -100,7 +100,8 @@ impl OuterProgress {
 
     /// Decides after the evaluation of a gap at the approach d.
     pub fn judge(&mut self, evaluated: Evaluated, d: f64, tuning: &Tuning, stop: Stop<'_>) -> Decision {
-        let Evaluated { residuals, complete, factored, jammed } = evaluated;
+        let Evaluated { residuals, complete, factored, step } = evaluated;
+        let jammed = step.is_some_and(|share| share < tuning.jammed);
         let (error, limits) = (residuals.worst(), self.limits);
         let settled = !factored || residuals.deepest <= tuning.factor_rounding * d;
         if complete && settled && error <= limits.tolerance {
@@ -156,7 +157,7 @@ mod tests {
     /// A complete evaluation with these residuals.
     fn seen(error: f64) -> Evaluated {
         let residuals = Residuals { duality_gap: error, ..Residuals::default() };
-        Evaluated { residuals, complete: true, factored: false, jammed: false }
+        Evaluated { residuals, complete: true, factored: false, step: None }
     }
 
     /// The first decision.
@@ -237,7 +238,7 @@ mod tests {
 
     #[test]
     fn the_fall_back_begins_where_nothing_falls_and_goes_on_to_its_goal() {
-        let jammed = |error| Evaluated { complete: false, jammed: true, ..seen(error) };
+        let jammed = |error| Evaluated { complete: false, step: Some(0.0), ..seen(error) };
         let next = |progress: &mut OuterProgress, evaluated| {
             let decision = progress.judge(evaluated, 1.0, &TUNING, &never);
             (decision, progress.falls_back())

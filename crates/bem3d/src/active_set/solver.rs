@@ -1,14 +1,14 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating cells.
 
 use super::descent::{Feasible, descend};
-use super::hardness;
+use super::line_search::shorten;
 use super::progress::{Decision, Evaluated, OuterProgress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
 use crate::geometry::CellSet;
 use crate::linear::{Factor, Fixed};
 use crate::parts::{Part, timed};
-use crate::real::{each, largest, smallest, sum, sum_of_pairs};
+use crate::real::{each, largest, sum_of_pairs};
 use contact_model::{Status, Stop};
 
 /// Solves for one load from a guess.
@@ -39,7 +39,7 @@ pub fn resume(
     stop: Stop<'_>,
 ) -> Solved {
     let Solved { contact, p, d, q, residuals, continuation, .. } = solved;
-    let evaluated = Evaluated { residuals, complete: true, factored: q.is_some(), jammed: false };
+    let evaluated = Evaluated { residuals, complete: true, factored: q.is_some(), step: None };
     let solver = Solver::new(problem, target, limits, Pressure { contact, p, d, q }, continuation);
     solver.iterate(Some(evaluated), false, stop)
 }
@@ -68,7 +68,7 @@ struct Solver<'a> {
     /// The best pressure so far, unless it is the present one.
     best: Pressure,
     now_is_best: bool,
-    /// The pressure before with its gap, where cells are saturated.
+    /// The pressure before with its gap, where cells were at their upper bound: steps from such a pressure may have to be shortened.
     before: Option<(Pressure, Continuation)>,
     /// Steps of the next inner solve at most: few after one that was shortened, because long ones change the sets too much at once.
     inner_steps: usize,
@@ -108,8 +108,8 @@ impl<'a> Solver<'a> {
             let mut evaluated =
                 (known.take()).unwrap_or_else(|| timed(Part::Residuals, || self.evaluate(progress.rough)));
             let within = evaluated.residuals.worst() <= tolerance;
-            if within && (progress.rough || self.is_saturated() && !evaluated.complete) {
-                // Better than expected; a step that was shortened has not been evaluated.
+            if within && (progress.rough || evaluated.step.is_some()) {
+                // Better than expected; the end of a step that was shortened has not been evaluated.
                 evaluated = timed(Part::Residuals, || self.evaluate(false));
             }
             let fell_back = progress.falls_back();
@@ -125,7 +125,8 @@ impl<'a> Solver<'a> {
                 steps += self.descend(stop);
                 continue;
             }
-            self.before = self.is_saturated().then(|| (self.now.clone(), self.state.clone()));
+            let may_alternate = self.problem.bounds.is_reached(&self.now.p);
+            self.before = may_alternate.then(|| (self.now.clone(), self.state.clone()));
             steps += self.improve(evaluated.residuals.worst(), stop);
         };
         let mut residuals = last.residuals;
@@ -141,38 +142,48 @@ impl<'a> Solver<'a> {
         Solved { contact, p, d, q, residuals, steps, status, continuation }
     }
 
-    /// Whether any cell is saturated.
-    fn is_saturated(&self) -> bool {
-        hardness::is_saturated(&self.now.p, self.problem.hardness)
-    }
-
     /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it makes.
     ///
     /// A `rough` evaluation in single precision says how to go on, but is never evidence.
     fn evaluate(&mut self, rough: bool) -> Evaluated {
+        let Self { problem, target, now, .. } = self;
+        let Problem { bounds, candidates, .. } = &**problem;
+        let joined = bounds.admit(&mut now.contact, &mut now.p, target.force(), candidates);
+        self.displace(joined, rough);
+        let step = self.shorten();
         let Self { problem, target, limits, now, state, left, reach, .. } = self;
-        let Problem { candidates, operators, hardness, .. } = &mut **problem;
-        let (tuning, hardness) = (*operators.tuning(), *hardness);
-        let force = match *target {
-            Target::Force(force) => Some(force),
-            Target::Approach(_) => None,
-        };
-        hardness::saturate(&mut now.contact, &mut now.p, force, hardness);
-        if let Some(force) = force
-            && !hardness::is_saturated(&now.p, hardness)
-        {
-            rescale(&mut now.p, force);
+        let (bounds, tuning) = (problem.bounds, problem.operators.tuning());
+        let Continuation { checked, gap, .. } = state;
+        now.contact.carry_to(checked, gap, left);
+        match *target {
+            Target::Approach(asked) => now.d = asked,
+            // That of a factored set is exact.
+            Target::Force(_) if now.q.is_some() => {}
+            Target::Force(_) => now.d = bounds.approach(&now.p, left, gap).unwrap_or(now.d),
         }
-        let saturated = hardness::is_saturated(&now.p, hardness);
-        let mut joined = false;
-        if saturated {
-            each(&mut now.p, |p| *p = p.min(hardness));
-            if let Some(force) = force {
-                joined = hardness::bring_to(&mut now.contact, &mut now.p, force, hardness, candidates);
-            }
+        let d = now.d;
+        for values in [&mut *gap, &mut *left] {
+            each(values, |g| *g -= d);
         }
+        // Just above the plane: a generous guess must not make every outer iteration evaluate the whole grid.
+        *reach = tuning.candidates * d;
+        let height = limits.height.unwrap_or(d);
+        Evaluated {
+            residuals: Residuals::measure(bounds, (&now.contact, &now.p, left), (checked, gap), height),
+            complete: !rough && step.is_none() && d <= state.reach,
+            factored: now.q.is_some(),
+            step,
+        }
+    }
+
+    /// Evaluates u + z under the present pressure on all cells that could touch; `joined`: cells were added to the contact set that may not
+    /// be among the candidates.
+    fn displace(&mut self, joined: bool, rough: bool) {
+        let Self { problem, now, state, reach, .. } = self;
+        let Problem { candidates, operators, .. } = &mut **problem;
+        let kept = operators.tuning().kept_candidates;
         // Later contact sets are subsets of the candidates that the first one is joined to.
-        if state.checked.is_empty() || !(tuning.kept_candidates * state.reach..=state.reach).contains(reach) {
+        if state.checked.is_empty() || !(kept * state.reach..=state.reach).contains(reach) {
             state.reach = *reach;
             state.checked = candidates.below(*reach).union(&now.contact);
         } else if joined {
@@ -185,78 +196,46 @@ impl<'a> Solver<'a> {
             operators.exact(&now.contact, &now.p, checked, gap);
         }
         candidates.add_to(checked, gap);
-        let mut share = None;
-        if let Some((before, at)) = self.before.take()
-            && at.checked.len() == checked.len()
-        {
-            let old = (at.checked.carry(&before.contact, &before.p), &at.gap[..], before.d);
-            let mut p = checked.carry(&now.contact, &now.p);
-            share = hardness::shorten(old, (&mut p, gap), tuning.whole_step);
-            self.inner_steps =
-                if share.is_some() { tuning.short_steps } else { self.inner_steps.saturating_mul(2) };
-            if share.is_some() {
-                now.contact = checked.filter(&p, |p| p > 0.0);
-                p.retain(|&p| p > 0.0);
-                now.p = p;
-            }
+    }
+
+    /// Shortens the step that led to the present pressure where it passed the least energy. The share that is left, if it did.
+    fn shorten(&mut self) -> Option<f64> {
+        let (before, at) = self.before.take()?;
+        let Continuation { checked, gap, .. } = &mut self.state;
+        if at.checked.len() != checked.len() {
+            return None;
         }
-        let saturated = hardness::is_saturated(&now.p, hardness);
-        now.contact.carry_to(checked, gap, left);
-        let force = sum(&now.p);
-        match *target {
-            Target::Force(_) if saturated => now.d = hardness::approach(&now.p, left, gap, hardness),
-            // The mean weighted by the pressure: the gap is then right where it carries.
-            Target::Force(_) if now.q.is_none() && force > 0.0 => {
-                now.d = sum_of_pairs(&now.p, left, |p, g| p / force * g);
-            }
-            Target::Force(_) => {}
-            Target::Approach(asked) => now.d = asked,
+        let tuning = *self.problem.operators.tuning();
+        let old = (at.checked.carry(&before.contact, &before.p), &at.gap[..], before.d);
+        let mut p = checked.carry(&self.now.contact, &self.now.p);
+        let share = shorten(old, (&mut p, gap), tuning.whole_step);
+        self.inner_steps =
+            if share.is_some() { tuning.short_steps } else { self.inner_steps.saturating_mul(2) };
+        if share.is_some() {
+            self.now.contact = checked.filter(&p, |p| p > 0.0);
+            p.retain(|&p| p > 0.0);
+            self.now.p = p;
         }
-        let d = now.d;
-        for values in [&mut *gap, &mut *left] {
-            each(values, |g| *g -= d);
-        }
-        // Just above the plane: a generous guess must not make every outer iteration evaluate the whole grid.
-        *reach = tuning.candidates * now.d;
-        let height = limits.height.unwrap_or(now.d);
-        let residuals = if saturated {
-            hardness::residuals(&checked.carry(&now.contact, &now.p), gap, hardness, height)
-        } else {
-            Residuals::measure(&now.p, left, smallest(gap), height)
-        };
-        Evaluated {
-            residuals,
-            complete: !rough && share.is_none() && now.d <= state.reach,
-            factored: now.q.is_some(),
-            jammed: share.is_some_and(|share| share < tuning.jammed),
-        }
+        share
     }
 
     /// One outer iteration: a new set from the gap, a solution on it, and the cells in tension removed. Returns the steps taken.
     fn improve(&mut self, error: f64, stop: Stop<'_>) -> usize {
         let Self { problem, target, limits, now, state, left, .. } = self;
-        let tuning = *problem.operators.tuning();
+        let (bounds, tuning) = (problem.bounds, *problem.operators.tuning());
         let Continuation { checked, gap, .. } = &*state;
-        let hardness = problem.hardness;
-        let saturated = hardness::is_saturated(&now.p, hardness);
-        let noise = tuning.noise
-            * if saturated {
-                root_mean_square(&hardness::of_elastic(&now.p, left, hardness))
-            } else {
-                root_mean_square(left)
-            };
+        let noise = tuning.noise * root_mean_square(&bounds.of_free(&now.p, left));
         let mut set = checked.filter(gap, |g| g < -noise).union(&now.contact);
-        let kept = saturated.then(|| hardness::kept(&now.contact, &now.p, left, hardness, noise));
-        if let Some(kept) = &kept {
-            set = set.without(kept);
+        let held = bounds.held(&now.contact, &now.p, left, noise);
+        if !held.is_empty() {
+            set = set.without(&held);
         }
         let planner = problem.operators.planner();
         let Some(recipe) = planner.system(&set, now.contact.len(), false) else { return 0 };
         if limits.factor
-            && !saturated
+            && !bounds.is_reached(&now.p)
             && planner.factors(set.len(), recipe.window)
             && let Some(exact) = eliminate(problem, &set, *target)
-            && !hardness::is_saturated(&exact.p, hardness)
         {
             self.reach = tuning.candidates * exact.d;
             self.advance(exact);
@@ -268,44 +247,22 @@ impl<'a> Solver<'a> {
         criteria.steps = criteria.steps.min(self.inner_steps);
         let Problem { operators, workspace, .. } = &mut **problem;
         workspace.take(operators, set, recipe);
-        let fixed = if matches!(target, Target::Force(_)) { Fixed::Force } else { Fixed::Approach };
+        let fixed = if target.force().is_some() { Fixed::Force } else { Fixed::Approach };
         let outcome = workspace.solve(operators, &mut change, fixed, criteria, stop);
         let set = workspace.set();
         set.add_carried(&now.contact, &now.p, &mut change);
-        let mut contact = set.filter(&change, |p| p > 0.0);
-        change.retain(|&p| p > 0.0);
-        if saturated || hardness::is_saturated(&change, hardness) {
-            match target {
-                Target::Force(force) => {
-                    let held = kept.as_ref().map_or(0, CellSet::len) as f64 * hardness;
-                    hardness::scale_to(&mut change, *force - held, hardness);
-                    contact = contact.filter(&change, |p| p > 0.0);
-                    change.retain(|&p| p > 0.0);
-                }
-                Target::Approach(_) => each(&mut change, |p| *p = p.min(hardness)),
-            }
-        }
-        if let Some(kept) = kept {
-            let all = contact.union(&kept);
-            change = all.carry(&contact, &change);
-            all.add_carried(&kept, &vec![hardness; kept.len()], &mut change);
-            contact = all;
-        }
+        let (contact, p) = bounds.corrected(set, change, &held, target.force());
         let d = now.d;
-        self.advance(Pressure { contact, p: change, d, q: None });
+        self.advance(Pressure { contact, p, d, q: None });
         outcome.steps
     }
 
     /// Steps of the fall-back from the present pressure and its gap. Returns the steps taken.
     fn descend(&mut self, stop: Stop<'_>) -> usize {
         let Self { problem, target, now, state, .. } = self;
-        let Problem { operators, hardness, .. } = &mut **problem;
+        let Problem { operators, bounds, .. } = &mut **problem;
         let Continuation { checked, gap, .. } = state;
-        let force = match *target {
-            Target::Force(force) => Some(force),
-            Target::Approach(_) => None,
-        };
-        let feasible = Feasible { hardness: *hardness, force };
+        let feasible = Feasible { bounds: *bounds, force: target.force() };
         let mut p = checked.carry(&now.contact, &now.p);
         let most = operators.tuning().fall_back_steps;
         let steps = descend(operators, checked, (&mut p, gap), feasible, most, stop);
@@ -325,7 +282,8 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Removes cells in tension from a small superset until none is left; p, q and d are exact up to rounding.
+/// Removes cells in tension from a small superset until none is left; p, q and d are exact up to rounding. `None` where no cell is left or
+/// one would have to be at its upper bound.
 fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Option<Pressure> {
     let mut set = superset.clone();
     loop {
@@ -340,7 +298,7 @@ fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Optio
         let p: Vec<f64> = q.iter().zip(&w).map(|(q, w)| d * q - w).collect();
         let contact = set.filter(&p, |p| p > 0.0);
         if contact.len() == set.len() {
-            return Some(Pressure { contact: set, p, d, q: Some(q) });
+            return (!problem.bounds.is_reached(&p)).then_some(Pressure { contact: set, p, d, q: Some(q) });
         }
         if contact.is_empty() {
             return None;
@@ -357,15 +315,6 @@ fn root_mean_square(values: &[f64]) -> f64 {
     }
     let square = sum_of_pairs(values, values, |v, _| (v / unit).powi(2));
     unit * (square / values.len() as f64).sqrt()
-}
-
-/// Brings a pressure to a force.
-fn rescale(p: &mut [f64], force: f64) {
-    let sum = sum(p);
-    if sum > 0.0 {
-        let factor = force / sum;
-        each(p, |p| *p *= factor);
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What is solved, from where, how well, and what comes of it.
 
+use super::bounds::Bounds;
 use super::candidates::Candidates;
-use super::hardness::elastic;
 use super::residuals::Residuals;
 use super::undecided::undecided;
 use crate::geometry::{CellSet, Grid};
@@ -23,8 +23,8 @@ pub struct Problem {
     pub operators: Operators,
     /// Room for its linear systems.
     pub workspace: Workspace,
-    /// Largest pressure of a cell; infinite without a hardness.
-    pub hardness: f64,
+    /// Between what the pressure of a cell lies.
+    pub bounds: Bounds,
     /// The same surface on larger cells, once a cold start has asked for it.
     pub coarser: Option<Box<Problem>>,
     /// Whether coarse grids may give initial guesses.
@@ -38,7 +38,7 @@ impl Problem {
             candidates: Candidates::new(grid, z),
             operators: timed(Part::Plans, || Operators::new(KernelTable::shared(grid, medium), tuning)),
             workspace: Workspace::default(),
-            hardness: f64::INFINITY,
+            bounds: Bounds::Unlimited,
             coarser: None,
             nested: true,
         }
@@ -90,7 +90,7 @@ pub struct Guess {
 pub struct Solved {
     /// The contact set: cells with p > 0.
     pub contact: CellSet,
-    /// Pressure on it; exactly the hardness on saturated cells.
+    /// Pressure on it; exactly the upper bound on cells that are at it.
     pub p: Vec<f64>,
     /// Approach.
     pub d: f64,
@@ -118,40 +118,45 @@ pub struct Continuation {
     pub reach: f64,
 }
 
+impl Target {
+    /// The sum of the pressure, where it is prescribed.
+    pub fn force(self) -> Option<f64> {
+        match self {
+            Self::Force(force) => Some(force),
+            Self::Approach(_) => None,
+        }
+    }
+}
+
 impl Solved {
     /// Gap left on a part of the contact set.
     pub fn gap_on(&self, part: &CellSet) -> Vec<f64> {
         part.carry(&self.continuation.checked, &self.continuation.gap)
     }
 
-    /// How far the pressure of the `elastic` cells is from its nearest bound, 0 or the hardness.
-    pub fn room(&self, elastic: &CellSet, hardness: f64) -> Cow<'_, [f64]> {
-        if hardness.is_infinite() && elastic.len() == self.contact.len() {
+    /// How far the pressure of the `free` cells is from the nearest of its bounds.
+    pub fn room(&self, free: &CellSet, bounds: Bounds) -> Cow<'_, [f64]> {
+        if bounds == Bounds::Unlimited && free.len() == self.contact.len() {
             return Cow::Borrowed(&self.p);
         }
-        let mut room = elastic.carry(&self.contact, &self.p);
+        let mut room = free.carry(&self.contact, &self.p);
         for p in &mut room {
-            *p = p.min(hardness - *p);
+            *p = p.min(bounds.upper() - *p);
         }
         Cow::Owned(room)
     }
 
-    /// The cells of the contact set below the hardness: all of them where no cell is saturated.
-    pub fn elastic(&self, hardness: f64) -> Cow<'_, CellSet> {
-        elastic(&self.contact, &self.p, hardness)
-    }
-
-    /// Cells outside the `elastic` ones that may belong to them: open cells whose gap is negative or below what it can still change, and
-    /// saturated cells of which the same is true of the indentation.
-    pub fn undecided(&self, grid: Grid, elastic: &CellSet, left: &[f64], tuning: &Tuning) -> CellSet {
+    /// Cells outside the `free` ones that may belong to them: open cells whose gap is negative or below what it can still change, and cells
+    /// at the upper bound of which the same is true of the indentation.
+    pub fn undecided(&self, grid: Grid, free: &CellSet, left: &[f64], tuning: &Tuning) -> CellSet {
         let Continuation { checked, gap, .. } = &self.continuation;
-        if elastic.len() == self.contact.len() {
-            return undecided(grid, elastic, left, checked, gap, tuning);
+        if free.len() == self.contact.len() {
+            return undecided(grid, free, left, checked, gap, tuning);
         }
-        let saturated = self.contact.without(elastic);
-        let twice: Vec<f64> = saturated.carry(checked, gap).iter().map(|g| -2.0 * g).collect();
+        let at_bound = self.contact.without(free);
+        let twice: Vec<f64> = at_bound.carry(checked, gap).iter().map(|g| -2.0 * g).collect();
         let mut away = gap.clone();
-        checked.add_carried(&saturated, &twice, &mut away);
-        undecided(grid, elastic, left, checked, &away, tuning)
+        checked.add_carried(&at_bound, &twice, &mut away);
+        undecided(grid, free, left, checked, &away, tuning)
     }
 }

@@ -10,7 +10,7 @@ use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
 use super::law::Shape;
 use super::mixing::Mixing;
-use crate::active_set::{self, Candidates, Limits, Problem, Residuals, Target};
+use crate::active_set::{self, Bounds, Candidates, Limits, Problem, Residuals, Target};
 use crate::geometry::CellSet;
 use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, smallest, sum};
@@ -322,9 +322,9 @@ impl Search<'_> {
         let contact = state.contact();
         let (p, left) =
             (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
-        let lowest = if state.gap.is_empty() { 0.0 } else { smallest(&state.gap) };
         let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
-        state.residuals = Residuals::measure(&p, &left, lowest, length);
+        let everywhere = (&state.cells, &state.gap[..]);
+        state.residuals = Residuals::measure(Bounds::Unlimited, (&contact, &p, &left), everywhere, length);
         state.mismatch = attraction.mismatch(&state.cells, &state.attraction, &state.gap);
     }
 

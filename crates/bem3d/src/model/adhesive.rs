@@ -1,16 +1,15 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
-use super::options::Bem3d;
+use super::certificate::GROWTH;
+use super::load::{Loads, Prescribed};
 use super::options::NAME;
-use super::prepared::{PreparedBem3d, without_tangential};
-use super::state::GROWTH;
+use super::prepared::PreparedSurface;
+use super::state::{Assembly, returned};
 use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
-use crate::tuning::Tuning;
 use contact_model::{
-    Adhesion, AdhesiveState, Branch, Certificate, ContactState, Effects, Error, Load, Normalisation,
-    PreparedContact, Result, Scene, SolveReport, Status, Step, Stop, Work,
+    Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Result, Status, Stop,
 };
 use std::f64::consts::PI;
 
@@ -25,9 +24,8 @@ const ON_BRANCH: f64 = 1e-3;
 /// One surface with adhesion of finite range, on its path.
 #[derive(Debug)]
 pub struct AdhesiveContact {
-    pub(super) inner: PreparedBem3d,
+    pub(super) surface: PreparedSurface,
     pub(super) attraction: Attraction,
-    time: f64,
     last: Option<Last>,
     plain: bool,
 }
@@ -50,51 +48,46 @@ pub(super) struct Found {
 }
 
 impl AdhesiveContact {
-    pub(super) fn new(model: &Bem3d, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<Self> {
-        let inner = model.prepared(&without_adhesion(scene), seed, tuning)?;
-        let attraction = attraction(&inner, scene.effects.adhesion)?;
-        Ok(Self { inner, attraction, time: 0.0, last: None, plain: false })
+    pub(super) fn new(surface: PreparedSurface, attraction: Attraction) -> Self {
+        Self { surface, attraction, last: None, plain: false }
     }
 
-    /// The nondimensional load.
-    fn control(&self, load: Load) -> Result<Control> {
-        let units = self.inner.nondimensional;
-        let held = |name, value: f64, result: f64| {
-            let kept = result.is_finite() && (value == 0.0 || result != 0.0);
-            let expected = "a load nearer to the scales of the surface";
-            if kept { Ok(result) } else { Err(Error::domain(name, value, expected)) }
+    /// No contact again.
+    pub(super) fn forget(&mut self) {
+        self.last = None;
+    }
+
+    /// The state of a load: on a path from the last one, else from no contact on the branch of approach.
+    pub(super) fn at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
+        let control = match load {
+            Prescribed::Force(force) => Control::Force(force),
+            Prescribed::Approach(d) => Control::Plane(d),
+            Prescribed::MeanGap(gap) => Control::Plane(self.surface.mean - gap),
         };
-        Ok(match load.validated_with_adhesion()? {
-            Load::Force(f) => Control::Force(held("force", f, (units.force_in(f.abs()) / PI).copysign(f))?),
-            Load::Approach(d) if !self.inner.is_periodic() => {
-                Control::Plane(held("approach", d, units.approach_in(d))?)
-            }
-            Load::MeanGap(gap) if self.inner.is_periodic() => {
-                Control::Plane(self.inner.mean - held("mean gap", gap, units.approach_in(gap))?)
-            }
-            Load::Approach(_) => {
-                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
-                return Err(Error::unsupported(NAME, what));
-            }
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
-        })
+        if loads == Loads::Single {
+            self.forget();
+        }
+        let next = self.next(control, stop)?;
+        let state = next.state.clone();
+        self.last = Some(next);
+        Ok(state)
     }
 
     /// The next state from the last one.
-    fn next(&mut self, load: Load, stop: Stop<'_>) -> Result<Last> {
-        match self.control(load)? {
+    fn next(&mut self, control: Control, stop: Stop<'_>) -> Result<Last> {
+        match control {
             Control::Force(f) if f < 0.0 && self.untouched() => {
                 // The segment begins without force: there the surfaces already hold each other.
                 let before = self.last.take();
-                let touched = self.at(Control::Force(0.0), stop);
+                let touched = self.step_to(Control::Force(0.0), stop);
                 let held = touched.and_then(|touched| {
                     self.last = Some(touched);
-                    self.at(Control::Force(f), stop)
+                    self.step_to(Control::Force(f), stop)
                 });
                 self.last = before;
                 held
             }
-            control => self.at(control, stop),
+            control => self.step_to(control, stop),
         }
     }
 
@@ -102,8 +95,8 @@ impl AdhesiveContact {
         self.last.as_ref().is_none_or(|last| last.equilibrium.contact().is_empty())
     }
 
-    fn at(&mut self, control: Control, stop: Stop<'_>) -> Result<Last> {
-        self.inner.begin_count();
+    fn step_to(&mut self, control: Control, stop: Stop<'_>) -> Result<Last> {
+        self.surface.begin_count();
         let last = self.last.as_ref().map(|last| last.equilibrium.clone());
         let found = self.search(control, last.as_ref(), self.tolerance(), stop)?;
         self.finish(found, stop)
@@ -111,12 +104,12 @@ impl AdhesiveContact {
 
     /// The tolerance of a stiffness that moves with the gaps, where one is wanted.
     fn tolerance(&self) -> Option<f64> {
-        let wanted = self.inner.outputs.stiffness && !self.attraction.moves_by_cells();
-        wanted.then_some(self.inner.options.tolerance)
+        let wanted = self.surface.outputs.stiffness && !self.attraction.moves_by_cells();
+        wanted.then_some(self.surface.options.tolerance)
     }
 
     fn shift(&self) -> f64 {
-        self.inner.problem.operators.table().shift()
+        self.surface.problem.operators.table().shift()
     }
 
     /// Whether a load is above that of a state.
@@ -139,8 +132,9 @@ impl AdhesiveContact {
         let mut plain = self.plain;
         let mut spent = (0, 0);
         loop {
-            let (limits, attraction) = (self.inner.limits(), &self.attraction);
-            let mut search = Search { problem: &mut self.inner.problem, attraction, control, limits, plain };
+            let (limits, attraction) = (self.surface.limits(), &self.attraction);
+            let mut search =
+                Search { problem: &mut self.surface.problem, attraction, control, limits, plain };
             let start = match last {
                 Some(last) => last.again(),
                 None => search.first(stop),
@@ -165,7 +159,7 @@ impl AdhesiveContact {
             let sound = status == Status::Converged && !left;
             if sound || !again {
                 response =
-                    respond(&mut self.inner.problem, attraction, control, &equilibrium, tolerance, stop);
+                    respond(&mut self.surface.problem, attraction, control, &equilibrium, tolerance, stop);
             }
             if again && !(sound && response.stability > 0.0) {
                 spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.sweeps);
@@ -194,7 +188,7 @@ impl AdhesiveContact {
     /// The error of a force that nothing holds, with the last stable state.
     fn pulled_off(&self, control: Control) -> Result<Error> {
         let force = if let Control::Force(f) = control { f } else { 0.0 };
-        let value = self.inner.nondimensional.force(PI * force.abs())?.copysign(force);
+        let value = self.surface.nondimensional.force(PI * force.abs())?.copysign(force);
         Ok(match &self.last {
             Some(last) => {
                 let mut best = last.state.clone();
@@ -216,10 +210,7 @@ impl AdhesiveContact {
         };
         let stiffness = self.stiffness(&equilibrium, &response, branch, stop);
         let force_error = self.force_error(control, &equilibrium, &response);
-        let inner = &mut self.inner;
-        let units = inner.nondimensional;
-        let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));
-        let net = equilibrium.force();
+        let surface = &mut self.surface;
         let residuals = equilibrium.residuals;
         let certificate = Certificate {
             duality_gap: residuals.duality_gap,
@@ -231,54 +222,34 @@ impl AdhesiveContact {
             equilibrium: Some(equilibrium.mismatch),
             force_error,
         };
-        let status = match status {
-            Status::Converged if certificate.meets(inner.options.tolerance) => Status::Converged,
-            Status::Converged if stop() => Status::Stopped,
-            Status::Converged => Status::Stagnated,
-            other => other,
-        };
-        let stored = PI * energy(&inner.problem, &self.attraction, &equilibrium);
+        let units = surface.nondimensional;
+        let stored = PI * energy(&surface.problem, &self.attraction, &equilibrium);
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
         let contact = equilibrium.contact();
-        let fields = inner.fields(
-            (&equilibrium.cells, &equilibrium.net()),
-            equilibrium.d,
-            (&CellSet::default(), &[]),
-        )?;
-        let mut report = SolveReport::new(
-            status,
-            format!("attraction on {} cells, {} sweeps", equilibrium.cells.len(), equilibrium.sweeps),
-        );
-        report.work = Work::of(std::mem::take(&mut inner.problem.operators.solves), fields.as_ref());
-        report.iterations = equilibrium.steps + response.steps + stiffness.steps;
-        report.applications = std::mem::take(&mut inner.problem.operators.applications);
-        report.contact_cells = Some(contact.len());
-        report.certificate = certificate;
-        let length = |value: f64| signed(value, &|v| units.approach(v));
-        let plane = equilibrium.plane(inner.problem.operators.table().shift());
-        let approach = (!inner.is_periodic()).then(|| length(equilibrium.d)).transpose()?;
-        // Rounding where the contact is complete.
-        let gap = if inner.is_full(&contact) { 0.0 } else { inner.mean - plane };
-        let mean_gap = inner.outputs.mean_gap.then(|| length(gap)).transpose()?;
-        let held = |k: Option<f64>| k.map(|k| signed(PI * k, &|v| units.stiffness(v))).transpose();
-        let area = self.attraction.area(&contact, &equilibrium.gap);
-        let area = inner.outputs.area.then(|| units.area(area)).transpose()?;
-        let state = ContactState::new(signed(PI * net, &|v| units.force(v))?, report)
-            .with_approach(approach)
-            .with_mean_gap(mean_gap)
-            .with_stiffness(held(stiffness.along_the_branch)?)
-            .with_stiffness_fixed_area(held(stiffness.fixed_area)?)
-            .with_area(area)
-            .with_patches(inner.patches(&contact)?)
-            .with_adhesive(AdhesiveState::new(branch, stored, response.stability))
-            .with_fields(fields)
-            .completed(&inner.outputs, inner.normalisation.modulus)?;
-        match status {
-            Status::Converged => Ok(Last { equilibrium, branch, state }),
-            Status::Stopped => Err(Error::Stopped { best: Some(Box::new(state)) }),
-            _ => Err(Error::NotConverged { best: Box::new(state) }),
-        }
+        let state = surface.assemble(Assembly {
+            status: surface.ended(status, &certificate, stop),
+            strategy: format!(
+                "attraction on {} cells, {} sweeps",
+                equilibrium.cells.len(),
+                equilibrium.sweeps
+            ),
+            iterations: equilibrium.steps + response.steps + stiffness.steps,
+            certificate,
+            force: equilibrium.force(),
+            d: equilibrium.d,
+            complete: surface.is_full(&contact),
+            contact: &contact,
+            pressure: (&equilibrium.cells, &equilibrium.net()),
+            indented: (&CellSet::default(), &[]),
+            yielded: 0,
+            area: self.attraction.area(&contact, &equilibrium.gap),
+            stiffness: stiffness.along_the_branch.map(|k| PI * k),
+            fixed_area: stiffness.fixed_area.map(|k| PI * k),
+            adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
+            resolution: None,
+        })?;
+        Ok(Last { equilibrium, branch, state: returned(state)? })
     }
 
     /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest
@@ -287,7 +258,7 @@ impl AdhesiveContact {
         let (Control::Plane(_), force) = (control, state.force().abs()) else { return None };
         let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);
         let left = state.largest_gap_left();
-        let stiffest = self.inner.stiffest_on(&state.cells);
+        let stiffest = self.surface.stiffest_on(&state.cells);
         let error = GROWTH * (lack + stiffest * left) / response.stability;
         (force > 0.0 && response.stability > 0.0).then(|| error / force)
     }
@@ -297,37 +268,35 @@ impl AdhesiveContact {
             Control::Force(f) => (f, last.force()),
             Control::Plane(plane) => (plane, last.plane(self.shift())),
         };
-        (a - b).abs() <= self.inner.options.tolerance * a.abs().max(b.abs())
+        (a - b).abs() <= self.surface.options.tolerance * a.abs().max(b.abs())
     }
 }
 
-/// The scene without adhesion.
-pub(super) fn without_adhesion(scene: &Scene) -> Scene {
-    Scene { effects: Effects { adhesion: Adhesion::Off, ..scene.effects }, ..scene.clone() }
-}
-
-/// The attraction in the units of the surface: tractions over pi E* times the height over the side of a cell, so that `u = sum I p`.
+/// The attraction in the units of the surface, where there is any: tractions over pi E* times the height over the side of a cell, so that `u = sum I p`.
 ///
 /// # Errors
 /// Cells that do not resolve the range; numbers that overflow.
-fn attraction(inner: &PreparedBem3d, adhesion: Adhesion) -> Result<Attraction> {
-    let units = inner.nondimensional;
+pub(super) fn attraction(surface: &PreparedSurface, adhesion: Adhesion) -> Result<Option<Attraction>> {
+    let units = surface.nondimensional;
     let unit = PI * units.pressure(1.0)?;
-    let (dx, dy) = inner.cell();
+    let (dx, dy) = surface.cell();
     let (name, value, attraction) = match adhesion {
+        Adhesion::Off => return Ok(None),
+        // Without work the states without adhesion, bit by bit.
+        Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work <= 0.0 => return Ok(None),
         Adhesion::FiniteRange { work, range, law } => {
             let law = Law { peak: work / range / unit, range: units.approach_in(range), shape: law.into() };
             ("range of adhesion", range, Attraction::of(law))
         }
         Adhesion::ShortRange { work } => {
-            let table = inner.problem.operators.table();
+            let table = surface.problem.operators.table();
             let work_in = units.approach_in(work / unit);
-            ("work of adhesion", work, Attraction::short(work_in, inner.problem.grid(), table.boundary()))
+            ("work of adhesion", work, Attraction::short(work_in, surface.problem.grid(), table.boundary()))
         }
         other => return Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
     };
     let law = attraction.law;
-    let own = law.peak / law.range * influence_of_rectangle(0, 0, inner.problem.grid().stretch);
+    let own = law.peak / law.range * influence_of_rectangle(0, 0, surface.problem.grid().stretch);
     if !(own.is_finite() && own > 0.0) {
         return Err(Error::domain(name, value, "a value nearer to the scales of the surface"));
     }
@@ -344,67 +313,5 @@ fn attraction(inner: &PreparedBem3d, adhesion: Adhesion) -> Result<Attraction> {
         let expected = format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
         return Err(Error::domain("side of a cell", dx.max(dy), expected));
     }
-    Ok(attraction)
-}
-
-impl PreparedContact for AdhesiveContact {
-    fn normalisation(&self) -> Normalisation {
-        self.inner.normalisation
-    }
-
-    /// A single load: from no contact on the branch of approach.
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.restart();
-        Ok(self.next(load, stop)?.state)
-    }
-
-    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
-        let step = step.validated_with_adhesion(self.time)?;
-        without_tangential(step)?;
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
-        let next = self.next(step.normal, stop)?;
-        let state = (next.state.clone()).with_time(step.time);
-        (self.last, self.time) = (Some(next), step.time);
-        Ok(state)
-    }
-
-    fn restart(&mut self) {
-        (self.last, self.time) = (None, 0.0);
-    }
-}
-
-/// A path without adhesion: the elastic states of its loads.
-pub struct WithoutAdhesion {
-    contact: Box<dyn PreparedContact>,
-    time: f64,
-}
-
-impl WithoutAdhesion {
-    pub(super) fn new(contact: Box<dyn PreparedContact>) -> Self {
-        Self { contact, time: 0.0 }
-    }
-}
-
-impl PreparedContact for WithoutAdhesion {
-    fn normalisation(&self) -> Normalisation {
-        self.contact.normalisation()
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.contact.solve_until(load, stop)
-    }
-
-    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
-        let step = step.validated(self.time)?;
-        without_tangential(step)?;
-        let state = (self.contact.solve_until(step.normal, stop)?).with_time(step.time);
-        self.time = step.time;
-        Ok(state)
-    }
-
-    fn restart(&mut self) {
-        self.time = 0.0;
-    }
+    Ok(Some(attraction))
 }

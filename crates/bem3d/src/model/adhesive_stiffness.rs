@@ -53,12 +53,12 @@ impl AdhesiveContact {
         stop: Stop<'_>,
     ) -> Stiffnesses {
         let mut found = Stiffnesses::default();
-        if self.inner.is_full(&state.contact()) {
+        if self.surface.is_full(&state.contact()) {
             return found;
         }
         let mut solved = |error: f64| found.solve_error = Some(found.solve_error.unwrap_or(0.0).max(error));
-        if self.inner.outputs.needs_fixed_area() {
-            let (problem, tolerance) = (&mut self.inner.problem, self.inner.options.tolerance);
+        if self.surface.outputs.needs_fixed_area() {
+            let (problem, tolerance) = (&mut self.surface.problem, self.surface.options.tolerance);
             let (slope, steps) = fixed_area(problem, &self.attraction, state, tolerance, stop);
             found.steps = steps;
             found.fixed_area = slope.map(|slope| slope.value);
@@ -66,7 +66,7 @@ impl AdhesiveContact {
                 solved(slope.relative_error());
             }
         }
-        if !self.inner.outputs.stiffness {
+        if !self.surface.outputs.stiffness {
             return found;
         }
         if !self.attraction.moves_by_cells() {
@@ -89,7 +89,7 @@ impl AdhesiveContact {
         steps: &mut usize,
         stop: Stop<'_>,
     ) -> Option<(f64, f64)> {
-        let shift = self.inner.problem.operators.table().shift();
+        let shift = self.surface.problem.operators.table().shift();
         let begin = (state.plane(shift), state.force());
         let (mut at, (mut size, edges)) = (state.clone(), self.extent(state));
         if edges == 0 && state.attraction.iter().all(|s| *s <= 0.0) {
@@ -126,7 +126,7 @@ impl AdhesiveContact {
     /// Cells that attract, with the shares that are attached, and the edges of their set.
     fn extent(&self, state: &Equilibrium) -> (f64, usize) {
         let attracting = self.attraction.attracting(&state.cells, &state.gap);
-        let (cells, index, boundary) = self.inner.indexed(&attracting);
+        let (cells, index, boundary) = self.surface.indexed(&attracting);
         (self.attraction.area(&attracting, &state.gap), surface_gen::boundary_edges(cells, &index, boundary))
     }
 }

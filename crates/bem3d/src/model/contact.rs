@@ -1,61 +1,162 @@
-//! A prepared surface behind the common trait: from a load to pressure and stiffness.
+//! A surface under loads, behind the common traits: one type for single loads and for paths, with and without adhesion.
 
-use super::options::{NAME, bytes_per_cell};
-use super::prepared::{PreparedBem3d, Tangent};
-use super::state::LoadError;
-use crate::active_set::{self, Limits, Solved, Target, is_saturated};
+use super::adhesive::{AdhesiveContact, attraction};
+use super::certificate::LoadError;
+use super::load::{Loads, Prescribed};
+use super::options::{Bem3d, NAME, bytes_per_cell};
+use super::prepared::{PreparedSurface, Tangent};
+use crate::active_set::{self, Limits, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, timed};
 use crate::stiffness::{self, Responding, Stiffness};
+use crate::tuning::Tuning;
 use contact_model::{
-    ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Status, Stop,
+    ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Scene, Status, Step,
+    Stop, Tangential,
 };
 use std::borrow::Cow;
-use std::f64::consts::PI;
 
-/// How far the force of all cells at the hardness may be rounded on its way through units.
-const CAPACITY_ROUNDING: f64 = 1e-12;
+/// One surface under loads.
+///
+/// Single loads begin with the virgin surface, paths go on from their last state. One surface serves both: a single load ends a path, and
+/// a path begins anew after single loads.
+#[derive(Debug)]
+pub struct PreparedBem3d {
+    contact: Contact,
+    loads: Loads,
+    /// Time of the last step of a path.
+    time: f64,
+}
+
+/// What answers a load: the only place where it matters whether surfaces attract each other.
+#[derive(Debug)]
+enum Contact {
+    WithoutAdhesion(Box<PreparedSurface>),
+    WithAdhesion(Box<AdhesiveContact>),
+}
+
+impl PreparedBem3d {
+    /// The surface of a scene.
+    pub(super) fn new(model: &Bem3d, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<Self> {
+        let surface = PreparedSurface::new(model, scene, seed, tuning)?;
+        let contact = match attraction(&surface, scene.effects.adhesion)? {
+            Some(attraction) => Contact::WithAdhesion(Box::new(AdhesiveContact::new(surface, attraction))),
+            None => Contact::WithoutAdhesion(Box::new(surface)),
+        };
+        Ok(Self { contact, loads: Loads::Single, time: 0.0 })
+    }
+
+    fn surface(&self) -> &PreparedSurface {
+        match &self.contact {
+            Contact::WithoutAdhesion(surface) => surface,
+            Contact::WithAdhesion(contact) => &contact.surface,
+        }
+    }
+
+    /// A load in the units of the surface; with adhesion it may pull.
+    fn prescribed(&self, load: Load) -> Result<Prescribed> {
+        let load = match (&self.contact, load) {
+            (Contact::WithAdhesion(_), load) => load.validated_with_adhesion()?,
+            // Undefined points let the planes pass each other.
+            (Contact::WithoutAdhesion(_), Load::MeanGap(gap)) if gap.is_finite() => load,
+            (Contact::WithoutAdhesion(_), load) => load.validated()?,
+        };
+        self.surface().prescribed(load)
+    }
+
+    /// The state of a load among others.
+    fn at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
+        if self.loads != loads {
+            self.begin(loads);
+        }
+        match &mut self.contact {
+            Contact::WithoutAdhesion(surface) => surface.at(load, stop),
+            Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
+        }
+    }
+
+    /// Takes the virgin surface again.
+    fn begin(&mut self, loads: Loads) {
+        (self.loads, self.time) = (loads, 0.0);
+        match &mut self.contact {
+            Contact::WithoutAdhesion(surface) => surface.begin(loads == Loads::Path),
+            Contact::WithAdhesion(contact) => contact.forget(),
+        }
+    }
+}
 
 impl PreparedContact for PreparedBem3d {
     fn normalisation(&self) -> Normalisation {
-        self.normalisation
+        self.surface().normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        let units = self.nondimensional;
-        let load = match load {
-            // Undefined points let the planes pass each other.
-            Load::MeanGap(gap) if gap.is_finite() => load,
-            load => load.validated()?,
+        let load = self.prescribed(load)?;
+        self.at(load, Loads::Single, stop)
+    }
+
+    /// Cost O(N).
+    fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
+        if matches!(self.contact, Contact::WithAdhesion(_)) {
+            // Attraction reaches beyond the contact, and how far is not known before.
+            return None;
+        }
+        let surface = self.surface();
+        let Grid { columns, rows, .. } = surface.problem.grid();
+        let bytes = bytes_per_cell(surface.expected_contact(load)) * columns as f64 * rows as f64;
+        Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
+    }
+
+    fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
+        let step = match self.contact {
+            Contact::WithoutAdhesion(_) => step.validated(self.time)?,
+            Contact::WithAdhesion(_) => step.validated_with_adhesion(self.time)?,
         };
-        let target = match load {
-            Load::Force(f) => Target::Force(held("force", f, units.force_in(f) / PI)?),
-            Load::Approach(d) if self.has_approach() => {
-                Target::Approach(held("approach", d, units.approach_in(d))?)
-            }
-            Load::MeanGap(gap) if self.is_periodic() => {
-                return self.at_mean_gap(signed("mean gap", gap, units.approach_in(gap))?, stop);
-            }
-            Load::Approach(_) if !self.is_periodic() => {
-                let what = "an approach of a profile with free boundaries: displacements of a half-plane have no zero at infinity; give a force or a pressure";
-                return Err(Error::unsupported(NAME, what));
-            }
-            Load::Approach(_) => {
-                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
-                return Err(Error::unsupported(NAME, what));
-            }
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
-        };
+        without_tangential(step)?;
+        if stop() {
+            return Err(Error::Stopped { best: None });
+        }
+        let load = self.prescribed(step.normal)?;
+        let state = self.at(load, Loads::Path, stop)?;
+        self.time = step.time;
+        Ok(state.with_time(step.time))
+    }
+
+    fn restart(&mut self) {
+        self.begin(Loads::Path);
+    }
+}
+
+/// A step whose tangential load is nothing: there is no friction.
+///
+/// # Errors
+/// [`Error::Unsupported`] for any other.
+fn without_tangential(step: Step) -> Result<()> {
+    let (Tangential::Force(value) | Tangential::Displacement(value)) = step.tangential else {
+        return Err(Error::unsupported(NAME, "a tangential load"));
+    };
+    if value.abs() > 0.0 { Err(Error::unsupported(NAME, "a tangential load")) } else { Ok(()) }
+}
+
+impl PreparedSurface {
+    /// The state of a load without adhesion.
+    fn at(&mut self, load: Prescribed, stop: Stop<'_>) -> Result<ContactState> {
         // 0 but for an indented surface.
         let first = self.problem.candidates.range().first;
-        match target {
-            Target::Force(force) if force <= 0.0 => return self.no_contact(first),
-            Target::Approach(d) if d <= first => return self.no_contact(d),
-            _ => {}
+        let state = match load {
+            Prescribed::Force(force) if force <= 0.0 => self.no_contact(first),
+            Prescribed::Approach(d) if d <= first => self.no_contact(d),
+            Prescribed::MeanGap(gap) => self.at_mean_gap(gap, stop),
+            Prescribed::Force(force) => self.at_target(Target::Force(force), stop),
+            Prescribed::Approach(d) => self.at_target(Target::Approach(d), stop),
+        }?;
+        if let Some(memory) = self.memory.as_mut().filter(|_| state.force <= 0.0) {
+            memory.advance(0.0, 0.0);
         }
-        if let (Target::Force(force), Load::Force(asked)) = (target, load) {
-            self.refuse_beyond_hardness(force, asked)?;
-        }
+        Ok(state)
+    }
+
+    fn at_target(&mut self, target: Target, stop: Stop<'_>) -> Result<ContactState> {
         self.begin_count();
         let (solved, tangent) = self.settle(target, self.limits(), stop);
         let error = match target {
@@ -65,15 +166,6 @@ impl PreparedContact for PreparedBem3d {
         timed(Part::Results, || self.state(solved, tangent, error, stop))
     }
 
-    /// Cost O(N).
-    fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
-        let Grid { columns, rows, .. } = self.problem.grid();
-        let bytes = bytes_per_cell(self.expected_contact(load)) * columns as f64 * rows as f64;
-        Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
-    }
-}
-
-impl PreparedBem3d {
     /// About which share of the cells a load brings into contact.
     fn expected_contact(&self, load: Load) -> f64 {
         let z = self.problem.candidates.z();
@@ -99,17 +191,6 @@ impl PreparedBem3d {
         }
     }
 
-    /// Errors for a force that all cells at the hardness do not carry.
-    fn refuse_beyond_hardness(&self, force: f64, asked: f64) -> Result<()> {
-        let capacity = self.capacity();
-        // A force of all cells leaves the approach open, and so does rounding below it.
-        if force < capacity * (1.0 - CAPACITY_ROUNDING) {
-            return Ok(());
-        }
-        let max = self.nondimensional.force(PI * capacity)?;
-        Err(Error::OutOfRange { name: "force".into(), value: asked, min: 0.0, max })
-    }
-
     /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the certificate does: as long as
     /// undecided cells could change it by more than the tolerance, the contact set is solved further.
     pub(super) fn settle(
@@ -121,9 +202,7 @@ impl PreparedBem3d {
         let tuning = *self.problem.operators.tuning();
         let guess = self.guess(target, limits, stop);
         let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
-        // Complete contact of a periodic surface has no finite stiffness.
-        let full = self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness);
-        if full || !self.outputs.needs_stiffness() {
+        if self.is_complete(&solved) || !self.outputs.needs_stiffness() {
             return (solved, None);
         }
         // The last state is not needed any more, and as large as the contact.
@@ -172,7 +251,7 @@ impl PreparedBem3d {
         let another = responding.cells.len() != solved.contact.len();
         let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
         let whole = wanted.then(|| {
-            let whole = Responding::whole(solved, self.problem.hardness);
+            let whole = Responding::whole(solved, self.problem.bounds);
             self.stiffness(solved, &whole, of_whole, None, stop)
         });
         Tangent { stiffness, cells: responding.cells.into_owned(), whole }
@@ -211,7 +290,7 @@ impl PreparedBem3d {
     /// The stiffness to a few per cent, from above; infinite where the contact is complete.
     pub(super) fn rough_stiffness(&mut self, solved: &Solved, stop: Stop<'_>) -> f64 {
         const ROUGH: f64 = 0.02;
-        if self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness) {
+        if self.is_complete(solved) {
             return f64::INFINITY;
         }
         let responding = self.responding(solved);
@@ -223,15 +302,15 @@ impl PreparedBem3d {
     /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path, cells of the indentation that
     /// are at the hardness again flow when the load grows, and do not when it falls.
     fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
-        let hardness = self.problem.hardness;
-        let mut responding = Responding::elastic(solved, hardness);
+        let bounds = self.problem.bounds;
+        let mut responding = Responding::free(solved, bounds);
         let Some(memory) = &self.memory else { return responding };
         let decided = self.flowing_again(solved);
         if !decided.is_empty() {
             let rises = memory.rises_to(solved.p.iter().sum(), self.options.tolerance);
             let cells = &*responding.cells;
             let cells = if rises { cells.without(&decided) } else { cells.union(&decided) };
-            responding = Responding { cells: Cow::Owned(cells), limit: hardness, decided };
+            responding = Responding { cells: Cow::Owned(cells), bounds, decided };
         }
         responding
     }
@@ -240,7 +319,7 @@ impl PreparedBem3d {
     /// leaves open.
     pub(super) fn flowing_again(&self, solved: &Solved) -> CellSet {
         let Some(memory) = &self.memory else { return CellSet::default() };
-        let (table, hardness) = (self.problem.operators.table(), self.problem.hardness);
+        let (table, hardness) = (self.problem.operators.table(), self.problem.bounds.upper());
         let accuracy = self.options.tolerance * self.limits().height.unwrap_or(solved.d);
         let margin = 2.0 * accuracy / table.smallest_eigenvalue();
         let (left, grid) = (solved.gap_on(&solved.contact), self.problem.grid());
@@ -250,23 +329,5 @@ impl PreparedBem3d {
             })
             .collect();
         solved.contact.filter(&again, |again| again)
-    }
-}
-
-/// A nondimensional load of either sign, unless no f64 holds it.
-pub(super) fn signed(name: &'static str, value: f64, result: f64) -> Result<f64> {
-    if result.is_finite() && (value == 0.0 || result != 0.0) {
-        Ok(result)
-    } else {
-        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
-    }
-}
-
-/// A nondimensional load >= 0, unless no f64 holds it.
-fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
-    if result.is_finite() && (result > 0.0 || value <= 0.0) {
-        Ok(result)
-    } else {
-        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
     }
 }

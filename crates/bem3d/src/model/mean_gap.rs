@@ -1,26 +1,20 @@
 //! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
 
-use super::prepared::PreparedBem3d;
-use super::state::LoadError;
-use crate::active_set::{Solved, Target, is_saturated};
+use super::certificate::LoadError;
+use super::prepared::PreparedSurface;
+use crate::active_set::{Bounds, Solved, Target};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
-impl PreparedBem3d {
-    /// Mean gap of a state, nondimensional: the distance between the mean plane of the defined heights and that of the deformed half-space,
-    /// whose displacement under the kernel of zero mean has none. Undefined points or a plastic indentation may bring the planes beyond each
-    /// other.
-    pub(super) fn gap_of(&self, solved: &Solved) -> f64 {
-        if self.is_full(&solved.contact) && !is_saturated(&solved.p, self.problem.hardness) {
-            return 0.0;
-        }
-        let force: f64 = solved.p.iter().sum();
-        self.mean - (solved.d - self.problem.operators.table().shift() * force)
+impl PreparedSurface {
+    /// Mean gap of a solved state, nondimensional.
+    fn gap_of(&self, solved: &Solved) -> f64 {
+        self.mean_gap(self.is_complete(solved), solved.d, solved.p.iter().sum())
     }
 
     /// Whether the mean gap of any force is above zero: no points are undefined, and nothing flows.
     fn has_complete_contact(&self) -> bool {
-        self.problem.hardness.is_infinite() && self.defined == self.problem.grid().count()
+        self.problem.bounds == Bounds::Unlimited && self.defined == self.problem.grid().count()
     }
 
     /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and secants where it is not: the gap

@@ -1,28 +1,26 @@
-//! The boundary-element model behind the common traits.
+//! The boundary-element model behind the common trait.
 
 mod adhesive;
 mod adhesive_stiffness;
+mod certificate;
 mod contact;
-mod history;
+mod load;
 mod mean_gap;
+mod memory;
 mod options;
-mod plastic_path;
 mod prepared;
 mod profile;
 mod state;
 
-pub use history::Bem3dPath;
 pub use options::{BYTES_PER_CELL, Bem3d, Method, bytes_per_cell};
 
 use crate::tuning::Tuning;
-use adhesive::{AdhesiveContact, without_adhesion};
+use contact::PreparedBem3d;
 use contact_model::{
-    Abilities, Adhesion, Boundary, ContactModel, Effect, Error, LoadKind, Output, Paths, PreparedContact,
-    RequiredMemory, Result, Scene, Source, Surface, SurfaceKind,
+    Abilities, Adhesion, Boundary, ContactModel, Effect, Effects, Error, Hardness, LoadKind, Output, Paths,
+    PreparedContact, RequiredMemory, Result, Scene, Source, SurfaceKind,
 };
 use options::NAME;
-use prepared::{PreparedBem3d, refuse_together};
-use std::sync::Arc;
 
 impl ContactModel for Bem3d {
     fn name(&self) -> &'static str {
@@ -86,45 +84,39 @@ impl Bem3d {
         seed: u64,
         tuning: &Tuning,
     ) -> Result<Box<dyn PreparedContact>> {
-        self.abilities().refuse(NAME, scene)?;
-        refuse_together(&scene.effects)?;
-        profile::check(scene)?;
-        Ok(match scene.effects.adhesion {
-            Adhesion::Off => Box::new(self.prepared(scene, seed, tuning)?),
-            Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work > 0.0 => {
-                Box::new(AdhesiveContact::new(self, scene, seed, tuning)?)
-            }
-            // Without work the elastic states, bit by bit.
-            Adhesion::ShortRange { .. } | Adhesion::FiniteRange { .. } => {
-                Box::new(self.prepared(&without_adhesion(scene), seed, tuning)?)
-            }
-            other => return Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
-        })
+        Ok(Box::new(self.prepared(scene, seed, tuning)?))
     }
 
-    /// A surface without adhesion, ready to be loaded.
+    /// A surface ready for single loads and for paths.
     fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
+        refuse_together(&scene.effects)?;
         profile::check(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }
-        let map = match &scene.surface {
-            Surface::Heights(map) | Surface::Profile(map) => Arc::clone(map),
-            Surface::Line { .. } => return Err(Error::unsupported(NAME, "a line (it needs a map)")),
-            surface => surface_gen::height_map(surface, self.grid(surface.size()), seed)?,
-        };
-        let has_rms =
-            matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
-        PreparedBem3d::new(*self, scene, &map, has_rms, tuning)
+        PreparedBem3d::new(self, scene, seed, tuning)
     }
+}
+
+/// Hardness and adhesion together: attraction that indents is solved by neither.
+///
+/// # Errors
+/// [`Error::Unsupported`] where both are on.
+fn refuse_together(effects: &Effects) -> Result<()> {
+    if effects.hardness == Hardness::Off || effects.adhesion == Adhesion::Off {
+        return Ok(());
+    }
+    let what = "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made";
+    Err(Error::unsupported(NAME, what))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::prepared::PreparedSurface;
     use super::*;
-    use contact_model::SelfAffine;
-    use contact_model::{Load, Outputs};
+    use contact_model::{Load, Outputs, SelfAffine, Surface};
+    use std::sync::Arc;
 
     /// A rising path of one surface with and without the stiffness.
     #[test]
@@ -163,10 +155,10 @@ mod tests {
             |value| Stiffness { value, solve_error: 0.01, set_error: 0.02, q: Vec::new(), steps: 0 };
         let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);
         let tuning = &Tuning::DEFAULT;
-        let free = PreparedBem3d::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
+        let free = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, tuning).unwrap();
         approx::assert_relative_eq!(free.stiffness_error(&tangent(3.0)), 0.03);
         scene.effects.boundary = Boundary::Periodic;
-        let periodic = PreparedBem3d::new(Bem3d::default(), &scene, &map, true, tuning).unwrap();
+        let periodic = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, tuning).unwrap();
         // k = k'/(1 - c k') is four times k' where c k' = 3/4, and so is its relative error.
         let value = 0.75 / periodic.problem.operators.table().shift();
         approx::assert_relative_eq!(periodic.stiffness_error(&tangent(value)), 0.12, max_relative = 1e-12);

@@ -31,6 +31,20 @@ pub fn bytes_per_cell(contact: f64) -> f64 {
 /// assert!((state.stiffness.unwrap() - 0.993186221).abs() < 1e-9);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
+///
+/// A load is solved from no contact; a path is followed where an effect remembers it, a hardness or adhesion:
+///
+/// ```
+/// use bem3d::{Bem3d, ContactModel, Hardness, Load, Scene, Step, Surface};
+/// // A sphere is pressed until its middle flows, and unloaded: the indentation stays.
+/// let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
+/// scene.effects.hardness = Hardness::Limit { pressure: 0.1 };
+/// let mut contact = Bem3d { cells: 32, ..Bem3d::default() }.prepare(&scene, 0)?;
+/// let loaded = contact.advance(Step::normal(1.0, Load::Force(0.02)))?.plastic.unwrap();
+/// let unloaded = contact.advance(Step::normal(2.0, Load::Force(0.0)))?.plastic.unwrap();
+/// assert!(loaded.area > 0.0 && unloaded.area == 0.0 && unloaded.volume == loaded.volume);
+/// # Ok::<(), bem3d::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bem3d {
     /// Number of columns, N >= 1. Ignored where the scene brings its own map.

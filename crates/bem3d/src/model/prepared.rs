@@ -1,49 +1,20 @@
 //! One surface, ready to be loaded.
 
+use super::memory::Memory;
 use super::options::{Bem3d, Method, NAME};
 use super::profile;
-use crate::active_set::{self, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
+use crate::active_set::{self, Bounds, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::Medium;
 use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
 use contact_model::{
-    Adhesion, Boundary, Effects, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs,
-    Result, Scene, Size, Step, Stop, Surface, Tangential,
+    Boundary, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size,
+    Stop, Surface,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-/// What a path with a hardness remembers.
-#[derive(Debug)]
-pub(super) struct Memory {
-    /// Depth of the plastic indentation, nondimensional, row-major; it is in the gaps of the problem.
-    pub indentation: Vec<f64>,
-    /// Force of the last state, nondimensional.
-    pub force: f64,
-    /// Whether it was reached with a growing load.
-    pub rising: bool,
-}
-
-impl Memory {
-    /// Of a virgin surface with so many cells.
-    pub fn new(cells: usize) -> Self {
-        Self { indentation: vec![0.0; cells], force: 0.0, rising: true }
-    }
-
-    /// Whether the load of this force has grown since the last state; equal within `tolerance`, the last direction goes on.
-    pub fn rises_to(&self, force: f64, tolerance: f64) -> bool {
-        let same = (force - self.force).abs() <= tolerance * force.max(self.force);
-        if same { self.rising } else { force > self.force }
-    }
-
-    /// Goes on to the next state.
-    pub fn advance(&mut self, force: f64, tolerance: f64) {
-        self.rising = self.rises_to(force, tolerance);
-        self.force = force;
-    }
-}
 
 /// The stiffnesses of a state.
 #[derive(Debug)]
@@ -65,7 +36,7 @@ impl Tangent {
 
 /// One surface, ready to be loaded.
 #[derive(Debug)]
-pub struct PreparedBem3d {
+pub struct PreparedSurface {
     pub(super) options: Bem3d,
     pub(super) outputs: Outputs,
     pub(super) problem: Problem,
@@ -86,8 +57,20 @@ pub struct PreparedBem3d {
     pub(super) is_profile: bool,
 }
 
-impl PreparedBem3d {
-    pub(super) fn new(
+impl PreparedSurface {
+    /// The surface of a scene.
+    pub(super) fn new(options: &Bem3d, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<Self> {
+        let map = match &scene.surface {
+            Surface::Heights(map) | Surface::Profile(map) => Arc::clone(map),
+            Surface::Line { .. } => return Err(Error::unsupported(NAME, "a line (it needs a map)")),
+            surface => surface_gen::height_map(surface, options.grid(surface.size()), seed)?,
+        };
+        let has_rms =
+            matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
+        Self::of_map(*options, scene, &map, has_rms, tuning)
+    }
+
+    pub(super) fn of_map(
         options: Bem3d,
         scene: &Scene,
         map: &HeightMap,
@@ -114,11 +97,12 @@ impl PreparedBem3d {
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         if let Hardness::Limit { pressure } = scene.effects.hardness {
-            problem.hardness = nondimensional.pressure_in(pressure) / PI;
-            if !(problem.hardness.is_finite() && problem.hardness > 0.0) {
+            let upper = nondimensional.pressure_in(pressure) / PI;
+            if !(upper.is_finite() && upper > 0.0) {
                 let expected = "a pressure nearer to E* times the slope of the surface";
                 return Err(Error::domain("hardness", pressure, expected));
             }
+            problem.bounds = Bounds::UpTo(upper);
         }
         let normalisation =
             Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
@@ -136,6 +120,18 @@ impl PreparedBem3d {
             size: map.size(),
             is_profile: matches!(scene.surface, Surface::Profile(_)),
         })
+    }
+
+    /// Takes the virgin surface again, of which nothing is known; on a `path` a hardness leaves an indentation from here on.
+    pub(super) fn begin(&mut self, path: bool) {
+        if let Some(memory) = self.memory.take() {
+            self.problem.candidates = Candidates::new(self.problem.grid(), memory.virgin);
+            self.problem.coarser = None;
+        }
+        self.last = None;
+        if path && self.problem.bounds != Bounds::Unlimited {
+            self.memory = Some(Memory::new(self.problem.candidates.shared()));
+        }
     }
 
     pub(super) fn is_periodic(&self) -> bool {
@@ -190,9 +186,14 @@ impl PreparedBem3d {
         self.is_periodic() && contact.len() == self.problem.grid().count()
     }
 
+    /// Whether a state is complete contact without an indentation: it has no gap and no finite stiffness.
+    pub(super) fn is_complete(&self, solved: &Solved) -> bool {
+        self.is_full(&solved.contact) && !self.problem.bounds.is_reached(&solved.p)
+    }
+
     /// The force of all defined cells at the hardness, nondimensional; infinite without one.
     pub(super) fn capacity(&self) -> f64 {
-        self.problem.hardness * self.defined as f64
+        self.problem.bounds.upper() * self.defined as f64
     }
 
     /// Adds the indentation of saturated cells to that of the path.
@@ -238,27 +239,4 @@ impl PreparedBem3d {
         self.problem.operators.applications = 0;
         self.problem.operators.solves = 0;
     }
-}
-
-/// Hardness and adhesion together: attraction that indents is solved by neither.
-///
-/// # Errors
-/// [`Error::Unsupported`] where both are on.
-pub(super) fn refuse_together(effects: &Effects) -> Result<()> {
-    if effects.hardness == Hardness::Off || effects.adhesion == Adhesion::Off {
-        return Ok(());
-    }
-    let what = "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made";
-    Err(Error::unsupported(NAME, what))
-}
-
-/// A step whose tangential load is nothing: there is no friction.
-///
-/// # Errors
-/// [`Error::Unsupported`] for any other.
-pub(super) fn without_tangential(step: Step) -> Result<()> {
-    let (Tangential::Force(value) | Tangential::Displacement(value)) = step.tangential else {
-        return Err(Error::unsupported(NAME, "a tangential load"));
-    };
-    if value.abs() > 0.0 { Err(Error::unsupported(NAME, "a tangential load")) } else { Ok(()) }
 }

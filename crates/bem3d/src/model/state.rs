@@ -1,40 +1,129 @@
-//! From a solution to the state that is returned.
+//! From a solution to the state that is returned: one assembly, whatever the effects.
 
-use super::prepared::{PreparedBem3d, Tangent};
-use crate::active_set::{Continuation, Solved, is_saturated};
+use super::certificate::LoadError;
+use super::prepared::{PreparedSurface, Tangent};
+use crate::active_set::{Bounds, Solved};
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
 use contact_model::{
-    Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches, PlasticState,
-    Result, SolveReport, Status, Stop, Work,
+    AdhesiveState, Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches,
+    PlasticState, Result, SolveReport, Status, Stop, Work,
 };
 use std::f64::consts::PI;
 
-/// A stiffness may grow by this factor over what is left open of the load: by a sixth in the worst of 900 small states at a tolerance of
-/// 1e-3, near complete contact.
-pub(super) const GROWTH: f64 = 1.25;
-
-/// How far a state is from its load, and what that leaves open of the force.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LoadError {
-    /// Relative miss of the load.
-    pub load: f64,
-    /// Relative error of a force that was not prescribed.
-    pub force: Option<f64>,
+/// What a state is assembled from, in the units of the surface; the force over pi.
+#[derive(Debug)]
+pub(super) struct Assembly<'a> {
+    /// How the solve ended.
+    pub status: Status,
+    /// How it was found, in one short phrase.
+    pub strategy: String,
+    /// Steps of conjugate gradients.
+    pub iterations: usize,
+    /// What it is certified by.
+    pub certificate: Certificate,
+    /// Sum of the net pressure.
+    pub force: f64,
+    /// Approach under the kernel with its constant.
+    pub d: f64,
+    /// Whether it is complete contact, which has no gap.
+    pub complete: bool,
+    /// The contact set.
+    pub contact: &'a CellSet,
+    /// Cells with their net pressure.
+    pub pressure: (&'a CellSet, &'a [f64]),
+    /// Cells with the depth of their new indentation.
+    pub indented: (&'a CellSet, &'a [f64]),
+    /// Number of cells at the hardness.
+    pub yielded: usize,
+    /// Contact area, in cells.
+    pub area: f64,
+    /// Stiffness along the branch.
+    pub stiffness: Option<f64>,
+    /// Stiffness of the contact area held.
+    pub fixed_area: Option<f64>,
+    /// What adhesion adds.
+    pub adhesive: Option<AdhesiveState>,
+    /// How well the cells resolve the contact.
+    pub resolution: Option<ContactResolution>,
 }
 
-impl LoadError {
-    /// Of a prescribed force, with this relative miss.
-    pub fn of_force(miss: f64) -> Self {
-        Self { load: miss.abs(), force: None }
+/// The state as a result: an error with the state in it unless it has converged.
+pub(super) fn returned(state: ContactState) -> Result<ContactState> {
+    match state.report.status {
+        Status::Converged => Ok(state),
+        Status::Stopped => Err(Error::Stopped { best: Some(Box::new(state)) }),
+        _ => Err(Error::NotConverged { best: Box::new(state) }),
     }
 }
 
-impl PreparedBem3d {
+impl PreparedSurface {
+    /// The state in the units of the scene, with what is asked for.
+    pub(super) fn assemble(&mut self, found: Assembly<'_>) -> Result<ContactState> {
+        let units = self.nondimensional;
+        let fields = self.fields(found.pressure, found.d, found.indented)?;
+        let mut report = SolveReport::new(found.status, found.strategy);
+        report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
+        report.iterations = found.iterations;
+        report.applications = std::mem::take(&mut self.problem.operators.applications);
+        report.contact_cells = Some(found.contact.len());
+        report.certificate = found.certificate;
+        let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));
+        let length = |value: f64| signed(value, &|v| units.approach(v));
+        let stiffness = |k: Option<f64>| k.map(|k| signed(k, &|v| units.stiffness(v))).transpose();
+        let mean_gap = self.mean_gap(found.complete, found.d, found.force);
+        ContactState::new(signed(PI * found.force, &|v| units.force(v))?, report)
+            .with_approach(self.has_approach().then(|| length(found.d)).transpose()?)
+            .with_mean_gap(self.outputs.mean_gap.then(|| length(mean_gap)).transpose()?)
+            .with_stiffness(stiffness(found.stiffness)?)
+            .with_stiffness_fixed_area(stiffness(found.fixed_area)?)
+            .with_area(self.outputs.area.then(|| units.area(found.area)).transpose()?)
+            .with_plastic(self.plastic(found.yielded, found.indented.1)?)
+            .with_adhesive(found.adhesive)
+            .with_patches(self.patches(found.contact)?)
+            .with_resolution(found.resolution)
+            .with_fields(fields)
+            .completed(&self.outputs, self.normalisation.modulus)
+    }
+
+    /// Mean gap of a state with this approach and force: the distance between the mean plane of the defined heights and that of the deformed
+    /// half-space, whose displacement under the kernel of zero mean has none. Undefined points or a plastic indentation may bring the planes
+    /// beyond each other.
+    pub(super) fn mean_gap(&self, complete: bool, d: f64, force: f64) -> f64 {
+        // What is left of complete contact is rounding.
+        if complete { 0.0 } else { self.mean - (d - self.problem.operators.table().shift() * force) }
+    }
+
+    /// The state before first touch, and at it, at a nondimensional approach.
+    pub(super) fn no_contact(&mut self, d: f64) -> Result<ContactState> {
+        self.begin_count();
+        let nothing = CellSet::default();
+        let stiffness = self.outputs.needs_stiffness().then_some(0.0);
+        self.assemble(Assembly {
+            status: Status::Converged,
+            strategy: "no contact".to_owned(),
+            iterations: 0,
+            certificate: Certificate::default(),
+            force: 0.0,
+            d,
+            complete: false,
+            contact: &nothing,
+            pressure: (&nothing, &[]),
+            indented: (&nothing, &[]),
+            yielded: 0,
+            area: 0.0,
+            stiffness,
+            fixed_area: stiffness,
+            adhesive: None,
+            resolution: None,
+        })
+    }
+
+    /// The state of a contact without adhesion; the next load begins from it.
     pub(super) fn state(
         &mut self,
         solved: Solved,
-        tangent: Option<Tangent>,
+        mut tangent: Option<Tangent>,
         error: LoadError,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
@@ -48,7 +137,6 @@ impl PreparedBem3d {
             force_error: error.force,
             ..Certificate::default()
         };
-        let mut tangent = tangent;
         if self.memory.is_some() && !certificate.meets(self.options.tolerance) {
             let rest = Certificate { stiffness_error: None, ..certificate };
             if rest.meets(self.options.tolerance) {
@@ -56,109 +144,55 @@ impl PreparedBem3d {
                 (certificate, tangent) = (rest, None);
             }
         }
-        let met = certificate.meets(self.options.tolerance);
-        let status = match solved.status {
-            Status::Converged if met => Status::Converged,
-            Status::Converged if stop() => Status::Stopped,
-            Status::Converged => Status::Stagnated,
-            other => other,
-        };
-        let (saturated, depth) = plastic_depth(&solved, self.problem.hardness);
-        let fields = self.fields((&solved.contact, &solved.p), solved.d, (&saturated, &depth))?;
-        let units = self.nondimensional;
-        let mut report = SolveReport::new(status, self.strategy(&solved));
-        report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
-        report.iterations = solved.steps + tangent.as_ref().map_or(0, Tangent::steps);
-        report.applications = std::mem::take(&mut self.problem.operators.applications);
-        report.contact_cells = Some(solved.contact.len());
-        report.certificate = certificate;
-        let approach = self.has_approach().then(|| units.approach(solved.d)).transpose()?;
-        let mean_gap = self.outputs.mean_gap.then(|| units.approach(self.gap_of(&solved))).transpose()?;
-        let dimensional = |t: &Stiffness| units.stiffness(PI * t.value * self.magnification(t.value));
-        let stiffness = tangent.as_ref().map(|t| dimensional(&t.stiffness)).transpose()?;
+        let (saturated, depth) = plastic_depth(&solved, self.problem.bounds);
+        let k = |t: &Stiffness| PI * t.value * self.magnification(t.value);
+        let stiffness = tangent.as_ref().map(|t| k(&t.stiffness));
         let fixed_area = match &tangent {
-            Some(Tangent { whole: Some(whole), .. }) => Some(dimensional(whole)?),
+            Some(Tangent { whole: Some(whole), .. }) => Some(k(whole)),
             Some(t) if t.cells.len() == solved.contact.len() => stiffness,
             _ => None,
         };
-        let again = self.flowing_again(&solved);
-        let plastic = self.plastic(saturated.union(&again).len(), &depth)?;
-        let area = self.outputs.area.then(|| units.area(solved.contact.len() as f64)).transpose()?;
-        let state = ContactState::new(units.force(PI * force)?, report)
-            .with_approach(approach)
-            .with_mean_gap(mean_gap)
-            .with_stiffness(stiffness)
-            .with_stiffness_fixed_area(fixed_area)
-            .with_area(area)
-            .with_plastic(plastic)
-            .with_patches(self.patches(&solved.contact)?)
-            .with_resolution(self.resolution(&solved)?)
-            .with_fields(fields)
-            .completed(&self.outputs, self.normalisation.modulus)?;
-        if status == Status::Converged {
+        let state = self.assemble(Assembly {
+            status: self.ended(solved.status, &certificate, stop),
+            strategy: self.strategy(&solved),
+            iterations: solved.steps + tangent.as_ref().map_or(0, Tangent::steps),
+            certificate,
+            force,
+            d: solved.d,
+            complete: self.is_complete(&solved),
+            contact: &solved.contact,
+            pressure: (&solved.contact, &solved.p),
+            indented: (&saturated, &depth),
+            yielded: saturated.union(&self.flowing_again(&solved)).len(),
+            area: solved.contact.len() as f64,
+            stiffness,
+            fixed_area,
+            adhesive: None,
+            resolution: Some(self.resolution(&solved)?),
+        })?;
+        if state.report.status == Status::Converged {
             if let Some(memory) = &mut self.memory {
                 memory.advance(force, self.options.tolerance);
             }
             self.indent(&saturated, &depth);
             self.remember(solved, tangent);
-            Ok(state)
-        } else if status == Status::Stopped {
-            Err(Error::Stopped { best: Some(Box::new(state)) })
-        } else {
-            Err(Error::NotConverged { best: Box::new(state) })
         }
+        returned(state)
     }
 
-    /// The error of both stiffnesses.
-    pub(super) fn tangent_error(&self, tangent: &Tangent) -> f64 {
-        let whole = tangent.whole.as_ref().map_or(0.0, |whole| self.stiffness_error(whole));
-        self.stiffness_error(&tangent.stiffness).max(whole)
-    }
-
-    /// A bound of the stiffness near a state, nondimensional: that of the state where it is known, else that of a circle around the
-    /// contact, which has no smaller one (free boundaries only).
-    pub(super) fn stiffest(&self, solved: &Solved, tangent: Option<&Tangent>) -> f64 {
-        if let Some(Tangent { stiffness: t, .. }) = tangent {
-            return t.value * self.magnification(t.value) * (1.0 + self.stiffness_error(t));
+    /// How a state was found, in one short phrase.
+    fn strategy(&self, solved: &Solved) -> String {
+        match (solved.q.is_some(), self.problem.operators.last()) {
+            (true, _) => format!("dense {}", solved.contact.len()),
+            (false, Some(recipe)) => recipe.to_string(),
+            (false, None) => format!("direct {}", solved.contact.len()),
         }
-        self.stiffest_on(&solved.contact)
-    }
-
-    /// The stiffness of a circle around a set, nondimensional.
-    pub(super) fn stiffest_on(&self, set: &CellSet) -> f64 {
-        let Some(window) = set.window() else { return 0.0 };
-        let (dx, dy) = self.problem.grid().cell();
-        (window.width as f64 * dx).hypot(window.height as f64 * dy) / PI
-    }
-
-    /// What a stiffness k makes of the gaps left on the contact and of a miss of the load, as an error of the force.
-    ///
-    /// The force is that of a surface whose heights differ by no more than those gaps, and it grows with every height.
-    pub(super) fn force_error(&self, solved: &Solved, k: f64, miss: f64) -> LoadError {
-        let hardness = self.problem.hardness;
-        let Continuation { checked, gap, .. } = &solved.continuation;
-        let left = (checked.carry(&solved.contact, &solved.p).iter().zip(gap))
-            .map(|(&p, &g)| {
-                if p >= hardness {
-                    g.max(0.0)
-                } else if p > 0.0 {
-                    g.abs()
-                } else {
-                    (-g).max(0.0)
-                }
-            })
-            .fold(0.0, f64::max);
-        let force: f64 = solved.p.iter().sum();
-        let known = force > 0.0 && k.is_finite();
-        LoadError { load: 0.0, force: known.then(|| GROWTH * k * (left + miss) / force) }
     }
 
     /// What has yielded, with a hardness: the number of cells at it, and the depths of new indentation.
     fn plastic(&self, saturated: usize, depth: &[f64]) -> Result<Option<PlasticState>> {
-        let (units, hardness) = (self.nondimensional, self.problem.hardness);
-        if hardness.is_infinite() {
-            return Ok(None);
-        }
+        let units = self.nondimensional;
+        let Bounds::UpTo(hardness) = self.problem.bounds else { return Ok(None) };
         let area = units.area(saturated as f64)?;
         let before: f64 = self.memory.as_ref().map_or(0.0, |memory| memory.indentation.iter().sum());
         let volume = units.area(1.0)? * units.approach(before + depth.iter().sum::<f64>())?;
@@ -266,55 +300,14 @@ impl PreparedBem3d {
             sizes.into_iter().map(|size| self.nondimensional.area(size as f64)).collect::<Result<_>>()?;
         Ok(Some(Patches::new(areas)))
     }
-
-    /// The state before first touch, and at it, at a nondimensional approach.
-    pub(super) fn no_contact(&self, d: f64) -> Result<ContactState> {
-        let zeros = || self.field(vec![0.0; self.problem.grid().count()]);
-        let fields = if self.outputs.any_field() {
-            let mut fields = Fields::default();
-            fields.pressure = self.outputs.pressure.then(zeros).transpose()?;
-            fields.displacement = self.outputs.displacement.then(zeros).transpose()?;
-            let z = self.problem.candidates.z().iter();
-            let gap = || self.field(z.map(|z| (z - d) * self.height).collect());
-            fields.gap = self.outputs.gap.then(gap).transpose()?;
-            let depth = || self.plastic_field(&CellSet::default(), &[]);
-            fields.plastic_depth = self.outputs.plastic_depth.then(depth).transpose()?;
-            Some(fields)
-        } else {
-            None
-        };
-        let mut report = SolveReport::exact("no contact");
-        report.contact_cells = Some(0);
-        report.work = Work::of(0, fields.as_ref());
-        let mean_gap =
-            self.outputs.mean_gap.then(|| self.nondimensional.approach(self.mean - d)).transpose()?;
-        ContactState::new(0.0, report)
-            .with_approach(self.has_approach().then(|| self.nondimensional.approach(d)).transpose()?)
-            .with_mean_gap(mean_gap)
-            .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(0.0))
-            .with_area(self.outputs.area.then_some(0.0))
-            .with_plastic(self.plastic(0, &[])?)
-            .with_patches(self.outputs.contact_patches.then(Patches::default))
-            .with_fields(fields)
-            .completed(&self.outputs, self.normalisation.modulus)
-    }
-
-    /// How a state was found, in one short phrase.
-    fn strategy(&self, solved: &Solved) -> String {
-        match (solved.q.is_some(), self.problem.operators.last()) {
-            (true, _) => format!("dense {}", solved.contact.len()),
-            (false, Some(recipe)) => recipe.to_string(),
-            (false, None) => format!("direct {}", solved.contact.len()),
-        }
-    }
 }
 
 /// The saturated cells and the depth of their indentation.
-fn plastic_depth(solved: &Solved, hardness: f64) -> (CellSet, Vec<f64>) {
-    if !is_saturated(&solved.p, hardness) {
+fn plastic_depth(solved: &Solved, bounds: Bounds) -> (CellSet, Vec<f64>) {
+    if !bounds.is_reached(&solved.p) {
         return (CellSet::default(), Vec::new());
     }
-    let saturated = solved.contact.filter(&solved.p, |p| p >= hardness);
+    let saturated = solved.contact.filter(&solved.p, |p| p >= bounds.upper());
     let mut depth = solved.gap_on(&saturated);
     for g in &mut depth {
         *g = (-*g).max(0.0);

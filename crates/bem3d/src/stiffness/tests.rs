@@ -41,7 +41,7 @@ fn solve(
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Stiffness {
-    super::solve(problem, state, &Responding::whole(state, f64::INFINITY), guess, tolerance, stop)
+    super::solve(problem, state, &Responding::whole(state, Bounds::Unlimited), guess, tolerance, stop)
 }
 
 #[expect(clippy::large_types_passed_by_value, reason = "as `Problem::new`")]

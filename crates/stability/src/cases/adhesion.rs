@@ -4,7 +4,7 @@ use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, pressure};
 use crate::maps::{map, rough_map, scene};
 use crate::plain::PlainSum;
-use bem3d::{Bem3d, Bem3dPath};
+use bem3d::Bem3d;
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, ContactModel, ContactState, Error, HeightMap, Load, PreparedContact,
     Result, Scene, Step,
@@ -60,7 +60,7 @@ fn attracted(map: &HeightMap, work: f64, range: f64) -> Scene {
 }
 
 pub(super) fn path(scene: &Scene) -> Result<Box<dyn PreparedContact>> {
-    Bem3dPath(Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }).prepare(scene, 0)
+    Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }.prepare(scene, 0)
 }
 
 pub(super) fn go(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState> {

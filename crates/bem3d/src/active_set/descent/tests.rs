@@ -14,7 +14,7 @@ const ROUNDING_OF_SUMS: f64 = 1e-14;
 fn a_pressure_is_projected_by_hand() {
     let projected = |y: &[f64], hardness: f64, force: Option<f64>| {
         let mut y = y.to_vec();
-        Feasible { hardness, force }.project(&mut y);
+        Feasible { bounds: Bounds::UpTo(hardness), force }.project(&mut y);
         y
     };
     let close = |found: Vec<f64>, expected: &[f64]| {
@@ -68,7 +68,7 @@ fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
             let cells = CellSet::all(grid);
             // z - d where the approach is prescribed.
             let z: Vec<f64> = z.iter().map(|z| z - if force.is_none() { 1.5 } else { 0.0 }).collect();
-            let feasible = Feasible { hardness, force };
+            let feasible = Feasible { bounds: Bounds::UpTo(hardness), force };
             let mut p: Vec<f64> = (0..n).map(|i| (i % 5) as f64).collect();
             feasible.project(&mut p);
             let (mut last, mut gap) = evaluated(&mut operators, &cells, &p, &z);
@@ -117,7 +117,7 @@ fn nothing_is_done_at_a_solution_or_when_stopped() {
     let grid = Grid::square(3, 1);
     let mut operators = Operators::new(KernelTable::shared(grid, Boundary::Free), &Tuning::DEFAULT);
     let cells = CellSet::all(grid);
-    let feasible = Feasible { hardness: 1.0, force: Some(1.0) };
+    let feasible = Feasible { bounds: Bounds::UpTo(1.0), force: Some(1.0) };
     // The saturated cell is the lowest.
     let (mut p, mut gap) = (vec![0.0, 1.0, 0.0], vec![0.5, -0.5, 0.5]);
     assert_eq!(descend(&mut operators, &cells, (&mut p, &mut gap), feasible, 9, &never), 0);

@@ -1,6 +1,7 @@
 //! The tangent of the last state beside the state that it predicts, and coarse grids beside the fine one.
 
 use super::*;
+use crate::active_set::Bounds;
 use crate::active_set::residuals::Residuals;
 use crate::active_set::state::Continuation;
 use crate::kernel::love::influence;
@@ -40,7 +41,7 @@ mod tangent {
                 let k = stiffness::solve(
                     &mut problem,
                     &solved,
-                    &Responding::whole(&solved, f64::INFINITY),
+                    &Responding::whole(&solved, Bounds::Unlimited),
                     None,
                     1e-9,
                     &never,
@@ -73,7 +74,7 @@ mod tangent {
                 let k = stiffness::solve(
                     &mut problem,
                     solved,
-                    &Responding::whole(solved, f64::INFINITY),
+                    &Responding::whole(solved, Bounds::Unlimited),
                     Some(q),
                     100.0,
                     &never,

@@ -1,6 +1,7 @@
 //! Whole solves in every recipe.
 
 use super::*;
+use crate::active_set::Bounds;
 use crate::geometry::Grid;
 use crate::kernel::KernelTable;
 use crate::kernel::love::influence;
@@ -125,7 +126,7 @@ fn every_recipe_finds_the_factored_state() {
                 let tangent = stiffness::solve(
                     &mut problem,
                     &exact,
-                    &Responding::whole(&exact, f64::INFINITY),
+                    &Responding::whole(&exact, Bounds::Unlimited),
                     None,
                     TOLERANCE,
                     &never,
@@ -134,7 +135,7 @@ fn every_recipe_finds_the_factored_state() {
                 let tangent = stiffness::solve(
                     &mut problem,
                     &found,
-                    &Responding::whole(&found, f64::INFINITY),
+                    &Responding::whole(&found, Bounds::Unlimited),
                     None,
                     TOLERANCE,
                     &never,
@@ -154,15 +155,21 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
     let mut first = problem(grid, &z, Tuning::DEFAULT);
     let solved = solve(&mut first, target, everything(grid, target), limits(false), &never);
     assert!(solved.contact.len() > grid.count() / 3, "{} cells", solved.contact.len());
-    let reference =
-        stiffness::solve(&mut first, &solved, &Responding::whole(&solved, f64::INFINITY), None, 1e-8, &never);
+    let reference = stiffness::solve(
+        &mut first,
+        &solved,
+        &Responding::whole(&solved, Bounds::Unlimited),
+        None,
+        1e-8,
+        &never,
+    );
     assert!(first.operators.last().unwrap().has_preconditioner());
     for recipe in recipes() {
         let mut problem = problem(grid, &z, recipe.0);
         let found = stiffness::solve(
             &mut problem,
             &solved,
-            &Responding::whole(&solved, f64::INFINITY),
+            &Responding::whole(&solved, Bounds::Unlimited),
             None,
             1e-8,
             &never,

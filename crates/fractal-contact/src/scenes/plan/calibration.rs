@@ -167,7 +167,7 @@ fn small_solves(
     }
     let size = grid.and_then(Cells::checked_count).unwrap_or(0);
     let (mut solved, begun) = (PilotSolve::default(), Instant::now());
-    let mut contact = numerics.prepare(&physics, seed, scene.is_history())?;
+    let mut contact = numerics.model().prepare(&physics, seed)?;
     solved.prepare = begun.elapsed().as_secs_f64();
     match &scene.request {
         Loading::Loads(loads) => {

@@ -136,7 +136,7 @@ pub(crate) fn solve(
         outputs.ask(output, false);
     }
     let physics = Scene { outputs, ..scene.scene(numerics, seed)? };
-    let mut contact = numerics.prepare(&physics, seed, false)?;
+    let mut contact = numerics.model().prepare(&physics, seed)?;
     let normalisation = contact.normalisation();
     contact.sweep(loads, stop, &mut |i, state| {
         found[i] = state.ok().map(|state| numbers(&state, &normalisation, slope));

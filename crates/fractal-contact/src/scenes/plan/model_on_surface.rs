@@ -77,5 +77,5 @@ impl ModelOnSurface {
 pub(crate) fn probe(scene: &SceneFile, numerics: &Numerics) -> contact_model::Result<()> {
     let seed = scene.seed(0);
     let physics: Scene = scene.scene(numerics, seed)?;
-    numerics.prepare(&physics, seed, scene.is_history()).map(|_| ())
+    numerics.model().prepare(&physics, seed).map(|_| ())
 }

@@ -5,8 +5,8 @@ use crate::scenes::read::entries::{Entries, Entry, Read, suggestion};
 use crate::scenes::read::registered_model::RegisteredModel;
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{GreenwoodWilliamson, Persson};
-use bem3d::{Bem3d, Bem3dPath, Method};
-use contact_model::{Cells, ContactModel, PreparedContact, Scene, Size};
+use bem3d::{Bem3d, Method};
+use contact_model::{Cells, ContactModel, Size};
 use mdr1d::{Equivalent, Mdr1d};
 use std::sync::Arc;
 
@@ -77,22 +77,6 @@ impl Numerics {
             Self::Equivalent(model) => Arc::new(model),
             Self::Formula(record) => Arc::new(record.model),
             Self::Registered(ref own) => own.model(),
-        }
-    }
-
-    /// A contact of a scene, for loads one by one or for a path.
-    ///
-    /// # Errors
-    /// As [`ContactModel::prepare`].
-    pub fn prepare(
-        &self,
-        scene: &Scene,
-        seed: u64,
-        path: bool,
-    ) -> contact_model::Result<Box<dyn PreparedContact>> {
-        match *self {
-            Self::Bem3d(model) if path => Bem3dPath(model).prepare(scene, seed),
-            _ => self.model().prepare(scene, seed),
         }
     }
 

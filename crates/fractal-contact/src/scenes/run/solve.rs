@@ -39,7 +39,7 @@ impl ModelOnSurface {
         let seed = scene.seed(self.surface);
         let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
         let before = result.seconds;
-        let prepared = numerics.prepare(&physics, seed, scene.is_history());
+        let prepared = numerics.model().prepare(&physics, seed);
         let mut contact = prepared.map_err(runs::Error::model(what()))?;
         match &scene.request {
             Loading::Loads(_) => {

@@ -82,7 +82,7 @@ fn every_state(grid: Grid, z: &[f64], target: Target, hardness: f64) -> Vec<Enum
 /// A prepared problem with a hardness.
 fn problem(grid: Grid, z: &[f64], hardness: f64) -> Problem {
     let mut problem = Problem::new(grid, Arc::new(z.to_vec()), Boundary::Free, &Tuning::DEFAULT);
-    problem.hardness = hardness;
+    problem.bounds = Bounds::UpTo(hardness);
     problem
 }
 
@@ -125,7 +125,7 @@ fn a_force_is_shared_by_hand() {
     let candidates = Candidates::new(grid, Arc::new(vec![0.0, 0.1, 0.3, f64::INFINITY, 0.2]));
     let brought = |cells: &[u32], p: &[f64], force: f64| {
         let (mut set, mut p) = (CellSet::from_index(grid, cells), p.to_vec());
-        bring_to(&mut set, &mut p, force, 1.0, &candidates);
+        bring_to(force, 1.0, &mut set, &mut p, &candidates);
         (set.index(grid).collect::<Vec<_>>(), p)
     };
     // One cell is saturated, the other takes the rest.
@@ -145,7 +145,7 @@ fn cells_join_saturate_and_stay_saturated_by_hand() {
     let candidates = Candidates::new(grid, Arc::new(vec![0.0, 0.1, 0.3, f64::INFINITY, 0.2]));
     let brought = |cells: &[u32], p: &[f64], force: f64, hardness: f64| {
         let (mut set, mut p) = (CellSet::from_index(grid, cells), p.to_vec());
-        let grown = bring_to(&mut set, &mut p, force, hardness, &candidates);
+        let grown = bring_to(force, hardness, &mut set, &mut p, &candidates);
         (grown, set.index(grid).collect::<Vec<_>>(), p)
     };
     // As many cells join as the rest of the force needs, and share it.
@@ -162,30 +162,6 @@ fn cells_join_saturate_and_stay_saturated_by_hand() {
 }
 
 #[test]
-fn a_step_of_two_cells_is_shortened_by_hand() {
-    // Changes of 1/2 and -1/2; the slope of the energy is -3/4 before and 1/4 after it: three quarters are left.
-    let (mut p, mut displaced) = ([1.5, 1.5], [1.0, 0.5]);
-    assert_eq!(shorten((vec![1.0, 2.0], &[-1.0, 0.5], 0.5), (&mut p, &mut displaced), 0.9), Some(0.75));
-    assert_eq!((p, displaced), ([1.375, 1.625], [0.625, 0.625]));
-}
-
-#[test]
-fn residuals_by_hand() {
-    // p_s = 1: a saturated cell indented by 0.2, an elastic one with a gap of 0.1, one open by 0.4; F = 1.5, s = 2.
-    let e = residuals(&[1.0, 0.5, 0.0], &[-0.2, 0.1, 0.4], 1.0, 2.0);
-    assert_relative_eq!(e.complementarity, 0.5 * 0.1 / 1.5 / 2.0, max_relative = 1e-14);
-    assert!(e.penetration == 0.0 && e.duality_gap == 0.0);
-    // The open cell penetrates by more than the saturated one: the best q has it at p_s and half of the saturated one.
-    let e = residuals(&[1.0, 0.5, 0.0], &[-0.2, 0.1, -0.4], 1.0, 2.0);
-    assert_relative_eq!(e.penetration, 0.2, max_relative = 1e-14);
-    assert_relative_eq!(e.duality_gap, (-0.2 + 0.05 - (-0.4 - 0.1)) / 1.5 / 2.0, max_relative = 1e-14);
-    // A gap under a saturated cell counts twice.
-    let e = residuals(&[1.0, 0.5, 0.0], &[0.3, 0.0, 0.4], 1.0, 2.0);
-    assert_relative_eq!(e.penetration, 0.15, max_relative = 1e-14);
-    assert_relative_eq!(e.complementarity, 0.3 / 1.5 / 2.0, max_relative = 1e-14);
-}
-
-#[test]
 fn the_factored_way_ends_where_cells_saturate() {
     // Two summits under a force that one alone would carry above the hardness.
     let grid = Grid::square(2, 1);
@@ -197,27 +173,10 @@ fn the_factored_way_ends_where_cells_saturate() {
 }
 
 #[test]
-fn a_step_is_shortened_to_the_minimum_on_its_way_and_never_turned_back() {
-    // One cell whose pressure rises by 1: slopes of the energy from -1 to `last`, with d = 0.
-    let shortened = |last: f64| {
-        let (mut p, mut displaced) = ([2.0], [last]);
-        let was = shorten((vec![1.0], &[-1.0], 0.0), (&mut p, &mut displaced), 0.9);
-        (was.is_some(), p[0], displaced[0])
-    };
-    // Half of the way, where the slope is zero.
-    assert_eq!(shortened(1.0), (true, 1.5, 0.0));
-    // The minimum lies beyond nine tenths of the step, or beyond all of it.
-    assert_eq!(shortened(0.1), (false, 2.0, 0.1));
-    assert_eq!(shortened(-0.5), (false, 2.0, -0.5));
-    // A gap with an error in it can make the energy look concave: the share would be negative.
-    assert_eq!(shortened(-1.5), (false, 2.0, -1.5));
-}
-
-#[test]
 fn a_pressure_is_scaled_and_cut_by_hand() {
     let scaled = |wanted: f64| {
         let mut p = [1.0, 2.0, 3.0];
-        scale_to(&mut p, wanted, 1.5);
+        scale_to(wanted, 1.5, &mut p);
         p.to_vec()
     };
     assert_eq!(scaled(1.5), [0.25, 0.5, 0.75]);
@@ -228,24 +187,29 @@ fn a_pressure_is_scaled_and_cut_by_hand() {
 }
 
 #[test]
-fn saturated_and_elastic_cells_are_told_apart() {
+fn free_cells_and_those_at_their_bound_are_told_apart() {
     let contact = CellSet::from_index(Grid::square(5, 1), &[0, 2, 3, 4]);
     let index = |set: &CellSet| set.index(Grid::square(5, 1)).collect::<Vec<_>>();
     let (p, gap) = ([1.0, 1.0, 0.5, 1.0], [-0.2, 0.3, -0.4, 0.1]);
-    assert_eq!(index(&elastic(&contact, &p, 1.0)), [3]);
-    assert_eq!(index(&elastic(&contact, &p, 1.5)), [0, 2, 3, 4]);
-    assert_eq!(of_elastic(&p, &gap, 1.0), [-0.4]);
+    let [low, high] = [1.0, 1.5].map(Bounds::UpTo);
+    assert_eq!(index(&low.free(&contact, &p)), [3]);
+    assert_eq!(index(&high.free(&contact, &p)), [0, 2, 3, 4]);
+    assert_eq!((&*low.of_free(&p, &gap), &*high.of_free(&p, &gap)), (&[-0.4][..], &gap[..]));
     // One gap is the noise, the other is larger.
-    assert_eq!(index(&kept(&contact, &p, &gap, 1.0, 0.1)), [0, 4]);
-    assert!(is_saturated(&p, 1.0) && !is_saturated(&p, 1.5) && !is_saturated(&p, f64::INFINITY));
+    assert_eq!(index(&low.held(&contact, &p, &gap, 0.1)), [0, 4]);
+    assert!(high.held(&contact, &p, &gap, 0.1).is_empty());
+    assert!(low.is_reached(&p) && !high.is_reached(&p) && !Bounds::Unlimited.is_reached(&p));
 }
 
 #[test]
 fn the_approach_is_that_of_elastic_cells_or_of_the_lowest_saturated_ones() {
-    assert_relative_eq!(approach(&[1.0, 0.5, 0.25], &[9.0, 0.2, 0.5], &[], 1.0), 0.3, max_relative = 1e-14);
+    let approach = |p: &[f64], displaced: &[f64], everywhere: &[f64]| {
+        Bounds::UpTo(1.0).approach(p, displaced, everywhere).unwrap()
+    };
+    assert_relative_eq!(approach(&[1.0, 0.5, 0.25], &[9.0, 0.2, 0.5], &[]), 0.3, max_relative = 1e-14);
     // One cell, then more than there are.
-    assert_eq!(approach(&[1.0], &[0.1], &[0.3, 0.1, 0.2], 1.0).to_bits(), 0.2_f64.to_bits());
-    assert_eq!(approach(&[1.0; 5], &[0.1; 5], &[0.3, 0.1, 0.2], 1.0).to_bits(), 0.3_f64.to_bits());
+    assert_eq!(approach(&[1.0], &[0.1], &[0.3, 0.1, 0.2]).to_bits(), 0.2_f64.to_bits());
+    assert_eq!(approach(&[1.0; 5], &[0.1; 5], &[0.3, 0.1, 0.2]).to_bits(), 0.3_f64.to_bits());
 }
 
 #[test]
@@ -254,7 +218,7 @@ fn forces_of_whole_cells_by_hand() {
     let saturated = |p: &[f64], force: Option<f64>| {
         let (mut set, mut p) =
             (CellSet::from_index(grid, &(0..p.len() as u32).collect::<Vec<_>>()), p.to_vec());
-        saturate(&mut set, &mut p, force, 1.0);
+        round_to(1.0, &mut set, &mut p, force);
         (set.index(grid).collect::<Vec<_>>(), p)
     };
     // The last digit of one cell.
@@ -271,7 +235,8 @@ fn forces_of_whole_cells_by_hand() {
         assert_eq!(saturated(&p, force), (vec![0, 1, 2, 3], p.to_vec()), "{force:?}");
     }
     let mut p = vec![0.5];
-    saturate(&mut CellSet::from_index(grid, &[0]), &mut p, Some(1.0), f64::INFINITY);
+    let candidates = Candidates::new(grid, Arc::new(vec![0.0; 4]));
+    Bounds::Unlimited.admit(&mut CellSet::from_index(grid, &[0]), &mut p, Some(0.5), &candidates);
     assert_eq!(p, [0.5]);
 }
 
@@ -282,7 +247,7 @@ fn one_cell_gives_way_where_the_saturated_ones_carry_a_little_too_much() {
     let brought = |p: &[f64], force: f64| {
         let (mut set, mut p) =
             (CellSet::from_index(grid, &(0..p.len() as u32).collect::<Vec<_>>()), p.to_vec());
-        bring_to(&mut set, &mut p, force, 1.0, &candidates);
+        bring_to(force, 1.0, &mut set, &mut p, &candidates);
         (set.index(grid).collect::<Vec<_>>(), p)
     };
     // Within rounding nothing is done; beyond, the cell with the largest gap gives way, and elastic cells open.
@@ -292,4 +257,14 @@ fn one_cell_gives_way_where_the_saturated_ones_carry_a_little_too_much() {
     assert_relative_eq!(p[1], 1.0 - 1e-8, max_relative = 1e-14);
     // More than that is taken from all.
     assert_eq!(brought(&[1.0, 1.0], 1.0).1, [0.5, 0.5]);
+}
+
+#[test]
+fn no_force_comes_from_no_pressure() {
+    let mut none = [0.0; 3];
+    rescale(&mut none, 5.0);
+    assert!(none.iter().all(|&p| p == 0.0));
+    let mut some = [1.0, 3.0];
+    rescale(&mut some, 2.0);
+    assert_relative_eq!(some[..], [0.5, 1.5][..]);
 }

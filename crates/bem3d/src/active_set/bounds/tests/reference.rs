@@ -1,6 +1,6 @@
 //! Random states against a dense reference: the conditions to rounding, by exchanging cells one at a time.
 
-use super::super::super::{Guess, Limits, Problem, Solved, Target, cold_start, solve};
+use super::super::super::{Bounds, Guess, Limits, Problem, Solved, Target, cold_start, solve};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::KernelTable;
 use crate::linear::Factor;
@@ -166,7 +166,7 @@ fn random_states_are_those_of_a_dense_reference() {
         let (dense, boundary) = state(number);
         let Dense { grid, hardness, target, .. } = dense;
         let mut problem = Problem::new(grid, Arc::new(dense.z.clone()), boundary, &Tuning::DEFAULT);
-        problem.hardness = hardness;
+        problem.bounds = Bounds::UpTo(hardness);
         let limits = Limits {
             tolerance: TOLERANCE,
             height: Some(1.0),

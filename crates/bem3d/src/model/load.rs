@@ -1,0 +1,82 @@
+//! From a load to the units of the surface.
+
+use super::options::NAME;
+use super::prepared::PreparedSurface;
+use contact_model::{Error, Load, Result};
+use std::f64::consts::PI;
+
+/// How far the force of all cells at the hardness may be rounded on its way through units.
+const CAPACITY_ROUNDING: f64 = 1e-12;
+
+/// A load in the units of the surface, of either sign; a force over pi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Prescribed {
+    /// Sum of the net pressure.
+    Force(f64),
+    /// Approach from first touch of the virgin surface.
+    Approach(f64),
+    /// Mean gap of a periodic surface.
+    MeanGap(f64),
+}
+
+/// How loads follow from each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Loads {
+    /// Each is the first one of a virgin surface.
+    Single,
+    /// Each follows the last one.
+    Path,
+}
+
+impl PreparedSurface {
+    /// A load of the scene in the units of the surface.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where no number holds it, [`Error::Unsupported`] for one that the surface does not have, [`Error::OutOfRange`] for
+    /// a force that all cells at the hardness do not carry.
+    pub(super) fn prescribed(&self, load: Load) -> Result<Prescribed> {
+        let units = self.nondimensional;
+        Ok(match load {
+            Load::Force(asked) => {
+                let force = held("force", asked, (units.force_in(asked.abs()) / PI).copysign(asked))?;
+                self.refuse_beyond_hardness(force, asked)?;
+                Prescribed::Force(force)
+            }
+            Load::Approach(d) if self.has_approach() => {
+                Prescribed::Approach(held("approach", d, units.approach_in(d))?)
+            }
+            Load::MeanGap(gap) if self.is_periodic() => {
+                Prescribed::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
+            }
+            Load::Approach(_) if !self.is_periodic() => {
+                let what = "an approach of a profile with free boundaries: displacements of a half-plane have no zero at infinity; give a force or a pressure";
+                return Err(Error::unsupported(NAME, what));
+            }
+            Load::Approach(_) => {
+                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
+                return Err(Error::unsupported(NAME, what));
+            }
+            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
+        })
+    }
+
+    /// Errors for a force that all cells at the hardness do not carry.
+    fn refuse_beyond_hardness(&self, force: f64, asked: f64) -> Result<()> {
+        let capacity = self.capacity();
+        // A force of all cells leaves the approach open, and so does rounding below it.
+        if force < capacity * (1.0 - CAPACITY_ROUNDING) {
+            return Ok(());
+        }
+        let max = self.nondimensional.force(PI * capacity)?;
+        Err(Error::OutOfRange { name: "force".into(), value: asked, min: 0.0, max })
+    }
+}
+
+/// A load in the units of the surface, unless no f64 holds it.
+fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
+    if result.is_finite() && (value == 0.0 || result != 0.0) {
+        Ok(result)
+    } else {
+        Err(Error::domain(name, value, "a load nearer to the scales of the surface"))
+    }
+}
