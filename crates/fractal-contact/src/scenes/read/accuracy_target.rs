@@ -25,17 +25,12 @@ pub(crate) fn read_accuracy<'a>(scene: &Entries<'a>) -> Read<Option<(AccuracyTar
             None => Ok(None),
         };
     };
-    let share = match entry.as_word() {
-        Some(text) => {
-            text.trim().strip_suffix('%').and_then(|t| t.trim().parse().ok()).map(|p: f64| p / 100.0)
-        }
-        None => Some(entry.number()?),
-    };
-    let Some(share) = share.filter(|share| *share > 0.0 && *share < 1.0) else {
+    let share = entry.pure_number()?;
+    if !(share > 0.0 && share < 1.0) {
         return Err(entry
             .diagnostic(format!("`accuracy` = {}: expected a share above 0 and below 100 %", entry.shown()))
             .with_help("such as \"1 %\" or 0.01"));
-    };
+    }
     // A time of the one who waits: it has a unit in every scene.
     let seconds = budget.map_or(Ok(BUDGET), |entry| entry.positive(Dimension::TIME, System::Si))?;
     Ok(Some((AccuracyTarget { share, seconds }, entry)))

@@ -2,6 +2,7 @@
 
 use crate::scenes::read::diagnostic::Diagnostic;
 use std::cell::RefCell;
+use std::f64::consts::PI;
 use std::ops::Range;
 use surface_io::{Dimension, Quantity};
 use toml::Spanned;
@@ -303,6 +304,31 @@ impl<'a> Entry<'a> {
         }
     }
 
+    /// A pure number: as [`Entry::number`], or a percentage such as `"30 %"`.
+    pub fn pure_number(&self) -> Read<f64> {
+        let Some(text) = self.as_word() else { return self.number() };
+        let percent = text.trim().strip_suffix('%').and_then(|text| text.trim().parse::<f64>().ok());
+        match percent.filter(|percent| percent.is_finite()) {
+            Some(percent) => Ok(percent / 100.0),
+            None => Err(self.wrong("a pure number", "0.3 or \"30 %\"")),
+        }
+    }
+
+    /// An angle in degrees: with its unit, `"30 deg"` or `"5 mrad"`, or a plain number of degrees.
+    pub fn angle(&self) -> Read<f64> {
+        // Longer names before those that end them.
+        const UNITS: [(&str, f64); 4] =
+            [("deg", 1.0), ("mrad", 0.18 / PI), ("urad", 0.18e-3 / PI), ("rad", 180.0 / PI)];
+        let Some(text) = self.as_word() else { return self.number() };
+        let angle = UNITS.iter().find_map(|(unit, degrees)| {
+            Some(text.trim().strip_suffix(unit)?.trim().parse::<f64>().ok()? * degrees)
+        });
+        match angle.filter(|angle| angle.is_finite()) {
+            Some(angle) => Ok(angle),
+            None => Err(self.wrong("an angle", "\"30 deg\", \"5 mrad\" or 30, in degrees")),
+        }
+    }
+
     /// A number as [`Entry::number`], or an infinity: `inf`, `-inf`.
     pub fn any_number(&self) -> Read<f64> {
         match self.value.get_ref() {
@@ -387,9 +413,9 @@ impl<'a> Entry<'a> {
         Ok(LengthOrPair::Two([length(x)?, length(y)?]))
     }
 
-    /// A plain number > 0.
+    /// A pure number > 0.
     pub fn positive_number(&self) -> Read<f64> {
-        self.above_zero(self.number()?)
+        self.above_zero(self.pure_number()?)
     }
 
     fn above_zero(&self, value: f64) -> Read<f64> {

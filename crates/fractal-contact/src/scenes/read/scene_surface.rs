@@ -335,7 +335,7 @@ fn read_anisotropy(table: &Entries<'_>) -> Read<Option<Anisotropy>> {
                 .with_help("add `anisotropy = 4`: waves along the lay are so many times as long as across")),
         };
     };
-    let lay = lay.map_or(Ok(0.0), |lay| lay.number())?;
+    let lay = lay.map_or(Ok(0.0), |lay| lay.angle())?;
     Ok(Some(Anisotropy { ratio: ratio.positive_number()?, lay }))
 }
 
