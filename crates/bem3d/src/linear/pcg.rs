@@ -5,7 +5,7 @@ use super::extension::Extension;
 use super::preconditioner::{Identity, Preconditioner, TorusInverse};
 use crate::geometry::CellSet;
 use crate::operator::{Conditioning, InfluenceOperator, Operators, Recipe};
-use crate::parts::{Part, timed};
+use crate::parts::Part;
 use crate::real::{Real, dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
 use contact_model::Stop;
@@ -78,17 +78,20 @@ impl Workspace {
             self.begin_load();
         }
         self.recipe = Some(recipe);
-        let decay = operators.tuning().decay;
+        let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
         if let (Conditioning::Torus { extended, .. }, (_, Some(torus))) =
             (recipe.conditioning, operators.system(recipe))
         {
-            self.extension.set(&set, torus.window(), if extended { decay } else { 0.0 });
+            let decay = if extended { decay } else { 0.0 };
+            recorder.timed(Part::Sets, || self.extension.set(&set, torus.window(), decay));
         }
-        if recipe.is_single() {
-            self.single.take(set);
-        } else {
-            self.double.take(set);
-        }
+        recorder.timed(Part::Sets, || {
+            if recipe.is_single() {
+                self.single.take(set);
+            } else {
+                self.double.take(set);
+            }
+        });
     }
 
     /// The set.
@@ -117,13 +120,18 @@ impl Workspace {
             ..criteria
         };
         let mut identity = Identity { smallest_eigenvalue: operators.table().smallest_eigenvalue() };
+        let recorder = operators.recorder().clone();
         let (mut operator, torus) = operators.system(recipe);
-        let outcome = timed(Part::Vectors, || {
+        let outcome = recorder.timed(Part::Vectors, || {
             if recipe.is_single() {
                 let v = &mut self.single;
                 v.load(right, unit);
                 let outcome = if let Some(transform) = torus {
-                    let mut inverse = TorusInverse { transform, extension: &mut self.extension };
+                    let mut inverse = TorusInverse {
+                        transform,
+                        extension: &mut self.extension,
+                        recorder: recorder.clone(),
+                    };
                     pcg(&mut operator, &mut inverse, v, fixed, criteria, stop)
                 } else {
                     pcg(&mut operator, &mut identity, v, fixed, criteria, stop)

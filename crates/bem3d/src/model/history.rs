@@ -2,6 +2,7 @@
 
 use super::Bem3d;
 use super::options::NAME;
+use crate::parts::Recorder;
 use crate::tuning::Tuning;
 use contact_model::{
     Adhesion, ContactModel, Error, Hardness, History, HistoryModel, RequiredMemory, Result, Scene, Source,
@@ -38,7 +39,7 @@ impl HistoryModel for Bem3dPath {
             let what = "a path without hardness or adhesion: nothing depends on it";
             return Err(Error::unsupported(NAME, what));
         }
-        Ok(Box::new(self.0.prepared(scene, seed, &Tuning::DEFAULT)?))
+        Ok(Box::new(self.0.prepared(scene, seed, &Tuning::DEFAULT, &Recorder::default())?))
     }
 
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
