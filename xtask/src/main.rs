@@ -217,11 +217,9 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
     if let Some(directory) = csv.as_deref().and_then(Path::parent) {
         runs::files::create_directory(directory)?;
     }
-    if options.parts {
-        evaluation::measure_parts();
-    }
+    let clock: Option<evaluation::Clock> = if options.parts { Some(evaluation::elapsed) } else { None };
     let table = Mutex::new(BenchTable::default());
-    let rows = evaluation::bench(&options.bench()?, &|row| {
+    let rows = evaluation::bench(&options.bench()?, clock, &|row| {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
         let Ok(mut table) = table.lock() else { return Ok(()) };
         if table.rows.is_empty() {

@@ -1,6 +1,6 @@
 //! The operators and the parts of a solve as a benchmark sees them. Not part of the interface: nothing here is kept from version to version.
 
-pub use crate::parts::{Part, Spent, measure as measure_parts, take as take_parts};
+pub use crate::parts::{Part, Recorder, Spent};
 pub use crate::tuning::{CONSTANTS, Constant};
 
 use crate::geometry::{CellSet, Grid, Lengths};
@@ -22,7 +22,20 @@ pub fn prepare_tuned(
     constant: Constant,
     factor: f64,
 ) -> Result<Box<dyn PreparedContact>> {
-    model.prepare_tuned(scene, seed, &Tuning::with_multiple(constant, factor))
+    model.prepare_with(scene, seed, &Tuning::with_multiple(constant, factor), &Recorder::default())
+}
+
+/// A surface prepared with a recorder, to which the time of its preparation and of its solves is charged.
+///
+/// # Errors
+/// As [`contact_model::ContactModel::prepare`].
+pub fn prepare_recorded(
+    model: &Bem3d,
+    scene: &Scene,
+    seed: u64,
+    recorder: &Recorder,
+) -> Result<Box<dyn PreparedContact>> {
+    model.prepare_with(scene, seed, &Tuning::DEFAULT, recorder)
 }
 
 /// One application of the named operator (`direct`, `two levels`, `f32`, `f64`, `inverse`) between every `step`-th cell of a grid.

@@ -45,12 +45,15 @@
 //! the stiffness that of the cells that hold more than half of their work, where fronts stay (`2 E* a` of a round contact). A cell that
 //! touches nothing attracts over `g0 = 2.9 sqrt(w a/E*)`, a the longer side of a cell, which is how far from touch a contact snaps in.
 //!
-//! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is `p - s(g)`, p >= 0 still with
-//! p g = 0. Approach and withdrawal differ, so that such a scene is a path ([`ContactModel`]); a single load is the path from no contact to it.
-//! Each state says on which branch it lies, its energy, and how stable it is ([`AdhesiveState::stability`]: `1 - rho` for the exponential
-//! law, see `adhesion`; for Dugdale's law, whose states are stable between the jumps of single cells, the smallest distance of the gap of a
-//! cell from the range, in ranges). Forces that nothing holds end the path with an error that has the last stable state. Cells too
-//! large for the range are refused with the side that would do; results with Dugdale's law are of first order in the cell.
+//! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is
+//! `p - s(g)`, p >= 0 still with p g = 0. Approach and withdrawal differ, so that such a scene is a path
+//! ([`PreparedContact::advance`]); a single load is the path from no contact to it, and continues from the last one where
+//! that lies on this path. Each state says on which branch it lies, its energy, and how stable it is
+//! ([`AdhesiveState::stability`]: `1 - rho` for the exponential law, see `adhesion`; for Dugdale's law, whose
+//! states are stable between the jumps of single cells, the smallest distance of the gap of a cell from the
+//! range, in ranges). Forces that nothing holds end the path with an error that has the last stable state.
+//! Cells too large for the range are refused with the side that would do; results with Dugdale's law are of
+//! first order in the cell.
 //!
 //! # How
 //!
@@ -69,6 +72,22 @@
 //!
 //! The energy `r' G^-1 r` that the preconditioner bounds also bounds the error of k (`stiffness`). Every tuned constant is in
 //! `tuning`, with its meaning and unit.
+//!
+//! # The way of one load
+//!
+//! From [`PreparedContact::solve`] to the transform a load crosses five files:
+//!
+//! | file | functions | what they do |
+//! |---|---|---|
+//! | `model/contact.rs` | `solve_until`, `at`, `at_target`, `settle` | with adhesion or without; the pressure, then the stiffness; the state |
+//! | `active_set/solver.rs` | `solve`, `iterate`, `evaluate`, `improve` | the outer iteration over contact sets |
+//! | `linear/pcg.rs` | `Workspace::solve`, `pcg` | the linear system on one set |
+//! | `operator/operators.rs` | `Operators::exact`, `Planned::apply` | the operator that is planned for the set |
+//! | `operator/fft.rs` | `FftConvolution::apply` | the convolution |
+//!
+//! Beside it `model/load.rs` brings a load into the units of the surface, `model/state.rs` assembles every
+//! state, and `active_set/bounds.rs` says what an upper bound of the pressure changes. With adhesion, `at`
+//! leads to `model/adhesive.rs` and `adhesion/equilibrium.rs`, and from there to the same systems.
 //!
 //! # How accurate
 //!
@@ -101,7 +120,7 @@
 //!
 //! # What it does not do
 //!
-//! Adhesion of short range, hardness together with adhesion, friction and rheology are refused at `prepare`.
+//! Hardness together with adhesion, friction and rheology are refused at `prepare`.
 
 mod active_set;
 mod adhesion;

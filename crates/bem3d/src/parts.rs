@@ -1,7 +1,7 @@
-//! Where the time of a solve goes. A solver reads no clock: a benchmark that wants to know brings one.
+//! Where the time of a solve goes. A solver reads no clock: a benchmark that wants to know hands in a
+//! recorder with one.
 
-use std::cell::{Cell, RefCell};
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A part of a solve that is timed by itself; what belongs to none is `Other`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,67 +81,102 @@ pub struct Spent {
     pub times: u64,
 }
 
-static CLOCK: OnceLock<fn() -> u64> = OnceLock::new();
+/// Charges time to the parts of a solve; clones share one account. By default it is off: then nothing is
+/// read, counted or kept.
+#[derive(Debug, Clone, Default)]
+pub struct Recorder(Option<Arc<Account>>);
 
-thread_local! {
-    static SPENT: RefCell<[Spent; Part::ALL.len()]> = const { RefCell::new([Spent { time: 0, times: 0 }; Part::ALL.len()]) };
+#[derive(Debug)]
+struct Account {
+    clock: fn() -> u64,
+    entries: Mutex<Entries>,
+}
+
+#[derive(Debug)]
+struct Entries {
+    spent: [Spent; Part::ALL.len()],
     /// The part that runs, and since when.
-    static NOW: Cell<(Part, u64)> = const { Cell::new((Part::Other, 0)) };
+    now: (Part, u64),
 }
 
-/// Times all parts from now on, in every solve of the process, in units of this clock. The first clock stays.
-pub fn measure(clock: fn() -> u64) {
-    let _ = CLOCK.set(clock);
-    let _ = take();
-}
-
-/// What the thread that asks has spent since it asked last.
-pub fn take() -> Vec<(Part, Spent)> {
-    if let Some(clock) = CLOCK.get() {
-        switch(NOW.get().0, clock());
+impl Recorder {
+    /// Charges time in units of this clock from now on.
+    pub fn new(clock: fn() -> u64) -> Self {
+        let entries = Entries { spent: [Spent::default(); Part::ALL.len()], now: (Part::Other, clock()) };
+        Self(Some(Arc::new(Account { clock, entries: Mutex::new(entries) })))
     }
-    let spent = SPENT.take();
-    Part::ALL.into_iter().zip(spent).filter(|(_, spent)| *spent != Spent::default()).collect()
+
+    /// What was spent since this was asked last, or since the beginning; empty when off.
+    pub fn take(&self) -> Vec<(Part, Spent)> {
+        let Some(account) = &self.0 else { return Vec::new() };
+        let mut entries = account.entries();
+        let now = entries.now.0;
+        entries.switch(now, (account.clock)());
+        let spent = std::mem::replace(&mut entries.spent, [Spent::default(); Part::ALL.len()]);
+        Part::ALL.into_iter().zip(spent).filter(|(_, spent)| *spent != Spent::default()).collect()
+    }
+
+    /// Does some work as a part of its own, which the part around it does not count.
+    pub fn timed<R>(&self, part: Part, work: impl FnOnce() -> R) -> R {
+        let Some(account) = &self.0 else { return work() };
+        let around = account.enter(part);
+        let result = work();
+        account.entries().switch(around, (account.clock)());
+        result
+    }
 }
 
-/// Does some work as a part of its own, which the part around it does not count.
-pub fn timed<R>(part: Part, work: impl FnOnce() -> R) -> R {
-    let Some(clock) = CLOCK.get() else { return work() };
-    let around = switch(part, clock());
-    SPENT.with_borrow_mut(|spent| spent[part as usize].times += 1);
-    let result = work();
-    switch(around, clock());
-    result
+impl Account {
+    /// The entries; those of a thread that panicked are as good as any.
+    fn entries(&self) -> MutexGuard<'_, Entries> {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Begins a part; returns the one around it.
+    fn enter(&self, part: Part) -> Part {
+        let mut entries = self.entries();
+        entries.spent[part as usize].times += 1;
+        entries.switch(part, (self.clock)())
+    }
 }
 
-/// Charges the part that runs, and begins another one.
-fn switch(part: Part, now: u64) -> Part {
-    let (last, since) = NOW.replace((part, now));
-    SPENT.with_borrow_mut(|spent| spent[last as usize].time += now.saturating_sub(since));
-    last
+impl Entries {
+    /// Charges the part that runs, and begins another one.
+    fn switch(&mut self, part: Part, now: u64) -> Part {
+        let (last, since) = std::mem::replace(&mut self.now, (part, now));
+        self.spent[last as usize].time += now.saturating_sub(since);
+        last
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::cell::Cell;
 
     #[test]
     fn a_part_inside_another_is_counted_by_itself() {
         thread_local!(static TICKS: Cell<u64> = const { Cell::new(0) });
-        measure(|| {
+        let recorder = Recorder::new(|| {
             TICKS.set(TICKS.get() + 1);
             TICKS.get()
         });
-        let _ = take();
-        // A tick at the beginning and at the end of each.
-        timed(Part::Double, || timed(Part::Plans, || ()));
-        let spent = take();
+        // A tick at the beginning and at the end of each; a clone has the same account.
+        recorder.timed(Part::Double, || recorder.clone().timed(Part::Plans, || ()));
+        let spent = recorder.take();
         let of = |part| spent.iter().find(|(p, _)| *p == part).map(|(_, s)| (s.time, s.times));
         assert_eq!((of(Part::Double), of(Part::Plans)), (Some((2, 1)), Some((1, 1))));
         assert_eq!(of(Part::Single), None);
-        assert!(take().iter().all(|(part, _)| *part == Part::Other));
+        assert!(recorder.take().iter().all(|(part, _)| *part == Part::Other));
         for (i, part) in Part::ALL.into_iter().enumerate() {
             assert_eq!(part as usize, i, "{}", part.name());
         }
+    }
+
+    #[test]
+    fn without_a_clock_nothing_is_counted() {
+        let recorder = Recorder::default();
+        assert_eq!(recorder.timed(Part::Double, || 3), 3);
+        assert!(recorder.take().is_empty());
     }
 }

@@ -5,6 +5,7 @@ use crate::geometry::CellSet;
 use crate::kernel::KernelTable;
 use crate::linear::{Energy, Fixed, StoppingCriteria};
 use crate::operator::{Conditioning, Recipe};
+use crate::parts::Part;
 use crate::real::{dot, each, sum, update};
 use contact_model::Stop;
 use std::borrow::Cow;
@@ -42,8 +43,9 @@ pub struct Responding<'a> {
     pub cells: Cow<'a, CellSet>,
     /// The bounds at which their pressure would no longer follow.
     pub bounds: Bounds,
-    /// Cells that cannot be on the wrong side, whatever is left of their gaps: those at the upper bound in a contact that is held as a
-    /// whole; those at the bound without a gap, where the direction of the load decides.
+    /// Cells that cannot be on the wrong side, whatever is left of their gaps: those at the upper bound in a
+    /// contact that is held as a whole; those at the bound without a gap, where the direction of the load
+    /// decides.
     pub decided: CellSet,
 }
 
@@ -96,7 +98,8 @@ pub fn solve(
         left.iter_mut().zip(known).filter(|(_, known)| *known).for_each(|(left, _)| *left = 0.0);
     }
     let mut room = state.room(contact, responding.bounds).into_owned();
-    let mut undecided = state.undecided(grid, contact, &left, &tuning);
+    let recorder = operators.recorder().clone();
+    let mut undecided = recorder.timed(Part::Sets, || state.undecided(grid, contact, &left, &tuning));
     if !responding.decided.is_empty() {
         undecided = undecided.without(&responding.decided);
         contact.add_carried(&responding.decided, &vec![f64::INFINITY; responding.decided.len()], &mut room);
@@ -116,7 +119,7 @@ pub fn solve(
             } else {
                 operators.exact(contact, q, &targets, &mut v);
             }
-            contact.carry_to(&targets, &v, &mut r);
+            recorder.timed(Part::Sets, || contact.carry_to(&targets, &v, &mut r));
             each(&mut r, |r| *r = 1.0 - *r);
         }
         let (total, rq) = q.as_ref().map_or((0.0, 0.0), |q| (sum(q), dot(&r, q)));

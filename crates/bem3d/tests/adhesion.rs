@@ -4,7 +4,7 @@
 
 use bem3d::{
     Adhesion, AdhesionLaw, Bem3d, Boundary, Branch, ContactModel, ContactState, Effects, Error, Hardness,
-    HeightMap, Load, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
+    HeightMap, Load, Outputs, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -95,6 +95,57 @@ fn a_single_load_is_on_the_branch_of_approach() {
     at(&mut *history, Load::Approach(2.0)).unwrap();
     let withdrawn = at(&mut *history, Load::Approach(0.2)).unwrap();
     assert_eq!(withdrawn.adhesive.unwrap().branch, Branch::Withdrawal);
+}
+
+/// Single loads that increase follow from each other: each state is that of its load alone, for less work.
+#[test]
+fn increasing_loads_continue_from_the_last_state() {
+    // What the tolerance leaves open of forces and of approaches, relative to the largest.
+    const SAME: f64 = 1e-5;
+    let surface = Surface::SelfAffine(SelfAffine::new(2.3, 1.0, 0.1).unwrap());
+    let finite = |law| Adhesion::FiniteRange { work: 1e-3, range: 0.05, law };
+    let model = Bem3d { cells: 48, tolerance: 1e-7, ..Bem3d::default() };
+    let laws = [
+        ("short range", Adhesion::ShortRange { work: 1e-3 }, Boundary::Free),
+        ("exponential", finite(EXPONENTIAL), Boundary::Free),
+        ("exponential, periodic", finite(EXPONENTIAL), Boundary::Periodic),
+        ("Dugdale", Adhesion::FiniteRange { work: 5e-4, range: 0.05, law: DUGDALE }, Boundary::Free),
+    ];
+    for (name, adhesion, boundary) in laws {
+        let mut scene = Scene::new(surface.clone(), 1.0);
+        (scene.effects.adhesion, scene.effects.boundary) = (adhesion, boundary);
+        scene.outputs =
+            Outputs { area: true, mean_gap: boundary == Boundary::Periodic, ..Outputs::default() };
+        let prepared = || ContactModel::prepare(&model, &scene, 3).unwrap();
+        let forces = [0, 1, 2, 3, 4, 5, 6].map(|i| Load::Force(2e-3 * 1.2f64.powi(i)));
+        let approaches = [-0.02, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07].map(Load::Approach);
+        for loads in if boundary == Boundary::Free { vec![forces, approaches] } else { vec![forces] } {
+            let mut contact = prepared();
+            let sweep = loads.map(|load| contact.solve(load).unwrap());
+            let alone = loads.map(|load| prepared().solve(load).unwrap());
+            let largest = alone.last().unwrap();
+            for (state, alone) in sweep.iter().zip(&alone) {
+                let near =
+                    |a: f64, b: f64, scale: f64| assert!((a - b).abs() <= SAME * scale, "{name}: {a} {b}");
+                near(state.force, alone.force, largest.force);
+                near(state.area.unwrap(), alone.area.unwrap(), largest.area.unwrap());
+                let plane = |state: &ContactState| state.approach.or(state.mean_gap).unwrap();
+                near(plane(state), plane(alone), 0.1);
+                assert_eq!(state.report.contact_cells, alone.report.contact_cells, "{name}");
+                assert_eq!(state.adhesive.unwrap().branch, Branch::Approach);
+                assert!(state.report.certificate.meets(model.tolerance));
+            }
+            let work = |states: &[ContactState]| states.iter().map(|s| s.report.applications).sum::<usize>();
+            let (together, each) = (work(&sweep), work(&alone));
+            println!("{name}, {:?}: {together} applications, {each} alone", loads[0]);
+            assert!(together < each, "{name}: {together} {each}");
+            // A smaller load begins anew: no branch of withdrawal.
+            let again = contact.solve(loads[2]).unwrap();
+            assert_eq!(again.adhesive.unwrap().branch, Branch::Approach);
+            assert!((again.force - alone[2].force).abs() <= SAME * largest.force, "{name}");
+            assert!((again.area.unwrap() - alone[2].area.unwrap()).abs() <= SAME, "{name}");
+        }
+    }
 }
 
 /// `k = dF/dd` of a periodic contact, the mean gap lowered by d, with the motion of the attraction.

@@ -4,11 +4,11 @@ use crate::forces::Forces;
 use crate::limits::{self, within};
 use crate::realisation::Discretisation;
 use crate::table_of::{maybe, names};
-use bem3d::benchmarks::{Part, Spent, take_parts};
+use bem3d::benchmarks::{Part, Recorder, Spent, prepare_recorded};
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Boundary, Cells, Certificate, ContactModel, ContactState, Load, Normalisation, PreparedContact, Scene,
-    SelfAffine, Stop, Surface, never,
+    Boundary, Cells, Certificate, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
+    Stop, Surface, never,
 };
 use runs::{
     Error, Result, Threads, collect, files, number, peak_memory, process_cpu_seconds, read_map,
@@ -39,10 +39,13 @@ pub struct Bench {
     pub pressure: Option<PathBuf>,
 }
 
-/// Lets each row say where its time went, from now on in every solve of the process.
-pub fn measure_parts() {
+/// What the times of parts are read from, in nanoseconds.
+pub type Clock = fn() -> u64;
+
+/// Nanoseconds since the process asked first.
+pub fn elapsed() -> u64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    bem3d::benchmarks::measure_parts(|| START.elapsed().as_nanos() as u64);
+    START.elapsed().as_nanos() as u64
 }
 
 /// Where the time of some rows went: a line for each part, the largest first.
@@ -105,7 +108,7 @@ pub struct BenchRow {
     pub seconds: f64,
     /// Seconds of the processor on all threads, where the platform tells and no other series was solved meanwhile.
     pub cpu_seconds: Option<f64>,
-    /// Where the time went: parts with their nanoseconds and how often they were done; empty unless [`measure_parts`] was called.
+    /// Where the time went: parts with their nanoseconds and how often they were done; empty without a clock.
     pub parts: Vec<(Part, Spent)>,
     /// Largest resident memory of the process during this row, in bytes, where the platform tells (with what other threads hold; since
     /// the start of the process where the count cannot be set back).
@@ -201,12 +204,16 @@ struct BenchSeries {
 }
 
 /// Solves everything, loads from the smallest up, and hands out each row as soon as it is there. The rows that it gives stand in the
-/// order asked for: surfaces, tolerances, loads.
+/// order asked for: surfaces, tolerances, loads. With a clock each row says where its time went.
 ///
 /// # Errors
 /// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model
 /// refuses; whatever `found` says. The first of them stops everything.
-pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) -> Result<Vec<BenchRow>> {
+pub fn bench(
+    bench: &Bench,
+    clock: Option<Clock>,
+    found: &(dyn Fn(&BenchRow) -> Result<()> + Sync),
+) -> Result<Vec<BenchRow>> {
     within("threads", bench.threads, &(1..=runs::MOST_THREADS))?;
     if let Surfaces::SelfAffine { cells, rows, .. } = &bench.surfaces {
         cells.iter().try_for_each(|&cells| within("cells", cells, &limits::CELLS).map(drop))?;
@@ -230,8 +237,9 @@ pub fn bench(bench: &Bench, found: &(dyn Fn(&BenchRow) -> Result<()> + Sync)) ->
         files::create_directory(directory)?;
     }
     let order: Vec<usize> = (0..series.len()).collect();
-    let done =
-        run_jobs(Threads::all(bench.threads), &order, &never, |i, stop| series[i].run(bench, stop, found));
+    let done = run_jobs(Threads::all(bench.threads), &order, &never, |i, stop| {
+        series[i].run(bench, clock, stop, found)
+    });
     Ok(collect(done)?.into_iter().flatten().collect())
 }
 
@@ -271,16 +279,19 @@ fn series(bench: &Bench) -> Result<Vec<BenchSeries>> {
 }
 
 impl BenchSeries {
-    fn prepare(&self) -> Result<Box<dyn PreparedContact>> {
-        self.model.prepare(&self.scene, self.seed).map_err(Error::model(format!("bem3d on {}", self.surface)))
+    fn prepare(&self, recorder: &Recorder) -> Result<Box<dyn PreparedContact>> {
+        prepare_recorded(&self.model, &self.scene, self.seed, recorder)
+            .map_err(Error::model(format!("bem3d on {}", self.surface)))
     }
 
     fn run(
         &self,
         bench: &Bench,
+        clock: Option<Clock>,
         stop: Stop<'_>,
         found: &(dyn Fn(&BenchRow) -> Result<()> + Sync),
     ) -> Result<Vec<BenchRow>> {
+        let recorder = clock.map_or_else(Recorder::default, Recorder::new);
         let mut rows = Vec::with_capacity(bench.forces.values().len());
         let mut contact: Option<Box<dyn PreparedContact>> = None;
         for &force_bar in bench.forces.values() {
@@ -291,11 +302,11 @@ impl BenchSeries {
             reset_peak_memory();
             let alone = bench.threads == 1 || bench.series() == 1;
             let cpu = process_cpu_seconds().filter(|_| alone);
-            let _ = take_parts();
+            let _ = recorder.take();
             let start = Instant::now();
             let prepared = match &mut contact {
                 Some(prepared) => prepared,
-                none => none.insert(self.prepare()?),
+                none => none.insert(self.prepare(&recorder)?),
             };
             let normalisation = prepared.normalisation();
             let what = || format!("bem3d on {} at F_bar = {force_bar:?}", self.surface);
@@ -313,7 +324,7 @@ impl BenchSeries {
                 normalisation,
                 seconds,
                 cpu_seconds: cpu.zip(process_cpu_seconds()).map(|(a, b)| b - a),
-                parts: take_parts(),
+                parts: recorder.take(),
                 peak_memory: peak_memory(),
                 cold: fresh,
             };
@@ -390,7 +401,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let pressure = dir.path().join("fields");
         let solved = Mutex::new(Vec::new());
-        let rows = bench(&Bench { pressure: Some(pressure.clone()), ..small() }, &|row| {
+        let rows = bench(&Bench { pressure: Some(pressure.clone()), ..small() }, None, &|row| {
             solved.lock().unwrap().push(row.force_bar);
             Ok(())
         })
@@ -411,7 +422,7 @@ mod tests {
     fn a_rectangle_has_its_rows() {
         let surfaces =
             Surfaces::SelfAffine { cells: vec![24], rows: Some(6), fractal_dimensions: vec![2.2], seed: 1 };
-        for row in bench(&Bench { surfaces, ..small() }, &|_| Ok(())).unwrap() {
+        for row in bench(&Bench { surfaces, ..small() }, None, &|_| Ok(())).unwrap() {
             assert!(row.converged());
             approx::assert_relative_eq!(row.normalisation.length, 1.0, max_relative = 1e-15);
             let fields = row.fields().unwrap();
@@ -422,8 +433,8 @@ mod tests {
 
     #[test]
     fn cold_and_warm_rows_agree() {
-        let warm = bench(&small(), &|_| Ok(())).unwrap();
-        let cold = bench(&Bench { cold: true, threads: 2, ..small() }, &|_| Ok(())).unwrap();
+        let warm = bench(&small(), None, &|_| Ok(())).unwrap();
+        let cold = bench(&Bench { cold: true, threads: 2, ..small() }, None, &|_| Ok(())).unwrap();
         for (a, b) in warm.iter().zip(&cold) {
             approx::assert_relative_eq!(
                 a.state.stiffness.unwrap(),
@@ -444,7 +455,7 @@ mod tests {
         };
         let many = Bench { surfaces, tolerances: vec![1e-6, 1e-3], ..small() };
         let numbers = |threads| {
-            let rows = bench(&Bench { threads, ..many.clone() }, &|_| Ok(())).unwrap();
+            let rows = bench(&Bench { threads, ..many.clone() }, None, &|_| Ok(())).unwrap();
             let row = |r: &BenchRow| (r.cells, r.drawn, r.tolerance, r.force_bar, r.state.stiffness);
             rows.iter().map(row).collect::<Vec<_>>()
         };
@@ -455,7 +466,7 @@ mod tests {
     #[test]
     fn a_row_that_cannot_be_kept_stops_the_rest() {
         let count = Mutex::new(0);
-        let error = bench(&small(), &|_| {
+        let error = bench(&small(), None, &|_| {
             *count.lock().unwrap() += 1;
             Err(Error::parameter("csv", "full", "room on the disk"))
         });
@@ -467,7 +478,7 @@ mod tests {
     fn a_load_that_gives_up_has_its_row() {
         // Beyond double precision: reached or not, every load has its row and its certificate.
         let tired = Bench { method: Method::SingleLevel, tolerances: vec![1e-15], ..small() };
-        let rows = bench(&tired, &|_| Ok(())).unwrap();
+        let rows = bench(&tired, None, &|_| Ok(())).unwrap();
         assert_eq!(rows.len(), 2);
         for row in &rows {
             let fields = row.fields().unwrap();
@@ -479,7 +490,7 @@ mod tests {
     #[test]
     fn a_periodic_square_has_mean_gaps_and_no_approach() {
         let periodic = Bench { boundary: Boundary::Periodic, ..small() };
-        let rows = bench(&periodic, &|_| Ok(())).unwrap();
+        let rows = bench(&periodic, None, &|_| Ok(())).unwrap();
         let column = |name: &str| BENCH_COLUMNS.iter().position(|c| *c == name).unwrap();
         let (approach, gap) = (column("approach_over_h"), column("mean_gap_over_h"));
         for row in rows {

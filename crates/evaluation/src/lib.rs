@@ -54,7 +54,7 @@ pub use accuracy::{
     budget_check, budget_check_jobs, plan, redraw_accuracy, settle,
 };
 pub use audit::audit;
-pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Surfaces, bench, measure_parts, parts_table, write_bench};
+pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Clock, Surfaces, bench, elapsed, parts_table, write_bench};
 pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
 pub use budget::{Budget, Budgeted, state_budgets, write_budget};
 pub use claim::{

@@ -12,18 +12,22 @@ const ROUNDS: usize = 100;
 const ROUNDING: f64 = 1e-13;
 /// ... and pressures by less than this one: rounding many of them leaves their sum within the other.
 const CELL_ROUNDING: f64 = 2e-15;
-/// A pressure is that of whole cells at the upper bound where its cells are off by this share of the force in all.
+/// A pressure is that of whole cells at the upper bound where its cells are off by this share of the force in
+/// all.
 const WHOLE: f64 = 1e-12;
-/// Where cells at the upper bound carry more than the force by at most this share, one of them gives way; by more, all of the contact does.
+/// Where cells at the upper bound carry more than the force by at most this share, one of them gives way; by
+/// more, all of the contact does.
 const SMALL: f64 = 1e-6;
 
 /// The values that the pressure of a cell may have.
 ///
-/// The least energy under bounds has p = 0 and g >= 0 on open cells, g = 0 on free ones, and g <= 0 on cells at the upper bound, whose
-/// negative gap is the plastic indentation. A cell is at its upper bound exactly where its pressure is that bound; no set is stored for it.
+/// The least energy under bounds has p = 0 and g >= 0 on open cells, g = 0 on free ones, and g <= 0 on cells
+/// at the upper bound, whose negative gap is the plastic indentation. A cell is at its upper bound exactly
+/// where its pressure is that bound; no set is stored for it.
 ///
-/// The outer iteration, its residuals and its certificate ask the bounds and do not look inside. A tangential problem would be a variant of
-/// its own: its cells have two unknowns each, and their bound is the disc `|q| <= mu p`.
+/// The outer iteration, its residuals and its certificate ask the bounds and do not look inside. A tangential
+/// problem would be a variant of its own: its cells have two unknowns each, and their bound is the disc
+/// `|q| <= mu p`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bounds {
     /// `0 <= p`.
@@ -37,7 +41,8 @@ pub enum Bounds {
 pub struct Extremes {
     /// Largest penetration, or gap of a cell at its upper bound; 0 without any.
     pub deepest: f64,
-    /// Among all pressures between the bounds with the same sum, the one of the least work `sum q g` fills the cells up to this gap.
+    /// Among all pressures between the bounds with the same sum, the one of the least work `sum q g` fills
+    /// the cells up to this gap.
     pub level: f64,
     /// The work, over the sum and counted from that gap, which it takes from cells that are open.
     pub unfilled: f64,
@@ -94,7 +99,8 @@ impl Bounds {
         contact.filter(&values, |g| g <= noise)
     }
 
-    /// Brings a pressure between its bounds and, where one is prescribed, to a force. Whether cells joined the contact set to carry it.
+    /// Brings a pressure between its bounds and, where one is prescribed, to a force. Whether cells joined
+    /// the contact set to carry it.
     ///
     /// Cost: a few passes over the contact set; the whole grid where cells join.
     pub fn admit(
@@ -120,8 +126,9 @@ impl Bounds {
         force.is_some_and(|force| bring_to(force, upper, contact, p, candidates))
     }
 
-    /// The pressure that a correction on a set made: the cells in tension open, those beyond the upper bound are brought back to it, and
-    /// `held` ones, which are not in the set, are at theirs. Where a force is prescribed, the others carry what these leave of it.
+    /// The pressure that a correction on a set made: the cells in tension open, those beyond the upper bound
+    /// are brought back to it, and `held` ones, which are not in the set, are at theirs. Where a force is
+    /// prescribed, the others carry what these leave of it.
     pub fn corrected(
         self,
         set: &CellSet,
@@ -151,9 +158,10 @@ impl Bounds {
         (all, p)
     }
 
-    /// The approach under which the gaps of the free cells vanish on average, weighted by their pressure: the gap is then right where it
-    /// carries. Without free cells the one up to which the lowest cells carry the force at their bound. `displaced` is u + z on the contact
-    /// set, `everywhere` on all cells that could touch. `None` without pressure.
+    /// The approach under which the gaps of the free cells vanish on average, weighted by their pressure: the
+    /// gap is then right where it carries. Without free cells the one up to which the lowest cells carry the
+    /// force at their bound. `displaced` is u + z on the contact set, `everywhere` on all cells that could
+    /// touch. `None` without pressure.
     pub fn approach(self, p: &[f64], displaced: &[f64], everywhere: &[f64]) -> Option<f64> {
         let (upper, reached) = (self.upper(), self.is_reached(p));
         let carried =
@@ -176,7 +184,8 @@ impl Bounds {
         }
     }
 
-    /// What a cell of a contact set adds to the duality gap over the force, from its gap and the level of [`Extremes`].
+    /// What a cell of a contact set adds to the duality gap over the force, from its gap and the level of
+    /// [`Extremes`].
     pub fn excess(self, p: f64, gap: f64, level: f64, force: f64) -> f64 {
         // Below the lowest gap there is none: without an upper bound the first case never occurs.
         if gap < level { (self.upper() - p) / force * (level - gap) } else { p / force * (gap - level) }
@@ -184,8 +193,8 @@ impl Bounds {
 
     /// The extremes of the gap on `everywhere` under a pressure of this sum on a part of it.
     ///
-    /// Where no cell is at its upper bound, the bound is left out: the duality gap is then one from above, and that of the same pressure
-    /// without a bound.
+    /// Where no cell is at its upper bound, the bound is left out: the duality gap is then one from above,
+    /// and that of the same pressure without a bound.
     pub fn extremes(
         self,
         force: f64,
@@ -225,8 +234,9 @@ fn rescale(p: &mut [f64], force: f64) {
     }
 }
 
-/// Pressures that are at the upper bound up to rounding become exactly that. Where rounding alone tells the force from that of k cells at
-/// it, and k cells carry it so, these are brought to it and the others open: rounding would otherwise decide which cells count as free.
+/// Pressures that are at the upper bound up to rounding become exactly that. Where rounding alone tells the
+/// force from that of k cells at it, and k cells carry it so, these are brought to it and the others open:
+/// rounding would otherwise decide which cells count as free.
 fn round_to(upper: f64, contact: &mut CellSet, p: &mut Vec<f64>, force: Option<f64>) {
     if largest(p) < upper * (1.0 - WHOLE) {
         return;
@@ -250,10 +260,11 @@ fn round_to(upper: f64, contact: &mut CellSet, p: &mut Vec<f64>, force: Option<f
     }
 }
 
-/// Scales a positive pressure and cuts it at the upper bound so that its sum is the one wanted; where that is more than the cells carry, all
-/// are brought to their bound.
+/// Scales a positive pressure and cuts it at the upper bound so that its sum is the one wanted; where that is
+/// more than the cells carry, all are brought to their bound.
 ///
-/// The sum is a concave function of the factor: Newton's method from below ends after as many steps as cells reach their bound in turn.
+/// The sum is a concave function of the factor: Newton's method from below ends after as many steps as cells
+/// reach their bound in turn.
 fn scale_to(wanted: f64, upper: f64, p: &mut [f64]) {
     let mut factor = (wanted / sum(p)).max(0.0);
     for _ in 0..ROUNDS {
@@ -274,9 +285,10 @@ fn scale_to(wanted: f64, upper: f64, p: &mut [f64]) {
     each(p, |p| *p = (*p * factor).min(upper));
 }
 
-/// Brings a pressure to a force: the free cells are scaled, those that pass the upper bound are left at it. Where the contact set cannot
-/// carry the force, the next lowest cells join it. Whether any did. Where the cells at the bound alone carry a little more than the force,
-/// the one with the largest undeformed gap gives way.
+/// Brings a pressure to a force: the free cells are scaled, those that pass the upper bound are left at it.
+/// Where the contact set cannot carry the force, the next lowest cells join it. Whether any did. Where the
+/// cells at the bound alone carry a little more than the force, the one with the largest undeformed gap gives
+/// way.
 fn bring_to(
     force: f64,
     upper: f64,

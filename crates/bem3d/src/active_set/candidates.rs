@@ -1,7 +1,6 @@
 //! The cells that may touch at a given approach: those whose undeformed gap z is smaller.
 
 use crate::geometry::{CellSet, Grid};
-use crate::parts::{Part, timed};
 use crate::tuning::{CANDIDATES_AHEAD, CHUNK, COUNTED_CHUNKS, LISTED_CANDIDATES};
 use std::sync::Arc;
 use surface_gen::parallel::map;
@@ -98,11 +97,9 @@ impl Candidates {
     pub fn more_than(&self, count: usize, d: f64) -> bool {
         let below = |z: &[f64]| z.iter().filter(|&&z| z < d).count();
         let mut counted = 0;
-        timed(Part::Sets, || {
-            self.z.chunks(COUNTED_CHUNKS * CHUNK).any(|z| {
-                counted += map(z.len(), z.chunks(CHUNK), below).iter().sum::<usize>();
-                counted > count
-            })
+        self.z.chunks(COUNTED_CHUNKS * CHUNK).any(|z| {
+            counted += map(z.len(), z.chunks(CHUNK), below).iter().sum::<usize>();
+            counted > count
         })
     }
 
@@ -132,10 +129,8 @@ impl Candidates {
 
     /// Adds the undeformed gaps on a set to values on it.
     pub fn add_to(&self, set: &CellSet, values: &mut [f64]) {
-        timed(Part::Sets, || {
-            set.update(set.len(), values, |row, values| {
-                row.add(&self.z[row.y * self.grid.columns..][..self.grid.columns], values, 0);
-            });
+        set.update(set.len(), values, |row, values| {
+            row.add(&self.z[row.y * self.grid.columns..][..self.grid.columns], values, 0);
         });
     }
 }

@@ -192,7 +192,8 @@ fn coarser(problem: &Problem) -> Problem {
             *mean = if count > 0.0 { sum / count } else { f64::INFINITY };
         }
     });
-    let mut coarse = Problem::new(grid, Arc::new(z), problem.operators.table().medium(), &tuning);
+    let medium = problem.operators.table().medium();
+    let mut coarse = Problem::recorded(grid, Arc::new(z), medium, &tuning, problem.operators.recorder());
     coarse.bounds = problem.bounds.scaled(pressure_ratio(fine, &tuning));
     coarse
 }

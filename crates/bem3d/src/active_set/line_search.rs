@@ -1,12 +1,13 @@
 //! How much of a step of the outer iteration is taken where cells meet their upper bound.
 
-/// Shortens a step where the energy `p (u/2 + z)` passes its minimum on the way, before the share `whole` of it: the new pressure and its
-/// u + z become those of the minimum. The old ones are a pressure, the gap under it and its approach, all on the same cells. The share that
-/// is left, if it was shortened.
+/// Shortens a step where the energy `p (u/2 + z)` passes its minimum on the way, before the share `whole` of
+/// it: the new pressure and its u + z become those of the minimum. The old ones are a pressure, the gap under
+/// it and its approach, all on the same cells. The share that is left, if it was shortened.
 ///
-/// Sets that follow from each other may alternate for ever without it. Both pressures obey the bounds and have the same force, and so has
-/// every pressure between them; u is linear. A step that was cut at the bounds need not begin downhill, though: nothing is left of a step
-/// that begins at its minimum, and the next one is the same again. See [`super::descent`].
+/// Sets that follow from each other may alternate for ever without it. Both pressures obey the bounds and
+/// have the same force, and so has every pressure between them; u is linear. A step that was cut at the
+/// bounds need not begin downhill, though: nothing is left of a step that begins at its minimum, and the next
+/// one is the same again. See [`super::descent`].
 pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whole: f64) -> Option<f64> {
     let ((before, gap, d), (p, displaced)) = (old, new);
     let (mut first, mut last) = (0.0, 0.0);
@@ -18,7 +19,8 @@ pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whol
         }
     }
     let share = first / (first - last);
-    // The energy is convex. Errors of the gaps can make it look concave: the share is then negative, and the step would go back.
+    // The energy is convex. Errors of the gaps can make it look concave: the share is then negative, and the
+    // step would go back.
     if !(first < 0.0 && last > 0.0 && share < whole) {
         return None;
     }
@@ -35,7 +37,8 @@ mod tests {
 
     #[test]
     fn a_step_of_two_cells_is_shortened_by_hand() {
-        // Changes of 1/2 and -1/2; the slope of the energy is -3/4 before and 1/4 after it: three quarters are left.
+        // Changes of 1/2 and -1/2; the slope of the energy is -3/4 before and 1/4 after it: three quarters
+        // are left.
         let (mut p, mut displaced) = ([1.5, 1.5], [1.0, 0.5]);
         assert_eq!(shorten((vec![1.0, 2.0], &[-1.0, 0.5], 0.5), (&mut p, &mut displaced), 0.9), Some(0.75));
         assert_eq!((p, displaced), ([1.375, 1.625], [0.625, 0.625]));

@@ -7,7 +7,8 @@ use crate::real::{sum, sum_of_pairs};
 /// The numbers of [`contact_model::Certificate`] that do not concern the load or the stiffness.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Residuals {
-    /// `(sum p g - min sum q g) / (F s)` over all q between the bounds with the same sum F: without an upper bound the minimum is `F min g`.
+    /// `(sum p g - min sum q g) / (F s)` over all q between the bounds with the same sum F: without an upper
+    /// bound the minimum is `F min g`.
     pub duality_gap: f64,
     /// `max(0, -min g) / s`; a gap of a cell at its upper bound counts as a penetration does elsewhere.
     pub penetration: f64,
@@ -23,8 +24,8 @@ impl Residuals {
         self.duality_gap.max(self.penetration).max(self.complementarity)
     }
 
-    /// Residuals of a pressure `p` on a contact set from the gap `left` on it and on all cells that could touch, `s` being the length that
-    /// gaps are compared with.
+    /// Residuals of a pressure `p` on a contact set from the gap `left` on it and on all cells that could
+    /// touch, `s` being the length that gaps are compared with.
     ///
     /// Outside the candidates the gap is positive, so that their minimum is the minimum of all.
     pub fn measure(
@@ -80,11 +81,13 @@ mod tests {
 
     #[test]
     fn with_an_upper_bound_by_hand() {
-        // p_s = 1: a cell at its bound indented by 0.2, a free one with a gap of 0.1, one open by 0.4; F = 1.5, s = 2.
+        // p_s = 1: a cell at its bound indented by 0.2, a free one with a gap of 0.1, one open by 0.4; F =
+        // 1.5, s = 2.
         let e = measured(Bounds::UpTo(1.0), &[1.0, 0.5, 0.0], &[-0.2, 0.1, 0.4], 2.0);
         assert_relative_eq!(e.complementarity, 0.5 * 0.1 / 1.5 / 2.0, max_relative = 1e-14);
         assert!(e.penetration == 0.0 && e.duality_gap == 0.0);
-        // The open cell penetrates by more than the one at its bound: the best q has it at p_s and half of the one at its bound.
+        // The open cell penetrates by more than the one at its bound: the best q has it at p_s and half of
+        // the one at its bound.
         let e = measured(Bounds::UpTo(1.0), &[1.0, 0.5, 0.0], &[-0.2, 0.1, -0.4], 2.0);
         assert_relative_eq!(e.penetration, 0.2, max_relative = 1e-14);
         assert_relative_eq!(e.duality_gap, (-0.2 + 0.05 - (-0.4 - 0.1)) / 1.5 / 2.0, max_relative = 1e-14);

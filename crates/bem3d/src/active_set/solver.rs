@@ -7,7 +7,7 @@ use super::residuals::Residuals;
 use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
 use crate::geometry::CellSet;
 use crate::linear::{Factor, Fixed};
-use crate::parts::{Part, timed};
+use crate::parts::{Part, Recorder};
 use crate::real::{each, largest, sum_of_pairs};
 use contact_model::{Status, Stop};
 
@@ -68,7 +68,8 @@ struct Solver<'a> {
     /// The best pressure so far, unless it is the present one.
     best: Pressure,
     now_is_best: bool,
-    /// The pressure before with its gap, where cells were at their upper bound: steps from such a pressure may have to be shortened.
+    /// The pressure before with its gap, where cells were at their upper bound: steps from such a pressure
+    /// may have to be shortened.
     before: Option<(Pressure, Continuation)>,
     /// Steps of the next inner solve at most: few after one that was shortened, because long ones change the sets too much at once.
     inner_steps: usize,
@@ -101,16 +102,17 @@ impl<'a> Solver<'a> {
     }
 
     fn iterate(mut self, mut known: Option<Evaluated>, rough: bool, stop: Stop<'_>) -> Solved {
-        let tuning = *self.problem.operators.tuning();
+        let (tuning, recorder) = (*self.problem.operators.tuning(), self.recorder());
         let mut progress = OuterProgress::new(self.limits, rough);
         let (mut steps, tolerance) = (0, self.limits.tolerance);
         let (status, last) = loop {
-            let mut evaluated =
-                (known.take()).unwrap_or_else(|| timed(Part::Residuals, || self.evaluate(progress.rough)));
+            let mut evaluated = known
+                .take()
+                .unwrap_or_else(|| recorder.timed(Part::Residuals, || self.evaluate(progress.rough)));
             let within = evaluated.residuals.worst() <= tolerance;
             if within && (progress.rough || evaluated.step.is_some()) {
                 // Better than expected; the end of a step that was shortened has not been evaluated.
-                evaluated = timed(Part::Residuals, || self.evaluate(false));
+                evaluated = recorder.timed(Part::Residuals, || self.evaluate(false));
             }
             let fell_back = progress.falls_back();
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
@@ -142,6 +144,10 @@ impl<'a> Solver<'a> {
         Solved { contact, p, d, q, residuals, steps, status, continuation }
     }
 
+    fn recorder(&self) -> Recorder {
+        self.problem.operators.recorder().clone()
+    }
+
     /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it makes.
     ///
     /// A `rough` evaluation in single precision says how to go on, but is never evidence.
@@ -154,7 +160,7 @@ impl<'a> Solver<'a> {
         let Self { problem, target, limits, now, state, left, reach, .. } = self;
         let (bounds, tuning) = (problem.bounds, problem.operators.tuning());
         let Continuation { checked, gap, .. } = state;
-        now.contact.carry_to(checked, gap, left);
+        problem.operators.recorder().timed(Part::Sets, || now.contact.carry_to(checked, gap, left));
         match *target {
             Target::Approach(asked) => now.d = asked,
             // That of a factored set is exact.
@@ -176,29 +182,32 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Evaluates u + z under the present pressure on all cells that could touch; `joined`: cells were added to the contact set that may not
-    /// be among the candidates.
+    /// Evaluates u + z under the present pressure on all cells that could touch; `joined`: cells were added
+    /// to the contact set that may not be among the candidates.
     fn displace(&mut self, joined: bool, rough: bool) {
         let Self { problem, now, state, reach, .. } = self;
         let Problem { candidates, operators, .. } = &mut **problem;
-        let kept = operators.tuning().kept_candidates;
+        let (kept, recorder) = (operators.tuning().kept_candidates, operators.recorder().clone());
         // Later contact sets are subsets of the candidates that the first one is joined to.
-        if state.checked.is_empty() || !(kept * state.reach..=state.reach).contains(reach) {
-            state.reach = *reach;
-            state.checked = candidates.below(*reach).union(&now.contact);
-        } else if joined {
-            state.checked = state.checked.union(&now.contact);
-        }
+        recorder.timed(Part::Sets, || {
+            if state.checked.is_empty() || !(kept * state.reach..=state.reach).contains(reach) {
+                state.reach = *reach;
+                state.checked = candidates.below(*reach).union(&now.contact);
+            } else if joined {
+                state.checked = state.checked.union(&now.contact);
+            }
+        });
         let Continuation { checked, gap, .. } = state;
         if rough {
             operators.rough(&now.contact, &now.p, checked, gap);
         } else {
             operators.exact(&now.contact, &now.p, checked, gap);
         }
-        candidates.add_to(checked, gap);
+        recorder.timed(Part::Sets, || candidates.add_to(checked, gap));
     }
 
-    /// Shortens the step that led to the present pressure where it passed the least energy. The share that is left, if it did.
+    /// Shortens the step that led to the present pressure where it passed the least energy. The share that is
+    /// left, if it did.
     fn shorten(&mut self) -> Option<f64> {
         let (before, at) = self.before.take()?;
         let Continuation { checked, gap, .. } = &mut self.state;
@@ -221,15 +230,16 @@ impl<'a> Solver<'a> {
 
     /// One outer iteration: a new set from the gap, a solution on it, and the cells in tension removed. Returns the steps taken.
     fn improve(&mut self, error: f64, stop: Stop<'_>) -> usize {
+        let recorder = self.recorder();
         let Self { problem, target, limits, now, state, left, .. } = self;
         let (bounds, tuning) = (problem.bounds, *problem.operators.tuning());
         let Continuation { checked, gap, .. } = &*state;
         let noise = tuning.noise * root_mean_square(&bounds.of_free(&now.p, left));
-        let mut set = checked.filter(gap, |g| g < -noise).union(&now.contact);
-        let held = bounds.held(&now.contact, &now.p, left, noise);
-        if !held.is_empty() {
-            set = set.without(&held);
-        }
+        let (set, held) = recorder.timed(Part::Sets, || {
+            let set = checked.filter(gap, |g| g < -noise).union(&now.contact);
+            let held = bounds.held(&now.contact, &now.p, left, noise);
+            (if held.is_empty() { set } else { set.without(&held) }, held)
+        });
         let planner = problem.operators.planner();
         let Some(recipe) = planner.system(&set, now.contact.len(), false) else { return 0 };
         if limits.factor
@@ -241,7 +251,7 @@ impl<'a> Solver<'a> {
             self.advance(exact);
             return 0;
         }
-        let mut change = set.carry(checked, gap);
+        let mut change = recorder.timed(Part::Sets, || set.carry(checked, gap));
         each(&mut change, |value| *value = -*value);
         let mut criteria = criteria(*limits, error, now.d, &tuning);
         criteria.steps = criteria.steps.min(self.inner_steps);
@@ -250,8 +260,10 @@ impl<'a> Solver<'a> {
         let fixed = if target.force().is_some() { Fixed::Force } else { Fixed::Approach };
         let outcome = workspace.solve(operators, &mut change, fixed, criteria, stop);
         let set = workspace.set();
-        set.add_carried(&now.contact, &now.p, &mut change);
-        let (contact, p) = bounds.corrected(set, change, &held, target.force());
+        let (contact, p) = recorder.timed(Part::Sets, || {
+            set.add_carried(&now.contact, &now.p, &mut change);
+            bounds.corrected(set, change, &held, target.force())
+        });
         let d = now.d;
         self.advance(Pressure { contact, p, d, q: None });
         outcome.steps
@@ -282,15 +294,15 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Removes cells in tension from a small superset until none is left; p, q and d are exact up to rounding. `None` where no cell is left or
-/// one would have to be at its upper bound.
+/// Removes cells in tension from a small superset until none is left; p, q and d are exact up to rounding.
+/// `None` where no cell is left or one would have to be at its upper bound.
 fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Option<Pressure> {
     let mut set = superset.clone();
     loop {
         let z = problem.candidates.gaps(&set);
         problem.operators.solves += 1;
         let factored = || Some(Factor::new(problem.operators.table(), &set)?.solve_pair(&z));
-        let (q, w) = timed(Part::Factor, factored)?;
+        let (q, w) = problem.operators.recorder().timed(Part::Factor, factored)?;
         let d = match target {
             Target::Force(force) => (force + w.iter().sum::<f64>()) / q.iter().sum::<f64>(),
             Target::Approach(d) => d,

@@ -8,7 +8,7 @@ use crate::geometry::{CellSet, Grid};
 use crate::kernel::{KernelTable, Medium};
 use crate::linear::Workspace;
 use crate::operator::Operators;
-use crate::parts::{Part, timed};
+use crate::parts::{Part, Recorder};
 use crate::tuning::Tuning;
 use contact_model::Status;
 use std::borrow::Cow;
@@ -32,16 +32,30 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// A surface of gaps z from the plane of first touch, row-major; infinite where a point is undefined.
-    pub fn new(grid: Grid, z: Arc<Vec<f64>>, medium: impl Into<Medium>, tuning: &Tuning) -> Self {
+    /// A surface of gaps z from the plane of first touch, row-major; infinite where a point is undefined. Its
+    /// time is charged to the recorder.
+    pub fn recorded(
+        grid: Grid,
+        z: Arc<Vec<f64>>,
+        medium: impl Into<Medium>,
+        tuning: &Tuning,
+        recorder: &Recorder,
+    ) -> Self {
+        let table = recorder.timed(Part::Plans, || KernelTable::shared(grid, medium));
         Self {
             candidates: Candidates::new(grid, z),
-            operators: timed(Part::Plans, || Operators::new(KernelTable::shared(grid, medium), tuning)),
+            operators: Operators::recorded(table, tuning, recorder),
             workspace: Workspace::default(),
             bounds: Bounds::Unlimited,
             coarser: None,
             nested: true,
         }
+    }
+
+    /// The same; no time is charged.
+    #[cfg(test)]
+    pub fn new(grid: Grid, z: Arc<Vec<f64>>, medium: impl Into<Medium>, tuning: &Tuning) -> Self {
+        Self::recorded(grid, z, medium, tuning, &Recorder::default())
     }
 
     /// The grid.
@@ -146,8 +160,8 @@ impl Solved {
         Cow::Owned(room)
     }
 
-    /// Cells outside the `free` ones that may belong to them: open cells whose gap is negative or below what it can still change, and cells
-    /// at the upper bound of which the same is true of the indentation.
+    /// Cells outside the `free` ones that may belong to them: open cells whose gap is negative or below what
+    /// it can still change, and cells at the upper bound of which the same is true of the indentation.
     pub fn undecided(&self, grid: Grid, free: &CellSet, left: &[f64], tuning: &Tuning) -> CellSet {
         let Continuation { checked, gap, .. } = &self.continuation;
         if free.len() == self.contact.len() {

@@ -241,20 +241,34 @@ impl Search<'_> {
         held > 0.0 && wanted > 0.0 && !(1.0 / FAR..=FAR).contains(&(wanted / held))
     }
 
+    /// Where a load begins that follows a smaller one on the branch of approach: with the attraction of that
+    /// state, which lies below the one to come, and the contact that the new load makes under it.
+    pub fn continued(&mut self, last: &Equilibrium, stop: Stop<'_>) -> Equilibrium {
+        let mut state = last.again();
+        self.contact_afresh(&mut state, stop);
+        state
+    }
+
     /// The contact under the present attraction, by nested iteration: the elastic problem of the gaps `z - G s`.
     fn contact_afresh(&mut self, state: &mut Equilibrium, stop: Stop<'_>) {
-        let Control::Force(asked) = self.control else { return };
         let grid = self.problem.grid();
         let mut lifted = Vec::new();
         self.problem.operators.exact(&state.cells, &state.attraction, &CellSet::all(grid), &mut lifted);
         lifted.iter_mut().zip(self.problem.candidates.z()).for_each(|(u, z)| *u = z - *u);
         // The plane of first touch is that of these gaps.
         let first = smallest(&lifted);
+        let target = match self.control {
+            Control::Force(asked) => Target::Force(asked + sum(&state.attraction)),
+            Control::Plane(plane) => Target::Approach(plane - first),
+        };
+        let (Target::Force(load) | Target::Approach(load)) = target;
+        if load <= 0.0 {
+            return;
+        }
         each(&mut lifted, |z| *z -= first);
         let lifted = Candidates::new(grid, Arc::new(lifted));
         let candidates = std::mem::replace(&mut self.problem.candidates, lifted);
         let coarser = self.problem.coarser.take();
-        let target = Target::Force(asked + sum(&state.attraction));
         let limits = Limits { tolerance: FIRST, ..self.limits };
         let guess = active_set::cold_start(self.problem, target, limits, stop);
         let solved = active_set::solve(self.problem, target, guess, limits, stop);

@@ -1,7 +1,6 @@
 //! Sets of cells of a grid: work follows the contact, not the grid.
 
 use super::grid::{Grid, Window};
-use crate::parts::{Part, timed};
 use crate::tuning::{BAND, LANES, LONG_RUN};
 use std::ops::{AddAssign, Range};
 use surface_gen::parallel::{map, threads_for};
@@ -160,29 +159,26 @@ impl CellSet {
         bands: impl ExactSizeIterator<Item = P> + Send,
         make: impl Fn(&mut Self, P) + Sync,
     ) -> Self {
-        timed(Part::Sets, || {
-            if threads_for(work) == 1 {
-                let mut whole = Self::default();
-                bands.for_each(|band| make(&mut whole, band));
-                return whole;
-            }
-            let parts = map(work, bands, |band| {
-                let mut part = Self::default();
-                make(&mut part, band);
-                part
-            });
-            let mut parts = parts.into_iter();
-            let mut whole = parts.next().unwrap_or_default();
-            for part in parts {
-                let (cells, runs) = (whole.columns.len() as u32, whole.runs.len() as u32);
-                let moved =
-                    |row: &RowStart| RowStart { cells: row.cells + cells, runs: row.runs + runs, ..*row };
-                whole.rows.extend(part.rows.iter().map(moved));
-                whole.columns.extend_from_slice(&part.columns);
-                whole.runs.extend_from_slice(&part.runs);
-            }
-            whole
-        })
+        if threads_for(work) == 1 {
+            let mut whole = Self::default();
+            bands.for_each(|band| make(&mut whole, band));
+            return whole;
+        }
+        let parts = map(work, bands, |band| {
+            let mut part = Self::default();
+            make(&mut part, band);
+            part
+        });
+        let mut parts = parts.into_iter();
+        let mut whole = parts.next().unwrap_or_default();
+        for part in parts {
+            let (cells, runs) = (whole.columns.len() as u32, whole.runs.len() as u32);
+            let moved = |row: &RowStart| RowStart { cells: row.cells + cells, runs: row.runs + runs, ..*row };
+            whole.rows.extend(part.rows.iter().map(moved));
+            whole.columns.extend_from_slice(&part.columns);
+            whole.runs.extend_from_slice(&part.runs);
+        }
+        whole
     }
 
     /// Ranges of rows of the grid that threads share.
@@ -433,17 +429,15 @@ impl CellSet {
     ) {
         let window = self.window().into_iter().chain(other.window()).reduce(Window::union);
         let Some(window) = window else { return };
-        timed(Part::Sets, || {
-            let parts = self.split(own, self.bands().map(|ys| ys.start));
-            map(self.len() + other.len(), self.bands().zip(parts), |(ys, (start, own))| {
-                let mut line = vec![T::default(); window.width];
-                for row in self.rows_within(ys) {
-                    let Some(other) = other.row(row.y) else { continue };
-                    other.spread(values, &mut line, window.x);
-                    change(row.after(start), &line, own, window.x);
-                    other.fill(T::default(), &mut line, window.x);
-                }
-            });
+        let parts = self.split(own, self.bands().map(|ys| ys.start));
+        map(self.len() + other.len(), self.bands().zip(parts), |(ys, (start, own))| {
+            let mut line = vec![T::default(); window.width];
+            for row in self.rows_within(ys) {
+                let Some(other) = other.row(row.y) else { continue };
+                other.spread(values, &mut line, window.x);
+                change(row.after(start), &line, own, window.x);
+                other.fill(T::default(), &mut line, window.x);
+            }
         });
     }
 }

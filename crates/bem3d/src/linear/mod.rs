@@ -4,8 +4,6 @@ mod cholesky;
 mod extension;
 mod pcg;
 mod preconditioner;
-mod workspace;
 
 pub use cholesky::Factor;
-pub use pcg::{Energy, Fixed, StoppingCriteria};
-pub use workspace::Workspace;
+pub use pcg::{Energy, Fixed, StoppingCriteria, Workspace};

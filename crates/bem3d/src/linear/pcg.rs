@@ -1,9 +1,12 @@
-//! Preconditioned conjugate gradients for the influence matrix on one set of cells.
+//! Linear systems in the precision and with the preconditioner of their recipe, by preconditioned conjugate
+//! gradients.
 
-use super::preconditioner::Preconditioner;
+use super::extension::Extension;
+use super::preconditioner::{Identity, Preconditioner, TorusInverse};
 use crate::geometry::CellSet;
-use crate::operator::InfluenceOperator;
-use crate::real::{Real, dot, each, sum, update};
+use crate::operator::{Conditioning, InfluenceOperator, Operators, Recipe};
+use crate::parts::Part;
+use crate::real::{Real, dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
 use contact_model::Stop;
 use surface_gen::parallel::map;
@@ -53,6 +56,101 @@ pub struct PcgOutcome {
     pub energy: f64,
 }
 
+/// Room for linear systems, kept from one to the next.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    recipe: Option<Recipe>,
+    double: Vectors<f64>,
+    single: Vectors<f32>,
+    extension: Extension,
+}
+
+impl Workspace {
+    /// A new load: what the sums of corrections are taken from is found again.
+    pub fn begin_load(&mut self) {
+        self.double.forget();
+        self.single.forget();
+    }
+
+    /// Takes a set and how systems on it are solved.
+    pub fn take(&mut self, operators: &mut Operators, set: CellSet, recipe: Recipe) {
+        if self.recipe.is_some_and(|last| last.has_preconditioner() != recipe.has_preconditioner()) {
+            self.begin_load();
+        }
+        self.recipe = Some(recipe);
+        let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
+        if let (Conditioning::Torus { extended, .. }, (_, Some(torus))) =
+            (recipe.conditioning, operators.system(recipe))
+        {
+            let decay = if extended { decay } else { 0.0 };
+            recorder.timed(Part::Sets, || self.extension.set(&set, torus.window(), decay));
+        }
+        recorder.timed(Part::Sets, || {
+            if recipe.is_single() {
+                self.single.take(set);
+            } else {
+                self.double.take(set);
+            }
+        });
+    }
+
+    /// The set.
+    pub fn set(&self) -> &CellSet {
+        if self.recipe.is_some_and(|recipe| recipe.is_single()) { &self.single.set } else { &self.double.set }
+    }
+
+    /// Solves `G x = right` on the set approximately, or what `fixed` makes of it, and writes x over `right`.
+    /// Criteria and outcome are in the units of `right`.
+    pub fn solve(
+        &mut self,
+        operators: &mut Operators,
+        right: &mut [f64],
+        fixed: Fixed,
+        criteria: StoppingCriteria,
+        stop: Stop<'_>,
+    ) -> PcgOutcome {
+        operators.solves += 1;
+        // In units of its own size: its square neither overflows nor underflows.
+        let unit = largest(right);
+        let Some(recipe) = self.recipe.filter(|_| unit > 0.0) else { return PcgOutcome::default() };
+        let square = unit * unit;
+        let criteria = StoppingCriteria {
+            floor: criteria.floor / unit,
+            energy: criteria.energy.map(|e| Energy { base: e.base / square, ..e }),
+            ..criteria
+        };
+        let mut identity = Identity { smallest_eigenvalue: operators.table().smallest_eigenvalue() };
+        let recorder = operators.recorder().clone();
+        let (mut operator, torus) = operators.system(recipe);
+        let outcome = recorder.timed(Part::Vectors, || {
+            if recipe.is_single() {
+                let v = &mut self.single;
+                v.load(right, unit);
+                let outcome = if let Some(transform) = torus {
+                    let mut inverse = TorusInverse {
+                        transform,
+                        extension: &mut self.extension,
+                        recorder: recorder.clone(),
+                    };
+                    pcg(&mut operator, &mut inverse, v, fixed, criteria, stop)
+                } else {
+                    pcg(&mut operator, &mut identity, v, fixed, criteria, stop)
+                };
+                v.unload(right, unit);
+                outcome
+            } else {
+                let v = &mut self.double;
+                v.load(right, unit);
+                let outcome = pcg(&mut operator, &mut identity, v, fixed, criteria, stop);
+                v.unload(right, unit);
+                outcome
+            }
+        });
+        operators.applications += outcome.applications;
+        PcgOutcome { energy: outcome.energy * square, ..outcome }
+    }
+}
+
 /// Vectors on a set, kept from system to system.
 #[derive(Debug, Default)]
 pub struct Vectors<T> {
@@ -88,6 +186,14 @@ impl<T: Real> Vectors<T> {
     /// Forgets the weights: those of another load or preconditioner.
     pub fn forget(&mut self) {
         self.weights.clear();
+    }
+
+    fn load(&mut self, right: &[f64], unit: f64) {
+        update(&mut self.r, right, |r, right| *r = T::of(right / unit));
+    }
+
+    fn unload(&self, solution: &mut [f64], unit: f64) {
+        update(solution, &self.x, |solution, x| *solution = unit * x.to_f64());
     }
 
     /// The sum of the weights, which are found where there are none.
@@ -193,3 +299,6 @@ fn advance<T: Real>(x: &mut [T], step: T, t: &mut [T], beta: T, z: &[T]) {
         }
     });
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,7 @@
 use super::extension::Extension;
 use crate::geometry::{CellSet, Window};
 use crate::operator::FftConvolution;
-use crate::parts::{Part, timed};
+use crate::parts::{Part, Recorder};
 use crate::real::{Real, dot, each, largest, sum};
 use crate::tuning::BAND;
 use surface_gen::parallel::map;
@@ -55,6 +55,8 @@ pub struct TorusInverse<'a> {
     pub transform: &'a mut FftConvolution<f32>,
     /// The extension, for this set.
     pub extension: &'a mut Extension,
+    /// What its time is charged to.
+    pub recorder: Recorder,
 }
 
 impl TorusInverse<'_> {
@@ -152,7 +154,8 @@ impl TorusInverse<'_> {
 
 impl Preconditioner<f32> for TorusInverse<'_> {
     fn apply(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
-        timed(Part::Preconditioner, || self.precondition(set, offset, r, z))
+        let recorder = self.recorder.clone();
+        recorder.timed(Part::Preconditioner, || self.precondition(set, offset, r, z))
     }
 
     fn energy_factor(&self) -> f64 {

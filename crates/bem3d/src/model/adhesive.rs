@@ -34,6 +34,7 @@ pub struct AdhesiveContact {
 #[derive(Debug, Clone)]
 struct Last {
     equilibrium: Equilibrium,
+    control: Control,
     branch: Branch,
     state: ContactState,
 }
@@ -57,37 +58,54 @@ impl AdhesiveContact {
         self.last = None;
     }
 
-    /// The state of a load: on a path from the last one, else from no contact on the branch of approach.
+    /// The state of a load: on a path from the last one, else that from no contact on the branch of approach.
     pub(super) fn at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
         let control = match load {
             Prescribed::Force(force) => Control::Force(force),
             Prescribed::Approach(d) => Control::Plane(d),
             Prescribed::MeanGap(gap) => Control::Plane(self.surface.mean - gap),
         };
-        if loads == Loads::Single {
+        if loads == Loads::Single && !self.continues(control) {
             self.forget();
         }
-        let next = self.next(control, stop)?;
+        let next = self.next(control, loads, stop)?;
         let state = next.state.clone();
         self.last = Some(next);
         Ok(state)
     }
 
+    /// Whether a single load may begin from the last state: one on the branch of approach, under a load of
+    /// the same kind that is no larger.
+    ///
+    /// From there the attraction rises to the equilibrium that it rises to from no contact, the nearest one
+    /// above both. At a mean gap more attraction in one place opens gaps in others, no state lies above
+    /// another, and each load begins anew.
+    fn continues(&self, control: Control) -> bool {
+        let Some(last) = self.last.as_ref().filter(|last| last.branch == Branch::Approach) else {
+            return false;
+        };
+        match (last.control, control) {
+            (Control::Force(before), Control::Force(now)) => before <= now,
+            (Control::Plane(before), Control::Plane(now)) => before <= now && !self.surface.is_periodic(),
+            _ => false,
+        }
+    }
+
     /// The next state from the last one.
-    fn next(&mut self, control: Control, stop: Stop<'_>) -> Result<Last> {
+    fn next(&mut self, control: Control, loads: Loads, stop: Stop<'_>) -> Result<Last> {
         match control {
             Control::Force(f) if f < 0.0 && self.untouched() => {
                 // The segment begins without force: there the surfaces already hold each other.
                 let before = self.last.take();
-                let touched = self.step_to(Control::Force(0.0), stop);
+                let touched = self.step_to(Control::Force(0.0), Loads::Path, stop);
                 let held = touched.and_then(|touched| {
                     self.last = Some(touched);
-                    self.step_to(Control::Force(f), stop)
+                    self.step_to(Control::Force(f), Loads::Path, stop)
                 });
                 self.last = before;
                 held
             }
-            control => self.step_to(control, stop),
+            control => self.step_to(control, loads, stop),
         }
     }
 
@@ -95,10 +113,10 @@ impl AdhesiveContact {
         self.last.as_ref().is_none_or(|last| last.equilibrium.contact().is_empty())
     }
 
-    fn step_to(&mut self, control: Control, stop: Stop<'_>) -> Result<Last> {
+    fn step_to(&mut self, control: Control, loads: Loads, stop: Stop<'_>) -> Result<Last> {
         self.surface.begin_count();
         let last = self.last.as_ref().map(|last| last.equilibrium.clone());
-        let found = self.search(control, last.as_ref(), self.tolerance(), stop)?;
+        let found = self.search(control, last.as_ref().map(|last| (last, loads)), self.tolerance(), stop)?;
         self.finish(found, stop)
     }
 
@@ -124,10 +142,11 @@ impl AdhesiveContact {
     pub(super) fn search(
         &mut self,
         control: Control,
-        last: Option<&Equilibrium>,
+        before: Option<(&Equilibrium, Loads)>,
         tolerance: Option<f64>,
         stop: Stop<'_>,
     ) -> Result<Found> {
+        let last = before.map(|(last, _)| last);
         let rises = last.is_none_or(|last| self.rises(control, last));
         let mut plain = self.plain;
         let mut spent = (0, 0);
@@ -135,8 +154,9 @@ impl AdhesiveContact {
             let (limits, attraction) = (self.surface.limits(), &self.attraction);
             let mut search =
                 Search { problem: &mut self.surface.problem, attraction, control, limits, plain };
-            let start = match last {
-                Some(last) => last.again(),
+            let start = match before {
+                Some((last, Loads::Path)) => last.again(),
+                Some((last, Loads::Single)) => search.continued(last, stop),
                 None => search.first(stop),
             };
             let ended = search.from(start, stop).map_err(|ended| *ended);
@@ -249,7 +269,7 @@ impl AdhesiveContact {
             adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
             resolution: None,
         })?;
-        Ok(Last { equilibrium, branch, state: returned(state)? })
+        Ok(Last { equilibrium, control, branch, state: returned(state)? })
     }
 
     /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest
@@ -272,7 +292,8 @@ impl AdhesiveContact {
     }
 }
 
-/// The attraction in the units of the surface, where there is any: tractions over pi E* times the height over the side of a cell, so that `u = sum I p`.
+/// The attraction in the units of the surface, where there is any: tractions over pi E* times the height over
+/// the side of a cell, so that `u = sum I p`.
 ///
 /// # Errors
 /// Cells that do not resolve the range; numbers that overflow.

@@ -6,8 +6,8 @@ use crate::geometry::CellSet;
 use contact_model::{Certificate, Status, Stop};
 use std::f64::consts::PI;
 
-/// A stiffness may grow by this factor over what is left open of the load: by a sixth in the worst of 900 small states at a tolerance of
-/// 1e-3, near complete contact.
+/// A stiffness may grow by this factor over what is left open of the load: by a sixth in the worst of 900
+/// small states at a tolerance of 1e-3, near complete contact.
 pub(super) const GROWTH: f64 = 1.25;
 
 /// How far a state is from its load, and what that leaves open of the force.
@@ -43,8 +43,8 @@ impl PreparedSurface {
         self.stiffness_error(&tangent.stiffness).max(whole)
     }
 
-    /// A bound of the stiffness near a state, nondimensional: that of the state where it is known, else that of a circle around the
-    /// contact, which has no smaller one (free boundaries only).
+    /// A bound of the stiffness near a state, nondimensional: that of the state where it is known, else that
+    /// of a circle around the contact, which has no smaller one (free boundaries only).
     pub(super) fn stiffest(&self, solved: &Solved, tangent: Option<&Tangent>) -> f64 {
         if let Some(Tangent { stiffness: t, .. }) = tangent {
             return t.value * self.magnification(t.value) * (1.0 + self.stiffness_error(t));
@@ -59,9 +59,11 @@ impl PreparedSurface {
         (window.width as f64 * dx).hypot(window.height as f64 * dy) / PI
     }
 
-    /// What a stiffness k makes of the gaps left on the contact and of a miss of the load, as an error of the force.
+    /// What a stiffness k makes of the gaps left on the contact and of a miss of the load, as an error of the
+    /// force.
     ///
-    /// The force is that of a surface whose heights differ by no more than those gaps, and it grows with every height.
+    /// The force is that of a surface whose heights differ by no more than those gaps, and it grows with
+    /// every height.
     pub(super) fn force_error(&self, solved: &Solved, k: f64, miss: f64) -> LoadError {
         let bounds = self.problem.bounds;
         let Continuation { checked, gap, .. } = &solved.continuation;

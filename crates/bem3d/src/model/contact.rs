@@ -1,4 +1,5 @@
-//! A surface under loads, behind the common traits: one type for single loads and for paths, with and without adhesion.
+//! A surface under loads, behind the common traits: one type for single loads and for paths, with and without
+//! adhesion.
 
 use super::adhesive::{AdhesiveContact, attraction};
 use super::certificate::LoadError;
@@ -7,7 +8,7 @@ use super::options::{Bem3d, NAME, bytes_per_cell};
 use super::prepared::{PreparedSurface, Tangent};
 use crate::active_set::{self, Limits, Solved, Target};
 use crate::geometry::{CellSet, Grid};
-use crate::parts::{Part, timed};
+use crate::parts::{Part, Recorder};
 use crate::stiffness::{self, Responding, Stiffness};
 use crate::tuning::Tuning;
 use contact_model::{
@@ -18,8 +19,8 @@ use std::borrow::Cow;
 
 /// One surface under loads.
 ///
-/// Single loads begin with the virgin surface, paths go on from their last state. One surface serves both: a single load ends a path, and
-/// a path begins anew after single loads.
+/// Single loads begin with the virgin surface, paths go on from their last state. One surface serves both: a
+/// single load ends a path, and a path begins anew after single loads.
 #[derive(Debug)]
 pub struct PreparedBem3d {
     contact: Contact,
@@ -37,8 +38,14 @@ enum Contact {
 
 impl PreparedBem3d {
     /// The surface of a scene.
-    pub(super) fn new(model: &Bem3d, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<Self> {
-        let surface = PreparedSurface::new(model, scene, seed, tuning)?;
+    pub(super) fn new(
+        model: &Bem3d,
+        scene: &Scene,
+        seed: u64,
+        tuning: &Tuning,
+        recorder: &Recorder,
+    ) -> Result<Self> {
+        let surface = PreparedSurface::new(model, scene, seed, tuning, recorder)?;
         let contact = match attraction(&surface, scene.effects.adhesion)? {
             Some(attraction) => Contact::WithAdhesion(Box::new(AdhesiveContact::new(surface, attraction))),
             None => Contact::WithoutAdhesion(Box::new(surface)),
@@ -163,7 +170,8 @@ impl PreparedSurface {
             Target::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
             Target::Approach(_) => self.force_error(&solved, self.stiffest(&solved, tangent.as_ref()), 0.0),
         };
-        timed(Part::Results, || self.state(solved, tangent, error, stop))
+        let recorder = self.problem.operators.recorder().clone();
+        recorder.timed(Part::Results, || self.state(solved, tangent, error, stop))
     }
 
     /// About which share of the cells a load brings into contact.

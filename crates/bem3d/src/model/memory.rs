@@ -1,15 +1,18 @@
-//! What a path with a hardness remembers: the indentation stays, and what is unloaded is elastic until the old pressures are reached again.
+//! What a path with a hardness remembers: the indentation stays, and what is unloaded is elastic until the
+//! old pressures are reached again.
 
 use std::sync::Arc;
 
 /// The indentation of a surface, and where its path stands.
 ///
-/// Each step is solved on the surface as the last one left it. As long as loads rise, that is the same as one step from the virgin surface:
-/// saturated cells stay so, and their indentation grows. Plastic flow under falling loads is not excluded, and counted where it happens.
+/// Each step is solved on the surface as the last one left it. As long as loads rise, that is the same as one
+/// step from the virgin surface: saturated cells stay so, and their indentation grows. Plastic flow under
+/// falling loads is not excluded, and counted where it happens.
 ///
-/// Where a load is reached again, the old cells are about to flow, and the slope of the force jumps. The state decides: cells of the
-/// indentation whose pressure is the hardness, within what the tolerance leaves open, count as saturated, and the stiffness is that of a
-/// load that goes on in the direction of its last change. On the way up they flow, on the way down they do not.
+/// Where a load is reached again, the old cells are about to flow, and the slope of the force jumps. The
+/// state decides: cells of the indentation whose pressure is the hardness, within what the tolerance leaves
+/// open, count as saturated, and the stiffness is that of a load that goes on in the direction of its last
+/// change. On the way up they flow, on the way down they do not.
 #[derive(Debug)]
 pub(super) struct Memory {
     /// Undeformed gaps of the virgin surface.
@@ -28,7 +31,8 @@ impl Memory {
         Self { indentation: vec![0.0; virgin.len()], virgin, force: 0.0, rising: true }
     }
 
-    /// Whether the load of this force has grown since the last state; equal within `tolerance`, the last direction goes on.
+    /// Whether the load of this force has grown since the last state; equal within `tolerance`, the last
+    /// direction goes on.
     pub fn rises_to(&self, force: f64, tolerance: f64) -> bool {
         let same = (force - self.force).abs() <= tolerance * force.max(self.force);
         if same { self.rising } else { force > self.force }

@@ -14,6 +14,7 @@ mod state;
 
 pub use options::{BYTES_PER_CELL, Bem3d, Method, bytes_per_cell};
 
+use crate::parts::Recorder;
 use crate::tuning::Tuning;
 use contact::PreparedBem3d;
 use contact_model::{
@@ -68,7 +69,7 @@ impl ContactModel for Bem3d {
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
-        self.prepare_tuned(scene, seed, &Tuning::DEFAULT)
+        self.prepare_with(scene, seed, &Tuning::DEFAULT, &Recorder::default())
     }
 
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
@@ -77,25 +78,32 @@ impl ContactModel for Bem3d {
 }
 
 impl Bem3d {
-    /// [`ContactModel::prepare`] with other constants than those shipped.
-    pub(crate) fn prepare_tuned(
+    /// [`ContactModel::prepare`] with other constants than those shipped, or with the time charged to parts.
+    pub(crate) fn prepare_with(
         &self,
         scene: &Scene,
         seed: u64,
         tuning: &Tuning,
+        recorder: &Recorder,
     ) -> Result<Box<dyn PreparedContact>> {
-        Ok(Box::new(self.prepared(scene, seed, tuning)?))
+        Ok(Box::new(self.prepared(scene, seed, tuning, recorder)?))
     }
 
     /// A surface ready for single loads and for paths.
-    fn prepared(&self, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<PreparedBem3d> {
+    fn prepared(
+        &self,
+        scene: &Scene,
+        seed: u64,
+        tuning: &Tuning,
+        recorder: &Recorder,
+    ) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
         refuse_together(&scene.effects)?;
         profile::check(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }
-        PreparedBem3d::new(self, scene, seed, tuning)
+        PreparedBem3d::new(self, scene, seed, tuning, recorder)
     }
 }
 
@@ -154,11 +162,11 @@ mod tests {
         let tangent =
             |value| Stiffness { value, solve_error: 0.01, set_error: 0.02, q: Vec::new(), steps: 0 };
         let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);
-        let tuning = &Tuning::DEFAULT;
-        let free = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, tuning).unwrap();
+        let numerics = (&Tuning::DEFAULT, &Recorder::default());
+        let free = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, numerics).unwrap();
         approx::assert_relative_eq!(free.stiffness_error(&tangent(3.0)), 0.03);
         scene.effects.boundary = Boundary::Periodic;
-        let periodic = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, tuning).unwrap();
+        let periodic = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, numerics).unwrap();
         // k = k'/(1 - c k') is four times k' where c k' = 3/4, and so is its relative error.
         let value = 0.75 / periodic.problem.operators.table().shift();
         approx::assert_relative_eq!(periodic.stiffness_error(&tangent(value)), 0.12, max_relative = 1e-12);

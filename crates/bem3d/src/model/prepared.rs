@@ -6,6 +6,7 @@ use super::profile;
 use crate::active_set::{self, Bounds, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::Medium;
+use crate::parts::Recorder;
 use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
 use crate::tuning::{MAGNIFIED, Tuning};
@@ -59,7 +60,13 @@ pub struct PreparedSurface {
 
 impl PreparedSurface {
     /// The surface of a scene.
-    pub(super) fn new(options: &Bem3d, scene: &Scene, seed: u64, tuning: &Tuning) -> Result<Self> {
+    pub(super) fn new(
+        options: &Bem3d,
+        scene: &Scene,
+        seed: u64,
+        tuning: &Tuning,
+        recorder: &Recorder,
+    ) -> Result<Self> {
         let map = match &scene.surface {
             Surface::Heights(map) | Surface::Profile(map) => Arc::clone(map),
             Surface::Line { .. } => return Err(Error::unsupported(NAME, "a line (it needs a map)")),
@@ -67,7 +74,7 @@ impl PreparedSurface {
         };
         let has_rms =
             matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
-        Self::of_map(*options, scene, &map, has_rms, tuning)
+        Self::of_map(*options, scene, &map, has_rms, (tuning, recorder))
     }
 
     pub(super) fn of_map(
@@ -75,7 +82,7 @@ impl PreparedSurface {
         scene: &Scene,
         map: &HeightMap,
         has_rms: bool,
-        tuning: &Tuning,
+        (tuning, recorder): (&Tuning, &Recorder),
     ) -> Result<Self> {
         let highest = map.highest();
         // Differences first: an offset of the heights changes nothing.
@@ -93,7 +100,7 @@ impl PreparedSurface {
         let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
-        let mut problem = Problem::new(grid, Arc::new(z), profile::medium(scene), tuning);
+        let mut problem = Problem::recorded(grid, Arc::new(z), profile::medium(scene), tuning, recorder);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         if let Hardness::Limit { pressure } = scene.effects.hardness {
@@ -122,7 +129,8 @@ impl PreparedSurface {
         })
     }
 
-    /// Takes the virgin surface again, of which nothing is known; on a `path` a hardness leaves an indentation from here on.
+    /// Takes the virgin surface again, of which nothing is known; on a `path` a hardness leaves an
+    /// indentation from here on.
     pub(super) fn begin(&mut self, path: bool) {
         if let Some(memory) = self.memory.take() {
             self.problem.candidates = Candidates::new(self.problem.grid(), memory.virgin);

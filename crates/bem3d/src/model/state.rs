@@ -86,9 +86,9 @@ impl PreparedSurface {
             .completed(&self.outputs, self.normalisation.modulus)
     }
 
-    /// Mean gap of a state with this approach and force: the distance between the mean plane of the defined heights and that of the deformed
-    /// half-space, whose displacement under the kernel of zero mean has none. Undefined points or a plastic indentation may bring the planes
-    /// beyond each other.
+    /// Mean gap of a state with this approach and force: the distance between the mean plane of the defined
+    /// heights and that of the deformed half-space, whose displacement under the kernel of zero mean has
+    /// none. Undefined points or a plastic indentation may bring the planes beyond each other.
     pub(super) fn mean_gap(&self, complete: bool, d: f64, force: f64) -> f64 {
         // What is left of complete contact is rounding.
         if complete { 0.0 } else { self.mean - (d - self.problem.operators.table().shift() * force) }

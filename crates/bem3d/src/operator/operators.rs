@@ -7,7 +7,7 @@ use super::recipe::{Application, Conditioning, Planner, Recipe};
 use super::two_level::TwoLevel;
 use crate::geometry::{CellSet, Window};
 use crate::kernel::KernelTable;
-use crate::parts::{Part, timed};
+use crate::parts::{Part, Recorder};
 use crate::real::Real;
 use crate::tuning::Tuning;
 use std::sync::Arc;
@@ -17,6 +17,7 @@ use std::sync::Arc;
 pub struct Operators {
     table: Arc<KernelTable>,
     tuning: Tuning,
+    recorder: Recorder,
     double: Option<FftConvolution<f64>>,
     single: Option<FftConvolution<f32>>,
     shortened: Option<FftConvolution<f32>>,
@@ -32,15 +33,23 @@ pub struct Operators {
     last: Option<Recipe>,
 }
 
-/// The influence matrix in the way that was chosen for one application or one system.
+/// The influence matrix in the way that was chosen for one application or one system, with what its time is
+/// charged to.
 #[derive(Debug)]
-pub enum Planned<'a> {
+pub struct Planned<'a> {
+    way: Way<'a>,
+    part: Part,
+    recorder: &'a Recorder,
+}
+
+#[derive(Debug)]
+enum Way<'a> {
     /// Sum over all pairs.
     Direct(DirectSum<'a>),
     /// Smooth part on a lattice, near part by pairs.
     TwoLevel(&'a mut TwoLevel),
     /// Transform in single precision, exact or shortened.
-    Fft(&'a mut FftConvolution<f32>, Part),
+    Fft(&'a mut FftConvolution<f32>),
 }
 
 impl<T: Real> InfluenceOperator<T> for Planned<'_>
@@ -48,20 +57,28 @@ where
     FftConvolution<f32>: InfluenceOperator<T>,
 {
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
-        match self {
-            Self::Direct(direct) => timed(Part::Direct, || direct.apply(sources, p, targets, u)),
-            Self::TwoLevel(two_level) => timed(Part::TwoLevel, || two_level.apply(sources, p, targets, u)),
-            Self::Fft(transform, part) => timed(*part, || transform.apply(sources, p, targets, u)),
-        }
+        let Self { way, part, recorder } = self;
+        recorder.timed(*part, || match way {
+            Way::Direct(direct) => direct.apply(sources, p, targets, u),
+            Way::TwoLevel(two_level) => two_level.apply(sources, p, targets, u),
+            Way::Fft(transform) => transform.apply(sources, p, targets, u),
+        });
     }
 }
 
 impl Operators {
-    /// Nothing is planned yet.
+    /// Nothing is planned yet, and no time is charged.
+    #[cfg(test)]
     pub fn new(table: Arc<KernelTable>, tuning: &Tuning) -> Self {
+        Self::recorded(table, tuning, &Recorder::default())
+    }
+
+    /// Nothing is planned yet.
+    pub fn recorded(table: Arc<KernelTable>, tuning: &Tuning, recorder: &Recorder) -> Self {
         Self {
             table,
             tuning: *tuning,
+            recorder: recorder.clone(),
             double: None,
             single: None,
             shortened: None,
@@ -77,6 +94,11 @@ impl Operators {
     /// The kernel.
     pub fn table(&self) -> &KernelTable {
         &self.table
+    }
+
+    /// What time is charged to.
+    pub fn recorder(&self) -> &Recorder {
+        &self.recorder
     }
 
     /// The tuned constants.
@@ -98,14 +120,15 @@ impl Operators {
     pub fn exact(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
         let Some(window) = self.begin(sources, targets, u) else { return };
         if self.planner().exact(sources.len(), targets.len(), window) == Application::Direct {
-            return timed(Part::Direct, || DirectSum(&self.table).apply(sources, p, targets, u));
+            let direct = || DirectSum(&self.table).apply(sources, p, targets, u);
+            return self.recorder.timed(Part::Direct, direct);
         }
         let table = &self.table;
-        let transform = planned(&mut self.double, window, &self.tuning, || {
+        let transform = planned(&mut self.double, window, (&self.tuning, &self.recorder), || {
             let lengths = table.exact_lengths(window);
             FftConvolution::new(window, lengths, table.symbol_f64(lengths))
         });
-        timed(Part::Double, || transform.apply(sources, p, targets, u));
+        self.recorder.timed(Part::Double, || transform.apply(sources, p, targets, u));
     }
 
     /// `u = G p` to five digits or more, for decisions that are checked with [`Self::exact`].
@@ -130,19 +153,19 @@ impl Operators {
     pub fn system(&mut self, recipe: Recipe) -> (Planned<'_>, Option<&mut FftConvolution<f32>>) {
         let Recipe { window, application, conditioning } = recipe;
         self.last = Some(recipe);
-        let Self { table, tuning, single, shortened, two_level, torus, .. } = self;
+        let Self { table, tuning, recorder, single, shortened, two_level, torus, .. } = self;
         let inverse = match conditioning {
             Conditioning::Identity => None,
-            Conditioning::Torus { lengths, .. } => Some(planned(torus, window, tuning, || {
+            Conditioning::Torus { lengths, .. } => Some(planned(torus, window, (tuning, recorder), || {
                 FftConvolution::new(window, lengths, table.inverse_symbol(lengths))
             })),
         };
-        (plan(application, window, table, tuning, (single, shortened, two_level)), inverse)
+        (plan(application, window, table, (tuning, recorder), (single, shortened, two_level)), inverse)
     }
 
     fn application(&mut self, application: Application, window: Window) -> Planned<'_> {
-        let Self { table, tuning, single, shortened, two_level, .. } = self;
-        plan(application, window, table, tuning, (single, shortened, two_level))
+        let Self { table, tuning, recorder, single, shortened, two_level, .. } = self;
+        plan(application, window, table, (tuning, recorder), (single, shortened, two_level))
     }
 }
 
@@ -154,42 +177,42 @@ fn plan<'a>(
     application: Application,
     window: Window,
     table: &'a KernelTable,
-    tuning: &Tuning,
+    (tuning, recorder): (&Tuning, &'a Recorder),
     (single, shortened, two_level): Slots<'a>,
 ) -> Planned<'a> {
-    match application {
-        Application::Direct => Planned::Direct(DirectSum(table)),
+    let (way, part) = match application {
+        Application::Direct => (Way::Direct(DirectSum(table)), Part::Direct),
         Application::TwoLevel(split) => {
             if !two_level.as_ref().is_some_and(|o| o.split() == split && o.window().serves(window, tuning)) {
                 *two_level = None;
             }
-            Planned::TwoLevel(
-                two_level.get_or_insert_with(|| timed(Part::Plans, || TwoLevel::new(window, split))),
-            )
+            let make = || recorder.timed(Part::Plans, || TwoLevel::new(window, split));
+            (Way::TwoLevel(two_level.get_or_insert_with(make)), Part::TwoLevel)
         }
         Application::Fft(lengths) => {
             let exact = lengths == table.exact_lengths(window);
             let (slot, part) = if exact { (single, Part::Single) } else { (shortened, Part::Shortened) };
-            let transform = planned(slot, window, tuning, || {
+            let transform = planned(slot, window, (tuning, recorder), || {
                 let symbol = if exact { table.symbol_f32(lengths) } else { table.shortened_symbol(lengths) };
                 FftConvolution::new(window, lengths, symbol)
             });
-            Planned::Fft(transform, part)
+            (Way::Fft(transform), part)
         }
-    }
+    };
+    Planned { way, part, recorder }
 }
 
 /// The convolution of `slot` where it serves the window, else a new one.
 fn planned<'a, T: Real>(
     slot: &'a mut Option<FftConvolution<T>>,
     window: Window,
-    tuning: &Tuning,
+    (tuning, recorder): (&Tuning, &Recorder),
     make: impl FnOnce() -> FftConvolution<T>,
 ) -> &'a mut FftConvolution<T> {
     if !slot.as_ref().is_some_and(|c| c.window().serves(window, tuning)) {
         *slot = None;
     }
-    slot.get_or_insert_with(|| timed(Part::Plans, make))
+    slot.get_or_insert_with(|| recorder.timed(Part::Plans, make))
 }
 
 #[cfg(test)]
