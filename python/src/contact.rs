@@ -1,48 +1,19 @@
 //! Planned contacts.
 
-use crate::errors::of_model;
+use crate::errors::{of_model, of_solve};
 use crate::exclusive::Exclusive;
-use crate::load_order::{LastLoad, check_rising};
+use crate::load_order::{Highest, check_rising};
+use crate::loads::{load, load_of, tangential};
 use crate::memory;
 use crate::pool;
 use crate::state::{self, ContactState};
 use fractal_contact::{
     ContactState as RustState, Error, Hardness, Load, Normalisation as RustNormalisation, PreparedContact,
-    Scene,
+    Scene, Step,
 };
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
-
-/// What a solve had reached when a signal came: its result, or the best state so far.
-pub type Reached<R> = Result<R, Option<Box<RustState>>>;
-
-/// Runs on the pool where it may be long; Ctrl-C and errors become exceptions. `keep` is given what an interrupted solve had reached.
-pub fn solved<R: Send>(
-    py: Python<'_>,
-    long: bool,
-    keep: impl FnOnce(Reached<R>),
-    work: impl FnOnce(&(dyn Fn() -> bool + Sync)) -> fractal_contact::Result<R> + Send,
-) -> PyResult<R> {
-    let (result, raised) = if long {
-        pool::run(py, &mut |_| Ok(()), work)?
-    } else {
-        (py.detach(|| work(&fractal_contact::never)), None)
-    };
-    match (result, raised) {
-        (Err(Error::Stopped { best }), Some(raised)) => {
-            keep(Err(best));
-            Err(raised)
-        }
-        // It was done before it heard of the signal.
-        (Ok(found), Some(raised)) => {
-            keep(Ok(found));
-            Err(raised)
-        }
-        (result, _) => result.map_err(|error| of_model(py, error)),
-    }
-}
 
 /// What turns forces and stiffnesses into the dimensionless ones of the paper.
 #[pyclass(frozen, module = "fractal_contact")]
@@ -93,12 +64,13 @@ impl Normalisation {
     }
 }
 
-/// A planned contact: solve often. It keeps tables, plans and the last state, from which the next solve starts.
+/// A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the next solve starts.
 ///
-/// Threads that solve on one contact do so one after the other, in the order of asking.
+/// `solve` and `sweep` answer each load from no contact; `advance` and `follow` go along a path of loads, from where the contact is.
+/// Threads that use one contact do so one after the other, in the order of asking.
 ///
-/// With a hardness each load is solved from the virgin surface: a load smaller than the one before is refused, because the indentation of
-/// that one would be forgotten. ``Bem3dPath(...).history(scene)`` follows the indentation along any path.
+/// With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because the indentation of that one
+/// would be forgotten. `advance` and `follow` keep it, along any path.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct Contact {
     inner: Exclusive<Inner>,
@@ -109,69 +81,113 @@ pub struct Contact {
     /// Whether the surface yields, so that the order of loads matters.
     yields: bool,
     best: Mutex<Option<Py<ContactState>>>,
+    last: Mutex<Option<Py<ContactState>>>,
 }
 
 struct Inner {
     contact: Box<dyn PreparedContact>,
     /// Of a contact that yields.
-    last: Option<LastLoad>,
+    highest: Option<Highest>,
+}
+
+/// What is asked of a contact.
+enum Asked {
+    Load(Load),
+    Step(Step),
 }
 
 impl Contact {
     /// A contact of a scene whose solves are long, or not.
     pub fn new(contact: Box<dyn PreparedContact>, scene: &Scene, long: bool, large: bool) -> Self {
         let normalisation = contact.normalisation();
-        let inner = Exclusive::new(Inner { contact, last: None });
+        let inner = Exclusive::new(Inner { contact, highest: None });
         let yields = scene.effects.hardness != Hardness::Off;
-        Self { inner, normalisation, long, large, yields, best: Mutex::new(None) }
+        let (best, last) = (Mutex::new(None), Mutex::new(None));
+        Self { inner, normalisation, long, large, yields, best, last }
     }
 
     fn area(&self) -> f64 {
         self.normalisation.length.powi(2)
     }
 
-    fn set_best(&self, best: Py<ContactState>) {
-        let before = self.best.lock().unwrap_or_else(PoisonError::into_inner).replace(best);
-        // Outside of the lock: the end of an array may call Python, which may ask for `best`.
-        drop(before);
-    }
-}
-
-/// The load of a kind.
-pub fn load_of(normalisation: &RustNormalisation, kind: &str, value: f64) -> Load {
-    match kind {
-        "mean_pressure" => Load::Force(value * normalisation.length.powi(2)),
-        "approach" => Load::Approach(value),
-        "mean_gap" => Load::MeanGap(value),
-        _ => Load::Force(value),
-    }
-}
-
-/// The one load that is given.
-pub fn load(
-    normalisation: &RustNormalisation,
-    force: Option<f64>,
-    approach: Option<f64>,
-    mean_pressure: Option<f64>,
-    mean_gap: Option<f64>,
-) -> PyResult<Load> {
-    let (kind, value) = match (force, approach, mean_pressure, mean_gap) {
-        (Some(force), None, None, None) => ("force", force),
-        (None, Some(approach), None, None) => ("approach", approach),
-        (None, None, Some(pressure), None) => ("mean_pressure", pressure),
-        (None, None, None, Some(gap)) => ("mean_gap", gap),
-        _ => {
-            return Err(PyTypeError::new_err(
-                "give exactly one of force, approach, mean_pressure and mean_gap",
-            ));
+    /// Solves, on the pool where that may be long; Ctrl-C and errors become exceptions.
+    ///
+    /// States that are replaced end outside of all locks: the end of an array may call Python, which may ask for this contact.
+    fn answer(&self, py: Python<'_>, asked: &Asked, area: Option<f64>) -> PyResult<Py<ContactState>> {
+        let normal = match asked {
+            Asked::Load(load) => *load,
+            Asked::Step(step) => step.normal,
+        };
+        let mut inner = self.inner.take(py)?;
+        let Inner { contact, highest } = &mut *inner;
+        if let (Asked::Load(load), Some(highest)) = (asked, &highest) {
+            highest.check(py, *load, area)?;
         }
-    };
-    Ok(load_of(normalisation, kind, value))
+        if self.large {
+            memory::check_solve(py, contact, |contact| contact.required_memory(normal))?;
+        }
+        let mut work = |stop: &(dyn Fn() -> bool + Sync)| match asked {
+            Asked::Load(load) => contact.solve_until(*load, &|| stop()),
+            Asked::Step(step) => contact.advance_until(*step, &|| stop()),
+        };
+        let (result, raised) = if self.long {
+            pool::run(py, &mut |_| Ok(()), work)?
+        } else {
+            (py.detach(|| work(&fractal_contact::never)), None)
+        };
+        if let (Ok(state), true) = (&result, self.yields) {
+            *highest = Some(Highest::of(highest.take(), normal, state));
+        }
+        let of = |state: RustState| state::of(py, state, &self.normalisation);
+        let mut ended = Vec::new();
+        let answer = match (result, raised) {
+            (Ok(state), raised) => {
+                let state = of(state)?;
+                ended.push(replaced(&self.last, Some(state.clone_ref(py))));
+                if raised.is_some() {
+                    // It was done before it heard of the signal.
+                    ended.push(replaced(&self.best, Some(state.clone_ref(py))));
+                }
+                raised.map_or(Ok(state), Err)
+            }
+            (Err(error), raised) => {
+                if let Asked::Load(_) = asked {
+                    // The path before it is forgotten.
+                    ended.push(replaced(&self.last, None));
+                }
+                match (error, raised) {
+                    (Error::Stopped { best }, Some(raised)) => {
+                        if let Some(best) = best {
+                            ended.push(replaced(&self.best, Some(of(*best)?)));
+                        }
+                        Err(raised)
+                    }
+                    (error, _) => Err(of_solve(py, error, &self.normalisation)),
+                }
+            }
+        };
+        drop(inner);
+        drop(ended);
+        answer
+    }
+}
+
+/// Sets a state; the one before it.
+#[must_use]
+fn replaced(
+    place: &Mutex<Option<Py<ContactState>>>,
+    state: Option<Py<ContactState>>,
+) -> Option<Py<ContactState>> {
+    std::mem::replace(&mut *place.lock().unwrap_or_else(PoisonError::into_inner), state)
+}
+
+fn shown(py: Python<'_>, place: &Mutex<Option<Py<ContactState>>>) -> Option<Py<ContactState>> {
+    place.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|state| state.clone_ref(py))
 }
 
 #[pymethods]
 impl Contact {
-    /// Solves for one load.
+    /// Solves for one load, from no contact: a path that was followed is forgotten.
     ///
     /// Parameters
     /// ----------
@@ -186,7 +202,7 @@ impl Contact {
     /// ------
     /// DomainError, OutOfRange, Unsupported
     ///     For a load that makes no sense or that the model does not hold for.
-    ///     With a hardness also for a load smaller than the one before.
+    ///     With a hardness also for a load smaller than one before.
     /// OutOfMemory
     ///     For contact that fills so much of a large grid that it does not fit in memory.
     /// NotConverged
@@ -201,29 +217,7 @@ impl Contact {
         mean_gap: Option<f64>,
     ) -> PyResult<Py<ContactState>> {
         let load = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
-        let mut best = None;
-        let mut inner = self.inner.take(py)?;
-        let Inner { contact, last } = &mut *inner;
-        if let Some(last) = last {
-            last.check(py, load, mean_pressure.map(|_| self.area()))?;
-        }
-        if self.large {
-            memory::check_solve(py, contact, |contact| contact.required_memory(load))?;
-        }
-        let result = solved(
-            py,
-            self.long,
-            |reached| best = reached.map_or_else(|best| best.map(|best| *best), Some),
-            |stop| contact.solve_until(load, &|| stop()),
-        );
-        if let (Ok(state), true) = (&result, self.yields) {
-            *last = Some(LastLoad::new(load, state));
-        }
-        drop(inner);
-        if let Some(best) = best {
-            self.set_best(state::of(py, best)?);
-        }
-        state::of(py, result?)
+        self.answer(py, &Asked::Load(load), mean_pressure.map(|_| self.area()))
     }
 
     /// Solves for loads in their order: an iterator that yields each state as soon as it is there.
@@ -252,11 +246,95 @@ impl Contact {
         slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), Some(&loads))
     }
 
-    /// Forgets the loads before: with a hardness the next load may be any.
+    /// Goes to the end of the next step of a path. A step that fails leaves the contact as it was.
     ///
-    /// Other contacts take loads in any order at any time.
+    /// Parameters
+    /// ----------
+    /// time : float
+    ///     At the end of the step; it never decreases. Friction alone does not look at it.
+    /// force, approach, mean_pressure, mean_gap : float
+    ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first three may be negative
+    ///     with adhesion.
+    /// tangential_force, tangential_displacement : float, optional
+    ///     At most one of them; no tangential force otherwise.
+    ///
+    /// Returns
+    /// -------
+    /// ContactState
+    ///
+    /// Raises
+    /// ------
+    /// DomainError, OutOfRange, Unsupported
+    ///     For a load that makes no sense or that the model does not hold for.
+    /// NotConverged
+    ///     With the state that was reached as ``best``; beyond pull-off that is the last stable state.
+    #[pyo3(signature = (time=0.0, *, force=None, approach=None, mean_pressure=None, mean_gap=None, tangential_force=None,
+                        tangential_displacement=None))]
+    #[allow(clippy::too_many_arguments)] // One for each keyword.
+    fn advance(
+        &self,
+        py: Python<'_>,
+        time: f64,
+        force: Option<f64>,
+        approach: Option<f64>,
+        mean_pressure: Option<f64>,
+        mean_gap: Option<f64>,
+        tangential_force: Option<f64>,
+        tangential_displacement: Option<f64>,
+    ) -> PyResult<Py<ContactState>> {
+        let normal = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
+        let tangential = tangential(tangential_force, tangential_displacement)?;
+        self.answer(py, &Asked::Step(Step { time, normal, tangential }), None)
+    }
+
+    /// Goes along a path: an iterator that yields the state at the end of each step as soon as it is there.
+    ///
+    /// What was yielded stays where a later step raises; the contact then stands at the end of the step before that one.
+    ///
+    /// Parameters
+    /// ----------
+    /// time : float or iterable of float
+    ///     At the end of each step.
+    /// force, approach, mean_pressure, mean_gap : float or iterable of float
+    ///     Exactly one of them, as in `advance`.
+    /// tangential_force, tangential_displacement : float or iterable of float, optional
+    ///     At most one of them. Iterables have one number for each step; a number alone is that of every step.
+    ///
+    /// Yields
+    /// ------
+    /// ContactState
+    #[pyo3(signature = (time=None, *, force=None, approach=None, mean_pressure=None, mean_gap=None, tangential_force=None,
+                        tangential_displacement=None))]
+    #[allow(clippy::too_many_arguments)] // One for each keyword.
+    fn follow<'py>(
+        slf: &Bound<'py, Self>,
+        time: Option<Bound<'py, PyAny>>,
+        force: Option<Bound<'py, PyAny>>,
+        approach: Option<Bound<'py, PyAny>>,
+        mean_pressure: Option<Bound<'py, PyAny>>,
+        mean_gap: Option<Bound<'py, PyAny>>,
+        tangential_force: Option<Bound<'py, PyAny>>,
+        tangential_displacement: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let steps = PyDict::new(slf.py());
+        steps.set_item("time", time)?;
+        steps.set_item("force", force)?;
+        steps.set_item("approach", approach)?;
+        steps.set_item("mean_pressure", mean_pressure)?;
+        steps.set_item("mean_gap", mean_gap)?;
+        steps.set_item("tangential_force", tangential_force)?;
+        steps.set_item("tangential_displacement", tangential_displacement)?;
+        slf.py().import("fractal_contact._models")?.call_method("follow", (slf,), Some(&steps))
+    }
+
+    /// Forgets the loads and the path before: back to no contact at time 0.
     fn restart(&self, py: Python<'_>) -> PyResult<()> {
-        self.inner.take(py)?.last = None;
+        let mut inner = self.inner.take(py)?;
+        inner.contact.restart();
+        inner.highest = None;
+        let before = replaced(&self.last, None);
+        drop(inner);
+        drop(before);
         Ok(())
     }
 
@@ -268,8 +346,8 @@ impl Contact {
         let area = (kind == "mean_pressure").then(|| self.area());
         let loads: Vec<Load> =
             values.iter().map(|value| load_of(&self.normalisation, kind, *value)).collect();
-        if let (Some(last), Some(first)) = (&self.inner.take(py)?.last, loads.first()) {
-            last.check(py, *first, area)?;
+        if let (Some(highest), Some(first)) = (&self.inner.take(py)?.highest, loads.first()) {
+            highest.check(py, *first, area)?;
         }
         check_rising(py, &loads, area)
     }
@@ -283,7 +361,16 @@ impl Contact {
     /// ContactState or None: what the last solve had reached that a signal such as Ctrl-C interrupted.
     #[getter]
     fn best(&self, py: Python<'_>) -> Option<Py<ContactState>> {
-        self.best.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|best| best.clone_ref(py))
+        shown(py, &self.best)
+    }
+
+    /// ContactState or None: the state at the end of the last solve or step that was complete, where the next step begins; None before the
+    /// first, and after a solve that failed.
+    ///
+    /// It says where the contact stands after a step that failed, or that a signal such as Ctrl-C interrupted.
+    #[getter]
+    fn last(&self, py: Python<'_>) -> Option<Py<ContactState>> {
+        shown(py, &self.last)
     }
 
     fn __repr__(&self) -> String {

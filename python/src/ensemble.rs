@@ -1,8 +1,8 @@
 //! Many surfaces at a time.
 
-use crate::contact::load_of;
-use crate::errors::{of_model, plain};
+use crate::errors::{of_planning, of_solve, plain};
 use crate::load_order::check_rising;
+use crate::loads::load_of;
 use crate::memory;
 use crate::model::{Model, Shared};
 use crate::pool;
@@ -10,10 +10,9 @@ use crate::scene::Scene;
 use crate::state;
 use fractal_contact::runs::{Threads, run_jobs, threads_for_memory};
 use fractal_contact::{
-    ContactModel, ContactState as RustState, Error, Hardness, Load, Outputs, RequiredMemory, Result,
-    Scene as RustScene, Stop,
+    ContactModel, ContactState as RustState, Error, Hardness, Load, Normalisation, Outputs, RequiredMemory,
+    Result, Scene as RustScene, Stop,
 };
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -54,9 +53,7 @@ pub fn ensemble(
     surfaces: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Vec<Py<PyAny>>>> {
-    let Some(model) = model.of_loads() else {
-        return Err(PyTypeError::new_err("this model follows a path"));
-    };
+    let model = &model.model;
     let (scene, done, mut told) = (scene.0.clone(), AtomicUsize::new(0), 0);
     if scene.effects.hardness != Hardness::Off {
         // The order of the values is that of the loads on every surface.
@@ -87,7 +84,7 @@ pub fn ensemble(
             Ok(())
         })?;
         done.fetch_add(1, Ordering::Relaxed);
-        Ok(found)
+        Ok((normalisation, found))
     };
     let mut listen = |py: Python<'_>| {
         let now = done.load(Ordering::Relaxed);
@@ -102,18 +99,19 @@ pub fn ensemble(
         run_jobs(threads, &(0..surfaces).collect::<Vec<usize>>(), stop, answer)
     })?;
     // A load that was refused stands for itself among the others.
-    let one = |state: Result<RustState>| -> PyResult<Py<PyAny>> {
+    let one = |normalisation: &Normalisation, state: Result<RustState>| -> PyResult<Py<PyAny>> {
         match state {
-            Ok(state) => Ok(state::of(py, state)?.into_any()),
-            Err(error) => Ok(of_model(py, error).into_value(py).into_any()),
+            Ok(state) => Ok(state::of(py, state, normalisation)?.into_any()),
+            Err(error) => Ok(of_solve(py, error, normalisation).into_value(py).into_any()),
         }
     };
     let mut surfaces_done = Vec::new();
     let mut failed = None;
     for (index, states) in found.into_iter().enumerate() {
         match states {
-            Some(Ok(states)) => {
-                surfaces_done.push((index, states.into_iter().map(one).collect::<PyResult<Vec<_>>>()?));
+            Some(Ok((normalisation, states))) => {
+                let states = states.into_iter().map(|state| one(&normalisation, state));
+                surfaces_done.push((index, states.collect::<PyResult<Vec<_>>>()?));
             }
             // After a failure those in flight are stopped: their reason is not the reason.
             None | Some(Err(Error::Stopped { .. })) => {}
@@ -121,7 +119,7 @@ pub fn ensemble(
         }
     }
     if let (Some(error), None) = (failed, &raised) {
-        return Err(of_model(py, error));
+        return Err(of_planning(py, error, &scene));
     }
     if let Some(raised) = raised {
         // What is finished goes with the exception.

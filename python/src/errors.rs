@@ -1,10 +1,11 @@
 //! Errors of the library as the exceptions of `fractal_contact._errors`, with their numbers as attributes.
 
-use crate::state;
-use fractal_contact::{ContactState, Error, scenes};
+use crate::state::{self, ContactState};
+use fractal_contact::models::{ModelRecord, able};
+use fractal_contact::{ContactState as RustState, Error, Normalisation, Scene, scenes};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{PyDict, PyTuple, PyType};
 
 /// An exception class of `fractal_contact._errors`.
 fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyType>> {
@@ -31,10 +32,46 @@ pub fn plain(py: Python<'_>, name: &str, message: &str) -> PyErr {
     exception(py, name, message, &PyDict::new(py))
 }
 
-/// An error of a model.
+/// An error of a call that solves nothing, which has no state.
 pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
-    let attributes = PyDict::new(py);
     let message = error.to_string();
+    of_any(py, error, &message, &PyDict::new(py), None)
+}
+
+/// An error of a contact with this normalisation.
+pub fn of_solve(py: Python<'_>, error: Error, normalisation: &Normalisation) -> PyErr {
+    let message = error.to_string();
+    of_any(py, error, &message, &PyDict::new(py), Some(normalisation))
+}
+
+/// An error of a model that plans a scene: what the model lacks is told with the models that have it.
+pub fn of_planning(py: Python<'_>, error: Error, scene: &Scene) -> PyErr {
+    let (mut message, attributes) = (error.to_string(), PyDict::new(py));
+    if let Error::Unsupported { model, .. } = &error
+        && ModelRecord::named(model).is_some()
+    {
+        let able: Vec<&ModelRecord> = able(scene).filter(|record| record.name() != *model).collect();
+        let names: Vec<&str> = able.iter().map(|record| record.name()).collect();
+        if !able.is_empty() {
+            let classes: Vec<String> = able.iter().map(|record| format!("fc.{}", record.class)).collect();
+            message += &format!("; models that may: {}", classes.join(", "));
+        }
+        // A failure to say more is none of the caller.
+        let _ = PyTuple::new(py, names).and_then(|names| attributes.set_item("able", names));
+    }
+    of_any(py, error, &message, &attributes, None)
+}
+
+fn of_any(
+    py: Python<'_>,
+    error: Error,
+    message: &str,
+    attributes: &Bound<'_, PyDict>,
+    normalisation: Option<&Normalisation>,
+) -> PyErr {
+    let state = |best: RustState| -> PyResult<Option<Py<ContactState>>> {
+        normalisation.map(|normalisation| state::of(py, best, normalisation)).transpose()
+    };
     let fill = || -> PyResult<&str> {
         Ok(match error {
             Error::Domain { name, value, expected } => {
@@ -68,11 +105,11 @@ pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
                 "OutOfMemory"
             }
             Error::NotConverged { best } => {
-                attributes.set_item("best", state::of(py, *best)?)?;
+                attributes.set_item("best", state(*best)?)?;
                 "NotConverged"
             }
             Error::Stopped { best } => {
-                let best = best.map(|best: Box<ContactState>| state::of(py, *best)).transpose()?;
+                let best = best.map(|best| state(*best)).transpose()?.flatten();
                 attributes.set_item("best", best)?;
                 "Stopped"
             }
@@ -80,7 +117,7 @@ pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
         })
     };
     match fill() {
-        Ok(name) => exception(py, name, &message, &attributes),
+        Ok(name) => exception(py, name, message, attributes),
         Err(error) => error,
     }
 }

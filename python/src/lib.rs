@@ -6,18 +6,17 @@
 #![allow(clippy::unnecessary_wraps)]
 
 mod contact;
-mod effect_states;
 mod ensemble;
 mod errors;
 mod exclusive;
 mod height_map;
-mod history;
-mod history_state;
 mod io;
 mod load_order;
+mod loads;
 mod memory;
 mod model;
 mod pool;
+mod quantities;
 mod scene;
 mod scenes;
 mod state;
@@ -31,27 +30,24 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        crate::state::look_up_arrays(module.py())
+        crate::state::look_up_arrays(module.py())?;
+        crate::quantities::make_properties(module.py())
     }
 
     #[pymodule_export]
     use crate::contact::{Contact, Normalisation};
     #[pymodule_export]
-    use crate::effect_states::{AdhesiveState, PlasticState};
-    #[pymodule_export]
     use crate::ensemble::ensemble;
     #[pymodule_export]
     use crate::height_map::HeightMap;
     #[pymodule_export]
-    use crate::history::History;
-    #[pymodule_export]
-    use crate::history_state::HistoryState;
-    #[pymodule_export]
     use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]
-    use crate::model::{Model, model};
+    use crate::model::{Model, model, models};
     #[pymodule_export]
     use crate::pool::{set_threads, threads};
+    #[pymodule_export]
+    use crate::quantities::quantities;
     #[pymodule_export]
     use crate::scene::{Scene, Surface, check_effects, height_map, scene, surface};
     #[pymodule_export]

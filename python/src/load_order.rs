@@ -1,7 +1,7 @@
 //! The order of loads on a contact with a hardness.
 //!
-//! Each load is solved from the virgin surface. A smaller load than the one before would forget the indentation of that one without a
-//! word, so it is refused.
+//! A solve begins with the virgin surface. A smaller load than one before would forget the indentation of that one without a word, so it
+//! is refused.
 
 use crate::errors::of_model;
 use fractal_contact::{ContactState, Error, Load};
@@ -12,20 +12,22 @@ use pyo3::prelude::*;
 const WITHIN_TOLERANCE: f64 = 1e-2;
 
 const REMEDY: &str = "with a hardness each load is solved from the virgin surface, and the indentation of a larger one would be \
-                      forgotten: Bem3dPath(...).history(scene) follows it, restart() and a new contact begin again";
+                      forgotten: advance() and follow() keep it, restart() and a new contact begin again";
 
-/// The last load of a contact, and what it led to.
+/// The highest load of a contact, and what it led to.
 #[derive(Clone, Copy)]
-pub struct LastLoad {
+pub struct Highest {
     load: Load,
     force: f64,
     approach: Option<f64>,
     mean_gap: Option<f64>,
 }
 
-impl LastLoad {
-    pub fn new(load: Load, state: &ContactState) -> Self {
-        Self { load, force: state.force, approach: state.approach, mean_gap: state.mean_gap }
+impl Highest {
+    /// The higher of one before and a load that led to this state. Of equal ones the later.
+    pub fn of(before: Option<Self>, load: Load, state: &ContactState) -> Self {
+        let found = Self { load, force: state.force, approach: state.approach, mean_gap: state.mean_gap };
+        before.filter(|before| before.force > found.force).unwrap_or(found)
     }
 
     /// An error where `load` is smaller; `area` where it was given as a mean pressure.

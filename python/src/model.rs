@@ -1,24 +1,20 @@
 //! Models by name, and contacts that they have planned.
 
 use crate::contact::Contact;
-use crate::errors::of_model;
-use crate::history::History;
+use crate::errors::{of_model, of_planning};
 use crate::memory;
 use crate::pool;
 use crate::scene::{Scene, optional};
-use fractal_contact::analytic::{
-    AdhesiveWave, CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, MaugisDugdale, Persson,
-    PowerLaw, PowerLawBody, Westergaard, greenwood_williamson::SummitHeights,
-};
-use fractal_contact::bem3d::{Bem3dPath, Method};
-use fractal_contact::mdr1d::{PartialSlip, Viscoelastic};
+use fractal_contact::analytic::{GreenwoodWilliamson, Persson, greenwood_williamson::SummitHeights};
+use fractal_contact::bem3d::Method;
+use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::{
-    Bem3d, ContactModel, Equivalent, Error, HistoryModel, Mdr1d, PreparedContact, RequiredMemory,
+    Abilities, Bem3d, ContactModel, Equivalent, Error, Mdr1d, Paths, PreparedContact, RequiredMemory,
     Scene as RustScene, Source,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
 /// A model that is chosen at run time.
@@ -34,6 +30,10 @@ impl ContactModel for Shared {
         self.0.sources()
     }
 
+    fn abilities(&self) -> Abilities {
+        self.0.abilities()
+    }
+
     fn prepare(&self, scene: &RustScene, seed: u64) -> fractal_contact::Result<Box<dyn PreparedContact>> {
         self.0.prepare(scene, seed)
     }
@@ -43,21 +43,34 @@ impl ContactModel for Shared {
     }
 }
 
-#[derive(Clone)]
-enum Kind {
-    /// It answers loads one by one.
-    Loads(Shared),
-    /// It follows a path.
-    Path(Arc<dyn HistoryModel>),
-}
-
 /// A way to answer what force, approach and stiffness belong together.
 #[pyclass(frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
 pub struct Model {
-    kind: Kind,
-    /// Whether its solves are long enough to leave the interpreter's thread.
+    pub model: Shared,
+    /// Whether its solves may be long enough to leave the interpreter's thread.
     long: bool,
+}
+
+/// The models of the library.
+///
+/// Returns
+/// -------
+/// list of dict
+///     ``name`` (in scenes and tables), ``title``, ``class`` (in Python), ``about``, ``accuracy`` and ``has_options``.
+#[pyfunction]
+pub fn models(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |record: &ModelRecord| {
+        let row = PyDict::new(py);
+        row.set_item("name", record.name())?;
+        row.set_item("title", record.title)?;
+        row.set_item("class", record.class)?;
+        row.set_item("about", record.about)?;
+        row.set_item("accuracy", record.accuracy)?;
+        row.set_item("has_options", record.has_options)?;
+        Ok(row)
+    };
+    MODELS.iter().map(row).collect()
 }
 
 /// A model by the name that scenes give it.
@@ -69,25 +82,15 @@ pub fn model(
     options: &Bound<'_, PyDict>,
     inner: Option<&Model>,
 ) -> PyResult<Model> {
-    let shared = |model: Arc<dyn ContactModel>| Kind::Loads(Shared(model));
-    let kind = match name {
-        "bem3d" => shared(Arc::new(bem3d(py, options)?)),
-        "bem3d_path" => Kind::Path(Arc::new(Bem3dPath(bem3d(py, options)?))),
+    let model: Arc<dyn ContactModel> = match name {
+        "bem3d" => Arc::new(bem3d(py, options)?),
         "mdr1d" => {
             let elements = optional(options, "elements")?.unwrap_or(Mdr1d::default().elements);
-            shared(Arc::new(Mdr1d { elements }))
+            Arc::new(Mdr1d { elements })
         }
-        "hertz" => shared(Arc::new(Hertz)),
-        "flat_punch" => shared(Arc::new(FlatPunch)),
-        "power_law_body" => shared(Arc::new(PowerLawBody)),
-        "power_law" => shared(Arc::new(PowerLaw)),
-        "jkr" => shared(Arc::new(Jkr)),
-        "westergaard" => shared(Arc::new(Westergaard)),
-        "adhesive_wave" => shared(Arc::new(AdhesiveWave)),
-        "maugis_dugdale" => shared(Arc::new(MaugisDugdale)),
         "persson" => {
             let gamma = optional(options, "gamma")?.unwrap_or(Persson::default().gamma);
-            shared(Arc::new(Persson { gamma }))
+            Arc::new(Persson { gamma })
         }
         "greenwood_williamson" => {
             let heights = match optional::<String>(options, "heights")?.as_deref() {
@@ -99,25 +102,27 @@ pub fn model(
                     )));
                 }
             };
-            shared(Arc::new(GreenwoodWilliamson { heights }))
+            Arc::new(GreenwoodWilliamson { heights })
         }
         "equivalent" => {
-            let Some(Model { kind: Kind::Loads(model), .. }) = inner else {
-                return Err(PyTypeError::new_err("equivalent takes a model that answers loads one by one"));
+            let Some(Model { model, .. }) = inner else {
+                return Err(PyTypeError::new_err("equivalent takes a model that presses"));
             };
             let standard = Equivalent::new(model.clone());
-            Kind::Path(Arc::new(Equivalent {
+            Arc::new(Equivalent {
                 per_decade: optional(options, "per_decade")?.unwrap_or(standard.per_decade),
                 decades: optional(options, "decades")?.unwrap_or(standard.decades),
                 model: standard.model,
-            }))
+            })
         }
-        "cattaneo_mindlin" => Kind::Path(Arc::new(CattaneoMindlin)),
-        "partial_slip" => Kind::Path(Arc::new(PartialSlip)),
-        "viscoelastic" => Kind::Path(Arc::new(Viscoelastic)),
-        other => return Err(PyValueError::new_err(format!("no model is called {other:?}"))),
+        _ => match ModelRecord::named(name) {
+            Some(record) if !record.has_options => Arc::new(record.model),
+            _ => return Err(PyValueError::new_err(format!("no model is called {name:?}"))),
+        },
     };
-    Ok(Model { kind, long: matches!(name, "bem3d" | "bem3d_path" | "mdr1d" | "equivalent" | "viscoelastic") })
+    let has_options = ModelRecord::named(name).is_none_or(|record| record.has_options);
+    let long = has_options || model.abilities().paths == Paths::Needed;
+    Ok(Model { model: Shared(model), long })
 }
 
 fn bem3d(py: Python<'_>, options: &Bound<'_, PyDict>) -> PyResult<Bem3d> {
@@ -147,28 +152,12 @@ fn bem3d(py: Python<'_>, options: &Bound<'_, PyDict>) -> PyResult<Bem3d> {
 }
 
 impl Model {
-    /// What a contact of a scene needs at least; `None` where that does not grow with a grid.
-    pub fn least_memory(&self, scene: &RustScene) -> Option<RequiredMemory> {
-        match &self.kind {
-            Kind::Loads(model) => model.least_memory(scene),
-            Kind::Path(model) => model.least_memory(scene),
-        }
-    }
-
     /// `MemoryError` where a contact of a scene needs more than there is; otherwise whether that is much.
     fn check_memory(&self, py: Python<'_>, scene: &RustScene) -> PyResult<bool> {
-        let least = self.least_memory(scene);
+        let least = self.model.least_memory(scene);
         let large = memory::is_large(least.as_ref());
         least.map_or(Ok(()), |RequiredMemory { what, bytes }| memory::check(py, what, bytes))?;
         Ok(large)
-    }
-
-    /// The model, where it answers loads one by one.
-    pub fn of_loads(&self) -> Option<&Shared> {
-        match &self.kind {
-            Kind::Loads(model) => Some(model),
-            Kind::Path(_) => None,
-        }
     }
 }
 
@@ -177,42 +166,32 @@ impl Model {
     /// Name of the model, as in scenes.
     #[getter]
     fn name(&self) -> &'static str {
-        match &self.kind {
-            Kind::Loads(model) => model.name(),
-            Kind::Path(model) => model.name(),
-        }
+        self.model.name()
     }
 
     /// What it is built on: (citation, what is taken from it).
     #[getter]
     fn sources(&self) -> Vec<(&'static str, &'static str)> {
-        let sources = match &self.kind {
-            Kind::Loads(model) => model.sources(),
-            Kind::Path(model) => model.sources(),
-        };
-        sources.iter().map(|source| (source.citation, source.what)).collect()
+        self.model.sources().iter().map(|source| (source.citation, source.what)).collect()
+    }
+
+    /// What it can do, in words.
+    #[getter]
+    fn supports<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (about, words) in abilities(&self.model) {
+            dict.set_item(about, PyTuple::new(py, words)?)?;
+        }
+        Ok(dict)
     }
 
     fn prepare(&self, py: Python<'_>, scene: &Scene, seed: u64) -> PyResult<Contact> {
-        let Kind::Loads(model) = &self.kind else {
-            return Err(PyTypeError::new_err("this model follows a path: use history()"));
-        };
         let large = self.check_memory(py, &scene.0)?;
         let scene = scene.0.clone();
         // Any model may measure a map.
-        let contact = pool::call(py, || model.prepare(&scene, seed))?;
+        let contact = pool::call(py, || self.model.prepare(&scene, seed))?;
         contact
             .map(|contact| Contact::new(contact, &scene, self.long, large))
-            .map_err(|error| of_model(py, error))
-    }
-
-    fn history(&self, py: Python<'_>, scene: &Scene, seed: u64) -> PyResult<History> {
-        let Kind::Path(model) = &self.kind else {
-            return Err(PyTypeError::new_err("this model answers loads one by one: use prepare()"));
-        };
-        let large = self.check_memory(py, &scene.0)?;
-        let scene = scene.0.clone();
-        let history = pool::call(py, || model.prepare(&scene, seed))?;
-        history.map(|history| History::new(history, self.long, large)).map_err(|error| of_model(py, error))
+            .map_err(|error| of_planning(py, error, &scene))
     }
 }

@@ -3,7 +3,7 @@
 use crate::errors::of_model;
 use crate::height_map::{HeightMap, OneOrTwo};
 use fractal_contact::{
-    Adhesion, AdhesionLaw, Amplitude, Body, Boundary, Conductance, Effects, Friction, Hardness, Line,
+    Adhesion, AdhesionLaw, Amplitude, Body, Boundary, Conductance, Effects, Friction, Hardness, Line, Output,
     Outputs, Pair, PronySeries, Relaxing, Rheology, Scene as RustScene, SelfAffine, Surface as RustSurface,
 };
 use numpy::PyReadonlyArray1;
@@ -112,6 +112,19 @@ fn body(of: Option<(f64, f64)>) -> Body {
     of.map_or(Body::Rigid, |(young, poisson)| Body::Elastic { young, poisson })
 }
 
+/// The output of this name. The conductance is none of them: it needs what it is of.
+fn output(name: &str) -> PyResult<Output> {
+    let mut known = Output::ALL.iter().filter(|output| **output != Output::Conductance);
+    known.clone().find(|output| output.name() == name).copied().ok_or_else(|| {
+        let last = known.next_back().map_or("", |output| output.name());
+        let others: Vec<&str> = known.map(|output| output.name()).collect();
+        PyValueError::new_err(format!(
+            "no output is called {name:?}: there are {} and {last}",
+            others.join(", ")
+        ))
+    })
+}
+
 /// A scene of the values of the Python class.
 #[pyfunction]
 #[pyo3(signature = (surface, modulus, bodies, effects, outputs, conductance))]
@@ -138,24 +151,7 @@ pub fn scene(
     scene.effects = read_effects(py, effects)?;
     scene.outputs = Outputs::default();
     for name in &outputs {
-        let place = match name.as_str() {
-            "stiffness" => &mut scene.outputs.stiffness,
-            "stiffness_fixed_area" => &mut scene.outputs.stiffness_fixed_area,
-            "area" => &mut scene.outputs.area,
-            "mean_gap" => &mut scene.outputs.mean_gap,
-            "pressure" => &mut scene.outputs.pressure,
-            "displacement" => &mut scene.outputs.displacement,
-            "gap" => &mut scene.outputs.gap,
-            "plastic_depth" => &mut scene.outputs.plastic_depth,
-            "contact_patches" => &mut scene.outputs.contact_patches,
-            other => {
-                return Err(PyValueError::new_err(format!(
-                    "no output is called {other:?}: there are stiffness, stiffness_fixed_area, area, mean_gap, pressure, \
-                     displacement, gap, plastic_depth and contact_patches"
-                )));
-            }
-        };
-        *place = true;
+        scene.outputs.ask(output(name)?, true);
     }
     scene.outputs.conductance = match conductance {
         None => Conductance::Off,

@@ -1,7 +1,11 @@
 //! States of a contact.
 
-use crate::effect_states::{AdhesiveState, PlasticState};
-use fractal_contact::{Certificate as RustCertificate, ContactState as RustState, Field};
+use crate::quantities::{is_named_where_known, object};
+use fractal_contact::quantities::{QUANTITIES, Quantity, Role};
+use fractal_contact::{
+    Certificate as RustCertificate, ContactState as RustState, Field, Normalisation as RustNormalisation,
+    SolveReport, Value,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -102,14 +106,14 @@ impl Certificate {
 
     /// The numbers by the names of the columns of scenes; ``stiffness_error`` is `error_of_stiffness`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        // The residuals of the table, of a state that has nothing but this certificate.
+        let mut state = RustState::new(0.0, SolveReport::exact(""));
+        state.report.certificate = self.0;
+        let normalisation = RustNormalisation { modulus: 1.0, length: 1.0, height: None };
         let dict = PyDict::new(py);
-        dict.set_item("duality_gap", self.0.duality_gap)?;
-        dict.set_item("penetration", self.0.penetration)?;
-        dict.set_item("complementarity", self.0.complementarity)?;
-        dict.set_item("load_error", self.0.load_error)?;
-        dict.set_item("force_error", self.0.force_error)?;
-        dict.set_item("stiffness_error", self.0.error_of_stiffness())?;
-        dict.set_item("equilibrium", self.0.equilibrium)?;
+        for quantity in QUANTITIES.iter().filter(|quantity| matches!(quantity.role, Role::Residual(_))) {
+            dict.set_item(quantity.name, object(py, (quantity.value)(&state, &normalisation))?)?;
+        }
         Ok(dict)
     }
 
@@ -118,87 +122,46 @@ impl Certificate {
     }
 }
 
-/// One contact state. What was not asked for, or what the model does not claim, is None.
+/// One contact state, alone or at the end of a step of a path. What was not asked for, or what the model does not claim, is None.
+///
+/// Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units has its own.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct ContactState {
     state: RustState,
+    normalisation: RustNormalisation,
     pressure: Option<Py<PyArray2<f64>>>,
     displacement: Option<Py<PyArray2<f64>>>,
     gap: Option<Py<PyArray2<f64>>>,
     plastic_depth: Option<Py<PyArray2<f64>>>,
 }
 
-/// Moves a state into Python.
-pub fn of(py: Python<'_>, mut state: RustState) -> PyResult<Py<ContactState>> {
+/// Moves a state of a contact with this normalisation into Python.
+pub fn of(
+    py: Python<'_>,
+    mut state: RustState,
+    normalisation: &RustNormalisation,
+) -> PyResult<Py<ContactState>> {
     let fields = state.fields.take().unwrap_or_default();
     let array = |field: Option<Field>| field.map(|field| array(py, field)).transpose();
     let (pressure, displacement) = (array(fields.pressure)?, array(fields.displacement)?);
     let (gap, plastic_depth) = (array(fields.gap)?, array(fields.plastic_depth)?);
-    Py::new(py, ContactState { state, pressure, displacement, gap, plastic_depth })
+    let normalisation = *normalisation;
+    Py::new(py, ContactState { state, normalisation, pressure, displacement, gap, plastic_depth })
+}
+
+impl ContactState {
+    /// What the table takes from it.
+    pub fn value(&self, quantity: &Quantity) -> Value {
+        (quantity.value)(&self.state, &self.normalisation)
+    }
 }
 
 #[pymethods]
 impl ContactState {
-    /// float: normal force; negative where adhesion holds against a pull.
-    #[getter]
-    pub fn force(&self) -> f64 {
-        self.state.force
-    }
-
-    /// float or None: approach from first touch; None with periodic boundaries.
-    #[getter]
-    pub fn approach(&self) -> Option<f64> {
-        self.state.approach
-    }
-
-    /// float or None: distance between the mean plane of the defined heights and that of the deformed half-space. Without undefined points
-    /// it is the mean of the gap field; with them it may be negative.
-    #[getter]
-    pub fn mean_gap(&self) -> Option<f64> {
-        self.state.mean_gap
-    }
-
-    /// float or None: dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an adhesive contact move, saturated cells
-    /// flow.
-    #[getter]
-    fn stiffness(&self) -> Option<f64> {
-        self.state.stiffness
-    }
-
-    /// float or None: stiffness of the whole contact area, held; the conductance follows from it.
-    #[getter]
-    fn stiffness_fixed_area(&self) -> Option<f64> {
-        self.state.stiffness_fixed_area
-    }
-
-    /// float or None: real contact area.
-    #[getter]
-    fn area(&self) -> Option<f64> {
-        self.state.area
-    }
-
-    /// float or None: real contact area with a correction for its boundary, where cells were counted.
-    #[getter]
-    fn area_corrected(&self) -> Option<f64> {
-        self.state.resolution.and_then(|resolution| resolution.corrected_area)
-    }
-
-    /// float or None: largest pressure of a cell.
-    #[getter]
-    fn largest_pressure(&self) -> Option<f64> {
-        self.state.resolution.map(|resolution| resolution.largest_pressure)
-    }
-
     /// int or None: cells in contact at an edge of a free rectangle.
     #[getter]
     fn edge_cells(&self) -> Option<usize> {
         self.state.resolution.map(|resolution| resolution.edge_cells)
-    }
-
-    /// float or None: conductance through the contact.
-    #[getter]
-    fn conductance(&self) -> Option<f64> {
-        self.state.conductance
     }
 
     /// numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape (patches,).
@@ -231,91 +194,25 @@ impl ContactState {
         self.plastic_depth.as_ref().map(|field| field.clone_ref(py))
     }
 
-    /// PlasticState or None: what has yielded, of contacts with a hardness.
-    #[getter]
-    fn plastic(&self) -> Option<PlasticState> {
-        self.state.plastic.map(PlasticState)
-    }
-
-    /// AdhesiveState or None: the adhesive part, of contacts with adhesion that are solved cell by cell.
-    #[getter]
-    fn adhesive(&self) -> Option<AdhesiveState> {
-        self.state.adhesive.map(AdhesiveState)
-    }
-
     /// Certificate: how exactly the contact conditions hold.
     #[getter]
     fn certificate(&self) -> Certificate {
         Certificate(self.state.report.certificate)
     }
 
-    /// str: how the solve ended, such as ``converged``.
-    #[getter]
-    fn status(&self) -> &'static str {
-        self.state.report.status.as_str()
-    }
-
-    /// str: which way was taken.
-    #[getter]
-    fn strategy(&self) -> &str {
-        &self.state.report.strategy
-    }
-
-    /// int: iterations of the linear solvers.
-    #[getter]
-    fn iterations(&self) -> usize {
-        self.state.report.iterations
-    }
-
-    /// int: applications of the influence matrix on the fine grid, the certificate's included.
-    #[getter]
-    fn applications(&self) -> usize {
-        self.state.report.applications
-    }
-
-    /// int: linear systems solved.
-    #[getter]
-    fn linear_solves(&self) -> usize {
-        self.state.report.work.linear_solves
-    }
-
-    /// int or None: cells in contact.
-    #[getter]
-    fn contact_cells(&self) -> Option<usize> {
-        self.state.report.contact_cells
-    }
-
-    /// All numbers by the names of the columns of scenes; arrays only with ``fields=True``.
+    /// The numbers and words by their names, which are those of the columns of scenes; arrays only with ``fields=True``.
     ///
-    /// Those of `plastic` (``plastic_area``, ``plastic_volume``, ``plastic_work``) and of `adhesive` (``branch``, ``energy``,
-    /// ``stability``) are there where the state has them; any other that it lacks is None.
+    /// Those of effects and of paths are there where the state has them; any other that it lacks is None. ``patches`` is the number of
+    /// connected contacts, and with ``fields=True`` the array.
     #[pyo3(signature = (*, fields=false))]
-    pub fn to_dict<'py>(&self, py: Python<'py>, fields: bool) -> PyResult<Bound<'py, PyDict>> {
+    fn to_dict<'py>(&self, py: Python<'py>, fields: bool) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        dict.set_item("force", self.force())?;
-        dict.set_item("approach", self.approach())?;
-        dict.set_item("mean_gap", self.mean_gap())?;
-        dict.set_item("stiffness", self.stiffness())?;
-        dict.set_item("stiffness_fixed_area", self.stiffness_fixed_area())?;
-        dict.set_item("area", self.area())?;
-        dict.set_item("area_corrected", self.area_corrected())?;
-        dict.set_item("largest_pressure", self.largest_pressure())?;
-        dict.set_item("conductance", self.conductance())?;
-        if let Some(plastic) = &self.state.plastic {
-            dict.set_item("plastic_area", plastic.area)?;
-            dict.set_item("plastic_volume", plastic.volume)?;
-            dict.set_item("plastic_work", plastic.dissipated)?;
+        for quantity in QUANTITIES {
+            match self.value(quantity) {
+                Value::Empty if is_named_where_known(quantity) => {}
+                value => dict.set_item(quantity.name, object(py, value)?)?,
+            }
         }
-        if let Some(adhesive) = &self.state.adhesive {
-            dict.set_item("branch", adhesive.branch.as_str())?;
-            dict.set_item("energy", adhesive.energy)?;
-            dict.set_item("stability", adhesive.stability)?;
-        }
-        dict.set_item("contact_cells", self.contact_cells())?;
-        dict.set_item("status", self.status())?;
-        dict.set_item("iterations", self.iterations())?;
-        dict.set_item("applications", self.applications())?;
-        dict.update(self.certificate().to_dict(py)?.as_mapping())?;
         if fields {
             dict.set_item("pressure", self.pressure(py))?;
             dict.set_item("displacement", self.displacement(py))?;
@@ -326,27 +223,18 @@ impl ContactState {
         Ok(dict)
     }
 
-    pub fn __repr__(&self) -> String {
-        let mut text = format!("<ContactState: force={:.6e}", self.state.force);
-        let known = [
-            ("approach", self.approach()),
-            ("mean_gap", self.mean_gap()),
-            ("stiffness", self.stiffness()),
-            ("stiffness_fixed_area", self.stiffness_fixed_area()),
-            ("area", self.area()),
-            ("conductance", self.conductance()),
-        ];
-        for (name, value) in known {
-            if let Some(value) = value {
-                text += &format!(", {name}={value:.6e}");
+    fn __repr__(&self) -> String {
+        let mut known = Vec::new();
+        for quantity in QUANTITIES.iter().filter(|quantity| quantity.role == Role::Answer) {
+            match self.value(quantity) {
+                Value::Text(text) => known.push(format!("{}={text}", quantity.name)),
+                Value::Number(number) => known.push(format!("{}={number:.6e}", quantity.name)),
+                Value::Count(count) => known.push(format!("{}={count}", quantity.name)),
+                Value::Flag(flag) => known.push(format!("{}={flag}", quantity.name)),
+                Value::Empty => {}
             }
         }
-        if let Some(plastic) = self.plastic() {
-            text += &format!(", plastic={}", plastic.__repr__());
-        }
-        if let Some(adhesive) = self.adhesive() {
-            text += &format!(", adhesive={}", adhesive.__repr__());
-        }
-        text + &format!(", {}, {}>", self.status(), self.state.report.certificate)
+        let report = &self.state.report;
+        format!("<ContactState: {}, {}, {}>", known.join(", "), report.status.as_str(), report.certificate)
     }
 }

@@ -1,5 +1,8 @@
 """From arrays to states."""
 
+import pickle
+import re
+
 import numpy as np
 import pytest
 
@@ -104,6 +107,9 @@ def test_models_refuse_what_they_lack():
     with pytest.raises(fc.Unsupported) as caught:
         fc.Hertz().prepare(fc.Scene(rough(), modulus=1.0))
     assert caught.value.model == "hertz" and "height map" in caught.value.what
+    assert "bem3d" in caught.value.able and "hertz" not in caught.value.able
+    assert re.search(r"does not support a height map; models that may: fc\.Bem3d\b", str(caught.value))
+    assert pickle.loads(pickle.dumps(caught.value)).able == caught.value.able
     both = fc.Scene(rough(), modulus=1.0, effects=fc.Effects(hardness=1.0, adhesion=0.1))
     with pytest.raises(fc.Unsupported, match="together"):
         fc.Bem3d().prepare(both)
@@ -151,17 +157,17 @@ def test_theories_of_rough_contact():
     assert all(0.003 < area < 0.05 for area in areas), areas
 
 
-def test_histories():
+def test_paths():
     body = fc.Body(young=2.0, poisson=0.3)
     sphere = fc.Surface.sphere(radius=1.0, size=2.0)
     scene = fc.Scene(sphere, bodies=(body, body), effects={"friction": 0.5})
     ratios = []
     for model in (fc.CattaneoMindlin(), fc.PartialSlip(), fc.Equivalent(fc.Mdr1d())):
-        path = model.history(scene)
+        path = model.prepare(scene)
         path.advance(force=0.01)
         state = path.advance(force=0.01, tangential_force=0.0025)
         ratios.append(state.stick_radius / state.contact_radius)
-        assert state.dissipated > 0 and state.normal.force == pytest.approx(0.01)
+        assert state.dissipated > 0 and state.force == pytest.approx(0.01)
         with pytest.raises(fc.OutOfRange):
             path.advance(force=0.01, tangential_force=1.0)
         path.restart()
@@ -169,11 +175,12 @@ def test_histories():
     # Cattaneo and Mindlin: (1 - 1/2)^(1/3).
     assert ratios == pytest.approx([0.5 ** (1 / 3)] * 3, rel=1e-3)
     solid = {"kind": "standard_solid", "weight": 1.0, "time": 1.0}
-    creeping = fc.Viscoelastic().history(fc.Scene(sphere, modulus=1.0, effects={"rheology": solid}, outputs=[]))
+    creeping = fc.Viscoelastic().prepare(fc.Scene(sphere, modulus=1.0, effects={"rheology": solid}, outputs=[]))
     depths = [creeping.advance(time, force=0.01).approach for time in (0.0, 1.0, 10.0)]
     assert depths[0] < depths[1] < depths[2]
-    with pytest.raises(TypeError, match="follows a path"):
-        fc.PartialSlip()._core().prepare(scene._core(), 0)
+    # A single load is reached from no contact, and the path goes on from there.
+    friction = fc.PartialSlip().prepare(scene)
+    assert friction.solve(force=0.01).contact_radius == friction.advance(force=0.01).contact_radius
 
 
 def test_ensembles_are_the_surfaces_of_rust():

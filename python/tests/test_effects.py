@@ -34,11 +34,11 @@ def smooth(cells=64):
 
 
 def plastic_path(**scene):
-    return fc.Bem3dPath().history(fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, **scene))
+    return fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, **scene))
 
 
 def adhesive_path(law=EXPONENTIAL, **scene):
-    return fc.Bem3dPath(COARSE).history(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": law}, **scene))
+    return COARSE.prepare(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": law}, **scene))
 
 
 # States
@@ -48,10 +48,10 @@ def test_a_hardness_limits_the_pressure():
     outputs = ["pressure", "plastic_depth", "area", "gap"]
     scene = fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, outputs=outputs)
     state = fc.Bem3d().prepare(scene).solve(force=1e-3)
-    assert state.pressure.max() == pytest.approx(0.02) and 0 < state.plastic.area <= state.area
-    assert state.plastic.volume == pytest.approx(state.plastic_depth.sum() / state.plastic_depth.size)
-    assert state.plastic.dissipated == pytest.approx(0.02 * state.plastic.volume, rel=1e-14)
-    assert state.adhesive is None and state.certificate.equilibrium is None
+    assert state.pressure.max() == pytest.approx(0.02) and 0 < state.plastic_area <= state.area
+    assert state.plastic_volume == pytest.approx(state.plastic_depth.sum() / state.plastic_depth.size)
+    assert state.plastic_work == pytest.approx(0.02 * state.plastic_volume, rel=1e-14)
+    assert state.branch is None and state.certificate.equilibrium is None
     # Fields are not copied, and the gap is that to the indented surface.
     assert state.plastic_depth.shape == state.gap.shape == (65, 65) and state.plastic_depth is state.plastic_depth
     assert state.gap.min() > -1e-7 and (state.plastic_depth[state.pressure < 0.019] == 0).all()
@@ -62,27 +62,23 @@ def test_a_hardness_that_nothing_reaches_changes_no_bit():
     high = fc.Scene(rough(), modulus=1.0, effects={"hardness": 1e6}, outputs=["pressure"])
     hard = fc.Bem3d().prepare(high).solve(force=1e-3)
     assert np.array_equal(hard.pressure, elastic.pressure)
-    assert elastic.plastic is None and elastic.plastic_depth is None
-    assert hard.plastic.to_dict() == {"area": 0.0, "volume": 0.0, "dissipated": 0.0}
+    assert elastic.plastic_area is None and elastic.plastic_depth is None
+    assert (hard.plastic_area, hard.plastic_volume, hard.plastic_work) == (0.0, 0.0, 0.0)
 
 
-def test_states_of_effects_are_values():
-    loaded, unloaded, again = (state.normal for state in plastic_path().follow(force=[1e-3, 2e-4, 2e-4]))
-    assert unloaded.plastic == again.plastic and unloaded.plastic != loaded.plastic
-    assert type(loaded.plastic) is fc.PlasticState and re.match(r"<PlasticState: area=\d", repr(loaded.plastic))
-    assert "plastic=<PlasticState: area=" in repr(loaded)
-    state = adhesive_path().advance(force=0.0).normal
-    assert type(state.adhesive) is fc.AdhesiveState and state.adhesive == state.adhesive
-    assert state.adhesive.to_dict() == {
-        "branch": "approach",
-        "energy": state.adhesive.energy,
-        "stability": state.adhesive.stability,
-    }
-    assert "adhesive=<AdhesiveState: approach, energy=-" in repr(state)
+def test_numbers_of_effects_are_properties():
+    loaded, unloaded, again = plastic_path().follow(force=[1e-3, 2e-4, 2e-4])
+    assert unloaded.plastic_volume == again.plastic_volume and unloaded.plastic_area != loaded.plastic_area
+    assert (
+        type(loaded) is fc.ContactState and re.search(r"plastic_work=\d", repr(loaded)) and "branch" not in repr(loaded)
+    )
+    state = adhesive_path().advance(force=0.0)
+    assert (state.branch, state.time, state.plastic_work) == ("approach", 0.0, None) and state.energy < 0
+    assert "branch=approach, energy=-" in repr(state)
     with pytest.raises(AttributeError):
-        state.adhesive.energy = 1.0
+        state.energy = 1.0
     # One way to each number.
-    assert not any(hasattr(state, name) for name in ("plastic_area", "plastic_work", "branch", "energy", "stability"))
+    assert not any(hasattr(state, name) for name in ("plastic", "adhesive", "normal"))
 
 
 def test_what_attracts_is_a_tension():
@@ -93,14 +89,14 @@ def test_what_attracts_is_a_tension():
     attraction = WORK / RANGE * np.exp(-state.gap[open_] / RANGE)
     assert np.abs(state.pressure[open_] + attraction).max() < 1e-5 * WORK / RANGE
     assert state.area == pytest.approx((~open_).sum() * cell) and state.certificate.equilibrium < 1e-7
-    assert state.plastic is None and state.certificate.worst >= state.certificate.equilibrium
+    assert state.plastic_area is None and state.certificate.worst >= state.certificate.equilibrium
 
 
 def test_without_work_states_are_elastic():
     scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": {"work": 0.0, "range": 0.01}})
-    state = fc.Bem3dPath(COARSE).history(scene).advance(force=1e-3).normal
+    state = COARSE.prepare(scene).advance(force=1e-3)
     elastic = COARSE.prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-3)
-    assert state.adhesive is None and (state.approach, state.stiffness) == (elastic.approach, elastic.stiffness)
+    assert state.branch is None and (state.approach, state.stiffness) == (elastic.approach, elastic.stiffness)
 
 
 def test_surfaces_of_an_ensemble_yield():
@@ -109,7 +105,7 @@ def test_surfaces_of_an_ensemble_yield():
     found = fc.ensemble(fc.Bem3d(cells=33), scene, seed=5, surfaces=3, mean_pressure=[1e-3, 0.5])
     for index, (state, refused) in enumerate(found):
         contact = fc.Bem3d(cells=33).prepare(scene, seed=fc.surface_gen.surface_seed(5, index))
-        assert contact.solve(mean_pressure=1e-3).plastic == state.plastic and state.plastic.area > 0
+        assert contact.solve(mean_pressure=1e-3).plastic_work == state.plastic_work and state.plastic_area > 0
         # Beyond what all cells at the hardness carry.
         assert isinstance(refused, fc.OutOfRange) and refused.high == pytest.approx(0.02)
 
@@ -120,16 +116,16 @@ def test_surfaces_of_an_ensemble_yield():
 def test_an_indentation_stays():
     path = plastic_path(outputs=["area", "plastic_depth"])
     loads = np.array([5e-4, 1e-3, 5e-4, 0.0, 1e-3, 2e-3])
-    first, loaded, half, unloaded, again, further = (state.normal for state in path.follow(force=loads))
-    assert first.plastic.volume < loaded.plastic.volume < further.plastic.volume
+    first, loaded, half, unloaded, again, further = path.follow(force=loads)
+    assert first.plastic_volume < loaded.plastic_volume < further.plastic_volume
     # The same to the rounding of a sum.
-    kept = pytest.approx(loaded.plastic.volume, rel=1e-14)
-    assert half.plastic.volume == kept and unloaded.plastic.volume == kept
-    assert unloaded.plastic.area == 0.0 and np.array_equal(unloaded.plastic_depth, loaded.plastic_depth)
+    kept = pytest.approx(loaded.plastic_volume, rel=1e-14)
+    assert half.plastic_volume == kept and unloaded.plastic_volume == kept
+    assert unloaded.plastic_area == 0.0 and np.array_equal(unloaded.plastic_depth, loaded.plastic_depth)
     # Unloading follows another curve, reloading comes back.
     assert half.approach > first.approach and again.approach == pytest.approx(loaded.approach, rel=1e-5)
     path.restart()
-    assert path.advance(force=0.0).normal.plastic.volume == 0.0
+    assert path.advance(force=0.0).plastic_volume == 0.0
     # The bits of one step after the other.
     path.restart()
     assert [path.advance(force=f).approach for f in (5e-4, 1e-3)] == [first.approach, loaded.approach]
@@ -138,10 +134,10 @@ def test_an_indentation_stays():
 @pytest.mark.parametrize("effects", [{"hardness": 0.05}, {"adhesion": {"work": 1e-5, "range": 0.005}}])
 def test_steps_by_mean_pressure_and_mean_gap(effects):
     scene = fc.Scene(smooth(), modulus=1.0, effects={"boundary": "periodic", **effects}, outputs=["mean_gap"])
-    path = fc.Bem3dPath().history(scene)
+    path = fc.Bem3d().prepare(scene)
     pressed = path.advance(mean_pressure=2e-3)
     assert pressed.force == pytest.approx(2e-3) and pressed.approach is None
-    assert pressed.mean_gap == pressed.normal.mean_gap > 0
+    assert pressed.mean_gap > 0
     path.restart()
     closed = path.advance(mean_gap=pressed.mean_gap)
     assert closed.force == pytest.approx(2e-3, rel=1e-3) and closed.mean_gap == pytest.approx(pressed.mean_gap)
@@ -154,26 +150,26 @@ def test_steps_by_mean_pressure_and_mean_gap(effects):
 def test_steps_by_approach_and_mean_pressure_may_pull():
     path = adhesive_path()
     away, near, back = path.follow(approach=[-0.05, 0.01, -0.005])
-    assert [state.normal.adhesive.branch for state in (away, near, back)] == ["approach", "approach", "withdrawal"]
+    assert [state.branch for state in (away, near, back)] == ["approach", "approach", "withdrawal"]
     assert away.force < 0 and back.force < 0 and back.approach == -0.005
     pulled = path.advance(mean_pressure=-4e-3)
-    assert pulled.force == pytest.approx(-4e-3) and pulled.normal.adhesive.stability > 0
-    # Without adhesion nothing pulls, and the history stays where it is.
+    assert pulled.force == pytest.approx(-4e-3) and pulled.stability > 0
+    # Without adhesion nothing pulls, and the contact stays where it is.
     hard = plastic_path()
     loaded = hard.advance(force=1e-3)
     for negative in ({"force": -1e-3}, {"approach": -1e-3}, {"mean_pressure": -1e-3}):
         with pytest.raises(fc.DomainError, match="a finite number >= 0"):
             hard.advance(**negative)
     assert hard.last is loaded
-    again = hard.advance(force=1e-3).normal
-    assert again.plastic.volume == pytest.approx(loaded.normal.plastic.volume, rel=1e-6)
+    again = hard.advance(force=1e-3)
+    assert again.plastic_volume == pytest.approx(loaded.plastic_volume, rel=1e-6)
 
 
 def test_a_sphere_jumps_into_contact_and_off():
     # Tabor's parameter is 1.7: between a jump in and a jump off both branches are stable.
     law = {"work": WORK, "range": 0.006}
     scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=0.8), modulus=1.0, effects={"adhesion": law}, outputs=["area"])
-    path = fc.Bem3dPath(fc.Bem3d(cells=128, tolerance=1e-5)).history(scene)
+    path = fc.Bem3d(cells=128, tolerance=1e-5).prepare(scene)
     approach = np.linspace(-0.04, 0.02, 25)
     nearer, apart = (fc.table(path.follow(approach=steps)) for steps in (approach, approach[::-1]))
     assert set(nearer["branch"]) == {"approach"} and set(apart["branch"][1:]) == {"withdrawal"}
@@ -190,8 +186,8 @@ def test_pull_off_is_that_of_maugis():
         contact.solve(force=-10 * WORK)
     errors = []
     for cells in (64, 128):
-        path = fc.Bem3dPath(fc.Bem3d(cells=cells, tolerance=1e-5))
-        path = path.history(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": DUGDALE}))
+        model = fc.Bem3d(cells=cells, tolerance=1e-5)
+        path = model.prepare(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": DUGDALE}))
         found = [state.force for state in path.follow(approach=np.linspace(0.01, -0.02, 31))]
         errors.append(min(found) / caught.value.low - 1.0)
     # Of first order in the cell: whole cells enter the zone.
@@ -202,16 +198,20 @@ def test_a_path_ends_at_pull_off_with_its_last_stable_state():
     path, held = adhesive_path(outputs=["area", "pressure"]), []
     with pytest.raises(fc.NotConverged, match="pull-off before the force") as caught:
         for state in path.follow(force=[1e-3, 0.0, -4e-3, -1.0, 1e-3]):
-            held.append(state.normal)
+            held.append(state)
     best = caught.value.best
     assert len(held) == 3 and best.force == held[-1].force == pytest.approx(-4e-3)
-    assert best.adhesive == held[-1].adhesive and best.adhesive.branch == "withdrawal" and best.adhesive.stability > 0
+    assert (
+        (best.branch, best.energy) == (held[-1].branch, held[-1].energy)
+        and best.branch == "withdrawal"
+        and best.stability > 0
+    )
     assert best.status == "stagnated" and held[-1].status == "converged"
     assert np.array_equal(best.pressure, held[-1].pressure) and best.pressure.min() < 0
-    # The history stands where it was.
-    assert path.advance(force=-4e-3).normal.area == held[-1].area
+    # The contact stands where it was.
+    assert path.advance(force=-4e-3).area == held[-1].area
     # A pull without a step before it: the bodies hold each other at first.
-    assert adhesive_path().advance(force=-4e-3).normal.adhesive.branch == "withdrawal"
+    assert adhesive_path().advance(force=-4e-3).branch == "withdrawal"
     with pytest.raises(fc.NotConverged) as caught:
         adhesive_path().advance(force=-1.0)
     assert caught.value.best.force == pytest.approx(0.0, abs=1e-9)
@@ -219,17 +219,17 @@ def test_a_path_ends_at_pull_off_with_its_last_stable_state():
 
 def test_a_single_load_is_the_path_from_no_contact():
     scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": EXPONENTIAL})
-    contact, path = COARSE.prepare(scene), fc.Bem3dPath(COARSE).history(scene)
+    contact, path = COARSE.prepare(scene), COARSE.prepare(scene)
     for force in (1e-3, -3e-3):
         path.restart()
-        one, step = contact.solve(force=force), path.advance(force=force).normal
-        assert (one.approach, one.stiffness, one.adhesive) == (step.approach, step.stiffness, step.adhesive)
+        one, step = contact.solve(force=force), path.advance(force=force)
+        assert (one.approach, one.stiffness, one.energy) == (step.approach, step.stiffness, step.energy)
 
 
 def test_follow_is_one_step_for_each_number():
     body = fc.Body(young=2.0, poisson=0.3)
     scene = fc.Scene(SPHERE, bodies=(body, body), effects={"friction": 0.5})
-    path = fc.CattaneoMindlin().history(scene)
+    path = fc.CattaneoMindlin().prepare(scene)
     # A number alone is that of every step; any iterable will do.
     loop = list(path.follow(force=0.01, tangential_force=iter([0.002, -0.002, 0.002])))
     assert [state.tangential_force for state in loop] == [0.002, -0.002, 0.002]
@@ -258,36 +258,36 @@ def test_follow_is_one_step_for_each_number():
 def test_ctrl_c_in_a_path_keeps_what_was_done():
     # Waves on all scales: many outer iterations a step.
     surface = fc.Surface.self_affine(hurst=0.3, size=1.0, rms_height=0.01).height_map(513, seed=1)
-    path = fc.Bem3dPath().history(fc.Scene(surface, modulus=1.0, effects={"hardness": 0.1}))
+    path = fc.Bem3d().prepare(fc.Scene(surface, modulus=1.0, effects={"hardness": 0.1}))
     assert path.last is None
     loads, done = np.geomspace(1e-4, 1e-2, 4000), []
     threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         for state in path.follow(force=loads):
             done.append(state)
-    assert 0 < len(done) < len(loads) and all(state.normal.status == "converged" for state in done)
+    assert 0 < len(done) < len(loads) and all(state.status == "converged" for state in done)
     # A step that was complete before the signal was heard is not lost.
     last = path.last
     assert last is done[-1] or last.force == pytest.approx(loads[len(done)])
     unloaded = path.advance(force=0.0)
-    assert unloaded.normal.plastic.volume == pytest.approx(last.normal.plastic.volume, rel=1e-14)
+    assert unloaded.plastic_volume == pytest.approx(last.plastic_volume, rel=1e-14)
     assert path.last is unloaded
     path.restart()
     assert path.last is None
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-def test_ctrl_c_inside_of_a_step_leaves_the_history_as_it_was():
+def test_ctrl_c_inside_of_a_step_leaves_the_contact_as_it_was():
     surface = fc.Surface.self_affine(hurst=0.3, size=1.0, rms_height=0.01).height_map(1025, seed=1)
     scene = fc.Scene(surface, modulus=1.0, effects={"hardness": 0.1})
-    path = fc.Bem3dPath(fc.Bem3d(tolerance=1e-10)).history(scene)
+    path = fc.Bem3d(tolerance=1e-10).prepare(scene)
     loaded = path.advance(force=1e-4)
     threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         path.advance(force=0.05)
     assert path.last is loaded
-    unloaded = path.advance(force=0.0).normal
-    assert unloaded.plastic.volume == pytest.approx(loaded.normal.plastic.volume, rel=1e-14)
+    unloaded = path.advance(force=0.0)
+    assert unloaded.plastic_volume == pytest.approx(loaded.plastic_volume, rel=1e-14)
 
 
 # The same as by the scene runner
@@ -330,14 +330,14 @@ def test_a_plastic_path_has_the_bits_of_the_scene_runner(tmp_path):
     effects = fc.Effects(hardness=fc.si("1 GPa"))
     outputs = ["stiffness", "area", "plastic_depth"]
     scene = fc.Scene(surface, modulus=fc.si("115 GPa"), effects=effects, outputs=outputs)
-    path = fc.Bem3dPath(fc.Bem3d(cells=48, tolerance=1e-5)).history(scene, fc.surface_gen.surface_seed(3, 0))
+    path = fc.Bem3d(cells=48, tolerance=1e-5).prepare(scene, fc.surface_gen.surface_seed(3, 0))
     states = list(path.follow(force=forces))
     rows = fc.table(states)
     for name in ("force", "approach", "stiffness", "area", "plastic_area", "plastic_volume", "plastic_work"):
         assert np.array_equal(rows[name], outcome.results[name], equal_nan=True), name
     assert rows["plastic_volume"][3] > 1.1 * rows["plastic_volume"][2] > 0
     depth = np.load(tmp_path / "plastic_depth-bem3d-0-003.npy")
-    assert np.array_equal(depth, states[3].normal.plastic_depth)
+    assert np.array_equal(depth, states[3].plastic_depth)
 
 
 def test_an_adhesive_path_has_the_bits_of_the_scene_runner(tmp_path):
@@ -353,7 +353,7 @@ def test_an_adhesive_path_has_the_bits_of_the_scene_runner(tmp_path):
     law = {"work": fc.si("50 mJ/m^2"), "range": fc.si("0.5 um"), "law": "exponential"}
     sphere = fc.Surface.sphere(radius=fc.si("50 um"), size=fc.si("36 um"))
     scene = fc.Scene(sphere, modulus=fc.si("1 MPa"), effects={"adhesion": law}, outputs=["stiffness", "area"])
-    path = fc.Bem3dPath(fc.Bem3d(cells=48, tolerance=1e-5)).history(scene)
+    path = fc.Bem3d(cells=48, tolerance=1e-5).prepare(scene)
     rows = fc.table(path.follow(approach=[fc.si(f"{step} um") for step in approach]))
     for name in ("force", "approach", "stiffness", "area", "energy", "stability"):
         assert np.array_equal(rows[name], outcome.results[name], equal_nan=True), name
@@ -365,17 +365,17 @@ def test_an_adhesive_path_has_the_bits_of_the_scene_runner(tmp_path):
 
 def test_dictionaries_have_the_columns_of_scenes():
     plastic = ["plastic_area", "plastic_volume", "plastic_work"]
-    adhesive = ["branch", "energy", "stability"]
+    adhesive = ["branch", "energy", "stability", "equilibrium"]
     path = plastic_path(outputs=["pressure", "plastic_depth", "contact_patches"])
     hard, soft = path.advance(force=1e-3), adhesive_path().advance(force=1e-3)
     told = hard.to_dict()
-    assert [told[name] for name in plastic] == list(hard.normal.plastic.to_dict().values())
+    assert [told[name] for name in plastic] == [getattr(hard, name) for name in plastic]
     assert not told.keys() & {*adhesive, "pressure", "tangential_force"} and told["time"] == 0.0
     fields = hard.to_dict(fields=True)
-    assert fields["plastic_depth"] is hard.normal.plastic_depth and fields["pressure"].shape == (65, 65)
-    assert fields["patches"].ndim == 1 and fields["gap"] is None and fields.keys() > told.keys()
-    told = soft.normal.to_dict()
-    assert [told[name] for name in adhesive] == list(soft.normal.adhesive.to_dict().values())
+    assert fields["plastic_depth"] is hard.plastic_depth and fields["pressure"].shape == (65, 65)
+    assert fields["patches"].shape == (told["patches"],) and fields["gap"] is None and fields.keys() > told.keys()
+    told = soft.to_dict()
+    assert [told[name] for name in adhesive] == [getattr(soft, name) for name in adhesive]
     assert not told.keys() & set(plastic)
 
 
@@ -383,12 +383,12 @@ def test_tables_have_the_columns_that_states_have():
     elastic = fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-3)
     plain = fc.table([elastic])
     assert not {"plastic_area", "branch", "energy", "tangential_force"} & set(plain.dtype.names)
-    hard, soft = plastic_path().advance(force=1e-3).normal, adhesive_path().advance(force=1e-3).normal
+    hard, soft = plastic_path().advance(force=1e-3), adhesive_path().advance(force=1e-3)
     rows = fc.table([elastic, hard, soft])
     assert set(plain.dtype.names) | {"plastic_work", "energy", "stability"} < set(rows.dtype.names)
     assert rows["branch"].tolist() == ["", "", "approach"] and rows.dtype["branch"].kind == "U"
-    assert np.isnan(rows["plastic_work"][[0, 2]]).all() and rows["plastic_work"][1] == hard.plastic.dissipated
-    assert np.isnan(rows["energy"][:2]).all() and rows["energy"][2] == soft.adhesive.energy
+    assert np.isnan(rows["plastic_work"][[0, 2]]).all() and rows["plastic_work"][1] == hard.plastic_work
+    assert np.isnan(rows["energy"][:2]).all() and rows["energy"][2] == soft.energy
     assert rows["status"].tolist() == ["converged"] * 3
     # Columns come in one order, whatever the first state is.
     assert fc.table([hard, elastic]).dtype.names == fc.table([elastic, hard]).dtype.names
@@ -398,29 +398,23 @@ def test_tables_have_the_columns_that_states_have():
 # Inputs
 
 
-def test_a_path_model_is_made_of_a_model():
-    model = fc.Bem3d(cells=33, tolerance=1e-8)
-    path = fc.Bem3dPath(model)
-    assert path.model is model and path.name == "bem3d" and path.sources == model.sources
-    assert eval(repr(path), vars(fc)) == path == pickle.loads(pickle.dumps(path)) and hash(path) == hash(path)
-    assert fc.Bem3dPath() == fc.Bem3dPath(fc.Bem3d()) != path
-    with pytest.raises(TypeError, match=r"model is Hertz\(\): expected a Bem3d"):
-        fc.Bem3dPath(fc.Hertz())
-    with pytest.raises(TypeError):
-        fc.Bem3dPath(cells=33)
-    with pytest.raises(fc.Unsupported, match="without hardness or adhesion"):
-        path.history(fc.Scene(SPHERE, modulus=1.0))
-    with pytest.raises(fc.Unsupported, match="tangential"):
-        plastic_path().advance(force=1e-3, tangential_force=1e-4)
+def test_a_path_of_an_elastic_contact_is_its_loads():
+    contact, alone = (fc.Bem3d().prepare(fc.Scene(rough(33), modulus=1.0)) for _ in range(2))
+    states = list(contact.follow([1.0, 2.0], force=[1e-3, 5e-4]))
+    assert [state.approach for state in states] == [alone.solve(force=force).approach for force in (1e-3, 5e-4)]
+    assert [state.time for state in states] == [1.0, 2.0] and alone.last.time is None
+    for one in (contact, plastic_path()):
+        with pytest.raises(fc.Unsupported, match="tangential"):
+            one.advance(force=1e-3, tangential_force=1e-4)
 
 
 @pytest.mark.parametrize("number", [np.float64, np.float32, np.int64, int, np.array])
 def test_numbers_of_numpy_are_numbers(number):
     one = number(1)
     hard = fc.Scene(rough(17), modulus=1.0, effects={"hardness": one})
-    assert fc.Bem3d().prepare(hard).solve(force=0.01).plastic.area == 0.0
+    assert fc.Bem3d().prepare(hard).solve(force=0.01).plastic_area == 0.0
     sticky = fc.Scene(SPHERE, modulus=1e3, effects={"adhesion": {"work": one, "range": one}})
-    assert fc.Bem3d(cells=8).prepare(sticky).solve(force=one).adhesive.branch == "approach"
+    assert fc.Bem3d(cells=8).prepare(sticky).solve(force=one).branch == "approach"
     short = fc.Scene(SPHERE, modulus=1e3, effects={"adhesion": one})
     assert fc.Jkr().prepare(short).solve(force=one).force == 1.0
 
@@ -515,9 +509,10 @@ def test_models_refuse_effects_that_they_lack(model, surface, effects):
 @pytest.mark.parametrize("adhesion", [EXPONENTIAL, DUGDALE])
 def test_hardness_and_adhesion_together_are_refused(adhesion):
     scene = fc.Scene(SPHERE, modulus=1.0, effects={"hardness": 1.0, "adhesion": adhesion})
-    for plan in (COARSE.prepare, fc.Bem3dPath(COARSE).history):
-        with pytest.raises(fc.Unsupported, match="hardness and adhesion together"):
-            plan(scene)
+    with pytest.raises(fc.Unsupported, match="hardness and adhesion together") as caught:
+        COARSE.prepare(scene)
+    # No model has both.
+    assert caught.value.able == () and "models that may" not in str(caught.value)
 
 
 def test_a_number_alone_is_adhesion_of_short_range():
@@ -537,7 +532,7 @@ def test_closed_forms_of_adhesion():
     wave = fc.Surface.sine(amplitude=0.01, wavelength=1.0, size=1.0)
     effects = {"boundary": "periodic", "adhesion": 1e-4}
     state = fc.AdhesiveWave().prepare(fc.Scene(wave, modulus=1.0, effects=effects)).solve(mean_pressure=-1e-4)
-    assert state.force == pytest.approx(-1e-4) and state.adhesive is None
+    assert state.force == pytest.approx(-1e-4) and state.branch is None
     dry = fc.Westergaard().prepare(fc.Scene(wave, modulus=1.0, effects={"boundary": "periodic"}, outputs=["area"]))
     sticky = fc.AdhesiveWave().prepare(fc.Scene(wave, modulus=1.0, effects=effects, outputs=["area"]))
     assert sticky.solve(mean_pressure=1e-3).area > dry.solve(mean_pressure=1e-3).area
@@ -545,10 +540,9 @@ def test_closed_forms_of_adhesion():
 
 def test_a_range_that_cells_do_not_resolve_is_refused_with_the_cell_that_would():
     scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": {"work": WORK, "range": 1e-4}})
-    for plan in (COARSE.prepare, fc.Bem3dPath(COARSE).history):
-        with pytest.raises(fc.DomainError, match="at most") as caught:
-            plan(scene)
-        assert caught.value.quantity == "side of a cell" and caught.value.value == 1 / 64
+    with pytest.raises(fc.DomainError, match="at most") as caught:
+        COARSE.prepare(scene)
+    assert caught.value.quantity == "side of a cell" and caught.value.value == 1 / 64
 
 
 def test_a_plastic_depth_needs_a_hardness():
@@ -570,20 +564,20 @@ def test_a_ball_of_short_range_is_pulled_off_near_jkr():
     work, radius = 1e-4, (4.5 * np.pi * 1e-4) ** (1 / 3)
     ball = fc.Surface.sphere(radius=1.0, size=2.6 * radius)
     scene = fc.Scene(ball, modulus=1.0, effects={"adhesion": work}, outputs=["area", "stiffness_fixed_area"])
-    path = fc.Bem3dPath(fc.Bem3d(cells=42, tolerance=1e-6)).history(scene)
+    path = fc.Bem3d(cells=42, tolerance=1e-6).prepare(scene)
     unit = 1.5 * np.pi * work
     for force in (0.0, -0.5 * unit, -0.9 * unit):
-        state = path.advance(force=force).normal
+        state = path.advance(force=force)
         exact = fc.Jkr().prepare(scene).solve(force=force)
         assert abs(state.area / exact.area - 1.0) < 0.05
         assert abs(state.stiffness_fixed_area / exact.stiffness_fixed_area - 1.0) < 0.05
-        assert state.adhesive.stability > 0.0
+        assert state.stability > 0.0
     with pytest.raises(fc.NotConverged) as caught:
         path.advance(force=-1.1 * unit)
     assert caught.value.best.force == state.force
 
 
-FOLLOWS = r"virgin surface.*Bem3dPath\(\.\.\.\)\.history\(scene\) follows it"
+FOLLOWS = r"virgin surface.*advance\(\) and follow\(\) keep it"
 
 
 def yielding(**scene):
@@ -606,7 +600,7 @@ def test_a_smaller_load_would_forget_the_indentation(kind, first, second, bounda
         contact.solve(**{kind: second})
     assert caught.value.quantity == kind and caught.value.value == second and f"{first}" in caught.value.expected
     # Nothing has changed: the same load again, and larger ones.
-    assert contact.solve(**{kind: first}).plastic.volume == pytest.approx(before.plastic.volume, rel=1e-3)
+    assert contact.solve(**{kind: first}).plastic_volume == pytest.approx(before.plastic_volume, rel=1e-3)
     for states in (
         lambda: contact.sweep(**{kind: [second]}),
         lambda: fc.sweep(contact, **{kind: [first, second]}),
@@ -615,7 +609,7 @@ def test_a_smaller_load_would_forget_the_indentation(kind, first, second, bounda
         with pytest.raises(fc.DomainError, match=FOLLOWS):
             states()
     contact.restart()
-    assert contact.solve(**{kind: second}).plastic.volume < before.plastic.volume
+    assert contact.solve(**{kind: second}).plastic_volume < before.plastic_volume
 
 
 def test_a_smaller_load_of_another_kind():
@@ -626,6 +620,36 @@ def test_a_smaller_load_of_another_kind():
     # The load that was reached is no smaller one, whatever its last digits.
     again = contact.solve(approach=reached.approach)
     assert contact.solve(force=0.01).approach == pytest.approx(again.approach, rel=1e-3)
+
+
+def test_a_solve_does_not_forget_a_path_with_an_indentation():
+    contact = yielding()
+    loaded, unloaded = contact.follow([1.0, 2.0], force=[0.01, 1e-3])
+    assert contact.last is unloaded
+    with pytest.raises(fc.DomainError, match=FOLLOWS) as caught:
+        contact.solve(force=5e-3)
+    assert "0.01" in caught.value.expected and contact.last is unloaded
+    # A larger load begins with the virgin surface, and the next path goes on from there, at time 0.
+    solved = contact.solve(force=0.015)
+    assert solved.force == pytest.approx(0.015) and contact.last is solved and solved.time is None
+    back = contact.advance(0.5, force=0.01)
+    assert back.time == 0.5 and back.plastic_volume == pytest.approx(solved.plastic_volume, rel=1e-3)
+    assert back.plastic_volume > 1.1 * loaded.plastic_volume
+    contact.restart()
+    assert contact.last is None and contact.solve(force=5e-3).plastic_volume < loaded.plastic_volume
+
+
+def test_a_path_goes_on_from_a_load_that_was_solved():
+    contact, path = yielding(), yielding()
+    solved = contact.solve(force=0.01)
+    half = contact.advance(force=5e-3)
+    loaded, expected = path.follow(force=[0.01, 5e-3])
+    assert solved.plastic_volume == pytest.approx(loaded.plastic_volume, rel=1e-3)
+    assert (half.approach, half.plastic_volume) == (expected.approach, expected.plastic_volume)
+    # With adhesion, too: the bodies are drawn apart.
+    sticky = adhesive_path()
+    sticky.solve(approach=0.02)
+    assert sticky.advance(approach=0.0).branch == "withdrawal"
 
 
 def test_a_load_that_is_no_number_is_not_remembered():

@@ -38,15 +38,14 @@ def limited(code):
         ("fc.Bem3d(cells=20000).prepare(fc.Scene(rough, 1.0))", "a contact of 20000 columns x 20000 rows: needs"),
         ("fc.Bem3d(cells=20000).prepare(fc.Scene(sphere, 1.0)).solve(force=0.01)", "a contact of 20000 columns x"),
         (
-            "fc.Bem3dPath(fc.Bem3d(cells=20000)).history(fc.Scene(sphere, 1.0, effects={'hardness': 0.1}))",
+            "fc.Bem3d(cells=20000).prepare(fc.Scene(sphere, 1.0, effects={'hardness': 0.1}))",
             "a contact of 20000 columns x",
         ),
-        ("fc.Equivalent(fc.Bem3d(cells=20000)).history(fc.Scene(sphere, **rubbing))", "a contact of 20000 columns x"),
+        ("fc.Equivalent(fc.Bem3d(cells=20000)).prepare(fc.Scene(sphere, **rubbing))", "a contact of 20000 columns x"),
         # There is memory for the contact, and for a light load, but not for a contact that fills the grid.
         ("fc.Bem3d(cells=8001).prepare(fc.Scene(sphere, 1.0)).solve(force=5.0)", "a solve on 8001 columns x 8001 rows"),
         (
-            "fc.Bem3dPath(fc.Bem3d(cells=8001)).history(fc.Scene(sphere, 1.0, effects={'hardness': 9.0}))"
-            ".advance(force=5.0)",
+            "fc.Bem3d(cells=8001).prepare(fc.Scene(sphere, 1.0, effects={'hardness': 9.0})).advance(force=5.0)",
             "a solve on 8001 columns x 8001 rows",
         ),
         ("fc.Mdr1d(elements=10**9).prepare(fc.Scene(rough, 1.0, outputs=[]))", "a line of 1000000000 elements: needs"),

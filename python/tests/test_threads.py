@@ -1,4 +1,4 @@
-"""One contact or history in several threads, and Ctrl-C at awkward moments: each in a process that may not hang."""
+"""One contact in several threads, and Ctrl-C at awkward moments: each in a process that may not hang."""
 
 import os
 import signal
@@ -67,14 +67,14 @@ for cells, solves in ((17, 1700), (257, 300)):
 """)
 
 
-def test_steps_of_one_history():
+def test_steps_of_one_path():
     run("""
 for cells, steps in ((17, 600), (257, 400)):
     scene = fc.Scene(rough(cells), modulus=1.0, effects={"hardness": 0.1}, outputs=["area"])
-    path = fc.Bem3dPath(fc.Bem3d(tolerance=1e-8)).history(scene)
+    path = fc.Bem3d(tolerance=1e-8).prepare(scene)
     # Below the first load all is elastic, so that the order of the steps does not matter.
     first = path.advance(force=0.02)
-    assert first.normal.plastic.volume > 0.0
+    assert first.plastic_volume > 0.0
     forces = [0.005, 0.01, 0.015, 0.02]
     expected = [path.advance(force=force) for force in forces]
 
@@ -85,7 +85,7 @@ for cells, steps in ((17, 600), (257, 400)):
             assert abs(state.approach - expected[which].approach) < 1e-4 * 0.01, (state, expected[which])
 
     in_threads(4, work)
-    assert abs(path.last.normal.plastic.volume / first.normal.plastic.volume - 1.0) < 1e-4
+    assert abs(path.last.plastic_volume / first.plastic_volume - 1.0) < 1e-4
 """)
 
 

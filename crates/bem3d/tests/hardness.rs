@@ -309,3 +309,22 @@ fn a_state_that_jams_the_outer_iteration_is_solved() {
         assert!(depth.iter().any(|&depth| depth > 0.0));
     }
 }
+
+/// A path that begins after a single load goes on from it, as one that reached it in a step does.
+#[test]
+fn a_path_goes_on_from_a_load_that_was_solved() {
+    let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
+    scene.effects.hardness = Hardness::Limit { pressure: 0.1 };
+    let model = Bem3d { cells: 32, ..TIGHT };
+    let (mut single, mut path) = (model.prepare(&scene, 0).unwrap(), model.prepare(&scene, 0).unwrap());
+    let solved = single.solve(Load::Force(0.02)).unwrap();
+    path.advance(Step::normal(0.0, Load::Force(0.02))).unwrap();
+    let unload = Step::normal(1.0, Load::Force(0.005));
+    let (after, expected) = (single.advance(unload).unwrap(), path.advance(unload).unwrap());
+    assert_eq!(after, expected);
+    assert!(solved.time.is_none() && after.plastic.unwrap().volume > 0.0);
+    // Without the load before there is less.
+    single.restart();
+    let alone = single.advance(unload).unwrap();
+    assert!(alone.plastic.unwrap().volume < after.plastic.unwrap().volume);
+}

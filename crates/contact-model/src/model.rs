@@ -94,7 +94,7 @@ pub trait PreparedContact: Send {
     ///
     /// The result does not depend on the loads solved before beyond the stated tolerance; increasing loads are the fastest order. That
     /// holds with effects that remember too: each load is reached from the virgin surface in one step, and a path that was followed is
-    /// forgotten. [`PreparedContact::advance_until`] goes on from where the contact is.
+    /// forgotten. The next step ([`PreparedContact::advance_until`]) goes on from the load that was solved.
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the model does not hold,

@@ -136,7 +136,9 @@ impl PreparedContact for PreparedPartialSlip {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         self.restart();
-        self.advance_until(Step::normal(0.0, load), stop)
+        let mut state = self.advance_until(Step::normal(0.0, load), stop)?;
+        state.time = None;
+        Ok(state)
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {

@@ -15,20 +15,16 @@ Arrays are ``[row, column]``: columns along x, rows along y. Lengths, forces and
 fit together; files have metres and pascals. The same words mean the same as in Rust and in scene files.
 """
 
-from . import statistics, surface_gen
+from . import _formulas, statistics, surface_gen
 from ._core import (
     VERSION as __version__,
 )
 from ._core import (
-    AdhesiveState,
     Certificate,
     Contact,
     ContactState,
     HeightMap,
-    History,
-    HistoryState,
     Normalisation,
-    PlasticState,
     SceneFile,
     set_threads,
     threads,
@@ -46,40 +42,27 @@ from ._errors import (
     Unsupported,
 )
 from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, si, write_surface
+from ._formulas import *  # noqa: F403
 from ._inputs import Body, Effects, Scene, Surface
 from ._models import (
-    AdhesiveWave,
     Bem3d,
-    Bem3dPath,
-    CattaneoMindlin,
     Equivalent,
-    FlatPunch,
+    Formula,
     GreenwoodWilliamson,
-    Hertz,
-    HistoryModel,
-    Jkr,
-    MaugisDugdale,
     Mdr1d,
     Model,
-    PartialSlip,
     Persson,
-    PowerLaw,
-    PowerLawBody,
-    Viscoelastic,
-    Westergaard,
     ensemble,
     follow,
+    models,
+    quantities,
     sweep,
     table,
 )
 
 __all__ = [
-    "AdhesiveState",
-    "AdhesiveWave",
     "Bem3d",
-    "Bem3dPath",
     "Body",
-    "CattaneoMindlin",
     "Certificate",
     "Contact",
     "ContactState",
@@ -87,26 +70,16 @@ __all__ = [
     "Effects",
     "Equivalent",
     "Error",
-    "FlatPunch",
+    "Formula",
     "GreenwoodWilliamson",
     "HeightMap",
-    "Hertz",
-    "History",
-    "HistoryModel",
-    "HistoryState",
-    "Jkr",
-    "MaugisDugdale",
     "Mdr1d",
     "Model",
     "Normalisation",
     "NotConverged",
     "OutOfMemory",
     "OutOfRange",
-    "PartialSlip",
     "Persson",
-    "PlasticState",
-    "PowerLaw",
-    "PowerLawBody",
     "ReadError",
     "ReadSurface",
     "Scene",
@@ -117,12 +90,12 @@ __all__ = [
     "Stopped",
     "Surface",
     "Unsupported",
-    "Viscoelastic",
-    "Westergaard",
     "__version__",
     "channels",
     "ensemble",
     "follow",
+    "models",
+    "quantities",
     "read_surface",
     "run_scene",
     "set_threads",
@@ -134,3 +107,4 @@ __all__ = [
     "threads",
     "write_surface",
 ]
+__all__ += _formulas.__all__

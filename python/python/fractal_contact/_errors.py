@@ -47,10 +47,14 @@ class Unsupported(Error):
         Name of the model.
     what : str
         What it was asked for.
+    able : tuple of str
+        Names of the models that have all that the scene asks for, where a scene was refused; they may still refuse
+        what depends on several things together, or on numbers.
     """
 
     model: str
     what: str
+    able: tuple[str, ...] = ()
 
 
 class OutOfRange(Error, ValueError):
@@ -95,7 +99,7 @@ class NotConverged(Error):
     ----------
     best : ContactState
         The best state reached, with its certificate: evidence, not an answer. Beyond pull-off the last stable state of
-        the path, whose ``adhesive.branch`` says on which branch it lies.
+        the path, whose ``branch`` says on which branch it lies.
     """
 
     best: ContactState

@@ -169,8 +169,8 @@ class Effects:
     boundary : {"free", "periodic"}
         What lies outside of the rectangle.
     hardness : float, optional
-        Largest pressure that the bodies carry (force/length^2), perfect plasticity. A `Contact` solves each load from
-        the virgin surface and refuses decreasing loads; ``Bem3dPath(...).history(scene)`` follows the indentation.
+        Largest pressure that the bodies carry (force/length^2), perfect plasticity. `Contact.solve` begins with the
+        virgin surface and refuses decreasing loads; `Contact.advance` and `Contact.follow` keep the indentation.
     adhesion : float or mapping, optional
         Work of adhesion (energy/length^2), of short range (JKR); or of a finite range (length), across open gaps,
         ``{"work": ..., "range": ..., "law": "exponential" or "dugdale"}``, by the exponential law if none is named.
@@ -234,9 +234,9 @@ class Scene:
     effects : Effects or mapping
         Off unless named.
     outputs : iterable of str
-        What is computed besides force and approach: "stiffness" (along the branch of states),
-        "stiffness_fixed_area" (of the whole contact area, held), "area", "mean_gap" (with periodic boundaries),
-        "pressure", "displacement", "gap", "plastic_depth" (with a hardness), "contact_patches".
+        What is computed besides force and approach, such as "stiffness", "area" and "pressure": names of
+        ``Bem3d().supports["outputs"]``, and of those of the model. "mean_gap" is for periodic boundaries,
+        "plastic_depth" for a hardness.
     conductance : (str, float, float), optional
         ("electrical", resistivity, resistivity) or ("thermal", conductivity, conductivity).
 

@@ -9,15 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._core import Contact, ContactState, History, HistoryState
+from ._core import Contact, ContactState
 from ._errors import Error
 from ._inputs import Scene
 
 LOADS = ("force", "approach", "mean_pressure", "mean_gap")
 
 
-class _Options:
-    """A model with its numerics: options by name."""
+class Model:
+    """A way to answer what force, approach and stiffness belong together: plan once, solve often.
+
+    Each model of the library is a class; `models` lists them.
+    """
 
     _name: ClassVar[str]
 
@@ -39,23 +42,20 @@ class _Options:
         """What it is built on: (citation, what is taken from it)."""
         return self._core().sources
 
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{k}={v!r}' for k, v in self._options.items())})"
+    @property
+    def supports(self) -> dict[str, tuple[str, ...]]:
+        """What it can do: words for ``surfaces``, ``boundaries``, ``effects``, ``loads``, ``paths``, ``outputs``.
 
-    def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and self.__dict__ == other.__dict__
+        A scene that asks for more is `Unsupported`. What depends on several of them together, or on numbers, a model
+        may refuse as well.
 
-    def __hash__(self) -> int:
-        return hash(repr(self))
-
-
-class _NoOptions(_Options):
-    def __init__(self) -> None:
-        super().__init__()
-
-
-class Model(_Options):
-    """A way to answer what force, approach and stiffness belong together: plan once, solve often."""
+        Examples
+        --------
+        >>> import fractal_contact as fc
+        >>> fc.Jkr().supports["effects"]
+        ('adhesion of short range',)
+        """
+        return self._core().supports
 
     def prepare(self, scene: Scene, seed: int = 0) -> Contact:
         """Checks the scene against what this model can do, and plans.
@@ -67,21 +67,44 @@ class Model(_Options):
         seed : int
             Draws the surface, where it is random.
 
-        With a hardness each load is solved from the virgin surface; loads that become smaller are refused, and
-        ``Bem3dPath(...).history(scene)`` follows the indentation.
+        Returns
+        -------
+        Contact
+            ``solve`` and ``sweep`` answer loads from no contact, ``advance`` and ``follow`` go along a path.
 
         Raises
         ------
         Unsupported
-            For a surface, effect or output that the model lacks.
+            For a surface, effect or output that the model lacks; it names the models that may have it.
         OutOfMemory
             For a grid that does not fit in memory, before anything is drawn or planned.
         """
         return self._core().prepare(scene._core(), seed)
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{k}={v!r}' for k, v in self._options.items())})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash(repr(self))
+
+
+class Formula(Model):
+    """A model without options: a closed form, a theory, a reduction. Each has a class of its own."""
+
+    def __init__(self) -> None:
+        super().__init__()
+
 
 class Bem3d(Model):
     """Exact contact in three dimensions by boundary elements, free or periodic.
+
+    With a hardness or adhesion a state depends on the loads before it: `Contact.advance` and `Contact.follow` remember
+    them. The indentation of a hardness stays from step to step; adhesion has a branch of approach and one of
+    withdrawal, and forces may be negative. A force below that of pull-off is `NotConverged` with the last stable state
+    as ``best``.
 
     Parameters
     ----------
@@ -105,6 +128,11 @@ class Bem3d(Model):
     >>> state = fc.Bem3d(tolerance=1e-8).prepare(scene).solve(force=0.01)
     >>> state.pressure.shape, state.certificate.meets(1e-8)
     ((64, 64), True)
+    >>> sphere = fc.Surface.sphere(radius=1.0, size=1.0)
+    >>> contact = fc.Bem3d(cells=32).prepare(fc.Scene(sphere, modulus=1.0, effects={"hardness": 0.1}))
+    >>> loaded, unloaded = contact.follow(force=[0.02, 0.0])
+    >>> loaded.plastic_area > 0.0, unloaded.plastic_area, unloaded.plastic_volume == loaded.plastic_volume
+    (True, 0.0, True)
     """
 
     _name = "bem3d"
@@ -142,72 +170,6 @@ class Mdr1d(Model):
         super().__init__(elements=elements)
 
 
-class Hertz(_NoOptions, Model):
-    """Hertz's contact of a sphere."""
-
-    _name = "hertz"
-
-
-class FlatPunch(_NoOptions, Model):
-    """Flat circular punch, or flat rectangle as far as it has closed forms."""
-
-    _name = "flat_punch"
-
-
-class PowerLawBody(_NoOptions, Model):
-    """Bodies of revolution r^n (Sneddon, Galin)."""
-
-    _name = "power_law_body"
-
-
-class PowerLaw(_NoOptions, Model):
-    """The power law of the paper for self-affine surfaces."""
-
-    _name = "power_law"
-
-
-class Jkr(_NoOptions, Model):
-    """Short-range adhesion of a sphere (Johnson, Kendall, Roberts): ``effects={"adhesion": work}``."""
-
-    _name = "jkr"
-
-
-class MaugisDugdale(_NoOptions, Model):
-    """A sphere with Dugdale's law of adhesion, between JKR and DMT, in closed form (Maugis).
-
-    Loads may be negative down to the pull-off force, 1.5 to 2 times pi * work * radius.
-
-    Examples
-    --------
-    >>> import fractal_contact as fc
-    >>> adhesion = {"work": 1e-3, "range": 0.01, "law": "dugdale"}
-    >>> scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=4.0), modulus=1.0, effects={"adhesion": adhesion})
-    >>> contact = fc.MaugisDugdale().prepare(scene)
-    >>> contact.solve(force=-0.00498).force
-    -0.00498
-    >>> contact.solve(force=-0.00499)  # doctest: +IGNORE_EXCEPTION_DETAIL
-    Traceback (most recent call last):
-    OutOfRange: force = -0.00499 is outside [-0.00498063, inf], the range in which the model holds
-    """
-
-    _name = "maugis_dugdale"
-
-
-class AdhesiveWave(_NoOptions, Model):
-    """Short-range adhesion of a periodic wave in closed form (Johnson).
-
-    For ``effects={"boundary": "periodic", "adhesion": work}``; the mean pressure may be negative.
-    """
-
-    _name = "adhesive_wave"
-
-
-class Westergaard(_NoOptions, Model):
-    """Periodic contact of a wave."""
-
-    _name = "westergaard"
-
-
 class Persson(Model):
     """Persson's theory of rough contact.
 
@@ -238,15 +200,7 @@ class GreenwoodWilliamson(Model):
         super().__init__(heights=heights)
 
 
-class HistoryModel(_Options):
-    """A way to answer what happens along a path of loads: friction, rheology, hardness, adhesion."""
-
-    def history(self, scene: Scene, seed: int = 0) -> History:
-        """Checks the scene and plans: no contact at time 0."""
-        return self._core().history(scene._core(), seed)
-
-
-class Equivalent(HistoryModel):
+class Equivalent(Model):
     """Friction or rheology of any surface, on the stiffness over approach of another model.
 
     Parameters
@@ -271,68 +225,6 @@ class Equivalent(HistoryModel):
         return f"Equivalent({self.model!r}{options})"
 
 
-class Bem3dPath(HistoryModel):
-    """Boundary elements along a path of loads, for effects that remember it: hardness and adhesion.
-
-    The indentation of a hardness stays from step to step; adhesion has a branch of approach and one of withdrawal, and
-    forces may be negative. A force below that of pull-off is `NotConverged` with the last stable state as ``best``.
-
-    Parameters
-    ----------
-    model : Bem3d, optional
-        The model that solves each step; ``Bem3d()`` by default.
-
-    Examples
-    --------
-    >>> import fractal_contact as fc
-    >>> sphere = fc.Surface.sphere(radius=1.0, size=1.0)
-    >>> scene = fc.Scene(sphere, modulus=1.0, effects={"hardness": 0.1})
-    >>> path = fc.Bem3dPath(fc.Bem3d(cells=32)).history(scene)
-    >>> loaded, unloaded = (state.normal.plastic for state in path.follow(force=[0.02, 0.0]))
-    >>> loaded.area > 0.0, unloaded.area, unloaded.volume == loaded.volume
-    (True, 0.0, True)
-    """
-
-    _name = "bem3d_path"
-
-    def __init__(self, model: Bem3d | None = None) -> None:
-        if model is None:
-            model = Bem3d()
-        if not isinstance(model, Bem3d):
-            raise TypeError(f"model is {model!r}: expected a Bem3d")
-        self.model = model
-        super().__init__()
-
-    def _core(self) -> _core.Model:
-        return _core.model(self._name, self.model._options)
-
-    @property
-    def name(self) -> str:
-        """Name of the model, the same in scenes and tables."""
-        return self.model.name
-
-    def __repr__(self) -> str:
-        return f"Bem3dPath({self.model!r})"
-
-
-class CattaneoMindlin(_NoOptions, HistoryModel):
-    """Partial slip of a sphere in closed form."""
-
-    _name = "cattaneo_mindlin"
-
-
-class PartialSlip(_NoOptions, HistoryModel):
-    """Partial slip of round bodies by reduction to one dimension."""
-
-    _name = "partial_slip"
-
-
-class Viscoelastic(_NoOptions, HistoryModel):
-    """Viscoelastic contact of round bodies by reduction to one dimension."""
-
-    _name = "viscoelastic"
-
-
 def _one_of(given: Mapping[str, Iterable[float] | None]) -> tuple[str, list[float]]:
     named = [(name, values) for name, values in given.items() if values is not None]
     if len(named) != 1:
@@ -355,7 +247,7 @@ def sweep(
     ----------
     contact : Contact
         A planned contact. Increasing loads are the fastest order, and the only one with a hardness: each load is solved
-        from the virgin surface, and a smaller one after a larger one is a `DomainError`.
+        from the virgin surface, and a smaller one after a larger one is a `DomainError`. `follow` goes along a path.
     force, approach, mean_pressure, mean_gap : iterable of float
         Exactly one of them.
 
@@ -378,7 +270,7 @@ def sweep(
 
 
 def follow(
-    history: History,
+    contact: Contact,
     time: float | Iterable[float] | None = None,
     *,
     force: float | Iterable[float] | None = None,
@@ -387,23 +279,23 @@ def follow(
     mean_gap: float | Iterable[float] | None = None,
     tangential_force: float | Iterable[float] | None = None,
     tangential_displacement: float | Iterable[float] | None = None,
-) -> Iterator[HistoryState]:
+) -> Iterator[ContactState]:
     """Goes along a path; the state at the end of each step as soon as it is there.
 
     Parameters
     ----------
-    history : History
-        A planned contact that remembers its path; it goes on from where it is.
+    contact : Contact
+        A planned contact; it goes on from where it is.
     time : float or iterable of float
         At the end of each step, 0 by default.
     force, approach, mean_pressure, mean_gap : float or iterable of float
-        Exactly one of them, as in `History.advance`.
+        Exactly one of them, as in `Contact.advance`.
     tangential_force, tangential_displacement : float or iterable of float, optional
         At most one of them. Iterables have one number for each step; a number alone is that of every step.
 
     Yields
     ------
-    HistoryState
+    ContactState
 
     Examples
     --------
@@ -411,7 +303,7 @@ def follow(
     >>> solid = {"kind": "standard_solid", "weight": 1.0, "time": 1.0}
     >>> sphere = fc.Surface.sphere(radius=1.0, size=2.0)
     >>> scene = fc.Scene(sphere, modulus=1.0, effects={"rheology": solid}, outputs=[])
-    >>> creep = fc.Viscoelastic().history(scene)
+    >>> creep = fc.Viscoelastic().prepare(scene)
     >>> [round(state.approach, 4) for state in fc.follow(creep, time=[0.0, 1.0, 10.0], force=0.01)]
     [0.0241, 0.0301, 0.0382]
     """
@@ -435,7 +327,7 @@ def follow(
     columns = np.broadcast_arrays(*(np.atleast_1d(array) for array in arrays.values()))
     steps = np.stack(columns, axis=-1).tolist()
     # Checked at the call, not at the first state.
-    return (history.advance(**dict(zip(arrays, step, strict=True))) for step in steps)
+    return (contact.advance(**dict(zip(arrays, step, strict=True))) for step in steps)
 
 
 def ensemble(
@@ -492,16 +384,53 @@ def ensemble(
     return _core.ensemble(model._core(), scene._core(), loads, seed, surfaces, progress)
 
 
-def table(states: Iterable[ContactState | HistoryState]) -> NDArray[np.void]:
+def quantities() -> list[dict[str, str]]:
+    """The table of all that is reported of a state: properties of `ContactState`, columns of `table` and of scenes.
+
+    Returns
+    -------
+    list of dict
+        In the order of columns: ``name``, ``words``, ``symbol`` (TeX), ``unit`` (SI; ``1`` for a pure number, ``-`` for
+        text), ``meaning``, ``source``, ``asked_by``, ``role`` (``answer``, ``normalised``, ``residual``, ``work``) and
+        ``type``.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> [quantity["unit"] for quantity in fc.quantities() if quantity["name"] == "stiffness"]
+    ['N/m']
+    """
+    return _core.quantities()
+
+
+def models() -> list[dict[str, Any]]:
+    """The models of the library.
+
+    Returns
+    -------
+    list of dict
+        ``name`` (in scenes and tables), ``title``, ``class`` (in this package), ``about``, ``accuracy`` and
+        ``has_options``.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> [model["class"] for model in fc.models() if model["name"] == "bem3d"]
+    ['Bem3d']
+    """
+    return _core.models()
+
+
+def table(states: Iterable[ContactState]) -> NDArray[np.void]:
     """States as a structured array, a row each: what pandas and xarray read.
 
-    Columns are the names of ``to_dict()``, which are those of the tables of scenes. Columns of an effect
-    (``plastic_area``, ``plastic_volume``, ``plastic_work`` of a hardness; ``branch``, ``energy``, ``stability`` of
-    adhesion; those of friction) are there where a state has them. Numbers that a state has not are NaN, texts empty.
+    Columns are the names of ``to_dict()`` in the order of `quantities`, which are those of the tables of scenes.
+    Columns of an effect or of a path (such as ``plastic_area``, ``branch``, ``tangential_force``, ``time``) are there
+    where a state has them. Numbers that a state has not are NaN, texts empty.
 
     Parameters
     ----------
-    states : iterable of ContactState or HistoryState
+    states : iterable of ContactState
         A sweep, the states of a path.
 
     Returns
@@ -518,10 +447,13 @@ def table(states: Iterable[ContactState | HistoryState]) -> NDArray[np.void]:
     [0.5, 1.0]
     """
     rows = [state.to_dict() for state in states]
-    texts = {name for row in rows for name, value in row.items() if isinstance(value, str)}
-    # Of the state with the most columns the order; what only others have comes last.
-    names = list(dict.fromkeys(name for row in sorted(rows, key=len, reverse=True) for name in row)) or ["force"]
-    kinds = [(name, "U24" if name in texts else "f8") for name in names]
+    known = {name for row in rows for name in row} or {"force"}
+    names = [quantity["name"] for quantity in quantities() if quantity["name"] in known]
+    longest = {
+        name: max(len(v) if isinstance(v := row.get(name), str) else 0 for row in rows) for name in known if rows
+    }
+    texts = {name for name, length in longest.items() if length}
+    kinds = [(name, f"U{longest[name]}" if name in texts else "f8") for name in names]
 
     def value(row: Mapping[str, Any], name: str) -> Any:
         found = row.get(name)

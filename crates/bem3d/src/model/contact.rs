@@ -20,11 +20,13 @@ use std::borrow::Cow;
 /// One surface under loads.
 ///
 /// Single loads begin with the virgin surface, paths go on from their last state. One surface serves both: a
-/// single load ends a path, and a path begins anew after single loads.
+/// single load ends a path, and a path that begins after single loads reaches the last of them first.
 #[derive(Debug)]
 pub struct PreparedBem3d {
     contact: Contact,
     loads: Loads,
+    /// The single load that was solved last, from which a path goes on.
+    solved: Option<Prescribed>,
     /// Time of the last step of a path.
     time: f64,
 }
@@ -50,7 +52,7 @@ impl PreparedBem3d {
             Some(attraction) => Contact::WithAdhesion(Box::new(AdhesiveContact::new(surface, attraction))),
             None => Contact::WithoutAdhesion(Box::new(surface)),
         };
-        Ok(Self { contact, loads: Loads::Single, time: 0.0 })
+        Ok(Self { contact, loads: Loads::Single, solved: None, time: 0.0 })
     }
 
     fn surface(&self) -> &PreparedSurface {
@@ -74,8 +76,18 @@ impl PreparedBem3d {
     /// The state of a load among others.
     fn at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
         if self.loads != loads {
+            let solved = self.solved.take();
             self.begin(loads);
+            if let (Loads::Path, Some(solved)) = (loads, solved) {
+                self.state_at(solved, loads, stop)?;
+            }
         }
+        let state = self.state_at(load, loads, stop)?;
+        self.solved = (loads == Loads::Single).then_some(load);
+        Ok(state)
+    }
+
+    fn state_at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => surface.at(load, stop),
             Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
@@ -84,7 +96,7 @@ impl PreparedBem3d {
 
     /// Takes the virgin surface again.
     fn begin(&mut self, loads: Loads) {
-        (self.loads, self.time) = (loads, 0.0);
+        (self.loads, self.time, self.solved) = (loads, 0.0, None);
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => surface.begin(loads == Loads::Path),
             Contact::WithAdhesion(contact) => contact.forget(),

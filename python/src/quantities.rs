@@ -1,0 +1,102 @@
+//! The table of quantities as properties of a class, as values of a state, and as a list.
+
+use crate::state::ContactState;
+use fractal_contact::quantities::{AskedBy, QUANTITIES, Quantity, Role, Unit};
+use fractal_contact::{ContactState as RustState, Normalisation, Patches, SolveReport, Value};
+use pyo3::prelude::*;
+use pyo3::types::{PyCFunction, PyDict, PyString};
+
+/// A value as one of Python.
+pub fn object(py: Python<'_>, value: Value) -> PyResult<Bound<'_, PyAny>> {
+    Ok(match value {
+        Value::Text(text) => PyString::new(py, &text).into_any(),
+        Value::Number(number) => number.into_pyobject(py)?.into_any(),
+        Value::Count(count) => count.into_pyobject(py)?.into_any(),
+        Value::Flag(flag) => flag.into_pyobject(py)?.to_owned().into_any(),
+        Value::Empty => py.None().into_bound(py),
+    })
+}
+
+/// Whether a state that lacks it does not name it: the quantities of effects and of paths.
+pub fn is_named_where_known(quantity: &Quantity) -> bool {
+    matches!(quantity.asked_by, AskedBy::Effect(_) | AskedBy::Path)
+}
+
+/// Its type in Python, and whether a state may lack it.
+fn kind(quantity: &Quantity) -> (&'static str, bool) {
+    let normalisation = Normalisation { modulus: 1.0, length: 1.0, height: None };
+    let value = |state: &RustState| (quantity.value)(state, &normalisation);
+    let bare = RustState::new(1.0, SolveReport::exact(""));
+    let mut counted = bare.clone().with_patches(Patches::default());
+    counted.report.contact_cells = Some(1);
+    let kind = match value(&counted) {
+        Value::Text(_) => "str",
+        Value::Count(_) => "int",
+        Value::Flag(_) => "bool",
+        Value::Empty if quantity.unit == Unit::Word => "str",
+        Value::Number(_) | Value::Empty => "float",
+    };
+    (kind, value(&bare) == Value::Empty)
+}
+
+/// What a property says of itself.
+fn sentence(quantity: &Quantity) -> String {
+    let (kind, optional) = kind(quantity);
+    let Quantity { words, meaning, unit, .. } = *quantity;
+    let of = if meaning.contains(words) { String::new() } else { format!("{words}, ") };
+    let unit = match unit {
+        Unit::Word | Unit::One => String::new(),
+        unit => format!(" [{}]", unit.words()),
+    };
+    format!("{kind}{}: {of}{meaning}{unit}.", if optional { " or None" } else { "" })
+}
+
+/// Gives the class of states a documented property for each quantity that it does not have as something else.
+pub fn make_properties(py: Python<'_>) -> PyResult<()> {
+    let class = py.get_type::<ContactState>();
+    let property = py.import("builtins")?.getattr("property")?;
+    for quantity in QUANTITIES {
+        if class.hasattr(quantity.name)? {
+            continue;
+        }
+        let get = PyCFunction::new_closure(py, None, None, move |args, _| -> PyResult<Py<PyAny>> {
+            let state = args.get_item(0)?.cast_into::<ContactState>()?;
+            Ok(object(args.py(), state.get().value(quantity))?.unbind())
+        })?;
+        class.setattr(quantity.name, property.call1((get, py.None(), py.None(), sentence(quantity)))?)?;
+    }
+    Ok(())
+}
+
+/// The quantities that are reported of a state, in the order of the columns of tables.
+///
+/// Returns
+/// -------
+/// list of dict of str
+///     ``name``, ``words``, ``symbol`` (TeX), ``unit`` (SI; ``1`` for a pure number, ``-`` for text), ``meaning``, ``source``,
+///     ``asked_by`` (what brings it into a table), ``role`` (``answer``, ``normalised``, ``residual`` or ``work``) and ``type`` in
+///     Python.
+#[pyfunction]
+pub fn quantities(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |quantity: &Quantity| {
+        let (kind, optional) = kind(quantity);
+        let role = match quantity.role {
+            Role::Answer => "answer",
+            Role::Normalised => "normalised",
+            Role::Residual(_) => "residual",
+            Role::Work => "work",
+        };
+        let row = PyDict::new(py);
+        row.set_item("name", quantity.name)?;
+        row.set_item("words", quantity.words)?;
+        row.set_item("symbol", quantity.symbol)?;
+        row.set_item("unit", quantity.unit.words())?;
+        row.set_item("meaning", quantity.meaning)?;
+        row.set_item("source", quantity.source)?;
+        row.set_item("asked_by", quantity.asked_by.words())?;
+        row.set_item("role", role)?;
+        row.set_item("type", if optional { format!("{kind} | None") } else { kind.to_owned() })?;
+        Ok(row)
+    };
+    QUANTITIES.iter().map(row).collect()
+}
