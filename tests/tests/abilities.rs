@@ -3,7 +3,7 @@
 use contact_model::quantities::{AskedBy, QUANTITIES, Quantity};
 use contact_model::{
     Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Effect, Error, Friction,
-    Hardness, HeightMap, Line, Load, LoadKind, Output, Pair, PreparedContact, PronySeries, Relaxing,
+    Hardness, HeightMap, Line, Load, LoadKind, Output, Pair, Paths, PreparedContact, PronySeries, Relaxing,
     Rheology, Scene, SelfAffine, Step, Surface, SurfaceKind, Tangential, Value,
 };
 use fractal_contact::models::MODELS;
@@ -110,7 +110,7 @@ fn prepared(model: &dyn ContactModel, scene: &Scene) -> Result<Box<dyn PreparedC
 
 /// A state under a light load.
 fn pressed(contact: &mut dyn PreparedContact, scene: &Scene) -> Result<ContactState, Error> {
-    let normal = Load::Force(0.002);
+    let normal = Load::Force(0.001);
     let needs_path = scene.effects.named().any(|effect| ["friction", "rheology"].contains(&effect.key()));
     if !needs_path {
         return contact.solve(normal);
@@ -154,6 +154,11 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
         let normalisation = contact.normalisation();
         let has = |quantity: &&Quantity| (quantity.value)(&state, &normalisation) != Value::Empty;
         told.extend(QUANTITIES.iter().filter(has).map(|quantity| quantity.name));
+        if model.abilities().paths != Paths::Forgotten {
+            let step = Step::normal(2.0, Load::Force(0.001));
+            let state = contact.advance(step);
+            told.extend(state.is_ok_and(|state| state.time.is_some()).then_some("time"));
+        }
         // An error of the force is known where a distance is prescribed.
         if contact
             .solve(Load::Approach(1e-4))

@@ -4,10 +4,11 @@ mod strips;
 
 use crate::jkr::signed;
 use crate::westergaard::whole_waves;
-use crate::{closed, periodic};
+use crate::closed;
 use contact_model::{
-    Abilities, Adhesion, Boundary, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation,
-    Normalisation, Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop, SurfaceKind,
+    Abilities, Adhesion, Boundary, ContactModel, ContactState, Effect, Error, Load, LoadKind,
+    Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop,
+    SurfaceKind,
 };
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 use strips::{Strips, between, limits};
@@ -273,7 +274,7 @@ impl ContactModel for AdhesiveWave {
         Abilities {
             surfaces: &[SurfaceKind::Sine],
             boundaries: &[Boundary::Periodic],
-            loads: periodic::LOADS,
+            loads: &[LoadKind::Force],
             effects: &[Effect::ShortRangeAdhesion],
             outputs: closed::PERIODIC,
             ..Abilities::ELASTIC

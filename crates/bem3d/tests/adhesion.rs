@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp)] // Tests.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Boundary, Branch, ContactModel, ContactState, Effects, Error, Hardness,
-    HeightMap, Load, Outputs, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
+    Adhesion, AdhesionLaw, Bem3d, Boundary, Branch, ContactModel, ContactState, Error, Hardness, HeightMap,
+    Load, Outputs, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -355,8 +355,6 @@ fn what_makes_no_sense_is_refused() {
     scene.effects.hardness = Hardness::Limit { pressure: 1.0 };
     assert!(matches!(prepared(&scene), Err(Error::Unsupported { .. })));
     assert!(matches!(ContactModel::prepare(&Bem3d::default(), &scene, 0), Err(Error::Unsupported { .. })));
-    scene.effects = Effects::default();
-    assert!(matches!(prepared(&scene), Err(Error::Unsupported { .. })));
     let mut history = prepared(&with(flat(), 0.01, 0.1, EXPONENTIAL)).unwrap();
     for load in [Load::Force(f64::NAN), Load::Approach(f64::INFINITY), Load::MeanGap(0.1)] {
         assert!(at(&mut *history, load).is_err(), "{load:?}");

@@ -194,7 +194,7 @@ fn an_accuracy_chooses_the_grid() {
         (asked("accuracy = 0.0001\nbudget = \"2 s\"\nmodulus"), " cells along the longer side leave "),
         (asked("budget = \"1 s\"\nmodulus"), "`budget` is given, but no `accuracy`"),
         (asked("accuracy = \"100 %\"\nmodulus"), "expected a share above 0 and below 100 %"),
-        (asked("accuracy = \"few\"\nmodulus"), "expected a share above 0 and below 100 %"),
+        (asked("accuracy = \"few\"\nmodulus"), "expected a pure number"),
         (WAVES.replace("modulus", "accuracy = 0.01\nmodulus"), "`cells` is given beside `accuracy`"),
         (
             asked("accuracy = 0.1\nmodulus").replace("stiffness = true\narea = true", ""),

@@ -131,7 +131,7 @@ mod tests {
         first.distributions.push((Distributed::Gap, vec![[0.0, 0.1, 1e-300], [0.1, 0.2, 3.0]]));
         first.files.push(StoredFile { name: "a b.npy".into(), bytes: 3, digest: u128::MAX - 7 });
         let second = StateRecord::new(2, Answer::Refused("too much\n".into()));
-        let result = ModelResult { seconds: 0.25, states: vec![first, second], complete: false, kept: 0 };
+        let result = ModelResult { seconds: 0.25, states: vec![first, second], complete: false, kept: 2 };
         let kind = ResultKind::new("scene", FORMAT);
         let text = kind.encode(&result);
         assert_eq!(kind.decode(&text), Some(result));

@@ -12,6 +12,7 @@ use std::path::Path;
 
 /// What one model gave on one surface.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(from = "StoredResult")]
 pub(crate) struct ModelResult {
     /// Of all runs that had a part in it.
     pub seconds: f64,
@@ -19,9 +20,24 @@ pub(crate) struct ModelResult {
     pub complete: bool,
     /// States in the order of the loads.
     pub states: Vec<StateRecord>,
-    /// How many states an earlier run had kept.
-    #[serde(skip)]
+    /// How many states an earlier run had kept: all of a result that is read back.
+    #[serde(skip_serializing)]
     pub kept: usize,
+}
+
+/// What is read back of a [`ModelResult`].
+#[derive(Deserialize)]
+#[serde(rename = "ModelResult")]
+struct StoredResult {
+    seconds: f64,
+    complete: bool,
+    states: Vec<StateRecord>,
+}
+
+impl From<StoredResult> for ModelResult {
+    fn from(StoredResult { seconds, complete, states }: StoredResult) -> Self {
+        Self { seconds, complete, kept: states.len(), states }
+    }
 }
 
 /// One state as it is kept. All that is told of it is a view of this.
