@@ -98,9 +98,12 @@ fn prepared(model: &dyn ContactModel, scene: &Scene) -> Result<Box<dyn PreparedC
         // The spectrum of the paper goes to the end of the grid.
         "power_law" => {
             let mut scene = scene.clone();
-            if let Surface::SelfAffine(rough) = &mut scene.surface {
-                (rough.roll_off, rough.short_cutoff) = (None, None);
-            }
+            let paper = Surface::SelfAffine(SelfAffine::new(2.2, 2.0, 0.01).unwrap());
+            scene.surface = match scene.surface {
+                Surface::SelfAffine(_) => paper,
+                Surface::Heights(_) => Surface::Heights(surface_gen::height_map(&paper, 129, 1).unwrap()),
+                other => other,
+            };
             model.prepare(&scene, 1)
         }
         "mdr1d" => mdr1d::Mdr1d { elements: 1 << 10 }.prepare(scene, 1),
@@ -272,10 +275,16 @@ fn loads_are_those_that_are_declared() {
             if kind != LoadKind::Force && periodic != (kind == LoadKind::MeanGap) {
                 continue;
             }
-            let answered = contact.solve(load);
+            // Of what relaxes a jump may have no answer.
+            let answered = if abilities.paths == Paths::Needed {
+                contact.restart();
+                contact.advance(Step::normal(1.0, load))
+            } else {
+                contact.solve(load)
+            };
             match answered {
                 Err(Error::Unsupported { .. }) => {
-                    assert!(!abilities.loads.contains(&kind), "{record:?}: {load:?}")
+                    assert!(!abilities.loads.contains(&kind), "{record:?}: {load:?}");
                 }
                 _ => assert!(abilities.loads.contains(&kind), "{record:?}: {load:?}"),
             }

@@ -77,11 +77,10 @@ fn quantities_page() -> String {
             ["column", "symbol", "unit", "meaning", "asked for by", "models", "over surfaces", "grid error"];
         table(&heads, QUANTITIES.iter().filter(|quantity| wanted(quantity.role)).map(cells))
     };
-    let sources: String = QUANTITIES
-        .iter()
-        .filter(|quantity| !quantity.source.is_empty())
-        .map(|quantity| format!("- `{}`: {}\n", quantity.name, quantity.source))
-        .collect();
+    let mut sources = String::new();
+    for quantity in QUANTITIES.iter().filter(|quantity| !quantity.source.is_empty()) {
+        sources.push_str(&["- `", quantity.name, "`: ", quantity.source, "\n"].concat());
+    }
     let proves = QUANTITIES.iter().filter_map(|quantity| match quantity.role {
         Role::Residual(proves) => Some(vec![format!("`{}`", quantity.name), proves.to_owned()]),
         _ => None,

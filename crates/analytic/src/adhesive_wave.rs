@@ -2,9 +2,9 @@
 
 mod strips;
 
+use crate::closed;
 use crate::jkr::signed;
 use crate::westergaard::whole_waves;
-use crate::closed;
 use contact_model::{
     Abilities, Adhesion, Boundary, ContactModel, ContactState, Effect, Error, Load, LoadKind,
     Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop,

@@ -242,6 +242,9 @@ impl PreparedCattaneoMindlin {
     }
 }
 
+/// A normal load that comes back through a conversion is the same one.
+const SAME: f64 = 1e-12;
+
 impl PreparedContact for PreparedCattaneoMindlin {
     fn normalisation(&self) -> Normalisation {
         self.normal.normalisation()
@@ -258,8 +261,6 @@ impl PreparedContact for PreparedCattaneoMindlin {
         if stop() {
             return Err(Error::Stopped { best: None });
         }
-        /// A normal load that comes back through a conversion is the same one.
-        const SAME: f64 = 1e-12;
         let step = step.validated(self.at.time)?;
         let (state, sphere) = self.press(&step)?;
         let unloaded = self.at.curve == SlipCurve::default();

@@ -426,6 +426,7 @@ pub struct Certificate {
 mod known_or_infinite {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+    #[allow(clippy::trivially_copy_pass_by_ref)] // The form that serde asks for.
     pub fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {
         number.is_finite().then_some(number).serialize(to)
     }

@@ -6,7 +6,7 @@ mod start;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory as _, Parser as _};
-use fractal_contact::models::{MODELS, ModelRecord, abilities};
+use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
     Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run,
     write_twin,
@@ -137,14 +137,7 @@ fn models(name: Option<&str>) -> Result<String> {
         let reason = format!("there is no model \"{name}\": there are {}", known.join(", "));
         return Err(Error::Argument { name: "model", reason });
     }
-    let mut text = String::new();
-    for record in chosen {
-        text += &format!("{}: {}\n", record.name(), record.about);
-        for (of, words) in abilities(record.model).into_iter().filter(|(_, words)| !words.is_empty()) {
-            text += &format!("  {of:<10} {}\n", words.join(", "));
-        }
-    }
-    Ok(text)
+    Ok(chosen.into_iter().map(ToString::to_string).collect())
 }
 
 fn all_threads() -> usize {

@@ -47,6 +47,17 @@ impl fmt::Debug for ModelRecord {
     }
 }
 
+/// What it is and what it can do, in a few lines.
+impl fmt::Display for ModelRecord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {}", self.name(), self.about)?;
+        for (of, words) in abilities(self.model).into_iter().filter(|(_, words)| !words.is_empty()) {
+            writeln!(f, "  {of:<10} {}", words.join(", "))?;
+        }
+        Ok(())
+    }
+}
+
 impl PartialEq for ModelRecord {
     fn eq(&self, other: &Self) -> bool {
         self.name() == other.name()

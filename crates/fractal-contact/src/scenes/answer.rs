@@ -187,7 +187,7 @@ fn count(
             counted += usize::from(unit.numerics(scene).size() > 0);
             match &record.answer {
                 Answer::Refused(reason) if !outcome.notes.contains(reason) => {
-                    outcome.notes.push(reason.clone())
+                    outcome.notes.push(reason.clone());
                 }
                 Answer::Refused(_) => {}
                 Answer::State(solved) => {
