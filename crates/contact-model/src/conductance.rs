@@ -3,7 +3,7 @@
 use crate::error::{Error, Result, non_negative, positive};
 
 /// Conductance through the contact of two half-spaces: `Lambda = 2 k/(E* (rho_1 + rho_2))` (Barber 2003; Eq. 13 of the paper), with the
-/// stiffness k of the whole contact area, held ([`ContactState::stiffness_fixed_area`]).
+/// stiffness k of the whole contact area, held ([`crate::ContactState::stiffness_fixed_area`]).
 ///
 /// Exact for any contact area, periodic or not: potential and normal displacement are the same harmonic function. The bodies conduct
 /// through the real contact only, films and radiation apart; cells at the hardness conduct, and an attraction across a gap does not. It

@@ -12,7 +12,7 @@ use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     Abilities, Adhesion, ContactModel, ContactState, Effect, Effects, Error, Friction, Hardness, Load,
     Normalisation, Output, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, Step,
-    Stop, Surface, Tangential, TangentialState, never,
+    Stop, Surface, SurfaceKind, Tangential, TangentialState, never,
 };
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use std::sync::Arc;
 ///
 /// M solves the normal problem under the scene's surface with every effect off, once per node of a table, and under each step's load; its
 /// states give a [`Tabulated`] profile, and this carries the springs of [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with
-/// [`contact_model::Pair`]) or the relaxing ones of [`crate::Viscoelastic`] (any [`Rheology`] while the contact grows). One effect at a time.
+/// [`contact_model::Pair`]) or the relaxing ones of [`crate::Viscoelastic`] (any [`contact_model::Rheology`] while the contact grows). One effect at a time.
 /// M itself never sees it. Outputs of M pass through: area, fields, patches, conductance, each of the step's own contact.
 ///
 /// **The normal part is a state that M has solved for this very load**, for an elastic material. Tangential results are those of the Cattaneo-Mindlin and
@@ -148,7 +148,6 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
         self.model.least_memory(scene)
     }
 
-    /// The surfaces of the model that presses, without effects of its own.
     fn abilities(&self) -> Abilities {
         const EFFECTS: &[Effect] = &[
             Effect::Friction,
@@ -168,7 +167,20 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             Output::ContactPatches,
             Output::Conductance,
         ];
-        let surfaces = self.model.abilities().surfaces;
+        // A profile has no approach, and a body is no line. M refuses what it lacks of the others itself.
+        const SURFACES: &[SurfaceKind] = &[
+            SurfaceKind::Line,
+            SurfaceKind::SelfAffine,
+            SurfaceKind::Heights,
+            SurfaceKind::Sphere,
+            SurfaceKind::Cone,
+            SurfaceKind::PowerLaw,
+            SurfaceKind::FlatCircle,
+            SurfaceKind::Flat,
+            SurfaceKind::Sine,
+        ];
+        let of_a_line = self.model.abilities().surfaces.contains(&SurfaceKind::Line);
+        let surfaces = &SURFACES[usize::from(!of_a_line)..];
         Abilities {
             surfaces,
             outputs: OUTPUTS,

@@ -16,7 +16,7 @@ const NAME: &str = "mdr1d_viscoelastic";
 /// While the contact grows, a spring that has come into contact stays there, and the sum over springs is Boltzmann's integral of the
 /// elastic law: `F(t) = int E*(t - t') dPhi(d(t'))` with `Phi = F_elastic/E*` (Lee and Radok 1960; Popov and Hess 2015, Ch. 7).
 ///
-/// Takes the bodies of [`Profile`] with a [`Rheology`], and histories that are straight between the steps' times: of the approach,
+/// Takes the bodies of [`Profile`] with a [`contact_model::Rheology`], and histories that are straight between the steps' times: of the approach,
 /// of the force, or one after the other. Equal times are a jump; a dashpot alone in parallel (Kelvin-Voigt) does not allow one of
 /// the approach. The force of a step is that at its end, with its own speed.
 ///

@@ -89,7 +89,7 @@ impl Registry {
         Ok(self)
     }
 
-    /// The models in the order added; in a scene built in code each is a [`Numerics::Registered`].
+    /// The models in the order added; in a scene built in code each is a [`crate::scenes::Numerics::Registered`].
     pub fn models(&self) -> &[RegisteredModel] {
         &self.models
     }
