@@ -208,12 +208,35 @@ fn what_is_declared_is_done() {
                 if output.is_field() {
                     return state.fields.as_ref().is_some_and(|fields| fields.get(output).is_some());
                 }
+                assert!(told.clone().next().is_some(), "{}: the table has no quantity of it", output.name());
                 // A closed form has no cells whose boundary could be corrected.
                 told.all(|quantity| {
                     quantity.name == "area_corrected" || quantity.number(&state, &normalisation).is_some()
                 })
             });
             assert!(tells, "{name}: nothing is told of `{}`, which it declares", output.name());
+        }
+    }
+}
+
+/// An effect that a model declares changes some state: beside the same contact without it the numbers differ.
+#[test]
+fn an_effect_that_is_declared_matters() {
+    for record in MODELS {
+        let (model, abilities) = (record.model, record.model.abilities());
+        for &effect in abilities.effects {
+            let differs = abilities.surfaces.iter().any(|&kind| {
+                let with = scene(kind, abilities.boundaries[0], Some(effect));
+                let mut without = scene(kind, abilities.boundaries[0], None);
+                without.pair = with.pair;
+                let state = |scene: &Scene| pressed(prepared(model, scene).ok()?.as_mut(), scene).ok();
+                let Some(found) = state(&with) else { return false };
+                let numbers =
+                    |state: &ContactState| (state.force, state.approach, state.mean_gap, state.tangential);
+                // A model that is about the effect alone answers nothing without it.
+                state(&without).is_none_or(|elastic| numbers(&elastic) != numbers(&found))
+            });
+            assert!(differs, "{record:?}: {effect:?} changes no state");
         }
     }
 }

@@ -367,68 +367,56 @@ impl Effects {
     }
 }
 
-/// An effect that is on, without its numbers: what a model can or cannot do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Effect {
-    /// [`Hardness::Limit`].
-    Hardness,
-    /// [`Adhesion::ShortRange`].
-    ShortRangeAdhesion,
-    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Exponential`].
-    ExponentialAdhesion,
-    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Dugdale`].
-    DugdaleAdhesion,
-    /// [`Friction::Coulomb`].
-    Friction,
-    /// [`Rheology::KelvinVoigt`].
-    KelvinVoigt,
-    /// [`Rheology::Maxwell`].
-    Maxwell,
-    /// [`Rheology::StandardSolid`].
-    StandardSolid,
-    /// [`Rheology::Prony`].
-    PronySeries,
+macro_rules! effects {
+    ($($(#[doc = $doc:literal])+ $variant:ident $key:literal $words:literal,)+) => {
+        /// An effect that is on, without its numbers: what a model can or cannot do.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum Effect {
+            $($(#[doc = $doc])+ $variant,)+
+        }
+
+        impl Effect {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// Its key in `[effects]` of a scene and in Python.
+            pub fn key(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $key,)+
+                }
+            }
+
+            /// What it is, for refusals and tables.
+            pub fn words(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $words,)+
+                }
+            }
+        }
+    };
 }
 
-impl Effect {
-    /// All of them.
-    pub const ALL: &'static [Self] = &[
-        Self::Hardness,
-        Self::ShortRangeAdhesion,
-        Self::ExponentialAdhesion,
-        Self::DugdaleAdhesion,
-        Self::Friction,
-        Self::KelvinVoigt,
-        Self::Maxwell,
-        Self::StandardSolid,
-        Self::PronySeries,
-    ];
-
-    /// Its key in `[effects]` of a scene and in Python.
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::Hardness => "hardness",
-            Self::ShortRangeAdhesion | Self::ExponentialAdhesion | Self::DugdaleAdhesion => "adhesion",
-            Self::Friction => "friction",
-            Self::KelvinVoigt | Self::Maxwell | Self::StandardSolid | Self::PronySeries => "rheology",
-        }
-    }
-
-    /// What it is, for refusals and tables.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Hardness => "a hardness",
-            Self::ShortRangeAdhesion => "adhesion of short range",
-            Self::ExponentialAdhesion => "adhesion by the exponential law",
-            Self::DugdaleAdhesion => "adhesion by Dugdale's law",
-            Self::Friction => "friction",
-            Self::KelvinVoigt => "the rheology of Kelvin and Voigt",
-            Self::Maxwell => "the rheology of Maxwell",
-            Self::StandardSolid => "the rheology of a standard solid",
-            Self::PronySeries => "the rheology of a Prony series",
-        }
-    }
+// Each with its key in `[effects]` and its words.
+effects! {
+    /// [`Hardness::Limit`].
+    Hardness "hardness" "a hardness",
+    /// [`Adhesion::ShortRange`].
+    ShortRangeAdhesion "adhesion" "adhesion of short range",
+    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Exponential`].
+    ExponentialAdhesion "adhesion" "adhesion by the exponential law",
+    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Dugdale`].
+    DugdaleAdhesion "adhesion" "adhesion by Dugdale's law",
+    /// [`Friction::Coulomb`].
+    Friction "friction" "friction",
+    /// [`Rheology::KelvinVoigt`].
+    KelvinVoigt "rheology" "the rheology of Kelvin and Voigt",
+    /// [`Rheology::Maxwell`].
+    Maxwell "rheology" "the rheology of Maxwell",
+    /// [`Rheology::StandardSolid`].
+    StandardSolid "rheology" "the rheology of a standard solid",
+    /// [`Rheology::Prony`].
+    PronySeries "rheology" "the rheology of a Prony series",
 }
 
 /// What lies outside the square.

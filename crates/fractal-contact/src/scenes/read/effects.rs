@@ -25,8 +25,10 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
         on,
         reason: if on { value } else { format!("not named: {off}") },
     };
-    let boundary = effects.boundary == Boundary::Periodic;
-    let adhesion = match effects.adhesion {
+    // All fields, so that a new effect is not forgotten.
+    let Effects { boundary, hardness, adhesion, friction, rheology } = effects;
+    let boundary = *boundary == Boundary::Periodic;
+    let adhesion = match *adhesion {
         Adhesion::Off => None,
         Adhesion::ShortRange { work } => Some(format!("short range, work {} per area", number(work))),
         Adhesion::FiniteRange { work, range, law } => {
@@ -35,15 +37,15 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
         }
         other => Some(format!("{other:?}")),
     };
-    let hardness = match effects.hardness {
+    let hardness = match *hardness {
         Hardness::Limit { pressure } => Some(format!("no pressure above {}", number(pressure))),
         _ => None,
     };
-    let (coefficient, friction) = match effects.friction {
+    let (coefficient, friction) = match *friction {
         Friction::Coulomb { coefficient } => (coefficient, true),
         _ => (0.0, false),
     };
-    let rheology = effects.rheology != Rheology::Elastic;
+    let elastic = *rheology == Rheology::Elastic;
     vec![
         line(
             "boundary",
@@ -54,7 +56,7 @@ pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
         line("hardness", hardness.is_some(), hardness.unwrap_or_default(), "elastic at any pressure"),
         line("adhesion", adhesion.is_some(), adhesion.unwrap_or_default(), "no attraction"),
         line("friction", friction, format!("Coulomb, coefficient {coefficient}"), "no tangential load"),
-        line("rheology", rheology, rheology_words(&effects.rheology), "elastic"),
+        line("rheology", !elastic, rheology_words(rheology), "elastic"),
     ]
 }
 
