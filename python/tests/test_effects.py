@@ -405,7 +405,7 @@ def test_a_path_of_an_elastic_contact_is_its_loads():
     assert [state.time for state in states] == [1.0, 2.0] and alone.last.time is None
     for one in (contact, plastic_path()):
         with pytest.raises(fc.Unsupported, match="tangential"):
-            one.advance(force=1e-3, tangential_force=1e-4)
+            one.advance(2.0, force=1e-3, tangential_force=1e-4)
 
 
 @pytest.mark.parametrize("number", [np.float64, np.float32, np.int64, int, np.array])
