@@ -226,13 +226,14 @@ fn an_effect_that_is_declared_matters() {
         let (model, abilities) = (record.model, record.model.abilities());
         for &effect in abilities.effects {
             let differs = abilities.surfaces.iter().any(|&kind| {
-                let with = scene(kind, abilities.boundaries[0], Some(effect));
+                let mut with = scene(kind, abilities.boundaries[0], Some(effect));
+                with.outputs.area = abilities.outputs.contains(&Output::Area);
                 let mut without = scene(kind, abilities.boundaries[0], None);
-                without.pair = with.pair;
+                (without.pair, without.outputs) = (with.pair, with.outputs);
                 let state = |scene: &Scene| pressed(prepared(model, scene).ok()?.as_mut(), scene).ok();
                 let Some(found) = state(&with) else { return false };
                 let numbers =
-                    |state: &ContactState| (state.force, state.approach, state.mean_gap, state.tangential);
+                    |state: &ContactState| (state.force, state.approach, state.area, state.tangential);
                 // A model that is about the effect alone answers nothing without it.
                 state(&without).is_none_or(|elastic| numbers(&elastic) != numbers(&found))
             });
