@@ -87,11 +87,12 @@ fn quantities_page() -> String {
     });
     format!(
         "# What is told of a state\n\n\
-         This page lists every quantity that a scene or a model can tell of a state. One table in `contact_model::quantities` has\n\
-         them; CSV, console, report, means over surfaces, curves, Python and this page follow from it, and a test compares the page\n\
-         with the table. `models` are those that tell it of some state, each tried. Units are SI; with `units = \"none\"` a dimensional number is in the scene's own.\n\n\
-         Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends with `note`.\n\
-         `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one surface. With\n\
+         This page lists every quantity that a scene or a model can tell of a state. One table in\n\
+         `contact_model::quantities` has them; CSV, console, report, means over surfaces, curves, Python and this page\n\
+         follow from it, and a test compares the page with the table. `models` are those that tell it of some state, each\n\
+         tried. Units are SI; with `units = \"none\"` a dimensional number is in the scene's own.\n\n\
+         Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends with\n\
+         `note`. `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one surface. With\n\
          `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order` too.\n\n\
          ## Answers\n\n{}\n## Residuals\n\nSmall numbers prove that the equations were solved:\n\n{}\n{}\n\
          ## How it was found, and what it cost\n\n{}\n## Sources\n\n{sources}",
@@ -113,9 +114,9 @@ fn models_page() -> String {
     };
     format!(
         "# What each model can do\n\n\
-         This page lists the abilities that each model declares as data (`ContactModel::abilities`): what a scene may ask of it.\n\
-         A scene that asks for more is refused before anything is computed, with the models that can. Combinations that a model\n\
-         cannot do together it refuses itself. Python has the same as `model.supports`.\n\n{}\n## What they are\n\n{}",
+         This page lists the abilities that each model declares as data (`ContactModel::abilities`): what a scene may\n\
+         ask of it. A scene that asks for more is refused before anything is computed, with the models that can.\n\
+         Combinations that a model cannot do together it refuses itself. Python has the same as `model.supports`.\n\n{}\n## What they are\n\n{}",
         table(
             &["model", "surfaces", "boundaries", "effects", "loads", "paths", "outputs"],
             MODELS.iter().map(cells)

@@ -91,16 +91,12 @@ impl ModelOnSurface {
         let mut answer = |place: usize, found: contact_model::Result<ContactState>| {
             let index = missing[place];
             let record = match found {
-                Ok(mut found) => {
+                Ok(state) => {
                     let grid = comparison
                         .as_ref()
-                        .map(|comparison| comparison.errors(place, &found, &normalisation));
-                    let warnings = Warning::of(scene, &found, grid.as_ref());
-                    self.recorded(scene, &mut found, out, index).map(|record| {
-                        let state = found.with_fields(None);
-                        let solved = Solved { state, normalisation, warnings, grid };
-                        StateRecord { answer: Answer::State(Box::new(solved)), ..record }
-                    })
+                        .map(|comparison| comparison.errors(place, &state, &normalisation));
+                    let warnings = Warning::of(scene, &state, grid.as_ref());
+                    self.recorded(scene, Solved { state, normalisation, warnings, grid }, out, index)
                 }
                 Err(contact_model::Error::NotConverged { best }) => {
                     let state = best.with_fields(None).with_patches(None);
@@ -138,12 +134,9 @@ impl ModelOnSurface {
         let normalisation = contact.normalisation();
         for (index, step) in steps.iter().enumerate() {
             let record = match contact.advance_until(*step, stop) {
-                Ok(mut found) => {
-                    let record = self.recorded(scene, &mut found, out, index)?;
-                    let warnings = Warning::of(scene, &found, None);
-                    let state = found.with_fields(None);
-                    let solved = Solved { state, normalisation, warnings, grid: None };
-                    StateRecord { answer: Answer::State(Box::new(solved)), ..record }
+                Ok(state) => {
+                    let warnings = Warning::of(scene, &state, None);
+                    self.recorded(scene, Solved { state, normalisation, warnings, grid: None }, out, index)?
                 }
                 Err(contact_model::Error::Stopped { .. }) => return Ok(()),
                 Err(error) => StateRecord::new(index, Answer::Refused(error.to_string())),
@@ -159,20 +152,21 @@ impl ModelOnSurface {
         Ok(())
     }
 
-    /// A record, its answer to come, of a state: the fields that are asked for as files, and the distributions. The fields go.
+    /// The record of a state: its fields become files, where these are asked for, and are counted where distributions are.
     fn recorded(
         &self,
         scene: &SceneFile,
-        found: &mut ContactState,
+        mut solved: Solved,
         out: &Path,
         index: usize,
     ) -> Result<StateRecord> {
-        let mut kept = StateRecord::new(index, Answer::Refused(String::new()));
-        let fields = found.fields.take().unwrap_or_default();
+        let fields = solved.state.fields.take().unwrap_or_default();
         let cell = scene.surface.size();
         let cell = cell.x * cell.y / cells(scene, self.numerics(scene)).checked_count().unwrap_or(1) as f64;
-        let state = (fields.pressure.as_ref(), fields.gap.as_ref(), found.patches.as_ref());
-        kept.distributions = distributed::of_state(&scene.requested.distributions, state, cell);
+        let state = (fields.pressure.as_ref(), fields.gap.as_ref(), solved.state.patches.as_ref());
+        let distributions = distributed::of_state(&scene.requested.distributions, state, cell);
+        let mut kept =
+            StateRecord { distributions, ..StateRecord::new(index, Answer::State(Box::new(solved))) };
         let first = kept.index == 0 && !scene.requested.heights.is_empty();
         let heights = if first { self.heights(scene)? } else { None };
         let of_models =
@@ -268,13 +262,15 @@ mod tests {
         let mut fields = Fields::default();
         let field = |values: &[f64]| Field::new([3, 2], [6.0, 1.0], values.to_vec()).ok();
         (fields.pressure, fields.gap) = (field(&pressure), field(&gap));
-        let mut state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
+        let state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
         let unit = ModelOnSurface { model: 0, surface: 0 };
         std::fs::create_dir(dir.path().join(".units")).unwrap();
-        let kept = unit.recorded(&scene, &mut state, dir.path(), 0).unwrap();
+        let normalisation = contact_model::Normalisation { modulus: 1.0, length: 1.0, height: None };
+        let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+        let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
         // Three files of each field, its values for the picture, and what the report shows of it.
-        assert_eq!((kept.files.len(), state.fields.is_none()), (10, true));
+        assert_eq!((kept.files.len(), kept.solved().unwrap().state.fields.is_none()), (10, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
         field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result).unwrap();
         let files = &result.states[0].files;
