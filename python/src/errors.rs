@@ -3,6 +3,7 @@
 use crate::state::{self, ContactState};
 use fractal_contact::models::{ModelRecord, able};
 use fractal_contact::{ContactState as RustState, Error, Normalisation, Scene, scenes};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
@@ -130,4 +131,16 @@ pub fn of_scene(py: Python<'_>, error: &scenes::Error) -> PyErr {
         _ => "Error",
     };
     plain(py, name, error.to_string().trim_start_matches("error: "))
+}
+
+/// An error of values that the reader of scenes read.
+pub fn of_values(py: Python<'_>, error: &scenes::Diagnostic) -> PyErr {
+    match error.domain() {
+        Some(domain) => of_model(py, domain.clone()),
+        None if error.is_type() => PyTypeError::new_err(error.message().to_owned()),
+        None => {
+            let help = error.help().map_or_else(String::new, |help| format!("; {help}"));
+            PyValueError::new_err(format!("{}{help}", error.message()))
+        }
+    }
 }

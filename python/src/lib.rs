@@ -22,6 +22,7 @@ mod scenes;
 mod state;
 mod statistics;
 mod surface_gen;
+mod toml_text;
 
 /// The compiled part of `fractal_contact`.
 #[pyo3::pymodule]
@@ -47,9 +48,9 @@ mod _core {
     #[pymodule_export]
     use crate::pool::{set_threads, threads};
     #[pymodule_export]
-    use crate::quantities::quantities;
+    use crate::quantities::{fields, quantities};
     #[pymodule_export]
-    use crate::scene::{Scene, Surface, check_effects, height_map, scene, surface};
+    use crate::scene::{Scene, Surface, check_effects, effect_keys, height_map, scene, surface};
     #[pymodule_export]
     use crate::scenes::{SceneFile, run_scene};
     #[pymodule_export]

@@ -1,16 +1,15 @@
 //! Models by name, and contacts that they have planned.
 
 use crate::contact::Contact;
-use crate::errors::{of_model, of_planning};
+use crate::errors::{of_planning, of_values};
 use crate::memory;
 use crate::pool;
-use crate::scene::{Scene, optional};
-use fractal_contact::analytic::{GreenwoodWilliamson, Persson, greenwood_williamson::SummitHeights};
-use fractal_contact::bem3d::Method;
+use crate::scene::Scene;
+use crate::toml_text::toml_text;
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
+use fractal_contact::scenes::Numerics;
 use fractal_contact::{
-    Abilities, Bem3d, ContactModel, Equivalent, Error, Mdr1d, Paths, PreparedContact, RequiredMemory,
-    Scene as RustScene, Source,
+    Abilities, ContactModel, Equivalent, Paths, PreparedContact, RequiredMemory, Scene as RustScene, Source,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -82,73 +81,24 @@ pub fn model(
     options: &Bound<'_, PyDict>,
     inner: Option<&Model>,
 ) -> PyResult<Model> {
-    let model: Arc<dyn ContactModel> = match name {
-        "bem3d" => Arc::new(bem3d(py, options)?),
-        "mdr1d" => {
-            let elements = optional(options, "elements")?.unwrap_or(Mdr1d::default().elements);
-            Arc::new(Mdr1d { elements })
+    let numerics = Numerics::named(name);
+    let numerics = numerics.ok_or_else(|| PyValueError::new_err(format!("no model is called {name:?}")))?;
+    let options = toml_text(options, name)?;
+    let numerics = numerics.configured(&options).map_err(|error| of_values(py, &error))?;
+    let model: Arc<dyn ContactModel> = match (numerics, inner) {
+        (Numerics::Equivalent(equivalent), Some(Model { model, .. })) => Arc::new(Equivalent {
+            model: model.clone(),
+            per_decade: equivalent.per_decade,
+            decades: equivalent.decades,
+        }),
+        (Numerics::Equivalent(_), None) => {
+            return Err(PyTypeError::new_err("equivalent takes a model that presses"));
         }
-        "persson" => {
-            let gamma = optional(options, "gamma")?.unwrap_or(Persson::default().gamma);
-            Arc::new(Persson { gamma })
-        }
-        "greenwood_williamson" => {
-            let heights = match optional::<String>(options, "heights")?.as_deref() {
-                None | Some("gaussian") => SummitHeights::Gaussian,
-                Some("exponential") => SummitHeights::Exponential,
-                Some(other) => {
-                    return Err(PyValueError::new_err(format!(
-                        "heights is {other:?}: expected \"gaussian\" or \"exponential\""
-                    )));
-                }
-            };
-            Arc::new(GreenwoodWilliamson { heights })
-        }
-        "equivalent" => {
-            let Some(Model { model, .. }) = inner else {
-                return Err(PyTypeError::new_err("equivalent takes a model that presses"));
-            };
-            let standard = Equivalent::new(model.clone());
-            Arc::new(Equivalent {
-                per_decade: optional(options, "per_decade")?.unwrap_or(standard.per_decade),
-                decades: optional(options, "decades")?.unwrap_or(standard.decades),
-                model: standard.model,
-            })
-        }
-        _ => match ModelRecord::named(name) {
-            Some(record) if !record.has_options => Arc::new(record.model),
-            _ => return Err(PyValueError::new_err(format!("no model is called {name:?}"))),
-        },
+        (numerics, _) => numerics.model(),
     };
     let has_options = ModelRecord::named(name).is_none_or(|record| record.has_options);
     let long = has_options || model.abilities().paths == Paths::Needed;
     Ok(Model { model: Shared(model), long })
-}
-
-fn bem3d(py: Python<'_>, options: &Bound<'_, PyDict>) -> PyResult<Bem3d> {
-    let standard = Bem3d::default();
-    let method = match optional::<String>(options, "method")?.as_deref() {
-        None | Some("auto") => Method::Auto,
-        Some("iterative") => Method::Iterative,
-        Some("single_level") => Method::SingleLevel,
-        Some(other) => {
-            return Err(PyValueError::new_err(format!(
-                "method is {other:?}: expected \"auto\", \"iterative\" or \"single_level\""
-            )));
-        }
-    };
-    let tolerance: f64 = optional(options, "tolerance")?.unwrap_or(standard.tolerance);
-    if !(tolerance.is_finite() && tolerance > 0.0) {
-        return Err(of_model(py, Error::domain("tolerance", tolerance, "a finite number > 0")));
-    }
-    Ok(Bem3d {
-        cells: optional(options, "cells")?.unwrap_or(standard.cells),
-        rows: optional(options, "rows")?,
-        tolerance,
-        max_outer_iterations: optional(options, "max_outer_iterations")?
-            .unwrap_or(standard.max_outer_iterations),
-        method,
-    })
 }
 
 impl Model {

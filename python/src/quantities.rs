@@ -2,7 +2,9 @@
 
 use crate::state::ContactState;
 use fractal_contact::quantities::{AskedBy, QUANTITIES, Quantity, Role, Unit};
-use fractal_contact::{ContactState as RustState, Normalisation, Patches, SolveReport, Value};
+use fractal_contact::{
+    ContactState as RustState, FIELDS, FieldQuantity, Normalisation, Patches, SolveReport, Value,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyString};
 
@@ -65,6 +67,15 @@ pub fn make_properties(py: Python<'_>) -> PyResult<()> {
         })?;
         class.setattr(quantity.name, property.call1((get, py.None(), py.None(), sentence(quantity)))?)?;
     }
+    for quantity in FIELDS {
+        let get = PyCFunction::new_closure(py, None, None, move |args, _| -> PyResult<_> {
+            let state = args.get_item(0)?.cast_into::<ContactState>()?;
+            Ok(state.get().field(args.py(), quantity))
+        })?;
+        let FieldQuantity { name, meaning, unit, .. } = quantity;
+        let sentence = format!("numpy.ndarray or None: {meaning} [{unit}], shape (rows, columns).");
+        class.setattr(*name, property.call1((get, py.None(), py.None(), sentence))?)?;
+    }
     Ok(())
 }
 
@@ -99,4 +110,24 @@ pub fn quantities(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         Ok(row)
     };
     QUANTITIES.iter().map(row).collect()
+}
+
+/// The fields of states.
+///
+/// Returns
+/// -------
+/// list of dict of str
+///     ``name``, ``words``, ``symbol``, ``unit`` and ``meaning``.
+#[pyfunction]
+pub fn fields(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |field: &FieldQuantity| {
+        let row = PyDict::new(py);
+        row.set_item("name", field.name)?;
+        row.set_item("words", field.words)?;
+        row.set_item("symbol", field.symbol)?;
+        row.set_item("unit", field.unit)?;
+        row.set_item("meaning", field.meaning)?;
+        Ok(row)
+    };
+    FIELDS.iter().map(row).collect()
 }

@@ -1,10 +1,12 @@
 //! Scenes from the values of the Python classes.
 
-use crate::errors::of_model;
+use crate::errors::{of_model, of_values};
 use crate::height_map::{HeightMap, OneOrTwo};
+use crate::toml_text::toml_text;
+use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, parse_effects};
 use fractal_contact::{
-    Adhesion, AdhesionLaw, Amplitude, Body, Boundary, Conductance, Effects, Friction, Hardness, Line, Output,
-    Outputs, Pair, PronySeries, Relaxing, Rheology, Scene as RustScene, SelfAffine, Surface as RustSurface,
+    Amplitude, Body, Conductance, Effects, Line, Output, Outputs, Pair, Scene as RustScene, SelfAffine,
+    Surface as RustSurface,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -148,7 +150,7 @@ pub fn scene(
         _ => return Err(PyTypeError::new_err("give modulus or bodies, and not both")),
     };
     let mut scene = made.map_err(|error| of_model(py, error))?;
-    scene.effects = read_effects(py, effects)?;
+    scene.effects = self::effects(py, effects)?;
     scene.outputs = Outputs::default();
     for name in &outputs {
         scene.outputs.ask(output(name)?, true);
@@ -170,91 +172,26 @@ pub fn scene(
 /// Errors for effects whose numbers or words make no sense.
 #[pyfunction]
 pub fn check_effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<()> {
-    read_effects(py, of)?.validate().map_err(|error| of_model(py, error))
+    effects(py, of).map(drop)
 }
 
-fn read_effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Effects> {
-    let boundary = match optional::<String>(of, "boundary")?.as_deref() {
-        None | Some("free") => Boundary::Free,
-        Some("periodic") => Boundary::Periodic,
-        Some(other) => {
-            return Err(PyValueError::new_err(format!(
-                "boundary is {other:?}: expected \"free\" or \"periodic\""
-            )));
-        }
-    };
-    let hardness = optional::<f64>(of, "hardness")?;
-    let adhesion = optional::<Bound<'_, PyDict>>(of, "adhesion")?;
-    let friction = optional::<f64>(of, "friction")?;
-    let rheology = match optional::<Bound<'_, PyDict>>(of, "rheology")? {
-        None => Rheology::Elastic,
-        Some(rheology) => read_rheology(py, &rheology)?,
-    };
-    Ok(Effects {
-        boundary,
-        hardness: hardness.map_or(Hardness::Off, |pressure| Hardness::Limit { pressure }),
-        adhesion: adhesion.map_or(Ok(Adhesion::Off), |adhesion| read_adhesion(&adhesion))?,
-        friction: friction.map_or(Friction::Off, |coefficient| Friction::Coulomb { coefficient }),
-        rheology,
-    })
+/// Effects of the values of the Python class, which are those of `[effects]` in a scene.
+fn effects(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Effects> {
+    let effects = parse_effects(&toml_text(of, "effects")?).map_err(|error| of_values(py, &error))?;
+    effects.validate().map_err(|error| of_model(py, error))?;
+    Ok(effects)
 }
 
-fn read_adhesion(of: &Bound<'_, PyDict>) -> PyResult<Adhesion> {
-    for key in of.keys() {
-        let key: String = key.extract()?;
-        if !["work", "range", "law"].contains(&key.as_str()) {
-            return Err(PyValueError::new_err(format!(
-                "adhesion has no {key:?}: there are work, range and law"
-            )));
-        }
-    }
-    let work = required(of, "work")?;
-    let law = optional::<String>(of, "law")?;
-    let Some(range) = optional(of, "range")? else {
-        return match law {
-            None => Ok(Adhesion::ShortRange { work }),
-            Some(law) => Err(PyValueError::new_err(format!(
-                "law is {law:?} without a range: give both, or neither for short-range adhesion"
-            ))),
-        };
+/// The keys of `[effects]`.
+#[pyfunction]
+pub fn effect_keys(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |key: &EffectKey| {
+        let row = PyDict::new(py);
+        row.set_item("name", key.name)?;
+        row.set_item("takes", key.takes)?;
+        row.set_item("about", key.about)?;
+        row.set_item("off", key.off)?;
+        Ok(row)
     };
-    let law = match law.as_deref() {
-        None | Some("exponential") => AdhesionLaw::Exponential,
-        Some("dugdale") => AdhesionLaw::Dugdale,
-        Some(other) => {
-            return Err(PyValueError::new_err(format!(
-                "law is {other:?}: expected \"exponential\" or \"dugdale\""
-            )));
-        }
-    };
-    Ok(Adhesion::FiniteRange { work, range, law })
-}
-
-fn read_rheology(py: Python<'_>, of: &Bound<'_, PyDict>) -> PyResult<Rheology> {
-    let kind: String = required(of, "kind")?;
-    Ok(match kind.as_str() {
-        "kelvin_voigt" => Rheology::KelvinVoigt { viscosity: required(of, "viscosity")? },
-        "maxwell" => Rheology::Maxwell { viscosity: required(of, "viscosity")? },
-        "standard_solid" => Rheology::StandardSolid {
-            arm: Relaxing { weight: required(of, "weight")?, time: required(of, "time")? },
-        },
-        "prony" => {
-            let (weights, times): (Vec<f64>, Vec<f64>) = (required(of, "weights")?, required(of, "times")?);
-            if weights.len() != times.len() {
-                return Err(PyValueError::new_err(format!(
-                    "{} weights and {} times: expected as many",
-                    weights.len(),
-                    times.len()
-                )));
-            }
-            let arms: Vec<Relaxing> =
-                weights.into_iter().zip(times).map(|(weight, time)| Relaxing { weight, time }).collect();
-            Rheology::Prony(PronySeries::new(&arms).map_err(|error| of_model(py, error))?)
-        }
-        other => {
-            return Err(PyValueError::new_err(format!(
-                "no rheology is called {other:?}: there are kelvin_voigt, maxwell, standard_solid and prony"
-            )));
-        }
-    })
+    EFFECT_KEYS.iter().map(row).collect()
 }

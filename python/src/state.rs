@@ -3,8 +3,8 @@
 use crate::quantities::{is_named_where_known, object};
 use fractal_contact::quantities::{QUANTITIES, Quantity, Role};
 use fractal_contact::{
-    Certificate as RustCertificate, ContactState as RustState, Field, Normalisation as RustNormalisation,
-    SolveReport, Value,
+    Certificate as RustCertificate, ContactState as RustState, FIELDS, Field, FieldQuantity,
+    Normalisation as RustNormalisation, SolveReport, Value,
 };
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -129,10 +129,8 @@ impl Certificate {
 pub struct ContactState {
     state: RustState,
     normalisation: RustNormalisation,
-    pressure: Option<Py<PyArray2<f64>>>,
-    displacement: Option<Py<PyArray2<f64>>>,
-    gap: Option<Py<PyArray2<f64>>>,
-    plastic_depth: Option<Py<PyArray2<f64>>>,
+    /// In the order of `FIELDS`.
+    fields: Vec<Option<Py<PyArray2<f64>>>>,
 }
 
 /// Moves a state of a contact with this normalisation into Python.
@@ -141,18 +139,25 @@ pub fn of(
     mut state: RustState,
     normalisation: &RustNormalisation,
 ) -> PyResult<Py<ContactState>> {
-    let fields = state.fields.take().unwrap_or_default();
-    let array = |field: Option<Field>| field.map(|field| array(py, field)).transpose();
-    let (pressure, displacement) = (array(fields.pressure)?, array(fields.displacement)?);
-    let (gap, plastic_depth) = (array(fields.gap)?, array(fields.plastic_depth)?);
+    let mut taken = state.fields.take().unwrap_or_default();
+    let arrays =
+        FIELDS.iter().map(|quantity| (quantity.take)(&mut taken).map(|field| array(py, field)).transpose());
+    let fields = arrays.collect::<PyResult<_>>()?;
     let normalisation = *normalisation;
-    Py::new(py, ContactState { state, normalisation, pressure, displacement, gap, plastic_depth })
+    Py::new(py, ContactState { state, normalisation, fields })
 }
 
 impl ContactState {
     /// What the table takes from it.
     pub fn value(&self, quantity: &Quantity) -> Value {
         (quantity.value)(&self.state, &self.normalisation)
+    }
+
+    /// The array of a field, where it was asked for.
+    pub fn field(&self, py: Python<'_>, quantity: &FieldQuantity) -> Option<Py<PyArray2<f64>>> {
+        let known = FIELDS.iter().zip(&self.fields);
+        let (_, field) = known.into_iter().find(|(known, _)| known.name == quantity.name)?;
+        field.as_ref().map(|field| field.clone_ref(py))
     }
 }
 
@@ -168,30 +173,6 @@ impl ContactState {
     #[getter]
     fn patches<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.state.patches.as_ref().map(|patches| PyArray1::from_slice(py, patches.areas()))
-    }
-
-    /// numpy.ndarray or None: pressure of each cell (force/length^2), shape (rows, columns); negative, a tension, with adhesion only.
-    #[getter]
-    fn pressure(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
-        self.pressure.as_ref().map(|field| field.clone_ref(py))
-    }
-
-    /// numpy.ndarray or None: displacement of the elastic surface (length), shape (rows, columns).
-    #[getter]
-    fn displacement(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
-        self.displacement.as_ref().map(|field| field.clone_ref(py))
-    }
-
-    /// numpy.ndarray or None: gap to the indented surface (length), shape (rows, columns); infinite at undefined points.
-    #[getter]
-    fn gap(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
-        self.gap.as_ref().map(|field| field.clone_ref(py))
-    }
-
-    /// numpy.ndarray or None: depth of the plastic indentation >= 0 (length), shape (rows, columns).
-    #[getter]
-    fn plastic_depth(&self, py: Python<'_>) -> Option<Py<PyArray2<f64>>> {
-        self.plastic_depth.as_ref().map(|field| field.clone_ref(py))
     }
 
     /// Certificate: how exactly the contact conditions hold.
@@ -214,10 +195,9 @@ impl ContactState {
             }
         }
         if fields {
-            dict.set_item("pressure", self.pressure(py))?;
-            dict.set_item("displacement", self.displacement(py))?;
-            dict.set_item("gap", self.gap(py))?;
-            dict.set_item("plastic_depth", self.plastic_depth(py))?;
+            for quantity in FIELDS {
+                dict.set_item(quantity.name, self.field(py, quantity))?;
+            }
             dict.set_item("patches", self.patches(py))?;
         }
         Ok(dict)

@@ -53,6 +53,7 @@ def test_every_quantity_is_a_property_and_in_the_stub(generate):
 def test_written_files_follow_from_the_tables(generate):
     for name, expected in (
         ("_formulas.py", generate.formulas()),
+        ("_effects.py", generate.effects()),
         ("_core.pyi", generate.stub((PACKAGE / "_core.pyi").read_text())),
     ):
         assert (PACKAGE / name).read_text() == expected, f"{name} is out of date: python generate.py writes it"
@@ -118,7 +119,7 @@ def test_every_model_is_a_class():
 
 
 def test_models_say_what_they_support():
-    keys = ["surfaces", "boundaries", "effects", "loads", "paths", "outputs"]
+    keys = ["surfaces", "boundaries", "effects", "needs", "loads", "paths", "outputs"]
     for model in (fc.Bem3d(), fc.Hertz(), fc.Equivalent(fc.Mdr1d())):
         assert list(model.supports) == keys and all(isinstance(words, tuple) for words in model.supports.values())
     assert "periodic" in fc.Bem3d().supports["boundaries"] and fc.Hertz().supports["effects"] == ()

@@ -2,9 +2,9 @@
 
 use contact_model::quantities::{AskedBy, QUANTITIES, Quantity};
 use contact_model::{
-    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Effect, Error, Friction,
-    Hardness, HeightMap, Line, Load, LoadKind, Output, Pair, Paths, PreparedContact, PronySeries, Relaxing,
-    Rheology, Scene, SelfAffine, Step, Surface, SurfaceKind, Tangential, Value,
+    Body, Boundary, Conductance, ContactModel, ContactState, Effect, Effects, Error, Friction, HeightMap,
+    Line, Load, LoadKind, Output, Pair, Paths, PreparedContact, Rheology, Scene, SelfAffine, Step, Surface,
+    SurfaceKind, Tangential, Value,
 };
 use fractal_contact::models::MODELS;
 use std::collections::BTreeSet;
@@ -42,25 +42,8 @@ fn surface(kind: SurfaceKind) -> Surface {
 }
 
 fn with_effect(mut scene: Scene, effect: Option<Effect>) -> Scene {
-    let arm = Relaxing { weight: 1.0, time: 1.0 };
-    let effects = &mut scene.effects;
-    match effect {
-        None => {}
-        Some(Effect::Hardness) => effects.hardness = Hardness::Limit { pressure: 0.05 },
-        Some(Effect::ShortRangeAdhesion) => effects.adhesion = Adhesion::ShortRange { work: 1e-4 },
-        Some(Effect::ExponentialAdhesion) => {
-            effects.adhesion =
-                Adhesion::FiniteRange { work: 1e-4, range: 0.02, law: AdhesionLaw::Exponential };
-        }
-        Some(Effect::DugdaleAdhesion) => {
-            effects.adhesion = Adhesion::FiniteRange { work: 1e-4, range: 0.02, law: AdhesionLaw::Dugdale };
-        }
-        Some(Effect::Friction) => effects.friction = Friction::Coulomb { coefficient: 0.3 },
-        Some(Effect::KelvinVoigt) => effects.rheology = Rheology::KelvinVoigt { viscosity: 1.0 },
-        Some(Effect::Maxwell) => effects.rheology = Rheology::Maxwell { viscosity: 1.0 },
-        Some(Effect::StandardSolid) => effects.rheology = Rheology::StandardSolid { arm },
-        Some(Effect::PronySeries) => effects.rheology = Rheology::Prony(PronySeries::new(&[arm]).unwrap()),
-        Some(other) => panic!("the effect {other:?} for this test"),
+    if let Some(effect) = effect {
+        scene.effects = Effects { boundary: scene.effects.boundary, ..effect.example() };
     }
     scene
 }
@@ -240,6 +223,28 @@ fn an_effect_that_is_declared_matters() {
             assert!(differs, "{record:?}: {effect:?} changes no state");
         }
     }
+}
+
+/// Every model of the model crates is in the table.
+#[test]
+fn no_model_is_left_out() {
+    // The surfaces of one ensemble, by the 1D reduction.
+    let apart = ["Ensemble"];
+    let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    let mut found = Vec::new();
+    for folder in ["analytic/src", "bem3d/src/model", "mdr1d/src"] {
+        for entry in std::fs::read_dir(crates.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let Ok(text) = std::fs::read_to_string(&path) else { continue };
+            let implemented = text.lines().filter_map(|line| line.split_once(" ContactModel for "));
+            let names = implemented.map(|(_, rest)| rest.split([' ', '<']).next().unwrap_or(rest).to_owned());
+            found.extend(names.filter(|name| !apart.contains(&name.as_str())));
+        }
+    }
+    for name in &found {
+        assert!(MODELS.iter().any(|record| record.class == name), "{name} is not among MODELS");
+    }
+    assert_eq!(found.len(), MODELS.len());
 }
 
 /// One thing that is not among the abilities is enough to be refused, and the refusal names it.

@@ -1,8 +1,10 @@
 //! Pages and tables that follow from the table of quantities and that of models. With `UPDATE_DOCUMENTS=1` they are written anew.
 
 use crate::abilities::told;
+use contact_model::Output;
 use contact_model::quantities::{Average, Compared, QUANTITIES, Quantity, Role};
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
+use fractal_contact::scenes::{EFFECT_KEYS, EffectKey};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -118,7 +120,7 @@ fn models_page() -> String {
          ask of it. A scene that asks for more is refused before anything is computed, with the models that can.\n\
          Combinations that a model cannot do together it refuses itself. Python has the same as `model.supports`.\n\n{}\n## What they are\n\n{}",
         table(
-            &["model", "surfaces", "boundaries", "effects", "loads", "paths", "outputs"],
+            &["model", "surfaces", "boundaries", "effects", "needs", "loads", "paths", "outputs"],
             MODELS.iter().map(cells)
         ),
         table(&["model", "what it is", "what to expect of its numbers"], MODELS.iter().map(about)),
@@ -137,6 +139,29 @@ fn readme() -> String {
     table(&["model", "what it is", "effects"], MODELS.iter().map(cells))
 }
 
+/// The keys of `[effects]` of a scene.
+fn effects() -> String {
+    let cells = |key: &EffectKey| {
+        vec![format!("`{}`", key.name), key.takes.to_owned(), key.about.to_owned(), key.off.to_owned()]
+    };
+    table(&["key", "takes", "what it is", "where it is not named"], EFFECT_KEYS.iter().map(cells))
+}
+
+/// The keys of `[outputs]` that models answer.
+fn outputs() -> String {
+    let cells = |output: &Output| {
+        let takes = match output {
+            Output::Conductance => {
+                "`{ kind = \"electrical\", resistivities }` or `{ kind = \"thermal\", conductivities }`, two values each"
+            }
+            field if field.is_field() => "formats",
+            _ => "true",
+        };
+        vec![format!("`{}`", output.name()), takes.to_owned(), output.sentence().to_owned()]
+    };
+    table(&["key", "takes", "what it is"], Output::ALL.iter().map(cells))
+}
+
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -152,17 +177,19 @@ fn with_part(text: &str, name: &str, part: &str) -> String {
 #[test]
 fn documents_follow_from_the_tables() {
     let update = std::env::var_os("UPDATE_DOCUMENTS").is_some();
-    let part = |file: &str, name: &str, part: String| {
+    let parts = |file: &str, parts: &[(&str, String)]| {
         let text = std::fs::read_to_string(root().join(file)).unwrap();
-        (file.to_owned(), with_part(&text, name, &part), text)
+        let expected = parts.iter().fold(text.clone(), |text, (name, part)| with_part(&text, name, part));
+        (file.to_owned(), expected, text)
     };
     let page = |file: &str, page: String| {
         let text = std::fs::read_to_string(root().join(file)).unwrap_or_default();
         (file.to_owned(), page, text)
     };
     let documents = [
-        part("GLOSSARY.md", "quantities", glossary()),
-        part("README.md", "models", readme()),
+        parts("GLOSSARY.md", &[("quantities", glossary())]),
+        parts("README.md", &[("models", readme())]),
+        parts("book/src/scene-file.md", &[("effects", effects()), ("outputs", outputs())]),
         page("book/src/quantities.md", quantities_page()),
         page("book/src/models.md", models_page()),
     ];

@@ -62,6 +62,7 @@ impl ContactModel for CattaneoMindlin {
         Abilities {
             surfaces: &[SurfaceKind::Sphere],
             effects: &[Effect::Friction],
+            needs_effect: true,
             paths: Paths::Remembered,
             outputs: closed::WITH_AREA,
             ..Abilities::ELASTIC
@@ -251,10 +252,7 @@ impl PreparedContact for PreparedCattaneoMindlin {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.restart();
-        let mut state = self.advance_until(Step::normal(0.0, load), stop)?;
-        state.time = None;
-        Ok(state)
+        self.solve_as_step(load, stop)
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {

@@ -1,9 +1,10 @@
 //! What a model can do, as data: refusals, help and tables of models follow from it.
 
+use crate::effects::{Boundary, Effect};
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::quantities::Output;
-use crate::scene::{Boundary, Effect, Scene, Surface};
+use crate::scene::{Scene, Surface};
 
 /// A kind of surface, without its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -151,6 +152,8 @@ pub struct Abilities {
     pub boundaries: &'static [Boundary],
     /// Effects.
     pub effects: &'static [Effect],
+    /// Whether it means nothing without one of them.
+    pub needs_effect: bool,
     /// Loads that may be prescribed.
     pub loads: &'static [LoadKind],
     /// What a path of loads is to it.
@@ -166,6 +169,7 @@ impl Abilities {
         surfaces: &[],
         boundaries: &[Boundary::Free],
         effects: &[],
+        needs_effect: false,
         loads: &[LoadKind::Force, LoadKind::Approach],
         paths: Paths::Forgotten,
         outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance],
@@ -198,6 +202,11 @@ impl Abilities {
         }
         for output in scene.outputs.asked().filter(|output| !self.outputs.contains(output)) {
             lacks.push(format!("the output `{}`", output.name()));
+        }
+        if self.needs_effect && !scene.effects.named().any(|effect| self.effects.contains(&effect)) {
+            let mut keys: Vec<&str> = self.effects.iter().map(|effect| effect.key()).collect();
+            keys.dedup();
+            lacks.push(format!("a contact without {}", keys.join(" or ")));
         }
         lacks.into_iter()
     }

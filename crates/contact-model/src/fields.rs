@@ -98,12 +98,100 @@ pub struct Fields {
 impl Fields {
     /// The field of an output; `None` for an output that is no field, and where it was not asked for.
     pub fn get(&self, output: Output) -> Option<&Field> {
-        match output {
-            Output::Pressure => self.pressure.as_ref(),
-            Output::Displacement => self.displacement.as_ref(),
-            Output::Gap => self.gap.as_ref(),
-            Output::PlasticDepth => self.plastic_depth.as_ref(),
-            _ => None,
-        }
+        output.field().and_then(|quantity| (quantity.get)(self))
+    }
+}
+
+/// Which cell of a block stands for it, where a field is shown on fewer points than it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// That of the largest value, so that a single cell under pressure is seen; zero is no value worth a colour.
+    Largest,
+    /// That of the smallest value, so that a single cell without a gap is seen.
+    Smallest,
+    /// The one in the middle.
+    Middle,
+}
+
+/// A field: all that is said of it anywhere.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldQuantity {
+    /// Its name in code, scenes, files and Python: that of its output.
+    pub name: &'static str,
+    /// What it is called beside a colour bar.
+    pub words: &'static str,
+    /// Its symbol, in the commands of TeX; may be empty.
+    pub symbol: &'static str,
+    /// Its unit of SI.
+    pub unit: &'static str,
+    /// What it is, in one sentence.
+    pub meaning: &'static str,
+    /// Which cell is shown.
+    pub shown: Shown,
+    /// Whether pictures outline the contact in it.
+    pub outlined: bool,
+    /// It among the fields of a state.
+    pub get: fn(&Fields) -> Option<&Field>,
+    /// Takes it away from the fields of a state.
+    pub take: fn(&mut Fields) -> Option<Field>,
+}
+
+/// Every field of a state, in the order of a report.
+pub static FIELDS: &[FieldQuantity] = &[
+    FieldQuantity {
+        name: "pressure",
+        words: "pressure",
+        symbol: "p",
+        unit: "Pa",
+        meaning: "pressure of each cell; negative, a tension, with adhesion only",
+        shown: Shown::Largest,
+        outlined: false,
+        get: |fields| fields.pressure.as_ref(),
+        take: |fields| fields.pressure.take(),
+    },
+    FieldQuantity {
+        name: "gap",
+        words: "gap",
+        symbol: "g",
+        unit: "m",
+        meaning: "gap to the indented surface; infinite at undefined points",
+        shown: Shown::Smallest,
+        outlined: true,
+        get: |fields| fields.gap.as_ref(),
+        take: |fields| fields.gap.take(),
+    },
+    FieldQuantity {
+        name: "plastic_depth",
+        words: "plastic indentation",
+        symbol: "",
+        unit: "m",
+        meaning: "depth of the plastic indentation >= 0",
+        shown: Shown::Largest,
+        outlined: true,
+        get: |fields| fields.plastic_depth.as_ref(),
+        take: |fields| fields.plastic_depth.take(),
+    },
+    FieldQuantity {
+        name: "displacement",
+        words: "displacement",
+        symbol: "u",
+        unit: "m",
+        meaning: "displacement of the elastic surface",
+        shown: Shown::Middle,
+        outlined: true,
+        get: |fields| fields.displacement.as_ref(),
+        take: |fields| fields.displacement.take(),
+    },
+];
+
+impl Output {
+    /// The field that it asks for, where it is one.
+    pub fn field(self) -> Option<&'static FieldQuantity> {
+        FIELDS.iter().find(|field| field.name == self.name())
+    }
+
+    /// Whether it is a field over the cells.
+    pub fn is_field(self) -> bool {
+        self.field().is_some()
     }
 }

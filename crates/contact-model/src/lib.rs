@@ -33,6 +33,7 @@
 mod abilities;
 mod cells;
 mod conductance;
+mod effects;
 mod error;
 mod fields;
 mod height_map;
@@ -56,8 +57,9 @@ mod work;
 pub use abilities::{Abilities, LoadKind, Paths, SurfaceKind};
 pub use cells::{Cells, Size};
 pub use conductance::Conductance;
+pub use effects::*;
 pub use error::{Error, Result};
-pub use fields::{Field, Fields};
+pub use fields::{FIELDS, Field, FieldQuantity, Fields, Shown};
 pub use height_map::HeightMap;
 pub use line::Line;
 pub use load::Load;
@@ -68,10 +70,7 @@ pub use pair::{Body, Pair};
 pub use patches::Patches;
 pub use quantities::{Output, Outputs};
 pub use rheology::{PronySeries, Relaxing, Rheology};
-pub use scene::{
-    Adhesion, AdhesionLaw, Amplitude, Boundary, Effect, Effects, Friction, Hardness, Scene, SelfAffine,
-    Surface, line_length,
-};
+pub use scene::{Amplitude, Scene, SelfAffine, Surface, line_length};
 pub use state::{
     AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, SolveReport, Status,
     TangentialState,

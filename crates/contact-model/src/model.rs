@@ -101,6 +101,18 @@ pub trait PreparedContact: Send {
     /// [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState>;
 
+    /// Solves for one load as a step from no contact: [`PreparedContact::solve_until`] of a contact whose states are those of paths.
+    ///
+    /// # Errors
+    /// As [`PreparedContact::advance_until`].
+    fn solve_as_step(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        self.restart();
+        let mut state = self.advance_until(Step::normal(0.0, load), stop)?;
+        // A load alone has no time.
+        state.time = None;
+        Ok(state)
+    }
+
     /// Solves for one load.
     ///
     /// # Errors

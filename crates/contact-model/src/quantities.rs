@@ -5,14 +5,14 @@
 //! dimensional number is in the scene's own.
 
 use crate::conductance::Conductance;
+use crate::effects::{Boundary, Effects};
 use crate::error::Result;
 use crate::normalisation::Normalisation;
-use crate::scene::{Boundary, Effects};
 use crate::state::ContactState;
 use crate::value::Value;
 
 macro_rules! outputs {
-    ($($(#[doc = $doc:literal])+ $variant:ident $field:ident: $kind:ident,)+) => {
+    ($($(#[doc = $doc:literal])+ $variant:ident $field:ident,)+) => {
         /// Something that is computed where it is asked for.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
@@ -50,14 +50,6 @@ macro_rules! outputs {
                     Self::Conductance => "Conductance through the contact; it follows from the stiffness of the held area.",
                 }
             }
-
-            /// Whether it is a field over the cells.
-            pub fn is_field(self) -> bool {
-                match self {
-                    $(Self::$variant => matches!(Kind::$kind, Kind::Field),)+
-                    Self::Conductance => false,
-                }
-            }
         }
 
         impl Outputs {
@@ -80,31 +72,26 @@ macro_rules! outputs {
     };
 }
 
-enum Kind {
-    Number,
-    Field,
-}
-
-// A new output: a line here, its quantities in the table below, and a field of the state.
+// A new output: a line here; its quantities in the table below, or its field in `FIELDS`; a member of the state or of its fields.
 outputs! {
     /// Stiffness k = dF/dd along the branch of states.
-    Stiffness stiffness: Number,
+    Stiffness stiffness,
     /// Stiffness of the whole contact area, held.
-    StiffnessFixedArea stiffness_fixed_area: Number,
+    StiffnessFixedArea stiffness_fixed_area,
     /// Real contact area.
-    Area area: Number,
+    Area area,
     /// Mean gap; with periodic boundaries only, where a state has no approach.
-    MeanGap mean_gap: Number,
+    MeanGap mean_gap,
     /// Pressure field.
-    Pressure pressure: Field,
+    Pressure pressure,
     /// Displacement field.
-    Displacement displacement: Field,
+    Displacement displacement,
     /// Gap field.
-    Gap gap: Field,
+    Gap gap,
     /// Field of the plastic indentation; with a hardness only.
-    PlasticDepth plastic_depth: Field,
+    PlasticDepth plastic_depth,
     /// Connected contact areas, their number and sizes.
-    ContactPatches contact_patches: Number,
+    ContactPatches contact_patches,
 }
 
 impl Outputs {
@@ -509,7 +496,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Effect as NamedEffect;
+    use crate::effects::Effect as NamedEffect;
 
     #[test]
     fn names_are_words_and_stand_once() {

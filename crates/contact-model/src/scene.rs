@@ -1,12 +1,12 @@
 //! Physics: what is pressed, which effects count, what is asked.
 
 use crate::cells::Size;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::effects::{Boundary, Effects, Hardness};
+use crate::error::{Error, Result, positive};
 use crate::height_map::HeightMap;
 use crate::line::Line;
 use crate::pair::Pair;
 use crate::quantities::Outputs;
-use crate::rheology::Rheology;
 use std::sync::Arc;
 
 /// How far the modulus may be from E* of the pair: it may have been rounded on its way through a file.
@@ -290,213 +290,12 @@ pub fn line_length(side: f64) -> f64 {
     side * std::f64::consts::FRAC_2_SQRT_PI
 }
 
-/// Effects beyond linear elastic normal contact with free boundaries. Off unless named; a model that lacks
-/// one refuses it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Effects {
-    /// What lies outside the square.
-    pub boundary: Boundary,
-    /// Largest pressure that the bodies carry. A load is solved from the virgin surface; the indentation of a path stays from step to
-    /// step ([`crate::PreparedContact::advance_until`]).
-    pub hardness: Hardness,
-    /// Attraction between the surfaces.
-    pub adhesion: Adhesion,
-    /// Friction under tangential load.
-    pub friction: Friction,
-    /// Time dependence of the material.
-    pub rheology: Rheology,
-}
-
-impl Effects {
-    /// Checks the parameters of the effects that are on.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] with the first value that makes no sense.
-    pub fn validate(&self) -> Result<()> {
-        if let Hardness::Limit { pressure } = self.hardness {
-            positive("hardness", pressure)?;
-        }
-        match self.adhesion {
-            Adhesion::Off => {}
-            Adhesion::ShortRange { work } => {
-                non_negative("work of adhesion", work)?;
-            }
-            Adhesion::FiniteRange { work, range, .. } => {
-                non_negative("work of adhesion", work)?;
-                positive("range of adhesion", range)?;
-            }
-        }
-        if let Friction::Coulomb { coefficient } = self.friction {
-            non_negative("coefficient of friction", coefficient)?;
-        }
-        self.rheology.validate()
-    }
-
-    /// The effects that are on; the boundary is none of them ([`Effects::boundary`]).
-    ///
-    /// ```
-    /// use contact_model::{Adhesion, Effect, Effects};
-    /// let effects = Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() };
-    /// assert_eq!(effects.named().collect::<Vec<_>>(), [Effect::ShortRangeAdhesion]);
-    /// ```
-    pub fn named(&self) -> impl Iterator<Item = Effect> + use<> {
-        // All fields, so that a new effect is not forgotten.
-        let Self { boundary: _, hardness, adhesion, friction, rheology } = self;
-        let hardness = match hardness {
-            Hardness::Off => None,
-            Hardness::Limit { .. } => Some(Effect::Hardness),
-        };
-        let adhesion = match adhesion {
-            Adhesion::Off => None,
-            Adhesion::ShortRange { .. } => Some(Effect::ShortRangeAdhesion),
-            Adhesion::FiniteRange { law: AdhesionLaw::Exponential, .. } => Some(Effect::ExponentialAdhesion),
-            Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => Some(Effect::DugdaleAdhesion),
-        };
-        let friction = match friction {
-            Friction::Off => None,
-            Friction::Coulomb { .. } => Some(Effect::Friction),
-        };
-        let rheology = match rheology {
-            Rheology::Elastic => None,
-            Rheology::KelvinVoigt { .. } => Some(Effect::KelvinVoigt),
-            Rheology::Maxwell { .. } => Some(Effect::Maxwell),
-            Rheology::StandardSolid { .. } => Some(Effect::StandardSolid),
-            Rheology::Prony(_) => Some(Effect::PronySeries),
-        };
-        [hardness, adhesion, friction, rheology].into_iter().flatten()
-    }
-}
-
-macro_rules! effects {
-    ($($(#[doc = $doc:literal])+ $variant:ident $key:literal $words:literal,)+) => {
-        /// An effect that is on, without its numbers: what a model can or cannot do.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        #[non_exhaustive]
-        pub enum Effect {
-            $($(#[doc = $doc])+ $variant,)+
-        }
-
-        impl Effect {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-
-            /// Its key in `[effects]` of a scene and in Python.
-            pub fn key(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $key,)+
-                }
-            }
-
-            /// What it is, for refusals and tables.
-            pub fn words(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $words,)+
-                }
-            }
-        }
-    };
-}
-
-// Each with its key in `[effects]` and its words.
-effects! {
-    /// [`Hardness::Limit`].
-    Hardness "hardness" "a hardness",
-    /// [`Adhesion::ShortRange`].
-    ShortRangeAdhesion "adhesion" "adhesion of short range",
-    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Exponential`].
-    ExponentialAdhesion "adhesion" "adhesion by the exponential law",
-    /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Dugdale`].
-    DugdaleAdhesion "adhesion" "adhesion by Dugdale's law",
-    /// [`Friction::Coulomb`].
-    Friction "friction" "friction",
-    /// [`Rheology::KelvinVoigt`].
-    KelvinVoigt "rheology" "the rheology of Kelvin and Voigt",
-    /// [`Rheology::Maxwell`].
-    Maxwell "rheology" "the rheology of Maxwell",
-    /// [`Rheology::StandardSolid`].
-    StandardSolid "rheology" "the rheology of a standard solid",
-    /// [`Rheology::Prony`].
-    PronySeries "rheology" "the rheology of a Prony series",
-}
-
-/// What lies outside the square.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum Boundary {
-    /// An unloaded half-space: the edges are the physical edges of the indenter (the paper's case).
-    #[default]
-    Free,
-    /// Periodic copies of the square.
-    Periodic,
-}
-
-/// Largest pressure that the bodies carry: where it is reached, the softer one is indented without a further rise of the pressure
-/// (perfect plasticity, `0 <= p <= p_s`).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub enum Hardness {
-    /// None: the contact stays elastic at any pressure.
-    #[default]
-    Off,
-    /// A limit of the pressure.
-    Limit {
-        /// Hardness p_s.
-        pressure: f64,
-    },
-}
-
-/// Attraction between the surfaces.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub enum Adhesion {
-    /// None.
-    #[default]
-    Off,
-    /// Short-range adhesion (JKR) with this work of adhesion (energy per area): the limit in which nothing attracts across a gap and the
-    /// edges of a contact bear any tension.
-    ShortRange {
-        /// Work of adhesion Delta gamma.
-        work: f64,
-    },
-    /// Attraction across an open gap g.
-    FiniteRange {
-        /// Work of adhesion Delta gamma: the integral of the traction over all gaps.
-        work: f64,
-        /// Range rho: the traction is about `work/range` below it.
-        range: f64,
-        /// How the traction falls with the gap.
-        law: AdhesionLaw,
-    },
-}
-
-/// How the attractive traction of [`Adhesion::FiniteRange`] falls with the gap g.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum AdhesionLaw {
-    /// `work/range exp(-g/range)`.
-    Exponential,
-    /// `work/range` up to the range, none beyond (Dugdale, Maugis).
-    Dugdale,
-}
-
-/// Friction under tangential load.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub enum Friction {
-    /// None.
-    #[default]
-    Off,
-    /// Coulomb's law with this coefficient.
-    Coulomb {
-        /// Coefficient of friction.
-        coefficient: f64,
-    },
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{Adhesion, AdhesionLaw, Effect, Friction};
     use crate::pair::Body;
+    use crate::rheology::Rheology;
 
     #[test]
     fn fractal_dimension_is_checked() {
@@ -516,6 +315,14 @@ mod tests {
         assert_eq!(named, ["adhesion of short range"]);
         scene.modulus = f64::NAN;
         assert!(scene.validate().is_err());
+    }
+
+    #[test]
+    fn an_example_is_its_effect_alone() {
+        for &effect in Effect::ALL {
+            let example = effect.example();
+            assert!(example.validate().is_ok() && example.named().eq([effect]), "{effect:?}: {example:?}");
+        }
     }
 
     #[test]

@@ -32,22 +32,7 @@ pub struct Sample {
     /// Which way the solver took.
     pub strategy: String,
     /// The evidence.
-    #[serde(with = "StoredCertificate")]
     pub certificate: Certificate,
-}
-
-/// [`Certificate`] as it is stored.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Certificate")]
-struct StoredCertificate {
-    duality_gap: f64,
-    penetration: f64,
-    complementarity: f64,
-    load_error: f64,
-    stiffness_error: Option<f64>,
-    quotient_error: Option<f64>,
-    force_error: Option<f64>,
-    equilibrium: Option<f64>,
 }
 
 impl Sample {

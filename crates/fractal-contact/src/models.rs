@@ -214,6 +214,7 @@ pub fn abilities(model: &dyn ContactModel) -> Vec<(&'static str, Vec<&'static st
                 .collect(),
         ),
         ("effects", abilities.effects.iter().map(|effect: &Effect| effect.words()).collect()),
+        ("needs", if abilities.needs_effect { vec!["one of its effects"] } else { Vec::new() }),
         ("loads", abilities.loads.iter().map(|load: &LoadKind| load.name()).collect()),
         ("paths", vec![paths]),
         ("outputs", abilities.outputs.iter().map(|output: &Output| output.name()).collect()),

@@ -185,6 +185,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             surfaces,
             outputs: OUTPUTS,
             effects: EFFECTS,
+            needs_effect: true,
             paths: Paths::Remembered,
             ..Abilities::ELASTIC
         }
@@ -251,10 +252,7 @@ impl PreparedContact for PreparedEquivalent {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.restart();
-        let mut state = self.advance_until(Step::normal(0.0, load), stop)?;
-        state.time = None;
-        Ok(state)
+        self.solve_as_step(load, stop)
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {

@@ -67,6 +67,7 @@ impl ContactModel for PartialSlip {
                 SurfaceKind::FlatCircle,
             ],
             effects: &[Effect::Friction],
+            needs_effect: true,
             paths: Paths::Remembered,
             outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area],
             ..Abilities::ELASTIC
@@ -135,10 +136,7 @@ impl PreparedContact for PreparedPartialSlip {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.restart();
-        let mut state = self.advance_until(Step::normal(0.0, load), stop)?;
-        state.time = None;
-        Ok(state)
+        self.solve_as_step(load, stop)
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {

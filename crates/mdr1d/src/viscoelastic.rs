@@ -76,6 +76,7 @@ impl ContactModel for Viscoelastic {
                 SurfaceKind::FlatCircle,
             ],
             effects: RHEOLOGIES,
+            needs_effect: true,
             paths: Paths::Needed,
             outputs: &[Output::Area, Output::Conductance],
             ..Abilities::ELASTIC
@@ -125,10 +126,7 @@ impl PreparedContact for PreparedViscoelastic {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        self.restart();
-        let mut state = self.advance_until(Step::normal(0.0, load), stop)?;
-        state.time = None;
-        Ok(state)
+        self.solve_as_step(load, stop)
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {

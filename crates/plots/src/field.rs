@@ -6,21 +6,10 @@ use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polyline, rectangle};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
 use crate::unit_prefix::prefixed;
-use contact_model::{Cells, Size};
+use contact_model::{Cells, Shown, Size};
 use runs::{Error, Result, files};
 use std::ops::Range;
 use std::path::Path;
-
-/// Which of the values that fall on one pixel it shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shown {
-    /// The largest, so that a single cell under pressure is seen; zero has no colour.
-    Largest,
-    /// The smallest, so that a single cell without a gap is seen.
-    Smallest,
-    /// The value in the middle.
-    Middle,
-}
 
 /// A field and what is said of it.
 #[derive(Debug, Clone, PartialEq)]

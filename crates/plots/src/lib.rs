@@ -32,7 +32,7 @@ mod unit_prefix;
 pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
 pub use colours::{encode_viridis, viridis};
-pub use field::{FieldPicture, Shown};
+pub use field::FieldPicture;
 pub use legend::Legend;
 pub use map::{encode_grey, grey, write_grey};
 pub use maps::{GreyMap, save_maps};

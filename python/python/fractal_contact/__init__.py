@@ -43,7 +43,8 @@ from ._errors import (
 )
 from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, si, write_surface
 from ._formulas import *  # noqa: F403
-from ._inputs import Body, Effects, Scene, Surface
+from ._effects import Effects
+from ._inputs import Body, Scene, Surface
 from ._models import (
     Bem3d,
     Equivalent,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._core import HeightMap, SceneFile
+from ._effects import Effects
 
 Size = float | tuple[float, float]
 Cells = int | tuple[int, int]
@@ -156,67 +157,6 @@ class Body:
 
     young: float
     poisson: float
-
-
-@dataclass(frozen=True)
-class Effects:
-    """Effects beyond linear elastic normal contact with free boundaries.
-
-    Off unless named; a model that lacks one refuses it.
-
-    Parameters
-    ----------
-    boundary : {"free", "periodic"}
-        What lies outside of the rectangle.
-    hardness : float, optional
-        Largest pressure that the bodies carry (force/length^2), perfect plasticity. `Contact.solve` begins with the
-        virgin surface and refuses decreasing loads; `Contact.advance` and `Contact.follow` keep the indentation.
-    adhesion : float or mapping, optional
-        Work of adhesion (energy/length^2), of short range (JKR); or of a finite range (length), across open gaps,
-        ``{"work": ..., "range": ..., "law": "exponential" or "dugdale"}``, by the exponential law if none is named.
-    friction : float, optional
-        Coefficient of Coulomb's friction.
-    rheology : mapping, optional
-        ``{"kind": "kelvin_voigt" or "maxwell", "viscosity": ...}``,
-        ``{"kind": "standard_solid", "weight": ..., "time": ...}`` or
-        ``{"kind": "prony", "weights": [...], "times": [...]}``.
-
-    Examples
-    --------
-    >>> import fractal_contact as fc
-    >>> fc.Effects(adhesion={"work": 0.05, "range": 1e-9, "law": "dugdale"}).adhesion["law"]
-    'dugdale'
-    >>> fc.Effects(hardness=-1.0)  # doctest: +IGNORE_EXCEPTION_DETAIL
-    Traceback (most recent call last):
-    DomainError: hardness = -1: expected a finite number > 0
-    """
-
-    boundary: str = "free"
-    hardness: float | None = None
-    adhesion: float | Mapping[str, Any] | None = None
-    friction: float | None = None
-    rheology: Mapping[str, Any] | None = None
-
-    def __post_init__(self) -> None:
-        # Copies: a change of the caller's mapping is none of the effect.
-        for name in ("adhesion", "rheology"):
-            value = getattr(self, name)
-            if isinstance(value, Mapping):
-                object.__setattr__(self, name, dict(value))
-        # Mistakes are told where they are made.
-        _core.check_effects(self._values())
-
-    def _values(self) -> dict[str, Any]:
-        """The effects as the compiled part takes them."""
-        values = {one.name: getattr(self, one.name) for one in fields(self)}
-        if values["adhesion"] is not None and not isinstance(values["adhesion"], dict):
-            values["adhesion"] = {"work": values["adhesion"]}
-        numbers = {"hardness": values["hardness"], "friction": values["friction"], **(values["adhesion"] or {})}
-        for name, value in numbers.items():
-            if isinstance(value, bool | np.bool_):
-                of = "" if name in values else " of adhesion"
-                raise TypeError(f"{name}{of} is {value!r}: expected a number")
-        return values
 
 
 @dataclass(frozen=True)

@@ -65,6 +65,7 @@ impl ContactModel for Bem3d {
             loads: LoadKind::ALL,
             paths: Paths::Remembered,
             outputs: Output::ALL,
+            ..Abilities::ELASTIC
         }
     }
 

@@ -58,6 +58,20 @@ pub struct PreparedSurface {
     pub(super) is_profile: bool,
 }
 
+impl Bem3d {
+    /// The heights that are pressed in a scene: given, or drawn on the cells of this model.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a line; what drawing a surface refuses.
+    pub fn heights(&self, scene: &Scene, seed: u64) -> Result<Arc<HeightMap>> {
+        match &scene.surface {
+            Surface::Heights(map) | Surface::Profile(map) => Ok(Arc::clone(map)),
+            Surface::Line { .. } => Err(Error::unsupported(NAME, "a line (it needs a map)")),
+            surface => surface_gen::height_map(surface, self.grid(surface.size()), seed),
+        }
+    }
+}
+
 impl PreparedSurface {
     /// The surface of a scene.
     pub(super) fn new(
@@ -67,11 +81,7 @@ impl PreparedSurface {
         tuning: &Tuning,
         recorder: &Recorder,
     ) -> Result<Self> {
-        let map = match &scene.surface {
-            Surface::Heights(map) | Surface::Profile(map) => Arc::clone(map),
-            Surface::Line { .. } => return Err(Error::unsupported(NAME, "a line (it needs a map)")),
-            surface => surface_gen::height_map(surface, options.grid(surface.size()), seed)?,
-        };
+        let map = options.heights(scene, seed)?;
         let has_rms =
             matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
         Self::of_map(*options, scene, &map, has_rms, (tuning, recorder))

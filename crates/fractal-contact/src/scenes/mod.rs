@@ -81,7 +81,7 @@ pub use plan::scene_plan::{ModelPlan, Plan, check};
 pub use read::accuracy_target::AccuracyTarget;
 pub use read::diagnostic::Diagnostic;
 pub use read::distributed::Distributed;
-pub use read::effects::{EffectLine, effect_lines};
+pub use read::effects::{EFFECT_KEYS, EffectKey, EffectLine, effect_lines, parse_effects};
 pub use read::entries::System;
 pub use read::error::{Error, Result};
 pub use read::generated_surface::{GeneratedSurface, write_twin};

@@ -6,7 +6,6 @@ use analysis::{GridError, grid_error};
 use contact_model::quantities::{Compared, QUANTITIES, Quantity};
 use contact_model::{
     Boundary, Cells, ContactState, Error, HeightMap, Load, Normalisation, Output, Result, Scene, Stop,
-    Surface,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -153,10 +152,7 @@ pub(crate) fn solved_map(scene: &SceneFile, numerics: &Numerics, seed: u64) -> R
     let Some(elements) = numerics.boundary_elements() else {
         return Err(Error::unsupported(numerics.name(), "heights on cells: it has none"));
     };
-    match scene.surface.for_model(numerics, seed)? {
-        Surface::Heights(map) | Surface::Profile(map) => Ok(map),
-        surface => surface_gen::height_map(&surface, elements.grid(surface.size()), seed),
-    }
+    elements.heights(&scene.scene(numerics, seed)?, seed)
 }
 
 fn rms_slope(scene: &SceneFile, map: &HeightMap) -> Result<f64> {

@@ -56,7 +56,7 @@ impl ModelOnSurface {
     /// Bytes of its states and of the fields that are asked for.
     pub fn stored_bytes(&self, scene: &SceneFile) -> u64 {
         let states = scene.request.count() as u64;
-        let fields: usize = scene.requested.fields().iter().map(|(_, formats)| formats.len()).sum();
+        let fields: usize = scene.requested.fields().map(|(_, formats)| formats.len()).sum();
         let Cells { columns: x, rows: y } = cells(scene, self.numerics(scene));
         1000 + states * (1000 + 8 * x as u64 * y as u64 * fields as u64)
     }

@@ -1,5 +1,6 @@
 //! What is wrong with a scene, shown where it stands.
 
+use contact_model::Error;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -18,13 +19,24 @@ const SHOWN: usize = 100;
 ///     "error: `force = -1`: expected a number > 0\n --> a.toml:1:1\n  |\n1 | force = -1\n  | ^^^^^^^^^^\n  = help: press, do not pull"
 /// );
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Diagnostic {
     message: String,
-    is_note: bool,
+    kind: Kind,
     span: Option<Range<usize>>,
     help: Option<String>,
     place: Option<Box<SourceSpan>>,
+}
+
+/// What callers that raise an error of their own tell apart.
+#[derive(Debug, Clone, PartialEq)]
+enum Kind {
+    Note,
+    Mistake,
+    /// A value of another type than expected, or none where one is needed.
+    Type,
+    /// A number that makes no sense.
+    Domain(Box<Error>),
 }
 
 /// Where the text stands.
@@ -38,12 +50,35 @@ struct SourceSpan {
 impl Diagnostic {
     /// A mistake of the whole file.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), is_note: false, span: None, help: None, place: None }
+        Self { message: message.into(), kind: Kind::Mistake, span: None, help: None, place: None }
     }
 
     /// A remark on the whole file, which is read all the same.
     pub fn note(message: impl Into<String>) -> Self {
-        Self { is_note: true, ..Self::new(message) }
+        Self { kind: Kind::Note, ..Self::new(message) }
+    }
+
+    /// A value of another type than expected, or none where one is needed.
+    pub(crate) fn of_type(message: impl Into<String>) -> Self {
+        Self { kind: Kind::Type, ..Self::new(message) }
+    }
+
+    /// A number that makes no sense.
+    pub(crate) fn of_domain(message: impl Into<String>, error: Error) -> Self {
+        Self { kind: Kind::Domain(Box::new(error)), ..Self::new(message) }
+    }
+
+    /// Whether a value is of another type than expected, or missing.
+    pub fn is_type(&self) -> bool {
+        self.kind == Kind::Type
+    }
+
+    /// The number that makes no sense, as [`Error::Domain`].
+    pub fn domain(&self) -> Option<&Error> {
+        match &self.kind {
+            Kind::Domain(error) => Some(error),
+            _ => None,
+        }
     }
 
     /// At these bytes of the text; a place given before stays.
@@ -104,7 +139,7 @@ fn excerpt(text: &str, span: &Range<usize>) -> (usize, usize, String, usize) {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", if self.is_note { "note" } else { "error" }, self.message)?;
+        write!(f, "{}: {}", if self.kind == Kind::Note { "note" } else { "error" }, self.message)?;
         let mut indent = 1;
         if let Some(place) = &self.place {
             let path = place.path.display();

@@ -1,11 +1,110 @@
 //! `[effects]`: each off unless named.
 
+use crate::scenes::read::diagnostic::Diagnostic;
 use crate::scenes::read::entries::{Entries, Entry, Read, System};
 use crate::scenes::read::human_readable::number;
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
 };
 use surface_io::Dimension;
+
+/// A key of `[effects]`. Scenes, Python, the plan and the book take from here all that they say of it.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct EffectKey {
+    /// The key.
+    pub name: &'static str,
+    /// What stands for it in a scene.
+    pub takes: &'static str,
+    /// What it is, in a sentence or two.
+    pub about: &'static str,
+    /// What holds where it is not named.
+    pub off: &'static str,
+    read: fn(&Entry<'_>, System, &mut Effects) -> Read<()>,
+    /// Its numbers, where it is on.
+    words: fn(&Effects) -> Option<String>,
+}
+
+/// Every key of `[effects]`.
+pub static EFFECT_KEYS: &[EffectKey] = &[
+    EffectKey {
+        name: "boundary",
+        takes: "`\"free\"` or `\"periodic\"`",
+        about: "What lies outside of the rectangle.",
+        off: "an unloaded half-space outside the rectangle",
+        read: |entry, _, effects| {
+            effects.boundary = entry.choice(&[("free", Boundary::Free), ("periodic", Boundary::Periodic)])?;
+            Ok(())
+        },
+        words: |effects| {
+            (effects.boundary == Boundary::Periodic).then(|| "periodic copies of the rectangle".into())
+        },
+    },
+    EffectKey {
+        name: "hardness",
+        takes: "`{ pressure }`, or the pressure alone",
+        about: "Largest pressure that the bodies carry (perfect plasticity): the indentation stays along a path.",
+        off: "elastic at any pressure",
+        read: |entry, system, effects| {
+            let table = entry.table_or("pressure")?;
+            let pressure = table.require("pressure", "\"2 GPa\"")?.positive(Dimension::PRESSURE, system)?;
+            effects.hardness = Hardness::Limit { pressure };
+            table.finish()
+        },
+        words: |effects| match effects.hardness {
+            Hardness::Limit { pressure } => Some(format!("no pressure above {}", number(pressure))),
+            _ => None,
+        },
+    },
+    EffectKey {
+        name: "adhesion",
+        takes: "`{ work }`, or the work alone; `{ work, range, law }` with the `law` `\"exponential\"` or `\"dugdale\"`",
+        about: "Attraction with this work of adhesion (energy per area): of short range (JKR), or across open gaps \
+                with a range (a length), by the exponential law if none is named.",
+        off: "no attraction",
+        read: |entry, system, effects| {
+            effects.adhesion = read_adhesion(&entry.table_or("work")?, system)?;
+            Ok(())
+        },
+        words: |effects| match effects.adhesion {
+            Adhesion::Off => None,
+            Adhesion::ShortRange { work } => Some(format!("short range, work {} per area", number(work))),
+            Adhesion::FiniteRange { work, range, law } => {
+                let law = if law == AdhesionLaw::Dugdale { "Dugdale" } else { "exponential" };
+                Some(format!("{law}, work {} per area, range {}", number(work), number(range)))
+            }
+            other => Some(format!("{other:?}")),
+        },
+    },
+    EffectKey {
+        name: "friction",
+        takes: "`{ coefficient }`, or the coefficient alone",
+        about: "Coulomb's friction under a tangential load, with this coefficient.",
+        off: "no tangential load",
+        read: |entry, _, effects| {
+            let table = entry.table_or("coefficient")?;
+            let coefficient = table.require("coefficient", "0.3")?.not_negative_number()?;
+            effects.friction = Friction::Coulomb { coefficient };
+            table.finish()
+        },
+        words: |effects| match effects.friction {
+            Friction::Coulomb { coefficient } => Some(format!("Coulomb, coefficient {coefficient}")),
+            _ => None,
+        },
+    },
+    EffectKey {
+        name: "rheology",
+        takes: "`{ kind = \"kelvin_voigt\" or \"maxwell\", viscosity }`, \
+                `{ kind = \"standard_solid\", weight, time }`, `{ kind = \"prony\", weights, times }`",
+        about: "Time dependence of the material.",
+        off: "elastic",
+        read: |entry, system, effects| {
+            effects.rheology = read_rheology(entry, system)?;
+            Ok(())
+        },
+        words: |effects| (effects.rheology != Rheology::Elastic).then(|| rheology_words(&effects.rheology)),
+    },
+];
 
 /// An effect of a scene and why it is on or off.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,44 +119,63 @@ pub struct EffectLine {
 
 /// All effects of a scene, on or off.
 pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
-    let line = |name, on: bool, value: String, off: &str| EffectLine {
-        name,
-        on,
-        reason: if on { value } else { format!("not named: {off}") },
+    let line = |key: &EffectKey| {
+        let words = (key.words)(effects);
+        let (on, off) = (words.is_some(), format!("not named: {}", key.off));
+        EffectLine { name: key.name, on, reason: words.unwrap_or(off) }
     };
-    // All fields, so that a new effect is not forgotten.
-    let Effects { boundary, hardness, adhesion, friction, rheology } = effects;
-    let boundary = *boundary == Boundary::Periodic;
-    let adhesion = match *adhesion {
-        Adhesion::Off => None,
-        Adhesion::ShortRange { work } => Some(format!("short range, work {} per area", number(work))),
-        Adhesion::FiniteRange { work, range, law } => {
-            let law = if law == AdhesionLaw::Dugdale { "Dugdale" } else { "exponential" };
-            Some(format!("{law}, work {} per area, range {}", number(work), number(range)))
+    EFFECT_KEYS.iter().map(line).collect()
+}
+
+/// Reads `[effects]`.
+pub(crate) fn read_effects(table: Option<Entries<'_>>, system: System) -> Read<Effects> {
+    let mut effects = Effects::default();
+    let Some(table) = table else { return Ok(effects) };
+    for key in EFFECT_KEYS {
+        if let Some(entry) = table.find(key.name) {
+            (key.read)(&entry, system, &mut effects)?;
         }
-        other => Some(format!("{other:?}")),
+    }
+    table.finish()?;
+    Ok(effects)
+}
+
+/// Effects from the text of `[effects]` without its heading, with plain numbers in consistent units.
+///
+/// # Errors
+/// What is wrong, as in a scene.
+///
+/// ```
+/// use fractal_contact::Hardness;
+/// let effects = fractal_contact::scenes::parse_effects("hardness = 0.1")?;
+/// assert_eq!(effects.hardness, Hardness::Limit { pressure: 0.1 });
+/// # Ok::<(), fractal_contact::scenes::Diagnostic>(())
+/// ```
+pub fn parse_effects(text: &str) -> Result<Effects, Diagnostic> {
+    Entries::of_text("effects", text, |table| read_effects(Some(table), System::None))
+}
+
+fn read_adhesion(table: &Entries<'_>, system: System) -> Read<Adhesion> {
+    let work = table.require("work", "\"50 mJ/m^2\"")?.not_negative(Dimension::ENERGY_PER_AREA, system)?;
+    let words = [("exponential", AdhesionLaw::Exponential), ("dugdale", AdhesionLaw::Dugdale)];
+    let law = table.find("law").map(|e| Ok((e.choice(&words)?, e))).transpose()?;
+    let adhesion = match (table.find("range"), law) {
+        (None, None) => Adhesion::ShortRange { work },
+        (Some(range), law) => {
+            let range = range.positive(Dimension::LENGTH, system)?;
+            let law = law.map_or(AdhesionLaw::Exponential, |(law, _)| law);
+            Adhesion::FiniteRange { work, range, law }
+        }
+        (None, Some((_, entry))) => {
+            return Err(entry
+                .diagnostic_at_key(
+                    "`law` says how the attraction falls with the gap, and no `range` is given",
+                )
+                .with_help("add `range = \"1 nm\"`, or remove `law` for short-range adhesion (JKR)"));
+        }
     };
-    let hardness = match *hardness {
-        Hardness::Limit { pressure } => Some(format!("no pressure above {}", number(pressure))),
-        _ => None,
-    };
-    let (coefficient, friction) = match *friction {
-        Friction::Coulomb { coefficient } => (coefficient, true),
-        _ => (0.0, false),
-    };
-    let elastic = *rheology == Rheology::Elastic;
-    vec![
-        line(
-            "boundary",
-            boundary,
-            "periodic copies of the rectangle".into(),
-            "an unloaded half-space outside the rectangle",
-        ),
-        line("hardness", hardness.is_some(), hardness.unwrap_or_default(), "elastic at any pressure"),
-        line("adhesion", adhesion.is_some(), adhesion.unwrap_or_default(), "no attraction"),
-        line("friction", friction, format!("Coulomb, coefficient {coefficient}"), "no tangential load"),
-        line("rheology", !elastic, rheology_words(rheology), "elastic"),
-    ]
+    table.known_only()?;
+    Ok(adhesion)
 }
 
 fn rheology_words(rheology: &Rheology) -> String {
@@ -73,54 +191,6 @@ fn rheology_words(rheology: &Rheology) -> String {
         Rheology::Prony(series) => format!("Prony series, {}", arms(series.arms())),
         other => format!("{other:?}"),
     }
-}
-
-/// Reads `[effects]`.
-pub(crate) fn read_effects(table: Option<Entries<'_>>, system: System) -> Read<Effects> {
-    let mut effects = Effects::default();
-    let Some(table) = table else { return Ok(effects) };
-    if let Some(entry) = table.find("boundary") {
-        effects.boundary = entry.choice(&[("free", Boundary::Free), ("periodic", Boundary::Periodic)])?;
-    }
-    if let Some(entry) = table.find("hardness") {
-        let inner = entry.table()?;
-        let pressure = inner.require("pressure", "\"2 GPa\"")?.positive(Dimension::PRESSURE, system)?;
-        inner.finish()?;
-        effects.hardness = Hardness::Limit { pressure };
-    }
-    if let Some(entry) = table.find("adhesion") {
-        let inner = entry.table()?;
-        let work = inner.require("work", "\"50 mJ/m^2\"")?.positive(Dimension::ENERGY_PER_AREA, system)?;
-        let words = [("exponential", AdhesionLaw::Exponential), ("dugdale", AdhesionLaw::Dugdale)];
-        let law = inner.find("law").map(|e| Ok((e.choice(&words)?, e))).transpose()?;
-        effects.adhesion = match (inner.find("range"), law) {
-            (None, None) => Adhesion::ShortRange { work },
-            (Some(range), law) => {
-                let range = range.positive(Dimension::LENGTH, system)?;
-                let law = law.map_or(AdhesionLaw::Exponential, |(law, _)| law);
-                Adhesion::FiniteRange { work, range, law }
-            }
-            (None, Some((_, entry))) => {
-                return Err(entry
-                    .diagnostic_at_key(
-                        "`law` says how the attraction falls with the gap, and no `range` is given",
-                    )
-                    .with_help("add `range = \"1 nm\"`, or remove `law` for short-range adhesion (JKR)"));
-            }
-        };
-        inner.finish()?;
-    }
-    if let Some(entry) = table.find("friction") {
-        let inner = entry.table()?;
-        let coefficient = inner.require("coefficient", "0.3")?.positive_number()?;
-        inner.finish()?;
-        effects.friction = Friction::Coulomb { coefficient };
-    }
-    if let Some(entry) = table.find("rheology") {
-        effects.rheology = read_rheology(&entry, system)?;
-    }
-    table.finish()?;
-    Ok(effects)
 }
 
 #[derive(Clone, Copy)]
@@ -165,4 +235,44 @@ fn read_rheology(entry: &Entry<'_>, system: System) -> Read<Rheology> {
     };
     table.finish()?;
     Ok(rheology)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_model::Effect;
+
+    /// Each effect of the library has its key here, and is told where it is on.
+    #[test]
+    fn every_effect_has_its_key() {
+        for effect in Effect::ALL {
+            let on = effect_lines(&effect.example()).into_iter().filter(|line| line.on);
+            assert_eq!(on.map(|line| line.name).collect::<Vec<_>>(), [effect.key()], "{effect:?}");
+        }
+        for key in EFFECT_KEYS.iter().filter(|key| key.name != "boundary") {
+            assert!(Effect::ALL.iter().any(|effect| effect.key() == key.name), "{key:?}");
+        }
+        let text = "boundary = \"periodic\"\nhardness = 2\nadhesion = 0.5\nfriction = { coefficient = 0.1 }\n\
+                    rheology = { kind = \"maxwell\", viscosity = 3 }";
+        let effects = parse_effects(text).unwrap();
+        assert!(effect_lines(&effects).iter().all(|line| line.on));
+        assert_eq!(effects.adhesion, Adhesion::ShortRange { work: 0.5 });
+        assert!(effect_lines(&Effects::default()).iter().all(|line| !line.on));
+    }
+
+    #[test]
+    fn mistakes_are_of_a_kind() {
+        for text in ["hardness = \"1 GPa\"", "adhesion = {}", "friction = true", "boundary = 3"] {
+            assert!(parse_effects(text).is_err_and(|d| d.is_type() && d.domain().is_none()), "{text}");
+        }
+        for text in
+            ["hardness = 0", "adhesion = -1", "adhesion = { work = 1, range = nan }", "friction = inf"]
+        {
+            assert!(parse_effects(text).is_err_and(|d| d.domain().is_some() && !d.is_type()), "{text}");
+        }
+        for text in ["hardnes = 1", "adhesion = { work = 1, reach = 1 }", "boundary = \"round\"", "hardness"]
+        {
+            assert!(parse_effects(text).is_err_and(|d| d.domain().is_none() && !d.is_type()), "{text}");
+        }
+    }
 }

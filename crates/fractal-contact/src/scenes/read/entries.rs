@@ -1,6 +1,8 @@
 //! A table of a scene, read key by key: what nobody asks for is an error.
 
 use crate::scenes::read::diagnostic::Diagnostic;
+use contact_model::Error;
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -25,13 +27,28 @@ pub enum System {
 pub(crate) struct Entries<'a> {
     name: String,
     span: Option<Range<usize>>,
-    table: &'a DeTable<'a>,
+    content: Content<'a>,
     known: RefCell<Vec<&'static str>>,
 }
 
+#[derive(Debug)]
+enum Content<'a> {
+    Table(&'a DeTable<'a>),
+    /// A value that stands for a table of this key alone.
+    Only(&'static str, Entry<'a>),
+}
+
 impl<'a> Entries<'a> {
-    pub fn root(table: &'a DeTable<'a>) -> Self {
-        Self { name: String::new(), span: None, table, known: RefCell::default() }
+    /// A table of this name, `scene.surface`; the whole file has none.
+    fn named(name: &str, table: &'a DeTable<'a>) -> Self {
+        let content = Content::Table(table);
+        Self { name: name.into(), span: None, content, known: RefCell::default() }
+    }
+
+    /// Reads a text that is the content of the table of this name.
+    pub fn of_text<T>(name: &str, text: &str, read: impl FnOnce(Entries<'_>) -> Read<T>) -> Read<T> {
+        let document = DeTable::parse(text).map_err(|error| syntax(&error))?;
+        read(Entries::named(name, document.get_ref()))
     }
 
     /// Name of the table, `[scene.surface]`.
@@ -45,7 +62,14 @@ impl<'a> Entries<'a> {
 
     /// The keys that are there.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
-        self.table.keys().map(|k| k.get_ref().as_ref())
+        self.spanned_keys().into_iter().map(|(name, _)| name)
+    }
+
+    fn spanned_keys(&self) -> Vec<(&str, Range<usize>)> {
+        match &self.content {
+            Content::Table(table) => table.keys().map(|key| (key.get_ref().as_ref(), key.span())).collect(),
+            Content::Only(key, entry) => vec![(key, entry.key_span())],
+        }
     }
 
     /// A mistake of the table itself.
@@ -65,8 +89,13 @@ impl<'a> Entries<'a> {
 
     /// The value of any key without making it a known one.
     pub fn entry(&self, key: &str) -> Option<Entry<'a>> {
-        let (key, value) = self.table.iter().find(|(k, _)| k.get_ref().as_ref() == key)?;
-        Some(Entry { path: self.path(key.get_ref()), key: Some(key.span()), value })
+        match &self.content {
+            Content::Table(table) => {
+                let (key, value) = table.iter().find(|(k, _)| k.get_ref().as_ref() == key)?;
+                Some(Entry { path: self.path(key.get_ref()), key: Some(key.span()), value })
+            }
+            Content::Only(only, entry) => (*only == key).then(|| entry.clone()),
+        }
     }
 
     /// The value of a key that has to be there.
@@ -78,8 +107,12 @@ impl<'a> Entries<'a> {
                     .diagnostic_at_key(format!("`{key}` is missing in {}", self.title()))
                     .with_help(format!("did you mean `{key}` here?"));
             }
-            self.diagnostic(format!("`{key}` is missing in {}", self.title()))
-                .with_help(format!("add `{key} = {example}`"))
+            let missing = Diagnostic::of_type(format!("`{key}` is missing in {}", self.title()));
+            let missing = match &self.span {
+                Some(span) => missing.at(span.clone()),
+                None => missing,
+            };
+            missing.with_help(format!("add `{key} = {example}`"))
         })
     }
 
@@ -125,8 +158,7 @@ impl<'a> Entries<'a> {
     /// The same for a table that is read further.
     pub fn known_only(&self) -> Read<()> {
         let known = self.known.borrow();
-        for key in self.table.keys() {
-            let name = key.get_ref().as_ref();
+        for (name, span) in self.spanned_keys() {
             if !known.contains(&name) {
                 let what = if self.name == "effects" { "effect" } else { "key" };
                 let what = if self.name.is_empty() {
@@ -138,11 +170,21 @@ impl<'a> Entries<'a> {
                 let current: Vec<&str> =
                     known.iter().copied().filter(|k| !["chance", "width"].contains(k)).collect();
                 return Err(Diagnostic::new(format!("`{name}` is no {what}"))
-                    .at(key.span())
+                    .at(span)
                     .with_help(suggestion(name, &current)));
             }
         }
         Ok(())
+    }
+}
+
+fn syntax(error: &toml::de::Error) -> Diagnostic {
+    let message = error.message().lines().collect::<Vec<_>>().join(", ");
+    let diagnostic = Diagnostic::new(message)
+        .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once");
+    match error.span() {
+        Some(span) => diagnostic.at(span),
+        None => diagnostic,
     }
 }
 
@@ -215,8 +257,16 @@ impl<'a> Entry<'a> {
     }
 
     fn wrong(&self, expected: &str, example: &str) -> Diagnostic {
-        self.diagnostic(format!("`{}` is {}: expected {expected}", self.path, self.kind()))
+        Diagnostic::of_type(format!("`{}` is {}: expected {expected}", self.path, self.kind()))
+            .at(self.span())
             .with_help(format!("write {example}"))
+    }
+
+    /// A mistake of the value of a number.
+    pub fn outside(&self, value: f64, expected: impl Into<Cow<'static, str>>) -> Diagnostic {
+        let expected = expected.into();
+        let message = format!("`{}` = {}: expected {expected}", self.path, self.shown());
+        Diagnostic::of_domain(message, Error::domain(self.path.clone(), value, expected)).at(self.span())
     }
 
     fn kind(&self) -> &'static str {
@@ -234,10 +284,19 @@ impl<'a> Entry<'a> {
         match self.value.get_ref() {
             DeValue::Table(table) => {
                 let span = self.key.clone().or_else(|| Some(self.span()));
-                Ok(Entries { name: self.path.clone(), span, table, known: RefCell::default() })
+                Ok(Entries { span, ..Entries::named(&self.path, table) })
             }
             _ => Err(self.wrong("a table", &format!("[{}] on a line of its own", self.path))),
         }
+    }
+
+    /// A table; a value that is none stands for a table of this key alone.
+    pub fn table_or(&self, key: &'static str) -> Read<Entries<'a>> {
+        if self.is_table() {
+            return self.table();
+        }
+        let content = Content::Only(key, self.clone());
+        Ok(Entries { name: self.path.clone(), span: self.key.clone(), content, known: RefCell::default() })
     }
 
     pub fn is_table(&self) -> bool {
@@ -300,7 +359,7 @@ impl<'a> Entry<'a> {
         };
         match digits.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(self.diagnostic(format!("`{}` = {digits}: expected a finite number", self.path))),
+            value => Err(self.outside(value.unwrap_or(f64::NAN), "a finite number")),
         }
     }
 
@@ -340,29 +399,29 @@ impl<'a> Entry<'a> {
 
     /// A whole number from `least`.
     pub fn count(&self, least: u64) -> Read<u64> {
-        let whole = match self.value.get_ref() {
-            DeValue::Integer(v) => {
-                u64::from_str_radix(&v.as_str().replace('_', ""), v.radix()).ok().filter(|v| *v >= least)
-            }
-            _ => None,
+        let (digits, radix) = match self.value.get_ref() {
+            DeValue::Integer(written) => (written.as_str().replace('_', ""), written.radix()),
+            DeValue::Float(written) => (written.as_str().replace('_', ""), 10),
+            _ => return Err(self.wrong(&format!("a whole number >= {least}"), "it without quotes")),
         };
+        let whole = u64::from_str_radix(&digits, radix).ok().filter(|whole| *whole >= least);
         whole.ok_or_else(|| {
-            self.diagnostic(format!("`{}`: expected a whole number >= {least}", self.path))
-                .with_help("write it without a point, quotes or a sign")
+            let value = digits.parse().unwrap_or(f64::NAN);
+            self.outside(value, format!("a whole number >= {least}"))
         })
     }
 
     /// A number with its unit in SI, or a plain number where the scene has none.
     pub fn quantity(&self, dimension: Dimension, system: System) -> Read<f64> {
         match (system, self.value.get_ref()) {
-            (System::None, DeValue::String(text)) => Err(self
-                .diagnostic(format!(
-                    "`{}` is the text \"{text}\", but the scene has `units = \"none\"`",
-                    self.path
-                ))
-                .with_help(
-                    "write a plain number, or remove `units = \"none\"` and give every quantity its unit",
-                )),
+            (System::None, DeValue::String(text)) => Err(Diagnostic::of_type(format!(
+                "`{}` is the text \"{text}\": expected a plain number, without a unit",
+                self.path
+            ))
+            .at(self.span())
+            .with_help(
+                "write a plain number, or remove `units = \"none\"` and give every quantity its unit",
+            )),
             (System::None, _) => self.number(),
             (System::Si, DeValue::String(text)) => Quantity::parse_as(text, dimension).map_err(|reason| {
                 self.diagnostic(format!("`{}`: {reason}", self.path))
@@ -382,6 +441,11 @@ impl<'a> Entry<'a> {
     /// The same, > 0.
     pub fn positive(&self, dimension: Dimension, system: System) -> Read<f64> {
         self.above_zero(self.quantity(dimension, system)?)
+    }
+
+    /// The same, >= 0.
+    pub fn not_negative(&self, dimension: Dimension, system: System) -> Read<f64> {
+        self.from_zero(self.quantity(dimension, system)?)
     }
 
     /// One length > 0, or two in a list.
@@ -418,14 +482,20 @@ impl<'a> Entry<'a> {
         self.above_zero(self.pure_number()?)
     }
 
+    /// A pure number >= 0.
+    pub fn not_negative_number(&self) -> Read<f64> {
+        self.from_zero(self.pure_number()?)
+    }
+
     fn above_zero(&self, value: f64) -> Read<f64> {
-        if value > 0.0 {
-            Ok(value)
-        } else {
-            Err(self
-                .diagnostic(format!("`{}` = {}: expected a number > 0", self.path, self.shown()))
-                .with_help("check the sign; zero is not allowed here"))
-        }
+        let refused =
+            || self.outside(value, "a number > 0").with_help("check the sign; zero is not allowed here");
+        if value > 0.0 { Ok(value) } else { Err(refused()) }
+    }
+
+    fn from_zero(&self, value: f64) -> Read<f64> {
+        let refused = || self.outside(value, "a number >= 0").with_help("check the sign");
+        if value >= 0.0 { Ok(value) } else { Err(refused()) }
     }
 
     /// The value as written.

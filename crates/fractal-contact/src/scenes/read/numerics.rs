@@ -1,6 +1,7 @@
 //! The models by name, and what `[models.NAME]` says about their numerics.
 
 use crate::models::{MODELS, ModelRecord};
+use crate::scenes::read::diagnostic::Diagnostic;
 use crate::scenes::read::entries::{Entries, Entry, Read, suggestion};
 use crate::scenes::read::registered_model::RegisteredModel;
 use analytic::greenwood_williamson::SummitHeights;
@@ -10,9 +11,8 @@ use contact_model::{Cells, ContactModel, Size};
 use mdr1d::{Equivalent, Mdr1d};
 use std::sync::Arc;
 
-/// Largest grids: 54 GB for a light load (the square of this many cells), 4 GB for a line.
+/// Largest grid of a scene is the square of this many cells: 54 GB for a light load.
 pub(crate) const MOST_CELLS: usize = 1 << 15;
-const MOST_ELEMENTS: usize = 1 << 28;
 
 /// Grid on which models are asked whether they can answer.
 const PROBE_CELLS: usize = 33;
@@ -65,6 +65,20 @@ impl Numerics {
     /// The model of the library of this name, with its defaults.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|numerics| numerics.name() == name)
+    }
+
+    /// With the options of the text of `[models.NAME]` without its heading, on top of those that it has.
+    ///
+    /// # Errors
+    /// What is wrong, as in a scene.
+    ///
+    /// ```
+    /// let bem3d = fractal_contact::scenes::Numerics::named("bem3d").unwrap();
+    /// assert_eq!(bem3d.configured("cells = 65")?.size(), 65);
+    /// # Ok::<(), fractal_contact::scenes::Diagnostic>(())
+    /// ```
+    pub fn configured(self, options: &str) -> Result<Self, Diagnostic> {
+        Entries::of_text(self.name(), options, |table| configured(self, table))
     }
 
     /// The model itself.
@@ -220,27 +234,17 @@ pub(crate) fn read_models<'a>(
     Ok(models)
 }
 
-/// A count from 1 that memory can hold.
-fn at_most(entry: &Entry<'_>, most: usize, help: &str) -> Read<usize> {
-    let count = entry.count(1)?;
-    if count <= most as u64 {
-        Ok(count as usize)
-    } else {
-        Err(entry.diagnostic(format!("{count}: expected at most {most}")).with_help(help))
-    }
-}
-
 fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
     if let Some(entry) = table.find("cells") {
-        model.cells = at_most(&entry, MOST_CELLS, "a light load takes 50 bytes a cell")?;
+        model.cells = entry.count(1)? as usize;
     }
     if let Some(entry) = table.find("rows") {
-        model.rows = Some(at_most(&entry, MOST_CELLS, "a light load takes 50 bytes a cell")?);
+        model.rows = Some(entry.count(1)? as usize);
     }
     if let Some(entry) = table.find("tolerance") {
         model.tolerance = entry.positive_number()?;
         if model.tolerance >= 1.0 {
-            return Err(entry.diagnostic("`tolerance` is not below 1").with_help("1e-6 gives six digits"));
+            return Err(entry.outside(model.tolerance, "a number < 1").with_help("1e-6 gives six digits"));
         }
     }
     if let Some(entry) = table.find("max_outer_iterations") {
@@ -265,9 +269,8 @@ fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
                 if let Some(entry) = table.find(key) {
                     let count = entry.count(1)?;
                     if count > most {
-                        return Err(entry
-                            .diagnostic(format!("`{key}` = {count}: expected at most {most}"))
-                            .with_help("16 and 3 by default"));
+                        let expected = format!("at most {most}");
+                        return Err(entry.outside(count as f64, expected).with_help("16 and 3 by default"));
                     }
                     *value = count as u32;
                 }
@@ -276,7 +279,7 @@ fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
         }
         Numerics::Mdr1d(mut model) => {
             if let Some(entry) = table.find("elements") {
-                model.elements = at_most(&entry, MOST_ELEMENTS, "the paper has 2^20")?;
+                model.elements = entry.count(1)? as usize;
             }
             Numerics::Mdr1d(model)
         }

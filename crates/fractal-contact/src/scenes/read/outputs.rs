@@ -2,7 +2,7 @@
 
 use crate::scenes::read::distributed::Distributed;
 use crate::scenes::read::entries::{Entries, Entry, Read, System};
-use contact_model::{Conductance, Output, Outputs};
+use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs, Shown};
 use surface_io::Dimension;
 
 /// A file format of a field.
@@ -30,6 +30,19 @@ impl FieldFormat {
     }
 }
 
+/// The heights as they are solved: a field of the surface, not of a state.
+pub(crate) static HEIGHTS: FieldQuantity = FieldQuantity {
+    name: "heights",
+    words: "height",
+    symbol: "",
+    unit: "m",
+    meaning: "heights as they are solved: after crop, fill and detrend, or as drawn",
+    shown: Shown::Middle,
+    outlined: false,
+    get: |_| None,
+    take: |_| None,
+};
+
 /// What is asked for: of the models, and as files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RequestedOutputs {
@@ -51,24 +64,23 @@ pub struct RequestedOutputs {
 
 impl RequestedOutputs {
     /// The fields with their formats; the heights belong to the first state.
-    pub fn fields(&self) -> Vec<(&'static str, &[FieldFormat])> {
-        let fields = Output::ALL.iter().filter(|output| output.is_field());
-        fields
-            .map(|&output| (output.name(), self.formats(output)))
-            .chain([("heights", &self.heights[..])])
-            .collect()
+    pub fn fields(&self) -> impl Iterator<Item = (&'static FieldQuantity, &[FieldFormat])> {
+        [(&HEIGHTS, &self.heights[..])]
+            .into_iter()
+            .chain(FIELDS.iter().map(|field| (field, self.formats(field))))
     }
 
     /// Formats of the files of a field.
-    pub fn formats(&self, field: Output) -> &[FieldFormat] {
-        self.files.iter().find(|(output, _)| *output == field).map_or(&[], |(_, formats)| formats)
+    fn formats(&self, field: &FieldQuantity) -> &[FieldFormat] {
+        let asked = self.files.iter().find(|(output, _)| output.name() == field.name);
+        asked.map_or(&[], |(_, formats)| formats)
     }
 
     /// Every output with whether it is asked for.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
         let of_models = Output::ALL.iter().map(|&output| (output.name(), self.outputs.asks(output)));
         let files = [
-            ("heights", !self.heights.is_empty()),
+            (HEIGHTS.name, !self.heights.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
             ("curves", self.curves),
@@ -108,7 +120,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     requested.grid_error = flag("grid_error")?;
     requested.curves = flag("curves")?;
     requested.statistics = flag("statistics")?;
-    requested.heights = formats("heights")?;
+    requested.heights = formats(HEIGHTS.name)?;
     if let Some(entry) = table.find("distributions") {
         for item in entry.list() {
             let of = item.choice(&Distributed::ALL)?;
@@ -123,9 +135,8 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     let pressure = outlined || counted(Distributed::Pressure) || counted(Distributed::Gap);
     let gap = counted(Distributed::Gap);
     let patches = counted(Distributed::Patches);
-    for &field in Output::ALL.iter().filter(|output| output.is_field()) {
-        let asked = !requested.formats(field).is_empty();
-        requested.outputs.ask(field, asked);
+    for (field, _) in &requested.files {
+        requested.outputs.ask(*field, true);
     }
     requested.outputs.pressure |= pressure;
     requested.outputs.gap |= gap;

@@ -168,14 +168,13 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::parse`].
     pub fn parse_with(path: &Path, text: String, registry: &Registry) -> Result<Self> {
-        let read = || -> Read<Self> {
-            let document = toml::de::DeTable::parse(&text).map_err(|e| syntax(&e))?;
-            let root = Entries::root(document.get_ref());
+        let read = |root: Entries<'_>| {
             let scene = read_scene(&root, path.parent().unwrap_or(Path::new("")), registry)?;
             root.finish()?;
             Ok(scene)
         };
-        let mut scene = read().map_err(|diagnostic| diagnostic.placed(path, &text))?;
+        let scene = Entries::of_text("", &text, read);
+        let mut scene = scene.map_err(|diagnostic| diagnostic.placed(path, &text))?;
         path.clone_into(&mut scene.path);
         scene.notes = scene.notes.into_iter().map(|note| note.placed(path, &text)).collect();
         scene.text = text;
@@ -242,16 +241,6 @@ impl SceneFile {
     pub fn comment(&self) -> String {
         let lines = self.text.lines().take_while(|l| l.starts_with('#'));
         lines.map(|l| l.trim_start_matches('#').trim()).collect::<Vec<_>>().join(" ")
-    }
-}
-
-fn syntax(error: &toml::de::Error) -> Diagnostic {
-    let message = error.message().lines().collect::<Vec<_>>().join(", ");
-    let diagnostic = Diagnostic::new(message)
-        .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once");
-    match error.span() {
-        Some(span) => diagnostic.at(span),
-        None => diagnostic,
     }
 }
 

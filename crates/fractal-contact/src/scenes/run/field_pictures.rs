@@ -5,11 +5,11 @@ use crate::scenes::read::words;
 use crate::scenes::run::field_view::FieldView;
 
 use crate::scenes::read::entries::System;
-use crate::scenes::read::outputs::FieldFormat;
+use crate::scenes::read::outputs::{FieldFormat, HEIGHTS};
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{FieldFile, ModelResult, StoredFile};
-use contact_model::Cells;
-use plots::{Chart, Curve, FieldPicture, Shown};
+use contact_model::{Cells, FieldQuantity};
+use plots::{Chart, Curve, FieldPicture};
 use std::io::Write as _;
 use std::path::Path;
 
@@ -18,6 +18,8 @@ const WAITING: &str = ".units/";
 const EXTENSION: &str = "f64";
 /// Of what the report shows.
 const VIEW: &str = "view";
+/// The field that says where there is contact.
+const PRESSURE: &str = "pressure";
 
 impl StoredFile {
     /// Whether it is of the program's own use only.
@@ -28,11 +30,9 @@ impl StoredFile {
 
 /// Whether a field of this name is drawn, or needed for drawing another one: contacts are outlined.
 pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
-    let drawn = |of: &str| {
-        let fields = scene.requested.fields();
-        fields.iter().any(|(field, formats)| *field == of && formats.contains(&FieldFormat::Png))
-    };
-    drawn(name) || name == "pressure" && (drawn("gap") || drawn("displacement") || drawn("plastic_depth"))
+    let drawn = scene.requested.fields().filter(|(_, formats)| formats.contains(&FieldFormat::Png));
+    let mut fields = drawn.map(|(field, _)| field);
+    fields.any(|field| field.name == name || name == PRESSURE && field.outlined)
 }
 
 /// Keeps the values of a field, little-endian, row-major, until it is drawn.
@@ -84,17 +84,13 @@ pub(crate) fn draw(
             continue;
         }
         let states: Vec<usize> = result.states.iter().map(|state| state.index).collect();
-        let ends = states.iter().filter_map(|&state| Some(FieldPicture::ends(&read(field, state)?)));
+        let ends = states.iter().filter_map(|&state| Some(FieldPicture::ends(&read(field.name, state)?)));
         let range = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         for state in &mut result.states {
-            let Some(values) = read(field, state.index) else { continue };
-            let pressure = if matches!(field, "gap" | "displacement" | "plastic_depth") {
-                read("pressure", state.index)
-            } else {
-                None
-            };
+            let Some(values) = read(field.name, state.index) else { continue };
+            let pressure = if field.outlined { read(PRESSURE, state.index) } else { None };
             let contact: Vec<bool> = pressure.into_iter().flatten().map(|p| p > 0.0).collect();
-            let name = file(field, state.index, FieldFormat::Png.extension()).to_string();
+            let name = file(field.name, state.index, FieldFormat::Png.extension()).to_string();
             let mut drawn = picture(scene, field, model, (surface, state.index), cells, &values);
             if scene.surface.is_profile() {
                 let step = scene.surface.size().x / cells.columns as f64;
@@ -108,7 +104,7 @@ pub(crate) fn draw(
                 continue;
             }
             (drawn.range, drawn.contact) = (range, &contact);
-            if states.len() > 1 && field != "heights" {
+            if states.len() > 1 && field.name != HEIGHTS.name {
                 drawn.subtitle += "; one scale for all loads";
             }
             drawn.save(&out.join(&name))?;
@@ -141,21 +137,15 @@ pub(crate) fn sweep(out: &Path) {
 /// A field of a state, by number of the surface and of the load.
 pub(crate) fn picture<'a>(
     scene: &SceneFile,
-    name: &str,
+    field: &FieldQuantity,
     model: &str,
     (surface, state): (usize, usize),
     cells: Cells,
     values: &'a [f64],
 ) -> FieldPicture<'a> {
     let si = scene.system == System::Si;
-    let (quantity, unit, shown) = match name {
-        "pressure" => ("pressure $p$", "Pa", Shown::Largest),
-        "displacement" => ("displacement $u$", "m", Shown::Middle),
-        "gap" => ("gap $g$", "m", Shown::Smallest),
-        "plastic_depth" => ("plastic indentation", "m", Shown::Largest),
-        _ => ("height", "m", Shown::Middle),
-    };
-    let load = if name == "heights" { "as solved".to_owned() } else { words::load(scene, state) };
+    let &FieldQuantity { name, words, symbol, unit, shown, .. } = field;
+    let load = if name == HEIGHTS.name { "as solved".to_owned() } else { words::load(scene, state) };
     let mut title = format!("{}, {}", name.replace('_', " "), words::model_name(model));
     title[..1].make_ascii_uppercase();
     let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
@@ -165,7 +155,7 @@ pub(crate) fn picture<'a>(
     FieldPicture {
         title,
         subtitle,
-        quantity: quantity.to_owned(),
+        quantity: if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") },
         unit,
         length_unit,
         cells,

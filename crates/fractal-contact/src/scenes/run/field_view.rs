@@ -1,37 +1,17 @@
 //! What a report shows of a field: at most 256 x 256 values, each that of one cell.
 
-use contact_model::Cells;
+use contact_model::{Cells, Shown};
 
 /// Largest number of values along a side.
 const MOST: usize = 256;
 const MAGIC: [u8; 4] = *b"view";
 
-/// Which cell of a block stands for it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Picked {
-    /// The one in the middle.
-    Middle,
-    /// That of the largest value, so that a single cell under pressure is seen.
-    Largest,
-    /// That of the smallest, so that a single cell without a gap is seen.
-    Smallest,
-}
-
-impl Picked {
-    pub fn of(field: &str) -> Self {
-        match field {
-            "pressure" | "plastic_depth" => Self::Largest,
-            "gap" => Self::Smallest,
-            _ => Self::Middle,
-        }
-    }
-
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Middle => "the cell in the middle",
-            Self::Largest => "the largest value",
-            Self::Smallest => "the smallest value",
-        }
+/// Which cell of a block is shown, in words.
+pub(crate) fn shown_words(shown: Shown) -> &'static str {
+    match shown {
+        Shown::Middle => "the cell in the middle",
+        Shown::Largest => "the largest value",
+        Shown::Smallest => "the smallest value",
     }
 }
 
@@ -52,11 +32,10 @@ pub(crate) struct FieldView {
 
 impl FieldView {
     /// From the values of a field, row-major, NaN where undefined.
-    pub fn new(field: &str, cells: Cells, values: &[f64]) -> Self {
+    pub fn new(shown: Shown, cells: Cells, values: &[f64]) -> Self {
         let Cells { columns, rows } = cells;
         let block = columns.max(rows).div_ceil(MOST).max(1);
         let (across, down) = (columns.div_ceil(block), rows.div_ceil(block));
-        let picked = Picked::of(field);
         let mut view =
             Self { cells, block, columns: across, rows: down, values: Vec::new(), places: Vec::new() };
         for i in 0..across * down {
@@ -65,10 +44,10 @@ impl FieldView {
             let at = |place: usize| values[(y + place / block) * columns + x + place % block];
             let inside = || (0..h).flat_map(|j| (0..w).map(move |i| j * block + i));
             let defined = || inside().filter(|place| at(*place).is_finite());
-            let place = match picked {
-                Picked::Middle => Some((h / 2) * block + w / 2),
-                Picked::Largest => defined().max_by(|a, b| at(*a).total_cmp(&at(*b))),
-                Picked::Smallest => defined().min_by(|a, b| at(*a).total_cmp(&at(*b))),
+            let place = match shown {
+                Shown::Middle => Some((h / 2) * block + w / 2),
+                Shown::Largest => defined().max_by(|a, b| at(*a).total_cmp(&at(*b))),
+                Shown::Smallest => defined().min_by(|a, b| at(*a).total_cmp(&at(*b))),
             };
             view.values.push(place.map_or(f32::NAN, |place| at(place) as f32));
             view.places.push(place.unwrap_or(0) as u16);
@@ -138,13 +117,13 @@ mod tests {
         let cells = Cells { columns: 700, rows: 301 };
         let mut values: Vec<f64> = (0..700 * 301).map(|i| f64::from(i * 7919 % 1000)).collect();
         values[5] = f64::NAN;
-        for field in ["pressure", "gap", "heights"] {
-            let view = FieldView::new(field, cells, &values);
+        for shown in [Shown::Largest, Shown::Smallest, Shown::Middle] {
+            let view = FieldView::new(shown, cells, &values);
             assert_eq!((view.block, view.columns, view.rows), (3, 234, 101));
             for (i, (&v, &place)) in view.values.iter().zip(&view.places).enumerate() {
                 let (x, y) = ((i % 234) * 3 + usize::from(place) % 3, (i / 234) * 3 + usize::from(place) / 3);
                 let value = values[y * 700 + x] as f32;
-                assert!(value.to_bits() == v.to_bits(), "{field}: {x}, {y}");
+                assert!(value.to_bits() == v.to_bits(), "{shown:?}: {x}, {y}");
             }
             let bytes = view.encode();
             let read = FieldView::decode(&bytes).unwrap();
@@ -153,7 +132,7 @@ mod tests {
                 assert!(FieldView::decode(&bytes[..end]).is_none());
             }
         }
-        let small = FieldView::new("gap", [2, 1].into(), &[f64::NAN, 1.0]);
+        let small = FieldView::new(Shown::Smallest, [2, 1].into(), &[f64::NAN, 1.0]);
         assert_eq!((small.block, small.places.as_slice(), small.ends()), (1, &[0, 0][..], Some([1.0, 1.0])));
     }
 }

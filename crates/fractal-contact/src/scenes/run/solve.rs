@@ -6,14 +6,14 @@ use crate::scenes::read::distributed;
 use crate::scenes::read::error::{Error, Result};
 use crate::scenes::read::loads::Loading;
 use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::outputs::FieldFormat;
+use crate::scenes::read::outputs::{FieldFormat, HEIGHTS};
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::read::scene_file::cells;
 use crate::scenes::run::field_pictures;
 use crate::scenes::run::field_view::FieldView;
 use crate::scenes::run::state_result::{Answer, FieldFile, ModelResult, Solved, StateRecord, StoredFile};
 use crate::scenes::run::warnings::Warning;
-use contact_model::{Cells, ContactState, Field, Load, Output, Step, Stop};
+use contact_model::{Cells, ContactState, Field, FieldQuantity, Load, Step, Stop};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -169,12 +169,10 @@ impl ModelOnSurface {
             StateRecord { distributions, ..StateRecord::new(index, Answer::State(Box::new(solved))) };
         let first = kept.index == 0 && !scene.requested.heights.is_empty();
         let heights = if first { self.heights(scene)? } else { None };
-        let of_models =
-            Output::ALL.iter().filter(|output| output.is_field()).map(|&output| fields.get(output));
-        for ((name, formats), field) in
-            scene.requested.fields().into_iter().zip(of_models.chain([heights.as_ref()]))
-        {
-            let Some(field) = field else { continue };
+        for (quantity, formats) in scene.requested.fields() {
+            let name = quantity.name;
+            let of_surface = heights.as_ref().filter(|_| name == HEIGHTS.name);
+            let Some(field) = of_surface.or((quantity.get)(&fields)) else { continue };
             let values = &on_defined_points(name, field, scene);
             let (model, surface, state) = (self.numerics(scene).name(), self.surface, kept.index);
             let file = |extension| FieldFile { field: name, model, surface, state, extension };
@@ -183,7 +181,7 @@ impl ModelOnSurface {
             }
             // One surface is shown, and only fields that files are asked of.
             if surface == 0 && !formats.is_empty() {
-                let view = FieldView::new(name, field.cells(), values);
+                let view = FieldView::new(quantity.shown, field.cells(), values);
                 kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
             }
             for &format in formats {
@@ -193,7 +191,7 @@ impl ModelOnSurface {
                     FieldFormat::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
                     FieldFormat::Png => continue,
                     FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), values)?,
-                    FieldFormat::Vti => write_vti(&path, name, scene, field.cells(), values)?,
+                    FieldFormat::Vti => write_vti(&path, quantity, scene, field.cells(), values)?,
                 }
                 kept.files.push(StoredFile::of(out, file)?);
             }
@@ -228,13 +226,15 @@ fn on_defined_points<'a>(name: &str, field: &'a Field, scene: &SceneFile) -> Cow
     }
 }
 
-fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[f64]) -> Result<()> {
-    let unit = match (scene.system, name) {
-        (crate::scenes::System::None, _) => "",
-        (crate::scenes::System::Si, "pressure") => "Pa",
-        (crate::scenes::System::Si, _) => "m",
-    };
-    let field = surface_io::DataArray { name, unit, values };
+fn write_vti(
+    path: &Path,
+    quantity: &FieldQuantity,
+    scene: &SceneFile,
+    grid: Cells,
+    values: &[f64],
+) -> Result<()> {
+    let unit = if scene.system == crate::scenes::System::Si { quantity.unit } else { "" };
+    let field = surface_io::DataArray { name: quantity.name, unit, values };
     let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
     Ok(runs::files::write_whole(path, &bytes)?)
@@ -244,7 +244,7 @@ fn write_vti(path: &Path, name: &str, scene: &SceneFile, grid: Cells, values: &[
 mod tests {
     use super::*;
     use crate::scenes::{Loads, Prescribed, SceneSurface};
-    use contact_model::{Fields, HeightMap, SolveReport};
+    use contact_model::{Fields, HeightMap, Output, SolveReport};
     use std::sync::Arc;
 
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.

@@ -3,8 +3,9 @@
 use crate::scenes::plan::grid_comparison::GridErrors;
 use crate::scenes::read::distributed::{Bin, Distributed};
 use crate::scenes::read::error::Result;
+use crate::scenes::read::outputs::HEIGHTS;
 use crate::scenes::run::warnings::Warning;
-use contact_model::{ContactState, Normalisation, Status};
+use contact_model::{ContactState, FIELDS, Normalisation, Status};
 use runs::fnv1a_128;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -169,9 +170,8 @@ pub(crate) fn field_of_file(name: &str) -> Option<FieldFile<'_>> {
     let (model, surface) = rest.rsplit_once('-')?;
     let file =
         FieldFile { field, model, surface: surface.parse().ok()?, state: state.parse().ok()?, extension };
-    (["pressure", "displacement", "gap", "plastic_depth", "heights"].contains(&field)
-        && file.to_string() == name)
-        .then_some(file)
+    let known = FIELDS.iter().chain([&HEIGHTS]).any(|known| known.name == field);
+    (known && file.to_string() == name).then_some(file)
 }
 
 #[cfg(test)]

@@ -2,10 +2,11 @@
 
 use crate::scenes::read::error::Result;
 use crate::scenes::read::human_readable;
-use crate::scenes::run::field_view::{FieldView, Picked};
+use crate::scenes::run::field_view::{FieldView, shown_words};
 use crate::scenes::tell::statistics::MapStatisticsTables;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use contact_model::Shown;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plots::{Chart, FieldPicture, prefixed};
 
@@ -70,9 +71,9 @@ pub(crate) fn statistics(of: &MapStatisticsTables) -> Markup {
 ///
 /// # Errors
 /// A picture that cannot be encoded.
-pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView, field: &str) -> Result<Markup> {
+pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Markup> {
     let [low, high] = view.ends().unwrap_or_default();
-    let zero = field == "pressure";
+    let zero = picture.shown == Shown::Largest;
     let low_end = if zero { low.min(0.0) } else { low };
     let png = plots::encode_viridis(view.columns, &view.values, [low_end, high], zero)?;
     let size = picture.size;
@@ -80,12 +81,13 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView, field: &str) -
     let (unit, per_unit) = prefixed(picture.unit, f64::from(high.abs().max(low.abs())));
     let end =
         |v: f32| format!("{} {unit}", human_readable::short(per_unit * f64::from(v))).trim_end().to_owned();
-    let words = field.strip_suffix('s').unwrap_or(field);
+    let words = picture.quantity.split('$').next().unwrap_or_default().trim();
+    let shown = shown_words(picture.shown);
     let data = serde_json::json!({
-        "across": view.columns, "down": view.rows, "block": view.block, "picked": Picked::of(field).words(),
+        "across": view.columns, "down": view.rows, "block": view.block, "picked": shown,
         "dx": size.x / view.cells.columns as f64, "dy": size.y / view.cells.rows as f64,
         "low": low_end, "high": high, "zero": zero,
-        "quantity": if field == "pressure" { "pressure" } else { words }, "unit": picture.unit, "length": length, "scale": scale,
+        "quantity": words, "unit": picture.unit, "length": length, "scale": scale,
     });
     let alt = format!(
         "{}, {}: {} columns and {} rows, from {} to {}.",
@@ -111,7 +113,7 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView, field: &str) -
             }
             figcaption {
                 strong { (picture.title) } ", " (picture.subtitle)
-                @if view.block > 1 { "; each pixel is " (Picked::of(field).words()) " of " (view.block) " x " (view.block) " cells" }
+                @if view.block > 1 { "; each pixel is " (shown) " of " (view.block) " x " (view.block) " cells" }
             }
             output aria-live="polite" {}
             script.values type="application/octet-stream" {

@@ -6,6 +6,7 @@ use crate::scenes::read::entries::System;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::human_readable;
 use crate::scenes::read::human_readable::{memory, number, time};
+use crate::scenes::read::outputs::HEIGHTS;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::read::words;
 use crate::scenes::run::field_pictures;
@@ -20,6 +21,7 @@ use crate::scenes::tell::pictures;
 use crate::scenes::tell::statistics::MapStatisticsTables;
 use crate::scenes::tell::summary;
 use analysis::Value;
+use contact_model::FieldQuantity;
 use contact_model::quantities::{Quantity, Role};
 use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve};
@@ -246,7 +248,7 @@ impl Report<'_> {
     /// The map and the fields of the first surface as long as there is room: of the largest loads first, or of
     /// steps spread over a path.
     fn fields(&self, out: &Path) -> Result<Markup> {
-        let mut views: Vec<(FieldView, &str, &str, usize)> = Vec::new();
+        let mut views: Vec<(FieldView, &'static FieldQuantity, &str, usize)> = Vec::new();
         for &SolvedUnit { model, surface, states } in self.units.iter().filter(|of| of.surface == 0) {
             let order = if self.scene.is_history() {
                 spread(states.len())
@@ -254,19 +256,20 @@ impl Report<'_> {
                 (0..states.len()).rev().collect()
             };
             for state in order.into_iter().map(|i| &states[i]) {
-                let named = ["heights", "pressure", "gap", "plastic_depth", "displacement"];
-                views.extend(named.into_iter().filter_map(|field| {
-                    let file = FieldFile { field, model, surface, state: state.index, extension: "" };
+                views.extend(self.scene.requested.fields().filter_map(|(field, _)| {
+                    let file =
+                        FieldFile { field: field.name, model, surface, state: state.index, extension: "" };
                     Some((field_pictures::view(out, file)?, field, model, state.index))
                 }));
             }
         }
-        if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(|v| v.1 == "heights")) {
+        let of_surface = |view: &(_, &FieldQuantity, _, _)| view.1.name == HEIGHTS.name;
+        if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(of_surface)) {
             let model = self.scene.models.first().map_or("", |model| model.name());
-            views.insert(0, (FieldView::new("heights", map.cells(), map.heights()), "heights", model, 0));
+            views.insert(0, (FieldView::new(HEIGHTS.shown, map.cells(), map.heights()), &HEIGHTS, model, 0));
         }
         // The map first.
-        views.sort_by_key(|v| v.1 != "heights");
+        views.sort_by_key(|view| !of_surface(view));
         let count = views.len();
         let mut drawn = Vec::new();
         let mut bytes = 0;
@@ -276,7 +279,7 @@ impl Report<'_> {
             let figure = if self.scene.surface.is_profile() {
                 page::chart(&field_pictures::row_chart(&picture, view.row(self.scene.surface.size().x)))?
             } else {
-                page::field(&picture, view, field)?
+                page::field(&picture, view)?
             };
             let figure = figure.into_string();
             bytes += figure.len();

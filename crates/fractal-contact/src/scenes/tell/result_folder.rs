@@ -117,8 +117,8 @@ fn may_write(scene: &SceneFile, name: &str) -> bool {
         _ if distributions::files(scene).iter().any(|file| file == name) => true,
         _ if requested.curves && pictures::curve_files(scene).iter().any(|file| file == name) => true,
         _ => field_of_file(name).is_some_and(|file| {
-            requested.fields().iter().any(|(field, formats)| {
-                *field == file.field && formats.iter().any(|format| format.extension() == file.extension)
+            requested.fields().any(|(field, formats)| {
+                field.name == file.field && formats.iter().any(|format| format.extension() == file.extension)
             }) && scene.models.iter().any(|model| model.name() == file.model)
                 && file.surface < scene.sampling.surfaces
                 && file.state < scene.request.count()

@@ -2,13 +2,14 @@
 
 use crate::scenes::read::entries::System;
 use crate::scenes::read::error::Result;
+use crate::scenes::read::outputs::HEIGHTS;
 use crate::scenes::run::field_pictures;
 use crate::scenes::run::field_view::FieldView;
 use crate::scenes::tell::page;
 use crate::scenes::tell::statistics::MapStatisticsTables;
 use contact_model::HeightMap;
 use maud::{Markup, html};
-use plots::{Chart, Curve, FieldPicture, Shown};
+use plots::{Chart, Curve, FieldPicture};
 use std::path::{Path, PathBuf};
 use surface_io::Metadata;
 
@@ -80,25 +81,25 @@ impl SurfaceReport<'_> {
         let map = self.map;
         let values: Vec<f64> =
             map.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
-        let view = FieldView::new("heights", map.cells(), &values);
+        let view = FieldView::new(HEIGHTS.shown, map.cells(), &values);
         let unit = if self.si() { "m" } else { "" };
         let picture = FieldPicture {
             title: "Heights".into(),
             subtitle: self.name.into(),
-            quantity: "height".into(),
+            quantity: HEIGHTS.words.into(),
             unit,
             length_unit: unit,
             cells: map.cells(),
             size: map.size(),
             values: &[],
-            shown: Shown::Middle,
+            shown: HEIGHTS.shown,
             range: None,
             contact: &[],
         };
         if self.statistics.profile {
             return page::chart(&field_pictures::row_chart(&picture, view.row(map.size().x)));
         }
-        page::field(&picture, &view, "heights")
+        page::field(&picture, &view)
     }
 
     /// Shares of the heights, beside those of the normal law.

@@ -1,0 +1,68 @@
+"""The effects. Written by python/generate.py from the keys of `[effects]`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from . import _core
+
+EffectValue = float | str | Mapping[str, Any] | None
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Effects beyond linear elastic normal contact with free boundaries.
+
+    Off unless named; a model that lacks one refuses it. Each takes what it takes in a scene, with plain numbers in
+    consistent units: a mapping, or a number in place of a mapping with its first key alone.
+
+    Parameters
+    ----------
+    boundary : optional
+        "free" or "periodic"
+        What lies outside of the rectangle. Not named: an unloaded half-space outside the rectangle.
+    hardness : optional
+        { pressure }
+        Largest pressure that the bodies carry (perfect plasticity): the indentation stays along a path. Not named:
+        elastic at any pressure.
+    adhesion : optional
+        { work }, or { work, range, law } with the law "exponential" or "dugdale"
+        Attraction with this work of adhesion (energy per area): of short range (JKR), or across open gaps with a
+        range (a length), by the exponential law if none is named. Not named: no attraction.
+    friction : optional
+        { coefficient }
+        Coulomb's friction under a tangential load, with this coefficient. Not named: no tangential load.
+    rheology : optional
+        { kind: "kelvin_voigt" or "maxwell", viscosity }, { kind: "standard_solid", weight, time }, { kind: "prony",
+        weights, times }
+        Time dependence of the material. Not named: elastic.
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> fc.Effects(adhesion={"work": 0.05, "range": 1e-9, "law": "dugdale"}).adhesion["law"]
+    'dugdale'
+    >>> fc.Effects(hardness=-1.0)  # doctest: +IGNORE_EXCEPTION_DETAIL
+    Traceback (most recent call last):
+    DomainError: effects.hardness = -1: expected a number > 0
+    """
+
+    boundary: EffectValue = None
+    hardness: EffectValue = None
+    adhesion: EffectValue = None
+    friction: EffectValue = None
+    rheology: EffectValue = None
+
+    def __post_init__(self) -> None:
+        # Copies: a change of the caller's mapping is none of the effect.
+        for name, value in self._values().items():
+            if isinstance(value, Mapping):
+                object.__setattr__(self, name, dict(value))
+        # Mistakes are told where they are made.
+        _core.check_effects(self._values())
+
+    def _values(self) -> dict[str, Any]:
+        """The effects as the compiled part takes them."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
