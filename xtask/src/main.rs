@@ -1,7 +1,7 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
 //! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `exponent`, `redraw`, `check-reference`, `stability`, `book`.
 //!
-//! Argument parsing and exit codes; the figures are in the crate `figures`.
+//! Argument parsing and exit codes; the figures are in the crate `paper`.
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
 //! numbers differ, a hard case fails, error budgets do not hold or a link or command of the book is broken, 130 stopped by a signal,
@@ -88,15 +88,15 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
     };
     let mut coverage_fails = false;
     let mut outcomes = match command {
-        Command::ReproduceFig1(_) => vec![figures::fig1(&run, &reporter)?],
-        Command::ReproduceFig2(_) => vec![figures::fig2(&run, &reporter)?],
-        Command::ReproduceFig3(_) => vec![figures::fig3(&run, &reporter)?],
-        Command::ReproduceFig4(_) => vec![figures::fig4(&run, &reporter)?],
-        Command::ReproduceFig5(_) => vec![figures::fig5(&run, &reporter)?],
-        Command::ReproduceFig6(_) => vec![figures::fig6(&run, &reporter)?],
-        Command::ReproduceFig7(_) => vec![figures::fig7(&run, &reporter)?],
-        Command::Verify(_) => vec![figures::verify(&run, &reporter)?],
-        Command::ReproduceAll(_) => figures::reproduce_all(&run, &reporter)?,
+        Command::ReproduceFig1(_) => vec![paper::fig1(&run, &reporter)?],
+        Command::ReproduceFig2(_) => vec![paper::fig2(&run, &reporter)?],
+        Command::ReproduceFig3(_) => vec![paper::fig3(&run, &reporter)?],
+        Command::ReproduceFig4(_) => vec![paper::fig4(&run, &reporter)?],
+        Command::ReproduceFig5(_) => vec![paper::fig5(&run, &reporter)?],
+        Command::ReproduceFig6(_) => vec![paper::fig6(&run, &reporter)?],
+        Command::ReproduceFig7(_) => vec![paper::fig7(&run, &reporter)?],
+        Command::Verify(_) => vec![paper::verify(&run, &reporter)?],
+        Command::ReproduceAll(_) => paper::reproduce_all(&run, &reporter)?,
         Command::AccuracyCost(options) => {
             vec![evaluation::accuracy_cost(
                 options.depth(),
@@ -106,7 +106,7 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
             )?]
         }
         Command::ReproduceTwoCases(options) => {
-            vec![figures::two_cases(&options.study()?, &options.out, &reporter)?]
+            vec![paper::two_cases(&options.study()?, &options.out, &reporter)?]
         }
         Command::BudgetCheck(options) => {
             let (outcome, coverage) =
@@ -149,7 +149,7 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
 
 fn redraw(options: &Redraw) -> Result<ExitCode> {
     for directory in &options.directories {
-        for file in figures::redraw(directory, &options.beside())? {
+        for file in paper::redraw(directory, &options.beside())? {
             runs::out!("{}", file.display());
         }
     }
@@ -354,12 +354,12 @@ fn stability(thorough: bool, out: &Path) -> Result<ExitCode> {
 
 fn check_reference(bless: bool, out: &Path) -> Result<ExitCode> {
     let reference = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/reference");
-    let differences = figures::check_reference(&reference, &out.join("reference"), bless, &Reporter::new())?;
+    let differences = paper::check_reference(&reference, &out.join("reference"), bless, &Reporter::new())?;
     for line in &differences {
         runs::out!("{line}");
     }
     if differences.is_empty() {
-        let relative = figures::RELATIVE;
+        let relative = paper::RELATIVE;
         runs::out!("{}", if bless { "stored".to_owned() } else { format!("equal to {relative:e}") });
         return Ok(ExitCode::SUCCESS);
     }

@@ -11,7 +11,7 @@
 //! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
 //! * [`Multilevel`]: means on the finest of several grids from differences between grids, with bands.
 //! * [`binomial_test`]: whether as many intervals hold the truth as should.
-//! * [`Table`]: named columns with units that hold no NaN; `figures` writes them.
+//! * [`Table`]: named columns with units that hold no NaN; `paper` writes them.
 //!
 //! # Conventions and accuracy
 //!

@@ -19,7 +19,7 @@
 //!
 //! # What it does not do
 //!
-//! No mechanics of its own, no figure of the paper (that is `figures`), no argument parsing (that is `xtask`).
+//! No mechanics of its own, no figure of the paper (that is `paper`), no argument parsing (that is `xtask`).
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 

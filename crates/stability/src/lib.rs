@@ -26,7 +26,7 @@
 //!
 //! # What it does not do
 //!
-//! It neither prints nor writes (that is `figures` and `xtask`), and measures no time.
+//! It neither prints nor writes (that is `paper` and `xtask`), and measures no time.
 //!
 //! ```
 //! use stability::{Effort, cases};

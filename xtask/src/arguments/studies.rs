@@ -4,7 +4,7 @@ use super::cluster::Sharded;
 use super::sizes::{Solid, seconds, share};
 use clap::{Args, ValueEnum};
 use evaluation::{Depth, Exponent, ExponentSizes, Forces, Request, Run};
-use figures::TwoCases;
+use paper::TwoCases;
 use std::path::PathBuf;
 
 /// Flags of the second look.
@@ -277,8 +277,8 @@ pub struct Redraw {
 
 impl Redraw {
     /// What is drawn beside.
-    pub fn beside(&self) -> figures::Beside {
-        figures::Beside { over: self.over.clone(), finer: self.finer.clone() }
+    pub fn beside(&self) -> paper::Beside {
+        paper::Beside { over: self.over.clone(), finer: self.finer.clone() }
     }
 }
 

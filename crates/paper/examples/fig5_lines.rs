@@ -1,7 +1,7 @@
 //! Fig. 5 of the paper: what equivalent lines of three fractal dimensions look like, as CSV, SVG, PNG and
 //! NPY.
 //!
-//! `cargo run -p fractal-contact-figures --example fig5_lines -- DIRECTORY`
+//! `cargo run -p fractal-contact-paper --example fig5_lines -- DIRECTORY`
 //!
 //! ```text
 //! fig5-df3.0.npy, fig5-df2.5.npy, fig5-df2.0.npy, fig5.csv, fig5.svg, fig5.png
@@ -20,7 +20,7 @@ fn main() -> Result<()> {
     let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
     let request =
         Request { elements: Some(1 << 14), out: Some(out.join("fig5-lines")), ..Request::default() };
-    let outcome = figures::fig5(&Run::new(&request)?, &Silent)?;
+    let outcome = paper::fig5(&Run::new(&request)?, &Silent)?;
     println!("{}", runs::file_names(&outcome.files).join(", "));
     // The header of a CSV says what made it.
     let csv = outcome.files.iter().find(|f| f.extension().is_some_and(|e| e == "csv"));

@@ -1,7 +1,7 @@
 //! Fig. 2 of the paper in small: stiffness over force of an ensemble in three dimensions, with the paper's
 //! claims beside it.
 //!
-//! `cargo run -p fractal-contact-figures --example fig2_small -- DIRECTORY`
+//! `cargo run -p fractal-contact-paper --example fig2_small -- DIRECTORY`
 //!
 //! ```text
 //! fig2.csv, fig2-samples.csv, fig2-compact.csv, fig2.svg, fig2.png, fig2-budget.csv
@@ -27,7 +27,7 @@ fn main() -> Result<()> {
         out: Some(out.join("fig2-small")),
         ..Request::default()
     };
-    let outcome = figures::fig2(&Run::new(&request)?, &Reporter::new())?;
+    let outcome = paper::fig2(&Run::new(&request)?, &Reporter::new())?;
     println!("{}", runs::file_names(&outcome.files).join(", "));
     println!("{}", outcome.reached.join("\n"));
     let judged: Vec<_> =

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
 use evaluation::{AccuracyTarget, Request, Requirements, Run, Verdict};
-use figures::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
+use paper::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
 use runs::{CsvFile, Error, Progress, Silent, Store};
 use std::fs;
 use std::path::{Path, PathBuf};

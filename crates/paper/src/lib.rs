@@ -14,7 +14,7 @@
 //! use evaluation::{Preset, Request, Run};
 //! use runs::Silent;
 //! let run = Run::new(&Request { preset: Preset::Quick, ..Request::default() })?;
-//! let outcome = figures::fig2(&run, &Silent)?;
+//! let outcome = paper::fig2(&run, &Silent)?;
 //! println!("{}", evaluation::plain(&outcome.claims));
 //! # Ok::<(), runs::Error>(())
 //! ```
