@@ -62,6 +62,8 @@ fn points(
     from: [f64; 2],
     [rows, columns]: [usize; 2],
 ) -> Result<Vec<f64>> {
+    // A file may end with its heading.
+    let offset = offset.min(source.length());
     let bytes = source.bytes(offset, source.length() - offset)?;
     let mut heights = undefined_heights(source, rows, columns)?;
     let mut at = offset;
