@@ -10,10 +10,13 @@ use toml::{Table, Value};
 /// # Errors
 /// `TypeError` for what no table holds, `ValueError` for a whole number beyond the range of a float.
 pub fn toml_text(of: &Bound<'_, PyDict>, path: &str) -> PyResult<String> {
-    Ok(table(of.as_mapping(), path)?.to_string())
+    Ok(table(of.as_mapping(), path, 0)?.to_string())
 }
 
-fn table(of: &Bound<'_, PyMapping>, path: &str) -> PyResult<Table> {
+/// Tables and lists in each other; no scene has more, and one that holds itself has no end.
+const DEEPEST: usize = 8;
+
+fn table(of: &Bound<'_, PyMapping>, path: &str, depth: usize) -> PyResult<Table> {
     let mut table = Table::new();
     for item in of.items()? {
         let (key, item): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
@@ -22,14 +25,17 @@ fn table(of: &Bound<'_, PyMapping>, path: &str) -> PyResult<Table> {
             .extract()
             .map_err(|_| PyTypeError::new_err(format!("{path} has the key {shown}: expected text")))?;
         if !item.is_none() {
-            let value = value(&item, &format!("{path}.{key}"))?;
+            let value = value(&item, &format!("{path}.{key}"), depth + 1)?;
             table.insert(key, value);
         }
     }
     Ok(table)
 }
 
-fn value(of: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
+fn value(of: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
+    if depth > DEEPEST {
+        return Err(PyValueError::new_err(format!("{path} is nested more than {DEEPEST} deep")));
+    }
     // A truth value of numpy is none of the numbers, though it converts to one.
     if let Ok(flag) = of.extract::<bool>() {
         return Ok(Value::Boolean(flag));
@@ -38,10 +44,10 @@ fn value(of: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
         return Ok(Value::String(text));
     }
     if let Ok(mapping) = of.cast::<PyMapping>() {
-        return table(mapping, path).map(Value::Table);
+        return table(mapping, path, depth).map(Value::Table);
     }
     if of.is_instance_of::<PyList>() || of.is_instance_of::<PyTuple>() {
-        let values = of.try_iter()?.map(|item| value(&item?, path));
+        let values = of.try_iter()?.map(|item| value(&item?, path, depth + 1));
         return values.collect::<PyResult<_>>().map(Value::Array);
     }
     if let Ok(whole) = of.extract::<i64>() {

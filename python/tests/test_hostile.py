@@ -138,6 +138,18 @@ def test_huge_maps_are_refused_before_they_are_drawn():
         fc.Bem3d(cells=10**7).prepare(fc.Scene(flat, modulus=1.0))
 
 
+def test_mappings_that_hold_themselves():
+    endless = {"work": 1.0}
+    endless["range"] = endless
+    arms = []
+    arms.append(arms)
+    for effects in ({"adhesion": endless}, {"rheology": {"kind": "prony", "weights": arms, "times": [1.0]}}):
+        with pytest.raises(ValueError, match="nested more than 8 deep"):
+            fc.Effects(**effects)
+    with pytest.raises(ValueError, match="nested more than 8 deep"):
+        fc.Bem3d(cells=endless)
+
+
 def test_words_that_nothing_is_called():
     map_ = fc.HeightMap(GOOD, size=1.0)
     with pytest.raises(ValueError, match='no output is called "stifness"'):

@@ -24,7 +24,7 @@ impl Effects {
     /// Checks the parameters of the effects that are on.
     ///
     /// # Errors
-    /// [`Error::Domain`] with the first value that makes no sense.
+    /// [`crate::Error::Domain`] with the first value that makes no sense.
     pub fn validate(&self) -> Result<()> {
         if let Hardness::Limit { pressure } = self.hardness {
             positive("hardness", pressure)?;

@@ -29,6 +29,7 @@ from ._core import (
     set_threads,
     threads,
 )
+from ._effects import Effects
 from ._errors import (
     DomainError,
     Error,
@@ -43,7 +44,6 @@ from ._errors import (
 )
 from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, si, write_surface
 from ._formulas import *  # noqa: F403
-from ._effects import Effects
 from ._inputs import Body, Scene, Surface
 from ._models import (
     Bem3d,

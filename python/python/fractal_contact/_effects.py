@@ -15,8 +15,8 @@ EffectValue = float | str | Mapping[str, Any] | None
 class Effects:
     """Effects beyond linear elastic normal contact with free boundaries.
 
-    Off unless named; a model that lacks one refuses it. Each takes what it takes in a scene, with plain numbers in
-    consistent units: a mapping, or a number in place of a mapping with its first key alone.
+    Off unless named; a model that lacks one refuses it. Each takes what it takes in a scene: a mapping with these
+    keys, of plain numbers in consistent units.
 
     Parameters
     ----------
@@ -24,15 +24,15 @@ class Effects:
         "free" or "periodic"
         What lies outside of the rectangle. Not named: an unloaded half-space outside the rectangle.
     hardness : optional
-        { pressure }
+        { pressure }, or the pressure alone
         Largest pressure that the bodies carry (perfect plasticity): the indentation stays along a path. Not named:
         elastic at any pressure.
     adhesion : optional
-        { work }, or { work, range, law } with the law "exponential" or "dugdale"
+        { work }, or the work alone; { work, range, law } with the law "exponential" or "dugdale"
         Attraction with this work of adhesion (energy per area): of short range (JKR), or across open gaps with a
         range (a length), by the exponential law if none is named. Not named: no attraction.
     friction : optional
-        { coefficient }
+        { coefficient }, or the coefficient alone
         Coulomb's friction under a tangential load, with this coefficient. Not named: no tangential load.
     rheology : optional
         { kind: "kelvin_voigt" or "maxwell", viscosity }, { kind: "standard_solid", weight, time }, { kind: "prony",

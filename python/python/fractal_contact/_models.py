@@ -44,7 +44,7 @@ class Model:
 
     @property
     def supports(self) -> dict[str, tuple[str, ...]]:
-        """What it can do: words for ``surfaces``, ``boundaries``, ``effects``, ``needs``, ``loads``, ``paths``, ``outputs``.
+        """Words for its ``surfaces``, ``boundaries``, ``effects``, ``needs``, ``loads``, ``paths`` and ``outputs``.
 
         A scene that asks for more is `Unsupported`. What depends on several of them together, or on numbers, a model
         may refuse as well.

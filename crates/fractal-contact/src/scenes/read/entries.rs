@@ -407,7 +407,8 @@ impl<'a> Entry<'a> {
         let whole = u64::from_str_radix(&digits, radix).ok().filter(|whole| *whole >= least);
         whole.ok_or_else(|| {
             let value = digits.parse().unwrap_or(f64::NAN);
-            self.outside(value, format!("a whole number >= {least}"))
+            let most = if value > u64::MAX as f64 { ", below 2^64" } else { "" };
+            self.outside(value, format!("a whole number >= {least}{most}"))
         })
     }
 
@@ -445,7 +446,7 @@ impl<'a> Entry<'a> {
 
     /// The same, >= 0.
     pub fn not_negative(&self, dimension: Dimension, system: System) -> Read<f64> {
-        self.from_zero(self.quantity(dimension, system)?)
+        self.zero_or_above(self.quantity(dimension, system)?)
     }
 
     /// One length > 0, or two in a list.
@@ -484,7 +485,7 @@ impl<'a> Entry<'a> {
 
     /// A pure number >= 0.
     pub fn not_negative_number(&self) -> Read<f64> {
-        self.from_zero(self.pure_number()?)
+        self.zero_or_above(self.pure_number()?)
     }
 
     fn above_zero(&self, value: f64) -> Read<f64> {
@@ -493,7 +494,7 @@ impl<'a> Entry<'a> {
         if value > 0.0 { Ok(value) } else { Err(refused()) }
     }
 
-    fn from_zero(&self, value: f64) -> Read<f64> {
+    fn zero_or_above(&self, value: f64) -> Read<f64> {
         let refused = || self.outside(value, "a number >= 0").with_help("check the sign");
         if value >= 0.0 { Ok(value) } else { Err(refused()) }
     }
