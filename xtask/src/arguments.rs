@@ -6,7 +6,7 @@ mod sizes;
 mod studies;
 
 pub use bench::BenchArguments;
-pub use cluster::{MakespanArguments, PlanArguments, ShardsArguments, SubmitArguments};
+pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};
 
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Request, Requirements};
@@ -105,8 +105,6 @@ pub enum Command {
     Status(ShardsArguments),
     /// Tables and pictures from the shards in a directory: the bytes of one process. Refuses gaps, damage and mixed plans.
     Merge(ShardsArguments),
-    /// How long a study of surfaces or lines takes on many cores: measured times replayed, with slow cores and failures.
-    Makespan(MakespanArguments),
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
@@ -177,8 +175,7 @@ impl Command {
             | Self::Plan(_)
             | Self::Submit(_)
             | Self::Status(_)
-            | Self::Merge(_)
-            | Self::Makespan(_) => {}
+            | Self::Merge(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => (request.out, request.threads) = (Some(a.out.clone()), a.threads),
             Self::AccuracyCost(a) => (request.out, request.fresh) = (Some(a.out.clone()), a.fresh),

@@ -1,15 +1,13 @@
 //! Commands on many machines: shards, their plan, submission, status and merge.
 
-use crate::arguments::{
-    Arguments, Command, MakespanArguments, PlanArguments, ShardsArguments, SubmitArguments,
-};
+use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
 use clap::Parser as _;
 use evaluation::{Realisation, Run, realisation_jobs, run_units};
 use runs::cluster::{
     self, Division, Forecast, Status, Target, check, quoted, run_shard, status, submitted_tasks,
     without_flags,
 };
-use runs::{Error, JobList, Reporter, Result, ShardChoice, Store};
+use runs::{Error, JobList, Reporter, Result, ShardChoice};
 use std::path::Path;
 
 /// How the program calls itself.
@@ -129,66 +127,6 @@ pub fn submit(options: &SubmitArguments) -> Result<()> {
     let target = Target { binary: &binary, out: &out, plan: &plan, jobs: &*jobs };
     runs::out!("{forecast}");
     runs::out!("{}", options.submission.write(&target, &forecast, &found)?);
-    Ok(())
-}
-
-/// A job that is ended more often than this before it is done would be begun for ever.
-const MOST_FAILURES: f64 = 5.0;
-
-/// Replays the measured times of a study on many cores.
-///
-/// # Errors
-/// A command without surfaces or lines, a directory without any of them, numbers that make no sense.
-pub fn makespan(options: &MakespanArguments) -> Result<()> {
-    let command = parsed(&options.command)?;
-    let refused = || Error::parameter("command", options.command.join(" "), "a study of surfaces or lines");
-    let units = units(&command)?.ok_or_else(refused)?;
-    // Seconds are counted in 64 bits as millionths.
-    for (name, value, least, most) in [
-        ("speed-up", options.speed_up, 1e-3, 1e6),
-        ("slowness", options.slowness, 1e-3, 1e6),
-        ("operations", options.operations, 1e-6, 1e12),
-        ("start", options.start, 0.0, 1e6),
-        ("slow-share", options.slow_share, 0.0, 1.0),
-        ("failures", options.failures, 0.0, 1e6),
-        ("merge", options.merge, 0.0, 1e6),
-    ] {
-        if !(least..=most).contains(&value) {
-            return Err(Error::parameter(name, value, format!("a number from {least} to {most}")));
-        }
-    }
-    let machines = cluster::Cluster {
-        start: options.start,
-        slow_share: options.slow_share,
-        slowness: options.slowness,
-        failures: options.failures,
-        operations: options.operations,
-        merge: options.merge,
-        seed: options.seed,
-        ..cluster::Cluster::default()
-    };
-    let seconds = evaluation::replayed_seconds(&units, &Store::view(&options.measured)?)?;
-    let longest = seconds.iter().copied().fold(0.0, f64::max) / options.speed_up * options.slowness.max(1.0);
-    let most = 3600.0 * MOST_FAILURES / longest;
-    if options.failures > most {
-        let expected =
-            format!("at most {most:.2} in an hour: the longest job takes {longest:.0} s on a slow core");
-        return Err(Error::parameter("failures", options.failures, expected));
-    }
-    let of_task = (options.cores_of_task, options.speed_up);
-    let found = evaluation::simulate(&units, &seconds, &options.cores, of_task, &machines);
-    runs::out!("{:>8} {:>7} {:>12} {:>10}  limited by", "cores", "tasks", "makespan", "efficiency");
-    for run in &found {
-        let (time, share) = (cluster::duration(run.found.seconds()), 100.0 * run.efficiency());
-        runs::out!("{:>8} {:>7} {time:>12} {share:>8.1} %  {}", run.cores(), run.cluster.tasks, run.limit());
-    }
-    if let Some(path) = &options.csv {
-        let words: Vec<String> =
-            std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-        let header = evaluation::header(format!("{PROGRAM} {}", words.join(" ")));
-        runs::write_csv(path, &evaluation::makespan_table(&found)?, &header)?;
-        runs::out!("{}", path.display());
-    }
     Ok(())
 }
 

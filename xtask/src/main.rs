@@ -14,6 +14,7 @@ mod cluster;
 use arguments::{Arguments, BenchArguments, Command, Redraw, TuningArguments};
 use clap::Parser as _;
 use evaluation::{BenchRow, Outcome, Run};
+use paper::{Claim, Judged};
 use runs::{Error, Failure, Reporter, Result, Store};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -44,7 +45,6 @@ fn execute(command: Command, typed: &[String]) -> Result<ExitCode, Failure> {
     match &command {
         Command::Plan(options) => cluster::plan(options)?,
         Command::Submit(options) => cluster::submit(options)?,
-        Command::Makespan(options) => cluster::makespan(options)?,
         Command::Status(options) => {
             if !cluster::tell_status(options)?.complete() {
                 return Ok(ExitCode::from(3));
@@ -98,12 +98,8 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
         Command::Verify(_) => vec![paper::verify(&run, &reporter)?],
         Command::ReproduceAll(_) => paper::reproduce_all(&run, &reporter)?,
         Command::AccuracyCost(options) => {
-            vec![evaluation::accuracy_cost(
-                options.depth(),
-                options.seed,
-                (&options.out, options.fresh),
-                &reporter,
-            )?]
+            let kept = (options.out.as_path(), options.fresh);
+            vec![evaluation::accuracy_cost(options.depth(), options.seed, kept, &reporter)?.into()]
         }
         Command::ReproduceTwoCases(options) => {
             vec![paper::two_cases(&options.study()?, &options.out, &reporter)?]
@@ -113,23 +109,23 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
                 evaluation::budget_check(options.cases, options.seed, run.threads, &run.out, &reporter)?;
             runs::out!("{coverage}");
             coverage_fails = !coverage.holds();
-            vec![outcome]
+            vec![outcome.into()]
         }
         Command::Exponent(options) => {
             let study = options.study(&run)?;
-            for line in evaluation::exponent_plan(&study, options.budget, &reporter)? {
+            for line in paper::exponent_plan(&study, options.budget, &reporter)? {
                 runs::out!("{line}");
             }
             if options.plan {
                 return Ok(ExitCode::SUCCESS);
             }
             // The plan has dealt with what was stored.
-            vec![evaluation::exponent(&evaluation::Exponent { fresh: false, ..study }, &reporter)?]
+            vec![paper::exponent(&paper::Exponent { fresh: false, ..study }, &reporter)?]
         }
         Command::Audit(options) => {
             let (outcome, summary) = evaluation::audit(&run, options.share, options.tight, &reporter)?;
             runs::out!("{summary}");
-            vec![outcome]
+            vec![outcome.into()]
         }
         // Done above.
         _ => Vec::new(),
@@ -137,13 +133,16 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
     if let Some((requirements, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())
     {
-        outcomes.push(evaluation::state_budgets(&run, requirements.solid, requirements.line, &reporter)?);
+        let budgets = evaluation::state_budgets(&run, requirements.solid, requirements.line, &reporter)?;
+        outcomes.push(budgets.into());
     }
     // The first word that was typed is the subcommand: no flag stands before it.
     let name = typed.first().map_or("", String::as_str);
+    let claims = judged(&outcomes);
+    let outcomes: Vec<Outcome> = outcomes.into_iter().map(Judged::into_outcome).collect();
     let manifest =
         evaluation::write_manifest(&run, name, &format!("cargo xtask {}", typed.join(" ")), &outcomes)?;
-    let code = report(&outcomes, &manifest);
+    let code = report(&outcomes, &claims, &manifest);
     Ok(if coverage_fails { ExitCode::from(3) } else { code })
 }
 
@@ -175,8 +174,18 @@ fn tell_what_an_interruption_leaves(out: PathBuf) -> Result<()> {
     ctrlc::set_handler(tell).map_err(|e| Error::parameter("Ctrl-C", e, "a signal that can be handled"))
 }
 
+/// The claims that these outcomes can judge: those of the verification, where it is among them.
+fn judged(outcomes: &[Judged]) -> Vec<Claim> {
+    if let Some(verified) = outcomes.iter().find(|outcome| outcome.name == "verify") {
+        return verified.claims.clone();
+    }
+    let mut all: Vec<Claim> = outcomes.iter().flat_map(|outcome| outcome.claims.iter().cloned()).collect();
+    paper::sort(&mut all);
+    all
+}
+
 /// Prints what was made and what the paper says to it.
-fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
+fn report(outcomes: &[Outcome], claims: &[Claim], manifest: &Path) -> ExitCode {
     for outcome in outcomes {
         for file in &outcome.files {
             runs::out!("{}", file.display());
@@ -186,17 +195,8 @@ fn report(outcomes: &[Outcome], manifest: &Path) -> ExitCode {
     for line in outcomes.iter().flat_map(|o| &o.reached) {
         runs::out!("{line}");
     }
-    let verified = outcomes.iter().find(|o| o.name == "verify");
-    let claims = verified.map_or_else(
-        || {
-            let mut all: Vec<_> = outcomes.iter().flat_map(|o| o.claims.iter().cloned()).collect();
-            evaluation::sort(&mut all);
-            all
-        },
-        |o| o.claims.clone(),
-    );
     if !claims.is_empty() {
-        runs::out!("\nThe paper beside these numbers:\n\n{}", evaluation::plain(&claims));
+        runs::out!("\nThe paper beside these numbers:\n\n{}", paper::plain(claims));
     }
     let seconds: f64 = outcomes.iter().map(|o| o.seconds).sum();
     let missing = outcomes.iter().map(|o| o.not_converged).max().unwrap_or(0);

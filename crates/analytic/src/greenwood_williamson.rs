@@ -2,13 +2,13 @@
 
 use crate::closed;
 use crate::periodic::{self, Periodic, PeriodicLaw};
-use crate::quadrature::Gauss;
-use crate::root;
 use crate::spectrum::Spectrum;
 use contact_model::{
     Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
     Scene, Source, Surface, SurfaceKind,
 };
+use numerics::gauss::Gauss;
+use numerics::root;
 use std::f64::consts::PI;
 use surface_gen::MapStatistics;
 
@@ -155,7 +155,7 @@ impl ContactModel for GreenwoodWilliamson {
         let summits = Summits::scaled(moments);
         Ok(Box::new(Periodic {
             model: NAME,
-            law: AsperityModel { summits, heights: self.heights, gauss: Gauss::new() },
+            law: AsperityModel { summits, heights: self.heights, gauss: Gauss::<16>::new() },
             nondimensional: Nondimensionalisation::new(modulus, length, height)?,
             normalisation: Normalisation { modulus, length, height: Some(height) },
             outputs: scene.outputs,
@@ -180,11 +180,11 @@ pub fn gaussian_integral(j: f64, t: f64) -> Result<f64> {
     if !(t.is_finite() && t >= 0.0) {
         return Err(Error::domain("t", t, "a finite number >= 0"));
     }
-    Ok(gaussian(&Gauss::new(), j, t) * (-0.5 * t * t).exp())
+    Ok(gaussian(&Gauss::<16>::new(), j, t) * (-0.5 * t * t).exp())
 }
 
 /// `exp(t^2/2) F_j(t)`, without underflow: with `x = t + v^2`, `2/sqrt(2 pi) int v^(2 j + 1) exp(-t v^2 - v^4/2) dv`.
-fn gaussian(gauss: &Gauss, j: f64, t: f64) -> f64 {
+fn gaussian(gauss: &Gauss<16>, j: f64, t: f64) -> f64 {
     /// exp(-45) is beyond the last place.
     const SMALL: f64 = 45.0;
     const PANELS: u32 = 8;
@@ -207,7 +207,7 @@ fn gaussian(gauss: &Gauss, j: f64, t: f64) -> f64 {
 struct AsperityModel {
     summits: Summits,
     heights: SummitHeights,
-    gauss: Gauss,
+    gauss: Gauss<16>,
 }
 
 /// The flat is never further from the mean plane of the summits than this many s: there F is below the smallest f64.

@@ -57,8 +57,6 @@ mod periodic;
 pub mod persson;
 pub mod power_law;
 pub mod power_law_body;
-mod quadrature;
-mod root;
 mod round;
 mod special;
 pub mod spectrum;

@@ -3,13 +3,14 @@
 mod curve;
 
 use crate::jkr::{PullOff, signed};
-use crate::{Hertz, closed, root};
+use crate::{Hertz, closed};
 use contact_model::{
     Abilities, Adhesion, AdhesionLaw, ContactModel, ContactState, Effect, Effects, Error, Load,
     Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source,
     Stop, Surface, SurfaceKind,
 };
 use curve::{Curve, Point};
+use numerics::root;
 use std::f64::consts::PI;
 
 const NAME: &str = "maugis_dugdale";

@@ -2,14 +2,14 @@
 
 use crate::closed;
 use crate::periodic::{self, Periodic, PeriodicLaw};
-use crate::quadrature::Gauss;
-use crate::root;
 use crate::special::{erf, exponential_integral, exponential_integral_of_square};
 use crate::spectrum::Spectrum;
 use contact_model::{
     Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
     Scene, Source, Surface, SurfaceKind,
 };
+use numerics::gauss::Gauss;
+use numerics::root;
 use std::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 use surface_gen::MapStatistics;
 
@@ -155,7 +155,7 @@ struct PressureDiffusion {
     slope: f64,
     /// `(y, weight)` with the weight `(2/sqrt(pi)) dy/q`.
     nodes: Vec<(f64, f64)>,
-    gauss: Gauss,
+    gauss: Gauss<16>,
     /// [`PressureDiffusion::tail`] at multiples of [`PANEL`].
     tails: Vec<f64>,
 }
@@ -200,7 +200,7 @@ impl PressureDiffusion {
 
     /// Panels up to each of these rising y, with q as a function of y.
     fn over(mut edges: Vec<f64>, wavenumber_at: impl Fn(f64) -> f64, gamma: f64) -> Self {
-        let gauss = Gauss::new();
+        let gauss = Gauss::<16>::new();
         let first = edges.first().copied().unwrap_or(0.0);
         let slope = edges.last().copied().unwrap_or(0.0);
         edges.extend((1..=HALVINGS).map(|i| first * 2.0_f64.powi(-i)));
@@ -499,7 +499,7 @@ mod tests {
         let energy = |gamma: f64| {
             let law = law(0.8, None, 32.0, gamma);
             // int u dp = int (-p du/dp) dp.
-            let gauss = Gauss::new();
+            let gauss = Gauss::<16>::new();
             (0..120)
                 .map(|i| {
                     let (low, high) = (f64::from(i) * 0.1, f64::from(i + 1) * 0.1);
@@ -508,7 +508,7 @@ mod tests {
                 .sum::<f64>()
         };
         let spectrum = Spectrum::new(&surface(0.8, None, 32.0)).unwrap();
-        let gauss = Gauss::new();
+        let gauss = Gauss::<16>::new();
         let tau = std::f64::consts::TAU;
         let plateau = 0.8 / std::f64::consts::PI / (tau * tau * (1.0 - 32.0_f64.powf(-1.6)));
         let full: f64 = spectrum
@@ -553,7 +553,7 @@ mod tests {
         edges.extend((1..=HALVINGS).map(|i| first * 2.0_f64.powi(-i)));
         edges.push(0.0);
         edges.sort_by(f64::total_cmp);
-        let gauss = Gauss::new();
+        let gauss = Gauss::<16>::new();
         fine.nodes = edges
             .windows(2)
             .flat_map(|w| {

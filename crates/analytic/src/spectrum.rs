@@ -174,8 +174,8 @@ fn power_integral(a: f64, b: f64, s: f64) -> f64 {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::quadrature::Gauss;
     use approx::assert_relative_eq;
+    use numerics::gauss::Gauss;
 
     /// Powers with exponents up to six.
     const ROUNDING: f64 = 1e-13;
@@ -193,7 +193,7 @@ pub(crate) mod tests {
 
     #[test]
     fn moments_are_their_integrals() {
-        let gauss = Gauss::new();
+        let gauss = Gauss::<16>::new();
         for hurst in [0.0, 0.3, 0.5, 0.8, 1.0] {
             for roll_off in [None, Some(1.0), Some(4.0), Some(64.0)] {
                 let spectrum = Spectrum::new(&surface(hurst, roll_off, 64.0)).unwrap();

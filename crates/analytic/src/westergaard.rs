@@ -4,11 +4,11 @@
 use crate::closed;
 use crate::closed::ROUNDED_UP;
 use crate::periodic::{self, Periodic, PeriodicLaw};
-use crate::root;
 use contact_model::{
     Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
     Scene, Size, Source, Surface, SurfaceKind,
 };
+use numerics::root;
 use std::f64::consts::{PI, SQRT_2};
 
 const NAME: &str = "westergaard";

@@ -1,9 +1,9 @@
 //! Single and double precision.
 
 use crate::tuning::{BLOCK, CHUNK, LANES};
+use numerics::parallel::map;
 use rustfft::FftNum;
 use std::ops::AddAssign;
-use surface_gen::parallel::map;
 
 /// Floating point of an operator and of the vectors of an iteration: f64, or f32 where the result is certified in f64.
 pub trait Real: FftNum + Default + AddAssign + PartialOrd {

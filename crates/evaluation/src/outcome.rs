@@ -1,6 +1,5 @@
 //! What a command leaves behind.
 
-use crate::claim::Claim;
 use crate::measured::Measured;
 use std::path::PathBuf;
 
@@ -11,8 +10,6 @@ pub struct Outcome {
     pub name: &'static str,
     /// Files written, in order.
     pub files: Vec<PathBuf>,
-    /// The paper's claims that these numbers can judge.
-    pub claims: Vec<Claim>,
     /// Solves that did not meet their tolerance; they are in the samples and left out of every mean.
     pub not_converged: usize,
     /// One line each: to what the numbers are known.

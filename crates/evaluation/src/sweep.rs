@@ -41,7 +41,7 @@ pub fn realisation_jobs(units: Vec<Realisation>) -> Vec<RealisationJob> {
 }
 
 /// Whether the store holds a result of this unit; its numbers are not read.
-pub(crate) fn is_solved(unit: &Realisation, store: &Store) -> bool {
+pub fn is_solved(unit: &Realisation, store: &Store) -> bool {
     store.load(&RealisationJob::KIND.stored_key(&unit.key())).is_some()
 }
 

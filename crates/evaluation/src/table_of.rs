@@ -80,7 +80,7 @@ pub(crate) fn maybe(value: Option<f64>) -> String {
 ///
 /// # Errors
 /// [`Error::Content`] for a column that is missing or an entry that does not fit it.
-pub(crate) fn read_rows<T: DeserializeOwned>(path: &Path, file: &CsvFile) -> Result<Vec<T>> {
+pub fn read_rows<T: DeserializeOwned>(path: &Path, file: &CsvFile) -> Result<Vec<T>> {
     let names = StringRecord::from(file.columns.as_slice());
     let row = |row: &Vec<String>| StringRecord::from(row.as_slice()).deserialize(Some(&names));
     let rows: Result<_, csv::Error> = file.rows.iter().map(row).collect();

@@ -4,6 +4,7 @@ use crate::axisymmetric::RoundContact;
 use crate::material::{Material, Memory};
 use crate::shape::Shape;
 use contact_model::{Body, Error, Pair, Result, Rheology};
+use numerics::gauss::Gauss;
 
 /// Where a history stands; lengths in L, forces in E* L^2.
 #[derive(Debug, Clone)]
@@ -156,7 +157,8 @@ fn remembered(profile: &impl Shape, from: f64, speed: f64, rate: f64, duration: 
     let kinks = profile.kinks(to - speed * longest, to).into_iter().map(|d| (to - d) / speed);
     edges.extend(kinks.filter(|edge| *edge > 0.0 && *edge < longest));
     edges.sort_by(f64::total_cmp);
-    let nodes = gauss();
+    let gauss = Gauss::<16>::new();
+    let nodes = gauss.nodes();
     edges
         .windows(2)
         .map(|w| {
@@ -171,24 +173,4 @@ fn remembered(profile: &impl Shape, from: f64, speed: f64, rate: f64, duration: 
             2.0 * speed * half * sum
         })
         .sum()
-}
-
-/// Nodes and weights of Gauss's rule of sixteen points on [-1, 1], by Newton's method on the recurrence of the Legendre polynomials.
-fn gauss() -> [(f64, f64); 16] {
-    let mut nodes = [(0.0, 0.0); 16];
-    for (i, node) in nodes.iter_mut().enumerate() {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / 16.5).cos();
-        let mut slope = 1.0;
-        for _ in 0..6 {
-            let (mut last, mut value) = (1.0, x);
-            for k in 2..=16 {
-                let k = f64::from(k);
-                (last, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * last) / k);
-            }
-            slope = 16.0 * (x * value - last) / (x * x - 1.0);
-            x -= value / slope;
-        }
-        *node = (x, 2.0 / ((1.0 - x * x) * slope * slope));
-    }
-    nodes
 }

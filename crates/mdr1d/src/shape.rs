@@ -1,6 +1,10 @@
 //! What springs need to know of a profile: where each of them stands, and integrals over them.
 
 use crate::axisymmetric::Profile;
+use numerics::gauss::Gauss;
+use std::sync::LazyLock;
+
+static GAUSS: LazyLock<Gauss<5>> = LazyLock::new(Gauss::new);
 
 /// A profile g(x) as seen from its depth: x(gamma), which never falls.
 pub(crate) trait Shape: Clone {
@@ -56,8 +60,8 @@ pub(crate) fn of_power(
     let slope = last - first - curve;
     if low > NARROW * high {
         // dx/dgamma = x/(n gamma).
-        let sum: f64 = gauss()
-            .iter()
+        let sum: f64 = GAUSS
+            .on(0.0, 1.0)
             .map(|(s, weight)| {
                 let gamma = low + s * width;
                 weight * (first + s * (slope + s * curve)) * (position(gamma) / gamma)
@@ -73,19 +77,4 @@ pub(crate) fn of_power(
     let s1 = (m1 - low * m0) / width;
     let s2 = ((m2 - low * m1) / width - low * s1) / width;
     first * m0 + slope * s1 + curve * s2
-}
-
-/// Nodes and weights of Gauss's rule of five points on [0, 1].
-fn gauss() -> [(f64, f64); 5] {
-    let root = (10.0_f64 / 7.0).sqrt();
-    let (inner, outer) = ((5.0 - 2.0 * root).sqrt() / 6.0, (5.0 + 2.0 * root).sqrt() / 6.0);
-    let (heavy, light) =
-        ((322.0 + 13.0 * 70.0_f64.sqrt()) / 1800.0, (322.0 - 13.0 * 70.0_f64.sqrt()) / 1800.0);
-    [
-        (0.5 - outer, light),
-        (0.5 - inner, heavy),
-        (0.5, 64.0 / 225.0),
-        (0.5 + inner, heavy),
-        (0.5 + outer, light),
-    ]
 }

@@ -13,7 +13,8 @@
 //! ...
 //! ```
 
-use evaluation::{Request, Result, Run, Verdict, plain};
+use evaluation::{Request, Result, Run};
+use paper::{Verdict, plain};
 use runs::Reporter;
 use std::path::PathBuf;
 

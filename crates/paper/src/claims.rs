@@ -14,7 +14,8 @@ mod plateau;
 mod regions;
 mod speed;
 
-use evaluation::{Claim, Measured};
+use crate::claim::Claim;
+use evaluation::Measured;
 
 pub(crate) use curve::collapse;
 pub(crate) use line::beside_stiffness;

@@ -1,10 +1,12 @@
 //! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
 
+use crate::claim::Claim;
+use crate::judged::Judged;
 use crate::words;
 use analysis::Table;
 use evaluation::{
-    Claim, Flag, Measured, Outcome, Run, Session, compact_table, curves_table, describe, header,
-    samples_table, write_budget,
+    Flag, Measured, Outcome, Run, Session, compact_table, curves_table, describe, header, samples_table,
+    write_budget,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
 use runs::{CsvFile, Error, Header, Progress, Result, Store, write_csv};
@@ -22,14 +24,14 @@ pub(crate) struct CurveFigure {
 
 impl CurveFigure {
     /// The figure and its ensemble, which is solved where it is not stored.
-    pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<(Outcome, Measured)> {
+    pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<(Judged, Measured)> {
         check(run.over.as_deref())?;
         let session = Session::open(run)?;
         let measured = (self.measure)(run, &session.store, progress)?;
         let mut outcome = Outcome::of(self.name, self.write(run, &measured)?, &[&measured]);
         outcome.add_budget(write_budget(self.name, self.flags, run, &measured)?);
-        outcome.claims = (self.claims)(&measured);
-        Ok((session.close(outcome)?, measured))
+        let claims = (self.claims)(&measured);
+        Ok((Judged::new(session.close(outcome)?, claims), measured))
     }
 
     /// Writes `name.csv`, `name-samples.csv`, `name-compact.csv`, `name.svg`, `name.png`.

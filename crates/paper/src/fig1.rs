@@ -1,5 +1,6 @@
 //! Fig. 1: what the surfaces look like.
 
+use crate::judged::Judged;
 use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
 use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list};
@@ -23,7 +24,7 @@ const BYTES: f64 = 24.0;
 ///
 /// # Errors
 /// Files that cannot be written, maps that do not fit in memory.
-pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     threads_for_memory(1, BYTES * (run.cells as f64).powi(2), "cells", run.cells)?;
     let session = Session::open(run)?;
     let dimensions = run.dimensions();
@@ -56,7 +57,7 @@ pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
             "map: {n} x {n} cells; here {kept} x {kept} of them, cell round(i ({n} - 1)/({kept} - 1)) in each direction, no smoothing"
         ));
     outcome.files.extend(curves::written(run, "fig1", &table, &header, |csv| draw(csv, &run.out))?);
-    session.close(outcome)
+    session.close(outcome).map(Judged::from)
 }
 
 /// The cells that the CSV keeps, along one direction.

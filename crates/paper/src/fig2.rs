@@ -2,7 +2,8 @@
 
 use crate::claims;
 use crate::curves::CurveFigure;
-use evaluation::{FLAGS_3D, Outcome, Run, measure_3d};
+use crate::judged::Judged;
+use evaluation::{FLAGS_3D, Run, measure_3d};
 use runs::{Progress, Result};
 
 pub(crate) const FIGURE: CurveFigure = CurveFigure {
@@ -21,6 +22,6 @@ pub(crate) const FIGURE: CurveFigure = CurveFigure {
 ///
 /// # Errors
 /// What the solver refuses, and files that cannot be written.
-pub fn fig2(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+pub fn fig2(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     Ok(FIGURE.reproduce(run, progress)?.0)
 }

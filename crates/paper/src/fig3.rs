@@ -2,7 +2,8 @@
 
 use crate::claims;
 use crate::fitted::{self, FittedFigure};
-use evaluation::{Outcome, Run};
+use crate::judged::Judged;
+use evaluation::Run;
 use plots::{Axis, Key, LineStyle, REFERENCE};
 use runs::{CsvFile, Progress, Result};
 use std::path::{Path, PathBuf};
@@ -26,7 +27,7 @@ pub(crate) const FIGURE: FittedFigure = FittedFigure {
 ///
 /// # Errors
 /// As [`crate::fig2`] and [`crate::fig6`].
-pub fn fig3(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+pub fn fig3(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     FIGURE.reproduce(run, progress)
 }
 

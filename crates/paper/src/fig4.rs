@@ -1,6 +1,7 @@
 //! Fig. 4: the collapse of all curves.
 
 use crate::claims;
+use crate::judged::Judged;
 use crate::{curves, words};
 use evaluation::{
     FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Outcome, Run, Session, TableOf, describe, header,
@@ -18,12 +19,11 @@ use evaluation::FLAGS_3D as FLAGS;
 ///
 /// # Errors
 /// As [`crate::fig2`].
-pub fn fig4(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+pub fn fig4(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     let session = Session::open(run)?;
     let measured = measure_3d(run, &session.store, progress)?;
-    let mut outcome = write(run, &measured)?;
-    outcome.claims = claims::collapse(&measured);
-    session.close(outcome)
+    let outcome = session.close(write(run, &measured)?)?;
+    Ok(Judged::new(outcome, claims::collapse(&measured)))
 }
 
 pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {

@@ -1,5 +1,6 @@
 //! Fig. 5: what the equivalent lines look like.
 
+use crate::judged::Judged;
 use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
 use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list};
@@ -26,7 +27,7 @@ const BYTES: f64 = 40.0;
 ///
 /// # Errors
 /// Files that cannot be written, lines that do not fit in memory.
-pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     threads_for_memory(1, BYTES * run.elements as f64, "elements", run.elements)?;
     let session = Session::open(run)?;
     let dimensions: Vec<f64> = run
@@ -67,7 +68,7 @@ pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
             BINS.min(run.elements)
         ));
     outcome.files.extend(curves::written(run, "fig5", &table, &header, |csv| draw(csv, &run.out))?);
-    session.close(outcome)
+    session.close(outcome).map(Judged::from)
 }
 
 /// Indices of the lowest and the highest element of each bin, increasing; one where both are the same.

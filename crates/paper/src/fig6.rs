@@ -2,7 +2,8 @@
 
 use crate::claims;
 use crate::curves::CurveFigure;
-use evaluation::{FLAGS_1D, Outcome, Run, measure_1d};
+use crate::judged::Judged;
+use evaluation::{FLAGS_1D, Run, measure_1d};
 use runs::{Progress, Result};
 
 pub(crate) const FIGURE: CurveFigure = CurveFigure {
@@ -19,6 +20,6 @@ pub(crate) const FIGURE: CurveFigure = CurveFigure {
 ///
 /// # Errors
 /// What the model refuses, and files that cannot be written.
-pub fn fig6(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+pub fn fig6(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     Ok(FIGURE.reproduce(run, progress)?.0)
 }

@@ -1,9 +1,11 @@
 //! What Figs. 3 and 7 have in common: fitted values over the fractal dimension.
 
+use crate::claim::Claim;
+use crate::judged::Judged;
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use evaluation::{
-    Claim, FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, WindowedLaw, dense_dimensions,
+    FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, WindowedLaw, dense_dimensions,
     describe, header, laws, laws_within, measure_1d, measure_3d, windowed_law,
 };
 use plots::{Axis, Key, Mark, MarkShape, Picture, number};
@@ -45,13 +47,12 @@ struct FittedRow {
 
 impl FittedFigure {
     /// The figure; ensembles are solved where they are not stored.
-    pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+    pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<Judged> {
         let session = Session::open(run)?;
         let solid = measure_3d(run, &session.store, progress)?;
         let line = measure_1d(run, &session.store, progress)?;
-        let mut outcome = self.write(run, &solid, &line)?;
-        outcome.claims = (self.claims)(&solid, &line);
-        session.close(outcome)
+        let outcome = session.close(self.write(run, &solid, &line)?)?;
+        Ok(Judged::new(outcome, (self.claims)(&solid, &line)))
     }
 
     /// Writes `name.csv`, `name.svg` and `name.png`.

@@ -1,7 +1,7 @@
 //! The figures of Pohrt, Popov and Filippov, Phys. Rev. E 86, 026710 (2012) as code: runs, tables, pictures, comparison.
 //!
 //! [`fig1`] .. [`fig7`] take the parameters of one command ([`evaluation::Run`]), compute, write their CSV, draw their picture from that
-//! CSV, and give an [`evaluation::Outcome`] with the paper's own claims beside the numbers ([`evaluation::Claim`]). [`verify`] judges them all, [`reproduce_all`] makes everything, [`check_reference`] compares a small run
+//! CSV, and give an [`evaluation::Outcome`] with the paper's own claims beside the numbers ([`Judged`], [`Claim`]). [`verify`] judges them all, [`reproduce_all`] makes everything, [`check_reference`] compares a small run
 //! with stored numbers, [`redraw`] renews pictures from their tables.
 //!
 //! Normalisation, means, units of work and the store are those of `evaluation`; CSV files those of `runs`.
@@ -15,15 +15,17 @@
 //! use runs::Silent;
 //! let run = Run::new(&Request { preset: Preset::Quick, ..Request::default() })?;
 //! let outcome = paper::fig2(&run, &Silent)?;
-//! println!("{}", evaluation::plain(&outcome.claims));
+//! println!("{}", paper::plain(&outcome.claims));
 //! # Ok::<(), runs::Error>(())
 //! ```
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 
 mod all;
+mod claim;
 mod claims;
 mod curves;
+mod exponent;
 mod fig1;
 mod fig2;
 mod fig3;
@@ -32,6 +34,7 @@ mod fig5;
 mod fig6;
 mod fig7;
 mod fitted;
+mod judged;
 mod redraw;
 mod reference;
 mod two_cases;
@@ -39,6 +42,8 @@ mod verify;
 mod words;
 
 pub use all::reproduce_all;
+pub use claim::{Claim, Estimate, Statement, Verdict, counts, plain, short, short_table, sort};
+pub use exponent::{Exponent, ExponentSizes, Ladder, draw_exponent, exponent, exponent_plan};
 pub use fig1::fig1;
 pub use fig2::fig2;
 pub use fig3::fig3;
@@ -46,6 +51,7 @@ pub use fig4::fig4;
 pub use fig5::fig5;
 pub use fig6::fig6;
 pub use fig7::fig7;
+pub use judged::Judged;
 pub use redraw::{Beside, redraw};
 pub use reference::{RELATIVE, check_reference};
 pub use two_cases::{TwoCases, two_cases, two_cases_jobs};

@@ -43,7 +43,7 @@ pub fn redraw(directory: &Path, beside: &Beside) -> Result<Vec<PathBuf>> {
     }
     files.extend(evaluation::redraw_benches(directory)?);
     if directory.join("exponent.csv").exists() {
-        files.extend(evaluation::draw_exponent(directory)?);
+        files.extend(crate::draw_exponent(directory)?);
     }
     if files.is_empty() {
         return Err(Error::content(directory, "no table that a picture is drawn from"));

@@ -1,10 +1,9 @@
 //! Every claim of the paper beside what was found.
 
+use crate::claim::{Claim, claims_table, markdown, short_table, sort};
 use crate::claims;
-use evaluation::{
-    Claim, Flag, Measured, Outcome, Run, Session, claims_table, describe, header, markdown, measure_1d,
-    measure_3d, short_table, sort,
-};
+use crate::judged::Judged;
+use evaluation::{Flag, Measured, Outcome, Run, Session, describe, header, measure_1d, measure_3d};
 use runs::{Progress, Result, files, write_csv};
 
 /// Judges every statement (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
@@ -15,11 +14,12 @@ use runs::{Progress, Result, files, write_csv};
 ///
 /// # Errors
 /// As [`crate::fig2`] and [`crate::fig6`].
-pub fn verify(run: &Run, progress: &dyn Progress) -> Result<Outcome> {
+pub fn verify(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     let session = Session::open(run)?;
     let solid = measure_3d(run, &session.store, progress)?;
     let line = measure_1d(run, &session.store, progress)?;
-    session.close(write(run, &solid, &line)?)
+    let (outcome, claims) = write(run, &solid, &line)?;
+    Ok(Judged::new(session.close(outcome)?, claims))
 }
 
 /// All claims in order of figures; [`sort`] puts the contradictions first.
@@ -37,7 +37,7 @@ fn all(solid: &Measured, line: &Measured) -> Result<Vec<Claim>> {
     Ok(claims)
 }
 
-pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outcome> {
+pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<(Outcome, Vec<Claim>)> {
     let mut claims = all(solid, line)?;
     sort(&mut claims);
     let command = run.command("verify", &Flag::ALL);
@@ -53,5 +53,5 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<Outc
     files::write_whole(&md, text.as_bytes())?;
     let short = run.out.join("verify-table.md");
     files::write_whole(&short, short_table(&timeless).as_bytes())?;
-    Ok(Outcome { claims, ..Outcome::of("verify", vec![csv, md, short], &[solid, line]) })
+    Ok((Outcome::of("verify", vec![csv, md, short], &[solid, line]), claims))
 }

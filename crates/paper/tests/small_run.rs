@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
-use evaluation::{AccuracyTarget, Request, Requirements, Run, Verdict};
-use paper::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
+use evaluation::{AccuracyTarget, Request, Requirements, Run};
+use paper::{Verdict, counts, fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
 use runs::{CsvFile, Error, Progress, Silent, Store};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -103,7 +103,7 @@ fn other_figures_reuse_units_and_other_parameters_do_not() {
     let run = run(dir.path());
     fig2(&run, &Silent).unwrap();
     fig6(&run, &Silent).unwrap();
-    let reused = |run: &Run, figure: fn(&Run, &dyn Progress) -> runs::Result<evaluation::Outcome>| {
+    let reused = |run: &Run, figure: fn(&Run, &dyn Progress) -> runs::Result<paper::Judged>| {
         let counter = Counter::default();
         figure(run, &counter).unwrap();
         (counter.units.into_inner(), counter.reused.into_inner())
@@ -173,7 +173,7 @@ fn contradictions_stand_first_and_every_row_is_in_the_text() {
     assert!(claims.iter().all(|c| !c.statement.quotation.is_empty() && !c.statement.reading.is_empty()));
     let text = fs::read_to_string(dir.path().join("verify.md")).unwrap();
     assert_eq!(text.lines().filter(|l| l.starts_with("| ")).count(), claims.len() + 1);
-    assert!(text.contains(&evaluation::counts(&claims)));
+    assert!(text.contains(&counts(&claims)));
 }
 
 #[test]

@@ -73,7 +73,6 @@ mod map;
 mod measure;
 mod memory;
 #[doc(hidden)]
-pub mod parallel;
 mod phases;
 mod spectrum;
 mod surface;

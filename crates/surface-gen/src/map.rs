@@ -1,11 +1,11 @@
 //! Self-affine maps (Eqs. 2-5).
 
 use crate::memory;
-use crate::parallel::{for_each, threads_for};
 use crate::phases::{Stream, Turns};
 use crate::spectrum::MapSpectrum;
 use crate::turn::Circle;
 use contact_model::{Cells, HeightMap, Result, SelfAffine, Size};
+use numerics::parallel::{for_each, threads_for};
 use realfft::{ComplexToReal, RealFftPlanner};
 use rustfft::{Fft, FftPlanner, num_complex::Complex64};
 use std::fmt;

@@ -1,8 +1,8 @@
 //! Which waves a grid carries, and their amplitudes.
 
 use crate::lattice::{FEWEST, Lattice};
-use crate::parallel::map;
 use contact_model::{Amplitude, Cells, Error, Result, SelfAffine, line_length};
+use numerics::parallel::map;
 use std::f64::consts::{PI, TAU};
 
 /// A limit that is meant to be a multiple of the longest wave may be rounded below it: it includes waves up

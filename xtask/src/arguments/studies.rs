@@ -3,8 +3,9 @@
 use super::cluster::Sharded;
 use super::sizes::{Solid, seconds, share};
 use clap::{Args, ValueEnum};
-use evaluation::{Depth, Exponent, ExponentSizes, Forces, Request, Run};
+use evaluation::{Depth, Forces, Request, Run};
 use paper::TwoCases;
+use paper::{Exponent, ExponentSizes};
 use std::path::PathBuf;
 
 /// Flags of the second look.

@@ -1,7 +1,7 @@
 //! Johnson's curve without dimensions: pressures in p*, heights in D.
 
-use crate::root;
 use crate::westergaard::gap_of_fractions;
+use numerics::root;
 use std::f64::consts::FRAC_PI_2;
 
 /// The alpha from which on the pressure only falls with psi: twice the largest

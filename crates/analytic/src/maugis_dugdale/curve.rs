@@ -1,6 +1,6 @@
 //! Maugis's equations in his units.
 
-use crate::root;
+use numerics::root;
 use std::f64::consts::PI;
 
 /// Equilibrium states of one lambda, in Maugis's units: contact radius in `(pi w R^2/K)^(1/3)`, force in

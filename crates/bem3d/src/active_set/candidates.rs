@@ -2,8 +2,8 @@
 
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::{CANDIDATES_AHEAD, CHUNK, COUNTED_CHUNKS, LISTED_CANDIDATES};
+use numerics::parallel::map;
 use std::sync::Arc;
-use surface_gen::parallel::map;
 
 /// Finds the cells with `z < d`.
 ///

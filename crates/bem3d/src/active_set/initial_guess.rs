@@ -6,10 +6,10 @@ use super::state::{Guess, Limits, Problem, Solved, Target};
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 use contact_model::Stop;
+use numerics::parallel::{for_each, threads_for};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
-use surface_gen::parallel::{for_each, threads_for};
 
 /// The state solved last, from which the next is extrapolated.
 #[derive(Debug)]

@@ -2,8 +2,8 @@
 
 use super::grid::{Grid, Window};
 use crate::tuning::{BAND, LANES, LONG_RUN};
+use numerics::parallel::{map, threads_for};
 use std::ops::{AddAssign, Range};
-use surface_gen::parallel::{map, threads_for};
 
 /// A set of cells, row by row. Values on it stand one after the other in the order of the cells.
 ///

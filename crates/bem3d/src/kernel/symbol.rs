@@ -3,10 +3,10 @@
 use crate::geometry::Lengths;
 use crate::real::Real;
 use crate::tuning::CACHE_LINE;
+use numerics::parallel::{for_each, threads_for};
 use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use std::sync::Arc;
-use surface_gen::parallel::{for_each, threads_for};
 
 /// Real symbol of an even kernel on the half spectrum quarter, `symbol[kx * (ly / 2 + 1) + ky]`.
 #[derive(Debug, Clone)]

@@ -7,8 +7,8 @@
 
 use crate::geometry::{CellSet, Window};
 use crate::tuning::{BAND, EXTENSION_LEVELS};
+use numerics::parallel::map;
 use std::iter::zip;
-use surface_gen::parallel::map;
 
 /// Sums over blocks of 2^l x 2^l cells of a window, for a set.
 #[derive(Debug, Default)]

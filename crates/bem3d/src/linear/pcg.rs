@@ -9,7 +9,7 @@ use crate::parts::Part;
 use crate::real::{Real, dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
 use contact_model::Stop;
-use surface_gen::parallel::map;
+use numerics::parallel::map;
 
 /// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as much as the last one, would
 /// meet a criterion. The caller measures the result.

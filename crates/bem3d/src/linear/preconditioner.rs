@@ -6,7 +6,7 @@ use crate::operator::FftConvolution;
 use crate::parts::{Part, Recorder};
 use crate::real::{Real, dot, each, largest, sum};
 use crate::tuning::BAND;
-use surface_gen::parallel::map;
+use numerics::parallel::map;
 
 /// What one application of a preconditioner finds.
 #[derive(Debug, Clone, Copy)]

@@ -4,13 +4,13 @@ use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::real::{Real, binary_unit};
 use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES};
+use numerics::parallel::{for_each, threads_for};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
-use surface_gen::parallel::{for_each, threads_for};
 
 /// A planned convolution on a window: `u = kernel * p` from rows of the window to rows of the window.
 ///

@@ -13,8 +13,8 @@ use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::Symbol;
 use crate::kernel::love::influence;
 use crate::real::Real;
+use numerics::parallel::map;
 use std::fmt;
-use surface_gen::parallel::map;
 
 /// Spacing, reach and order of a two-level operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! What several groups of claims need.
 
+use crate::claim::Estimate;
 use analysis::{Bootstrap, FittedPowerLaw, interpolate};
-use evaluation::{Estimate, Measured, Series, WindowedLaw, windowed_law};
+use evaluation::{Measured, Series, WindowedLaw, windowed_law};
 
 /// How a model is called in a claim.
 pub(super) fn label(measured: &Measured) -> &'static str {

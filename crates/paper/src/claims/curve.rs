@@ -1,13 +1,14 @@
 //! What the curves themselves say: the crossing, saturation, the crossover, the collapse.
 
 use super::common::{label, laws, ratio, stiffness_at};
+use crate::claim::{Claim, Estimate, Statement};
 use analysis::{
     Bootstrap, CollapsePoint, FitWindow, collapse as residual, decades_within, fit_power_law, interpolate,
     sum,
 };
 use analytic::{F_BAR_UL, K_BAR_UL};
 use contact_model::PAPER_STIFFNESS_FACTOR;
-use evaluation::{Claim, Estimate, Measured, Series, Statement, transformed};
+use evaluation::{Measured, Series, transformed};
 
 const THROUGH: Statement = Statement {
     quotation: "all curves collapse for k̄_ul = 0.18 and F̄_ul = 0.086",

@@ -1,8 +1,9 @@
 //! alpha: the abstract's range, Eqs. 6 and 24, 1D against 3D, 1D at small forces.
 
 use super::common::{INTERVAL, Law, difference, label, laws, mean_of, ratio, stiffness_at};
+use crate::claim::{Claim, Estimate, Statement};
 use analysis::{Bootstrap, FitWindow, FittedPowerLaw, fit_power_law, sum};
-use evaluation::{Claim, Estimate, FLOOR_CELLS, Measured, Series, Statement, laws_within};
+use evaluation::{FLOOR_CELLS, Measured, Series, laws_within};
 
 const ENDS: Statement = Statement {
     quotation: "a power law, with the exponent varying from 0.50 to 0.85, depending on the fractal dimension",

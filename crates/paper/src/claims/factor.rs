@@ -1,9 +1,10 @@
 //! zeta and the crossing point: Eq. 11, Fig. 7.
 
 use super::common::{Law, laws, ratio};
+use crate::claim::{Claim, Estimate, Statement};
 use analysis::{Bootstrap, FitWindow, crossing as cross, fit_power_law};
 use analytic::{F_BAR_UL, K_BAR_UL};
-use evaluation::{Claim, Estimate, Measured, Series, Statement};
+use evaluation::{Measured, Series};
 
 const SAME_ORDER: Statement = Statement {
     quotation: "The overall scaling coefficient zeta, as shown in Fig. 7, has the same order of magnitude in both cases, but does not coincide exactly",

@@ -1,7 +1,7 @@
 //! What the paper says of the line beside its stiffness: Eq. 17, the area, experiments.
 
+use crate::claim::{Claim, Estimate, Statement};
 use contact_model::{Amplitude, SelfAffine};
-use evaluation::{Claim, Estimate, Statement};
 use runs::{Error, Result};
 use surface_gen::{LineGenerator, MapGenerator};
 

@@ -1,8 +1,8 @@
 //! Both plateaus, by solving full contact.
 
+use crate::claim::{Claim, Estimate, Statement};
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Surface};
-use evaluation::{Claim, Estimate, Statement};
 use mdr1d::Mdr1d;
 use runs::{Error, Result};
 

@@ -1,9 +1,10 @@
 //! Regions of contact: one at small force, and diameters that add up to the contact length.
 
 use super::common::mean_of;
+use crate::claim::{Claim, Estimate, Statement};
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, ContactState, Field, Load, Scene, SelfAffine, Surface};
-use evaluation::{Claim, Estimate, SEED, Statement};
+use evaluation::SEED;
 use runs::{Error, Result};
 use std::f64::consts::{PI, TAU};
 

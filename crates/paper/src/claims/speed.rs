@@ -1,6 +1,7 @@
 //! How long both models took.
 
-use evaluation::{Claim, Estimate, Measured, Statement};
+use crate::claim::{Claim, Estimate, Statement};
+use evaluation::Measured;
 
 const SPEED: Statement = Statement {
     quotation: "The mapping onto a one-dimensional problem drastically decreases the computation time",

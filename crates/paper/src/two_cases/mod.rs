@@ -7,6 +7,7 @@ mod study;
 
 pub use study::TwoCases;
 
+use crate::judged::Judged;
 use analysis::{Curves, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
@@ -32,7 +33,7 @@ use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 ///
 /// # Errors
 /// [`Error::Parameter`] for numbers that make no sense, what a model refuses, and files that cannot be written.
-pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Result<Outcome> {
+pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Result<Judged> {
     let start = Instant::now();
     study.check()?;
     files::create_directory(out)?;
@@ -40,7 +41,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     let store = Store::open(out, false)?;
     let solved = solve(study, &store, progress)?;
     let coarser = solve(&study.coarser(), &store, progress)?;
-    let mut outcome = Outcome::new(NAME);
+    let mut outcome = Judged::from(Outcome::new(NAME));
     let mut curves = Vec::new();
     let pairs = pairs(study, &solved)?;
     for ((case, surfaces), coarser) in study.cases().into_iter().zip(solved).zip(coarser) {

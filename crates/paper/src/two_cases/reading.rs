@@ -1,9 +1,10 @@
 //! What the curves say about the paper's belief.
 
 use super::study::{CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
+use crate::claim::{Claim, Estimate, Statement, plain};
 use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
-use evaluation::{Claim, Estimate, FLOOR_CELLS, Statement, list, plain};
+use evaluation::{FLOOR_CELLS, list};
 use runs::{Error, Result};
 
 /// Shares of the square in contact between which the theories of random surfaces are compared: many summits, far from full contact.

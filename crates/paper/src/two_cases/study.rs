@@ -1,9 +1,10 @@
 //! The two problems and what is found of them.
 
+use crate::claim::Estimate;
 use analysis::StiffnessSample;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
 use evaluation::limits::{self, within};
-use evaluation::{Estimate, Forces, list};
+use evaluation::{Forces, list};
 use runs::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

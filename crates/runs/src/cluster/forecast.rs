@@ -1,9 +1,11 @@
 //! What a plan will take: cores, memory, time, disk.
 
-use super::makespan::{Cluster, makespan};
 use super::shard_run::shards;
 use super::words::{bytes, duration};
 use crate::jobs::JobList;
+use crate::shard::assign;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::fmt;
 
 /// Memory that a core of a cluster has as a rule, bytes: a task that needs more takes the cores that belong to it.
@@ -127,9 +129,20 @@ impl Forecast {
 
     /// Predicted seconds until the last of the tasks has ended, with so many at the same time.
     pub fn makespan(&self, at_once: usize) -> f64 {
+        // Microseconds, because floats have no order.
         let costs: Vec<u64> = self.costs.iter().map(|seconds| (1e6 * seconds) as u64).collect();
-        let cluster = Cluster { cores: at_once, tasks: self.tasks, ..Cluster::default() };
-        makespan(&self.costs, &costs, &cluster).tasks
+        let mut tasks = vec![0; self.tasks.max(1)];
+        for (task, cost) in assign(&costs, tasks.len()).into_iter().zip(&costs) {
+            tasks[task] += cost;
+        }
+        // The engine gives the next task in their order to the first place that is free.
+        let places = at_once.clamp(1, tasks.len());
+        let mut free: BinaryHeap<Reverse<u64>> = (0..places).map(|_| Reverse(0)).collect();
+        for task in tasks {
+            let Some(Reverse(now)) = free.pop() else { break };
+            free.push(Reverse(now + task));
+        }
+        free.into_iter().map(|Reverse(end)| end).max().unwrap_or(0) as f64 * 1e-6
     }
 }
 
@@ -155,6 +168,20 @@ impl fmt::Display for Forecast {
 mod tests {
     use super::*;
     use crate::cluster::tests_support::Squares;
+
+    #[test]
+    fn the_makespan_by_hand() {
+        // 3 + 3 against 2 + 2 + 2, and the longest job beside as many places as one likes.
+        let of = |costs: &[f64], tasks: usize| Forecast {
+            jobs: costs.len(),
+            tasks,
+            costs: costs.to_vec(),
+            ..Forecast::new(&Squares::to(1), &Division::default())
+        };
+        approx::assert_relative_eq!(of(&[3.0, 3.0, 2.0, 2.0, 2.0], 2).makespan(2), 7.0);
+        approx::assert_relative_eq!(of(&[3.0, 3.0, 2.0, 2.0, 2.0], 5).makespan(2), 7.0);
+        approx::assert_relative_eq!(of(&[3.0, 3.0, 2.0], 100).makespan(100), 3.0);
+    }
 
     #[test]
     #[allow(clippy::float_cmp)] // Sums of whole seconds.

@@ -7,7 +7,6 @@
 
 mod check;
 mod forecast;
-mod makespan;
 mod plan;
 mod shard_run;
 mod status;
@@ -18,7 +17,6 @@ mod words;
 
 pub use check::{Completeness, JobState, check};
 pub use forecast::{Division, Forecast};
-pub use makespan::{Cluster, Makespan, makespan};
 pub use plan::{ShardPlan, without_flags};
 pub use shard_run::{ShardReport, run_shard};
 pub use status::{Status, status, submitted_tasks};

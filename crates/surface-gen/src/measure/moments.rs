@@ -1,7 +1,7 @@
 //! Moments of samples.
 
-use crate::parallel::{map, threads_for};
 use contact_model::HeightMap;
+use numerics::parallel::{map, threads_for};
 
 /// Below this many values a plain sum is as good as a pairwise one.
 const PLAIN: usize = 128;

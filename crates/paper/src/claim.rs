@@ -1,7 +1,7 @@
 //! What the paper states, what a fair reading of it is, and what was found.
 
-use crate::table_of::TableOf;
 use analysis::Table;
+use evaluation::TableOf;
 use runs::Result;
 use std::fmt;
 
@@ -68,7 +68,7 @@ impl Estimate {
     /// From a standard error; `None` without one.
     ///
     /// ```
-    /// use evaluation::Estimate;
+    /// use paper::{Estimate};
     /// assert_eq!(Estimate::normal(1.0, Some(0.5)), Some(Estimate { value: 1.0, half_width: 0.98 }));
     /// ```
     pub fn normal(value: f64, standard_error: Option<f64>) -> Option<Self> {
@@ -106,7 +106,7 @@ impl Claim {
     /// Judges a number by its interval alone: confirmed where it lies inside the reading, contradicted where it misses it, else unresolved.
     ///
     /// ```
-    /// use evaluation::{Claim, Estimate, Statement, Verdict};
+    /// use paper::{Claim, Estimate, Statement, Verdict};
     /// let statement = Statement { quotation: "", place: "", reading: "" };
     /// let judge = |value, half_width| Claim::judge("k", statement, [0.175, 0.185], Estimate { value, half_width }, "").verdict;
     /// assert_eq!(judge(0.180, 0.004), Verdict::Confirmed);
@@ -146,7 +146,7 @@ impl Claim {
     /// else confirmed.
     ///
     /// ```
-    /// use evaluation::{Claim, Estimate, Statement, Verdict};
+    /// use paper::{Claim, Estimate, Statement, Verdict};
     /// let statement = Statement { quotation: "", place: "", reading: "" };
     /// let judge = |half_width| {
     ///     let claim = Claim::judge("alpha", statement, [0.52, 0.54], Estimate { value: 0.52, half_width }, "");
@@ -250,7 +250,7 @@ pub fn sort(claims: &mut [Claim]) {
 ///
 /// ```
 /// assert_eq!(
-///     evaluation::counts(&[]),
+///     paper::counts(&[]),
 ///     "0 comparisons: 0 contradicted, 0 not resolved at this size, 0 matter of convention, 0 confirmed"
 /// );
 /// ```
@@ -316,10 +316,10 @@ pub fn markdown(claims: &[Claim]) -> String {
 /// The short table: quantity, what the paper allows, what was found, verdict; run times are left out.
 ///
 /// ```
-/// use evaluation::{Claim, Estimate, Statement};
+/// use paper::{Claim, Estimate, Statement};
 /// let statement = Statement { quotation: "", place: "", reading: "" };
 /// let c = Claim::judge("alpha", statement, [0.5, 0.6], Estimate { value: 0.54, half_width: 0.012 }, "");
-/// assert!(evaluation::short_table(&[c]).ends_with("| alpha | 0.5 to 0.6 | 0.54 +- 0.01 | confirmed |\n"));
+/// assert!(paper::short_table(&[c]).ends_with("| alpha | 0.5 to 0.6 | 0.54 +- 0.01 | confirmed |\n"));
 /// ```
 pub fn short_table(claims: &[Claim]) -> String {
     let mut text =

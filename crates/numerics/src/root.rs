@@ -5,7 +5,7 @@
 /// Bisection that takes inverse quadratic interpolation where that is safe (Chandrupatla, Adv. Eng. Softw. 28, 145 (1997)): some ten
 /// evaluations for smooth functions, never more than bisection needs. A point where the function is 0 is returned as it is; without
 /// a change of sign the end with the smaller value is.
-pub(crate) fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64 {
+pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64 {
     /// More than the bits of any two numbers of one sign; never reached by functions with numbers for values.
     const MOST_STEPS: usize = 2_200;
     let (mut b, mut a) = (low, high);

@@ -2,7 +2,7 @@
 //!
 //! What a task is depends on sizes alone, each is done by one thread, and their results are put together in their order: no bit of a result
 //! depends on the number of threads. The pool is that of `rayon` in which a solve runs; its threads that have nothing else to do help.
-//! For this project's crates: drawing of maps and `bem3d`. Parallel iterators of `rayon` would make buffers for each split instead of each thread, and need a second code without the feature
+//! Parallel iterators of `rayon` would make buffers for each split instead of each thread, and need a second code without the feature
 //! `rayon`, where there is one thread.
 //!
 //! A thread that waits for its helpers may be given any other work of its pool, such as another solve of a parallel iterator over surfaces.

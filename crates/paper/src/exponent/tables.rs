@@ -4,9 +4,8 @@ use super::curve::{Banded, MeanCurve};
 use super::ladder::Ladder;
 use super::ladder::{Pair, Rungs};
 use super::laws::{Factor, LawRow, Ratio};
-use crate::table_of::TableOf;
-use crate::tables::FRACTAL_DIMENSION;
 use analysis::Table;
+use evaluation::{FRACTAL_DIMENSION, TableOf};
 use runs::Result;
 use std::fmt::Write as _;
 
@@ -177,7 +176,7 @@ pub fn samples(ladders: &[(&Ladder, &[Rungs])]) -> Result<Table> {
             }
         }
     }
-    let text = |result: &crate::RealisationResult| {
+    let text = |result: &evaluation::RealisationResult| {
         let mut text = String::new();
         for (i, sample) in result.samples.iter().enumerate() {
             let blank = if i > 0 { " " } else { "" };

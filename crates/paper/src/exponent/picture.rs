@@ -1,6 +1,6 @@
 //! The pictures: local slopes with bands beside the laws, and line over surface.
 
-use crate::table_of::read_rows;
+use evaluation::read_rows;
 use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, color, logarithmic, shape};
 use runs::{CsvFile, Result};
 use serde::Deserialize;

@@ -1,9 +1,7 @@
 //! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
 
-use crate::forces::Forces;
-use crate::limits::{self, within};
-use crate::realisation::{Discretisation, Realisation, RealisationResult};
-use crate::sweep::{is_solved, sweep};
+use evaluation::limits::{self, within};
+use evaluation::{Discretisation, Forces, Realisation, RealisationResult, is_solved, sweep};
 use runs::{Error, Progress, Result, Store};
 use std::collections::BTreeMap;
 use std::sync::Arc;

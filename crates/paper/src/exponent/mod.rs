@@ -16,13 +16,11 @@ mod tables;
 pub use ladder::Ladder;
 pub use picture::draw as draw_exponent;
 
-use crate::header::header;
-use crate::outcome::Outcome;
-use crate::run::{FRACTAL_DIMENSIONS, SEED, list};
-use crate::{Discretisation, Forces, Realisation};
+use crate::judged::Judged;
 use analysis::Table;
 use contact_model::ContactModel as _;
 use curve::{Convention, MeanCurve};
+use evaluation::{Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, header, list};
 use ladder::Rungs;
 use runs::{Error, Progress, Result, Store, files, write_csv};
 use std::path::PathBuf;
@@ -194,7 +192,7 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
 ///
 /// # Errors
 /// [`Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
-pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Outcome> {
+pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     study.validate()?;
     let start = Instant::now();
     files::create_directory(&study.out)?;
@@ -268,7 +266,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Outcome> {
     };
     (outcome.bem3d_seconds, outcome.mdr1d_seconds) = (Some(seconds("bem3d")), Some(seconds("mdr1d")));
     outcome.seconds = start.elapsed().as_secs_f64();
-    Ok(outcome)
+    Ok(outcome.into())
 }
 
 #[cfg(test)]

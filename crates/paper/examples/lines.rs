@@ -1,7 +1,7 @@
 //! Exponents of ensembles of equivalent lines for three fractal dimensions beside the scaling 1/(1 + H) of
 //! Eq. 24.
 //!
-//! `cargo run -p fractal-contact-evaluation --example lines -- DIRECTORY`
+//! `cargo run -p fractal-contact-paper --example lines -- DIRECTORY`
 //!
 //! ```text
 //! quantity                              paper          here, 95 %  verdict
@@ -11,9 +11,8 @@
 //! 3 comparisons: 0 contradicted, 0 not resolved at this size, 0 matter of convention, 3 confirmed
 //! ```
 
-use evaluation::{
-    Claim, Estimate, Request, Result, Run, Session, Statement, Verdict, laws, measure_1d, plain,
-};
+use evaluation::{Request, Result, Run, Session, laws, measure_1d};
+use paper::{Claim, Estimate, Statement, Verdict, plain};
 use runs::Silent;
 use std::path::PathBuf;
 

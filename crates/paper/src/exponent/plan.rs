@@ -1,7 +1,7 @@
 //! What the study will cost, and how many surfaces a time is worth.
 
 use super::ladder::{Ladder, Pair, Rungs};
-use crate::forces::Forces;
+use evaluation::Forces;
 
 /// Differences between grids that are not measured yet scatter so much less than those of the level before (in variance), at most.
 const SHRINKS: f64 = 0.5;
@@ -115,8 +115,8 @@ impl Ladder {
     /// Power of the size with which work grows.
     fn growth(&self) -> f64 {
         match self.model {
-            crate::Discretisation::Bem3d { .. } => 2.1,
-            crate::Discretisation::Mdr1d { .. } => 1.1,
+            evaluation::Discretisation::Bem3d { .. } => 2.1,
+            evaluation::Discretisation::Mdr1d { .. } => 1.1,
         }
     }
 }

@@ -1,15 +1,18 @@
-//! Integrals of smooth functions: Gauss and Legendre's rule of sixteen points.
+//! Integrals of smooth functions: the rule of Gauss and Legendre.
 
-/// Points of the rule.
-const POINTS: usize = 16;
-
-/// The rule on [-1, 1]: exact for polynomials up to degree 31.
+/// The rule of so many points: exact for polynomials up to degree `2 POINTS - 1`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Gauss {
+pub struct Gauss<const POINTS: usize> {
     nodes: [(f64, f64); POINTS],
 }
 
-impl Gauss {
+impl<const POINTS: usize> Default for Gauss<POINTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const POINTS: usize> Gauss<POINTS> {
     /// Nodes are roots of the Legendre polynomial, by Newton's method on its recurrence.
     pub fn new() -> Self {
         let mut nodes = [(0.0, 0.0); POINTS];
@@ -32,6 +35,11 @@ impl Gauss {
         Self { nodes }
     }
 
+    /// Points and weights on [-1, 1], from the largest point.
+    pub fn nodes(&self) -> &[(f64, f64); POINTS] {
+        &self.nodes
+    }
+
     /// Points and weights on an interval.
     pub fn on(&self, low: f64, high: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -51,7 +59,7 @@ mod tests {
 
     #[test]
     fn polynomials_and_a_root() {
-        let gauss = Gauss::new();
+        let gauss = Gauss::<16>::new();
         for degree in [0, 1, 2, 17, 30, 31] {
             let exact = (2.0_f64.powi(degree + 1) - 1.0) / f64::from(degree + 1);
             assert_relative_eq!(gauss.integrate(1.0, 2.0, |x| x.powi(degree)), exact, max_relative = 1e-14);

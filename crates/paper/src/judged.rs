@@ -1,0 +1,45 @@
+//! What a command of the paper leaves behind.
+
+use crate::claim::Claim;
+use evaluation::Outcome;
+use std::ops::{Deref, DerefMut};
+
+/// The outcome of a command, with the statements of the paper that its numbers can judge.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    outcome: Outcome,
+    /// The paper's claims beside what was found.
+    pub claims: Vec<Claim>,
+}
+
+impl Judged {
+    /// An outcome with these claims.
+    pub fn new(outcome: Outcome, claims: Vec<Claim>) -> Self {
+        Self { outcome, claims }
+    }
+
+    /// The outcome without its claims.
+    pub fn into_outcome(self) -> Outcome {
+        self.outcome
+    }
+}
+
+impl From<Outcome> for Judged {
+    fn from(outcome: Outcome) -> Self {
+        Self::new(outcome, Vec::new())
+    }
+}
+
+impl Deref for Judged {
+    type Target = Outcome;
+
+    fn deref(&self) -> &Outcome {
+        &self.outcome
+    }
+}
+
+impl DerefMut for Judged {
+    fn deref_mut(&mut self) -> &mut Outcome {
+        &mut self.outcome
+    }
+}
