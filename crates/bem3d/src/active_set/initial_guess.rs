@@ -2,7 +2,7 @@
 
 use super::candidates::GapRange;
 use super::solver::solve;
-use super::state::{Guess, Limits, Problem, Solved, Target};
+use super::state::{Control, Guess, Limits, Problem, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 use contact_model::Stop;
@@ -28,10 +28,10 @@ pub struct LastState {
 
 impl LastState {
     /// How many times the last load is asked for.
-    pub fn ratio(&self, target: Target) -> f64 {
+    pub fn ratio(&self, target: Control) -> f64 {
         match target {
-            Target::Force(force) => force / self.force,
-            Target::Approach(d) => d / self.d,
+            Control::Force(force) => force / self.force,
+            Control::Approach(d) => d / self.d,
         }
     }
 
@@ -55,15 +55,15 @@ impl LastState {
 
     /// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load, so that the predicted
     /// approach is an upper bound and every new contact cell lies below it. Where no stiffness was asked for, the pressure is scaled.
-    pub fn extrapolated(&self, target: Target, tuning: &Tuning) -> Option<Guess> {
+    pub fn extrapolated(&self, target: Control, tuning: &Tuning) -> Option<Guess> {
         let ratio = self.ratio(target);
         if !(1.0 / tuning.warm..=tuning.warm).contains(&ratio) {
             return None;
         }
         let (mut p, d): (Vec<f64>, f64) = if let Some((q, k)) = &self.tangent {
             let step = match target {
-                Target::Force(force) => (force - self.force) / k,
-                Target::Approach(d) => d - self.d,
+                Control::Force(force) => (force - self.force) / k,
+                Control::Approach(d) => d - self.d,
             };
             (self.p.iter().zip(q).map(|(p, q)| p + step * q).collect(), self.d + step.max(0.0))
         } else {
@@ -81,7 +81,7 @@ impl LastState {
     /// application; where a good part of the grid will touch, the answer is known without.
     pub fn overshoots(
         &self,
-        target: Target,
+        target: Control,
         cells: usize,
         tuning: &Tuning,
         predicted: impl FnOnce() -> usize,
@@ -108,22 +108,22 @@ pub fn predicted_cells(problem: &mut Problem, guess: &Guess) -> usize {
 /// The cells with `z < F / k_1` (k_1: one cell alone, the softest contact) contain the contact set. If they are few they are the guess;
 /// otherwise the surface averaged over 2 x 2 cells is solved first. A coarse grid only says where to begin: every fine cell
 /// stays a candidate, because fractal summits vanish on coarse grids.
-pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: Stop<'_>) -> Guess {
+pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: Stop<'_>) -> Guess {
     let (grid, tuning) = (problem.grid(), *problem.operators.tuning());
     let own = problem.operators.table().own();
     // The highest cell of a coarse grid lies below the plane of first touch.
     let GapRange { highest, first, deepest } = problem.candidates.range();
     let reach = match target {
-        Target::Force(force) => first + force * own,
-        Target::Approach(d) => d,
+        Control::Force(force) => first + force * own,
+        Control::Approach(d) => d,
     };
     let reach = reach.min(2.0 * deepest + f64::MIN_POSITIVE);
     let from_above = |problem: &mut Problem| {
         let set = problem.candidates.below(reach).union(&CellSet::from_index(grid, &[highest]));
         let p = match target {
-            Target::Force(force) => force / set.len() as f64,
+            Control::Force(force) => force / set.len() as f64,
             // Any positive value: the first outer iteration evaluates the true gap.
-            Target::Approach(d) => d / (own * set.len() as f64),
+            Control::Approach(d) => d / (own * set.len() as f64),
         };
         Guess { p: vec![p; set.len()], set, d: reach, far: false }
     };
@@ -138,7 +138,7 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
         }
     }
     let mut coarse = problem.coarser.take().unwrap_or_else(|| Box::new(coarser(problem)));
-    if let Target::Approach(d) = target
+    if let Control::Approach(d) = target
         && coarse.candidates.range().first >= d
     {
         problem.coarser = Some(coarse);
@@ -147,8 +147,8 @@ pub fn cold_start(problem: &mut Problem, target: Target, limits: Limits, stop: S
     let limits =
         Limits { tolerance: tuning.coarse_tolerance, outer_iterations: tuning.coarse_iterations, ..limits };
     let coarse_target = match target {
-        Target::Force(force) => Target::Force(force / pressure_ratio(grid, &tuning)),
-        approach @ Target::Approach(_) => approach,
+        Control::Force(force) => Control::Force(force / pressure_ratio(grid, &tuning)),
+        approach @ Control::Approach(_) => approach,
     };
     let guess = cold_start(&mut coarse, coarse_target, limits, stop);
     let solved = solve(&mut coarse, coarse_target, guess, limits, stop);

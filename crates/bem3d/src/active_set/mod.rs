@@ -16,4 +16,4 @@ pub use candidates::Candidates;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;
 pub use solver::{resume, solve};
-pub use state::{Continuation, Guess, Limits, Problem, Solved, Target};
+pub use state::{Continuation, Control, Guess, Limits, Problem, Solved};

@@ -4,7 +4,7 @@ use super::descent::{Feasible, descend};
 use super::line_search::shorten;
 use super::progress::{Decision, Evaluated, OuterProgress, criteria};
 use super::residuals::Residuals;
-use super::state::{Continuation, Guess, Limits, Problem, Solved, Target};
+use super::state::{Continuation, Control, Guess, Limits, Problem, Solved};
 use crate::geometry::CellSet;
 use crate::linear::{Factor, Fixed};
 use crate::parts::{Part, Recorder};
@@ -19,11 +19,11 @@ use contact_model::{Status, Stop};
 /// the exact gap on all candidates and adds the cells that penetrate.
 ///
 /// Cost: 20 to 60 applications of G for four digits, a few factorisations for a small set.
-pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
+pub fn solve(problem: &mut Problem, target: Control, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
     let Guess { set, p, d, far } = guess;
     let reach = match target {
-        Target::Force(_) => d,
-        Target::Approach(asked) => asked,
+        Control::Force(_) => d,
+        Control::Approach(asked) => asked,
     };
     let now = Pressure { contact: set, p, d, q: None };
     let solver = Solver::new(problem, target, limits, now, Continuation { reach, ..Continuation::default() });
@@ -33,7 +33,7 @@ pub fn solve(problem: &mut Problem, target: Target, guess: Guess, limits: Limits
 /// Goes on from a solved state to a tighter tolerance; its gap is not evaluated again.
 pub fn resume(
     problem: &mut Problem,
-    target: Target,
+    target: Control,
     solved: Solved,
     limits: Limits,
     stop: Stop<'_>,
@@ -56,7 +56,7 @@ struct Pressure {
 
 struct Solver<'a> {
     problem: &'a mut Problem,
-    target: Target,
+    target: Control,
     limits: Limits,
     now: Pressure,
     /// The gap of the present pressure.
@@ -78,7 +78,7 @@ struct Solver<'a> {
 impl<'a> Solver<'a> {
     fn new(
         problem: &'a mut Problem,
-        target: Target,
+        target: Control,
         limits: Limits,
         now: Pressure,
         state: Continuation,
@@ -162,10 +162,10 @@ impl<'a> Solver<'a> {
         let Continuation { checked, gap, .. } = state;
         problem.operators.recorder().timed(Part::Sets, || now.contact.carry_to(checked, gap, left));
         match *target {
-            Target::Approach(asked) => now.d = asked,
+            Control::Approach(asked) => now.d = asked,
             // That of a factored set is exact.
-            Target::Force(_) if now.q.is_some() => {}
-            Target::Force(_) => now.d = bounds.approach(&now.p, left, gap).unwrap_or(now.d),
+            Control::Force(_) if now.q.is_some() => {}
+            Control::Force(_) => now.d = bounds.approach(&now.p, left, gap).unwrap_or(now.d),
         }
         let d = now.d;
         for values in [&mut *gap, &mut *left] {
@@ -296,7 +296,7 @@ impl<'a> Solver<'a> {
 
 /// Removes cells in tension from a small superset until none is left; p, q and d are exact up to rounding.
 /// `None` where no cell is left or one would have to be at its upper bound.
-fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Option<Pressure> {
+fn eliminate(problem: &mut Problem, superset: &CellSet, target: Control) -> Option<Pressure> {
     let mut set = superset.clone();
     loop {
         let z = problem.candidates.gaps(&set);
@@ -304,8 +304,8 @@ fn eliminate(problem: &mut Problem, superset: &CellSet, target: Target) -> Optio
         let factored = || Some(Factor::new(problem.operators.table(), &set)?.solve_pair(&z));
         let (q, w) = problem.operators.recorder().timed(Part::Factor, factored)?;
         let d = match target {
-            Target::Force(force) => (force + w.iter().sum::<f64>()) / q.iter().sum::<f64>(),
-            Target::Approach(d) => d,
+            Control::Force(force) => (force + w.iter().sum::<f64>()) / q.iter().sum::<f64>(),
+            Control::Approach(d) => d,
         };
         let p: Vec<f64> = q.iter().zip(&w).map(|(q, w)| d * q - w).collect();
         let contact = set.filter(&p, |p| p > 0.0);

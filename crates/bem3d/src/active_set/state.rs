@@ -66,7 +66,7 @@ impl Problem {
 
 /// What is prescribed, nondimensional.
 #[derive(Debug, Clone, Copy)]
-pub enum Target {
+pub enum Control {
     /// Sum of p.
     Force(f64),
     /// Approach.
@@ -132,7 +132,7 @@ pub struct Continuation {
     pub reach: f64,
 }
 
-impl Target {
+impl Control {
     /// The sum of the pressure, where it is prescribed.
     pub fn force(self) -> Option<f64> {
         match self {

@@ -10,7 +10,7 @@ use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
 use super::law::Shape;
 use super::mixing::Mixing;
-use crate::active_set::{self, Bounds, Candidates, Limits, Problem, Residuals, Target};
+use crate::active_set::{self, Bounds, Candidates, Control, Limits, Problem, Residuals};
 use crate::geometry::CellSet;
 use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, smallest, sum};
@@ -51,7 +51,7 @@ const FIRST: f64 = 1e-2;
 
 /// What is prescribed, nondimensional; of either sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Control {
+pub enum AdhesiveControl {
     /// Sum of the net pressure.
     Force(f64),
     /// Plane: the approach with free boundaries; with periodic ones the approach that a kernel of zero mean has, which is the mean of the
@@ -59,7 +59,7 @@ pub enum Control {
     Plane(f64),
 }
 
-impl Control {
+impl AdhesiveControl {
     /// What stays as it is while the contact is corrected; `shift` is the constant in the kernel, 0 with free boundaries.
     fn fixed(self, shift: f64) -> Fixed {
         match self {
@@ -106,7 +106,7 @@ impl Equilibrium {
         self.pressure.iter().zip(&self.attraction).map(|(p, s)| p - s).collect()
     }
 
-    /// The plane of [`Control::Plane`] that a state has, from the constant in the kernel.
+    /// The plane of [`AdhesiveControl::Plane`] that a state has, from the constant in the kernel.
     pub fn plane(&self, shift: f64) -> f64 {
         self.d - shift * self.force()
     }
@@ -163,7 +163,7 @@ pub struct Search<'a> {
     /// The attraction.
     pub attraction: &'a Attraction,
     /// The load.
-    pub control: Control,
+    pub control: AdhesiveControl,
     /// Tolerance and length of the certificate.
     pub limits: Limits,
     /// Whether the plain iteration alone may be used.
@@ -175,11 +175,11 @@ impl Search<'_> {
     pub fn first(&mut self, stop: Stop<'_>) -> Equilibrium {
         let first = self.problem.candidates.range().first;
         let target = match self.control {
-            Control::Force(f) if f > 0.0 => Target::Force(f),
+            AdhesiveControl::Force(f) if f > 0.0 => Control::Force(f),
             // Of a periodic surface the approach under which the plane begins.
-            Control::Plane(plane) if plane > first => Target::Approach(plane),
-            Control::Force(_) => return Equilibrium { d: first, ..Equilibrium::default() },
-            Control::Plane(d) => return Equilibrium { d, ..Equilibrium::default() },
+            AdhesiveControl::Plane(plane) if plane > first => Control::Approach(plane),
+            AdhesiveControl::Force(_) => return Equilibrium { d: first, ..Equilibrium::default() },
+            AdhesiveControl::Plane(d) => return Equilibrium { d, ..Equilibrium::default() },
         };
         let limits = Limits { tolerance: FIRST, ..self.limits };
         let guess = active_set::cold_start(self.problem, target, limits, stop);
@@ -236,7 +236,7 @@ impl Search<'_> {
 
     /// Whether the contact of a state is of another load than the one asked for: then it is solved from coarse grids.
     fn is_far(&self, state: &Equilibrium) -> bool {
-        let Control::Force(asked) = self.control else { return false };
+        let AdhesiveControl::Force(asked) = self.control else { return false };
         let (held, wanted) = (sum(&state.pressure), asked + sum(&state.attraction));
         held > 0.0 && wanted > 0.0 && !(1.0 / FAR..=FAR).contains(&(wanted / held))
     }
@@ -258,10 +258,10 @@ impl Search<'_> {
         // The plane of first touch is that of these gaps.
         let first = smallest(&lifted);
         let target = match self.control {
-            Control::Force(asked) => Target::Force(asked + sum(&state.attraction)),
-            Control::Plane(plane) => Target::Approach(plane - first),
+            AdhesiveControl::Force(asked) => Control::Force(asked + sum(&state.attraction)),
+            AdhesiveControl::Plane(plane) => Control::Approach(plane - first),
         };
-        let (Target::Force(load) | Target::Approach(load)) = target;
+        let (Control::Force(load) | Control::Approach(load)) = target;
         if load <= 0.0 {
             return;
         }
@@ -283,7 +283,7 @@ impl Search<'_> {
     /// How far the force of a state is from the one prescribed, relative to it; where a force of zero is prescribed,
     /// relative to the pressure of the contact.
     pub fn load_error(&self, state: &Equilibrium) -> f64 {
-        let Control::Force(asked) = self.control else { return 0.0 };
+        let AdhesiveControl::Force(asked) = self.control else { return 0.0 };
         let miss = (state.force() - asked).abs();
         let scale = if asked.abs() > 0.0 { asked.abs() } else { sum(&state.pressure) };
         if miss > 0.0 { miss / scale } else { 0.0 }
@@ -294,7 +294,7 @@ impl Search<'_> {
         let Self { problem, attraction, control, limits, .. } = self;
         let law = attraction.law;
         let shift = problem.operators.table().shift();
-        if let Control::Plane(plane) = *control {
+        if let AdhesiveControl::Plane(plane) = *control {
             state.d = plane + shift * state.force();
         }
         if state.reach < state.d + law.reach() {
@@ -309,13 +309,13 @@ impl Search<'_> {
             problem.candidates.add_to(&state.cells, &mut state.gap);
             let force = sum(&state.pressure);
             match *control {
-                Control::Plane(plane) => state.d = plane + shift * sum(&net),
-                Control::Force(_) if force > 0.0 => {
+                AdhesiveControl::Plane(plane) => state.d = plane + shift * sum(&net),
+                AdhesiveControl::Force(_) if force > 0.0 => {
                     state.d = state.pressure.iter().zip(&state.gap).map(|(p, g)| p / force * g).sum();
                 }
                 // Nothing touches yet: the flat comes down to the highest point.
-                Control::Force(_) if !state.gap.is_empty() => state.d = smallest(&state.gap),
-                Control::Force(_) => {}
+                AdhesiveControl::Force(_) if !state.gap.is_empty() => state.d = smallest(&state.gap),
+                AdhesiveControl::Force(_) => {}
             }
             let d = state.d;
             each(&mut state.gap, |g| *g -= d);
@@ -376,7 +376,7 @@ impl Search<'_> {
         let next = if waits { state.attraction.clone() } else { next };
         let mut factor = 1.0;
         let mut pressure = state.pressure.clone();
-        if let Control::Force(force) = *control {
+        if let AdhesiveControl::Force(force) = *control {
             let wanted = force + sum(&next);
             if wanted <= 0.0 {
                 return false;
@@ -449,7 +449,7 @@ impl Search<'_> {
                 accelerate(attraction, own, state, mixing, (&mut pressure, &mut pull));
             }
         }
-        if let Control::Force(force) = *control {
+        if let AdhesiveControl::Force(force) = *control {
             let (wanted, sum) = (force + sum(&pull), sum(&pressure));
             if wanted <= 0.0 {
                 return false;

@@ -12,7 +12,7 @@
 //! `x_Z = -D^(1/2) N v`, which is positive definite in the scalar product `u'N v`.
 
 use super::attraction::Attraction;
-use super::equilibrium::{Control, Equilibrium};
+use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
@@ -209,7 +209,7 @@ impl Linearised<'_> {
 pub fn respond(
     problem: &mut Problem,
     attraction: &Attraction,
-    control: Control,
+    control: AdhesiveControl,
     state: &Equilibrium,
     tolerance: Option<f64>,
     stop: Stop<'_>,
@@ -220,7 +220,7 @@ pub fn respond(
     if shift > 0.0 && contact.len() == problem.grid().count() {
         return Response { stability: 1.0, ..Response::default() };
     }
-    let constant = if matches!(control, Control::Plane(_)) { shift } else { 0.0 };
+    let constant = if matches!(control, AdhesiveControl::Plane(_)) { shift } else { 0.0 };
     let least = FLAT * law.peak / law.range;
     let mut slopes = attraction.slopes(&state.cells, &state.gap);
     slopes.iter_mut().zip(&state.pressure).filter(|(_, p)| **p > 0.0).for_each(|(s, _)| *s = 0.0);
@@ -232,7 +232,7 @@ pub fn respond(
         Linearised { problem, contact, open, both, root, gap, attraction, constant, steps: 0, stop };
     let mut response = linearised.response(control, tolerance);
     response.steps = linearised.steps;
-    if let Control::Force(_) = control {
+    if let AdhesiveControl::Force(_) = control {
         response.stiffness = response.stiffness.map(|slope| slope.of_zero_mean(shift));
     }
     if law.shape == Shape::Uniform {
@@ -263,12 +263,12 @@ pub fn fixed_area(
     let (both, open, root, gap) = (contact.clone(), CellSet::default(), Vec::new(), Vec::new());
     let mut linearised =
         Linearised { problem, contact, open, both, root, gap, attraction, constant, steps: 0, stop };
-    let response = linearised.response(Control::Plane(state.d), Some(tolerance));
+    let response = linearised.response(AdhesiveControl::Plane(state.d), Some(tolerance));
     (response.stiffness, linearised.steps)
 }
 
 impl Linearised<'_> {
-    fn response(&mut self, control: Control, tolerance: Option<f64>) -> Response {
+    fn response(&mut self, control: AdhesiveControl, tolerance: Option<f64>) -> Response {
         let mut response = Response { stability: 1.0, ..Response::default() };
         if self.both.is_empty() {
             // Nothing within reach: nothing responds.
@@ -299,7 +299,7 @@ impl Linearised<'_> {
                 }
             }
             let held = match control {
-                Control::Force(_) if round == 0 => sum(&on_contact),
+                AdhesiveControl::Force(_) if round == 0 => sum(&on_contact),
                 _ => 0.0,
             };
             let scale = sum(&on_contact).abs().max(dot(&b, &b));
@@ -307,8 +307,8 @@ impl Linearised<'_> {
             let found = self.reduce(&b, wanted, held);
             if round == 0 {
                 response.stability = match control {
-                    Control::Force(_) => found.smallest_at_force.min(found.smallest),
-                    Control::Plane(_) => found.smallest,
+                    AdhesiveControl::Force(_) => found.smallest_at_force.min(found.smallest),
+                    AdhesiveControl::Plane(_) => found.smallest,
                 };
                 if found.smallest <= 0.0 || tolerance.is_none() {
                     return response;

@@ -8,7 +8,7 @@ mod linearised;
 mod mixing;
 
 pub use attraction::Attraction;
-pub use equilibrium::{Control, Ended, Equilibrium, Search, energy};
+pub use equilibrium::{AdhesiveControl, Ended, Equilibrium, Search, energy};
 pub use law::Law;
 pub use linearised::{Response, fixed_area, respond};
 pub use mixing::solved;

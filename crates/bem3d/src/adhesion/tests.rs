@@ -234,7 +234,7 @@ fn dense_stability(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> f64 {
 fn search<'a>(
     problem: &'a mut Problem,
     attraction: &'a Attraction,
-    control: Control,
+    control: AdhesiveControl,
     plain: bool,
 ) -> Search<'a> {
     Search { problem, attraction, control, limits: LIMITS, plain }
@@ -280,7 +280,7 @@ fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
         let law = law(0.3, 0.2);
         let mut problem = problem(grid, &z, boundary);
         for d in [0.4, 0.8] {
-            let mut search = search(&mut problem, &law, Control::Plane(d), false);
+            let mut search = search(&mut problem, &law, AdhesiveControl::Plane(d), false);
             let start = search.first(&never);
             let state = search.from(start, &never).unwrap();
             let all = CellSet::all(grid);
@@ -290,8 +290,10 @@ fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
             let at = |problem: &mut Problem, control| {
                 respond(problem, &law, control, &state, Some(1e-10), &never).stability
             };
-            let (approach, force) =
-                (at(&mut problem, Control::Plane(d)), at(&mut problem, Control::Force(state.force())));
+            let (approach, force) = (
+                at(&mut problem, AdhesiveControl::Plane(d)),
+                at(&mut problem, AdhesiveControl::Force(state.force())),
+            );
             let (exact, exact_force) =
                 (dense_stability(&g, &contact, &slopes), dense_stability(&stiff, &contact, &slopes));
             approx::assert_relative_eq!(approach, exact, max_relative = SETTLED);
@@ -318,12 +320,12 @@ fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
             let mut problem = problem(grid, &z, boundary);
             let mut last: Option<Equilibrium> = None;
             for d in [-0.6, -0.2, 0.1, 0.4, 1.0, 0.5, 0.1, -0.1, -0.3, -0.6, -1.5] {
-                let mut search = search(&mut problem, &law, Control::Plane(d), false);
+                let mut search = search(&mut problem, &law, AdhesiveControl::Plane(d), false);
                 let start = last.take().unwrap_or_else(|| search.first(&never));
                 let before = gaps(grid, &start);
                 let state = search.from(start, &never).unwrap();
                 let found = gaps(grid, &state);
-                let control = Control::Plane(d);
+                let control = AdhesiveControl::Plane(d);
                 let response = respond(&mut problem, &law, control, &state, Some(1e-6), &never);
                 // Beyond the reach of the attraction gaps are not known to the solver.
                 let all: Vec<f64> = found
@@ -361,7 +363,7 @@ fn acceleration_finds_the_states_of_the_plain_iteration() {
             for d in [-0.3, 0.0, 0.3, 0.8, 0.2, -0.1, -0.2, -0.3, -0.5, -0.8, -2.0] {
                 let mut found = Vec::new();
                 for (plain, last) in [false, true].into_iter().zip(&mut last) {
-                    let mut search = search(&mut problem, &law, Control::Plane(d), plain);
+                    let mut search = search(&mut problem, &law, AdhesiveControl::Plane(d), plain);
                     let start = last.take().unwrap_or_else(|| search.first(&never));
                     let state = search.from(start, &never).unwrap();
                     found.push((gaps(grid, &state), energy(&problem, &law, &state), state.force()));
@@ -392,13 +394,13 @@ fn stiffness_by_differences(boundary: Boundary) {
     let z = heights(grid, 4);
     let mut problem = problem(grid, &z, boundary);
     let at = |problem: &mut Problem, law: &Attraction, d: f64| {
-        let mut search = search(problem, law, Control::Plane(d), false);
+        let mut search = search(problem, law, AdhesiveControl::Plane(d), false);
         let start = search.first(&never);
         search.from(start, &never).unwrap()
     };
     for (law, d) in [(&law(0.3, 0.15), -0.4), (&law(0.3, 0.15), 0.6)] {
         let state = at(&mut problem, law, d);
-        let response = respond(&mut problem, law, Control::Plane(d), &state, Some(1e-6), &never);
+        let response = respond(&mut problem, law, AdhesiveControl::Plane(d), &state, Some(1e-6), &never);
         let step = 1e-4;
         let (above, below) =
             (at(&mut problem, law, d + step).force(), at(&mut problem, law, d - step).force());
@@ -416,11 +418,11 @@ fn a_force_that_nothing_holds_is_told() {
     let z = heights(grid, 2);
     let law = law(0.3, 0.2);
     let mut problem = problem(grid, &z, Boundary::Free);
-    let mut search = search(&mut problem, &law, Control::Force(0.0), false);
+    let mut search = search(&mut problem, &law, AdhesiveControl::Force(0.0), false);
     let start = search.first(&never);
     let state = search.from(start, &never).unwrap();
     assert!(state.force().abs() < 1e-12 && !state.contact().is_empty());
-    search.control = Control::Force(-1e3);
+    search.control = AdhesiveControl::Force(-1e3);
     assert!(matches!(search.from(state, &never), Err(ended) if ended.0 == Ended::PulledOff));
 }
 
@@ -463,7 +465,7 @@ fn no_attachment_or_detachment_of_a_single_cell_lowers_the_energy_of_a_short_ran
         let shift = problem.operators.table().shift();
         let mut last: Option<Equilibrium> = None;
         for d in [-0.2, 0.2, 0.8, 0.3, -0.1, -0.3] {
-            let mut search = search(&mut problem, &short, Control::Plane(d), false);
+            let mut search = search(&mut problem, &short, AdhesiveControl::Plane(d), false);
             let start = last.take().unwrap_or_else(|| search.first(&never));
             let state = search.from(start, &never).unwrap();
             let d = state.d;

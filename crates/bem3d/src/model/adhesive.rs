@@ -1,11 +1,13 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
 use super::certificate::GROWTH;
-use super::load::{Loads, Prescribed};
+use super::load::{LoadSequence, ScaledLoad};
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::state::{Assembly, returned};
-use crate::adhesion::{Attraction, Control, Ended, Equilibrium, Law, Response, Search, energy, respond};
+use crate::adhesion::{
+    AdhesiveControl, Attraction, Ended, Equilibrium, Law, Response, Search, energy, respond,
+};
 use crate::geometry::CellSet;
 use crate::kernel::love::influence_of_rectangle;
 use contact_model::{
@@ -34,7 +36,7 @@ pub struct AdhesiveContact {
 #[derive(Debug, Clone)]
 struct Last {
     equilibrium: Equilibrium,
-    control: Control,
+    control: AdhesiveControl,
     branch: Branch,
     state: ContactState,
 }
@@ -43,7 +45,7 @@ struct Last {
 pub(super) struct Found {
     pub equilibrium: Equilibrium,
     response: Response,
-    control: Control,
+    control: AdhesiveControl,
     pub status: Status,
     load_error: f64,
 }
@@ -59,13 +61,18 @@ impl AdhesiveContact {
     }
 
     /// The state of a load: on a path from the last one, else that from no contact on the branch of approach.
-    pub(super) fn at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
+    pub(super) fn at(
+        &mut self,
+        load: ScaledLoad,
+        loads: LoadSequence,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         let control = match load {
-            Prescribed::Force(force) => Control::Force(force),
-            Prescribed::Approach(d) => Control::Plane(d),
-            Prescribed::MeanGap(gap) => Control::Plane(self.surface.mean - gap),
+            ScaledLoad::Force(force) => AdhesiveControl::Force(force),
+            ScaledLoad::Approach(d) => AdhesiveControl::Plane(d),
+            ScaledLoad::MeanGap(gap) => AdhesiveControl::Plane(self.surface.mean - gap),
         };
-        if loads == Loads::Single && !self.continues(control) {
+        if loads == LoadSequence::Single && !self.continues(control) {
             self.forget();
         }
         let next = self.next(control, loads, stop)?;
@@ -80,27 +87,29 @@ impl AdhesiveContact {
     /// From there the attraction rises to the equilibrium that it rises to from no contact, the nearest one
     /// above both. At a mean gap more attraction in one place opens gaps in others, no state lies above
     /// another, and each load begins anew.
-    fn continues(&self, control: Control) -> bool {
+    fn continues(&self, control: AdhesiveControl) -> bool {
         let Some(last) = self.last.as_ref().filter(|last| last.branch == Branch::Approach) else {
             return false;
         };
         match (last.control, control) {
-            (Control::Force(before), Control::Force(now)) => before <= now,
-            (Control::Plane(before), Control::Plane(now)) => before <= now && !self.surface.is_periodic(),
+            (AdhesiveControl::Force(before), AdhesiveControl::Force(now)) => before <= now,
+            (AdhesiveControl::Plane(before), AdhesiveControl::Plane(now)) => {
+                before <= now && !self.surface.is_periodic()
+            }
             _ => false,
         }
     }
 
     /// The next state from the last one.
-    fn next(&mut self, control: Control, loads: Loads, stop: Stop<'_>) -> Result<Last> {
+    fn next(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Last> {
         match control {
-            Control::Force(f) if f < 0.0 && self.untouched() => {
+            AdhesiveControl::Force(f) if f < 0.0 && self.untouched() => {
                 // The segment begins without force: there the surfaces already hold each other.
                 let before = self.last.take();
-                let touched = self.step_to(Control::Force(0.0), Loads::Path, stop);
+                let touched = self.step_to(AdhesiveControl::Force(0.0), LoadSequence::Path, stop);
                 let held = touched.and_then(|touched| {
                     self.last = Some(touched);
-                    self.step_to(Control::Force(f), Loads::Path, stop)
+                    self.step_to(AdhesiveControl::Force(f), LoadSequence::Path, stop)
                 });
                 self.last = before;
                 held
@@ -113,7 +122,7 @@ impl AdhesiveContact {
         self.last.as_ref().is_none_or(|last| last.equilibrium.contact().is_empty())
     }
 
-    fn step_to(&mut self, control: Control, loads: Loads, stop: Stop<'_>) -> Result<Last> {
+    fn step_to(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Last> {
         self.surface.begin_count();
         let last = self.last.as_ref().map(|last| last.equilibrium.clone());
         let found = self.search(control, last.as_ref().map(|last| (last, loads)), self.tolerance(), stop)?;
@@ -131,18 +140,18 @@ impl AdhesiveContact {
     }
 
     /// Whether a load is above that of a state.
-    fn rises(&self, control: Control, last: &Equilibrium) -> bool {
+    fn rises(&self, control: AdhesiveControl, last: &Equilibrium) -> bool {
         match control {
-            Control::Force(f) => f > last.force(),
-            Control::Plane(plane) => plane > last.plane(self.shift()),
+            AdhesiveControl::Force(f) => f > last.force(),
+            AdhesiveControl::Plane(plane) => plane > last.plane(self.shift()),
         }
     }
 
     /// The equilibrium of a load, from the last one.
     pub(super) fn search(
         &mut self,
-        control: Control,
-        before: Option<(&Equilibrium, Loads)>,
+        control: AdhesiveControl,
+        before: Option<(&Equilibrium, LoadSequence)>,
         tolerance: Option<f64>,
         stop: Stop<'_>,
     ) -> Result<Found> {
@@ -155,8 +164,8 @@ impl AdhesiveContact {
             let mut search =
                 Search { problem: &mut self.surface.problem, attraction, control, limits, plain };
             let start = match before {
-                Some((last, Loads::Path)) => last.again(),
-                Some((last, Loads::Single)) => search.continued(last, stop),
+                Some((last, LoadSequence::Path)) => last.again(),
+                Some((last, LoadSequence::Single)) => search.continued(last, stop),
                 None => search.first(stop),
             };
             let ended = search.from(start, stop).map_err(|ended| *ended);
@@ -206,8 +215,8 @@ impl AdhesiveContact {
     }
 
     /// The error of a force that nothing holds, with the last stable state.
-    fn pulled_off(&self, control: Control) -> Result<Error> {
-        let force = if let Control::Force(f) = control { f } else { 0.0 };
+    fn pulled_off(&self, control: AdhesiveControl) -> Result<Error> {
+        let force = if let AdhesiveControl::Force(f) = control { f } else { 0.0 };
         let value = self.surface.nondimensional.force(PI * force.abs())?.copysign(force);
         Ok(match &self.last {
             Some(last) => {
@@ -274,8 +283,8 @@ impl AdhesiveContact {
 
     /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest
     /// stiffness of a contact in this place makes of the gaps left, both more where the state is less stable. `None` without a force, and for a state that is not stable.
-    fn force_error(&self, control: Control, state: &Equilibrium, response: &Response) -> Option<f64> {
-        let (Control::Plane(_), force) = (control, state.force().abs()) else { return None };
+    fn force_error(&self, control: AdhesiveControl, state: &Equilibrium, response: &Response) -> Option<f64> {
+        let (AdhesiveControl::Plane(_), force) = (control, state.force().abs()) else { return None };
         let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);
         let left = state.largest_gap_left();
         let stiffest = self.surface.stiffest_on(&state.cells);
@@ -283,10 +292,10 @@ impl AdhesiveContact {
         (force > 0.0 && response.stability > 0.0).then(|| error / force)
     }
 
-    fn same_load(&self, control: Control, last: &Equilibrium) -> bool {
+    fn same_load(&self, control: AdhesiveControl, last: &Equilibrium) -> bool {
         let (a, b) = match control {
-            Control::Force(f) => (f, last.force()),
-            Control::Plane(plane) => (plane, last.plane(self.shift())),
+            AdhesiveControl::Force(f) => (f, last.force()),
+            AdhesiveControl::Plane(plane) => (plane, last.plane(self.shift())),
         };
         (a - b).abs() <= self.surface.options.tolerance * a.abs().max(b.abs())
     }

@@ -6,8 +6,8 @@
 //! by two cells, and a parabola through the states found has its slope at the first one.
 
 use super::adhesive::AdhesiveContact;
-use super::load::Loads;
-use crate::adhesion::{Control, Equilibrium, Response, fixed_area, solved};
+use super::load::LoadSequence;
+use crate::adhesion::{AdhesiveControl, Equilibrium, Response, fixed_area, solved};
 use contact_model::{Branch, Status, Stop};
 
 /// The first step of the plane, in ranges of the law.
@@ -104,7 +104,9 @@ impl AdhesiveContact {
         let (mut advanced, mut nearest) = (0.0, 1);
         while points.len() <= STEPS && (advanced < FAR_ENOUGH || points.len() <= FEWEST) {
             let plane = at.plane(shift) + direction * step;
-            let found = self.search(Control::Plane(plane), Some((&at, Loads::Path)), None, stop).ok()?;
+            let found = self
+                .search(AdhesiveControl::Plane(plane), Some((&at, LoadSequence::Path)), None, stop)
+                .ok()?;
             *steps += found.equilibrium.steps;
             let (next, _) = self.extent(&found.equilibrium);
             // Where a zone stays, the contact may move in it.

@@ -3,10 +3,10 @@
 
 use super::adhesive::{AdhesiveContact, attraction};
 use super::certificate::LoadError;
-use super::load::{Loads, Prescribed};
+use super::load::{LoadSequence, ScaledLoad};
 use super::options::{Bem3d, NAME, bytes_per_cell};
 use super::prepared::{PreparedSurface, Tangent};
-use crate::active_set::{self, Limits, Solved, Target};
+use crate::active_set::{self, Control, Limits, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, Recorder};
 use crate::stiffness::{self, Responding, Stiffness};
@@ -24,9 +24,9 @@ use std::borrow::Cow;
 #[derive(Debug)]
 pub struct PreparedBem3d {
     contact: Contact,
-    loads: Loads,
+    loads: LoadSequence,
     /// The single load that was solved last, from which a path goes on.
-    solved: Option<Prescribed>,
+    solved: Option<ScaledLoad>,
     /// Time of the last step of a path.
     time: f64,
 }
@@ -52,7 +52,7 @@ impl PreparedBem3d {
             Some(attraction) => Contact::WithAdhesion(Box::new(AdhesiveContact::new(surface, attraction))),
             None => Contact::WithoutAdhesion(Box::new(surface)),
         };
-        Ok(Self { contact, loads: Loads::Single, solved: None, time: 0.0 })
+        Ok(Self { contact, loads: LoadSequence::Single, solved: None, time: 0.0 })
     }
 
     fn surface(&self) -> &PreparedSurface {
@@ -63,31 +63,31 @@ impl PreparedBem3d {
     }
 
     /// A load in the units of the surface; with adhesion it may pull.
-    fn prescribed(&self, load: Load) -> Result<Prescribed> {
+    fn scaled_load(&self, load: Load) -> Result<ScaledLoad> {
         let load = match (&self.contact, load) {
             (Contact::WithAdhesion(_), load) => load.validated_with_adhesion()?,
             // Undefined points let the planes pass each other.
             (Contact::WithoutAdhesion(_), Load::MeanGap(gap)) if gap.is_finite() => load,
             (Contact::WithoutAdhesion(_), load) => load.validated()?,
         };
-        self.surface().prescribed(load)
+        self.surface().scaled_load(load)
     }
 
     /// The state of a load among others.
-    fn at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
+    fn at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
         if self.loads != loads {
             let solved = self.solved.take();
             self.begin(loads);
-            if let (Loads::Path, Some(solved)) = (loads, solved) {
+            if let (LoadSequence::Path, Some(solved)) = (loads, solved) {
                 self.state_at(solved, loads, stop)?;
             }
         }
         let state = self.state_at(load, loads, stop)?;
-        self.solved = (loads == Loads::Single).then_some(load);
+        self.solved = (loads == LoadSequence::Single).then_some(load);
         Ok(state)
     }
 
-    fn state_at(&mut self, load: Prescribed, loads: Loads, stop: Stop<'_>) -> Result<ContactState> {
+    fn state_at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => surface.at(load, stop),
             Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
@@ -95,10 +95,10 @@ impl PreparedBem3d {
     }
 
     /// Takes the virgin surface again.
-    fn begin(&mut self, loads: Loads) {
+    fn begin(&mut self, loads: LoadSequence) {
         (self.loads, self.time, self.solved) = (loads, 0.0, None);
         match &mut self.contact {
-            Contact::WithoutAdhesion(surface) => surface.begin(loads == Loads::Path),
+            Contact::WithoutAdhesion(surface) => surface.begin(loads == LoadSequence::Path),
             Contact::WithAdhesion(contact) => contact.forget(),
         }
     }
@@ -110,8 +110,8 @@ impl PreparedContact for PreparedBem3d {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        let load = self.prescribed(load)?;
-        self.at(load, Loads::Single, stop)
+        let load = self.scaled_load(load)?;
+        self.at(load, LoadSequence::Single, stop)
     }
 
     /// Cost O(N).
@@ -135,14 +135,14 @@ impl PreparedContact for PreparedBem3d {
         if stop() {
             return Err(Error::Stopped { best: None });
         }
-        let load = self.prescribed(step.normal)?;
-        let state = self.at(load, Loads::Path, stop)?;
+        let load = self.scaled_load(step.normal)?;
+        let state = self.at(load, LoadSequence::Path, stop)?;
         self.time = step.time;
         Ok(state.with_time(step.time))
     }
 
     fn restart(&mut self) {
-        self.begin(Loads::Path);
+        self.begin(LoadSequence::Path);
     }
 }
 
@@ -159,15 +159,15 @@ fn without_tangential(step: Step) -> Result<()> {
 
 impl PreparedSurface {
     /// The state of a load without adhesion.
-    fn at(&mut self, load: Prescribed, stop: Stop<'_>) -> Result<ContactState> {
+    fn at(&mut self, load: ScaledLoad, stop: Stop<'_>) -> Result<ContactState> {
         // 0 but for an indented surface.
         let first = self.problem.candidates.range().first;
         let state = match load {
-            Prescribed::Force(force) if force <= 0.0 => self.no_contact(first),
-            Prescribed::Approach(d) if d <= first => self.no_contact(d),
-            Prescribed::MeanGap(gap) => self.at_mean_gap(gap, stop),
-            Prescribed::Force(force) => self.at_target(Target::Force(force), stop),
-            Prescribed::Approach(d) => self.at_target(Target::Approach(d), stop),
+            ScaledLoad::Force(force) if force <= 0.0 => self.no_contact(first),
+            ScaledLoad::Approach(d) if d <= first => self.no_contact(d),
+            ScaledLoad::MeanGap(gap) => self.at_mean_gap(gap, stop),
+            ScaledLoad::Force(force) => self.at_target(Control::Force(force), stop),
+            ScaledLoad::Approach(d) => self.at_target(Control::Approach(d), stop),
         }?;
         if let Some(memory) = self.memory.as_mut().filter(|_| state.force <= 0.0) {
             memory.advance(0.0, 0.0);
@@ -175,12 +175,12 @@ impl PreparedSurface {
         Ok(state)
     }
 
-    fn at_target(&mut self, target: Target, stop: Stop<'_>) -> Result<ContactState> {
+    fn at_target(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
         self.begin_count();
         let (solved, tangent) = self.settle(target, self.limits(), stop);
         let error = match target {
-            Target::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
-            Target::Approach(_) => self.force_error(&solved, self.stiffest(&solved, tangent.as_ref()), 0.0),
+            Control::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
+            Control::Approach(_) => self.force_error(&solved, self.stiffest(&solved, tangent.as_ref()), 0.0),
         };
         let recorder = self.problem.operators.recorder().clone();
         recorder.timed(Part::Results, || self.state(solved, tangent, error, stop))
@@ -215,7 +215,7 @@ impl PreparedSurface {
     /// undecided cells could change it by more than the tolerance, the contact set is solved further.
     pub(super) fn settle(
         &mut self,
-        target: Target,
+        target: Control,
         mut limits: Limits,
         stop: Stop<'_>,
     ) -> (Solved, Option<Tangent>) {

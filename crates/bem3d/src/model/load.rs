@@ -10,7 +10,7 @@ const CAPACITY_ROUNDING: f64 = 1e-12;
 
 /// A load in the units of the surface, of either sign; a force over pi.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Prescribed {
+pub(super) enum ScaledLoad {
     /// Sum of the net pressure.
     Force(f64),
     /// Approach from first touch of the virgin surface.
@@ -21,7 +21,7 @@ pub(super) enum Prescribed {
 
 /// How loads follow from each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Loads {
+pub(super) enum LoadSequence {
     /// Each is the first one of a virgin surface.
     Single,
     /// Each follows the last one.
@@ -34,19 +34,19 @@ impl PreparedSurface {
     /// # Errors
     /// [`Error::Domain`] where no number holds it, [`Error::Unsupported`] for one that the surface does not have, [`Error::OutOfRange`] for
     /// a force that all cells at the hardness do not carry.
-    pub(super) fn prescribed(&self, load: Load) -> Result<Prescribed> {
+    pub(super) fn scaled_load(&self, load: Load) -> Result<ScaledLoad> {
         let units = self.nondimensional;
         Ok(match load {
             Load::Force(asked) => {
                 let force = held("force", asked, (units.force_in(asked.abs()) / PI).copysign(asked))?;
                 self.refuse_beyond_hardness(force, asked)?;
-                Prescribed::Force(force)
+                ScaledLoad::Force(force)
             }
             Load::Approach(d) if self.has_approach() => {
-                Prescribed::Approach(held("approach", d, units.approach_in(d))?)
+                ScaledLoad::Approach(held("approach", d, units.approach_in(d))?)
             }
             Load::MeanGap(gap) if self.is_periodic() => {
-                Prescribed::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
+                ScaledLoad::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
             }
             Load::Approach(_) if !self.is_periodic() => {
                 let what = "an approach of a profile with free boundaries: displacements of a half-plane have no zero at infinity; give a force or a pressure";

@@ -2,7 +2,7 @@
 
 use super::certificate::LoadError;
 use super::prepared::PreparedSurface;
-use crate::active_set::{Bounds, Solved, Target};
+use crate::active_set::{Bounds, Control, Solved};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
@@ -43,7 +43,7 @@ impl PreparedSurface {
         let mut before: Option<(f64, f64)> = None;
         let mut steps = 0;
         for _ in 0..GAP_LOADS {
-            let (mut solved, tangent) = self.settle(Target::Force(x.exp()), limits, stop);
+            let (mut solved, tangent) = self.settle(Control::Force(x.exp()), limits, stop);
             steps += solved.steps;
             let miss = self.gap_of(&solved) - asked;
             let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);

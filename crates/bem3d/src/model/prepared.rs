@@ -3,7 +3,7 @@
 use super::memory::Memory;
 use super::options::{Bem3d, Method, NAME};
 use super::profile;
-use crate::active_set::{self, Bounds, Candidates, Guess, LastState, Limits, Problem, Solved, Target};
+use crate::active_set::{self, Bounds, Candidates, Control, Guess, LastState, Limits, Problem, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::Medium;
 use crate::parts::Recorder;
@@ -172,7 +172,7 @@ impl PreparedSurface {
     }
 
     /// The guess for a target: the tangent at the last state, or a cold start.
-    pub(super) fn guess(&mut self, target: Target, limits: Limits, stop: Stop<'_>) -> Guess {
+    pub(super) fn guess(&mut self, target: Control, limits: Limits, stop: Stop<'_>) -> Guess {
         let tuning = *self.problem.operators.tuning();
         if let Some(last) = &self.last
             && let Some(guess) = last.extrapolated(target, &tuning)

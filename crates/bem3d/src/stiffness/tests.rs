@@ -2,7 +2,7 @@
 //! recipe.
 
 use super::*;
-use crate::active_set::{self, Guess, Limits, Target};
+use crate::active_set::{self, Control, Guess, Limits};
 use crate::geometry::{CellSet, Grid};
 use crate::linear::Factor;
 use crate::tuning::Tuning;
@@ -58,7 +58,7 @@ fn state(grid: Grid, p: &[f64], gap: Vec<f64>) -> Solved {
     let guess = Guess { set: CellSet::from_index(grid, &[0]), p: vec![1.0], d: 1.0, far: false };
     let limits = Limits { tolerance: 0.5, height: None, outer_iterations: 0, factor: false };
     let problem = &mut flat(grid, Tuning::DEFAULT);
-    let mut state = active_set::solve(problem, Target::Approach(1.0), guess, limits, &never);
+    let mut state = active_set::solve(problem, Control::Approach(1.0), guess, limits, &never);
     (state.continuation.checked, state.continuation.gap) = (checked, gap);
     Solved { contact, p, d: 1.0, q: None, steps: 0, status: Status::Converged, ..state }
 }
@@ -89,7 +89,7 @@ fn full_contact_of_small_squares() {
             let (set, p) = (CellSet::all(grid), vec![1.0; grid.count()]);
             let guess = Guess { set, p, d: 4.0 * grid.count() as f64, far: false };
             let limits = Limits { tolerance: 1e-9, height: None, outer_iterations: 100, factor };
-            let solved = active_set::solve(&mut problem, Target::Force(1.0), guess, limits, &never);
+            let solved = active_set::solve(&mut problem, Control::Force(1.0), guess, limits, &never);
             assert_eq!((solved.status, solved.contact.len()), (Status::Converged, grid.count()));
             let k = solve(&mut problem, &solved, None, 1e-9, &never);
             assert_relative_eq!(PI * k.value / side as f64, expected, max_relative = 5e-9);

@@ -1,4 +1,4 @@
-use super::super::{Guess, Limits, Problem, Target, cold_start, solve};
+use super::super::{Control, Guess, Limits, Problem, cold_start, solve};
 use super::*;
 use crate::geometry::Grid;
 use crate::kernel::KernelTable;
@@ -30,7 +30,7 @@ struct Enumerated {
 }
 
 /// All solutions, by trying every assignment of open, elastic and saturated to the cells. Cost `O(3^n n^3)`.
-fn every_state(grid: Grid, z: &[f64], target: Target, hardness: f64) -> Vec<Enumerated> {
+fn every_state(grid: Grid, z: &[f64], target: Control, hardness: f64) -> Vec<Enumerated> {
     let table = KernelTable::shared(grid, Boundary::Free);
     let (n, all) = (grid.count(), CellSet::all(grid));
     let apply = |p: &[f64]| {
@@ -51,14 +51,14 @@ fn every_state(grid: Grid, z: &[f64], target: Target, hardness: f64) -> Vec<Enum
         let right: Vec<f64> = elastic.iter().map(|&i| z[i as usize] + u[i as usize]).collect();
         let d = if elastic.is_empty() {
             match target {
-                Target::Approach(d) => d,
-                Target::Force(_) => return None,
+                Control::Approach(d) => d,
+                Control::Force(_) => return None,
             }
         } else {
             let (q, w) = Factor::new(&table, &set)?.solve_pair(&right);
             let d = match target {
-                Target::Approach(d) => d,
-                Target::Force(force) => {
+                Control::Approach(d) => d,
+                Control::Force(force) => {
                     let rest = force - hardness * saturated.len() as f64;
                     (rest + w.iter().sum::<f64>()) / q.iter().sum::<f64>()
                 }
@@ -102,7 +102,7 @@ proptest! {
         let z: Vec<f64> = heights.iter().map(|h| highest - h).collect();
         // A force that the cells carry, or an approach.
         let hardness = share * load / 6.0 + if by_force { load / 6.0 } else { 0.0 };
-        let target = if by_force { Target::Force(load) } else { Target::Approach(load) };
+        let target = if by_force { Control::Force(load) } else { Control::Approach(load) };
         let found = every_state(grid, &z, target, hardness);
         prop_assume!(found.iter().all(|one| one.tie > TIE));
         prop_assert_eq!(found.len(), 1);
@@ -167,7 +167,7 @@ fn the_factored_way_ends_where_cells_saturate() {
     let grid = Grid::square(2, 1);
     let mut problem = problem(grid, &[0.0, 1.0], 0.5);
     let guess = Guess { set: CellSet::all(grid), p: vec![0.1; 2], d: 1.0, far: false };
-    let solved = solve(&mut problem, Target::Force(0.8), guess, TIGHT, &never);
+    let solved = solve(&mut problem, Control::Force(0.8), guess, TIGHT, &never);
     assert_eq!((solved.status, solved.p.len()), (Status::Converged, 2));
     assert!(solved.p[0] >= 0.5 && (solved.p[1] - 0.3).abs() < 1e-12 && solved.q.is_none(), "{:?}", solved.p);
 }

@@ -36,7 +36,7 @@ mod tangent {
             .map(|&force| {
                 let (set, p) = (CellSet::all(grid), vec![1.0; grid.count()]);
                 let guess = Guess { set, p, d: 4.0 * force, far: false };
-                let solved = solve(&mut problem, Target::Force(force), guess, limits, &never);
+                let solved = solve(&mut problem, Control::Force(force), guess, limits, &never);
                 assert_eq!(solved.status, Status::Converged);
                 let k = stiffness::solve(
                     &mut problem,
@@ -97,32 +97,34 @@ mod tangent {
     fn the_tangent_predicts_an_approach_from_above() {
         let (_, states) = path(Grid::square(48, 48), &[100.0, 150.0]);
         let (before, after) = (last(&states[0]), &states[1].0);
-        let guess = before.extrapolated(Target::Force(150.0), &TUNING).unwrap();
+        let guess = before.extrapolated(Control::Force(150.0), &TUNING).unwrap();
         assert!(guess.d > after.d && guess.d < 1.2 * after.d, "{} {}", guess.d, after.d);
         assert_relative_eq!(guess.p.iter().sum::<f64>(), 150.0, max_relative = 1e-6);
-        let approach = before.extrapolated(Target::Approach(after.d), &TUNING).unwrap();
+        let approach = before.extrapolated(Control::Approach(after.d), &TUNING).unwrap();
         assert_relative_eq!(approach.d, after.d);
         assert!(approach.p.iter().sum::<f64>() < 150.0, "the stiffness grows on the way");
         // Without a tangent the pressure is scaled; down the approach stays where it was.
         let bare = LastState { tangent: None, ..last(&states[0]) };
-        let down = bare.extrapolated(Target::Force(50.0), &TUNING).unwrap();
+        let down = bare.extrapolated(Control::Force(50.0), &TUNING).unwrap();
         assert_relative_eq!(down.d, bare.d);
         assert_relative_eq!(down.p[7], 0.5 * bare.p[7], max_relative = 1e-6);
-        let up = bare.extrapolated(Target::Force(200.0), &TUNING).unwrap();
+        let up = bare.extrapolated(Control::Force(200.0), &TUNING).unwrap();
         assert_relative_eq!(up.d, 2.0 * bare.d, max_relative = 1e-6);
-        assert_relative_eq!(bare.ratio(Target::Approach(2.0 * bare.d)), 2.0);
+        assert_relative_eq!(bare.ratio(Control::Approach(2.0 * bare.d)), 2.0);
         // A cell without pressure is not in the guess.
         let mut p = bare.p.clone();
         p[7] = 0.0;
         let open = LastState { p, tangent: None, ..last(&states[0]) };
-        let guess = open.extrapolated(Target::Force(100.0), &TUNING).unwrap();
+        let guess = open.extrapolated(Control::Force(100.0), &TUNING).unwrap();
         assert_eq!((guess.set.len(), guess.p.len()), (bare.p.len() - 1, bare.p.len() - 1));
         for far in [3.3, 3001.0] {
-            assert!(bare.extrapolated(Target::Force(far), &TUNING).is_none(), "thirty times away is far");
+            assert!(bare.extrapolated(Control::Force(far), &TUNING).is_none(), "thirty times away is far");
         }
         // No cell keeps its pressure.
         assert!(
-            before.extrapolated(Target::Approach(0.05 * before.d), &TUNING).is_none_or(|g| !g.set.is_empty())
+            before
+                .extrapolated(Control::Approach(0.05 * before.d), &TUNING)
+                .is_none_or(|g| !g.set.is_empty())
         );
     }
 
@@ -134,7 +136,7 @@ mod tangent {
             LastState { contact, p: Vec::new(), d: 1.0, force: 1.0, tangent: None }
         };
         let overshoots = |last: &LastState, ratio: f64, predicted: &dyn Fn() -> usize| {
-            last.overshoots(Target::Force(ratio), GRID.count(), &TUNING, predicted)
+            last.overshoots(Control::Force(ratio), GRID.count(), &TUNING, predicted)
         };
         let (few, many) = (every(20_000), every(8));
         assert!(!overshoots(&few, 2.0, &|| usize::MAX), "few cells: nothing to save");
@@ -202,7 +204,7 @@ const GRIDS: [Grid; 4] = [
 fn a_needle_that_coarse_grids_lose_still_carries() {
     for grid in GRIDS {
         let mut problem = problem(grid, needle(grid));
-        let target = Target::Approach(0.3);
+        let target = Control::Approach(0.3);
         let guess = cold_start(&mut problem, target, limits(), &never);
         assert!(guess.far && problem.coarser.is_some(), "{grid:?}: this test is about coarse grids");
         let solved = solve(&mut problem, target, guess, limits(), &never);
@@ -217,13 +219,13 @@ fn a_coarse_grid_keeps_the_force() {
     for grid in GRIDS {
         let mut problem = problem(grid, needle(grid));
         let force = 40.0;
-        let guess = cold_start(&mut problem, Target::Force(force), limits(), &never);
+        let guess = cold_start(&mut problem, Control::Force(force), limits(), &never);
         assert!(guess.far, "{grid:?}");
         assert_relative_eq!(guess.p.iter().sum::<f64>(), force, max_relative = 1e-12);
         assert!(guess.p.iter().all(|&p| p > 0.0));
         assert_eq!(guess.p.len(), guess.set.len());
         // It is a guess worth its price: the approach and where most of the force is.
-        let solved = solve(&mut problem, Target::Force(force), guess.clone(), limits(), &never);
+        let solved = solve(&mut problem, Control::Force(force), guess.clone(), limits(), &never);
         assert!((guess.d / solved.d - 1.0).abs() < 0.1, "{grid:?}: {} {}", guess.d, solved.d);
         let shared: f64 = solved.contact.carry(&guess.set, &guess.p).iter().sum();
         assert!(shared > 0.8 * force, "{grid:?}: {shared}");
@@ -234,7 +236,7 @@ fn a_coarse_grid_keeps_the_force() {
 fn an_approach_below_every_coarse_summit_starts_from_the_fine_grid() {
     for grid in GRIDS {
         let mut problem = problem(grid, needle(grid));
-        let guess = cold_start(&mut problem, Target::Approach(1e-3), limits(), &never);
+        let guess = cold_start(&mut problem, Control::Approach(1e-3), limits(), &never);
         assert_eq!(guess.set, CellSet::from_index(grid, &[(3 * grid.columns + 5) as u32]));
     }
 }
@@ -243,13 +245,13 @@ fn an_approach_below_every_coarse_summit_starts_from_the_fine_grid() {
 fn a_small_set_needs_no_coarse_grid() {
     let grid = GRIDS[0];
     let mut problem = problem(grid, needle(grid));
-    let guess = cold_start(&mut problem, Target::Force(0.05), Limits { factor: true, ..limits() }, &never);
+    let guess = cold_start(&mut problem, Control::Force(0.05), Limits { factor: true, ..limits() }, &never);
     assert!(problem.coarser.is_none() && !guess.far);
     assert_relative_eq!(guess.p.iter().sum::<f64>(), 0.05, max_relative = 1e-12);
     // All cells with z below what the force sinks one cell alone.
     assert_eq!(guess.set, problem.candidates.below(0.05 * influence(0, 0)));
     problem.nested = false;
-    let guess = cold_start(&mut problem, Target::Force(40.0), limits(), &never);
+    let guess = cold_start(&mut problem, Control::Force(40.0), limits(), &never);
     assert!(problem.coarser.is_none() && !guess.far && guess.set.len() == grid.count() - 1);
 }
 

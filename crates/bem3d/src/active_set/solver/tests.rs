@@ -29,10 +29,10 @@ fn limits(factor: bool) -> Limits {
 }
 
 /// Uniform pressure everywhere.
-fn everything(grid: Grid, target: Target) -> Guess {
+fn everything(grid: Grid, target: Control) -> Guess {
     let d = match target {
-        Target::Force(force) => force * 4.0,
-        Target::Approach(d) => d,
+        Control::Force(force) => force * 4.0,
+        Control::Approach(d) => d,
     };
     Guess { set: CellSet::all(grid), p: vec![1.0; grid.count()], d, far: false }
 }
@@ -90,8 +90,8 @@ fn every_recipe_finds_the_factored_state() {
         let grid = Grid { columns, rows, stretch };
         let z = Arc::new(rough(grid, 9));
         let scale = (grid.count() as f64).sqrt() / 48.0;
-        let forces = [0.3, 2.0, 30.0, 600.0 * scale].map(Target::Force);
-        for target in forces.into_iter().chain([Target::Approach(0.7)]) {
+        let forces = [0.3, 2.0, 30.0, 600.0 * scale].map(Control::Force);
+        for target in forces.into_iter().chain([Control::Approach(0.7)]) {
             let what = format!("{grid:?} {boundary:?} {target:?}");
             let always = Tuning { always_factored: usize::MAX, ..Tuning::DEFAULT };
             let mut reference = Problem::new(grid, Arc::clone(&z), boundary, &always);
@@ -151,7 +151,7 @@ fn every_recipe_finds_the_factored_state() {
 fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
     let grid = Grid::square(96, 96);
     let z = rough(grid, 4);
-    let target = Target::Force(4000.0);
+    let target = Control::Force(4000.0);
     let mut first = problem(grid, &z, Tuning::DEFAULT);
     let solved = solve(&mut first, target, everything(grid, target), limits(false), &never);
     assert!(solved.contact.len() > grid.count() / 3, "{} cells", solved.contact.len());
@@ -185,7 +185,7 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
 fn a_state_taken_up_again_is_not_evaluated_again() {
     let loose = Limits { tolerance: 1e-2, ..limits(false) };
     for (columns, rows, force) in [(31, 31, 2.0), (96, 96, 4000.0), (57, 20, 30.0)] {
-        let (grid, target) = (Grid::square(columns, rows), Target::Force(force));
+        let (grid, target) = (Grid::square(columns, rows), Control::Force(force));
         let z = rough(grid, 4);
         let [again, resumed] = [false, true].map(|resumed| {
             let mut problem = problem(grid, &z, Tuning::DEFAULT);
@@ -225,7 +225,7 @@ fn work_of_standard_solves_is_pinned() {
     let grid = Grid::square(64, 64);
     for (force, most) in [(0.5, 50), (5.0, 60), (50.0, 60)] {
         let mut problem = problem(grid, &rough(grid, 3), Tuning::DEFAULT);
-        let target = Target::Force(force);
+        let target = Control::Force(force);
         let solved = solve(&mut problem, target, everything(grid, target), limits(false), &never);
         assert_eq!(solved.status, Status::Converged);
         let work = problem.operators.applications;
@@ -238,7 +238,7 @@ fn work_of_standard_solves_is_pinned() {
 fn an_unreachable_tolerance_stagnates_and_keeps_the_best() {
     let grid = Grid::square(16, 16);
     let mut problem = problem(grid, &rough(grid, 5), Tuning::DEFAULT);
-    let target = Target::Force(3.0);
+    let target = Control::Force(3.0);
     let limits = Limits { tolerance: 1e-30, ..limits(false) };
     let solved = solve(&mut problem, target, everything(grid, target), limits, &never);
     assert_eq!(solved.status, Status::Stagnated);
@@ -248,7 +248,7 @@ fn an_unreachable_tolerance_stagnates_and_keeps_the_best() {
 #[test]
 fn stop_and_the_limit_of_iterations_are_told_apart() {
     let grid = Grid::square(16, 16);
-    let target = Target::Force(3.0);
+    let target = Control::Force(3.0);
     let z = rough(grid, 5);
     let mut first = problem(grid, &z, Tuning::DEFAULT);
     let stopped = solve(&mut first, target, everything(grid, target), limits(false), &|| true);
@@ -269,7 +269,7 @@ proptest! {
         seed in any::<u64>(), force in 0.01..60.0f64,
     ) {
         let grid = Grid { columns, rows, stretch };
-        let target = Target::Force(force);
+        let target = Control::Force(force);
         let [exact, iterated] = [true, false].map(|factor| {
             let mut problem = problem(grid, &rough(grid, seed), Tuning::DEFAULT);
             solve(&mut problem, target, everything(grid, target), limits(factor), &never)
@@ -290,9 +290,9 @@ proptest! {
     ) {
         let grid = Grid::square(columns, rows);
         let mut problem = problem(grid, &rough(grid, seed), Tuning::DEFAULT);
-        let target = Target::Force(force);
+        let target = Control::Force(force);
         let pressed = solve(&mut problem, target, everything(grid, target), limits(true), &never);
-        let target = Target::Approach(pressed.d);
+        let target = Control::Approach(pressed.d);
         let moved = solve(&mut problem, target, everything(grid, target), limits(true), &never);
         assert_relative_eq!(moved.p.iter().sum::<f64>(), force, max_relative = 1e-9);
     }

@@ -1,6 +1,6 @@
 //! Random states against a dense reference: the conditions to rounding, by exchanging cells one at a time.
 
-use super::super::super::{Bounds, Guess, Limits, Problem, Solved, Target, cold_start, solve};
+use super::super::super::{Bounds, Control, Guess, Limits, Problem, Solved, cold_start, solve};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::KernelTable;
 use crate::linear::Factor;
@@ -37,7 +37,7 @@ struct Dense {
     table: Arc<KernelTable>,
     z: Vec<f64>,
     hardness: f64,
-    target: Target,
+    target: Control,
 }
 
 impl Dense {
@@ -53,14 +53,14 @@ impl Dense {
         let mut u = vec![0.0; n];
         DirectSum(&self.table).apply(&all, &p, &all, &mut u);
         let mut d = match self.target {
-            Target::Approach(d) => d,
-            Target::Force(_) => f64::NAN,
+            Control::Approach(d) => d,
+            Control::Force(_) => f64::NAN,
         };
         if !elastic.is_empty() {
             let right: Vec<f64> = elastic.iter().map(|&i| self.z[i as usize] + u[i as usize]).collect();
             let (q, w) =
                 Factor::new(&self.table, &CellSet::from_index(self.grid, &elastic))?.solve_pair(&right);
-            if let Target::Force(force) = self.target {
+            if let Control::Force(force) = self.target {
                 let rest = force - self.hardness * saturated.len() as f64;
                 d = (rest + w.iter().sum::<f64>()) / q.iter().sum::<f64>();
             }
@@ -137,9 +137,9 @@ fn state(number: u64) -> (Dense, Boundary) {
     let defined = z.iter().filter(|z| z.is_finite()).count() as f64;
     let hardness = scale * 10f64.powf(draw(-2.5, 1.0)) / table.own();
     let target = if draw(0.0, 1.0) < 0.3 {
-        Target::Approach(scale * draw(0.1, 3.0))
+        Control::Approach(scale * draw(0.1, 3.0))
     } else {
-        Target::Force(hardness * defined * draw(0.001, 0.999))
+        Control::Force(hardness * defined * draw(0.001, 0.999))
     };
     (Dense { grid, table, z, hardness, target }, boundary)
 }

@@ -3,7 +3,7 @@
 use super::*;
 
 const EIGHT: Grid = Grid { columns: 8, rows: 8, stretch: 1.0 };
-const FORCE: Target = Target::Force(1.0);
+const FORCE: Control = Control::Force(1.0);
 
 fn set(index: &[u32]) -> CellSet {
     CellSet::from_index(EIGHT, index)
@@ -85,7 +85,7 @@ fn a_cell_without_pressure_is_not_in_contact() {
     }
     // First touch: no cell carries anything, whatever the set.
     let mut flat = problem(EIGHT, &[0.0; 64], Tuning::DEFAULT);
-    assert!(eliminate(&mut flat, &set(&[0, 1, 2, 3]), Target::Approach(0.0)).is_none());
+    assert!(eliminate(&mut flat, &set(&[0, 1, 2, 3]), Control::Approach(0.0)).is_none());
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn residuals_of_ever_more_iterations_never_become_worse() {
     let grid = Grid::square(20, 13);
     let z = rough(grid, 8);
     for (target, factor) in
-        [(Target::Force(20.0), false), (Target::Approach(3.0), false), (Target::Force(20.0), true)]
+        [(Control::Force(20.0), false), (Control::Approach(3.0), false), (Control::Force(20.0), true)]
     {
         let mut last = f64::INFINITY;
         for outer_iterations in 0..30 {
@@ -164,10 +164,10 @@ fn bowl() -> (Grid, Vec<f64>, Guess) {
 fn a_gap_is_what_plain_sums_say() {
     let (grid, z, guess) = bowl();
     for height in [None, Some(0.3)] {
-        for target in [Target::Force(7.0), Target::Approach(0.5), Target::Approach(6.0)] {
+        for target in [Control::Force(7.0), Control::Approach(0.5), Control::Approach(6.0)] {
             // Pressure on the whole grid, brought to the force.
             let sum: f64 = guess.p.iter().sum();
-            let factor = if let Target::Force(force) = target { force / sum } else { 1.0 };
+            let factor = if let Control::Force(force) = target { force / sum } else { 1.0 };
             let all = CellSet::all(grid);
             let p: Vec<f64> = all.carry(&guess.set, &guess.p).iter().map(|p| p * factor).collect();
             let mut gap = vec![0.0; grid.count()];
@@ -177,8 +177,8 @@ fn a_gap_is_what_plain_sums_say() {
             }
             let d = match target {
                 // The mean weighted by the pressure.
-                Target::Force(force) => p.iter().zip(&gap).map(|(p, g)| p * g).sum::<f64>() / force,
-                Target::Approach(d) => d,
+                Control::Force(force) => p.iter().zip(&gap).map(|(p, g)| p * g).sum::<f64>() / force,
+                Control::Approach(d) => d,
             };
             for g in &mut gap {
                 *g -= d;
@@ -224,7 +224,7 @@ fn without_pressure_the_surface_itself_is_the_gap() {
     let now = Pressure { contact: guess.set, p: vec![0.0; guess.p.len()], d: 1.0, q: None };
     let limits = Limits { height: Some(2.0), ..limits(false) };
     let from = Continuation { reach: plane, ..Continuation::default() };
-    let mut solver = Solver::new(&mut problem, Target::Approach(plane), limits, now, from);
+    let mut solver = Solver::new(&mut problem, Control::Approach(plane), limits, now, from);
     let evaluated = solver.evaluate(false);
     let lowest = z.iter().copied().fold(f64::INFINITY, f64::min);
     assert_relative_eq!(evaluated.residuals.worst(), (plane - lowest) / 2.0, max_relative = 1e-14);
