@@ -35,7 +35,7 @@ Examples:
   cargo xtask reproduce-all --preset quick            everything, coarse
   cargo xtask reproduce-fig2 --cells 513 --surfaces 20 --fractal-dimensions 2.0,2.4
   cargo xtask reproduce-fig6 --forces 1e-9:20:60      60 loads, logarithmic, both ends in
-  cargo xtask reproduce-fig2 --accuracy 5% --forces 0.1,1,20   the cheapest settings for that, or what ten minutes buy
+  cargo xtask reproduce-fig2 --accuracy 5% --forces 0.1,1,20   settings for that, or what ten minutes leave
   cargo xtask verify                                  one line per claim of the paper
   cargo xtask reproduce-fig2 --preset paper           2049 cells, 60 surfaces: stop and resume at will
   cargo xtask reproduce-fig2 --preset extended --over data/figures/paper/fig2.csv   16385 cells, light loads
@@ -300,12 +300,12 @@ mod tests {
         let (requirements, asked) = target("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
         assert_eq!(
             (requirements, asked),
-            (Requirements { solid: true, line: false }, AccuracyTarget { accuracy: 0.01, seconds: 7200.0 })
+            (Requirements { solid: true, line: false }, AccuracyTarget { share: 0.01, seconds: 7200.0 })
         );
         let (requirements, asked) = target("verify --accuracy 0.05").unwrap();
         assert_eq!(
             (requirements, asked),
-            (Requirements { solid: true, line: true }, AccuracyTarget { accuracy: 0.05, seconds: 600.0 })
+            (Requirements { solid: true, line: true }, AccuracyTarget { share: 0.05, seconds: 600.0 })
         );
         assert!(target("reproduce-fig6").is_none() && target("bench").is_none());
         for line in [

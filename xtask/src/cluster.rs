@@ -20,7 +20,7 @@ const PROGRAM: &str = "cargo xtask";
 pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
     if let Some((_, target)) = command.target() {
         let expected = "no accuracy to choose sizes for while it solves; ask for it on one machine, and give the sizes that it prints";
-        return Err(Error::parameter("accuracy", target.accuracy, expected));
+        return Err(Error::parameter("accuracy", target.share, expected));
     }
     let request = command.request();
     if request.fresh {

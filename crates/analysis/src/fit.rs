@@ -95,6 +95,18 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     (xx > 0.0 && slope.is_finite() && intercept.is_finite()).then_some((slope, intercept))
 }
 
+/// Exponent p of `y ~ x^p`: the slope of ln y over ln x by least squares, points that are not positive left out; as [`least_squares`].
+///
+/// ```
+/// let squares = [1.0, 2.0, 3.0, -1.0].map(|x: f64| (x, 5.0 * x * x));
+/// assert!((analysis::observed_power(squares).unwrap() - 2.0).abs() < 1e-14);
+/// ```
+pub fn observed_power(points: impl IntoIterator<Item = (f64, f64)>) -> Option<f64> {
+    let logs: Vec<(f64, f64)> =
+        points.into_iter().filter(|p| p.0 > 0.0 && p.1 > 0.0).map(|p| (p.0.ln(), p.1.ln())).collect();
+    least_squares(&logs).map(|(slope, _)| slope)
+}
+
 /// Fits `ln k_bar = ln zeta + alpha ln F_bar` to the arithmetic mean of k_bar over the surfaces, all forces of the window with
 /// equal weight; forces at which a surface is missing are left out.
 ///

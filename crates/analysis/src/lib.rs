@@ -9,6 +9,7 @@
 //! * [`crossing`], [`least_spread`]: where the laws, or the curves, of several fractal dimensions come together.
 //! * [`collapse`]: the master curve of Fig. 4 and what is left around it.
 //! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
+//! * [`grid_error`], [`mean_grid_error`]: what a grid leaves, from coarser ones; [`first_grid`]: the grid that an accuracy asks for.
 //! * [`Multilevel`]: means on the finest of several grids from differences between grids, with bands.
 //! * [`binomial_test`]: whether as many intervals hold the truth as should.
 //! * [`Table`]: named columns with units that hold no NaN; `paper` writes them.
@@ -45,6 +46,7 @@ mod curves;
 mod ensemble;
 mod fit;
 mod grid_error;
+mod grid_search;
 mod kappa;
 mod multilevel;
 mod sum;
@@ -58,8 +60,11 @@ pub use contact_model::Value;
 pub use crossing::{Crossing, crossing, least_spread};
 pub use curves::{Curves, StiffnessSample, interpolate};
 pub use ensemble::{EnsemblePoint, Statistics, ensemble, mean_and_deviation, statistics};
-pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law, least_squares};
-pub use grid_error::{GridError, grid_error};
+pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law, least_squares, observed_power};
+pub use grid_error::{
+    GridError, KnownPart, error_from_moments, grid_error, mean_grid_error, relative_differences,
+};
+pub use grid_search::{AccuracyTarget, ChosenGrid, GridTrial, NoGrid, first_grid};
 pub use kappa::kappa;
 pub use multilevel::{Multilevel, Uncertain, slope_weights, student};
 pub use sum::sum;

@@ -1,6 +1,7 @@
 //! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
 
 use crate::table_of::read_rows;
+use analysis::observed_power;
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
 use runs::{CsvFile, Error, Result};
 use serde::Deserialize;
@@ -149,7 +150,7 @@ fn draw(points: &[BenchPoint], over: Over, directory: &Path, name: &str, plot: &
             drawing.legend(&label, &color, Key::Line(LineStyle::Solid));
             known.push(what.clone());
         }
-        let power = |of: fn(&BenchPoint) -> f64| slope(done.iter().map(|p| (over.of(p), of(p))));
+        let power = |of: fn(&BenchPoint) -> f64| observed_power(done.iter().map(|p| (over.of(p), of(p))));
         if let (Some(a), Some(b)) = (power(|p| p.seconds), power(|p| p.iterations)) {
             let mut curve = format!("{what}, {} = {}", other.name(), shown(other.of(&first)));
             if tolerances {
@@ -234,27 +235,9 @@ fn read(csv: &Path) -> Result<Vec<BenchPoint>> {
     Ok(points)
 }
 
-/// Least-squares slope of ln y over ln x; `None` for fewer than two different x.
-fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
-    let logs: Vec<(f64, f64)> =
-        points.filter(|p| p.0 > 0.0 && p.1 > 0.0).map(|p| (p.0.ln(), p.1.ln())).collect();
-    let n = logs.len() as f64;
-    let (x, y) = (logs.iter().map(|p| p.0).sum::<f64>() / n, logs.iter().map(|p| p.1).sum::<f64>() / n);
-    let (xy, xx) =
-        logs.iter().fold((0.0, 0.0), |(a, b), p| (a + (p.0 - x) * (p.1 - y), b + (p.0 - x).powi(2)));
-    (xx > 0.0).then(|| xy / xx)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_slope_of_a_power_is_its_exponent() {
-        let points = [1.0, 2.0, 5.0].map(|x: f64| (x, 3.0 * x.powf(1.5)));
-        approx::assert_relative_eq!(slope(points.into_iter()).unwrap(), 1.5, max_relative = 1e-12);
-        assert_eq!(slope([(2.0, 1.0)].into_iter()), None);
-    }
 
     #[test]
     fn pictures_are_drawn_from_the_table() {

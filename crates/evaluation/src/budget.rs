@@ -1,7 +1,6 @@
 //! Error budgets: k = value +- algebraic +- discretisation +- ensemble, for each mean and for alpha and zeta.
 
 use crate::fitted_laws::{WindowedLaw, windowed_law};
-use crate::grid_error::{EdgePart, differences, discretisation_error};
 use crate::header::{FLAGS_1D, FLAGS_3D, describe, header};
 use crate::measured::{COARSER_SURFACES, Measured, Series, measure_1d, measure_3d};
 use crate::outcome::Outcome;
@@ -162,9 +161,9 @@ fn mean_algebraic(series: &Series, j: usize) -> f64 {
 fn row(measured: &Measured, series: &Series, j: usize) -> Option<Budgeted> {
     let point = &series.points[j];
     let k = point.stiffness_bar?;
-    let edge = EdgePart::at(k.mean, measured.discretisation);
+    let edge = measured.discretisation.edge_part(k.mean);
     let grid = (measured.coarser_at(series.fractal_dimension))
-        .and_then(|coarser| discretisation_error(&differences(series, coarser, j), edge, k.count));
+        .and_then(|coarser| analysis::mean_grid_error(&series.grid_differences(coarser, j), edge, k.count));
     let budget = Budget {
         algebraic: k.mean * mean_algebraic(series, j),
         discretisation: grid.map(|d| k.mean * d),

@@ -1,8 +1,10 @@
 //! What Figs. 3 and 7 have in common: the fitted power laws.
 
-use crate::grid_error::law_error;
 use crate::measured::{Measured, Series};
-use analysis::{Bootstrap, FitWindow, FittedPowerLaw, NoFit, fit_power_law};
+use analysis::{
+    Bootstrap, EnsemblePoint, FitWindow, FittedPowerLaw, NoFit, error_from_moments, fit_power_law,
+    least_squares,
+};
 
 /// A fitted law, or why there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,4 +89,44 @@ pub fn dense_dimensions(given: &[f64]) -> Vec<f64> {
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| a.total_cmp(b).is_eq());
     all
+}
+
+/// 95 % half-widths of alpha and of ln zeta from the coarser grids, over the forces that the finest resolves. Where a coarser one does not, its
+/// difference is too large, and so is the half-width.
+fn law_error(series: &Series, [half, quarter]: [&Series; 2]) -> Option<(f64, f64)> {
+    let window = FitWindow::PAPER;
+    let all = [series, half, quarter];
+    let resolved = |p: &EnsemblePoint| {
+        p.force_bar <= window.max_force_bar
+            && p.min_contact_cells.is_none_or(|c| c >= window.min_contact_cells)
+    };
+    let inside: Vec<usize> = (0..series.points.len()).filter(|&j| resolved(&series.points[j])).collect();
+    let law = |s: &Series, draw: &[usize]| {
+        let (means, forces) = (s.curves.mean_of(draw), s.curves.force_bar());
+        let points: Vec<(f64, f64)> =
+            inside.iter().filter_map(|&j| Some((forces[j].ln(), means[j]?.ln()))).collect();
+        least_squares(&points).filter(|_| points.len() >= 3)
+    };
+    // Differences of alpha and of ln zeta between neighbouring grids.
+    let differences = |draw: &[usize]| {
+        let [fine, half, quarter] = [law(all[0], draw)?, law(all[1], draw)?, law(all[2], draw)?];
+        Some([[half.0 - fine.0, quarter.0 - half.0], [half.1 - fine.1, quarter.1 - half.1]])
+    };
+    let surfaces = all.iter().map(|s| s.units.len()).min().unwrap_or(0);
+    let whole: Vec<usize> = (0..surfaces).collect();
+    let found = differences(&whole)?;
+    let draws: Vec<[[f64; 2]; 2]> =
+        Bootstrap::default().draws(surfaces).iter().filter_map(|draw| differences(draw)).collect();
+    if surfaces < 2 || draws.len() < 2 {
+        return None;
+    }
+    let error = |part: usize| {
+        let moment = |a: usize, b: usize| {
+            let [x, y] = [found[part][a], found[part][b]];
+            let scatter = draws.iter().map(|d| (d[part][a] - x) * (d[part][b] - y));
+            x * y + analysis::sum(scatter) / draws.len() as f64
+        };
+        error_from_moments(found[part][0], [moment(0, 0), moment(1, 1), moment(0, 1)], surfaces)
+    };
+    Some((error(0), error(1)))
 }

@@ -30,7 +30,6 @@ mod bench_plot;
 mod budget;
 mod fitted_laws;
 mod forces;
-mod grid_error;
 mod hard_cases;
 mod header;
 pub mod limits;
@@ -47,16 +46,16 @@ mod tables;
 mod tuning;
 
 pub use accuracy::{
-    AccuracyPlan, AccuracyTarget, Coverage, Depth, Requirements, accuracy_cost, accuracy_cost_jobs,
-    budget_check, budget_check_jobs, plan, redraw_accuracy, settle,
+    AccuracyPlan, Coverage, Depth, Requirements, accuracy_cost, accuracy_cost_jobs, budget_check,
+    budget_check_jobs, plan, redraw_accuracy, settle,
 };
+pub use analysis::AccuracyTarget;
 pub use audit::audit;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Clock, Surfaces, bench, elapsed, parts_table, write_bench};
 pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
 pub use budget::{Budget, Budgeted, state_budgets, write_budget};
 pub use fitted_laws::{FittedLaw, WindowedLaw, dense_dimensions, laws, laws_within, windowed_law};
 pub use forces::Forces;
-pub use grid_error::differences as grid_differences;
 pub use hard_cases::hard_cases;
 pub use header::{FLAGS_1D, FLAGS_3D, PAPER, describe, header};
 pub use manifest::write_manifest;

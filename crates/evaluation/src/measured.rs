@@ -4,7 +4,7 @@ use crate::realisation::{Discretisation, Realisation, RealisationResult};
 use crate::run::Run;
 use crate::sample::{FLOOR_CELLS, Sample};
 use crate::sweep::sweep;
-use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble};
+use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble, relative_differences};
 use runs::{Error, Progress, Result, Store};
 use std::sync::Arc;
 
@@ -166,6 +166,21 @@ impl Series {
     pub fn redrawn(&self, draw: &[usize]) -> Self {
         let curves = self.curves.resampled(draw);
         Self { points: ensemble(&curves), curves, ..self.clone() }
+    }
+
+    /// k_bar of surface `i` under load number `j`, where it converged.
+    fn stiffness(&self, i: usize, j: usize) -> Option<f64> {
+        let sample = self.units.get(i)?.1.samples.get(j)?;
+        sample.stiffness_bar.filter(|_| sample.converged())
+    }
+
+    /// Relative differences of k of each surface under load number `j`, between its grid and the one half as fine, and between that and the one
+    /// a quarter as fine, all converged.
+    pub fn grid_differences(&self, [half, quarter]: [&Self; 2], j: usize) -> Vec<[f64; 2]> {
+        let of = |i: usize| {
+            relative_differences(self.stiffness(i, j)?, half.stiffness(i, j)?, quarter.stiffness(i, j)?)
+        };
+        (0..self.units.len()).filter_map(of).collect()
     }
 
     /// Arithmetic mean of k_bar over the converged surfaces at each force.

@@ -1,6 +1,7 @@
 //! One unit of work: one surface under all its loads.
 
 use crate::sample::Sample;
+use analysis::KnownPart;
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use bem3d::Bem3d;
 use contact_model::{
@@ -95,6 +96,21 @@ impl Discretisation {
         stiffness / PAPER_STIFFNESS_FACTOR
     }
 
+    /// What the edge of a free square adds to the relative differences of k between grids, at a mean k_bar; a line has no edge.
+    ///
+    /// Its share is that of complete contact, where there is nothing else, times `(k/k_complete)^8`: half the stiffness has less than a hundredth
+    /// of it. It makes k too small on a coarse grid, short waves make it too large: near complete contact both can cancel in the differences,
+    /// and not in what is to come.
+    pub fn edge_part(self, stiffness_bar: f64) -> KnownPart {
+        let Some([half, quarter]) = self.coarser() else { return KnownPart::default() };
+        let [fine, half, quarter] = [self, half, quarter].map(Self::complete_contact);
+        let share = (stiffness_bar / fine).min(1.0).powi(EDGE_POWER) / fine;
+        KnownPart {
+            differences: [share * (half - fine), share * (quarter - half)],
+            to_come: share * (fine - self.complete_contact_of_fine_grids()),
+        }
+    }
+
     /// The model itself.
     pub fn model(&self) -> Box<dyn ContactModel> {
         match *self {
@@ -103,6 +119,9 @@ impl Discretisation {
         }
     }
 }
+
+/// Power of k over that of complete contact with which the error of a free edge sets in.
+const EDGE_POWER: i32 = 8;
 
 /// Coarsest grid and shortest line that say anything about a finer one.
 const COARSEST: (usize, usize) = (17, 1 << 9);
@@ -267,6 +286,8 @@ impl Realisation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use analysis::mean_grid_error;
+    use approx::assert_relative_eq;
     use contact_model::{
         Certificate, ContactState, Load, Normalisation, PreparedContact, Result as ModelResult, SolveReport,
         Source, Status,
@@ -362,5 +383,23 @@ mod tests {
         assert_eq!(solid(64).coarser(), None);
         assert_eq!(line(1 << 20).coarser(), Some([line(1 << 19), line(1 << 18)]));
         assert_eq!(line(1024).coarser(), None);
+    }
+
+    #[test]
+    fn an_edge_that_hides_in_the_differences_is_found_again() {
+        let grid = Discretisation::Bem3d { cells: 129, tolerance: 1e-3 };
+        let edge = grid.edge_part(grid.complete_contact());
+        // k of complete contact goes up by 0.4/N/1.15 to the limit, the two differences by as much and by twice as much.
+        let expected = 0.4025 / 129.0 / 1.1523;
+        assert_relative_eq!(edge.to_come, -expected, max_relative = 0.02);
+        assert_relative_eq!(edge.differences[0], -expected, max_relative = 0.1);
+        assert_relative_eq!(edge.differences[1], -2.0 * expected, max_relative = 0.1);
+        // Waves that cancel it: no difference is seen, but each part is there.
+        let unseen = mean_grid_error(&[[0.0; 2]; 12], edge, 1).unwrap();
+        assert!(unseen > 1.5 * expected, "{unseen}");
+        // It falls with the eighth power of k, and a line has no edge.
+        let half = grid.edge_part(0.5 * grid.complete_contact());
+        assert_relative_eq!(half.to_come, edge.to_come / 256.0, max_relative = 1e-12);
+        assert_eq!(Discretisation::Mdr1d { elements: 4096 }.edge_part(0.9), KnownPart::default());
     }
 }

@@ -223,12 +223,11 @@ fn a_wish_is_met_or_refused_with_its_price() {
         ..Request::default()
     };
     let requirements = Requirements { solid: true, line: false };
-    let plan = |accuracy, seconds| {
-        evaluation::plan(&request, requirements, AccuracyTarget { accuracy, seconds }, &Silent)
-    };
+    let plan =
+        |share, seconds| evaluation::plan(&request, requirements, AccuracyTarget { share, seconds }, &Silent);
     let planned = plan(0.1, 600.0).unwrap();
-    assert!(planned.accuracy <= 0.1 && planned.run.surfaces >= 2, "{:?}", planned.lines);
-    let target = AccuracyTarget { accuracy: 0.1, seconds: 600.0 };
+    assert!(planned.seconds <= 600.0 && planned.run.surfaces >= 2, "{:?}", planned.lines);
+    let target = AccuracyTarget { share: 0.1, seconds: 600.0 };
     let settled = evaluation::settle(planned, requirements, target, &Silent).unwrap();
     let counter = Counter::default();
     fig2(&settled.run, &counter).unwrap();
@@ -236,10 +235,13 @@ fn a_wish_is_met_or_refused_with_its_price() {
     let file = CsvFile::read(&dir.path().join("fig2-budget.csv")).unwrap();
     assert!(file.numbers("relative").unwrap().iter().all(|r| r.unwrap() <= 0.1));
     let refused = plan(1e-4, 60.0).unwrap_err().to_string();
-    assert!(refused.starts_with("accuracy = 0.010 %") && refused.contains("the budget buys"), "{refused}");
+    assert!(
+        refused.starts_with("accuracy = 0.010 %") && refused.contains("and the budget is 60 s"),
+        "{refused}"
+    );
     let given = Request { cells: Some(65), ..request };
     let refused =
-        evaluation::plan(&given, requirements, AccuracyTarget { accuracy: 0.1, seconds: 1.0 }, &Silent)
+        evaluation::plan(&given, requirements, AccuracyTarget { share: 0.1, seconds: 1.0 }, &Silent)
             .unwrap_err();
     assert!(refused.to_string().starts_with("cells = 65"), "{refused}");
 }

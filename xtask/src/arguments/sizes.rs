@@ -61,7 +61,7 @@ pub struct SolveSizes {
     #[arg(long)]
     fresh: bool,
     /// Choose grid, tolerance and number of surfaces so that each mean k_bar above the one-cell floor is known to this (95 % half-width):
-    /// a share or per cent, such as 0.02 or 2%. A pilot of small grids runs first.
+    /// a share or per cent, such as 0.02 or 2%. Pilots on finer and finer grids run first.
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     accuracy: Option<f64>,
     /// Most time that --accuracy may choose, such as 90s, 10min, 2h.
@@ -76,7 +76,7 @@ pub struct SolveSizes {
 
 impl SolveSizes {
     pub(super) fn target(&self) -> Option<AccuracyTarget> {
-        self.accuracy.map(|accuracy| AccuracyTarget { accuracy, seconds: self.budget })
+        self.accuracy.map(|share| AccuracyTarget { share, seconds: self.budget })
     }
 
     pub(super) fn fill(&self, request: &mut Request) {

@@ -74,6 +74,20 @@ pub enum Method {
     SingleLevel,
 }
 
+impl Method {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::Iterative, Self::SingleLevel];
+
+    /// Its word in scenes and tables.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Iterative => "iterative",
+            Self::SingleLevel => "single_level",
+        }
+    }
+}
+
 impl Bem3d {
     /// The grid on a rectangle of this size.
     pub fn grid(&self, size: Size) -> Cells {

@@ -1,10 +1,11 @@
 //! One problem solved in every way: references, errors and their parts.
 
-use super::limit::{Limit, limit, slope};
+use super::limit::{Limit, limit};
 use super::pressure;
 use super::problem::{Family, StudyProblem};
 use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
 use super::sizes::{Order, Quantity, StudySizes};
+use analysis::observed_power;
 use analytic::Hertz;
 use analytic::flat_punch::SQUARE_STIFFNESS_UNCERTAINTY;
 use bem3d::{Bem3d, Method};
@@ -159,7 +160,7 @@ fn order(
     Order {
         problem: problem.key,
         quantity: Quantity::ALL[q],
-        power: extrapolated.or_else(|| slope(&far)),
+        power: extrapolated.or_else(|| observed_power(far)),
         established: exact || extrapolated.is_some(),
         limit,
         errors: [errors.first().map(|e| e.1), errors.last().map(|e| e.1)],

@@ -94,12 +94,6 @@ fn fit(values: &[(f64, f64)], order: f64) -> Option<LimitFit> {
     Some(LimitFit { order, limit: finest.1 + at_zero, residual })
 }
 
-/// Least-squares slope of ln(error) over ln(cell); `None` for fewer than two positive errors.
-pub(crate) fn slope(errors: &[(f64, f64)]) -> Option<f64> {
-    let logs: Vec<(f64, f64)> = errors.iter().filter(|e| e.1 > 0.0).map(|e| (e.0.ln(), e.1.ln())).collect();
-    analysis::least_squares(&logs).map(|law| law.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,12 +117,5 @@ mod tests {
         assert_eq!((found.value, found.order), (1.999, None));
         assert_relative_eq!(found.uncertainty, 2e-3, max_relative = 1e-9);
         assert_eq!(limit(&noisy[..1]), None);
-    }
-
-    #[test]
-    fn the_slope_of_errors() {
-        let errors = [(0.1, 0.2), (0.2, 0.8), (0.3, 0.0)];
-        assert_relative_eq!(slope(&errors).unwrap(), 2.0, max_relative = 1e-12);
-        assert_eq!(slope(&errors[..1]), None);
     }
 }

@@ -1,11 +1,11 @@
 //! Means over ensembles: how far surfaces scatter, and what lines and closed forms are worth as an answer for the mean.
 
-use super::limit::{Limit, limit, slope};
+use super::limit::{Limit, limit};
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
 use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
 use super::sizes::{Order, Quantity, StudySizes};
 use crate::realisation::{Discretisation, Models, Realisation};
-use analysis::{Statistics, statistics};
+use analysis::{Statistics, observed_power, statistics};
 use analytic::PowerLaw;
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Stop, Surface, never};
@@ -179,7 +179,9 @@ fn order(problem: ProblemKey, limit: Limit, sequence: &[(f64, f64)]) -> Order {
     Order {
         problem,
         quantity: Quantity::Stiffness,
-        power: limit.order.or_else(|| slope(&errors[..errors.len().saturating_sub(1)])),
+        power: limit
+            .order
+            .or_else(|| observed_power(errors.iter().copied().take(errors.len().saturating_sub(1)))),
         established: limit.order.is_some(),
         limit: Some(limit),
         errors: [errors.first().map(|e| e.1), errors.last().map(|e| e.1)],

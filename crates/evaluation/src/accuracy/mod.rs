@@ -24,7 +24,7 @@ mod text;
 pub use check::{Coverage, budget_check, budget_check_jobs};
 pub use depth::Depth;
 pub use job::accuracy_cost_jobs;
-pub use plan::{AccuracyPlan, AccuracyTarget, Requirements, plan, settle};
+pub use plan::{AccuracyPlan, Requirements, plan, settle};
 
 use crate::header::header;
 use crate::outcome::Outcome;

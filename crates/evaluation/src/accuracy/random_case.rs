@@ -2,11 +2,11 @@
 
 use super::job::cold_cost;
 use crate::budget::algebraic;
-use crate::grid_error::{EdgePart, discretisation_error, relative_differences};
 use crate::measured::COARSER_SURFACES;
 use crate::realisation::{Discretisation, FORMAT, Realisation};
 use crate::run::FRACTAL_DIMENSIONS;
 use crate::sample::{FLOOR_CELLS, Sample};
+use analysis::{mean_grid_error, relative_differences};
 use contact_model::Stop;
 use runs::{Error, Job, Result, ResultKind};
 use serde::{Deserialize, Serialize};
@@ -186,8 +186,8 @@ fn case(seed: u64, number: u64, stop: Stop<'_>) -> Result<RandomCase> {
             .collect();
         let stiffnesses: Vec<f64> = fine.iter().filter_map(|s| s.stiffness_bar).collect();
         let mean = analysis::sum(stiffnesses.iter().copied()) / stiffnesses.len().max(1) as f64;
-        let edge = EdgePart::at(mean, discretisation);
-        let Some(discretisation) = discretisation_error(&differences, edge, 1) else { continue };
+        let edge = discretisation.edge_part(mean);
+        let Some(discretisation) = mean_grid_error(&differences, edge, 1) else { continue };
         let truth = |cells| {
             let exact = solve(Discretisation::Bem3d { cells, tolerance: REFERENCE }, surface, force_bar)?;
             exact.stiffness_bar.filter(|_| exact.converged()).ok_or_else(|| {

@@ -86,12 +86,10 @@ impl Way {
         }
     }
 
-    pub fn method(&self) -> &'static str {
+    pub fn method(&self) -> String {
         match self {
-            Self::Solid { method: bem3d::Method::Auto, .. } => "auto",
-            Self::Solid { method: bem3d::Method::Iterative, .. } => "iterative",
-            Self::Solid { method: bem3d::Method::SingleLevel, .. } => "single-level",
-            _ => "",
+            Self::Solid { method, .. } => method.as_str().replace('_', "-"),
+            _ => String::new(),
         }
     }
 }

@@ -10,24 +10,27 @@ use std::path::Path;
 const PAPER_CELLS: f64 = 2049.0;
 const PAPER_TOLERANCE: f64 = 1e-3;
 
+/// The text with places for what the tables say.
+const TEMPLATE: &str = include_str!("text.template");
+
 pub(crate) fn text(csv: &Path, order: &Path) -> Result<String> {
     let points = read(csv)?;
     let orders = Orders::read(order)?;
     let command =
         CsvFile::read(csv)?.comments.into_iter().find_map(|c| Some(c.strip_prefix("command: ")?.to_owned()));
-    let mut text = format!(
-        "# What accuracy costs in time\n\n`{}` made this text, the picture and the tables \
-         ([rows](accuracy-cost.csv), [limits and orders](accuracy-order.csv)). Errors are relative and never below the uncertainty \
-         of their reference; seconds are processor seconds of one thread, everything from nothing.\n\n\
-         ![Relative error of k over processor seconds](accuracy-cost.png)\n\n",
-        command.unwrap_or_default()
-    );
-    text += &short(&points);
-    text += &takes(&points);
-    text += &less(&points);
-    text += &parts(&points, &orders);
-    text += &orders.text();
-    Ok(text)
+    let (parts, counts) = parts(&points, &orders);
+    let found = [
+        ("{command}", command.unwrap_or_default()),
+        ("{short}", short(&points)),
+        ("{takes}", takes(&points)),
+        ("{less}", less(&points)),
+        ("{parts}", parts),
+        ("{counts}", counts),
+        ("{orders}", orders.text()),
+        ("{paper_cells}", format!("{PAPER_CELLS:.0}")),
+        ("{paper_tolerance}", format!("{PAPER_TOLERANCE:e}")),
+    ];
+    Ok(found.into_iter().fold(TEMPLATE.to_owned(), |text, (place, words)| text.replace(place, &words)))
 }
 
 fn percent(v: f64) -> String {
@@ -139,16 +142,11 @@ fn short(points: &[AccuracyPoint]) -> String {
             text += &format!("- {words} has the mean of k over surfaces to {}.\n", told.join(", "));
         }
     }
-    text + "\n"
+    text
 }
 
 fn takes(points: &[AccuracyPoint]) -> String {
-    let mut text = "## What it takes\n\nThe cheapest way in three dimensions to k of one surface within 10 %, 1 % and 0.1 %: cells a \
-        side, tolerance, seconds. *Resolved*: the shortest wave is at least 16 cells long on the coarsest grid. *Fractal*: waves to the \
-        end of each grid, error against the limit of fine grids. Every finer grid of \
-        the study keeps the same error. A dash: not reached with these sizes.\n\n\
-        | surface | D_f | F_bar | 10 % | 1 % | 0.1 % | limit known to |\n|---|---|---|---|---|---|---|\n"
-        .to_owned();
+    let mut text = String::new();
     for (family, word) in
         [("sphere", "exact"), ("square", "exact"), ("band", "resolved"), ("spectrum", "fractal")]
     {
@@ -171,15 +169,11 @@ fn takes(points: &[AccuracyPoint]) -> String {
             text += &format!("| {word} | {} | {} | {limit} |\n", label(problem), cells.join(" | "));
         }
     }
-    text + "\n"
+    text
 }
 
 fn less(points: &[AccuracyPoint]) -> String {
-    let mut text = "## When less is enough\n\nError of the mean of k over surfaces by one-dimensional lines (as many lines as surfaces, \
-        the most elements of the study), by Eq. 12 (where it is claimed to hold) and by the plateau of the rigid square. The last column \
-        is what 60 surfaces in three dimensions leave open.\n\n\
-        | D_f | F_bar | 1D | seconds of all lines | Eq. 12 | plateau | 60 surfaces | mean known to |\n|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
+    let mut text = String::new();
     for problem in problems(points, "mean") {
         let of = |model: &str| points.iter().rfind(|p| p.same_problem(problem) && p.model == model);
         let line = of("mdr1d");
@@ -195,17 +189,12 @@ fn less(points: &[AccuracyPoint]) -> String {
             maybe(problem.reference_error),
         );
     }
-    text + "\n"
+    text
 }
 
-fn parts(points: &[AccuracyPoint], orders: &Orders) -> String {
-    let mut text = format!(
-        "## Which part dominates at the paper's settings\n\n{PAPER_CELLS:.0} cells a side, 60 surfaces; algebraic at the tolerance \
-         {PAPER_TOLERANCE:e} of its preset here (the largest over the grids of the study), discretisation carried from the finest \
-         grid of the study to {PAPER_CELLS:.0} cells by its order, ensemble the standard error of the mean of 60 surfaces, model what \
-         the 1D reduction would add.\n\n\
-         | D_f | F_bar | algebraic | discretisation | ensemble | model (1D) | dominates in 3D |\n|---|---|---|---|---|---|---|\n"
-    );
+/// The rows of the table, and how often each part dominates.
+fn parts(points: &[AccuracyPoint], orders: &Orders) -> (String, String) {
+    let mut text = String::new();
     let mut counts = [0_usize; 3];
     for problem in problems(points, "spectrum") {
         let (d, f) = (problem.fractal_dimension, problem.force_bar);
@@ -243,10 +232,11 @@ fn parts(points: &[AccuracyPoint], orders: &Orders) -> String {
         );
     }
     let total: usize = counts.iter().sum();
-    text + &format!(
-        "\nOf {total} rows the ensemble dominates {}, the discretisation {}, the algebraic error {}.\n\n",
+    let counts = format!(
+        "Of {total} rows the ensemble dominates {}, the discretisation {}, the algebraic error {}.",
         counts[2], counts[1], counts[0]
-    )
+    );
+    (text, counts)
 }
 
 /// A row of the second table.
@@ -297,11 +287,7 @@ impl Orders {
     }
 
     fn text(&self) -> String {
-        let mut text = "## Orders\n\nError ~ cell^order; in brackets where it is only the slope of the errors, not established by four \
-            grids or more that follow one power (the limit is then the finest grid's value, the pressure's always). Then the errors on \
-            the coarsest and on the finest grid.\n\n\
-            | surface | D_f | F_bar | k | d | area | pressure (L2) |\n|---|---|---|---|---|---|---|\n"
-            .to_owned();
+        let mut text = String::new();
         let mut done: Vec<(&str, Option<f64>, Option<f64>)> = Vec::new();
         for s in self.rows.iter().filter(|s| s.family != "mean") {
             let key = (s.family.as_str(), s.fractal_dimension, s.force_bar);

@@ -296,8 +296,7 @@ pub(super) fn size_effects(measured: &Measured) -> Vec<Claim> {
         });
         let coarser = measured.coarser_at(d);
         let change = |j: usize| {
-            let last: Vec<f64> =
-                evaluation::grid_differences(series, coarser?, j).iter().map(|d| d[0]).collect();
+            let last: Vec<f64> = series.grid_differences(coarser?, j).iter().map(|d| d[0]).collect();
             Some((j, last.len(), mean_of(&last)?))
         };
         let largest = inside.filter_map(change).max_by(|a, b| a.2.value.abs().total_cmp(&b.2.value.abs()));
@@ -331,8 +330,7 @@ fn long_waves(series: &Series, coarser: Option<[&Series; 2]>, force_bar: f64) ->
     let j = (0..series.points.len())
         .min_by(|&a, &b| away(series.points[a].force_bar).total_cmp(&away(series.points[b].force_bar)))
         .filter(|&j| away(series.points[j].force_bar) < 1.5_f64.ln())?;
-    let changes: Vec<f64> =
-        evaluation::grid_differences(series, coarser?, j).iter().map(|d| d[0].powi(2)).collect();
+    let changes: Vec<f64> = series.grid_differences(coarser?, j).iter().map(|d| d[0].powi(2)).collect();
     let k = series.points[j].stiffness_bar?;
     let scatter = k.standard_error? * (k.count as f64).sqrt() / k.mean;
     let n = changes.len() as f64;

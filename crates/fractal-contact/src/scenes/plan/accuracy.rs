@@ -2,16 +2,15 @@
 
 use crate::scenes::plan::calibration;
 use crate::scenes::plan::grid_comparison::{GridErrors, Numbers, compared, on_grid, solve};
-use crate::scenes::read::accuracy_target::AccuracyTarget;
 use crate::scenes::read::diagnostic::Diagnostic;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::human_readable::short;
 use crate::scenes::read::human_readable::time;
-use crate::scenes::read::loads::Loading;
+use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::numerics::{MOST_CELLS, Numerics};
 use crate::scenes::read::scene_file::{SceneFile, cells};
 use crate::scenes::read::words;
-use analysis::grid_error;
+use analysis::{AccuracyTarget, GridTrial, grid_error};
 use bem3d::Bem3d;
 use contact_model::quantities::{AskedBy, Quantity};
 use contact_model::{Boundary, Cells, Load};
@@ -20,9 +19,6 @@ use std::time::Instant;
 /// Polled from any thread, between iterations: `true` means stop now.
 pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 
-/// Tolerance of the solver as a part of the accuracy, and its limits.
-const TOLERANCE_PER_ACCURACY: f64 = 1.0 / 30.0;
-const TOLERANCES: (f64, f64) = (1e-6, 1e-3);
 /// Cells along the longer side of the coarsest grid of the pilot.
 const COARSEST: usize = 33;
 /// The two coarser grids of a state, over the work of the state itself, and that.
@@ -66,7 +62,7 @@ impl SceneFile {
         let Some(target) = self.accuracy else { return Ok(self) };
         calibration::jobs_in_memory(&self, 1)?;
         let place = self.models.iter().position(|m| matches!(m, Numerics::Bem3d(_)));
-        let Some(place) = place.filter(|_| matches!(self.request, Loading::Loads(_))) else {
+        let Some(place) = place.filter(|_| matches!(self.request, LoadRequest::Loads(_))) else {
             let diagnostic =
                 Diagnostic::new("`accuracy` chooses the grid of bem3d under loads, and there is none here")
                     .with_help("remove it, or name \"bem3d\" in `models`");
@@ -103,76 +99,43 @@ impl SceneFile {
 
     /// The first grid that gives an accuracy, with its scene.
     fn first_grid(&self, model: &Numerics, target: AccuracyTarget, stop: SharedStop<'_>) -> Result<Chosen> {
-        let AccuracyTarget { share, seconds: budget } = target;
-        let percent = |share: f64| format!("{} %", short(100.0 * share));
         let failed = |error| runs::Error::model("the pilot of `accuracy`")(error);
-        let refused = |message: String, help: &str| -> crate::scenes::Error {
-            let message = format!("an accuracy of {}: {message}", percent(share));
-            self.at_accuracy(Diagnostic::new(message).with_help(help)).into()
-        };
         let given = self.surface.own_cells().is_some();
-        let (model, rungs) = (with_tolerance(self, model, share), rungs(self));
-        let normalised_on = if given { rungs.last() } else { rungs.first() };
+        let (model, grids) = (with_tolerance(self, model, target), grids(self));
+        let normalised_on = if given { grids.last() } else { grids.first() };
         let loads = loads(self, &model, normalised_on.copied().unwrap_or(COARSEST)).map_err(failed)?;
         let runs = WITH_COARSER * self.sampling.surfaces as f64;
-        let begun = Instant::now();
+        let controlled = controlled(self);
         let mut solved: Vec<Vec<Option<Numbers>>> = Vec::new();
-        let (mut took, mut before): (f64, Option<Worst>) = (0.0, None);
-        for (rung, &longer) in rungs.iter().enumerate() {
-            let grown = longer as f64 / rungs[rung.saturating_sub(1)] as f64;
-            let next = took * grown.powf(calibration::TIME_EXPONENT);
-            let needed = begun.elapsed().as_secs_f64() + next * (1.0 + runs);
-            if let (Some(worst), true) = (&before, needed > budget) {
-                let (coarser, found, where_) = (rungs[rung - 1], percent(worst.error), worst.words(self));
-                let message = format!(
-                    "{coarser} cells along the longer side leave {found} ({where_}), {longer} would take about {}, and the budget is {}",
-                    time(needed),
-                    time(budget)
-                );
-                return Err(refused(message, "raise `budget`, such as \"2 h\", or ask for less"));
-            }
+        let trial = |longer: usize| -> Result<GridTrial<(SceneFile, Option<Worst>)>> {
             let start = Instant::now();
-            let grid = on_grid(self, &model, longer).map_err(failed)?;
-            let timed = || solve(&grid, self.seed(0), &loads, stop);
+            let scene = on_grid(self, &model, longer).map_err(failed)?;
+            let timed = || solve(&scene, self.seed(0), &loads, stop);
             solved.push(runs::on_one_thread(timed).map_err(failed)?);
-            took = start.elapsed().as_secs_f64();
-            let Some(worst) = Worst::of(&controlled(self), &solved) else { continue };
-            // One small difference may be chance: the grid before may have had twice the error, no more.
-            let coarser = before.as_ref().map(|before| before.error);
-            let last = rung + 1 == rungs.len();
-            if worst.error <= share && (last || coarser.is_some_and(|coarser| coarser <= 2.0 * share)) {
-                return Ok(Chosen { scene: grid, error: worst.error, seconds: took * runs });
-            }
-            // Even if each doubling halves the error, those that the budget has room for are not enough.
-            let left = (budget - begun.elapsed().as_secs_f64()).max(0.0) / (took * (1.0 + runs));
-            let affordable = (left.max(1.0).log2() / calibration::TIME_EXPONENT)
-                .floor()
-                .min((rungs.len() - 1 - rung) as f64);
-            if rung >= 3 && worst.error * 0.5_f64.powf(affordable) > share {
-                let (found, where_) = (percent(worst.error), worst.words(self));
-                let message = format!(
-                    "{longer} cells along the longer side leave {found} ({where_}), and the {affordable} doublings that cells and \
-                     budget ({}) have room for do not halve that often enough",
-                    time(budget)
-                );
-                return Err(refused(
-                    message,
-                    "ask for less, for larger loads or fewer outputs, or raise `budget`",
-                ));
-            }
-            before = Some(worst);
-        }
-        let cells = if given { "the map's own cells" } else { "the largest grid" };
-        let message = match &before {
-            Some(worst) => format!("{cells} leave {} ({})", percent(worst.error), worst.words(self)),
-            None => format!(
-                "{cells} are too few to compare with coarser ones, or every load is zero or complete contact"
-            ),
+            let seconds = start.elapsed().as_secs_f64();
+            let worst = Worst::of(&controlled, &solved);
+            let (error, rest) = (worst.as_ref().map(|worst| worst.error), seconds * runs);
+            Ok(GridTrial { error, seconds, rest, least_rest: rest, kept: (scene, worst) })
         };
-        Err(refused(
-            message,
-            "a contact has to be many cells wide: ask for less, for larger loads or fewer outputs, or for smaller cells",
-        ))
+        let found = analysis::first_grid(&grids, target, calibration::TIME_EXPONENT, trial)?;
+        let (_, GridTrial { error, rest, kept, .. }) = found.map_err(|none| {
+            let grid = |longer: usize| {
+                if given && Some(&longer) == grids.last() {
+                    "the map's own cells".to_owned()
+                } else {
+                    format!("{longer} cells along the longer side")
+                }
+            };
+            let place = |kept: &(SceneFile, Option<Worst>)| {
+                kept.1.as_ref().map_or_else(String::new, |worst| worst.words(self))
+            };
+            let reason = none.words(target.seconds, &grid, &place, &time);
+            let message = format!("an accuracy of {} %: {reason}", short(100.0 * target.share));
+            let help =
+                "ask for less, for larger loads or fewer outputs, for smaller cells, or raise `budget`";
+            crate::scenes::Error::from(self.at_accuracy(Diagnostic::new(message).with_help(help)))
+        })?;
+        Ok(Chosen { scene: kept.0, error: error.unwrap_or(0.0), seconds: rest })
     }
 }
 
@@ -213,13 +176,11 @@ impl Worst {
 }
 
 /// The model with a tolerance that an accuracy does not notice, and with no cells given.
-fn with_tolerance(scene: &SceneFile, model: &Numerics, share: f64) -> Numerics {
-    let tolerance = (share * TOLERANCE_PER_ACCURACY).clamp(TOLERANCES.0, TOLERANCES.1);
-    // One digit: it stands in the plan and in every header.
-    let tolerance = format!("{tolerance:.0e}").parse().unwrap_or(tolerance);
+fn with_tolerance(scene: &SceneFile, model: &Numerics, target: AccuracyTarget) -> Numerics {
     match model {
         Numerics::Bem3d(numerics) => {
-            Numerics::Bem3d(Bem3d { cells: largest_cells(scene), rows: None, tolerance, ..*numerics })
+            let (cells, tolerance) = (largest_cells(scene), target.tolerance());
+            Numerics::Bem3d(Bem3d { cells, rows: None, tolerance, ..*numerics })
         }
         other => other.clone(),
     }
@@ -233,13 +194,13 @@ fn largest_cells(scene: &SceneFile) -> usize {
 
 /// Grids that double: of free squares one more than powers of two, so that a coarser grid has every second point; of a given map its own
 /// cells, every second one, every fourth.
-fn rungs(scene: &SceneFile) -> Vec<usize> {
+fn grids(scene: &SceneFile) -> Vec<usize> {
     if let Some(Cells { columns, rows }) = scene.surface.own_cells() {
         let own = columns.max(rows);
         let coarser = |n: &usize| Some(n.div_ceil(2)).filter(|&fewer| fewer >= COARSEST / 4 && fewer < *n);
-        let mut rungs: Vec<usize> = std::iter::successors(Some(own), coarser).collect();
-        rungs.reverse();
-        return rungs;
+        let mut grids: Vec<usize> = std::iter::successors(Some(own), coarser).collect();
+        grids.reverse();
+        return grids;
     }
     let odd = usize::from(scene.effects.boundary == Boundary::Free);
     let doubled = std::iter::successors(Some(COARSEST - 1), |n| Some(2 * n));
@@ -249,7 +210,7 @@ fn rungs(scene: &SceneFile) -> Vec<usize> {
 /// The loads of a scene for surface 0 on a grid, in its own normalisation.
 fn loads(scene: &SceneFile, model: &Numerics, longer: usize) -> contact_model::Result<Vec<Load>> {
     let grid = on_grid(scene, model, longer)?;
-    let Loading::Loads(loads) = &scene.request else { return Ok(Vec::new()) };
+    let LoadRequest::Loads(loads) = &scene.request else { return Ok(Vec::new()) };
     let seed = scene.seed(0);
     let normalisation =
         grid.models[0].model().prepare(&grid.scene(&grid.models[0], seed)?, seed)?.normalisation();

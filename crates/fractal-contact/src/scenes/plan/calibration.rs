@@ -2,7 +2,7 @@
 
 use crate::scenes::plan::cost::Cost;
 use crate::scenes::read::error::Result;
-use crate::scenes::read::loads::Loading;
+use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::numerics::Numerics;
 use crate::scenes::read::sampled::sampled;
 use crate::scenes::read::scene_file::SceneFile;
@@ -170,7 +170,7 @@ fn small_solves(
     let mut contact = numerics.model().prepare(&physics, seed)?;
     solved.prepare = begun.elapsed().as_secs_f64();
     match &scene.request {
-        Loading::Loads(loads) => {
+        LoadRequest::Loads(loads) => {
             let normalisation = contact.normalisation();
             let count = loads.values.len();
             let used = count.min(CALIBRATION_LOADS);
@@ -185,7 +185,7 @@ fn small_solves(
                 solved.count(begun, &state, size);
             }
         }
-        Loading::Path(steps) => {
+        LoadRequest::Path(steps) => {
             for step in steps {
                 let begun = Instant::now();
                 let Ok(state) = contact.advance_until(*step, stop) else { break };

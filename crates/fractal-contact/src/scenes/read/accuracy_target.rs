@@ -1,18 +1,11 @@
 //! `accuracy` and `budget` of `[scene]`.
 
 use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use analysis::AccuracyTarget;
 use surface_io::Dimension;
 
 /// Seconds that an accuracy may cost where nothing is said.
 const BUDGET: f64 = 600.0;
-/// What `accuracy` asks for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AccuracyTarget {
-    /// Relative error of the grid that each state may have, of those among stiffness, corrected area, conductance and mean gap that are asked for.
-    pub share: f64,
-    /// Predicted seconds of one thread that it may take.
-    pub seconds: f64,
-}
 
 /// Reads `accuracy` and `budget`, with the place of the former.
 pub(crate) fn read_accuracy<'a>(scene: &Entries<'a>) -> Read<Option<(AccuracyTarget, Entry<'a>)>> {

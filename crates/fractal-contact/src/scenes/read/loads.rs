@@ -9,7 +9,7 @@ const MOST: u64 = 10_000;
 
 /// What a list of loads prescribes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Prescribed {
+pub enum LoadKind {
     /// Normal force F.
     Force,
     /// F over E* h L, with the measured rms height of each surface.
@@ -22,7 +22,7 @@ pub enum Prescribed {
     MeanGap,
 }
 
-impl Prescribed {
+impl LoadKind {
     /// Its key in the file.
     pub fn key(self) -> &'static str {
         match self {
@@ -37,39 +37,39 @@ impl Prescribed {
 
 /// Loads, solved one by one in this order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Loads {
+pub struct LoadList {
     /// What the numbers are.
-    pub prescribed: Prescribed,
+    pub kind: LoadKind,
     /// The numbers, in SI or the scene's own units.
     pub values: Vec<f64>,
 }
 
-impl Loads {
+impl LoadList {
     /// The load of a number for a surface with this normalisation.
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] for a normalised force of a surface without rms height.
     pub fn load(&self, value: f64, normalisation: &Normalisation) -> contact_model::Result<Load> {
-        Ok(match self.prescribed {
-            Prescribed::Force => Load::Force(value),
-            Prescribed::ForceBar => Load::Force(normalisation.force(value)?),
-            Prescribed::MeanPressure => Load::Force(value * normalisation.length * normalisation.length),
-            Prescribed::Approach => Load::Approach(value),
-            Prescribed::MeanGap => Load::MeanGap(value),
+        Ok(match self.kind {
+            LoadKind::Force => Load::Force(value),
+            LoadKind::ForceBar => Load::Force(normalisation.force(value)?),
+            LoadKind::MeanPressure => Load::Force(value * normalisation.length * normalisation.length),
+            LoadKind::Approach => Load::Approach(value),
+            LoadKind::MeanGap => Load::MeanGap(value),
         })
     }
 }
 
 /// What is asked of the models.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Loading {
+pub enum LoadRequest {
     /// States under loads.
-    Loads(Loads),
+    Loads(LoadList),
     /// States along a path.
     Path(Vec<Step>),
 }
 
-impl Loading {
+impl LoadRequest {
     /// Number of states.
     pub fn count(&self) -> usize {
         match self {
@@ -79,11 +79,11 @@ impl Loading {
     }
 }
 
-impl Loading {
+impl LoadRequest {
     /// Whether an approach or a mean gap may be prescribed, of which the force is a result with an error.
     pub(crate) fn prescribes_distance(&self) -> bool {
         match self {
-            Self::Loads(loads) => matches!(loads.prescribed, Prescribed::Approach | Prescribed::MeanGap),
+            Self::Loads(loads) => matches!(loads.kind, LoadKind::Approach | LoadKind::MeanGap),
             Self::Path(steps) => {
                 steps.iter().any(|step| matches!(step.normal, Load::Approach(_) | Load::MeanGap(_)))
             }
@@ -98,7 +98,7 @@ pub(crate) fn read_request<'a>(
     scene: &Entries<'a>,
     system: System,
     pulls: bool,
-) -> Read<(Loading, Entry<'a>)> {
+) -> Read<(LoadRequest, Entry<'a>)> {
     let loads = scene.one_of(&KEYS)?;
     let path = scene.find("path");
     match (loads, path) {
@@ -108,20 +108,20 @@ pub(crate) fn read_request<'a>(
         (None, None) => Err(scene.misspelt_or(&KEYS, scene
             .diagnostic("nothing is pressed: [scene] has no load")
             .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history"))),
-        (Some((key, entry)), None) => Ok((Loading::Loads(read_loads(key, &entry, system, pulls)?), entry)),
-        (None, Some(entry)) => Ok((Loading::Path(read_path(&entry, system, pulls)?), entry)),
+        (Some((key, entry)), None) => Ok((LoadRequest::Loads(read_loads(key, &entry, system, pulls)?), entry)),
+        (None, Some(entry)) => Ok((LoadRequest::Path(read_path(&entry, system, pulls)?), entry)),
     }
 }
 
-fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read<Loads> {
-    let (prescribed, dimension) = match key {
-        "force" => (Prescribed::Force, Some(Dimension::FORCE)),
-        "force_bar" => (Prescribed::ForceBar, None),
-        "mean_pressure" => (Prescribed::MeanPressure, Some(Dimension::PRESSURE)),
-        "approach" => (Prescribed::Approach, Some(Dimension::LENGTH)),
-        _ => (Prescribed::MeanGap, Some(Dimension::LENGTH)),
+fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read<LoadList> {
+    let (kind, dimension) = match key {
+        "force" => (LoadKind::Force, Some(Dimension::FORCE)),
+        "force_bar" => (LoadKind::ForceBar, None),
+        "mean_pressure" => (LoadKind::MeanPressure, Some(Dimension::PRESSURE)),
+        "approach" => (LoadKind::Approach, Some(Dimension::LENGTH)),
+        _ => (LoadKind::MeanGap, Some(Dimension::LENGTH)),
     };
-    let signed = pulls && matches!(prescribed, Prescribed::Force | Prescribed::Approach);
+    let signed = pulls && matches!(kind, LoadKind::Force | LoadKind::Approach);
     let number = |item: &Entry<'_>| {
         let value = match dimension {
             Some(dimension) => item.quantity(dimension, system)?,
@@ -166,7 +166,7 @@ fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read
             .diagnostic(format!("`{key}` is an empty list"))
             .with_help("name at least one load"));
     }
-    Ok(Loads { prescribed, values })
+    Ok(LoadList { kind, values })
 }
 
 /// `count` >= 2 numbers with both ends exactly as given.

@@ -251,9 +251,7 @@ fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
         model.max_outer_iterations = entry.count(1)? as usize;
     }
     if let Some(entry) = table.find("method") {
-        let words =
-            [("auto", Method::Auto), ("iterative", Method::Iterative), ("single_level", Method::SingleLevel)];
-        model.method = entry.choice(&words)?;
+        model.method = entry.choice(&Method::ALL.map(|method| (method.as_str(), method)))?;
     }
     Ok(model)
 }

@@ -1,15 +1,16 @@
 //! A scene as it stands in a file.
 
-use crate::scenes::read::accuracy_target::{AccuracyTarget, read_accuracy};
+use crate::scenes::read::accuracy_target::read_accuracy;
 use crate::scenes::read::diagnostic::Diagnostic;
 use crate::scenes::read::effects::read_effects;
 use crate::scenes::read::entries::{Entries, Entry, Read, System};
 use crate::scenes::read::error::Result;
-use crate::scenes::read::loads::{Loading, Prescribed, read_request};
+use crate::scenes::read::loads::{LoadKind, LoadRequest, read_request};
 use crate::scenes::read::numerics::{MOST_CELLS, Numerics, read_models};
 use crate::scenes::read::outputs::{self, RequestedOutputs, read_outputs};
 use crate::scenes::read::registry::Registry;
 use crate::scenes::read::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
+use analysis::AccuracyTarget;
 use contact_model::{
     Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Load, Pair, Paths, Rheology, Scene,
 };
@@ -47,7 +48,7 @@ pub struct SceneFile {
     /// Effects, off unless named.
     pub effects: Effects,
     /// What is asked of the models.
-    pub request: Loading,
+    pub request: LoadRequest,
     /// What is computed and stored.
     pub requested: RequestedOutputs,
     /// Seed and number of surfaces.
@@ -84,9 +85,9 @@ impl SceneFile {
     ///
     /// ```
     /// use contact_model::Surface;
-    /// use fractal_contact::scenes::{Loading, Loads, Numerics, Plan, Prescribed, SceneFile, SceneSurface};
+    /// use fractal_contact::scenes::{LoadRequest, LoadList, Numerics, Plan, LoadKind, SceneFile, SceneSurface};
     /// let body = SceneSurface::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
-    /// let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![0.1, 1.0] });
+    /// let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Force, values: vec![0.1, 1.0] });
     /// let mut scene = SceneFile::new(vec![Numerics::named("hertz").unwrap()], body, 1.0, loads);
     /// scene.requested.outputs.stiffness = true;
     /// assert!(Plan::new(&scene).is_ok());
@@ -94,7 +95,7 @@ impl SceneFile {
     /// scene.requested.outputs.pressure = true;
     /// assert!(Plan::new(&scene).is_err());
     /// ```
-    pub fn new(models: Vec<Numerics>, surface: SceneSurface, modulus: f64, request: Loading) -> Self {
+    pub fn new(models: Vec<Numerics>, surface: SceneSurface, modulus: f64, request: LoadRequest) -> Self {
         Self {
             path: PathBuf::new(),
             text: String::new(),
@@ -234,7 +235,7 @@ impl SceneFile {
 
     /// Whether it needs models that remember.
     pub fn is_history(&self) -> bool {
-        matches!(self.request, Loading::Path(_))
+        matches!(self.request, LoadRequest::Path(_))
     }
 
     /// The comment at the head of the file: what it shows.
@@ -466,23 +467,23 @@ fn check_homogeneous(
 
 /// Loads that contradict the boundary or the surface.
 fn check_request(
-    request: &Loading,
+    request: &LoadRequest,
     entry: &Entry<'_>,
     surface: &SceneSurface,
     effects: &Effects,
 ) -> Read<()> {
-    let Loading::Loads(loads) = request else { return Ok(()) };
+    let LoadRequest::Loads(loads) = request else { return Ok(()) };
     let periodic = effects.boundary == Boundary::Periodic;
-    match loads.prescribed {
-        Prescribed::Approach if periodic => Err(entry
+    match loads.kind {
+        LoadKind::Approach if periodic => Err(entry
             .diagnostic_at_key("an approach with periodic boundaries: there is no first touch to count from")
             .with_help(
                 "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
             )),
-        Prescribed::MeanGap if !periodic => Err(entry
+        LoadKind::MeanGap if !periodic => Err(entry
             .diagnostic_at_key("a mean gap with free boundaries")
             .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]")),
-        Prescribed::ForceBar
+        LoadKind::ForceBar
             if !surface.is_rough() || matches!(surface, SceneSurface::Drawn { body: Some(_), .. }) =>
         {
             Err(entry
@@ -497,7 +498,7 @@ fn check_request(
 
 /// What depends on where displacements of a half-plane are counted from: of a profile with free boundaries.
 fn check_half_plane(
-    request: &Loading,
+    request: &LoadRequest,
     entry: &Entry<'_>,
     surface: &SceneSurface,
     (effects, requested): (&Effects, &RequestedOutputs),
@@ -510,8 +511,8 @@ fn check_half_plane(
     let help = "prescribe `force` or `mean_pressure` and ask for area, pressure or gap; or add `boundary = \"periodic\"` to [effects], where a mean \
                 gap and its stiffness have a meaning";
     let by_approach = match request {
-        Loading::Loads(loads) => loads.prescribed == Prescribed::Approach,
-        Loading::Path(steps) => steps.iter().any(|step| matches!(step.normal, Load::Approach(_))),
+        LoadRequest::Loads(loads) => loads.kind == LoadKind::Approach,
+        LoadRequest::Path(steps) => steps.iter().any(|step| matches!(step.normal, Load::Approach(_))),
     };
     if by_approach {
         let message = format!("an approach of a profile with free boundaries: {why}");
@@ -539,14 +540,14 @@ pub(crate) fn depends_on_path(effects: &Effects) -> bool {
 /// Effects that remember need a path and models that follow one.
 fn check_histories(
     models: &[(Numerics, Entry<'_>)],
-    request: &Loading,
+    request: &LoadRequest,
     entry: &Entry<'_>,
     effects: &Effects,
 ) -> Read<()> {
     let remembers = effects.friction != Friction::Off
         || effects.rheology != Rheology::Elastic
         || depends_on_path(effects);
-    let path = matches!(request, Loading::Path(_));
+    let path = matches!(request, LoadRequest::Path(_));
     if path && !remembers {
         return Err(entry
             .diagnostic_at_key("a path, but no effect that depends on it")

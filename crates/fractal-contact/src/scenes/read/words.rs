@@ -3,7 +3,7 @@
 use crate::models::ModelRecord;
 use crate::scenes::read::entries::System;
 use crate::scenes::read::human_readable::short;
-use crate::scenes::read::loads::{Loading, Prescribed};
+use crate::scenes::read::loads::{LoadKind, LoadRequest};
 use crate::scenes::read::scene_file::SceneFile;
 
 /// The scene's name in a title.
@@ -16,20 +16,20 @@ pub(crate) fn scene_name(scene: &SceneFile) -> String {
 pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
     let si = scene.system == System::Si;
     match &scene.request {
-        Loading::Loads(loads) => {
-            let unit = match loads.prescribed {
-                Prescribed::ForceBar => "",
+        LoadRequest::Loads(loads) => {
+            let unit = match loads.kind {
+                LoadKind::ForceBar => "",
                 _ if !si => "",
-                Prescribed::Force => "N",
-                Prescribed::MeanPressure => "Pa",
-                Prescribed::Approach | Prescribed::MeanGap => "m",
+                LoadKind::Force => "N",
+                LoadKind::MeanPressure => "Pa",
+                LoadKind::Approach | LoadKind::MeanGap => "m",
             };
-            let words = loads.prescribed.key().replace('_', " ");
+            let words = loads.kind.key().replace('_', " ");
             let (unit, factor) = plots::prefixed(unit, loads.values[state]);
             let value = short(factor * loads.values[state]);
             format!("{words} {value} {unit}").trim_end().to_owned()
         }
-        Loading::Path(_) => format!("step {state}"),
+        LoadRequest::Path(_) => format!("step {state}"),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::scenes::plan::grid_comparison::{GridComparison, solved_map};
 use crate::scenes::plan::model_on_surface::ModelOnSurface;
 use crate::scenes::read::distributed;
 use crate::scenes::read::error::{Error, Result};
-use crate::scenes::read::loads::Loading;
+use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::numerics::Numerics;
 use crate::scenes::read::outputs::{FieldFormat, HEIGHTS};
 use crate::scenes::read::scene_file::SceneFile;
@@ -42,14 +42,14 @@ impl ModelOnSurface {
         let prepared = numerics.model().prepare(&physics, seed);
         let mut contact = prepared.map_err(runs::Error::model(what()))?;
         match &scene.request {
-            Loading::Loads(_) => {
+            LoadRequest::Loads(_) => {
                 let mut keep = |result: &mut ModelResult| {
                     result.seconds = before + start.elapsed().as_secs_f64();
                     keep(result)
                 };
                 self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
             }
-            Loading::Path(steps) => {
+            LoadRequest::Path(steps) => {
                 result = ModelResult::default();
                 self.path(scene, contact.as_mut(), (steps, out), stop, &mut result)?;
             }
@@ -69,7 +69,7 @@ impl ModelOnSurface {
         result: &mut ModelResult,
         keep: &mut dyn FnMut(&mut ModelResult) -> Result<()>,
     ) -> Result<()> {
-        let Loading::Loads(requests) = &scene.request else { return Ok(()) };
+        let LoadRequest::Loads(requests) = &scene.request else { return Ok(()) };
         let normalisation = contact.normalisation();
         let missing: Vec<usize> =
             (0..requests.values.len()).filter(|&i| result.states.iter().all(|s| s.index != i)).collect();
@@ -243,7 +243,7 @@ fn write_vti(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::{Loads, Prescribed, SceneSurface};
+    use crate::scenes::{LoadKind, LoadList, SceneSurface};
     use contact_model::{Fields, HeightMap, Output, SolveReport};
     use std::sync::Arc;
 
@@ -253,7 +253,7 @@ mod tests {
         let heights = vec![1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0];
         let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
         let surface = SceneSurface::Plain(contact_model::Surface::Heights(Arc::new(map)));
-        let loads = Loading::Loads(Loads { prescribed: Prescribed::Force, values: vec![1.0] });
+        let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Force, values: vec![1.0] });
         let mut scene = SceneFile::new(vec![Numerics::Bem3d(bem3d::Bem3d::default())], surface, 1.0, loads);
         let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];
         scene.requested.files = vec![(Output::Pressure, all.clone()), (Output::Gap, all)];

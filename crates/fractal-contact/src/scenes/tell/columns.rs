@@ -2,7 +2,7 @@
 
 use crate::scenes::plan::grid_comparison::RMS_SLOPE;
 use crate::scenes::read::entries::System;
-use crate::scenes::read::loads::{Loading, Prescribed};
+use crate::scenes::read::loads::{LoadKind, LoadRequest};
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{SolvedUnit, StateRecord};
 use analysis::{Column, Value};
@@ -50,15 +50,15 @@ pub(crate) fn column(scene: &SceneFile, quantity: &Quantity) -> Column {
 
 /// The number that a load prescribes; `None` along a path.
 pub(crate) fn prescribed(scene: &SceneFile) -> Option<Column> {
-    let Loading::Loads(loads) = &scene.request else { return None };
-    let (si, meaning) = match loads.prescribed {
-        Prescribed::Force => ("N", "force"),
-        Prescribed::ForceBar => {
+    let LoadRequest::Loads(loads) = &scene.request else { return None };
+    let (si, meaning) = match loads.kind {
+        LoadKind::Force => ("N", "force"),
+        LoadKind::ForceBar => {
             ("1", "F_bar = F/(E* h L) with this surface's measured rms height h, L = sqrt(Lx Ly)")
         }
-        Prescribed::MeanPressure => ("Pa", "mean pressure, F/(Lx Ly), undefined points included"),
-        Prescribed::Approach => ("m", "approach"),
-        Prescribed::MeanGap => ("m", "mean gap"),
+        LoadKind::MeanPressure => ("Pa", "mean pressure, F/(Lx Ly), undefined points included"),
+        LoadKind::Approach => ("m", "approach"),
+        LoadKind::MeanGap => ("m", "mean gap"),
     };
     Some(Column { name: "prescribed", unit: unit(scene, si), meaning })
 }
@@ -91,7 +91,7 @@ pub(crate) fn columns(scene: &SceneFile) -> Vec<Column> {
 /// The row of a state, in the order of [`columns`].
 pub(crate) fn row(scene: &SceneFile, unit: &SolvedUnit<'_>, record: &StateRecord) -> Vec<Value> {
     let mut row = vec![unit.model.into(), unit.surface.into(), record.index.into()];
-    if let Loading::Loads(loads) = &scene.request {
+    if let LoadRequest::Loads(loads) = &scene.request {
         row.push(loads.values[record.index].into());
     }
     row.extend(asked(scene).map(|quantity| value(record, quantity)));

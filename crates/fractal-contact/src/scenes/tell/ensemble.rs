@@ -1,6 +1,6 @@
 //! Means over the surfaces of a scene.
 
-use crate::scenes::read::loads::Loading;
+use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{Solved, SolvedUnit};
 use crate::scenes::tell::columns;
@@ -56,8 +56,8 @@ impl Mean {
 pub(crate) fn means(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Vec<Mean> {
     let averaged = averaged(scene);
     let prescribed = match &scene.request {
-        Loading::Loads(loads) => loads.values.as_slice(),
-        Loading::Path(_) => &[],
+        LoadRequest::Loads(loads) => loads.values.as_slice(),
+        LoadRequest::Path(_) => &[],
     };
     let mut means = Vec::new();
     for model in scene.models.iter().map(crate::scenes::Numerics::name) {

@@ -18,7 +18,7 @@ pub(crate) mod surface_report;
 #[cfg(test)]
 mod tests {
     use super::{columns, ensemble, pictures, report, summary};
-    use crate::scenes::{Loading, Loads, Numerics, Prescribed, SceneFile, SceneSurface};
+    use crate::scenes::{LoadKind, LoadList, LoadRequest, Numerics, SceneFile, SceneSurface};
     use contact_model::quantities::{AskedBy, Average, QUANTITIES, Role};
     use contact_model::{
         Adhesion, Boundary, Conductance, Effect, Friction, Hardness, Load, Output, Rheology, SelfAffine,
@@ -28,7 +28,7 @@ mod tests {
     /// A scene that asks for what this asks for, and for as little else as it can.
     fn asking(asked: AskedBy) -> SceneFile {
         let rough = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.01).unwrap());
-        let loads = Loading::Loads(Loads { prescribed: Prescribed::Approach, values: vec![0.1, 0.2] });
+        let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Approach, values: vec![0.1, 0.2] });
         let models = vec![Numerics::named("bem3d").unwrap()];
         let mut scene = SceneFile::new(models, SceneSurface::Plain(rough), 1.0, loads);
         scene.sampling.surfaces = 2;
@@ -42,10 +42,8 @@ mod tests {
                 outputs.ask(output, true);
                 if output == Output::MeanGap {
                     effects.boundary = Boundary::Periodic;
-                    scene.request = Loading::Loads(Loads {
-                        prescribed: Prescribed::MeanPressure,
-                        values: vec![0.1, 0.2],
-                    });
+                    scene.request =
+                        LoadRequest::Loads(LoadList { kind: LoadKind::MeanPressure, values: vec![0.1, 0.2] });
                 }
             }
             AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },
@@ -54,7 +52,7 @@ mod tests {
             AskedBy::Effect("rheology") => effects.rheology = Rheology::Maxwell { viscosity: 1.0 },
             AskedBy::Effect(key) => assert!(Effect::ALL.iter().any(|effect| effect.key() == key), "{key}"),
             AskedBy::Path => {
-                scene.request = Loading::Path(vec![Step::normal(0.0, Load::Force(1.0)); 2]);
+                scene.request = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0)); 2]);
             }
             AskedBy::Always | AskedBy::RoughSurface | AskedBy::FreeBoundary | AskedBy::PrescribedDistance => {
             }

@@ -1,7 +1,7 @@
 //! Curves drawn from the states.
 
 use crate::scenes::read::error::Result;
-use crate::scenes::read::loads::{Loading, Prescribed};
+use crate::scenes::read::loads::{LoadKind, LoadRequest};
 use crate::scenes::read::scene_file::{SceneFile, depends_on_path};
 use crate::scenes::read::words;
 use crate::scenes::run::state_result::SolvedUnit;
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 enum Axis {
     Quantity(&'static Quantity),
     /// The number that the loads prescribe, where it is no quantity: a mean pressure.
-    Prescribed,
+    Load,
 }
 
 /// `curve-Y.svg` and `.png` for every quantity that the scene asked for.
@@ -61,17 +61,17 @@ fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
         let Some(axis) = named(x) else { return Vec::new() };
         drawn().filter(|y| y.name != x).map(|y| (Axis::Quantity(axis), y)).collect()
     };
-    if let Loading::Loads(loads) = &scene.request {
+    if let LoadRequest::Loads(loads) = &scene.request {
         // A force that is prescribed in other words is no answer.
         let answers = |pairs: Vec<(Axis, &'static Quantity)>| {
             pairs.into_iter().filter(|(_, y)| y.name != "force").collect()
         };
-        return match loads.prescribed {
-            Prescribed::Force => over("force"),
-            Prescribed::ForceBar => answers(over("force_bar")),
-            Prescribed::MeanPressure => answers(drawn().map(|y| (Axis::Prescribed, y)).collect()),
-            Prescribed::Approach => over("approach"),
-            Prescribed::MeanGap => over("mean_gap"),
+        return match loads.kind {
+            LoadKind::Force => over("force"),
+            LoadKind::ForceBar => answers(over("force_bar")),
+            LoadKind::MeanPressure => answers(drawn().map(|y| (Axis::Load, y)).collect()),
+            LoadKind::Approach => over("approach"),
+            LoadKind::MeanGap => over("mean_gap"),
         };
     }
     if depends_on_path(&scene.effects) {
@@ -98,14 +98,14 @@ impl Axis {
     fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Quantity(quantity) => (quantity.words, quantity.symbol),
-            Self::Prescribed => ("mean pressure", "\\bar{p}"),
+            Self::Load => ("mean pressure", "\\bar{p}"),
         }
     }
 
     fn unit(self, scene: &SceneFile) -> &'static str {
         match self {
             Self::Quantity(quantity) => columns::column(scene, quantity).unit,
-            Self::Prescribed => columns::prescribed(scene).map_or("1", |column| column.unit),
+            Self::Load => columns::prescribed(scene).map_or("1", |column| column.unit),
         }
     }
 
@@ -122,7 +122,7 @@ impl Axis {
     fn of_mean(self, mean: &Mean) -> Option<f64> {
         match self {
             Self::Quantity(quantity) => Some(mean.of(quantity)?.0),
-            Self::Prescribed => mean.prescribed,
+            Self::Load => mean.prescribed,
         }
     }
 }
@@ -144,8 +144,8 @@ fn curve(
                 |of: &Quantity| of.number(&solved.state, &solved.normalisation).filter(|v| v.is_finite());
             let x = match (x, &scene.request) {
                 (Axis::Quantity(quantity), _) => number(quantity)?,
-                (Axis::Prescribed, Loading::Loads(loads)) => *loads.values.get(record.index)?,
-                (Axis::Prescribed, Loading::Path(_)) => return None,
+                (Axis::Load, LoadRequest::Loads(loads)) => *loads.values.get(record.index)?,
+                (Axis::Load, LoadRequest::Path(_)) => return None,
             };
             let error = solved.grid.as_ref().and_then(|grid| grid.of(y.name)).map(|error| error.error);
             Some(((x, number(y)?), error))

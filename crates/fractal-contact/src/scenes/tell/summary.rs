@@ -1,7 +1,7 @@
 //! The states of a run as a table for a terminal.
 
 use crate::scenes::read::human_readable::short;
-use crate::scenes::read::loads::Loading;
+use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
@@ -130,8 +130,8 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
         if means.is_empty() {
             for record in units.iter().filter(|unit| unit.model == name).flat_map(|unit| unit.states) {
                 let prescribed = match &scene.request {
-                    Loading::Loads(loads) => loads.values.get(record.index).copied(),
-                    Loading::Path(_) => None,
+                    LoadRequest::Loads(loads) => loads.values.get(record.index).copied(),
+                    LoadRequest::Path(_) => None,
                 };
                 let mut line = vec![load(prescribed)];
                 line.extend(shown.iter().map(|of| of.of_state(record)));

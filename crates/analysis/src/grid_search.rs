@@ -1,0 +1,236 @@
+//! The grid that an accuracy asks for: from coarse to fine, until the error is small enough or the time is up.
+
+/// A relative error, and the time that it may cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AccuracyTarget {
+    /// Largest relative error (half-width of an interval), of what the caller says.
+    pub share: f64,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+impl AccuracyTarget {
+    /// Tolerance of a solver that this accuracy does not notice: a thirtieth of it, from 1e-6 to 1e-3, one digit.
+    ///
+    /// ```
+    /// let target = analysis::AccuracyTarget { share: 0.01, seconds: 60.0 };
+    /// assert_eq!(target.tolerance(), 3e-4);
+    /// ```
+    pub fn tolerance(&self) -> f64 {
+        let tolerance = (self.share / 30.0).clamp(1e-6, 1e-3);
+        // It stands in plans and headers.
+        format!("{tolerance:.0e}").parse().unwrap_or(tolerance)
+    }
+}
+
+/// What the solves on one grid say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridTrial<T> {
+    /// Largest relative error that the grid leaves; `None` where it is not known.
+    pub error: Option<f64>,
+    /// Seconds of the trial.
+    pub seconds: f64,
+    /// Seconds that the run takes beyond the trial; infinite where no run on this grid reaches the target.
+    pub rest: f64,
+    /// The same of a grid as expensive as this one that leaves no error: what finer grids take at least is estimated from it.
+    pub least_rest: f64,
+    /// What else the caller keeps of it.
+    pub kept: T,
+}
+
+/// Why no grid was chosen; each with the last trial.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoGrid<T> {
+    /// The run on the last grid, or the trial of the next one and the run on it, would take longer than the target allows.
+    Time {
+        /// The last grid.
+        grid: usize,
+        /// Its trial.
+        trial: GridTrial<T>,
+        /// The grid that would take too long.
+        next: usize,
+        /// Seconds of the whole search and of the run.
+        seconds: f64,
+    },
+    /// As many finer grids as the time has room for would leave too much even if each left a quarter of the one before (second order).
+    Order {
+        /// The last grid.
+        grid: usize,
+        /// Its trial.
+        trial: GridTrial<T>,
+        /// The number of finer grids.
+        finer: usize,
+    },
+    /// There is no finer grid, or no grid at all.
+    Finest(Option<(usize, GridTrial<T>)>),
+}
+
+/// A grid with its trial, or why there is none.
+pub type ChosenGrid<T> = Result<(usize, GridTrial<T>), NoGrid<T>>;
+
+impl<T> NoGrid<T> {
+    /// The reason in words, with what the last grid leaves: `grid` names a grid, `place` says where the error is largest, `time` words a time.
+    pub fn words(
+        &self,
+        budget: f64,
+        grid: &dyn Fn(usize) -> String,
+        place: &dyn Fn(&T) -> String,
+        time: &dyn Fn(f64) -> String,
+    ) -> String {
+        let leaves = |n: usize, trial: &GridTrial<T>| match trial.error {
+            Some(error) => format!("{} leave {} ({})", grid(n), percent(error), place(&trial.kept)),
+            None => format!(
+                "{} are too few to compare with coarser ones, or every load is zero or complete contact",
+                grid(n)
+            ),
+        };
+        match self {
+            Self::Time { grid: n, trial, next, seconds } => {
+                let what = if next == n { "the run on them".to_owned() } else { grid(*next) };
+                let (left, takes, budget) = (leaves(*n, trial), time(*seconds), time(budget));
+                format!("{left}, {what} would take about {takes}, and the budget is {budget}")
+            }
+            Self::Order { grid: n, trial, finer } => format!(
+                "{}, and {finer} finer grids within the budget of {} would leave too much even if each left a quarter of the one before",
+                leaves(*n, trial),
+                time(budget)
+            ),
+            Self::Finest(Some((n, trial))) => leaves(*n, trial),
+            Self::Finest(None) => "there is no grid".to_owned(),
+        }
+    }
+}
+
+/// Three digits.
+fn percent(share: f64) -> String {
+    let value = 100.0 * share;
+    let decimals = (2.0 - value.log10().floor()).clamp(0.0, 12.0);
+    format!("{value:.*} %", if decimals.is_finite() { decimals as usize } else { 0 })
+}
+
+/// The first of several grids, from coarse to fine, whose error is within a target and whose run is within its time.
+///
+/// A grid is accepted if the coarser one left at most twice the target (one small difference may be chance), and the finest without that:
+/// nothing is extrapolated. The time of a grid is taken to grow with a power of its size.
+///
+/// # Errors
+/// What a trial returns.
+///
+/// ```
+/// use analysis::{AccuracyTarget, GridTrial, NoGrid, first_grid};
+/// let trial = |n: usize| {
+///     let error = Some(1.0 / n as f64);
+///     Ok::<_, ()>(GridTrial { error, seconds: n as f64, rest: 0.0, least_rest: 0.0, kept: () })
+/// };
+/// let search = |seconds| first_grid(&[8, 16, 32, 64], AccuracyTarget { share: 0.04, seconds }, 1.0, trial).unwrap();
+/// // 1/32, after 1/16, which is less than twice as much.
+/// assert_eq!(search(100.0).unwrap().0, 32);
+/// assert!(matches!(search(50.0), Err(NoGrid::Time { grid: 16, next: 32, .. })));
+/// ```
+pub fn first_grid<T, E>(
+    grids: &[usize],
+    target: AccuracyTarget,
+    power: f64,
+    mut trial: impl FnMut(usize) -> Result<GridTrial<T>, E>,
+) -> Result<ChosenGrid<T>, E> {
+    let AccuracyTarget { share, seconds: budget } = target;
+    let mut spent = 0.0;
+    let mut last: Option<(usize, GridTrial<T>)> = None;
+    for (i, &grid) in grids.iter().enumerate() {
+        let trial = trial(grid)?;
+        spent += trial.seconds;
+        let coarser = last.as_ref().and_then(|(_, coarser)| coarser.error);
+        let Some(error) = trial.error else {
+            last = Some((grid, trial));
+            continue;
+        };
+        let finer = &grids[i + 1..];
+        let confirmed = finer.is_empty() || coarser.is_some_and(|coarser| coarser <= 2.0 * share);
+        let (enough, whole) = (error <= share && confirmed, spent + trial.rest);
+        if enough && whole <= budget {
+            return Ok(Ok((grid, trial)));
+        }
+        let each = trial.seconds + trial.least_rest;
+        let seconds = |n: usize| spent + each * (n as f64 / grid as f64).powf(power);
+        let affordable = finer.iter().take_while(|&&n| seconds(n) <= budget).count();
+        match finer.first() {
+            _ if enough && affordable == 0 => {
+                return Ok(Err(NoGrid::Time { grid, trial, next: grid, seconds: whole }));
+            }
+            Some(&next) if affordable == 0 => {
+                return Ok(Err(NoGrid::Time { grid, trial, next, seconds: seconds(next) }));
+            }
+            // Coarse grids say little of the order.
+            Some(_) if coarser.is_some() && error * 0.25_f64.powf(affordable as f64) > share => {
+                return Ok(Err(NoGrid::Order { grid, trial, finer: affordable }));
+            }
+            _ => last = Some((grid, trial)),
+        }
+    }
+    Ok(Err(NoGrid::Finest(last)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRIDS: [usize; 4] = [8, 16, 32, 64];
+
+    /// Errors of a power of the cell, each trial as long as the grid, runs on it as long again.
+    fn search(order: i32, share: f64, seconds: f64) -> Result<usize, String> {
+        let trial = |n: usize| {
+            let (error, seconds) = (Some((n as f64).powi(-order)), n as f64);
+            Ok::<_, ()>(GridTrial { error, seconds, rest: seconds, least_rest: seconds, kept: n })
+        };
+        let found = first_grid(&GRIDS, AccuracyTarget { share, seconds }, 1.0, trial).unwrap();
+        let grid = |n: usize| format!("{n} cells");
+        let words = |none: NoGrid<usize>| {
+            none.words(seconds, &grid, &|n| format!("at {n}"), &|seconds| format!("{seconds} s"))
+        };
+        found.map(|found| found.0).map_err(words)
+    }
+
+    #[test]
+    fn a_grid_is_chosen_or_its_price_is_named() {
+        assert_eq!(search(1, 0.04, 200.0), Ok(32));
+        // 8 + 16 + 32 + 64, and the run on 64.
+        assert_eq!(search(1, 0.02, 184.0), Ok(64));
+        let refused = |share, seconds| search(1, share, seconds).unwrap_err();
+        assert_eq!(
+            refused(1e-3, 1e3),
+            "16 cells leave 6.25 % (at 16), and 2 finer grids within the budget of 1000 s would leave too much even if each left a quarter of the one before"
+        );
+        assert_eq!(
+            refused(0.02, 100.0),
+            "32 cells leave 3.12 % (at 32), 64 cells would take about 184 s, and the budget is 100 s"
+        );
+        assert_eq!(
+            refused(0.04, 40.0),
+            "16 cells leave 6.25 % (at 16), 32 cells would take about 88 s, and the budget is 40 s"
+        );
+        assert_eq!(refused(0.01, 1e3), "64 cells leave 1.56 % (at 64)");
+    }
+
+    #[test]
+    fn a_run_that_takes_too_long_is_no_choice() {
+        let trial = |n: usize| {
+            Ok::<_, ()>(GridTrial { error: Some(0.01), seconds: 1.0, rest: 100.0, least_rest: 1.0, kept: n })
+        };
+        let found =
+            |seconds| first_grid(&GRIDS, AccuracyTarget { share: 0.05, seconds }, 0.0, trial).unwrap();
+        assert_eq!(found(103.0).unwrap().0, 16);
+        // A finer grid may need less; the last one does not.
+        assert!(matches!(found(50.0), Err(NoGrid::Time { grid: 64, next: 64, .. })));
+        let unknown = |n: usize| Ok::<_, ()>(GridTrial { error: None, ..trial(n).unwrap() });
+        let target = AccuracyTarget { share: 0.05, seconds: 0.0 };
+        assert!(matches!(
+            first_grid(&GRIDS, target, 1.0, unknown).unwrap(),
+            Err(NoGrid::Finest(Some((64, _))))
+        ));
+        assert_eq!(first_grid(&GRIDS, target, 1.0, |_| Err::<GridTrial<()>, _>("stopped")), Err("stopped"));
+        assert!(matches!(
+            first_grid::<usize, ()>(&[], target, 1.0, |_| Err(())),
+            Ok(Err(NoGrid::Finest(None)))
+        ));
+    }
+}
