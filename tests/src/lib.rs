@@ -39,6 +39,8 @@ mod pages {
     mod solve {}
     #[doc = include_str!("../../book/src/theories.md")]
     mod theories {}
+    #[doc = include_str!("../../book/src/theories-rough.md")]
+    mod theories_rough {}
     #[doc = include_str!("../../book/src/rust.md")]
     mod rust {}
     #[doc = include_str!("../../book/src/add-a-model.md")]

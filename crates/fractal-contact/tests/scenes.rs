@@ -299,7 +299,7 @@ fn assert_stated(line: &str, found: &[f64]) {
 /// The tables of the book's page on the diamond film.
 #[test]
 fn diamond_scenes_give_the_numbers_of_their_page() {
-    let page = std::fs::read_to_string(folder().join("../../book/src/measured.md")).unwrap();
+    let page = std::fs::read_to_string(folder().join("../../book/src/diamond-film.md")).unwrap();
     let runs = ["diamond-on-flat.toml", "diamond-two-bodies.toml"].map(|name| solved(name).1);
     for (state, pressure) in [(0, "10 MPa"), (2, "100 MPa"), (4, "1 GPa"), (6, "10 GPa")] {
         let start = format!("| {pressure} | ");
@@ -346,7 +346,7 @@ fn diamond_scenes_give_the_numbers_of_their_page() {
 /// What the page says of the heights of both scans of the diamond film.
 #[test]
 fn scans_of_the_diamond_film_agree_as_their_page_says() {
-    let page = std::fs::read_to_string(folder().join("../../book/src/measured.md")).unwrap();
+    let page = std::fs::read_to_string(folder().join("../../book/src/diamond-film.md")).unwrap();
     let states = |sentence: &str| {
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(page.contains(sentence), "{sentence}");
