@@ -1,4 +1,12 @@
-//! Pages and tables that follow from the table of quantities and that of models. With `UPDATE_DOCUMENTS=1` they are written anew.
+//! Pages and tables that follow from the tables of quantities and of models and from the sources, and what holds of the others. With
+//! `UPDATE_DOCUMENTS=1` what follows is written anew.
+
+mod constants;
+mod crates;
+mod names;
+mod pages;
+mod readmes;
+mod sources;
 
 use crate::abilities::told;
 use contact_model::Output;
@@ -192,7 +200,20 @@ fn documents_follow_from_the_tables() {
         parts("book/src/scene-file.md", &[("effects", effects()), ("outputs", outputs())]),
         page("book/src/quantities.md", quantities_page()),
         page("book/src/models.md", models_page()),
+        page("book/src/modules.md", crates::modules_page()),
+        parts(
+            "book/src/tuning.md",
+            &[
+                ("tuning", constants::tuning()),
+                ("layout", constants::layout()),
+                ("others", constants::others()),
+            ],
+        ),
+        parts("ARCHITECTURE.md", &[("crates", crates::crates())]),
     ];
+    let packages = sources::packages();
+    let front = packages.iter().map(|p| page(&format!("crates/{}/README.md", p.name), readmes::readme(p)));
+    let documents = documents.into_iter().chain(front);
     for (file, expected, found) in documents {
         if update {
             std::fs::write(root().join(&file), &expected).unwrap();

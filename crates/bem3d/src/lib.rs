@@ -35,13 +35,13 @@
 //! A [`Surface::Profile`] is a body that is uniform along y, in plane strain, as a map of one row; a force is that on the side of the row
 //! along y. With periodic boundaries the kernel of one row is that of plane strain by itself. With free ones G is that of a half-plane,
 //! `u = -(2/(pi E*)) int p ln(|x - s|/D) ds` over strips: pressure, contact and gap do not depend on the distance D, from which
-//! displacements are counted, and states have neither an approach nor a stiffness, which do. Hardness works as for maps; adhesion, a
-//! displacement field and a conductance of a half-plane are refused.
+//! displacements are counted, and states have neither an approach nor a stiffness, which do. Hardness works as for maps;
+//! adhesion is refused, and of a half-plane a displacement field and a conductance too.
 //!
 //! With [`Adhesion::ShortRange`], JKR's limit, the work of adhesion is put into the last cells of a contact, by a law of the cell's own gap
 //! whose range is a share of the cell and by a factor of its neighbours that takes the line tension of fronts out (`adhesion`): pull-off
-//! forces of smooth bodies are of second order in the cell over the radius of the contact and within half a percent that fronts are trapped
-//! by; a contact that ends at a vertical edge is pulled off at a force of first order. The area is that of the attached shares of all cells,
+//! forces of smooth bodies have an error of second order in the cell over the radius of the contact, and one of half a percent because
+//! fronts are trapped between cells; a contact that ends at a vertical edge is pulled off at a force of first order. The area is that of the attached shares of all cells,
 //! the stiffness that of the cells that hold more than half of their work, where fronts stay (`2 E* a` of a round contact). A cell that
 //! touches nothing attracts over `g0 = 2.9 sqrt(w a/E*)`, a the longer side of a cell, which is how far from touch a contact snaps in.
 //!
@@ -70,8 +70,8 @@
 //! | preconditioner | none; the inverse of G on a torus around the contact, with the residual extended by zeros or through the gaps between contacts: `E' B E >= (G_CC)^-1` for every extension E |
 //! | certificate | exact sums or double-precision transforms, always |
 //!
-//! The energy `r' G^-1 r` that the preconditioner bounds also bounds the error of k (`stiffness`). Every tuned constant is in
-//! `tuning`, with its meaning and unit.
+//! The energy `r' G^-1 r` that the preconditioner bounds also bounds the error of k (`stiffness`). The tuned constants of a
+//! solve are in `tuning`, with meaning and unit; those of adhesion stand beside their iterations.
 //!
 //! # The way of one load
 //!
@@ -120,7 +120,8 @@
 //!
 //! # What it does not do
 //!
-//! Hardness together with adhesion, friction and rheology are refused at `prepare`.
+//! Hardness together with adhesion, friction and rheology are refused at `prepare`; adhesion of profiles is refused
+//! too, and of profiles with free boundaries displacement fields, conductances and loads by approach.
 
 mod active_set;
 mod adhesion;

@@ -1,4 +1,7 @@
-//! Every tuned constant of this crate: meaning, unit and value.
+//! The tuned constants of a solve: meaning, unit and value.
+//!
+//! Those of adhesion stand beside their iterations (`adhesion`, `model/adhesive_stiffness`). The book's page on tuned constants lists all
+//! numeric constants of this crate and, of those in [`Tuning`], the measured cost of half and of twice the value.
 //!
 //! None of these numbers changes what a result converges to: they choose between ways to it and decide when an iteration evaluates the
 //! exact gap. Results that are compared bit by bit need the same values. `cargo xtask tuning` measures on the machine in hand what half and

@@ -39,8 +39,9 @@ const FELT: f64 = 1e-6;
 /// Sweeps of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by the factor rho only.
 const PLAIN_SWEEPS: usize = 20;
 /// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many sweeps on the attraction changes
-/// by a share only.
+/// by a share only ...
 const PATIENT: usize = 100;
+/// ... which is this.
 const DAMPED: f64 = 0.3;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
 const AHEAD: f64 = 0.5;

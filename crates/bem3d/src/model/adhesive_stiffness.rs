@@ -14,15 +14,17 @@ use contact_model::{Branch, Status, Stop};
 const FIRST_STEP: f64 = 0.1;
 /// Fronts advance in a step by about this many cells ...
 const ADVANCE: f64 = 0.4;
-/// ... and until they have advanced by so many in all. Over less than `NEAREST` cells the force follows the gaps as if they were held.
+/// ... and until they have advanced by so many in all.
 const FAR_ENOUGH: f64 = 2.5;
+/// Until fronts have advanced by so many cells the force follows the gaps as if they were held: a fit takes in more points than those.
 const NEAREST: f64 = 1.0;
 /// In a contact of fewer cells than a radius of 17, a front counts as advanced by a cell when it has taken this share of its area.
 const NARROW: f64 = 0.12;
 /// A step grows or shrinks at most by this factor from one to the next.
 const ADAPT: f64 = 2.0;
-/// Steps at most, and at least: a cubic is to leave a scatter.
+/// Steps at most.
 const STEPS: usize = 14;
+/// Steps at least: a cubic through all points is to leave a scatter.
 const FEWEST: usize = 5;
 /// A step in which fronts advance by more than so many cells is a jump, which has no slope.
 const JUMP: f64 = 4.0;

@@ -1,0 +1,70 @@
+//! Which crates and modules there are, what they are for and which way they depend on each other.
+
+use super::sources::{Module, nearest, packages, reached};
+use super::{root, table};
+
+/// Crates, each after those that it uses.
+pub fn crates() -> String {
+    let all = packages();
+    let cells = |package| {
+        let uses: Vec<String> = nearest(package, &all).iter().map(|name| format!("`{name}`")).collect();
+        vec![format!("`{}`", package.name), package.description.clone(), uses.join(", ")]
+    };
+    table(&["crate", "what it is", "uses"], all.iter().map(cells))
+}
+
+/// The page of the book about all modules.
+pub fn modules_page() -> String {
+    let mut text = String::from(
+        "# Crates and modules\n\n\
+         This page answers where a piece of the code is: every crate of `crates/`, each after those that it uses, with its\n\
+         modules and the first sentence of each. It is written from the sources, and a test compares it with them.\n\
+         [ARCHITECTURE.md](../..) has the rules that hold between crates.\n",
+    );
+    for package in packages() {
+        text += &format!("\n## {}\n\n{}\n\n", package.name, package.description);
+        list(&package.modules, 0, &mut text);
+    }
+    text
+}
+
+fn list(modules: &[Module], depth: usize, text: &mut String) {
+    for module in modules {
+        *text += &format!("{}- `{}`: {}\n", "  ".repeat(depth), module.name, module.sentence);
+        list(&module.inner, depth + 1, text);
+    }
+}
+
+#[test]
+fn the_gate_lists_the_dependencies_that_there_are() {
+    let gate = std::fs::read_to_string(root().join(".ci/run")).unwrap();
+    let all = packages();
+    let mut listed = 0;
+    for line in gate.lines().filter_map(|line| line.strip_prefix("arrows ")) {
+        let mut names = line.split_whitespace();
+        let name = names.next().unwrap();
+        let package =
+            all.iter().find(|package| package.name == name).unwrap_or_else(|| panic!("no crate {name}"));
+        assert_eq!(names.collect::<std::collections::BTreeSet<_>>(), reached(package, &all), "{name}");
+        listed += 1;
+    }
+    assert_eq!(listed, all.len(), "crates that .ci/run lists");
+}
+
+#[test]
+fn every_module_says_what_it_is() {
+    fn silent(modules: &[Module], place: &str, found: &mut Vec<String>) {
+        for module in modules {
+            let place = format!("{place}::{}", module.name);
+            if module.sentence.is_empty() {
+                found.push(place.clone());
+            }
+            silent(&module.inner, &place, found);
+        }
+    }
+    let mut found = Vec::new();
+    for package in packages() {
+        silent(&package.modules, &package.name, &mut found);
+    }
+    assert!(found.is_empty(), "modules that begin without `//!`: {found:?}");
+}
