@@ -1,7 +1,7 @@
 //! Errors by resampling surfaces.
 
 use crate::ensemble::Statistics;
-use crate::sum::sum;
+use numerics::sum::sum;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

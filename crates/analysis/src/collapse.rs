@@ -1,6 +1,6 @@
 //! The master curve of Fig. 4.
 
-use crate::sum::sum;
+use numerics::sum::sum;
 
 /// One point of one curve.
 #[derive(Debug, Clone, Copy, PartialEq)]

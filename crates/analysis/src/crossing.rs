@@ -1,6 +1,7 @@
 //! Where the curves of different fractal dimension come together.
 
-use crate::sum::sum;
+use numerics::regression::least_squares;
+use numerics::sum::sum;
 
 /// A point of the (F_bar, k_bar) plane and how far the curves are apart there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +27,7 @@ pub struct Crossing {
 pub fn crossing(laws: &[(f64, f64)]) -> Option<Crossing> {
     let points: Vec<(f64, f64)> = laws.iter().map(|&(alpha, zeta)| (alpha, zeta.ln())).collect();
     // ln zeta = ln k* - alpha ln F*: a straight line over alpha.
-    let (slope, intercept) = crate::least_squares(&points)?;
+    let (slope, intercept) = least_squares(&points)?;
     let residual = sum(points.iter().map(|&(a, z)| (z - intercept - slope * a).powi(2)));
     let crossing = Crossing {
         force_bar: (-slope).exp(),

@@ -1,7 +1,7 @@
 //! Means over surfaces and their errors.
 
 use crate::curves::Curves;
-use crate::sum::sum;
+use numerics::sum::sum;
 use serde::{Deserialize, Serialize};
 
 /// Mean, standard error and log mean of a handful of positive numbers.

@@ -2,7 +2,8 @@
 
 use crate::bootstrap::Bootstrap;
 use crate::curves::Curves;
-use crate::sum::sum;
+use numerics::regression::least_squares;
+use numerics::sum::sum;
 use std::fmt;
 
 /// Which forces a power law is fitted to.
@@ -77,35 +78,6 @@ impl fmt::Display for NoFit {
 }
 
 impl std::error::Error for NoFit {}
-
-/// Slope and intercept of the straight line through `points` by least squares; `None` for fewer than two different x or a
-/// number that is not finite.
-///
-/// ```
-/// assert_eq!(analysis::least_squares(&[(0.0, 1.0), (1.0, 3.0)]), Some((2.0, 1.0)));
-/// ```
-pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
-    let n = points.len() as f64;
-    let x0 = sum(points.iter().map(|p| p.0)) / n;
-    let y0 = sum(points.iter().map(|p| p.1)) / n;
-    let xx = sum(points.iter().map(|p| (p.0 - x0) * (p.0 - x0)));
-    let xy = sum(points.iter().map(|p| (p.0 - x0) * (p.1 - y0)));
-    let slope = xy / xx;
-    let intercept = y0 - slope * x0;
-    (xx > 0.0 && slope.is_finite() && intercept.is_finite()).then_some((slope, intercept))
-}
-
-/// Exponent p of `y ~ x^p`: the slope of ln y over ln x by least squares, points that are not positive left out; as [`least_squares`].
-///
-/// ```
-/// let squares = [1.0, 2.0, 3.0, -1.0].map(|x: f64| (x, 5.0 * x * x));
-/// assert!((analysis::observed_power(squares).unwrap() - 2.0).abs() < 1e-14);
-/// ```
-pub fn observed_power(points: impl IntoIterator<Item = (f64, f64)>) -> Option<f64> {
-    let logs: Vec<(f64, f64)> =
-        points.into_iter().filter(|p| p.0 > 0.0 && p.1 > 0.0).map(|p| (p.0.ln(), p.1.ln())).collect();
-    least_squares(&logs).map(|(slope, _)| slope)
-}
 
 /// Fits `ln k_bar = ln zeta + alpha ln F_bar` to the arithmetic mean of k_bar over the surfaces, all forces of the window with
 /// equal weight; forces at which a surface is missing are left out.
@@ -228,9 +200,6 @@ mod tests {
         assert!(reason.starts_with("0 forces in the window (F_bar <= 0.086, all"), "{reason}");
         let empty = Curves::new(vec![], vec![vec![]]).unwrap();
         assert!(fit_power_law(&empty, &FitWindow::PAPER, &Bootstrap::default()).is_err());
-        assert_eq!(least_squares(&[]), None);
-        assert_eq!(least_squares(&[(1.0, 1.0), (1.0, 2.0)]), None);
-        assert_eq!(least_squares(&[(1.0, f64::NAN), (2.0, 2.0)]), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What a grid leaves of a number, from the same number on grids half and a quarter as fine: of one state, and of a mean over surfaces.
 
-use crate::multilevel::student;
-use crate::sum::sum;
+use numerics::quantile::student;
+use numerics::sum::sum;
 
 /// Factor on what the differences say, so that nine in ten true errors of resolved contacts are smaller.
 const SAFETY: f64 = 1.5;

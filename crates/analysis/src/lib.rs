@@ -16,7 +16,7 @@
 //!
 //! # Conventions and accuracy
 //!
-//! Sums are compensated (Neumaier), so a mean of 1e7 terms keeps its digits. A number that does not exist is `None` with a
+//! Sums are compensated ([`sum`]), so a mean of 1e7 terms keeps its digits. A number that does not exist is `None` with a
 //! reason, never NaN. Errors come from resampling whole surfaces: curves of different fractal dimension share their random
 //! phases, and [`Bootstrap::draws`] gives every curve of a run the same surfaces. Cost is linear in the number of samples
 //! (times the number of resamples for an error).
@@ -49,7 +49,6 @@ mod grid_error;
 mod grid_search;
 mod kappa;
 mod multilevel;
-mod sum;
 mod table;
 
 pub use binomial::binomial_test;
@@ -60,12 +59,14 @@ pub use contact_model::Value;
 pub use crossing::{Crossing, crossing, least_spread};
 pub use curves::{Curves, StiffnessSample, interpolate};
 pub use ensemble::{EnsemblePoint, Statistics, ensemble, mean_and_deviation, statistics};
-pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law, least_squares, observed_power};
+pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law};
 pub use grid_error::{
     GridError, KnownPart, error_from_moments, grid_error, mean_grid_error, relative_differences,
 };
 pub use grid_search::{AccuracyTarget, ChosenGrid, GridTrial, NoGrid, first_grid};
 pub use kappa::kappa;
-pub use multilevel::{Multilevel, Uncertain, slope_weights, student};
-pub use sum::sum;
+pub use multilevel::{Multilevel, Uncertain, slope_weights};
+pub use numerics::quantile::student;
+pub use numerics::regression::{least_squares, observed_power};
+pub use numerics::sum::sum;
 pub use table::{Column, Table};

@@ -2,9 +2,9 @@
 
 use crate::ensemble::mean_and_deviation;
 use crate::grid_error;
-use crate::sum::sum;
 use contact_model::{Error, Result};
-use statrs::distribution::{ContinuousCDF as _, StudentsT};
+use numerics::quantile::student;
+use numerics::sum::sum;
 
 /// Multilevel Monte Carlo: curves on the coarsest grid, and differences between each finer grid and the next coarser one on the same
 /// surfaces.
@@ -36,29 +36,6 @@ impl Uncertain {
     pub fn half_width(&self) -> f64 {
         self.standard_error * student(self.degrees_of_freedom)
     }
-}
-
-/// 97.5 % quantile of Student's distribution: half-width of a 95 % interval in standard errors; that of one degree of freedom below 1.
-///
-/// ```
-/// assert!((analysis::student(4.0) - 2.776_445).abs() < 1e-6);
-/// ```
-pub fn student(degrees_of_freedom: f64) -> f64 {
-    // Beyond a million, the normal one to seven digits.
-    let Ok(distribution) = StudentsT::new(0.0, 1.0, degrees_of_freedom.clamp(1.0, 1e6)) else {
-        return f64::INFINITY;
-    };
-    // By halves between the normal quantile and that of one degree: the inverse of the library does not end for some numbers of degrees.
-    let (mut low, mut high) = (1.9, 12.8);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if distribution.cdf(middle) < 0.975 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
 }
 
 impl Multilevel {
@@ -250,15 +227,5 @@ mod tests {
         assert!(e(vec![vec![vec![1.0], vec![1.0, 2.0]]]).contains("points of level 0"));
         assert!(e(vec![vec![vec![1.0]; 2], vec![vec![1.0, 2.0]; 2]]).contains("points of level 1"));
         assert!(e(vec![vec![vec![f64::NAN], vec![1.0]]]).contains("NaN"));
-    }
-
-    #[test]
-    fn quantiles_fall_with_the_degrees_of_freedom_for_every_number_of_them() {
-        let degrees = (0..2000).map(|i| 10_f64.powf(f64::from(i) * 0.004));
-        let all: Vec<f64> = degrees.map(student).collect();
-        assert!(all.windows(2).all(|pair| pair[1] <= pair[0] + 1e-9));
-        assert_relative_eq!(all[0], 12.706_204_7, max_relative = 1e-7);
-        assert_relative_eq!(student(f64::MAX), 1.959_964, max_relative = 1e-5);
-        assert!(student(f64::NAN).is_infinite());
     }
 }

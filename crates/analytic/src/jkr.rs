@@ -6,6 +6,7 @@ use contact_model::{
     Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface,
     SurfaceKind,
 };
+use numerics::root;
 use std::f64::consts::PI;
 
 const NAME: &str = "jkr";
@@ -283,8 +284,6 @@ impl AdhesiveSphere {
     /// With `a = s^2` the equation `s^4 - c s - d = 0` is convex in s; Newton's steps from above its largest
     /// root only descend.
     fn at_approach(&self, approach: f64) -> Result<f64> {
-        /// Descents stop at rounding after at most 60 halvings and a few steps; this is never reached.
-        const MOST_STEPS: usize = 200;
         let d = self.nondimensional.approach_in(approach);
         let c = (2.0 * PI * self.work).sqrt();
         let fold = self.smallest_radius();
@@ -305,14 +304,7 @@ impl AdhesiveSphere {
         if d > 0.0 {
             s = ((2.0 * d).sqrt().sqrt()).max((2.0 * c).cbrt());
         }
-        for _ in 0..MOST_STEPS {
-            let slope = 4.0 * s * s * s - c;
-            let next = s - (s * (s * s * s - c) - d) / slope;
-            if !(next < s && slope > 0.0) {
-                break;
-            }
-            s = next;
-        }
+        let s = root::newton_from_above(s, |s| (s * (s * s * s - c) - d, 4.0 * s * s * s - c));
         Ok((s * s).max(fold))
     }
 }

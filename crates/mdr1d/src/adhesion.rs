@@ -8,6 +8,7 @@
 
 use crate::axisymmetric::{Profile, RoundContact};
 use contact_model::{Error, Result};
+use numerics::root::newton_from_above;
 use std::f64::consts::PI;
 
 /// Exponents at and below this one have no stable contact with adhesion that grows with the load.
@@ -132,7 +133,9 @@ fn largest_root(b: f64, c: f64, m: f64, y: f64) -> Result<f64, Failure> {
         // t = loaded s: s^m = 1 + e s with e in [0, 1].
         let e = c * loaded / y;
         let start = 2.0_f64.powf(m.recip()).max((2.0 * e).powf((m - 1.0).recip()));
-        return range(loaded * descend(start, |s| (s.powf(m) - e * s - 1.0, m * s.powf(m - 1.0) - e)));
+        return range(
+            loaded * newton_from_above(start, |s| (s.powf(m) - e * s - 1.0, m * s.powf(m - 1.0) - e)),
+        );
     }
     let unit = (c / b).powf((m - 1.0).recip());
     if !unit.is_normal() {
@@ -150,23 +153,7 @@ fn largest_root(b: f64, c: f64, m: f64, y: f64) -> Result<f64, Failure> {
     }
     let start =
         if load > 0.0 { (2.0 * load).powf(m.recip()).max(2.0_f64.powf((m - 1.0).recip())) } else { 1.0 };
-    range(unit * descend(start, |s| (s.powf(m) - s - load, m * s.powf(m - 1.0) - 1.0)).max(fold))
-}
-
-/// Newton's method on a convex function from above its largest root, until rounding stops the descent.
-fn descend(start: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
-    /// Far above the root a step shortens s by 1/m at least, near it the error is squared; never reached for exponents below 1e3.
-    const MOST_STEPS: usize = 10_000;
-    let mut s = start;
-    for _ in 0..MOST_STEPS {
-        let (value, slope) = function(s);
-        let next = s - value / slope;
-        if !(next < s && slope > 0.0) {
-            break;
-        }
-        s = next;
-    }
-    s
+    range(unit * newton_from_above(start, |s| (s.powf(m) - s - load, m * s.powf(m - 1.0) - 1.0)).max(fold))
 }
 
 #[cfg(test)]

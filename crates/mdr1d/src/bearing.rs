@@ -1,6 +1,8 @@
 //! A line on independent springs: force, approach and stiffness at any load, exactly.
 
 use contact_model::{Error, Line, Load, Nondimensionalisation, Result};
+use numerics::range::range;
+use numerics::sum::Sum;
 
 /// Elements per bin: small enough that sorting one bin costs microseconds, large enough that the bins stay in cache.
 const ELEMENTS_PER_BIN: usize = 512;
@@ -81,8 +83,8 @@ impl Bearing {
     /// Worth it in a loop over long lines: fresh memory for 2^20 elements costs as much as grouping them.
     pub fn rebuild(&mut self, line: &Line) {
         let heights = line.heights();
-        let highest = highest(heights);
-        let relief = highest - lowest(heights);
+        let (lowest, highest) = range(heights);
+        let relief = highest - lowest;
         let count = (heights.len() / ELEMENTS_PER_BIN).clamp(1, MOST_BINS);
         // Monotone in z, which is all that the grouping needs. No relief: 0 * inf is NaN, which the cast turns into bin 0.
         let per_depth = count as f64 / relief;
@@ -219,7 +221,7 @@ fn bins(depths: &[f64], ends: &[usize]) -> Vec<Bin> {
         if inside.is_empty() {
             continue;
         }
-        let (low, high) = (lowest(inside), highest(inside));
+        let (low, high) = range(inside);
         sum.add(start as f64 * (low - last));
         let sum_low = sum.value();
         sum.add(start as f64 * (high - low));
@@ -238,59 +240,6 @@ fn bins(depths: &[f64], ends: &[usize]) -> Vec<Bin> {
         (start, last) = (end, high);
     }
     bins
-}
-
-/// A sum with its rounding errors carried along (Neumaier, ZAMM 54, 39 (1974)).
-#[derive(Debug, Clone, Copy)]
-struct Sum {
-    high: f64,
-    low: f64,
-}
-
-impl From<f64> for Sum {
-    fn from(high: f64) -> Self {
-        Self { high, low: 0.0 }
-    }
-}
-
-impl Sum {
-    fn add(&mut self, term: f64) {
-        let total = self.high + term;
-        self.low += if self.high.abs() >= term.abs() {
-            (self.high - total) + term
-        } else {
-            (term - total) + self.high
-        };
-        self.high = total;
-    }
-
-    fn value(self) -> f64 {
-        self.high + self.low
-    }
-}
-
-/// Largest of finite values; the lanes let the compiler compare several at once.
-fn highest(values: &[f64]) -> f64 {
-    let mut lanes = [f64::NEG_INFINITY; LANES];
-    let (groups, rest) = values.as_chunks::<LANES>();
-    for group in groups {
-        for (lane, &v) in lanes.iter_mut().zip(group) {
-            *lane = if v > *lane { v } else { *lane };
-        }
-    }
-    lanes.iter().chain(rest).fold(f64::NEG_INFINITY, |a, &b| a.max(b))
-}
-
-/// Smallest of finite values.
-fn lowest(values: &[f64]) -> f64 {
-    let mut lanes = [f64::INFINITY; LANES];
-    let (groups, rest) = values.as_chunks::<LANES>();
-    for group in groups {
-        for (lane, &v) in lanes.iter_mut().zip(group) {
-            *lane = if v < *lane { v } else { *lane };
-        }
-    }
-    lanes.iter().chain(rest).fold(f64::INFINITY, |a, &b| a.min(b))
 }
 
 #[cfg(test)]

@@ -66,7 +66,6 @@ mod material;
 mod model;
 mod partial_slip;
 mod relaxation;
-mod root;
 pub mod rule;
 mod shape;
 mod slip;

@@ -5,8 +5,8 @@
 //! The other way round, a straight force gives Phi as a parabola and exponentials whose rates are the zeros of `e + sum w_i s/(s +
 //! r_i) + v s`; they lie one between each pair of neighbouring r_i, and are found once.
 
-use crate::root;
 use contact_model::{Error, Relaxing, Result, Rheology};
+use numerics::root;
 
 /// Relaxation of the modulus over E*: a spring, a dashpot, and arms with different rates in ascending order.
 #[derive(Debug, Clone, PartialEq)]
@@ -251,7 +251,7 @@ impl Material {
             .windows(2)
             .map(|w| {
                 // At a pole itself a quotient has the sign of the other side.
-                root::increasing(w[0], w[1], |x| {
+                root::between(w[0], w[1], |x| {
                     if x <= w[0] {
                         f64::NEG_INFINITY
                     } else if x >= w[1] {
@@ -317,7 +317,7 @@ impl Creep {
         for i in 0..=steps {
             let s = duration * 2.0_f64.powf(f64::from(i - steps) / f64::from(PER_OCTAVE));
             if self.falls(s) {
-                return Some(root::increasing(last, s, |s| -self.speed(s)));
+                return Some(root::between(last, s, |s| -self.speed(s)));
             }
             last = s;
         }

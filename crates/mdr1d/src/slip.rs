@@ -8,8 +8,8 @@
 //!
 //! The polygon's slope never exceeds that of the bound, so slip begins at the edge and reaches inward to one gamma.
 
-use crate::root;
 use crate::shape::Shape;
+use numerics::root;
 
 /// A corner of the polygon.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,7 +126,7 @@ impl<P: Shape> Springs<P> {
             return Some(stay);
         }
         let [low, high] = self.reach(approach);
-        let displacement = root::increasing(low, high, |u| {
+        let displacement = root::between(low, high, |u| {
             let beyond = self.moved(approach, u).force() - force;
             if beyond.abs() <= ROUNDING * limit { 0.0 } else { beyond }
         });

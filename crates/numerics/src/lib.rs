@@ -3,8 +3,13 @@
 //! | module | what it has |
 //! |---|---|
 //! | [`parallel`] | work in tasks on the threads of the caller's pool, with the same bits for any number of them |
-//! | [`root`] | the root of a function between two points |
+//! | [`root`] | the root of a function between two points, of a convex one from above, by halves |
 //! | [`gauss`] | integrals of smooth functions by the rule of Gauss and Legendre |
+//! | [`fourier`] | transforms of real fields on a rectangle |
+//! | [`sum`](mod@sum) | compensated and pairwise sums |
+//! | [`range`](mod@range) | smallest and largest of many values |
+//! | [`quantile`] | of the normal law, of Student's and of the chi-square distribution |
+//! | [`regression`] | the straight line of least squares |
 //!
 //! ```
 //! use numerics::gauss::Gauss;
@@ -16,8 +21,13 @@
 //!
 //! # What it does not do
 //!
-//! No transforms, no linear algebra, no statistics: `rustfft`, `faer` and `statrs` have them.
+//! No linear algebra: `faer` has it. Transforms and distribution functions are those of `rustfft`, `realfft` and `statrs`.
 
+pub mod fourier;
 pub mod gauss;
 pub mod parallel;
+pub mod quantile;
+pub mod range;
+pub mod regression;
 pub mod root;
+pub mod sum;

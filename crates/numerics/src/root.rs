@@ -1,10 +1,10 @@
-//! Roots of monotone functions of one variable.
+//! Roots of functions of one variable.
 
 /// The root between two points where `function` has opposite signs, to the last place that the function's own rounding allows.
 ///
 /// Bisection that takes inverse quadratic interpolation where that is safe (Chandrupatla, Adv. Eng. Softw. 28, 145 (1997)): some ten
 /// evaluations for smooth functions, never more than bisection needs. A point where the function is 0 is returned as it is; without
-/// a change of sign the end with the smaller value is.
+/// a change of sign the end with the smaller value is. Values at the ends may be infinite.
 pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64 {
     /// More than the bits of any two numbers of one sign; never reached by functions with numbers for values.
     const MOST_STEPS: usize = 2_200;
@@ -12,6 +12,9 @@ pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64
     let (mut fb, mut fa) = (function(b), function(a));
     if fb.abs() <= 0.0 {
         return b;
+    }
+    if fa.abs() <= 0.0 {
+        return a;
     }
     if (fa > 0.0) == (fb > 0.0) {
         return if fa.abs() < fb.abs() { a } else { b };
@@ -43,6 +46,45 @@ pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64
         t = t.clamp(closest, 1.0 - closest);
     }
     if fa.abs() < fb.abs() { a } else { b }
+}
+
+/// The largest root of a convex function by Newton's method from a point above it: the steps only descend, until rounding stops them.
+///
+/// `function` gives value and slope. A start without a positive slope is returned as it is.
+///
+/// ```
+/// let root = numerics::root::newton_from_above(3.0, |x| (x * x - 2.0, 2.0 * x));
+/// assert!((root - 2.0_f64.sqrt()).abs() < 1e-15);
+/// ```
+pub fn newton_from_above(start: f64, mut function: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    /// Of `x^m` a step far above the root shortens x by 1/m at least, near it the error is squared; never reached for exponents below 1e3.
+    const MOST_STEPS: usize = 10_000;
+    let mut x = start;
+    for _ in 0..MOST_STEPS {
+        let (value, slope) = function(x);
+        let next = x - value / slope;
+        if !(next < x && slope > 0.0) {
+            break;
+        }
+        x = next;
+    }
+    x
+}
+
+/// The bracket `[low, high]` after so many halvings, each of which keeps the half in which `below` changes from true to false.
+///
+/// For functions of which the sign alone is known, or whose values an interpolation cannot use; [`between`] needs fewer evaluations.
+///
+/// ```
+/// let [low, high] = numerics::root::bisect(0.0, 1.0, 4, |x| x < 0.3);
+/// assert_eq!([low, high], [0.25, 0.3125]);
+/// ```
+pub fn bisect(mut low: f64, mut high: f64, halvings: usize, mut below: impl FnMut(f64) -> bool) -> [f64; 2] {
+    for _ in 0..halvings {
+        let middle = f64::midpoint(low, high);
+        *(if below(middle) { &mut low } else { &mut high }) = middle;
+    }
+    [low, high]
 }
 
 #[cfg(test)]
@@ -77,5 +119,42 @@ mod tests {
     fn ends_and_no_change_of_sign() {
         assert!(between(0.0, 1.0, |x| x) <= 0.0 && between(-1.0, 0.0, |x| x) >= 0.0);
         assert_relative_eq!(between(1.0, 2.0, |x| x), 1.0);
+        assert_relative_eq!(between(0.0, 1.0, |x| x + 1.0), 0.0);
+        assert_relative_eq!(between(0.0, 1.0, |x| x - 2.0), 1.0);
+        // The value at the upper end is 0: no other is nearer.
+        let mut calls = 0;
+        assert_relative_eq!(
+            between(0.0, 1.0, |x| {
+                calls += 1;
+                1.0 - x
+            }),
+            1.0
+        );
+        assert_eq!(calls, 2);
+    }
+
+    #[test]
+    fn poles_at_both_ends() {
+        let (low, high) = (1.0, 2.0);
+        let root = between(low, high, |x| {
+            if x <= low {
+                f64::NEG_INFINITY
+            } else if x >= high {
+                f64::INFINITY
+            } else {
+                (high - x).recip() - 3.0 * (x - low).recip()
+            }
+        });
+        assert_relative_eq!(root, 1.75, max_relative = 4.0 * f64::EPSILON);
+    }
+
+    #[test]
+    fn a_start_without_slope_stays() {
+        assert_relative_eq!(newton_from_above(2.0, |_| (1.0, 0.0)), 2.0);
+        assert_relative_eq!(
+            newton_from_above(1e3, |x| (x.powi(9) - 1.0, 9.0 * x.powi(8))),
+            1.0,
+            max_relative = 1e-15
+        );
     }
 }

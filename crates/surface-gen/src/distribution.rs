@@ -2,8 +2,9 @@
 
 use crate::measure::rms_height;
 use crate::waves::WaveGenerator;
-use contact_model::{Error, HeightMap, Result};
-use statrs::distribution::{ContinuousCDF as _, Normal};
+use contact_model::{Cells, Error, HeightMap, Result};
+use numerics::fourier::{ForwardTransform, InverseTransform};
+use numerics::quantile::normal;
 use std::sync::Arc;
 
 /// Iterations after which the scheme ends in any case.
@@ -89,7 +90,8 @@ impl PrescribedMap {
         let start = waves.map(seed)?;
         let rms = waves.rms_height();
         let sorted = distribution.sorted(start.heights().len(), rms)?;
-        let mut scheme = Scheme { waves, sorted, rms, heights: start.heights().to_vec() };
+        let (forward, inverse) = waves.transforms();
+        let mut scheme = Scheme { waves, forward, inverse, sorted, rms, heights: start.heights().to_vec() };
         let (mut before, mut iterations) = (f64::INFINITY, 0);
         let (mut spectrum_residual, mut distribution_residual) = (0.0, 0.0);
         while iterations < MOST {
@@ -128,10 +130,7 @@ impl HeightDistribution {
     fn sorted(&self, count: usize, rms: f64) -> Result<Vec<f64>> {
         let share = |k: usize| (k as f64 + 0.5) / count as f64;
         let mut heights: Vec<f64> = match self {
-            Self::Gaussian => {
-                let law = Normal::standard();
-                (0..count).map(|k| law.inverse_cdf(share(k))).collect()
-            }
+            Self::Gaussian => (0..count).map(|k| normal(share(k))).collect(),
             Self::Weibull { shape } => {
                 if !(shape.is_finite() && *shape > 0.0) {
                     return Err(Error::domain("shape of Weibull's law", *shape, "a finite number > 0"));
@@ -168,6 +167,8 @@ impl HeightDistribution {
 /// The state of the iteration.
 struct Scheme<'a> {
     waves: &'a WaveGenerator,
+    forward: ForwardTransform,
+    inverse: &'a InverseTransform,
     sorted: Vec<f64>,
     rms: f64,
     heights: Vec<f64>,
@@ -189,13 +190,20 @@ impl Scheme<'_> {
 
     /// Gives each wave the amplitude of the spectrum; returns the rms change over the rms height.
     fn take_spectrum(&mut self) -> f64 {
-        let mut spectrum = self.waves.transform().forward(&self.heights, 0.0, self.rms);
-        for (wave, amplitude) in spectrum.iter_mut().zip(self.waves.amplitudes()) {
-            let found = wave.norm();
-            // A wave without amplitude has no phase.
-            *wave = if found > 0.0 { *wave * (amplitude / found) } else { (*amplitude).into() };
-        }
-        let heights = self.waves.transform().inverse(spectrum);
+        let Cells { columns, rows } = self.waves.cells();
+        let spectrum = self.forward.of(|iy, row| {
+            for (x, h) in row.iter_mut().zip(&self.heights[iy * columns..]) {
+                *x = h / self.rms / columns as f64;
+            }
+        });
+        let heights = self.inverse.of(columns / 2 + 1, |mx, column| {
+            let waves = spectrum[mx * rows..].iter().zip(&self.waves.amplitudes()[mx * rows..]);
+            for (wave, (found, amplitude)) in column.iter_mut().zip(waves) {
+                let norm = found.norm();
+                // A wave without amplitude has no phase.
+                *wave = if norm > 0.0 { *found * (amplitude / norm) } else { (*amplitude).into() };
+            }
+        });
         let square = |(new, old): (&f64, &f64)| ((new - old) / self.rms).powi(2);
         let change: f64 = heights.iter().zip(&self.heights).map(square).sum();
         self.heights = heights;

@@ -64,7 +64,6 @@
 //! correlations and fits with intervals are in the crate `surface-statistics`.
 
 mod distribution;
-mod fourier;
 mod hash;
 mod indenter;
 mod lattice;

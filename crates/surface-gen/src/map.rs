@@ -5,14 +5,9 @@ use crate::phases::{Stream, Turns};
 use crate::spectrum::MapSpectrum;
 use crate::turn::Circle;
 use contact_model::{Cells, HeightMap, Result, SelfAffine, Size};
-use numerics::parallel::{for_each, threads_for};
-use realfft::{ComplexToReal, RealFftPlanner};
-use rustfft::{Fft, FftPlanner, num_complex::Complex64};
+use numerics::fourier::{Complex64, InverseTransform};
 use std::fmt;
 use std::sync::Arc;
-
-/// Rows that are gathered from the columns at a time: 16 complex numbers are four cache lines.
-const ROWS: usize = 16;
 
 /// Plans self-affine maps of one size: amplitudes normalised, transforms planned.
 ///
@@ -25,8 +20,7 @@ pub struct MapGenerator {
     /// `m / (2 N)` turns in units of 2^-64 along x and y: moves the samples from the cells' corners to their
     /// centres.
     shifts: [Arc<[u64]>; 2],
-    along_y: Arc<dyn Fft<f64>>,
-    along_x: Arc<dyn ComplexToReal<f64>>,
+    transform: InverseTransform,
 }
 
 impl fmt::Debug for MapGenerator {
@@ -56,8 +50,7 @@ impl MapGenerator {
             spectrum,
             shifts: [columns, rows]
                 .map(|n| (0..=(n / 2) as u128).map(|m| ((m << 63) / n as u128) as u64).collect()),
-            along_y: FftPlanner::new().plan_fft_inverse(rows),
-            along_x: RealFftPlanner::new().plan_fft_inverse(columns),
+            transform: InverseTransform::new(columns, rows),
         })
     }
 
@@ -83,33 +76,11 @@ impl MapGenerator {
     /// # Errors
     /// [`contact_model::Error::OutOfMemory`] when the map does not fit in memory, [`contact_model::Error::Domain`] when its heights overflow.
     pub fn map(&self, seed: u64) -> Result<HeightMap> {
-        let Cells { columns: nx, rows: ny } = self.cells;
-        let zero = Complex64::new(0.0, 0.0);
         // Half of the waves, as complex numbers, beside the map.
-        let waves = 16.0 * ny as f64 * self.spectrum.columns() as f64;
+        let waves = 16.0 * self.cells.rows as f64 * self.spectrum.columns() as f64;
         memory::check(self.cells, waves + self.cells.map_bytes())?;
-
-        let threads = threads_for(nx * ny);
-        let mut scratch = vec![vec![zero; self.along_y.get_inplace_scratch_len()]; threads];
-        let mut columns = vec![Vec::new(); self.spectrum.columns()];
-        for_each(&mut scratch, columns.iter_mut().enumerate(), |scratch, (mx, column)| {
-            column.resize(ny, zero);
-            self.fill_column(seed, mx as u64, column);
-            self.along_y.process_with_scratch(column, scratch);
-        });
-        let mut scratch = vec![
-            RowScratch {
-                gathered: vec![zero; ROWS * (nx / 2 + 1)],
-                fft: self.along_x.make_scratch_vec(),
-            };
-            threads
-        ];
-        let mut heights = vec![0.0; ny * nx];
-        for_each(&mut scratch, heights.chunks_mut(ROWS * nx).enumerate(), |scratch, (block, rows)| {
-            self.rows(&columns, block, rows, scratch);
-        });
-        drop(columns);
-        HeightMap::new(self.cells, self.size, heights)
+        let fill = |mx: usize, column: &mut [Complex64]| self.fill_column(seed, mx as u64, column);
+        HeightMap::new(self.cells, self.size, self.transform.of(self.spectrum.columns(), fill))
     }
 
     /// Writes `B exp(i phi)` of all waves (mx, my); index my, negative ones from the end.
@@ -140,31 +111,6 @@ impl MapGenerator {
             }
         }
     }
-
-    /// Transforms block number `block` of rows along x.
-    fn rows(&self, columns: &[Vec<Complex64>], block: usize, rows: &mut [f64], scratch: &mut RowScratch) {
-        let nx = self.cells.columns;
-        let (first, width) = (block * ROWS, nx / 2 + 1);
-        scratch.gathered.fill(Complex64::new(0.0, 0.0));
-        for (mx, column) in columns.iter().enumerate() {
-            let part = &column[first..first + rows.len() / nx];
-            for (iy, &value) in part.iter().enumerate() {
-                scratch.gathered[iy * width + mx] = value;
-            }
-        }
-        for (spectrum, row) in scratch.gathered.chunks_exact_mut(width).zip(rows.chunks_exact_mut(nx)) {
-            // Real but for rounding: the waves (0, my) and (0, -my) are conjugate.
-            spectrum[0].im = 0.0;
-            let done = self.along_x.process_with_scratch(spectrum, row, &mut scratch.fft);
-            debug_assert!(done.is_ok(), "buffers come from the plan, the ends are real");
-        }
-    }
-}
-
-#[derive(Debug, Clone)]
-struct RowScratch {
-    gathered: Vec<Complex64>,
-    fft: Vec<Complex64>,
 }
 
 /// A self-affine map: `h(x) = sum over all q of B_2D(q) cos(q x + phi(q))`, `B_2D = (2 pi / L) sqrt(C_2D)`,

@@ -1,6 +1,5 @@
 //! Maps with the given amplitude of every wave: artificial twins and anisotropic surfaces.
 
-use crate::fourier::MapTransform;
 use crate::lattice::Lattice;
 use crate::measure::{homogeneous, periodogram, rms_height};
 use crate::memory;
@@ -8,7 +7,7 @@ use crate::phases::{Stream, Turns};
 use crate::spectrum::{CUTOFF_SLACK, MapSpectrum};
 use crate::turn::Circle;
 use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size};
-use rustfft::num_complex::Complex64;
+use numerics::fourier::{Complex64, ForwardTransform, InverseTransform};
 use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
@@ -47,9 +46,9 @@ pub struct WaveGenerator {
     cells: Cells,
     size: Size,
     rms: f64,
-    /// `|H|` of the waves of the half plane, with the indices of a [`MapTransform`]; 0 for the mean.
+    /// `|H|` of the waves of the half plane, with the indices of [`numerics::fourier`]; 0 for the mean.
     amplitudes: Arc<[f64]>,
-    transform: MapTransform,
+    inverse: InverseTransform,
 }
 
 impl fmt::Debug for WaveGenerator {
@@ -191,7 +190,8 @@ impl WaveGenerator {
         for amplitude in &mut amplitudes {
             *amplitude *= scale;
         }
-        Ok(Self { cells, size, rms, amplitudes: amplitudes.into(), transform: MapTransform::new(cells) })
+        let inverse = InverseTransform::new(cells.columns, cells.rows);
+        Ok(Self { cells, size, rms, amplitudes: amplitudes.into(), inverse })
     }
 
     /// Numbers of columns and rows of its maps.
@@ -204,13 +204,14 @@ impl WaveGenerator {
         self.rms
     }
 
-    /// `|H|` of the waves of the half plane, with the indices of a [`MapTransform`].
+    /// `|H|` of the waves of the half plane, with the indices of [`numerics::fourier`].
     pub(crate) fn amplitudes(&self) -> &[f64] {
         &self.amplitudes
     }
 
-    pub(crate) fn transform(&self) -> &MapTransform {
-        &self.transform
+    /// Transforms from heights to waves, and back.
+    pub(crate) fn transforms(&self) -> (ForwardTransform, &InverseTransform) {
+        (ForwardTransform::new(self.cells.columns, self.cells.rows), &self.inverse)
     }
 
     /// Draws the map with this seed: the same on any number of threads, on every machine up to the rounding
@@ -227,39 +228,39 @@ impl WaveGenerator {
     pub(crate) fn heights(&self, seed: u64) -> Vec<f64> {
         let Cells { columns, rows } = self.cells;
         let circle = Circle::shared();
-        let mut waves = vec![Complex64::new(0.0, 0.0); self.amplitudes.len()];
         // Half a cell in turns of 2^-64: phases count from the corner, heights are those at the cells'
         // centres.
         let half_cell = |m: usize, n: usize| (((m as u128) << 63) / n as u128) as u64;
-        for mx in 0..=columns / 2 {
+        self.inverse.of(columns / 2 + 1, |mx, column| {
+            let amplitudes = &self.amplitudes[mx * rows..(mx + 1) * rows];
             let own_conjugate_x = mx == 0 || 2 * mx == columns;
             let shift_x = half_cell(mx, columns);
             let mut turns = Turns::new(seed, Stream::Map, mx as u64);
             for my in 0..=rows / 2 {
                 let (up, down) = (turns.next(), turns.next());
                 let shift_y = half_cell(my, rows);
-                let mut set = |my: isize, turn: u64| {
-                    let at = index(self.cells, mx, my);
+                let wave = |my: usize, turn: u64| {
                     let [cos, sin] = circle.cos_sin(turn);
-                    waves[at] = Complex64::new(cos, sin) * self.amplitudes[at];
-                    at
+                    Complex64::new(cos, sin) * amplitudes[my]
                 };
-                let y = my.cast_signed();
-                let at = set(y, up.wrapping_add(shift_x).wrapping_add(shift_y));
+                // Of the wave (mx, -my).
+                let opposite = (rows - my) % rows;
+                column[my] = wave(my, up.wrapping_add(shift_x).wrapping_add(shift_y));
                 let own_conjugate_y = my == 0 || 2 * my == rows;
                 if own_conjugate_x && own_conjugate_y {
                     // Half of all turns have a positive sine.
                     let sign = if up >> 63 == 0 { 1.0 } else { -1.0 };
-                    waves[at] = Complex64::new(sign * self.amplitudes[at], 0.0);
+                    column[my] = Complex64::new(sign * amplitudes[my], 0.0);
                 } else if own_conjugate_x {
-                    waves[index(self.cells, mx, -y)] = waves[at].conj();
+                    column[opposite] = column[my].conj();
                 } else if !own_conjugate_y {
-                    set(-y, down.wrapping_add(shift_x).wrapping_sub(shift_y));
+                    column[opposite] = wave(opposite, down.wrapping_add(shift_x).wrapping_sub(shift_y));
                 }
             }
-        }
-        waves[0] = Complex64::new(0.0, 0.0);
-        self.transform.inverse(waves)
+            if mx == 0 {
+                column[0] = Complex64::new(0.0, 0.0);
+            }
+        })
     }
 }
 

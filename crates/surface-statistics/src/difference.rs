@@ -1,10 +1,9 @@
 //! Height differences over distances: structure function and autocorrelation.
 
 use crate::bins::Bins;
-use crate::fourier::{Plane, fast_length};
 use crate::relative::{Relative, finite};
 use contact_model::{Boundary, Cells, HeightMap, Result};
-use rustfft::num_complex::Complex64;
+use numerics::fourier::{ForwardTransform, InverseTransform, fast_length};
 
 /// Half the mean square height difference over the distances of a curve; the values of each index belong
 /// together.
@@ -60,44 +59,45 @@ impl DifferenceMap {
         let periodic = boundary == Boundary::Periodic;
         let Relative { heights, unit } = Relative::new(map);
         let cells = map.cells();
-        let lengths = [cells.columns, cells.rows].map(|n| if periodic { n } else { fast_length(2 * n - 1) });
+        let lengths =
+            [cells.columns, cells.rows].map(|n| if periodic { n } else { fast_length(2 * n - 1, 1) });
         let [width, height] = lengths;
-        let plane = Plane::new(width, height);
         let count = map.heights().len() - map.undefined();
         let mean = heights.iter().filter(|h| !h.is_nan()).sum::<f64>() / count as f64;
+        let forward = ForwardTransform::new(width, height);
         let transform = |of: &dyn Fn(f64) -> f64| {
-            let mut field = vec![Complex64::new(0.0, 0.0); width * height];
-            for (row, from) in field.chunks_exact_mut(width).zip(heights.chunks_exact(cells.columns)) {
-                for (value, h) in row.iter_mut().zip(from) {
-                    value.re = if h.is_nan() { 0.0 } else { of(h - mean) };
+            forward.of(|iy, row| {
+                let heights = heights.chunks_exact(cells.columns).nth(iy).unwrap_or_default();
+                for (value, h) in row.iter_mut().zip(heights).filter(|(_, h)| !h.is_nan()) {
+                    *value = of(h - mean);
                 }
-            }
-            plane.forward(&mut field);
-            field
+            })
         };
         let (pattern, plain, squares) = (transform(&|_| 1.0), transform(&|h| h), transform(&|h| h * h));
-        let mut products: Vec<Complex64> = plain.iter().map(|g| Complex64::new(g.norm_sqr(), 0.0)).collect();
-        // Sums of halves of squares in the real part and numbers of pairs in the imaginary one: both
-        // sequences are even and real, so that one transform takes both back.
-        let mut sums: Vec<Complex64> = pattern
-            .iter()
-            .zip(&plain)
-            .zip(&squares)
-            .map(|((w, g), s)| Complex64::new((w.conj() * s).re - g.norm_sqr(), w.norm_sqr()))
-            .collect();
-        drop((pattern, plain, squares));
-        plane.inverse(&mut sums);
-        plane.inverse(&mut products);
-        let scale = (sums.len() as f64).recip();
-        let value = |(sum, product): (Complex64, Complex64)| {
-            let pairs = (sum.im * scale).round();
+        // Even sequences have real transforms.
+        let inverse = InverseTransform::new(width, height);
+        let sums = |of: &(dyn Fn(usize) -> f64 + Sync)| {
+            inverse.of(width / 2 + 1, |mx, column| {
+                for (iy, value) in column.iter_mut().enumerate() {
+                    *value = of(mx * height + iy).into();
+                }
+            })
+        };
+        let pairs = sums(&|k| pattern[k].norm_sqr());
+        let halves = sums(&|k| (pattern[k].conj() * squares[k]).re - plain[k].norm_sqr());
+        drop((pattern, squares));
+        let products = sums(&|k| plain[k].norm_sqr());
+        drop(plain);
+        let scale = (pairs.len() as f64).recip();
+        let value = |((pairs, half), product): ((f64, f64), f64)| {
+            let pairs = (pairs * scale).round();
             if pairs > 0.0 {
-                [(sum.re * scale / pairs).max(0.0), product.re * scale / pairs, pairs]
+                [(half * scale / pairs).max(0.0), product * scale / pairs, pairs]
             } else {
                 [0.0; 3]
             }
         };
-        let mut values: Vec<[f64; 3]> = sums.into_iter().zip(products).map(value).collect();
+        let mut values: Vec<[f64; 3]> = pairs.into_iter().zip(halves).zip(products).map(value).collect();
         // A point and itself differ by nothing, not by rounding.
         values[0][0] = 0.0;
         Self { periodic, cells, sides: [map.dx(), map.dy()], unit, lengths, values }

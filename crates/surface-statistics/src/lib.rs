@@ -109,8 +109,6 @@ mod derivatives;
 mod difference;
 mod difference_bands;
 mod fit;
-mod fourier;
-mod normal;
 mod profile_fit;
 mod relative;
 mod reliable;

@@ -19,6 +19,7 @@ use crate::geometry::CellSet;
 use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, sum};
 use contact_model::Stop;
+use numerics::root::bisect;
 
 /// Slopes below this share of the largest one are left out: what they change is below the rounding of the sums.
 const FLAT: f64 = 1e-12;
@@ -342,8 +343,8 @@ fn lowest_eigenvalue(diagonal: &[f64], beside: &[f64]) -> f64 {
         let left = if i > 0 { beside[i - 1].abs() } else { 0.0 };
         left + beside.get(i).filter(|_| i + 1 < diagonal.len()).map_or(0.0, |b| b.abs())
     };
-    let mut low = (0..diagonal.len()).map(|i| diagonal[i] - radius(i)).fold(f64::INFINITY, f64::min);
-    let mut high = diagonal.iter().copied().fold(f64::INFINITY, f64::min);
+    let low = (0..diagonal.len()).map(|i| diagonal[i] - radius(i)).fold(f64::INFINITY, f64::min);
+    let high = diagonal.iter().copied().fold(f64::INFINITY, f64::min);
     let below = |x: f64| {
         let mut d = 1.0;
         diagonal.iter().enumerate().any(|(i, a)| {
@@ -352,14 +353,7 @@ fn lowest_eigenvalue(diagonal: &[f64], beside: &[f64]) -> f64 {
             d < 0.0
         })
     };
-    for _ in 0..100 {
-        let middle = f64::midpoint(low, high);
-        if below(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+    let [_, high] = bisect(low, high, 100, |x| !below(x));
     high
 }
 

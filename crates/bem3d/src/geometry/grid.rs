@@ -2,6 +2,7 @@
 
 use crate::tuning::Tuning;
 use contact_model::HeightMap;
+use numerics::fourier::fast_length;
 
 /// Rounding of the ratio of two sides.
 const ROUNDING: f64 = 1e-14;
@@ -95,6 +96,9 @@ pub struct Lengths {
     pub y: usize,
 }
 
+/// Lengths are even: of a real transform along x half of the waves are kept.
+const EVEN: usize = 2;
+
 impl Lengths {
     fn map(window: Window, length: impl Fn(usize) -> usize) -> Self {
         Self { x: length(window.width), y: length(window.height) }
@@ -104,7 +108,7 @@ impl Lengths {
     ///
     /// For an even kernel `2 (n - 1)` is enough: the only lag that meets its mirror image is `n - 1`, and it is equal to it.
     pub fn free(window: Window) -> Self {
-        Self::map(window, |n| good_length(2 * (n - 1)))
+        Self::map(window, |n| fast_length(2 * (n - 1), EVEN))
     }
 
     /// Good lengths of a torus that represents lags up to `0.5 share n` exactly; farther ones are taken the shorter way round.
@@ -112,13 +116,13 @@ impl Lengths {
     /// Positive definite: the kernel's symbol falls as 1/q, what the kink half way round adds as 1/q^2, less from the first wave on.
     pub fn shortened(window: Window, share: f64) -> Self {
         let free = Self::free(window);
-        let short = Self::map(window, |n| good_length((share * n as f64) as usize - 1));
+        let short = Self::map(window, |n| fast_length((share * n as f64) as usize - 1, EVEN));
         Self { x: short.x.min(free.x), y: short.y.min(free.y) }
     }
 
     /// Shortest good lengths of a torus that holds the window once.
     pub fn torus(window: Window) -> Self {
-        Self::map(window, good_length)
+        Self::map(window, |n| fast_length(n, EVEN))
     }
 
     /// The same where the grid itself repeats: never longer than its own period, which is exact at every lag.
@@ -130,24 +134,6 @@ impl Lengths {
     pub fn points(self) -> usize {
         self.x * self.y
     }
-}
-
-/// Smallest even number `>= max(n, 2)` with no prime factor above 5.
-pub fn good_length(n: usize) -> usize {
-    let mut m = n.max(2).next_multiple_of(2);
-    while !is_smooth(m) {
-        m += 2;
-    }
-    m
-}
-
-fn is_smooth(mut m: usize) -> bool {
-    for p in [2, 3, 5] {
-        while m.is_multiple_of(p) {
-            m /= p;
-        }
-    }
-    m == 1
 }
 
 #[cfg(test)]
@@ -167,11 +153,6 @@ mod tests {
         let (oblong, tall) = (Grid::of(&map(0.33)), Grid::of(&map(0.27)));
         assert!(!oblong.has_square_cells() && !tall.has_square_cells());
         approx::assert_relative_eq!(oblong.stretch, 1.1_f64.sqrt(), max_relative = 1e-14);
-    }
-
-    #[test]
-    fn good_lengths_are_even_and_smooth() {
-        assert_eq!([1, 2, 7, 4096, 4097, 2049].map(good_length), [2, 2, 8, 4096, 4320, 2160]);
     }
 
     #[test]

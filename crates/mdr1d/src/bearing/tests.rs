@@ -102,7 +102,7 @@ fn a_long_line_equals_the_sums() {
     let line = long_line(40_000);
     let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
     assert!(bearing.bins.len() > 50);
-    let relief = line.highest() - lowest(line.heights());
+    let relief = line.highest() - range(line.heights()).0;
     for i in 0..60 {
         let d = relief * 1.3 * 10_f64.powf(-f64::from(i) / 10.0);
         let s = bearing.press(Load::Approach(d), 3.0).unwrap();

@@ -1,50 +1,8 @@
 //! Moments of samples.
 
 use contact_model::HeightMap;
-use numerics::parallel::{map, threads_for};
-
-/// Below this many values a plain sum is as good as a pairwise one.
-const PLAIN: usize = 128;
-
-/// Sums side by side, so that the compiler adds several at once.
-const LANES: usize = 8;
-
-/// Values of which a thread takes the range at a time.
-const CHUNK: usize = 1 << 15;
-
-/// Halvings of a long sum that threads share.
-const HALVINGS: u32 = 6;
-
-/// Sum of `term` over the values, pairwise: the rounding error grows with log n only.
-pub(crate) fn pairwise(values: &[f64], term: &(impl Fn(f64) -> f64 + Sync)) -> f64 {
-    if threads_for(values.len()) == 1 {
-        return pairwise_alone(values, term);
-    }
-    let mut parts = vec![values];
-    for _ in 0..HALVINGS {
-        parts = parts.into_iter().flat_map(|part| <[_; 2]>::from(part.split_at(part.len() / 2))).collect();
-    }
-    let mut sums = map(values.len(), parts.into_iter(), |part| pairwise_alone(part, term));
-    while sums.len() > 1 {
-        sums = sums.chunks(2).map(|pair| pair.iter().sum()).collect();
-    }
-    sums[0]
-}
-
-fn pairwise_alone(values: &[f64], term: &impl Fn(f64) -> f64) -> f64 {
-    if values.len() <= PLAIN {
-        let (groups, rest) = values.as_chunks::<LANES>();
-        let mut lanes = [0.0; LANES];
-        for group in groups {
-            for (lane, &v) in lanes.iter_mut().zip(group) {
-                *lane += term(v);
-            }
-        }
-        return lanes.iter().sum::<f64>() + rest.iter().map(|&v| term(v)).sum::<f64>();
-    }
-    let (left, right) = values.split_at(values.len() / 2);
-    pairwise_alone(left, term) + pairwise_alone(right, term)
-}
+use numerics::range::range;
+use numerics::sum::pairwise;
 
 /// Root mean square of the heights about their mean, `sqrt(mean (h - mean h)^2)`, in the unit of the heights.
 ///
@@ -71,30 +29,9 @@ pub fn rms_height(heights: &[f64]) -> f64 {
         return 0.0;
     }
     let n = heights.len() as f64;
-    let mean = pairwise(heights, &|h| (h - middle) / unit) / n;
-    let square = pairwise(heights, &|h| ((h - middle) / unit - mean).powi(2)) / n;
+    let mean = pairwise(heights, |h| (h - middle) / unit) / n;
+    let square = pairwise(heights, |h| ((h - middle) / unit - mean).powi(2)) / n;
     unit * square.sqrt()
-}
-
-/// Smallest and largest value, NaN ignored; (inf, -inf) for none.
-fn range(values: &[f64]) -> (f64, f64) {
-    let chunks = map(values.len(), values.chunks(CHUNK), range_alone);
-    chunks
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), range| (low.min(range.0), high.max(range.1)))
-}
-
-fn range_alone(values: &[f64]) -> (f64, f64) {
-    let (groups, rest) = values.as_chunks::<LANES>();
-    let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    for group in groups {
-        for ((low, high), &v) in low.iter_mut().zip(&mut high).zip(group) {
-            *low = if v < *low { v } else { *low };
-            *high = if v > *high { v } else { *high };
-        }
-    }
-    let low = low.iter().chain(rest).fold(f64::INFINITY, |a, &b| a.min(b));
-    (low, high.iter().chain(rest).fold(f64::NEG_INFINITY, |a, &b| a.max(b)))
 }
 
 /// Root mean square slope from differences of neighbours inside the map, dimensionless.
@@ -161,11 +98,5 @@ mod tests {
         let heights = [0.25, 1.0, -0.5, 2.0];
         let lifted = heights.map(|h| h + 1_048_576.0);
         assert_relative_eq!(rms_height(&lifted), rms_height(&heights), max_relative = ROUNDING);
-    }
-
-    #[test]
-    fn pairwise_is_the_plain_sum() {
-        let values: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert_relative_eq!(pairwise(&values, &|v| v), 499_500.0, max_relative = ROUNDING);
     }
 }

@@ -1,48 +1,11 @@
 //! Spectra of samples, as periodic fields.
 
-use crate::fourier::MapTransform;
 use crate::lattice::Lattice;
 use crate::spectrum::CUTOFF_SLACK;
 use contact_model::{Cells, Error, HeightMap, Line, Result};
-use realfft::RealFftPlanner;
-use rustfft::num_complex::Complex;
+use numerics::fourier::{Complex64, ForwardTransform};
+use numerics::range::{middle_and_half_width, range};
 use std::f64::consts::TAU;
-
-/// Middle and half width of the range of the heights; the width is 1 where there is none.
-fn range(heights: &[f64]) -> (f64, f64) {
-    let (low, high) =
-        heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &h| (low.min(h), high.max(h)));
-    let unit = 0.5 * high - 0.5 * low;
-    (0.5 * low + 0.5 * high, if unit > 0.0 { unit } else { 1.0 })
-}
-
-/// Transform of one real row, `X_m = sum x_j exp(-2 pi i m j / n) / n` for m = 0 ..= n/2.
-struct RowTransform {
-    plan: std::sync::Arc<dyn realfft::RealToComplex<f64>>,
-    input: Vec<f64>,
-    scratch: Vec<Complex<f64>>,
-    output: Vec<Complex<f64>>,
-}
-
-impl RowTransform {
-    fn new(n: usize) -> Self {
-        let plan = RealFftPlanner::new().plan_fft_forward(n);
-        let (input, output, scratch) =
-            (plan.make_input_vec(), plan.make_output_vec(), plan.make_scratch_vec());
-        Self { plan, input, scratch, output }
-    }
-
-    /// Transform of `(row - middle) / unit`.
-    fn of(&mut self, row: &[f64], middle: f64, unit: f64) -> &[Complex<f64>] {
-        let n = row.len() as f64;
-        for (x, h) in self.input.iter_mut().zip(row) {
-            *x = (h - middle) / unit / n;
-        }
-        let done = self.plan.process_with_scratch(&mut self.input, &mut self.output, &mut self.scratch);
-        debug_assert!(done.is_ok(), "buffers come from the plan");
-        &self.output
-    }
-}
 
 /// One wave of the transform of a map, `H = 1/N sum h exp(-2 pi i (mx ix / columns + my iy / rows))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,8 +54,12 @@ fn all_waves(map: &HeightMap, mut visit: impl FnMut(Wave)) -> Result<f64> {
         return Err(Error::domain("undefined points", map.undefined() as f64, expected));
     }
     let Cells { columns: nx, rows: ny } = map.cells();
-    let (middle, unit) = range(map.heights());
-    let transformed = MapTransform::new(map.cells()).forward(map.heights(), middle, unit);
+    let (middle, unit) = middle_and_half_width(range(map.heights()));
+    let transformed = ForwardTransform::new(nx, ny).of(|iy, row| {
+        for (x, h) in row.iter_mut().zip(&map.heights()[iy * nx..]) {
+            *x = (h - middle) / unit / nx as f64;
+        }
+    });
     for (mx, column) in transformed.chunks_exact(ny).enumerate() {
         let copies = if mx == 0 || 2 * mx == nx { 1.0 } else { 2.0 };
         for (iy, value) in column.iter().enumerate() {
@@ -205,10 +172,14 @@ pub fn radial_spectrum(map: &HeightMap) -> Result<Vec<(f64, f64)>> {
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn line_spectrum(line: &Line) -> Vec<(f64, f64)> {
-    let (middle, unit) = range(line.heights());
-    let length = line.length();
-    let mut transform = RowTransform::new(line.elements());
-    let waves = transform.of(line.heights(), middle, unit).iter().enumerate().skip(1);
-    let density = |h: &Complex<f64>| (h.norm() * unit * (length / TAU).sqrt()).powi(2);
+    let (middle, unit) = middle_and_half_width(range(line.heights()));
+    let (length, elements) = (line.length(), line.elements());
+    let transformed = ForwardTransform::new(elements, 1).of(|_, row| {
+        for (x, h) in row.iter_mut().zip(line.heights()) {
+            *x = (h - middle) / unit / elements as f64;
+        }
+    });
+    let waves = transformed.iter().enumerate().skip(1);
+    let density = |h: &Complex64| (h.norm() * unit * (length / TAU).sqrt()).powi(2);
     waves.map(|(m, h)| (TAU / length * m as f64, density(h))).collect()
 }
