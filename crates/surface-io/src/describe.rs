@@ -87,7 +87,7 @@ pub fn describe(map: &HeightMap) -> Description {
     let ends = |(low, high): (f64, f64), h: f64| (low.min(h), high.max(h));
     let (low, high) = map.defined().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
     let whole = undefined == 0;
-    let rings = || windowed(map).and_then(|map| radial_spectrum(&map).ok()).unwrap_or_default();
+    let rings = || windowed(map).and_then(|map| radial_spectrum(&map)).unwrap_or_default();
     let spectrum = if cells.rows == 1 { Vec::new() } else { rings() };
     let fitted = fit_range(map);
     let hurst = if !whole {

@@ -10,8 +10,10 @@ mod holes;
 use crate::difference::DifferenceMap;
 use crate::relative::{Relative, defined_everywhere, finite};
 use contact_model::{Boundary, Cells, Error, HeightMap, Result};
+use numerics::range::range;
+use numerics::sum::pairwise;
 use std::f64::consts::PI;
-use surface_gen::{periodogram, rms_slope_differences};
+use surface_gen::{HeightMoments, periodogram, rms_slope_differences};
 
 /// Autocorrelation at which a surface counts as decorrelated (ISO 25178-3:2012, 4.4).
 const DECAYED: f64 = 0.2;
@@ -59,23 +61,18 @@ impl HeightParameters {
     /// of f64.
     pub fn new(map: &HeightMap) -> Result<Self> {
         let Relative { heights, unit } = Relative::new(map);
-        let defined = || heights.iter().filter(|h| !h.is_nan());
-        let count = defined().count() as f64;
-        let middle = defined().sum::<f64>() / count;
-        let mean = |term: &dyn Fn(f64) -> f64| defined().map(|h| term(h - middle)).sum::<f64>() / count;
-        let (low, high) =
-            defined().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
-        let rms = mean(&|z| z * z).sqrt();
-        if high <= low {
+        let defined: Vec<f64> = heights.into_iter().filter(|h| !h.is_nan()).collect();
+        let Some(HeightMoments { mean, rms, skewness, kurtosis }) = HeightMoments::new(&defined) else {
             return Err(Error::domain("rms height of the map", 0.0, "a rough surface: a finite number > 0"));
-        }
+        };
+        let (low, high) = range(&defined);
         Ok(Self {
-            sa: mean(&f64::abs) * unit,
+            sa: pairwise(&defined, |h| (h - mean).abs()) / defined.len() as f64 * unit,
             sq: rms * unit,
-            ssk: mean(&|z| z.powi(3)) / rms.powi(3),
-            sku: mean(&|z| z.powi(4)) / rms.powi(4),
-            sp: (high - middle) * unit,
-            sv: (middle - low) * unit,
+            ssk: skewness,
+            sku: kurtosis,
+            sp: (high - mean) * unit,
+            sv: (mean - low) * unit,
             sz: finite("Sz", (high - low) * unit)?,
         })
     }

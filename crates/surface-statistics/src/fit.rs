@@ -7,13 +7,13 @@ mod rings;
 
 use crate::relative::{Relative, defined_everywhere};
 use crate::taper::Taper;
-use contact_model::{Boundary, Cells, Error, HeightMap, Result};
+use contact_model::{Boundary, Error, HeightMap, Result};
 use likelihood::{CUT_OFF, HURST, Likelihood, NOISE, Parameters, ROLL_OFF};
 use profile::End;
 use rings::Rings;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 use std::f64::consts::TAU;
-use surface_gen::rms_height;
+use surface_gen::{MapPlane, rms_height};
 
 /// Fewest rings of a fit.
 const FEWEST: usize = 8;
@@ -112,8 +112,11 @@ pub struct FitOptions {
 /// Assumes an isotropic Gaussian surface; waves beyond the limit of the grid are taken as absent (not folded
 /// back by the sampling). Surfaces with prescribed amplitudes, as those of [`surface_gen::self_affine_map`],
 /// scatter less on their own period than the law says, and their intervals are too wide; a part cut out of
-/// one is as good as Gaussian. [`surface_gen::SelfAffineFit`] is the quick fit of a straight line without
-/// intervals.
+/// one is as good as Gaussian.
+///
+/// This is the fit that is told where statistics of a map are asked for. [`surface_gen::SelfAffineFit`] is a straight line through the
+/// logarithms of the rings over fixed wavelengths, for a theory that takes H alone: it has no interval, no roll-off and no correction for
+/// the window, refuses maps whose spectrum is no power law down to the longest wave, and differs from this one by its scatter there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumFit {
     /// Hurst exponent H; outside of 0 to 1 the surface is not self-affine.
@@ -207,24 +210,9 @@ fn limits(options: &FitOptions) -> Result<[f64; 2]> {
 
 /// The map without the plane of least squares.
 fn without_plane(map: &HeightMap) -> Result<HeightMap> {
-    let Cells { columns, rows } = map.cells();
     let Relative { heights, unit } = Relative::new(map);
-    // On a full rectangle, coordinates about their means are orthogonal.
-    let about = |i: usize, count: usize| i as f64 - 0.5 * (count as f64 - 1.0);
-    let square = |count: usize| (0..count).map(|i| about(i, count).powi(2)).sum::<f64>();
-    let (mut mean, mut x, mut y) = (0.0, 0.0, 0.0);
-    for (i, h) in heights.iter().enumerate() {
-        mean += h;
-        x += h * about(i % columns, columns);
-        y += h * about(i / columns, rows);
-    }
-    let slope = |sum: f64, count: usize, others: usize| {
-        if count > 1 { sum / (square(count) * others as f64) } else { 0.0 }
-    };
-    let (mean, x, y) = (mean / heights.len() as f64, slope(x, columns, rows), slope(y, rows, columns));
-    let rest =
-        |(i, h): (usize, &f64)| h - mean - x * about(i % columns, columns) - y * about(i / columns, rows);
-    let flat: Vec<f64> = heights.iter().enumerate().map(rest).collect();
+    let plane = MapPlane::fit(map.cells(), heights.iter().copied());
+    let flat: Vec<f64> = heights.iter().enumerate().map(|(i, h)| h - plane.height(i)).collect();
     let rms = rms_height(&flat);
     // Half of the range of the heights is 1.
     if rms < ROUNDING {

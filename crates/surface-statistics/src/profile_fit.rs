@@ -5,6 +5,7 @@ use crate::spectrum::PowerSpectrum;
 use crate::taper::Taper;
 use contact_model::{Boundary, Error, HeightMap, Result};
 use std::f64::consts::{PI, TAU};
+use surface_gen::hurst_from_line_spectrum;
 
 /// Steps of the shortest wave of the fit: shorter ones are those of the instrument and of aliasing.
 const STEPS: f64 = 4.0;
@@ -57,20 +58,18 @@ impl ProfileFit {
         let longest = if periodic { length } else { length / WAVES };
         let inside = |q: f64| (shortest * (1.0 - 1e-9)..=longest * (1.0 + 1e-9)).contains(&(TAU / q));
         let pairs = spectrum.wavenumber.iter().zip(&spectrum.density);
-        let points: Vec<(f64, f64)> =
-            pairs.filter(|(q, c)| inside(**q) && **c > 0.0).map(|(q, c)| (q.ln(), c.ln())).collect();
-        if points.len() < FEWEST {
+        let waves: Vec<(f64, f64)> =
+            pairs.filter(|(q, c)| inside(**q) && **c > 0.0).map(|(q, c)| (*q, *c)).collect();
+        if waves.len() < FEWEST {
             let expected = format!("at least {FEWEST} from {shortest:e} to {longest:e} long");
-            return Err(Error::domain("waves of a fit", points.len() as f64, expected));
+            return Err(Error::domain("waves of a fit", waves.len() as f64, expected));
         }
-        let count = points.len() as f64;
-        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
-        let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
-        let spread = mean(&|p| (p.0 - x).powi(2)) * count;
-        let slope = mean(&|p| (p.0 - x) * (p.1 - y)) * count / spread;
+        let value = hurst_from_line_spectrum(&waves, 0.0, f64::INFINITY)?;
+        let points: Vec<f64> = waves.iter().map(|wave| wave.0.ln()).collect();
+        let middle = points.iter().sum::<f64>() / points.len() as f64;
+        let spread: f64 = points.iter().map(|x| (x - middle).powi(2)).sum();
         let inflation = if periodic { 1.0 } else { HANN };
         let error = QUANTILE * 0.5 * (inflation * PI * PI / 6.0 / spread).sqrt();
-        let value = -(slope + 1.0) / 2.0;
         let hurst = Interval { value, low: value - error, high: value + error };
         Ok(Self { hurst, wavelengths: [shortest, longest] })
     }

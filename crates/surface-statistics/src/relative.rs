@@ -1,6 +1,7 @@
 //! Heights about the middle of their range, in units of half of it.
 
 use contact_model::{Error, HeightMap, Result};
+use numerics::range::middle_and_half_width;
 
 /// Heights of a map whose squares stay within the range of f64.
 #[derive(Debug)]
@@ -15,8 +16,7 @@ impl Relative {
     pub(crate) fn new(map: &HeightMap) -> Self {
         let ends = |(low, high): (f64, f64), h: f64| (low.min(h), high.max(h));
         let (low, high) = map.defined().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
-        let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
-        let unit = if half > 0.0 { half } else { 1.0 };
+        let (middle, unit) = middle_and_half_width((low, high));
         let relative = |h: &f64| if h.is_finite() { (h - middle) / unit } else { f64::NAN };
         Self { heights: map.heights().iter().map(relative).collect(), unit }
     }

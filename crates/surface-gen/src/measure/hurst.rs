@@ -1,6 +1,7 @@
 //! The Hurst exponent of a measured spectrum.
 
 use contact_model::{Error, Result};
+use numerics::regression::least_squares;
 
 /// Fewest points that a straight line is fitted through.
 const FEWEST: usize = 3;
@@ -51,12 +52,5 @@ fn slope(spectrum: &[(f64, f64)], q_min: f64, q_max: f64) -> Result<f64> {
     if n < FEWEST {
         return Err(too_few());
     }
-    let mean = |f: fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n as f64;
-    let (x0, y0) = (mean(|p| p.0), mean(|p| p.1));
-    let (mut xx, mut xy) = (0.0, 0.0);
-    for (x, y) in &points {
-        xx += (x - x0) * (x - x0);
-        xy += (x - x0) * (y - y0);
-    }
-    if xx > 0.0 { Ok(xy / xx) } else { Err(too_few()) }
+    least_squares(&points).map(|line| line.0).ok_or_else(too_few)
 }

@@ -3,14 +3,16 @@
 mod hurst;
 mod moments;
 mod patches;
+mod plane;
 mod self_affine_fit;
 mod spectra;
 mod statistics;
 mod window;
 
 pub use hurst::{hurst_from_line_spectrum, hurst_from_spectrum};
-pub use moments::{rms_height, rms_slope_differences};
+pub use moments::{HeightMoments, rms_height, rms_slope_differences};
 pub use patches::{boundary_edges, patches};
+pub use plane::MapPlane;
 pub use self_affine_fit::SelfAffineFit;
 pub use spectra::{Wave, line_spectrum, periodogram, radial_spectrum, rms_slope};
 pub use statistics::{Band, MapStatistics};

@@ -50,7 +50,7 @@ impl SelfAffineFit {
             let expected = format!("at least {LEAST_RANGE}: about 128 cells along the shorter side");
             return Err(Error::domain(name, to / from, expected));
         }
-        let spectrum = radial_spectrum(&windowed(map).unwrap_or_else(|| map.clone()))?;
+        let spectrum = radial_spectrum(&windowed(map)?)?;
         let slope = hurst_from_spectrum(&spectrum, from, to)?;
         if !(-OUTSIDE..=1.0 + OUTSIDE).contains(&slope) {
             let expected = format!("between 0 and 1, that {REMEDY}");

@@ -1,10 +1,11 @@
 //! What theories of rough contact take from a given map, and how far it is what they assume.
 
-use super::moments::rms_height;
+use super::moments::{HeightMoments, rms_height};
+use super::plane::MapPlane;
 use super::spectra::waves;
 use super::window::windowed;
 use crate::lattice::Lattice;
-use contact_model::{Cells, Error, HeightMap, Result};
+use contact_model::{Error, HeightMap, Result};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
@@ -103,10 +104,8 @@ impl MapStatistics {
         let rms = rms_height(map.heights());
         let scales = [0, 2, 4].map(|k| (unit / rms).powi(2) * TAU.powi(k));
         let bands = bands(&sums, scales, TAU / rings);
-        let count = map.heights().len() as f64;
-        let mean = map.heights().iter().map(|h| h / rms).sum::<f64>() / count;
-        let central = |power| map.heights().iter().map(|h| (h / rms - mean).powi(power)).sum::<f64>() / count;
-        let (skewness, kurtosis) = (central(3), central(4));
+        let moments = HeightMoments::new(map.heights());
+        let (skewness, kurtosis) = moments.map_or((0.0, 0.0), |found| (found.skewness, found.kurtosis));
         let windowed = edge_step > MATCHING;
         let found = Self {
             length,
@@ -203,7 +202,8 @@ pub(crate) fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
     if !(rms > 0.0 && rms.is_finite()) {
         return Err(Error::domain("rms height of the map", rms, "a rough surface: a finite number > 0"));
     }
-    let (edge_step, tilt) = (edge_step(map, rms).max(edge_step(&map.transposed(), rms)), tilt(map, rms));
+    let edge_step = edge_step(map, rms).max(edge_step(&map.transposed(), rms));
+    let tilt = MapPlane::fit(map.cells(), map.heights().iter().map(|h| h / rms)).variance();
     if edge_step <= MATCHING {
         return Ok(Homogeneous { map: Cow::Borrowed(map), edge_step, tilt });
     }
@@ -211,10 +211,7 @@ pub(crate) fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
         let expected = format!("at most {TILTED}: the map is tilted, subtract it (`detrend = \"plane\"`)");
         return Err(Error::domain("share of a plane in the variance of heights", tilt, expected));
     }
-    let Some(windowed) = windowed(map) else {
-        return Err(Error::domain("rms height of the map", rms, "a number within the range of f64"));
-    };
-    Ok(Homogeneous { map: Cow::Owned(windowed), edge_step, tilt })
+    Ok(Homogeneous { map: Cow::Owned(windowed(map)?), edge_step, tilt })
 }
 
 /// Rms step from the last column to the first over the largest one from a column to the next; 0 for fewer than 3
@@ -234,25 +231,6 @@ fn edge_step(map: &HeightMap, rms: f64) -> f64 {
     let inside = steps.into_iter().fold(0.0, f64::max);
     // Without a step inside there is none across.
     if inside > 0.0 { (across / inside).sqrt() } else { 0.0 }
-}
-
-/// Share of the plane of least squares in the variance of heights.
-fn tilt(map: &HeightMap, rms: f64) -> f64 {
-    let Cells { columns, rows } = map.cells();
-    // Coordinates of mean 0; along both axes they are orthogonal on a full rectangle.
-    let about = |i: usize, count: usize| i as f64 - 0.5 * (count as f64 - 1.0);
-    let square = |count: usize| (0..count).map(|i| about(i, count).powi(2)).sum::<f64>();
-    let (mut x, mut y) = (0.0, 0.0);
-    for (iy, row) in map.heights().chunks_exact(columns).enumerate() {
-        for (ix, h) in row.iter().enumerate() {
-            x += about(ix, columns) * (h / rms);
-            y += about(iy, rows) * (h / rms);
-        }
-    }
-    let share = |sum: f64, count: usize, others: usize| {
-        if count > 1 { sum * sum / (square(count) * others as f64) } else { 0.0 }
-    };
-    (share(x, columns, rows) + share(y, rows, columns)) / (columns * rows) as f64
 }
 
 #[cfg(test)]
