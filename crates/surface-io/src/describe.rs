@@ -44,6 +44,8 @@ pub enum Absent {
     /// Too few rings lie in the range of the fit: fewer than about 40 cells along the shorter side, or cells
     /// far from squares.
     FewWaves,
+    /// Not asked for ([`Description::without_fit`]).
+    NotFitted,
 }
 
 impl fmt::Display for Absent {
@@ -53,6 +55,7 @@ impl fmt::Display for Absent {
             Self::Profile => "one row of points has the spectrum of a profile, not of a surface",
             Self::NoRelief => "no relief",
             Self::FewWaves => "too few waves along one side",
+            Self::NotFitted => "not asked for",
         })
     }
 }
@@ -62,6 +65,13 @@ impl Description {
     /// 0.1, the error of a fit).
     pub fn fractal_dimension(&self) -> Option<f64> {
         self.hurst.ok().map(|h| 3.0 - h).filter(|d| (1.9..=3.1).contains(d))
+    }
+
+    /// The description without the straight-line fit of the exponent: where a fit with an interval is told beside it, the two would
+    /// contradict each other wherever the spectrum rolls off.
+    #[must_use]
+    pub fn without_fit(self) -> Self {
+        Self { hurst: Err(Absent::NotFitted), ..self }
     }
 }
 
@@ -125,19 +135,20 @@ impl fmt::Display for Description {
         writeln!(f, "undefined points   {} of {}", self.undefined, columns * rows)?;
         writeln!(f, "range of heights   {low:.6e} to {high:.6e}")?;
         writeln!(f, "rms height         {:.6e}", self.rms_height)?;
-        writeln!(f, "rms slope          {:.6e}", self.rms_slope)?;
+        write!(f, "rms slope          {:.6e}", self.rms_slope)?;
         let [longest, shortest] = self.fitted.map(|q| TAU / q);
         match (self.fractal_dimension(), self.hurst) {
             (Some(d), _) => {
-                write!(f, "fractal dimension  {d:.3} (waves of length {longest:.3e} to {shortest:.3e})")?;
+                write!(f, "\nfractal dimension  {d:.3} (waves of length {longest:.3e} to {shortest:.3e})")?;
             }
             (None, Ok(h)) => write!(
                 f,
-                "fractal dimension  none: C_2D of waves of length {longest:.3e} to {shortest:.3e} goes as q^{:.1}, that of a \
+                "\nfractal dimension  none: C_2D of waves of length {longest:.3e} to {shortest:.3e} goes as q^{:.1}, that of a \
                  self-affine surface as q^-4 to q^-2",
                 -2.0 * (h + 1.0)
             )?,
-            (None, Err(absent)) => write!(f, "fractal dimension  not determined: {absent}")?,
+            (None, Err(Absent::NotFitted)) => {}
+            (None, Err(absent)) => write!(f, "\nfractal dimension  not determined: {absent}")?,
         }
         if !self.spectrum.is_empty() {
             write!(f, "\nspectrum           wavelength, C_2D")?;

@@ -10,7 +10,8 @@ use contact_model::Boundary;
 use runs::Header;
 use std::path::Path;
 use surface_io::{
-    Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, SurfaceFile, describe,
+    Description, Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, SurfaceFile,
+    describe,
 };
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
@@ -72,7 +73,7 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     }
     let scan = file.scan().map_err(Error::Surface)?;
     Ok(match scan.preprocessed(preprocessing) {
-        Ok(found) => described(&scan, &found),
+        Ok(found) => described(&scan, &found, describe(&found.map)),
         // What stands in the way of a map is part of the answer.
         Err(error) => format!("{}\n\nno map as it is: {error}\n", scan.metadata()),
     })
@@ -123,14 +124,15 @@ pub fn info_statistics(
     };
     files.push(report.write(out)?);
     let names: Vec<String> = runs::file_names(&files);
-    let text = described(&scan, &found);
+    // One exponent is told: that with an interval, of the statistics.
+    let text = described(&scan, &found, describe(&found.map).without_fit());
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
 }
 
 /// What was understood of a file, what was done to its map, and what the map is.
-fn described(scan: &Scan, found: &Preprocessed) -> String {
+fn described(scan: &Scan, found: &Preprocessed, description: Description) -> String {
     let steps: String = found.steps.iter().map(|step| format!("then       {step}\n")).collect();
-    format!("{}\n{steps}\n{}\n", scan.metadata(), describe(&found.map))
+    format!("{}\n{steps}\n{description}\n", scan.metadata())
 }
 
 /// What is known of each channel of a file of several.

@@ -44,7 +44,7 @@ impl SurfaceReport<'_> {
             pre { (self.metadata) }
             @if self.steps.is_empty() { p { "Nothing was done to the heights." } }
             @else { h3 { "What was done to it" } ol { @for step in self.steps { li { (step) } } } }
-            h3 { "The map that is described below" } pre { (surface_io::describe(self.map)) }
+            h3 { "The map that is described below" } pre { (surface_io::describe(self.map).without_fit()) }
         };
         let mut charts = Vec::new();
         for (_, chart) in self.statistics.charts(self.name) {
