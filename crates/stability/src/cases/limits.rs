@@ -9,6 +9,7 @@ use bem3d::love::influence;
 use bem3d::{Bem3d, Method};
 use contact_model::{ContactModel, Error, Field, Line, Load, Result, Scene, Status, Surface};
 use mdr1d::Mdr1d;
+use numerics::gauss::Gauss;
 use std::sync::Arc;
 
 /// The tolerance of figures is tighter by ten.
@@ -114,25 +115,11 @@ fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-/// Nodes in (0, 1/2) and weights of Gauss-Legendre quadrature with eight points on an interval of length 1.
-const NODES: [(f64, f64); 4] = [
-    (0.091_717_321_247_824_9, 0.181_341_891_689_181),
-    (0.262_766_204_958_164_5, 0.156_853_322_938_943_64),
-    (0.398_333_238_706_813_4, 0.111_190_517_226_687_24),
-    (0.480_144_928_248_768_1, 0.050_614_268_145_188_13),
-];
-
 /// Mean of 1/r over the cell at (x, y): the displacement under unit pressure there.
-fn quadrature(x: f64, y: f64) -> f64 {
-    let mut sum = 0.0;
-    for (a, wa) in NODES {
-        for (b, wb) in NODES {
-            for (sa, sb) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-                sum += wa * wb / (x + sa * a).hypot(y + sb * b);
-            }
-        }
-    }
-    sum
+fn quadrature(gauss: &Gauss<8>, x: f64, y: f64) -> f64 {
+    let along =
+        |centre: f64, function: &dyn Fn(f64) -> f64| gauss.integrate(centre - 0.5, centre + 0.5, function);
+    along(x, &|x| along(y, &|y| x.hypot(y).recip()))
 }
 
 fn far_field(ledger: &mut Ledger, effort: Effort) {
@@ -151,13 +138,14 @@ fn far_field(ledger: &mut Ledger, effort: Effort) {
         ledger.near("40-digit value", influence(y, x), value);
     }
     // Quadrature converges as (1/(4 r))^16: exact to rounding from five cells on. Lags in all directions, spaced by a tenth.
+    let gauss = Gauss::new();
     let steps = effort.pick(130, 1300);
     for i in 0..steps {
         let r = 6.0 * (1e6_f64 / 6.0).powf(f64::from(i) / f64::from(steps - 1));
         for j in 0..effort.pick(9, 90) {
             let angle = f64::from(j) * std::f64::consts::FRAC_PI_2 / f64::from(effort.pick(8, 89));
             let (x, y) = ((r * angle.cos()).round(), (r * angle.sin()).round());
-            ledger.near("quadrature", influence(x as usize, y as usize), quadrature(x, y));
+            ledger.near("quadrature", influence(x as usize, y as usize), quadrature(&gauss, x, y));
         }
     }
 }

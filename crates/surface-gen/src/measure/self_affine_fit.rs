@@ -20,7 +20,12 @@ const ROLLED_OFF: f64 = 0.2;
 const REMEDY: &str = "of a self-affine surface without roll-off; `crop` or `cells` may select its range, models that solve \
                       the map or take any spectrum need none";
 
-/// A power law `C_2D ~ q^(-2 (H + 1))` fitted to the spectrum of a map.
+/// A power law `C_2D ~ q^(-2 (H + 1))` fitted to the spectrum of a map: H for theories that take nothing else of it.
+///
+/// A straight line through the logarithms of the rings between fixed wavelengths, without an interval. Statistics of a map tell the fit of
+/// the crate `surface-statistics`, `SpectrumFit`: by largest likelihood, with roll-off, cut-off, noise and intervals, between the wavelengths
+/// that can be trusted. Theories take this one: it costs one transform, refuses what is not self-affine, and the crates of models know no
+/// statistics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffineFit {
     /// Hurst exponent H in [0, 1].
