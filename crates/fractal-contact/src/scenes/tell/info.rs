@@ -73,7 +73,7 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     }
     let scan = file.scan().map_err(Error::Surface)?;
     Ok(match scan.preprocessed(preprocessing) {
-        Ok(found) => described(&scan, &found, describe(&found.map)),
+        Ok(found) => described(&scan, &found, &describe(&found.map)),
         // What stands in the way of a map is part of the answer.
         Err(error) => format!("{}\n\nno map as it is: {error}\n", scan.metadata()),
     })
@@ -125,12 +125,12 @@ pub fn info_statistics(
     files.push(report.write(out)?);
     let names: Vec<String> = runs::file_names(&files);
     // One exponent is told: that with an interval, of the statistics.
-    let text = described(&scan, &found, describe(&found.map).without_fit());
+    let text = described(&scan, &found, &describe(&found.map).without_fit());
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
 }
 
 /// What was understood of a file, what was done to its map, and what the map is.
-fn described(scan: &Scan, found: &Preprocessed, description: Description) -> String {
+fn described(scan: &Scan, found: &Preprocessed, description: &Description) -> String {
     let steps: String = found.steps.iter().map(|step| format!("then       {step}\n")).collect();
     format!("{}\n{steps}\n{description}\n", scan.metadata())
 }
