@@ -49,7 +49,7 @@
 //! `p - s(g)`, p >= 0 still with p g = 0. Approach and withdrawal differ, so that such a scene is a path
 //! ([`PreparedContact::advance`]); a single load is the path from no contact to it, and continues from the last one where
 //! that lies on this path. Each state says on which branch it lies, its energy, and how stable it is
-//! ([`AdhesiveState::stability`]: `1 - rho` for the exponential law, see `adhesion`; for Dugdale's law, whose
+//! ([`AdhesiveState::stability`]: `1 - r` for the exponential law, see `adhesion`; for Dugdale's law, whose
 //! states are stable between the jumps of single cells, the smallest distance of the gap of a cell from the
 //! range, in ranges). Forces that nothing holds end the path with an error that has the last stable state.
 //! Cells too large for the range are refused with the side that would do; results with Dugdale's law are of

@@ -191,7 +191,7 @@ pub enum Adhesion {
     FiniteRange {
         /// Work of adhesion Delta gamma: the integral of the traction over all gaps.
         work: f64,
-        /// Range rho: the traction is about `work/range` below it.
+        /// Range g0: the traction is about `work/range` below it.
         range: f64,
         /// How the traction falls with the gap.
         law: AdhesionLaw,

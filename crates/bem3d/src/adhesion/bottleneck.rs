@@ -1,26 +1,26 @@
 //! Passing a bottleneck: where a branch has just ended, or a jump is under way along an unstable direction.
 //!
-//! The plain iteration creeps there, each sweep changing little, until the jump has gone on; its change has a minimum above zero. Acceleration,
+//! The plain iteration creeps there, each update changing little, until the jump has gone on; its change has a minimum above zero. Acceleration,
 //! which looks for the state of least change, stays at the minimum, or turns back to the unstable equilibrium. So the plain iteration goes on,
 //! and now and then far along its own change, until it contracts or turns.
 
 use crate::real::dot;
 
-/// Sweeps in which acceleration has to halve the residual.
+/// Updates in which acceleration has to halve the residual.
 const PATIENCE: usize = 15;
-/// Plain sweeps between two extrapolations: what does not belong to the slow direction decays.
+/// Plain updates between two extrapolations: what does not belong to the slow direction decays.
 const BETWEEN: usize = 3;
 /// The first extrapolation goes so many changes far; each one doubles it.
 const FIRST: f64 = 4.0;
 /// No attraction changes by more than this in an extrapolation, over the peak.
 const FARTHEST: f64 = 0.1;
-/// A plain iteration that reduces its change by this factor in a sweep contracts.
+/// A plain iteration that reduces its change by this factor in an update contracts.
 const CONTRACTS: f64 = 0.9;
 
-/// Watches the residual of the sweeps, and leads through bottlenecks.
+/// Watches the residual of the updates, and leads through bottlenecks.
 #[derive(Debug, Default)]
 pub struct Bottleneck {
-    /// The residual that later ones are to halve, and sweeps since.
+    /// The residual that later ones are to halve, and updates since.
     least: Option<f64>,
     since: usize,
     passage: Option<Passage>,
@@ -29,9 +29,9 @@ pub struct Bottleneck {
 /// The way through.
 #[derive(Debug)]
 struct Passage {
-    /// Change of the attraction in the sweep before.
+    /// Change of the attraction in the update before.
     change: Vec<f64>,
-    sweeps: usize,
+    updates: usize,
     factor: f64,
 }
 
@@ -50,7 +50,7 @@ impl Bottleneck {
             }
             self.since += 1;
             if self.since > PATIENCE {
-                self.passage = Some(Passage { change, sweeps: 1, factor: FIRST });
+                self.passage = Some(Passage { change, updates: 1, factor: FIRST });
                 return Some(1.0);
             }
             return None;
@@ -60,7 +60,7 @@ impl Bottleneck {
             let (before, now) = (dot(&passage.change, &passage.change), dot(&change, &change));
             let turned = along <= 0.0;
             // After an extrapolation the change has other parts too.
-            let contracts = passage.sweeps > 1 && now <= CONTRACTS * CONTRACTS * before;
+            let contracts = passage.updates > 1 && now <= CONTRACTS * CONTRACTS * before;
             if turned || contracts {
                 self.clear();
                 return None;
@@ -68,12 +68,12 @@ impl Bottleneck {
         }
         let largest = change.iter().fold(0.0f64, |most, c| most.max(c.abs()));
         passage.change = change;
-        if passage.sweeps < BETWEEN {
-            passage.sweeps += 1;
+        if passage.updates < BETWEEN {
+            passage.updates += 1;
             return Some(1.0);
         }
         let factor = passage.factor.min(FARTHEST / largest).max(1.0);
-        (passage.sweeps, passage.factor) = (0, 2.0 * passage.factor);
+        (passage.updates, passage.factor) = (0, 2.0 * passage.factor);
         Some(factor)
     }
 }
@@ -82,8 +82,8 @@ impl Bottleneck {
 mod tests {
     use super::*;
 
-    /// Sweeps of `x <- x + f(x)` that take x from -1 to 1.
-    fn sweeps(f: impl Fn(f64) -> f64, passed: bool) -> usize {
+    /// Updates of `x <- x + f(x)` that take x from -1 to 1.
+    fn updates(f: impl Fn(f64) -> f64, passed: bool) -> usize {
         let (mut bottleneck, mut x, mut count) = (Bottleneck::default(), -1.0, 0);
         while x < 1.0 {
             let change = f(x);
@@ -95,11 +95,11 @@ mod tests {
     }
 
     #[test]
-    fn a_bottleneck_is_passed_in_few_sweeps() {
-        // 1e-4 at its narrowest: the plain iteration takes about pi/sqrt(1e-4 0.1) sweeps.
+    fn a_bottleneck_is_passed_in_few_updates() {
+        // 1e-4 at its narrowest: the plain iteration takes about pi/sqrt(1e-4 0.1) updates.
         let f = |x: f64| 1e-4 + 0.1 * x * x;
-        assert!(sweeps(f, false) > 900);
-        assert!(sweeps(f, true) < 150, "{}", sweeps(f, true));
+        assert!(updates(f, false) > 900);
+        assert!(updates(f, true) < 150, "{}", updates(f, true));
     }
 
     #[test]

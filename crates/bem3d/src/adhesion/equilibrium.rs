@@ -17,12 +17,12 @@ use crate::real::{dot, each, largest, smallest, sum};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
-/// A sweep lowers the gaps left on the contact by this factor: less than the attraction changes by would be lost, more is gone after the
+/// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be lost, more is gone after the
 /// next change of the attraction.
 const REDUCTION: f64 = 0.05;
 /// The same for the plain iteration, whose contact is solved before the attraction is changed.
 const PLAIN_REDUCTION: f64 = 1e-2;
-/// Steps of conjugate gradients in a sweep at most.
+/// Steps of conjugate gradients in an update at most.
 const STEPS: usize = 40;
 /// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of the range.
 const SETTLED: f64 = 1e-3;
@@ -30,15 +30,15 @@ const SETTLED: f64 = 1e-3;
 const BALANCE: f64 = 0.1;
 /// ... and at most this.
 const SETTLED_FIRST: f64 = 0.05;
-/// Acceleration begins when no gap changes by more than this share of the range in a sweep: the attraction is then nearly linear in them.
+/// Acceleration begins when no gap changes by more than this share of the range in an update: the attraction is then nearly linear in them.
 const ACCELERATED: f64 = 0.5;
 /// An accelerated step changes no attraction by more than this factor beyond that of the plain one, else it is not taken.
 const LONGEST: f64 = 2.0;
 /// Attractions below this share of the largest one do not limit an accelerated step.
 const FELT: f64 = 1e-6;
-/// Sweeps of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by the factor rho only.
-const PLAIN_SWEEPS: usize = 20;
-/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many sweeps on the attraction changes
+/// Updates of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by the spectral radius only.
+const PLAIN_UPDATES: usize = 20;
+/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many updates on the attraction changes
 /// by a share only ...
 const PATIENT: usize = 100;
 /// ... which is this.
@@ -92,14 +92,14 @@ pub struct Equilibrium {
     pub mismatch: f64,
     /// Steps of conjugate gradients.
     pub steps: usize,
-    /// Sweeps.
-    pub sweeps: usize,
+    /// Updates.
+    pub updates: usize,
 }
 
 impl Equilibrium {
     /// The same state with nothing done for it yet.
     pub fn again(&self) -> Self {
-        Self { steps: 0, sweeps: 0, ..self.clone() }
+        Self { steps: 0, updates: 0, ..self.clone() }
     }
 
     /// Net pressure on the cells.
@@ -204,9 +204,9 @@ impl Search<'_> {
         stop: Stop<'_>,
     ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
         let tolerance = self.limits.tolerance;
-        // Fronts of a short range move by a cell or so in a sweep.
+        // Fronts of a short range move by a cell or so in an update.
         let many = self.plain || self.attraction.law.shape == Shape::Linear;
-        let most = self.limits.outer_iterations * if many { PLAIN_SWEEPS } else { 1 };
+        let most = self.limits.outer_iterations * if many { PLAIN_UPDATES } else { 1 };
         let (mut mixing, mut bottleneck) = (Mixing::default(), Bottleneck::default());
         let mut last = f64::INFINITY;
         self.evaluate(&mut state, &mut mixing);
@@ -226,11 +226,11 @@ impl Search<'_> {
                 mixing.clear();
             }
             last = worst;
-            if !self.sweep(&mut state, &mut mixing, &mut bottleneck, stop) {
+            if !self.update(&mut state, &mut mixing, &mut bottleneck, stop) {
                 return Err(Box::new((Ended::PulledOff, state)));
             }
             self.evaluate(&mut state, &mut mixing);
-            state.sweeps += 1;
+            state.updates += 1;
         }
         Err(Box::new((Ended::Status(Status::IterationLimit), state)))
     }
@@ -343,10 +343,10 @@ impl Search<'_> {
         state.mismatch = attraction.mismatch(&state.cells, &state.attraction, &state.gap);
     }
 
-    /// One sweep: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
+    /// One update: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
     /// hold the force.
-    #[allow(clippy::too_many_lines)] // One sweep, in the order of its steps.
-    fn sweep(
+    #[allow(clippy::too_many_lines)] // One update, in the order of its steps.
+    fn update(
         &mut self,
         state: &mut Equilibrium,
         mixing: &mut Mixing,
@@ -363,7 +363,7 @@ impl Search<'_> {
         let off = state.largest_gap_left();
         let mut next = attraction.tractions(&state.cells, &state.gap);
         let fixed = control.fixed(problem.operators.table().shift());
-        if matches!(fixed, Fixed::MeanPlane(_)) && state.sweeps > PATIENT {
+        if matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT {
             next.iter_mut()
                 .zip(&state.attraction)
                 .for_each(|(next, now)| *next = now + DAMPED * (*next - now));
@@ -469,7 +469,7 @@ fn extrapolate(factor: f64, from: &[f64], to: &mut [f64], most: f64) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to = (from + factor * (*to - from)).clamp(0.0, most));
 }
 
-/// Replaces what a sweep made of a state by the combination of the last sweeps, unless that would change an attraction too much.
+/// Replaces what an update made of a state by the combination of the last updates, unless that would change an attraction too much.
 fn accelerate(
     attraction: &Attraction,
     own: f64,

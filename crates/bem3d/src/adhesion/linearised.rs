@@ -3,7 +3,7 @@
 //! With the contact set C and the slopes D of the law on the open cells Z within reach, a unit of approach changes the net pressure by
 //! x with `A x = 1`, where A is G with `-1/D` added on the diagonal of Z: then `k = 1'x`. Eliminating C leaves `(G^ - 1/D) x_Z = ...` with
 //! the Schur complement G^; with `S = D^(1/2) G^ D^(1/2)` and `x_Z = -D^(1/2) v` it is `(1 - S) v = b`, positive definite where the energy
-//! has a minimum. Conjugate gradients on it find v and, with the coefficients of Lanczos, the largest eigenvalue rho of S.
+//! has a minimum. Conjugate gradients on it find v and, with the coefficients of Lanczos, the largest eigenvalue r of S.
 //!
 //! With the mean plane of a periodic surface held, G stands for the kernel of zero mean. Where every cell touches, that is singular: the force
 //! is free, and there is no stiffness.
@@ -37,7 +37,7 @@ const ROUNDS: usize = 4;
 /// What a small change of the load does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Response {
-    /// `1 - rho` for the exponential law, with the approach or the force held as the control says; for Dugdale's law the smallest distance
+    /// `1 - r` for the exponential law, with the approach or the force held as the control says; for Dugdale's law the smallest distance
     /// of the gap of a cell from the range, in ranges.
     pub stability: f64,
     /// The stiffness where it was wanted and exists.

@@ -7,7 +7,7 @@ const DEPTH: usize = 6;
 /// Added to the diagonal of the normal equations, relative: combinations of nearly equal residuals are not worth their rounding.
 const REGULARISATION: f64 = 1e-12;
 
-/// What one sweep of the iteration made of a state.
+/// What one update of the iteration made of a state.
 #[derive(Debug, Clone)]
 struct Entry {
     pressure: Vec<f64>,
@@ -15,7 +15,7 @@ struct Entry {
     residual: Vec<f64>,
 }
 
-/// The last sweeps.
+/// The last updates.
 #[derive(Debug, Default)]
 pub struct Mixing {
     entries: Vec<Entry>,
@@ -27,7 +27,7 @@ impl Mixing {
         self.entries.clear();
     }
 
-    /// Takes what a sweep made of a state with this residual, and replaces it by the combination of the last sweeps with the smallest
+    /// Takes what an update made of a state with this residual, and replaces it by the combination of the last updates with the smallest
     /// residual, to first order.
     pub fn combine(&mut self, pressure: &mut [f64], attraction: &mut [f64], residual: Vec<f64>) {
         if self.entries.len() > DEPTH {
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_linear_map_of_three_unknowns_is_solved_in_four_sweeps() {
+    fn a_linear_map_of_three_unknowns_is_solved_in_four_updates() {
         // x -> A x + b with eigenvalues 0.95, 0.5, 0.2.
         let map = |x: &[f64]| vec![0.95 * x[0] + 1.0, 0.5 * x[1] + 0.1 * x[0], 0.2 * x[2] - 1.0];
         let (mut mixing, mut x) = (Mixing::default(), vec![0.0; 3]);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_sweep_after_a_clear_is_taken_as_it_is_and_few_are_kept() {
+    fn the_first_update_after_a_clear_is_taken_as_it_is_and_few_are_kept() {
         let mut mixing = Mixing::default();
         for i in 0..3 * DEPTH {
             let x = f64::from(i as u32);

@@ -176,7 +176,7 @@ impl AdhesiveContact {
             let (mut equilibrium, status) = match ended {
                 Ok(equilibrium) => (equilibrium, Status::Converged),
                 Err((Ended::PulledOff, equilibrium)) if again => {
-                    spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.sweeps);
+                    spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.updates);
                     plain = true;
                     continue;
                 }
@@ -191,12 +191,12 @@ impl AdhesiveContact {
                     respond(&mut self.surface.problem, attraction, control, &equilibrium, tolerance, stop);
             }
             if again && !(sound && response.stability > 0.0) {
-                spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.sweeps);
+                spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.updates);
                 plain = true;
                 continue;
             }
             equilibrium.steps += spent.0;
-            equilibrium.sweeps += spent.1;
+            equilibrium.updates += spent.1;
             let stable = response.stability > 0.0;
             let status = if status == Status::Converged && !stable { Status::Stagnated } else { status };
             let load_error = search_error;
@@ -259,9 +259,9 @@ impl AdhesiveContact {
         let state = surface.assemble(Assembly {
             status: surface.ended(status, &certificate, stop),
             strategy: format!(
-                "attraction on {} cells, {} sweeps",
+                "attraction on {} cells, {} updates",
                 equilibrium.cells.len(),
-                equilibrium.sweeps
+                equilibrium.updates
             ),
             iterations: equilibrium.steps + response.steps + stiffness.steps,
             certificate,
