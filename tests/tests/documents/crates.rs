@@ -22,7 +22,7 @@ pub fn modules_page() -> String {
          [ARCHITECTURE.md](../..) has the rules that hold between crates.\n",
     );
     for package in packages() {
-        text += &format!("\n## {}\n\n{}\n\n", package.name, package.description);
+        text.push_str(&["\n## ", &package.name, "\n\n", &package.description, "\n\n"].concat());
         list(&package.modules, 0, &mut text);
     }
     text
@@ -30,7 +30,8 @@ pub fn modules_page() -> String {
 
 fn list(modules: &[Module], depth: usize, text: &mut String) {
     for module in modules {
-        *text += &format!("{}- `{}`: {}\n", "  ".repeat(depth), module.name, module.sentence);
+        let begin = "  ".repeat(depth);
+        text.push_str(&[&begin, "- `", &module.name, "`: ", &module.sentence, "\n"].concat());
         list(&module.inner, depth + 1, text);
     }
 }
@@ -49,6 +50,20 @@ fn the_gate_lists_the_dependencies_that_there_are() {
         listed += 1;
     }
     assert_eq!(listed, all.len(), "crates that .ci/run lists");
+}
+
+#[test]
+fn models_meet_where_the_architecture_says() {
+    let all = packages();
+    let models = |package| {
+        let reached = reached(package, &all);
+        ["bem3d", "mdr1d", "analytic"].iter().filter(|model| reached.contains(*model)).count()
+    };
+    let meet = all.iter().filter(|package| models(package) > 1).map(|package| format!("`{}`", package.name));
+    let sentence = format!("meet in {} and `tests` only", meet.collect::<Vec<_>>().join(", "));
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains(&sentence), "ARCHITECTURE.md does not say \"{sentence}\"");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::sources::Package;
 
 /// The page, with links to items as plain text, headings one level deeper, and examples as they read.
 pub fn readme(package: &Package) -> String {
-    let mut text = format!("# {}\n\n", package.package);
+    let mut text = format!("# {}\n\n", package.registered);
     let mut prose = String::new();
     // Whether a block of code is open, and whether it is Rust.
     let mut code = None;
@@ -14,12 +14,12 @@ pub fn readme(package: &Package) -> String {
                 text += &plain(&std::mem::take(&mut prose));
                 let language = &line[3..];
                 let rust = ["", "rust", "no_run", "ignore", "should_panic"].contains(&language);
-                text += &format!("```{}\n", if rust { "rust" } else { language });
+                text.push_str(&["```", if rust { "rust" } else { language }, "\n"].concat());
                 code = Some(rust);
             }
             None => {
                 let deeper = if line.starts_with('#') { "#" } else { "" };
-                prose += &format!("{deeper}{line}\n");
+                prose.push_str(&[deeper, line, "\n"].concat());
             }
             Some(_) if line == "```" => {
                 text += "```\n";

@@ -10,7 +10,7 @@ pub struct Package {
     /// Its folder, by which the others depend on it.
     pub name: String,
     /// `name` of its Cargo.toml.
-    pub package: String,
+    pub registered: String,
     /// `description` of its Cargo.toml.
     pub description: String,
     /// Crates of `crates/` among its `[dependencies]`.
@@ -83,7 +83,7 @@ fn package(folder: &Path, name: String, names: &BTreeSet<String>) -> Package {
     let source = folder.join("src");
     let programs = ["lib.rs", "main.rs"].map(|file| source.join(file));
     Package {
-        package: value("name"),
+        registered: value("name"),
         description: value("description"),
         uses: keys.collect(),
         front_page: documentation(&parsed(&source.join("lib.rs")).attrs),
