@@ -53,7 +53,7 @@ impl DifferenceMap {
     /// [`Boundary::Periodic`] also those across its edges.
     ///
     /// By transforms of heights, their squares and the pattern of defined points, with zeros behind free
-    /// maps. Cost O(N log N), memory 100 bytes for each point, 400 for free maps. Values below about 1e-14 of
+    /// maps. Cost O(N log N), memory 60 bytes for each point, 200 for free maps. Values below about 1e-14 of
     /// the mean square height are rounding.
     pub fn new(map: &HeightMap, boundary: Boundary) -> Self {
         let periodic = boundary == Boundary::Periodic;

@@ -59,7 +59,7 @@ impl ProfileFit {
         let inside = |q: f64| (shortest * (1.0 - 1e-9)..=longest * (1.0 + 1e-9)).contains(&(TAU / q));
         let pairs = spectrum.wavenumber.iter().zip(&spectrum.density);
         let waves: Vec<(f64, f64)> =
-            pairs.filter(|(q, c)| inside(**q) && **c > 0.0).map(|(q, c)| (*q, *c)).collect();
+            pairs.filter(|(q, c)| inside(**q) && c.is_normal()).map(|(q, c)| (*q, *c)).collect();
         if waves.len() < FEWEST {
             let expected = format!("at least {FEWEST} from {shortest:e} to {longest:e} long");
             return Err(Error::domain("waves of a fit", waves.len() as f64, expected));

@@ -140,6 +140,13 @@ impl Plan {
         })
     }
 
+    /// The map as it is solved, without the exponent where statistics are asked for: theirs has an interval, and one is told.
+    pub(crate) fn as_solved(&self) -> Option<surface_io::Description> {
+        let description = self.prepared.clone()?;
+        let fitted = self.outputs.contains(&("statistics", true));
+        Some(if fitted { description.without_fit() } else { description })
+    }
+
     /// The plan with what it will cost, from small solves of the same kind here and now. Takes a few seconds
     /// at most.
     ///
@@ -240,7 +247,7 @@ impl fmt::Display for Plan {
         for line in self.metadata.iter().flat_map(|u| u.lines()) {
             writeln!(f, "          {line}")?;
         }
-        if let Some(description) = &self.prepared {
+        if let Some(description) = self.as_solved() {
             writeln!(f, "as solved")?;
             for line in description.to_string().lines() {
                 writeln!(f, "          {line}")?;

@@ -160,7 +160,7 @@ impl Report<'_> {
         html! {
             p { (self.plan.surface) }
             @if let Some(told) = &self.plan.metadata { h3 { "What the file says, and what was done to it" } pre { (told) } }
-            @if let Some(map) = &self.plan.prepared { h3 { "As solved" } pre { (map) } }
+            @if let Some(map) = self.plan.as_solved() { h3 { "As solved" } pre { (map) } }
             p { "Modulus E*: " (number(self.plan.modulus)) "; units: " (self.plan.units) "." }
         }
     }
