@@ -3,12 +3,8 @@
 use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
 use clap::Parser as _;
 use evaluation::{Realisation, Run, realisation_jobs, run_units};
-use runs::cluster::{
-    self, Division, Forecast, Status, Target, check, quoted, run_shard, status, submitted_tasks,
-    without_flags,
-};
+use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
-use std::path::Path;
 
 /// How the program calls itself.
 const PROGRAM: &str = "cargo xtask";
@@ -93,19 +89,11 @@ fn parsed(typed: &[String]) -> Result<Command> {
 /// What [`jobs`] refuses.
 pub fn plan(options: &PlanArguments) -> Result<()> {
     let command = parsed(&options.command)?;
-    let forecast = Forecast::new(&*jobs(&command)?, &options.division);
-    runs::out!("{forecast}");
     let here = std::thread::available_parallelism().map_or(1, usize::from);
-    let (nodes, cores) =
-        (usize::from(options.nodes), options.node_cores.map_or(here.max(forecast.cores), usize::from));
-    let at_once = forecast.at_once(nodes, cores, options.node_memory.map(|mb| 1e6 * mb as f64));
-    if at_once == 0 {
-        let expected =
-            format!("nodes that hold a task of {} cores and {} MB", forecast.cores, forecast.megabytes());
-        return Err(Error::parameter("node-cores", cores, expected));
-    }
-    let makespan = cluster::duration(forecast.makespan(at_once));
-    runs::out!("makespan    {makespan} on {nodes} nodes of {cores} cores, {at_once} tasks at a time");
+    let forecast = Forecast::new(&*jobs(&command)?, &options.division);
+    let cores = options.node_cores.map_or(here.max(forecast.cores), usize::from);
+    let memory = options.node_memory.map(|mb| 1e6 * mb as f64);
+    runs::out!("{}", forecast.on_nodes(usize::from(options.nodes), cores, memory)?);
     Ok(())
 }
 
@@ -117,16 +105,9 @@ pub fn submit(options: &SubmitArguments) -> Result<()> {
     let command = parsed(&options.command)?;
     let jobs = jobs(&command)?;
     let out = command.out();
-    runs::files::create_directory(&out)?;
-    let plan = plan_of(&options.command, &*jobs);
-    let found = check(&plan, &*jobs, &out)?;
-    // The same division as before keeps what each task has to read small.
-    let tasks = options.division.tasks.or_else(|| submitted_tasks(&out, &plan));
-    let forecast = Forecast::new(&*jobs, &Division { tasks, ..options.division.clone() });
-    let binary = std::env::current_exe().map_err(Error::file("find", Path::new("this program")))?;
-    let target = Target { binary: &binary, out: &out, plan: &plan, jobs: &*jobs };
-    runs::out!("{forecast}");
-    runs::out!("{}", options.submission.write(&target, &forecast, &found)?);
+    let (plan, division) = (plan_of(&options.command, &*jobs), &options.division);
+    let forecast = |division: &Division| Forecast::new(&*jobs, division);
+    runs::out!("{}", options.submission.submit(&plan, &*jobs, &out, division, &forecast)?);
     Ok(())
 }
 

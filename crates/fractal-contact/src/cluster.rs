@@ -3,7 +3,7 @@
 use crate::arguments::ShardsArguments;
 use crate::start::{read_scene, stopped_by_signals};
 use fractal_contact::scenes::{Error, Options, Plan, Result, SceneFile, jobs, run_scene_shard};
-use runs::cluster::{Division, Forecast, ShardPlan, Submission, Target, check, quoted, submitted_tasks};
+use runs::cluster::{Division, Forecast, ShardPlan, Submission, check, quoted};
 use runs::{JobList, ShardChoice};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -68,15 +68,7 @@ pub fn tell(
     (nodes, cores): (usize, usize),
 ) -> Result<()> {
     let forecast = forecast(&*jobs(scene, Path::new(".")), plan, division);
-    let at_once = forecast.at_once(nodes, cores, None);
-    if at_once == 0 {
-        let expected = format!("nodes of at least {} cores, those of a task", forecast.cores);
-        return Err(runs::Error::parameter("node-cores", cores, expected).into());
-    }
-    let makespan = runs::cluster::duration(forecast.makespan(at_once));
-    runs::out!(
-        "\n{forecast}\nmakespan    {makespan} on {nodes} nodes of {cores} cores, {at_once} tasks at a time"
-    );
+    runs::out!("\n{}", forecast.on_nodes(nodes, cores, None)?);
     Ok(())
 }
 
@@ -84,17 +76,10 @@ pub fn tell(
 pub fn submit(path: &Path, out: &Path, submission: &Submission, division: &Division) -> Result<ExitCode> {
     let scene = read_scene(path)?;
     let calibrated = Plan::calibrated(&scene)?;
-    runs::files::create_directory(out)?;
     let jobs = jobs(&scene, out);
     let plan = plan_of(path, &*jobs)?;
-    let found = check(&plan, &*jobs, out)?;
-    // The same division as before keeps what each task has to read small.
-    let tasks = division.tasks.or_else(|| submitted_tasks(out, &plan));
-    let forecast = forecast(&*jobs, &calibrated, &Division { tasks, ..division.clone() });
-    let binary = std::env::current_exe().map_err(runs::Error::file("find", Path::new("this program")))?;
-    let target = Target { binary: &binary, out, plan: &plan, jobs: &*jobs };
-    runs::out!("{forecast}");
-    runs::out!("{}", submission.write(&target, &forecast, &found)?);
+    let forecast = |division: &Division| forecast(&*jobs, &calibrated, division);
+    runs::out!("{}", submission.submit(&plan, &*jobs, out, division, &forecast)?);
     Ok(ExitCode::SUCCESS)
 }
 

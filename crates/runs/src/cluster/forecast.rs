@@ -2,6 +2,7 @@
 
 use super::shard_run::shards;
 use super::words::{bytes, duration};
+use crate::error::{Error, Result};
 use crate::jobs::JobList;
 use crate::shard::assign;
 use std::cmp::Reverse;
@@ -37,7 +38,7 @@ pub struct Division {
 }
 
 #[cfg(feature = "clap")]
-fn at_least_one(text: &str) -> Result<usize, String> {
+fn at_least_one(text: &str) -> std::result::Result<usize, String> {
     let number: usize = text.parse().map_err(|_| "expected a whole number from 1".to_owned())?;
     if (1..=crate::MOST_SHARDS).contains(&number) {
         Ok(number)
@@ -122,13 +123,30 @@ impl Forecast {
     }
 
     /// Tasks that run at the same time on nodes of so many cores and, where it is told, so much memory.
-    pub fn at_once(&self, nodes: usize, cores: usize, memory: Option<f64>) -> usize {
+    fn at_once(&self, nodes: usize, cores: usize, memory: Option<f64>) -> usize {
         let by_memory = memory.map_or(usize::MAX, |memory| (memory / self.memory) as usize);
         nodes * (cores / self.cores).min(by_memory)
     }
 
+    /// The forecast in words, with the makespan on nodes of so many cores and, where it is told, so much memory (bytes).
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for nodes that hold no task.
+    pub fn on_nodes(&self, nodes: usize, cores: usize, memory: Option<f64>) -> Result<String> {
+        let at_once = self.at_once(nodes, cores, memory);
+        if at_once == 0 {
+            let expected =
+                format!("nodes that hold a task of {} cores and {} MB", self.cores, self.megabytes());
+            return Err(Error::parameter("node-cores", cores, expected));
+        }
+        let makespan = duration(self.makespan(at_once));
+        Ok(format!(
+            "{self}\nmakespan    {makespan} on {nodes} nodes of {cores} cores, {at_once} tasks at a time"
+        ))
+    }
+
     /// Predicted seconds until the last of the tasks has ended, with so many at the same time.
-    pub fn makespan(&self, at_once: usize) -> f64 {
+    fn makespan(&self, at_once: usize) -> f64 {
         // Microseconds, because floats have no order.
         let costs: Vec<u64> = self.costs.iter().map(|seconds| (1e6 * seconds) as u64).collect();
         let mut tasks = vec![0; self.tasks.max(1)];

@@ -1,9 +1,10 @@
 //! Batch scripts for the engines, and their submission.
 
-use super::check::{Completeness, JobState};
-use super::forecast::Forecast;
+use super::check::{Completeness, JobState, check};
+use super::forecast::{Division, Forecast};
 use super::plan::ShardPlan;
 use super::shard_run::shards;
+use super::status::submitted_tasks;
 use super::words::{duration, line, quoted, ranges, shown, toml};
 use crate::error::{Error, Result};
 use crate::files;
@@ -124,13 +125,40 @@ impl fmt::Debug for dyn JobList + '_ {
 }
 
 impl Submission {
+    /// Submits what is left of a command to an engine, and says what it takes and what was written: [`Self::write`] with this program. Without a
+    /// number of tasks, that of an earlier submission is kept.
+    ///
+    /// # Errors
+    /// As [`Self::write`], and a directory that cannot be made or read.
+    pub fn submit(
+        &self,
+        plan: &ShardPlan,
+        jobs: &dyn JobList,
+        out: &Path,
+        division: &Division,
+        forecast: &dyn Fn(&Division) -> Forecast,
+    ) -> Result<String> {
+        files::create_directory(out)?;
+        let found = check(plan, jobs, out)?;
+        let tasks = division.tasks.or_else(|| submitted_tasks(out, plan));
+        let forecast = forecast(&Division { tasks, ..division.clone() });
+        let binary = std::env::current_exe().map_err(Error::file("find", Path::new("this program")))?;
+        let submitted = self.write(&Target { binary: &binary, out, plan, jobs }, &forecast, &found)?;
+        Ok(format!("{forecast}\n{submitted}"))
+    }
+
     /// Writes the scripts into `OUT/slurm` or `OUT/hyperqueue`, for the shards with jobs that are neither done nor, as far as the engine knows, at
     /// work or waiting; submits them where that is asked for.
     ///
     /// # Errors
     /// [`Error::Parameter`] where nothing is left to do, for paths that a script cannot hold, and with what the engine said where it refuses;
     /// [`Error::File`] for files that cannot be written.
-    pub fn write(&self, target: &Target<'_>, forecast: &Forecast, found: &Completeness) -> Result<Submitted> {
+    pub(crate) fn write(
+        &self,
+        target: &Target<'_>,
+        forecast: &Forecast,
+        found: &Completeness,
+    ) -> Result<Submitted> {
         let Target { out, plan, jobs, .. } = *target;
         let of = shards(jobs, forecast.tasks);
         plan.write(out)?;
