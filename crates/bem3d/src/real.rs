@@ -2,11 +2,11 @@
 
 use crate::tuning::{BLOCK, CHUNK, LANES};
 use numerics::parallel::map;
-use rustfft::FftNum;
+use numerics::plan::Precision;
 use std::ops::AddAssign;
 
 /// Floating point of an operator and of the vectors of an iteration: f64, or f32 where the result is certified in f64.
-pub trait Real: FftNum + Default + AddAssign + PartialOrd {
+pub trait Real: Precision + Default + AddAssign + PartialOrd {
     /// Name in reports.
     const NAME: &'static str;
     /// Rounds to this precision.

@@ -5,9 +5,10 @@
 //! of a solver with its fused products has a transform of its own.
 
 use crate::parallel::{for_each, threads_for};
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use crate::plan::Precision;
+use realfft::{ComplexToReal, RealToComplex};
+use rustfft::Fft;
 pub use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::sync::Arc;
 
@@ -55,12 +56,7 @@ impl fmt::Debug for InverseTransform {
 impl ForwardTransform {
     /// Plans transforms of `columns` x `rows` values, at least one of each.
     pub fn new(columns: usize, rows: usize) -> Self {
-        Self {
-            columns,
-            rows,
-            along_x: RealFftPlanner::new().plan_fft_forward(columns),
-            along_y: FftPlanner::new().plan_fft_forward(rows),
-        }
+        Self { columns, rows, along_x: f64::real_forward(columns), along_y: f64::forward(rows) }
     }
 
     /// `H = sum h exp(-2 pi i (mx ix / columns + my iy / rows))`, no factor before it; `fill` writes the values h of row iy over zeros.
@@ -101,12 +97,7 @@ struct RowScratch {
 impl InverseTransform {
     /// Plans transforms to `columns` x `rows` values, at least one of each.
     pub fn new(columns: usize, rows: usize) -> Self {
-        Self {
-            columns,
-            rows,
-            along_x: RealFftPlanner::new().plan_fft_inverse(columns),
-            along_y: FftPlanner::new().plan_fft_inverse(rows),
-        }
+        Self { columns, rows, along_x: f64::real_inverse(columns), along_y: f64::inverse(rows) }
     }
 
     /// `h = sum H exp(2 pi i (mx ix / columns + my iy / rows))` over the whole plane of waves, no factor before it.

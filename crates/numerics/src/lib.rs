@@ -5,6 +5,7 @@
 //! | [`parallel`] | work in tasks on the threads of the caller's pool, with the same bits for any number of them |
 //! | [`root`] | the root of a function between two points, of a convex one from above, by halves |
 //! | [`gauss`] | integrals of smooth functions by the rule of Gauss and Legendre |
+//! | [`plan`] | plans of transforms in one dimension, compiled once |
 //! | [`fourier`] | transforms of real fields on a rectangle |
 //! | [`sum`](mod@sum) | compensated and pairwise sums |
 //! | [`range`](mod@range) | smallest and largest of many values |
@@ -26,6 +27,7 @@
 pub mod fourier;
 pub mod gauss;
 pub mod parallel;
+pub mod plan;
 pub mod quantile;
 pub mod range;
 pub mod regression;

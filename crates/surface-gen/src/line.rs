@@ -6,7 +6,8 @@ use crate::spectrum::{checked_elements, line_amplitudes};
 use crate::turn::Circle;
 use contact_model::{Error, HeightMap, Line, Result, SelfAffine, line_length};
 use numerics::fourier::Complex64;
-use realfft::{ComplexToReal, RealFftPlanner};
+use numerics::plan::Precision as _;
+use realfft::ComplexToReal;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::fmt;
 use std::sync::{Arc, Mutex};
@@ -52,7 +53,7 @@ impl LineGenerator {
             elements,
             length: line_length(surface.size.length()),
             amplitudes: line_amplitudes(surface, elements)?.into(),
-            transform: RealFftPlanner::new().plan_fft_inverse(elements),
+            transform: f64::real_inverse(elements),
             spare: Arc::default(),
         })
     }
@@ -80,7 +81,7 @@ impl LineGenerator {
         for b in &mut amplitudes {
             *b *= FRAC_1_SQRT_2;
         }
-        let transform = RealFftPlanner::new().plan_fft_inverse(elements);
+        let transform = f64::real_inverse(elements);
         Ok(Self { elements, length, amplitudes: amplitudes.into(), transform, spare: Arc::default() })
     }
 

@@ -4,7 +4,8 @@ use crate::geometry::Lengths;
 use crate::real::Real;
 use crate::tuning::CACHE_LINE;
 use numerics::parallel::{for_each, threads_for};
-use realfft::{RealFftPlanner, RealToComplex};
+use numerics::plan::Precision as _;
+use realfft::RealToComplex;
 use rustfft::num_complex::Complex;
 use std::sync::Arc;
 
@@ -37,7 +38,7 @@ impl Symbol {
         let mut values = vec![0.0; half_x * half_y];
         let threads = threads_for(rows.len());
         let buffers = |length| -> Vec<EvenTransform> {
-            let plan = RealFftPlanner::new().plan_fft_forward(length);
+            let plan = f64::real_forward(length);
             (0..threads).map(|_| EvenTransform::new(&plan)).collect()
         };
         for_each(

@@ -5,9 +5,9 @@ use crate::geometry::{CellSet, Lengths, Window};
 use crate::real::{Real, binary_unit};
 use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES};
 use numerics::parallel::{for_each, threads_for};
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use realfft::{ComplexToReal, RealToComplex};
+use rustfft::Fft;
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -58,8 +58,6 @@ impl<T: Real> FftConvolution<T> {
     ///
     /// Memory: `height * (lx / 2 + 1)` complex numbers besides the symbol, and a few columns for each thread.
     pub fn new(window: Window, lengths: Lengths, symbol: Arc<Vec<T>>) -> Self {
-        let mut real = RealFftPlanner::<T>::new();
-        let mut complex = FftPlanner::<T>::new();
         let stripes = (lengths.x / 2 + 1).div_ceil(Self::STRIPE);
         let spectrum = vec![Complex::default(); stripes * Self::STRIPE * window.height + Self::TOGETHER];
         let start = spectrum.as_ptr().align_offset(CACHE_LINE);
@@ -67,10 +65,10 @@ impl<T: Real> FftConvolution<T> {
             window,
             lengths,
             symbol,
-            row_forward: real.plan_fft_forward(lengths.x),
-            row_inverse: real.plan_fft_inverse(lengths.x),
-            column_forward: complex.plan_fft_forward(lengths.y),
-            column_inverse: complex.plan_fft_inverse(lengths.y),
+            row_forward: T::real_forward(lengths.x),
+            row_inverse: T::real_inverse(lengths.x),
+            column_forward: T::forward(lengths.y),
+            column_inverse: T::inverse(lengths.y),
             spectrum,
             start: if start <= Self::TOGETHER { start } else { 0 },
             given: vec![false; window.height.div_ceil(BAND)],
