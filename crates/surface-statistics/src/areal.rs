@@ -8,12 +8,12 @@ mod hills;
 mod holes;
 
 use crate::difference::DifferenceMap;
-use crate::relative::{Relative, defined_everywhere, finite};
+use crate::relative::{Relative, finite};
 use contact_model::{Boundary, Cells, Error, HeightMap, Result};
 use numerics::range::range;
 use numerics::sum::pairwise;
 use std::f64::consts::PI;
-use surface_gen::{HeightMoments, periodogram, rms_slope_differences};
+use surface_gen::{HeightMoments, defined_everywhere, periodogram, rms_slope_differences};
 
 /// Autocorrelation at which a surface counts as decorrelated (ISO 25178-3:2012, 4.4).
 const DECAYED: f64 = 0.2;

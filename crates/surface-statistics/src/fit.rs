@@ -5,7 +5,7 @@ mod minimise;
 mod profile;
 mod rings;
 
-use crate::relative::{Relative, defined_everywhere};
+use crate::relative::Relative;
 use crate::taper::Taper;
 use contact_model::{Boundary, Error, HeightMap, Result};
 use likelihood::{CUT_OFF, HURST, Likelihood, NOISE, Parameters, ROLL_OFF};
@@ -13,7 +13,7 @@ use profile::End;
 use rings::Rings;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 use std::f64::consts::TAU;
-use surface_gen::{MapPlane, rms_height};
+use surface_gen::{MapPlane, defined_everywhere, rms_height};
 
 /// Fewest rings of a fit.
 const FEWEST: usize = 8;

@@ -33,15 +33,3 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64> {
         Err(Error::domain(name, value, "a number within the range of f64 (choose other units)"))
     }
 }
-
-/// An error for a map with undefined points.
-///
-/// # Errors
-/// [`Error::Domain`] with their number.
-pub(crate) fn defined_everywhere(map: &HeightMap, what: &str) -> Result<()> {
-    if map.undefined() == 0 {
-        return Ok(());
-    }
-    let expected = format!("0: {what} needs every height (fill the undefined points or crop the map)");
-    Err(Error::domain("undefined points", map.undefined() as f64, expected))
-}

@@ -5,7 +5,7 @@ use crate::chi_square::factors;
 use crate::taper::Taper;
 use contact_model::{Cells, Error, HeightMap, Result};
 use std::f64::consts::TAU;
-use surface_gen::{hann_window, periodogram};
+use surface_gen::{defined_everywhere, hann_window, periodogram};
 
 /// A spectrum and how well it is known: the values of each index belong together, wavenumbers rise.
 #[derive(Debug, Clone, PartialEq)]
@@ -190,7 +190,7 @@ fn correlated_pairs(map: &HeightMap, taper: Taper, bins: &Bins) -> Vec<f64> {
 
 /// Rows about their means under Hann's window along x, scaled to keep their spectrum.
 fn rows_under_hann(map: &HeightMap) -> Result<HeightMap> {
-    crate::relative::defined_everywhere(map, "a spectrum")?;
+    defined_everywhere(map, "a spectrum")?;
     let window = hann_window(map.columns());
     let count = map.columns() as f64;
     let scale = (window.iter().map(|w| w * w).sum::<f64>() / count).sqrt().recip();

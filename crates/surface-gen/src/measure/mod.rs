@@ -1,5 +1,6 @@
 //! What is measured on samples.
 
+mod defined;
 mod hurst;
 mod moments;
 mod patches;
@@ -9,6 +10,7 @@ mod spectra;
 mod statistics;
 mod window;
 
+pub use defined::defined_everywhere;
 pub use hurst::{hurst_from_line_spectrum, hurst_from_spectrum};
 pub use moments::{HeightMoments, rms_height, rms_slope_differences};
 pub use patches::{boundary_edges, patches};

@@ -1,8 +1,9 @@
 //! Spectra of samples, as periodic fields.
 
+use super::defined::defined_everywhere;
 use crate::lattice::Lattice;
 use crate::spectrum::CUTOFF_SLACK;
-use contact_model::{Cells, Error, HeightMap, Line, Result};
+use contact_model::{Cells, HeightMap, Line, Result};
 use numerics::fourier::{Complex64, ForwardTransform};
 use numerics::range::{middle_and_half_width, range};
 use std::f64::consts::TAU;
@@ -28,7 +29,7 @@ pub struct Wave {
 /// memory about that of the map.
 ///
 /// # Errors
-/// [`Error::Domain`] for a map with undefined points.
+/// [`contact_model::Error::Domain`] for a map with undefined points.
 ///
 /// ```
 /// use contact_model::Surface;
@@ -49,10 +50,7 @@ pub fn periodogram(map: &HeightMap, visit: &mut dyn FnMut(Wave)) -> Result<f64> 
 }
 
 fn all_waves(map: &HeightMap, mut visit: impl FnMut(Wave)) -> Result<f64> {
-    if map.undefined() > 0 {
-        let expected = "0: a spectrum needs every height (fill the undefined points or crop the map)";
-        return Err(Error::domain("undefined points", map.undefined() as f64, expected));
-    }
+    defined_everywhere(map, "a spectrum")?;
     let Cells { columns: nx, rows: ny } = map.cells();
     let (middle, unit) = middle_and_half_width(range(map.heights()));
     let transformed = ForwardTransform::new(nx, ny).of(|iy, row| {
@@ -78,7 +76,7 @@ fn all_waves(map: &HeightMap, mut visit: impl FnMut(Wave)) -> Result<f64> {
 /// conjugate wave.
 ///
 /// # Errors
-/// [`Error::Domain`] for a map with undefined points.
+/// [`contact_model::Error::Domain`] for a map with undefined points.
 pub(super) fn waves(
     map: &HeightMap,
     lattice: &Lattice,
@@ -99,7 +97,7 @@ pub(super) fn waves(
 /// memory about that of the map.
 ///
 /// # Errors
-/// [`Error::Domain`] for a map with undefined points.
+/// [`contact_model::Error::Domain`] for a map with undefined points.
 ///
 /// ```
 /// use contact_model::Surface;
@@ -128,7 +126,7 @@ pub fn rms_slope(map: &HeightMap) -> Result<f64> {
 /// left out. Cost O(N log N) for N cells, memory about that of the map.
 ///
 /// # Errors
-/// [`Error::Domain`] for a map with undefined points.
+/// [`contact_model::Error::Domain`] for a map with undefined points.
 ///
 /// ```
 /// use contact_model::Surface;

@@ -1,6 +1,7 @@
 //! The spectrum of a map that is not periodic, and where an exponent is fitted to it.
 
-use contact_model::{Cells, Error, HeightMap, Result};
+use super::defined::defined_everywhere;
+use contact_model::{Cells, HeightMap, Result};
 use numerics::range::{middle_and_half_width, range};
 use std::f64::consts::{PI, TAU};
 
@@ -38,12 +39,9 @@ fn mean_square(count: usize) -> f64 {
 /// spectrum over its neighbours. Cost O(N).
 ///
 /// # Errors
-/// [`Error::Domain`] for undefined points, and those of [`HeightMap::new`] where a height leaves the range of f64.
+/// [`contact_model::Error::Domain`] for undefined points, and those of [`HeightMap::new`] where a height leaves the range of f64.
 pub fn windowed(map: &HeightMap) -> Result<HeightMap> {
-    if map.undefined() > 0 {
-        let expected = "0: a window needs every height (fill the undefined points or crop the map)";
-        return Err(Error::domain("undefined points", map.undefined() as f64, expected));
-    }
+    defined_everywhere(map, "a window")?;
     let Cells { columns, rows } = map.cells();
     let (middle, _) = middle_and_half_width(range(map.heights()));
     let (across, down) = (hann_window(columns), hann_window(rows));
