@@ -2,13 +2,12 @@
 
 mod strips;
 
-use crate::closed;
-use crate::jkr::signed;
+use crate::closed::{self, Law};
+use crate::periodic;
 use crate::westergaard::whole_waves;
 use contact_model::{
-    Abilities, Adhesion, Boundary, ContactModel, ContactState, Effect, Error, Load, LoadKind,
-    Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene, SolveReport, Source, Stop,
-    SurfaceKind,
+    Abilities, ContactModel, ContactState, Effect, Error, Load, LoadKind, Nondimensionalisation,
+    PreparedContact, Result, ScaledState, Scaling, Scene, SolveReport, Source,
 };
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 use strips::{Strips, between, limits};
@@ -16,7 +15,7 @@ use strips::{Strips, between, limits};
 const NAME: &str = "adhesive_wave";
 
 /// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat under short-range adhesion
-/// ([`Adhesion::ShortRange`]), through the half-width a of a contact strip.
+/// ([`contact_model::Adhesion::ShortRange`]), through the half-width a of a contact strip.
 ///
 /// Westergaard's strips carry the mean pressure `p* sin^2 psi`, `psi = pi a/w`, `p* = pi E* D/w`. A uniform
 /// mean tension s on bonded strips adds the traction `s cos(pi x/w)/sqrt(sin^2 psi - sin^2(pi x/w))`, whose
@@ -143,7 +142,7 @@ impl WavyContact {
     /// [`Error::Domain`] for another psi, or a slope that no `f64` holds: the unstable part has a psi at which
     /// the mean gap turns.
     pub fn slope(&self, psi: f64) -> Result<f64> {
-        signed(PI * strips_at(psi)?.slope(self.alpha), |slope| self.stiffness_in(slope))
+        self.stiffness_in(PI * strips_at(psi)?.slope(self.alpha))
     }
 
     fn stiffness_in(&self, value: f64) -> Result<f64> {
@@ -181,7 +180,7 @@ impl WavyContact {
         if !pressure.is_finite() {
             return Err(Error::domain("mean pressure", pressure, "a finite number"));
         }
-        match self.branch(self.nondimensional.pressure_in(pressure.abs()).copysign(pressure) / PI) {
+        match self.branch(self.nondimensional.pressure_in(pressure) / PI) {
             Branch::PulledOff => Err(Error::OutOfRange {
                 name: "mean pressure (the contact pulls off under a prescribed force)".into(),
                 value: pressure,
@@ -194,7 +193,7 @@ impl WavyContact {
     }
 
     fn pressure_of(&self, strips: Strips) -> Result<f64> {
-        signed(PI * strips.pressure(self.alpha), |pressure| self.nondimensional.pressure(pressure))
+        self.nondimensional.pressure(PI * strips.pressure(self.alpha))
     }
 
     fn limit(&self, strips: Strips) -> Result<(f64, f64)> {
@@ -271,116 +270,70 @@ impl ContactModel for AdhesiveWave {
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            surfaces: &[SurfaceKind::Sine],
-            boundaries: &[Boundary::Periodic],
-            loads: &[LoadKind::Force],
-            effects: &[Effect::ShortRangeAdhesion],
-            outputs: closed::PERIODIC,
-            ..Abilities::ELASTIC
-        }
+        Abilities { loads: &[LoadKind::Force], effects: &[Effect::ShortRangeAdhesion], ..periodic::WAVE }
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.abilities().refuse(NAME, scene)?;
-        let work = match scene.effects.adhesion {
-            Adhesion::Off => 0.0,
-            Adhesion::ShortRange { work } => work,
-            other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
-        };
+        let work = closed::short_range_work(scene, NAME)?;
         let (amplitude, waves, size) = whole_waves(scene, NAME)?;
         let wave = WavyContact::new(amplitude, size.x / waves, scene.modulus, work)?;
-        let (modulus, length) = (scene.modulus, size.length());
-        let full = PI * waves * (length / size.x);
+        let full = PI * waves * (size.length() / size.x);
         if !full.is_normal() {
             let name = "number of waves times the root of side along y over side along x";
             return Err(Error::domain(name, full / PI, "a number within the range of f64"));
         }
-        let nondimensional = Nondimensionalisation::new(modulus, length, amplitude)?;
-        let normalisation = Normalisation { modulus, length, height: Some(amplitude / SQRT_2) };
-        Ok(Box::new(Prepared { wave, full, nondimensional, normalisation, outputs: scene.outputs }))
+        let scaling = Scaling::new(scene, amplitude, Some(amplitude / SQRT_2))?;
+        Ok(closed::prepared(scaling, WaveLaw { wave, full }))
     }
 }
 
-struct Prepared {
+/// The wave on its rectangle.
+struct WaveLaw {
     wave: WavyContact,
     /// p* in `E* D/L`.
     full: f64,
-    /// Moduli in E*, horizontal lengths in L, vertical ones in D.
-    nondimensional: Nondimensionalisation,
-    normalisation: Normalisation,
-    outputs: Outputs,
 }
 
-impl Prepared {
-    /// Force at a mean pressure over p*.
-    fn force(&self, ratio: f64) -> Result<f64> {
-        signed(ratio * self.full, |force| self.nondimensional.force(force))
-    }
-
-    /// Mean pressure over p* of a force; infinite where no `f64` holds it.
-    fn ratio(&self, force: f64) -> f64 {
-        self.nondimensional.force_in(force.abs()).copysign(force) / self.full
-    }
-
+impl WaveLaw {
     /// What is wrong with a force below the pull-off.
-    fn pulled_off(&self, force: f64) -> Error {
+    fn pulled_off(&self, force: f64, nondimensional: Nondimensionalisation) -> Error {
         let least = self.wave.limits.map_or(0.0, |[first, _]| first.pressure(self.wave.alpha));
-        self.force(least).map_or_else(
-            |error| error,
-            |min| {
-                let name = "force (the contact pulls off under a prescribed force)".into();
-                Error::OutOfRange { name, value: force, min, max: f64::INFINITY }
-            },
-        )
+        let smallest = nondimensional.force(least * self.full);
+        smallest.map_or_else(|error| error, |smallest| Error::pull_off(Load::Force(force), smallest))
     }
 }
 
-impl PreparedContact for Prepared {
-    fn normalisation(&self) -> Normalisation {
-        self.normalisation
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
+impl Law for WaveLaw {
+    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
         let force = match load.validated_with_adhesion()? {
             Load::Force(force) => force,
             other => return Err(Error::unsupported(NAME, format!("the load {other:?} (it takes a force)"))),
         };
-        let ratio = self.ratio(force);
+        let Scaling { nondimensional, outputs, .. } = *scaling;
+        // Mean pressure over p*; infinite where no `f64` holds it.
+        let ratio = nondimensional.force_in(force) / self.full;
         if self.wave.alpha <= 0.0 && ratio <= 0.0 && force > 0.0 {
             return Err(Error::domain("force over E* D L", ratio, "a number within the range of f64"));
         }
         let strips = match self.wave.branch(ratio) {
-            Branch::PulledOff => return Err(self.pulled_off(force)),
+            Branch::PulledOff => return Err(self.pulled_off(force, nondimensional)),
             Branch::Partial(strips) => Some(strips),
             Branch::Full => None,
         };
-        let nondimensional = self.nondimensional;
         let alpha = self.wave.alpha;
-        let stiffness = strips
-            .filter(|_| self.outputs.needs_stiffness())
-            // At a limit the slope is 0 within rounding.
-            .map(|strips| nondimensional.stiffness(self.full * strips.slope(alpha).max(0.0)))
-            .transpose()?;
-        let held = strips
-            .filter(|_| self.outputs.needs_fixed_area())
-            .map(|strips| nondimensional.stiffness(self.full / strips.less_log()))
-            .transpose()?;
         let gap = strips.map_or(0.0, |strips| strips.gap(alpha));
-        let gap = self.outputs.mean_gap.then(|| gap_in(nondimensional, gap)).transpose()?;
-        let fraction = strips.map_or(1.0, Strips::fraction);
-        let area = self.outputs.area.then(|| nondimensional.area(fraction)).transpose()?;
-        let mut report = SolveReport::exact("closed form (Johnson)");
-        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
-        ContactState::new(force, report)
-            .with_mean_gap(gap)
-            .with_stiffness(stiffness)
-            .with_stiffness_fixed_area(held)
-            .with_area(area)
-            .completed(&self.outputs, self.normalisation.modulus)
+        let gap = outputs.mean_gap.then(|| gap_in(nondimensional, gap)).transpose()?;
+        let scaled = ScaledState {
+            force: ratio * self.full,
+            // At a limit the slope is 0 within rounding.
+            stiffness: strips.map(|strips| self.full * strips.slope(alpha).max(0.0)),
+            stiffness_fixed_area: strips.map(|strips| self.full / strips.less_log()),
+            area: Some(strips.map_or(1.0, Strips::fraction)),
+            ..ScaledState::default()
+        };
+        let state = scaling.state(scaled, load, SolveReport::formula("closed form (Johnson)", load))?;
+        Ok(state.with_mean_gap(gap))
     }
 }
 
@@ -389,7 +342,7 @@ mod tests {
     use super::*;
     use crate::Westergaard;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::{Boundary, Conductance, Size, Surface};
+    use contact_model::{Adhesion, Boundary, Conductance, Size, Surface};
 
     /// Step of differences.
     const STEP: f64 = 1e-5;

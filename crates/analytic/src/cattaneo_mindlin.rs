@@ -5,8 +5,7 @@ use crate::hertz::Hertz;
 use crate::memory::{Goal, SlipCurve, held, lost, reached};
 use contact_model::{
     Abilities, ContactModel, ContactState, Effect, Effects, Error, Friction, Load, Normalisation, Outputs,
-    Paths, PreparedContact, Result, Scene, Source, Step, Stop, Surface, SurfaceKind, Tangential,
-    TangentialState,
+    Paths, PreparedContact, Result, Scene, Source, Step, Stop, Tangential, TangentialState, check_stop,
 };
 
 const NAME: &str = "cattaneo_mindlin";
@@ -18,7 +17,7 @@ const NAME: &str = "cattaneo_mindlin";
 /// earlier turn and goes on where that one left off (Mindlin and Deresiewicz 1953). The memory is the list of turns that are not
 /// closed.
 ///
-/// Takes [`Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]). The normal load may change only before
+/// Takes [`contact_model::Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]). The normal load may change only before
 /// the first tangential one; a tangential force beyond mu F is [`Error::OutOfRange`], a displacement beyond is gross slip.
 /// Tangential tractions are taken not to disturb the normal ones: exact where [`contact_model::Pair::coupling`] is 0, otherwise an
 /// approximation of that order.
@@ -60,17 +59,15 @@ impl ContactModel for CattaneoMindlin {
 
     fn abilities(&self) -> Abilities {
         Abilities {
-            surfaces: &[SurfaceKind::Sphere],
             effects: &[Effect::Friction],
             needs_effect: true,
             paths: Paths::Remembered,
-            outputs: closed::WITH_AREA,
-            ..Abilities::ELASTIC
+            ..closed::SPHERE
         }
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
-        self.abilities().refuse(NAME, scene)?;
+        closed::sphere(self, scene)?;
         let friction = scene.effects.friction;
         let Friction::Coulomb { coefficient } = friction else {
             return Err(Error::unsupported(NAME, format!("friction ({friction:?}): it needs Coulomb's")));
@@ -78,9 +75,6 @@ impl ContactModel for CattaneoMindlin {
         if coefficient <= 0.0 {
             return Err(Error::domain("coefficient of friction", coefficient, "a finite number > 0"));
         }
-        let Surface::Sphere { .. } = scene.surface else {
-            return Err(Error::unsupported(NAME, scene.surface.kind()));
-        };
         let Some(pair) = scene.pair else {
             return Err(Error::unsupported(
                 NAME,
@@ -198,12 +192,7 @@ impl SlidingSphere {
         if share.abs() <= ROUNDED_UP {
             return Ok(share.clamp(-1.0, 1.0));
         }
-        Err(Error::OutOfRange {
-            name: "tangential force (beyond it the contact slips as a whole)".into(),
-            value: tangential_force,
-            min: -self.limit,
-            max: self.limit,
-        })
+        Err(Error::gross_slip(tangential_force, self.limit))
     }
 }
 
@@ -256,9 +245,7 @@ impl PreparedContact for PreparedCattaneoMindlin {
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
+        check_stop(stop)?;
         let step = step.validated(self.at.time)?;
         let (state, sphere) = self.press(&step)?;
         let unloaded = self.at.curve == SlipCurve::default();
@@ -278,12 +265,12 @@ impl PreparedContact for PreparedCattaneoMindlin {
             curve.go(match step.tangential {
                 Tangential::Force(force) => Goal::Force(sphere.share(force)?),
                 Tangential::Displacement(u) => Goal::Displacement(u / sphere.reach),
-                other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+                other => return Err(Error::unsupported_load(NAME, other)),
             });
             let (force, displacement) = match step.tangential {
                 Tangential::Force(force) => (force, curve.now.u * sphere.reach),
                 Tangential::Displacement(u) => (curve.now.t * sphere.limit, u),
-                other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+                other => return Err(Error::unsupported_load(NAME, other)),
             };
             TangentialState::new(force, displacement)
                 .with_stick_radius(curve.stick() * sphere.contact_radius)
@@ -310,7 +297,7 @@ mod tests {
     use super::*;
     use crate::testing::{PRINTED, ROUNDING};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::{Body, Load, Pair};
+    use contact_model::{Body, Load, Pair, Surface};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 

@@ -1,13 +1,40 @@
 //! What all closed forms share: a law in units of its own becomes a [`PreparedContact`].
 
 use contact_model::{
-    ContactState, Error, Load, Nondimensionalisation, Normalisation, Output, Outputs, PreparedContact,
-    Result, Scene, Size, SolveReport, Stop, Surface,
+    Abilities, Adhesion, ContactModel, ContactState, Error, Load, Normalisation, Output, PreparedContact,
+    Result, ScaledState, Scaling, Scene, Size, SolveReport, Stop, Surface, SurfaceKind, check_stop,
 };
 use std::f64::consts::PI;
 
-/// A closed form between force, approach and stiffness, in the [`Nondimensionalisation`] of its [`Closed`];
-/// loads are positive.
+/// What a theory says of one load.
+pub(crate) trait Law: Send {
+    /// The state under a load, with what is asked for.
+    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState>;
+}
+
+/// A law made ready for its scene.
+struct Prepared<L> {
+    law: L,
+    scaling: Scaling,
+}
+
+impl<L: Law> PreparedContact for Prepared<L> {
+    fn normalisation(&self) -> Normalisation {
+        self.scaling.normalisation
+    }
+
+    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
+        check_stop(stop)?;
+        self.law.state(load, &self.scaling)
+    }
+}
+
+/// A contact that a law answers.
+pub(crate) fn prepared<L: Law + 'static>(scaling: Scaling, law: L) -> Box<dyn PreparedContact> {
+    Box::new(Prepared { law, scaling })
+}
+
+/// A closed form between force, approach and stiffness; loads are positive.
 pub(crate) trait ClosedLaw: Send {
     /// State at a force.
     fn at_force(&self, force: f64) -> Result<ClosedState>;
@@ -25,17 +52,20 @@ pub(crate) struct ClosedState {
     pub area: Option<f64>,
 }
 
-/// A law with its normalisation and what is asked of it.
+/// A closed form of an elastic contact without adhesion.
 pub(crate) struct Closed<L> {
     pub model: &'static str,
     pub law: L,
-    pub nondimensional: Nondimensionalisation,
-    pub normalisation: Normalisation,
-    pub outputs: Outputs,
     /// For [`SolveReport::strategy`].
     pub strategy: &'static str,
     /// Relative uncertainty of the stiffness that the theory itself states.
     pub stiffness_error: f64,
+}
+
+/// What is known of a round contact of this radius whatever its force.
+pub(crate) fn round(radius: f64) -> ScaledState {
+    let area = PI * radius * radius;
+    ScaledState { stiffness_fixed_area: Some(2.0 * radius), area: Some(area), ..ScaledState::default() }
 }
 
 impl ClosedState {
@@ -46,32 +76,13 @@ impl ClosedState {
     }
 }
 
-/// A law of a body in units of its side, made ready for its scene.
-pub(crate) fn prepared<L: ClosedLaw + 'static>(
-    scene: &Scene,
-    model: &'static str,
-    (strategy, stiffness_error): (&'static str, f64),
-    law: L,
-) -> Result<Box<dyn PreparedContact>> {
-    let (nondimensional, normalisation) = of_body(scene)?;
-    let outputs = scene.outputs;
-    Ok(Box::new(Closed { model, law, nondimensional, normalisation, outputs, strategy, stiffness_error }))
-}
-
-impl<L: ClosedLaw> PreparedContact for Closed<L> {
-    fn normalisation(&self) -> Normalisation {
-        self.normalisation
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
-        let nondimensional = self.nondimensional;
+impl<L: ClosedLaw> Law for Closed<L> {
+    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+        let nondimensional = scaling.nondimensional;
         let (asked, value) = match load.validated()? {
             Load::Force(force) => (force, nondimensional.force_in(force)),
             Load::Approach(approach) => (approach, nondimensional.approach_in(approach)),
-            _ => return Err(Error::unsupported(self.model, format!("the load {load:?}"))),
+            _ => return Err(Error::unsupported_load(self.model, load)),
         };
         let point = if asked <= 0.0 {
             ClosedState { force: 0.0, approach: 0.0, stiffness: 0.0, area: Some(0.0) }
@@ -91,23 +102,26 @@ impl<L: ClosedLaw> PreparedContact for Closed<L> {
                 }
             }
         }
-        let (force, approach) = match load {
-            Load::Force(force) => (force, nondimensional.approach(point.approach)?),
-            _ => (nondimensional.force(point.force)?, asked),
+        let scaled = ScaledState {
+            force: point.force,
+            approach: Some(point.approach),
+            area: point.area,
+            stiffness_error: self.stiffness_error,
+            ..ScaledState::default()
         };
-        let stiffness =
-            self.outputs.needs_stiffness().then(|| nondimensional.stiffness(point.stiffness)).transpose()?;
-        let area =
-            point.area.filter(|_| self.outputs.area).map(|area| nondimensional.area(area)).transpose()?;
-        let mut report = SolveReport::exact(self.strategy);
-        report.certificate.stiffness_error = stiffness.map(|_| self.stiffness_error);
-        report.certificate.force_error = force_error(load);
-        ContactState::new(force, report)
-            .with_approach(approach)
-            .with_elastic_stiffness(stiffness)
-            .with_area(area)
-            .completed(&self.outputs, self.normalisation.modulus)
+        let report = SolveReport::formula(self.strategy, load);
+        scaling.state(scaled.with_elastic_stiffness(point.stiffness), load, report)
     }
+}
+
+/// A law of a body in units of its side, made ready for its scene.
+pub(crate) fn of_body<L: ClosedLaw + 'static>(
+    scene: &Scene,
+    model: &'static str,
+    (strategy, stiffness_error): (&'static str, f64),
+    law: L,
+) -> Result<Box<dyn PreparedContact>> {
+    Ok(prepared(Scaling::of_body(scene)?, Closed { model, law, strategy, stiffness_error }))
 }
 
 /// Refuses a profile, with the reason of theories of rough surfaces.
@@ -122,44 +136,46 @@ pub(crate) fn refuse_profile(scene: &Scene, model: &'static str) -> Result<()> {
     Ok(())
 }
 
+/// The radius of a sphere and the size of its rectangle, of a scene of which a model can do everything.
+///
+/// # Errors
+/// [`Error::Unsupported`] for what the model lacks, and for another surface.
+pub(crate) fn sphere(model: &dyn ContactModel, scene: &Scene) -> Result<(f64, Size)> {
+    model.abilities().refuse(model.name(), scene)?;
+    match scene.surface {
+        Surface::Sphere { radius, size } => Ok((radius, size)),
+        ref other => Err(Error::unsupported(model.name(), other.kind())),
+    }
+}
+
+/// The work of short-range adhesion, 0 where it is off.
+///
+/// # Errors
+/// [`Error::Unsupported`] for another adhesion.
+pub(crate) fn short_range_work(scene: &Scene, model: &'static str) -> Result<f64> {
+    match scene.effects.adhesion {
+        Adhesion::Off => Ok(0.0),
+        Adhesion::ShortRange { work } => Ok(work),
+        other => Err(Error::unsupported(model, format!("adhesion ({other:?})"))),
+    }
+}
+
 /// Outputs of closed forms that have an area.
 pub(crate) const WITH_AREA: &[Output] =
     &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area];
-/// Those of periodic ones.
-pub(crate) const PERIODIC: &[Output] =
-    &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance, Output::Area, Output::MeanGap];
 
-/// Units and normalisation of a body without rms height: everything is counted in `L = sqrt(Lx Ly)`.
-///
-/// # Errors
-/// [`Error::Domain`] for a modulus or length that no unit can be.
-pub(crate) fn of_body(scene: &Scene) -> Result<(Nondimensionalisation, Normalisation)> {
-    let (modulus, length) = (scene.modulus, scene.surface.size().length());
-    Ok((
-        Nondimensionalisation::new(modulus, length, length)?,
-        Normalisation { modulus, length, height: None },
-    ))
-}
+/// A sphere, elastic and without friction.
+pub(crate) const SPHERE: Abilities =
+    Abilities { surfaces: &[SurfaceKind::Sphere], outputs: WITH_AREA, ..Abilities::ELASTIC };
 
 /// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is
 /// free.
 pub(crate) fn within(radius: f64, size: Size) -> Result<()> {
-    let (length, shorter) = (size.length(), size.shorter());
-    if radius <= 0.5 * (shorter / length) * ROUNDED_UP {
-        Ok(())
-    } else {
-        let value = radius * length;
-        Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max: 0.5 * shorter })
-    }
+    size.admit_radius("contact radius", radius * size.length())
 }
 
 /// A load exactly at the end of a range may come out a few roundings beyond it.
 pub(crate) const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
-
-/// Relative error of the force of a closed form, where it is a result.
-pub(crate) fn force_error(load: Load) -> Option<f64> {
-    matches!(load, Load::Approach(_)).then_some(0.0)
-}
 
 /// Slope `dd/da` over that far from it, below which a state is the pull-off under prescribed approach: a radius
 /// that is found from an approach has half its digits there, and its `dF/dd` none.

@@ -80,7 +80,7 @@ impl ContactModel for FlatPunch {
             }
             ref other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        closed::prepared(scene, NAME, (strategy, stiffness_error), law)
+        closed::of_body(scene, NAME, (strategy, stiffness_error), law)
     }
 }
 

@@ -4,8 +4,7 @@ use crate::closed;
 use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::spectrum::Spectrum;
 use contact_model::{
-    Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
-    Scene, Source, Surface, SurfaceKind,
+    Abilities, ContactModel, Error, PreparedContact, Result, Scaling, Scene, Source, Surface,
 };
 use numerics::gauss::Gauss;
 use numerics::root;
@@ -128,13 +127,7 @@ impl ContactModel for GreenwoodWilliamson {
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            surfaces: &[SurfaceKind::SelfAffine, SurfaceKind::Heights],
-            boundaries: &[Boundary::Periodic],
-            loads: periodic::LOADS,
-            outputs: closed::PERIODIC,
-            ..Abilities::ELASTIC
-        }
+        periodic::RANDOM
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
@@ -151,16 +144,10 @@ impl ContactModel for GreenwoodWilliamson {
             }
             other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        let (modulus, length) = (scene.modulus, scene.surface.size().length());
         let summits = Summits::scaled(moments);
-        Ok(Box::new(Periodic {
-            model: NAME,
-            law: AsperityModel { summits, heights: self.heights, gauss: Gauss::<16>::new() },
-            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
-            normalisation: Normalisation { modulus, length, height: Some(height) },
-            outputs: scene.outputs,
-            strategy: "integral over independent summits (Greenwood, Williamson; McCool)",
-        }))
+        let law = AsperityModel { summits, heights: self.heights, gauss: Gauss::<16>::new() };
+        let strategy = "integral over independent summits (Greenwood, Williamson; McCool)";
+        Ok(closed::prepared(Scaling::of_rough(scene, height)?, Periodic { model: NAME, law, strategy }))
     }
 }
 

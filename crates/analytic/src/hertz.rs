@@ -1,15 +1,14 @@
 //! Hertz: a sphere (paraboloid `z = r^2 / (2 R)`).
 
 use crate::closed::{self, ClosedLaw, ClosedState};
-use contact_model::{
-    Abilities, ContactModel, Error, PreparedContact, Result, Scene, Size, Source, Surface, SurfaceKind,
-};
+use contact_model::{Abilities, ContactModel, PreparedContact, Result, Scene, Size, Source};
 
 const NAME: &str = "hertz";
 
 /// Hertz's contact of a sphere: `a^3 = 3 F R / (4 E*)`, `d = a^2 / R`, `k = 2 E* a`, `A = pi a^2`.
 ///
-/// Takes [`Surface::Sphere`]; a contact radius beyond half the shorter side is [`Error::OutOfRange`].
+/// Takes [`contact_model::Surface::Sphere`]; a contact radius beyond half the shorter side is
+/// [`contact_model::Error::OutOfRange`].
 ///
 /// ```
 /// use analytic::Hertz;
@@ -36,16 +35,13 @@ impl ContactModel for Hertz {
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities { surfaces: &[SurfaceKind::Sphere], outputs: closed::WITH_AREA, ..Abilities::ELASTIC }
+        closed::SPHERE
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        self.abilities().refuse(NAME, scene)?;
-        let Surface::Sphere { radius, size } = scene.surface else {
-            return Err(Error::unsupported(NAME, scene.surface.kind()));
-        };
+        let (radius, size) = closed::sphere(self, scene)?;
         let law = HertzSphere { radius: radius / size.length(), size };
-        closed::prepared(scene, NAME, ("closed form (Hertz)", 0.0), law)
+        closed::of_body(scene, NAME, ("closed form (Hertz)", 0.0), law)
     }
 }
 
@@ -93,7 +89,7 @@ mod tests {
     use super::*;
     use crate::testing::{PRINTED, ROUNDING, check_curve, pressed, scale_invariant};
     use approx::assert_relative_eq;
-    use contact_model::Load;
+    use contact_model::{Error, Load, Surface};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
     use std::f64::consts::PI;

@@ -1,17 +1,16 @@
 //! Johnson, Kendall, Roberts: a sphere with short-range adhesion.
 
-use crate::closed;
+use crate::closed::{self, Law};
 use contact_model::{
-    Abilities, Adhesion, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation,
-    Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface,
-    SurfaceKind,
+    Abilities, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation, PreparedContact,
+    Result, ScaledState, Scaling, Scene, Size, SolveReport, Source,
 };
 use numerics::root;
 use std::f64::consts::PI;
 
 const NAME: &str = "jkr";
 
-/// The JKR contact of a sphere with [`Adhesion::ShortRange`]: `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d
+/// The JKR contact of a sphere with [`contact_model::Adhesion::ShortRange`]: `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d
 /// = a^2/R - sqrt(2 pi w a/E*)`.
 ///
 /// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be
@@ -23,7 +22,7 @@ const NAME: &str = "jkr";
 /// The stiffness is the slope of the equilibrium curve, on which the edge moves ([`AdhesiveSphere::slope`]): 0
 /// at the pull-off under prescribed force, negative beyond it, absent at the pull-off under prescribed approach,
 /// where it has no bound. That of the held contact area, which the conductance follows from, is `2 E* a`. Takes
-/// [`Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
+/// [`contact_model::Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
 ///
 /// ```
 /// use analytic::Jkr;
@@ -56,33 +55,15 @@ impl ContactModel for Jkr {
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            surfaces: &[SurfaceKind::Sphere],
-            effects: &[Effect::ShortRangeAdhesion],
-            outputs: closed::WITH_AREA,
-            ..Abilities::ELASTIC
-        }
+        Abilities { effects: &[Effect::ShortRangeAdhesion], ..closed::SPHERE }
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
-        self.abilities().refuse(NAME, scene)?;
-        let Surface::Sphere { radius, size } = scene.surface else {
-            return Err(Error::unsupported(NAME, scene.surface.kind()));
-        };
-        let work = match scene.effects.adhesion {
-            Adhesion::Off => 0.0,
-            Adhesion::ShortRange { work } => work,
-            other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
-        };
-        let (_, normalisation) = closed::of_body(scene)?;
+        let (radius, size) = closed::sphere(self, scene)?;
+        let work = closed::short_range_work(scene, NAME)?;
+        let scaling = Scaling::of_body(scene)?;
         let sphere = AdhesiveSphere::new(radius, scene.modulus, work)?;
-        Ok(Box::new(PreparedJkr {
-            sphere,
-            largest: 0.5 * size.shorter() / radius,
-            size,
-            normalisation,
-            outputs: scene.outputs,
-        }))
+        Ok(closed::prepared(scaling.in_units(sphere.nondimensional), JkrLaw { sphere, size }))
     }
 }
 
@@ -141,7 +122,7 @@ impl AdhesiveSphere {
     /// [`Error::Domain`] for a radius that is negative or not finite, or a force that no `f64` holds.
     pub fn force(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
-        signed(self.force_of(a), |force| self.nondimensional.force(force))
+        self.nondimensional.force(self.force_of(a))
     }
 
     /// `d = a^2/R - sqrt(2 pi w a/E*)` at a contact radius a.
@@ -150,7 +131,7 @@ impl AdhesiveSphere {
     /// As [`AdhesiveSphere::force`].
     pub fn approach(&self, contact_radius: f64) -> Result<f64> {
         let a = self.radius_in(contact_radius)?;
-        signed(self.approach_of(a), |approach| self.nondimensional.approach(approach))
+        self.nondimensional.approach(self.approach_of(a))
     }
 
     /// `dF/dd` along the equilibrium curve: positive where a prescribed force holds the contact, negative
@@ -168,7 +149,7 @@ impl AdhesiveSphere {
             let expected = "beyond that of the pull-off under prescribed approach";
             return Err(Error::domain("contact radius", contact_radius, expected));
         }
-        self.slope_of(a, b)
+        self.nondimensional.stiffness(slope_of(a, b))
     }
 
     /// Contact radius at a force: `a^3 = 3 R/(4 E*) (sqrt(F + F_a) + sqrt(F_a))^2` with `F_a = 3/2 pi w R`.
@@ -215,8 +196,8 @@ impl AdhesiveSphere {
 
     fn pull_off(&self, radius: f64, force: f64) -> Result<PullOff> {
         Ok(PullOff {
-            force: signed(force, |force| self.nondimensional.force(force))?,
-            approach: signed(self.approach_of(radius), |approach| self.nondimensional.approach(approach))?,
+            force: self.nondimensional.force(force)?,
+            approach: self.nondimensional.approach(self.approach_of(radius))?,
             radius: self.nondimensional.approach(radius)?,
         })
     }
@@ -236,18 +217,13 @@ impl AdhesiveSphere {
         0.75 * (2.0 * PI * self.work / a).sqrt() / a
     }
 
-    /// `dF/dd` along the curve, in the caller's units.
-    fn slope_of(&self, a: f64, b: f64) -> Result<f64> {
-        signed(2.0 * a * (1.0 - b) / (1.0 - b / 3.0), |slope| self.nondimensional.stiffness(slope))
-    }
-
     /// The slope of a state; `None` at the pull-off under prescribed approach.
-    fn slope_of_state(&self, a: f64) -> Result<Option<f64>> {
+    fn slope_of_state(&self, a: f64) -> Option<f64> {
         if self.work <= 0.0 {
-            return self.nondimensional.stiffness(2.0 * a).map(Some);
+            return Some(2.0 * a);
         }
         let b = self.b(a);
-        (1.0 - b / 3.0 > closed::AT_FOLD).then(|| self.slope_of(a, b)).transpose()
+        (1.0 - b / 3.0 > closed::AT_FOLD).then(|| slope_of(a, b))
     }
 
     fn force_of(&self, a: f64) -> f64 {
@@ -266,14 +242,9 @@ impl AdhesiveSphere {
     /// Contact radius in R at a force.
     fn at_force(&self, force: f64) -> Result<f64> {
         let pull_off = 1.5 * PI * self.work;
-        let scaled = self.nondimensional.force_in(force.abs()).copysign(force);
+        let scaled = self.nondimensional.force_in(force);
         if scaled < -pull_off * closed::ROUNDED_UP {
-            return Err(Error::OutOfRange {
-                name: "force (the contact pulls off under a prescribed force)".into(),
-                value: force,
-                min: self.pull_off_at_force()?.force,
-                max: f64::INFINITY,
-            });
+            return Err(Error::pull_off(Load::Force(force), self.pull_off_at_force()?.force));
         }
         let root = (scaled + pull_off).max(0.0).sqrt() + pull_off.sqrt();
         Ok((0.75 * root * root).cbrt())
@@ -289,12 +260,7 @@ impl AdhesiveSphere {
         let fold = self.smallest_radius();
         let least = -0.75 * c * fold.sqrt();
         if d < least * closed::ROUNDED_UP {
-            return Err(Error::OutOfRange {
-                name: "approach (the contact pulls off under a prescribed approach)".into(),
-                value: approach,
-                min: self.pull_off_at_approach()?.approach,
-                max: f64::INFINITY,
-            });
+            return Err(Error::pull_off(Load::Approach(approach), self.pull_off_at_approach()?.approach));
         }
         if d <= least {
             return Ok(fold);
@@ -309,61 +275,36 @@ impl AdhesiveSphere {
     }
 }
 
-/// A conversion of magnitudes, for numbers of either sign.
-pub(crate) fn signed(value: f64, convert: impl Fn(f64) -> Result<f64>) -> Result<f64> {
-    Ok(convert(value.abs())?.copysign(value))
+/// `dF/dd` along the curve, radii in R.
+fn slope_of(a: f64, b: f64) -> f64 {
+    2.0 * a * (1.0 - b) / (1.0 - b / 3.0)
 }
 
-struct PreparedJkr {
+/// A sphere on a rectangle.
+struct JkrLaw {
     sphere: AdhesiveSphere,
-    /// Half the shorter side over R.
-    largest: f64,
     size: Size,
-    normalisation: Normalisation,
-    outputs: Outputs,
 }
 
-impl PreparedContact for PreparedJkr {
-    fn normalisation(&self) -> Normalisation {
-        self.normalisation
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
-        let (sphere, nondimensional) = (&self.sphere, self.sphere.nondimensional);
+impl Law for JkrLaw {
+    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+        let sphere = &self.sphere;
         let (a, asked) = match load.validated_with_adhesion()? {
             Load::Force(force) => (sphere.at_force(force)?, force),
             Load::Approach(approach) => (sphere.at_approach(approach)?, approach),
-            _ => return Err(Error::unsupported(NAME, format!("the load {load:?}"))),
+            _ => return Err(Error::unsupported_load(NAME, load)),
         };
         if !a.is_finite() || (a <= 0.0 && (asked.abs() > 0.0 || sphere.work > 0.0)) {
             return Err(Error::domain("contact radius over R", a, "a number within the range of f64"));
         }
-        if a > self.largest * closed::ROUNDED_UP {
-            let (max, value) = (0.5 * self.size.shorter(), a * nondimensional.approach(1.0)?);
-            return Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max });
-        }
-        let (force, approach) = match load {
-            Load::Force(force) => {
-                (force, signed(sphere.approach_of(a), |approach| nondimensional.approach(approach))?)
-            }
-            _ => (signed(sphere.force_of(a), |force| nondimensional.force(force))?, asked),
+        self.size.admit_radius("contact radius", scaling.nondimensional.approach(a)?)?;
+        let scaled = ScaledState {
+            force: sphere.force_of(a),
+            approach: Some(sphere.approach_of(a)),
+            stiffness: sphere.slope_of_state(a),
+            ..closed::round(a)
         };
-        let outputs = &self.outputs;
-        let stiffness = if outputs.needs_stiffness() { sphere.slope_of_state(a)? } else { None };
-        let held = outputs.needs_fixed_area().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
-        let area = outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
-        let mut report = SolveReport::exact("closed form (JKR)");
-        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
-        report.certificate.force_error = closed::force_error(load);
-        ContactState::new(force, report)
-            .with_approach(approach)
-            .with_stiffness(stiffness)
-            .with_stiffness_fixed_area(held)
-            .with_area(area)
-            .completed(&self.outputs, self.normalisation.modulus)
+        scaling.state(scaled, load, SolveReport::formula("closed form (JKR)", load))
     }
 }
 
@@ -372,6 +313,7 @@ mod tests {
     use super::*;
     use crate::testing::{PRINTED, ROUNDING, check_slope, pressed};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use contact_model::{Adhesion, Surface};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 

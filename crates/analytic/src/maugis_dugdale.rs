@@ -2,12 +2,12 @@
 
 mod curve;
 
-use crate::jkr::{PullOff, signed};
-use crate::{Hertz, closed};
+use crate::Hertz;
+use crate::closed::{self, Law};
+use crate::jkr::PullOff;
 use contact_model::{
     Abilities, Adhesion, AdhesionLaw, ContactModel, ContactState, Effect, Effects, Error, Load,
-    Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source,
-    Stop, Surface, SurfaceKind,
+    Nondimensionalisation, PreparedContact, Result, ScaledState, Scaling, Scene, Size, SolveReport, Source,
 };
 use curve::{Curve, Point};
 use numerics::root;
@@ -29,7 +29,7 @@ const NAME: &str = "maugis_dugdale";
 /// The stiffness is the slope of the equilibrium curve, on which a and c both move ([`MaugisSphere::slope`]),
 /// absent at the pull-off under prescribed approach, where it has no bound. That of the held contact area, which
 /// the conductance follows from, is `2 E* a` as in [`crate::Jkr`]: the attraction is constant and bridges no
-/// current. Takes [`Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs
+/// current. Takes [`contact_model::Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs
 /// one to two microseconds.
 ///
 /// ```
@@ -59,19 +59,11 @@ impl ContactModel for MaugisDugdale {
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            surfaces: &[SurfaceKind::Sphere],
-            effects: &[Effect::DugdaleAdhesion],
-            outputs: closed::WITH_AREA,
-            ..Abilities::ELASTIC
-        }
+        Abilities { effects: &[Effect::DugdaleAdhesion], ..closed::SPHERE }
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
-        self.abilities().refuse(NAME, scene)?;
-        let Surface::Sphere { radius, size } = scene.surface else {
-            return Err(Error::unsupported(NAME, scene.surface.kind()));
-        };
+        let (radius, size) = closed::sphere(self, scene)?;
         let sphere = match scene.effects.adhesion {
             Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale } if work > 0.0 => {
                 MaugisSphere::new(radius, scene.modulus, work, range)?
@@ -84,8 +76,8 @@ impl ContactModel for MaugisDugdale {
             }
             other => return Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),
         };
-        let (_, normalisation) = closed::of_body(scene)?;
-        Ok(Box::new(Prepared { sphere, size, normalisation, outputs: scene.outputs }))
+        let scaling = Scaling::of_body(scene)?;
+        Ok(closed::prepared(scaling.in_units(sphere.nondimensional), MaugisLaw { sphere, size }))
     }
 }
 
@@ -167,7 +159,7 @@ impl MaugisSphere {
     /// # Errors
     /// [`Error::Domain`] for a radius that is negative or not finite, or numbers that no `f64` holds.
     pub fn force(&self, contact_radius: f64) -> Result<f64> {
-        self.force_of(&self.point(contact_radius)?)
+        self.nondimensional.force(self.force_of(&self.point(contact_radius)?))
     }
 
     /// Approach at a contact radius a, which may be 0.
@@ -175,7 +167,7 @@ impl MaugisSphere {
     /// # Errors
     /// As [`MaugisSphere::force`].
     pub fn approach(&self, contact_radius: f64) -> Result<f64> {
-        self.approach_of(&self.point(contact_radius)?)
+        self.nondimensional.approach(self.approach_of(&self.point(contact_radius)?))
     }
 
     /// Outer radius c of the cohesive zone, where the gap is the range, at a contact radius a, which may be
@@ -200,7 +192,7 @@ impl MaugisSphere {
     pub fn slope(&self, contact_radius: f64) -> Result<f64> {
         let (force, approach) = self.point(contact_radius)?.rates(self.curve.lambda);
         if approach > 0.0 {
-            self.slope_of(force, approach)
+            self.nondimensional.stiffness(self.slope_of(force, approach))
         } else {
             let expected = "beyond that of the pull-off under prescribed approach";
             Err(Error::domain("contact radius", contact_radius, expected))
@@ -244,8 +236,8 @@ impl MaugisSphere {
 
     fn pull_off(&self, point: &Point) -> Result<PullOff> {
         Ok(PullOff {
-            force: self.force_of(point)?,
-            approach: self.approach_of(point)?,
+            force: self.nondimensional.force(self.force_of(point))?,
+            approach: self.nondimensional.approach(self.approach_of(point))?,
             radius: self.radius_of(point)?,
         })
     }
@@ -254,26 +246,27 @@ impl MaugisSphere {
         self.approach_fold.map_or_else(|| self.curve.end(), |x| self.curve.at(x))
     }
 
-    fn force_of(&self, point: &Point) -> Result<f64> {
-        signed(self.force_unit * point.force(self.curve.lambda), |force| self.nondimensional.force(force))
+    /// Force over E* R^2.
+    fn force_of(&self, point: &Point) -> f64 {
+        self.force_unit * point.force(self.curve.lambda)
     }
 
-    fn approach_of(&self, point: &Point) -> Result<f64> {
-        let approach = self.unit * (self.unit * point.approach(self.curve.lambda));
-        signed(approach, |approach| self.nondimensional.approach(approach))
+    /// Approach over R.
+    fn approach_of(&self, point: &Point) -> f64 {
+        self.unit * (self.unit * point.approach(self.curve.lambda))
     }
 
-    /// `dF/dd` from [`Point::rates`].
-    fn slope_of(&self, force: f64, approach: f64) -> Result<f64> {
-        signed(4.0 / 3.0 * self.unit * force / approach, |slope| self.nondimensional.stiffness(slope))
+    /// `dF/dd` over E* R from [`Point::rates`].
+    fn slope_of(&self, force: f64, approach: f64) -> f64 {
+        4.0 / 3.0 * self.unit * force / approach
     }
 
     /// The slope of a state; `None` at the pull-off under prescribed approach.
-    fn slope_of_state(&self, point: &Point) -> Result<Option<f64>> {
+    fn slope_of_state(&self, point: &Point) -> Option<f64> {
         /// `(dd/da)/a` without adhesion.
         const ELASTIC: f64 = 2.0;
         let (force, approach) = point.rates(self.curve.lambda);
-        (approach > ELASTIC * closed::AT_FOLD).then(|| self.slope_of(force, approach)).transpose()
+        (approach > ELASTIC * closed::AT_FOLD).then(|| self.slope_of(force, approach))
     }
 
     fn radius_of(&self, point: &Point) -> Result<f64> {
@@ -294,17 +287,13 @@ impl MaugisSphere {
         if !force.is_finite() {
             return Err(Error::domain("force", force, "a finite number"));
         }
-        let wanted = self.nondimensional.force_in(force.abs()).copysign(force) / self.force_unit;
+        let wanted = self.nondimensional.force_in(force) / self.force_unit;
         let lambda = self.curve.lambda;
         let fold = self.curve.at(self.force_fold);
         let least = fold.force(lambda);
         if wanted < least * closed::ROUNDED_UP {
-            return Err(Error::OutOfRange {
-                name: "force (the contact pulls off under a prescribed force)".into(),
-                value: force,
-                min: self.force_of(&fold)?,
-                max: f64::INFINITY,
-            });
+            let smallest = self.nondimensional.force(self.force_of(&fold))?;
+            return Err(Error::pull_off(Load::Force(force), smallest));
         }
         if wanted <= least {
             return Ok(fold);
@@ -323,13 +312,14 @@ impl MaugisSphere {
         let end = self.least_approach();
         let least = end.approach(lambda);
         if wanted < least * closed::ROUNDED_UP {
-            let name = if self.approach_fold.is_some() {
-                "approach (the contact pulls off under a prescribed approach)"
-            } else {
-                "approach (the contact radius is 0; attraction without contact is not part of the model)"
-            };
-            let (value, min) = (approach, self.approach_of(&end)?);
-            return Err(Error::OutOfRange { name: name.into(), value, min, max: f64::INFINITY });
+            let min = self.nondimensional.approach(self.approach_of(&end))?;
+            if self.approach_fold.is_some() {
+                return Err(Error::pull_off(Load::Approach(approach), min));
+            }
+            let name =
+                "approach (the contact radius is 0; attraction without contact is not part of the model)";
+            let name = name.into();
+            return Err(Error::OutOfRange { name, value: approach, min, max: f64::INFINITY });
         }
         if wanted <= least {
             return Ok(end);
@@ -341,53 +331,29 @@ impl MaugisSphere {
     }
 }
 
-struct Prepared {
+/// A sphere on a rectangle.
+struct MaugisLaw {
     sphere: MaugisSphere,
     size: Size,
-    normalisation: Normalisation,
-    outputs: Outputs,
 }
 
-impl PreparedContact for Prepared {
-    fn normalisation(&self) -> Normalisation {
-        self.normalisation
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
-        let (sphere, nondimensional) = (&self.sphere, self.sphere.nondimensional);
-        let (point, force, approach) = match load.validated_with_adhesion()? {
-            Load::Force(force) => {
-                let point = sphere.at_force(force)?;
-                (point, force, sphere.approach_of(&point)?)
-            }
-            Load::Approach(approach) => {
-                let point = sphere.at_approach(approach)?;
-                (point, sphere.force_of(&point)?, approach)
-            }
-            _ => return Err(Error::unsupported(NAME, format!("the load {load:?}"))),
+impl Law for MaugisLaw {
+    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+        let sphere = &self.sphere;
+        let point = match load.validated_with_adhesion()? {
+            Load::Force(force) => sphere.at_force(force)?,
+            Load::Approach(approach) => sphere.at_approach(approach)?,
+            _ => return Err(Error::unsupported_load(NAME, load)),
         };
-        let (value, max) = (nondimensional.approach(sphere.unit * point.c)?, 0.5 * self.size.shorter());
-        if value > max * closed::ROUNDED_UP {
-            let name = "outer radius of the cohesive zone".into();
-            return Err(Error::OutOfRange { name, value, min: 0.0, max });
-        }
-        let a = sphere.unit * point.a;
-        let outputs = &self.outputs;
-        let stiffness = if outputs.needs_stiffness() { sphere.slope_of_state(&point)? } else { None };
-        let held = outputs.needs_fixed_area().then(|| nondimensional.stiffness(2.0 * a)).transpose()?;
-        let area = outputs.area.then(|| nondimensional.area(PI * a * a)).transpose()?;
-        let mut report = SolveReport::exact("closed form (Maugis-Dugdale)");
-        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
-        report.certificate.force_error = closed::force_error(load);
-        ContactState::new(force, report)
-            .with_approach(approach)
-            .with_stiffness(stiffness)
-            .with_stiffness_fixed_area(held)
-            .with_area(area)
-            .completed(&self.outputs, self.normalisation.modulus)
+        let outer = scaling.nondimensional.approach(sphere.unit * point.c)?;
+        self.size.admit_radius("outer radius of the cohesive zone", outer)?;
+        let scaled = ScaledState {
+            force: sphere.force_of(&point),
+            approach: Some(sphere.approach_of(&point)),
+            stiffness: sphere.slope_of_state(&point),
+            ..closed::round(sphere.unit * point.a)
+        };
+        scaling.state(scaled, load, SolveReport::formula("closed form (Maugis-Dugdale)", load))
     }
 }
 
@@ -397,6 +363,7 @@ mod tests {
     use crate::jkr::AdhesiveSphere;
     use crate::testing::{check_slope, pressed};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use contact_model::Surface;
 
     /// Roots in ln s, |ln s| < 20, and the cancellation of a^3 with the attraction.
     const ROOTS: f64 = 1e-12;

@@ -1,11 +1,13 @@
-//! What all theories of periodic contact share: a law in the mean pressure becomes a [`PreparedContact`].
+//! What all theories of periodic contact share: a law in the mean pressure becomes a state.
 
+use crate::closed::Law;
 use contact_model::{
-    ContactState, Error, Load, LoadKind, Nondimensionalisation, Normalisation, Outputs, PreparedContact,
-    Result, SolveReport, Stop,
+    Abilities, Boundary, ContactState, Error, Load, LoadKind, Output, Result, ScaledState, Scaling,
+    SolveReport, SurfaceKind,
 };
 
-/// A theory of a periodic contact in the mean pressure p, in units of `E* h / L`: h is the unit of heights of its [`Periodic`].
+/// A theory of a periodic contact in the mean pressure p, in units of `E* h / L`: h is the unit of heights of its
+/// [`Scaling`].
 pub(crate) trait PeriodicLaw: Send {
     /// Errors for a pressure > 0 beyond what the theory holds for.
     fn admit(&self, pressure: f64) -> Result<()>;
@@ -23,28 +25,25 @@ pub(crate) trait PeriodicLaw: Send {
     }
 }
 
-/// A periodic law with its normalisation and what is asked of it.
+/// A theory of a periodic contact.
 pub(crate) struct Periodic<L> {
     pub model: &'static str,
     pub law: L,
-    pub nondimensional: Nondimensionalisation,
-    pub normalisation: Normalisation,
-    pub outputs: Outputs,
     /// For [`SolveReport::strategy`].
     pub strategy: &'static str,
 }
 
 impl<L: PeriodicLaw> Periodic<L> {
     /// The mean pressure under a load, in units.
-    fn press(&self, load: Load) -> Result<f64> {
+    fn press(&self, load: Load, scaling: &Scaling) -> Result<f64> {
         let (asked, pressure) = match load.validated()? {
-            Load::Force(force) => (force > 0.0, self.nondimensional.force_in(force)),
-            Load::MeanGap(gap) => (false, self.law.pressure(self.nondimensional.approach_in(gap))?),
+            Load::Force(force) => (force > 0.0, scaling.nondimensional.force_in(force)),
+            Load::MeanGap(gap) => (false, self.law.pressure(scaling.nondimensional.approach_in(gap))?),
             Load::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
                 return Err(Error::unsupported(self.model, what));
             }
-            _ => return Err(Error::unsupported(self.model, format!("the load {load:?}"))),
+            _ => return Err(Error::unsupported_load(self.model, load)),
         };
         if !pressure.is_finite() || (asked && pressure <= 0.0) {
             let expected = "a number within the range of f64";
@@ -57,48 +56,50 @@ impl<L: PeriodicLaw> Periodic<L> {
     }
 }
 
-impl<L: PeriodicLaw> PreparedContact for Periodic<L> {
-    fn normalisation(&self) -> Normalisation {
-        self.normalisation
-    }
-
-    fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
-        let pressure = self.press(load)?;
-        let or_none = |f: &dyn Fn(f64) -> Result<f64>| if pressure > 0.0 { f(pressure) } else { Ok(0.0) };
-        let nondimensional = self.nondimensional;
-        let force = match load {
-            Load::Force(force) => force,
-            _ => nondimensional.force(pressure)?,
-        };
-        let stiffness = match self.outputs.needs_stiffness() {
+impl<L: PeriodicLaw> Law for Periodic<L> {
+    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+        let pressure = self.press(load, scaling)?;
+        let outputs = scaling.outputs;
+        let stiffness = match outputs.needs_stiffness() {
             true if pressure > 0.0 => self.law.stiffness(pressure)?,
             asked => asked.then_some(0.0),
         };
-        let stiffness = stiffness.map(|stiffness| nondimensional.stiffness(stiffness)).transpose()?;
-        let area = self
-            .outputs
-            .area
-            .then(|| nondimensional.area(or_none(&|p| self.law.fraction(p))?))
-            .transpose()?;
-        let mut report = SolveReport::exact(self.strategy);
-        report.certificate.stiffness_error = stiffness.map(|_| self.law.stiffness_error());
-        let gap = |p: f64| self.law.gap(p).and_then(|gap| nondimensional.approach(gap));
-        let mean_gap = match load {
-            _ if !self.outputs.mean_gap => None,
+        let fraction = || if pressure > 0.0 { self.law.fraction(pressure) } else { Ok(0.0) };
+        let scaled = ScaledState {
+            force: pressure,
+            area: outputs.area.then(fraction).transpose()?,
+            stiffness_error: self.law.stiffness_error(),
+            ..ScaledState::default()
+        };
+        let report = SolveReport::formula(self.strategy, load);
+        let state = scaling.state(scaled.with_elastic_stiffness(stiffness), load, report)?;
+        let gap = |p: f64| self.law.gap(p).and_then(|gap| scaling.nondimensional.approach(gap));
+        Ok(state.with_mean_gap(match load {
+            _ if !outputs.mean_gap => None,
             Load::MeanGap(gap) => Some(gap),
             // Some theories have none without load.
             _ => gap(pressure).ok(),
-        };
-        ContactState::new(force, report)
-            .with_mean_gap(mean_gap)
-            .with_elastic_stiffness(stiffness)
-            .with_area(area)
-            .completed(&self.outputs, self.normalisation.modulus)
+        }))
     }
 }
 
-/// What may be prescribed: a periodic contact has a mean gap and no approach.
-pub(crate) const LOADS: &[LoadKind] = &[LoadKind::Force, LoadKind::MeanGap];
+/// A periodic contact, which has a mean gap and no approach: no surface yet.
+const PERIODIC: Abilities = Abilities {
+    boundaries: &[Boundary::Periodic],
+    loads: &[LoadKind::Force, LoadKind::MeanGap],
+    outputs: &[
+        Output::Stiffness,
+        Output::StiffnessFixedArea,
+        Output::Conductance,
+        Output::Area,
+        Output::MeanGap,
+    ],
+    ..Abilities::ELASTIC
+};
+
+/// That of a wave.
+pub(crate) const WAVE: Abilities = Abilities { surfaces: &[SurfaceKind::Sine], ..PERIODIC };
+
+/// That of theories of random surfaces.
+pub(crate) const RANDOM: Abilities =
+    Abilities { surfaces: &[SurfaceKind::SelfAffine, SurfaceKind::Heights], ..PERIODIC };

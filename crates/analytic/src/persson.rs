@@ -5,8 +5,7 @@ use crate::periodic::{self, Periodic, PeriodicLaw};
 use crate::special::{erf, exponential_integral, exponential_integral_of_square};
 use crate::spectrum::Spectrum;
 use contact_model::{
-    Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
-    Scene, Source, Surface, SurfaceKind,
+    Abilities, ContactModel, Error, PreparedContact, Result, Scaling, Scene, Source, Surface,
 };
 use numerics::gauss::Gauss;
 use numerics::root;
@@ -79,13 +78,7 @@ impl ContactModel for Persson {
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            surfaces: &[SurfaceKind::SelfAffine, SurfaceKind::Heights],
-            boundaries: &[Boundary::Periodic],
-            loads: periodic::LOADS,
-            outputs: closed::PERIODIC,
-            ..Abilities::ELASTIC
-        }
+        periodic::RANDOM
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
@@ -103,15 +96,8 @@ impl ContactModel for Persson {
             }
             other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        let (modulus, length) = (scene.modulus, scene.surface.size().length());
-        Ok(Box::new(Periodic {
-            model: NAME,
-            law,
-            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
-            normalisation: Normalisation { modulus, length, height: Some(height) },
-            outputs: scene.outputs,
-            strategy: "integral over the spectrum (Persson)",
-        }))
+        let strategy = "integral over the spectrum (Persson)";
+        Ok(closed::prepared(Scaling::of_rough(scene, height)?, Periodic { model: NAME, law, strategy }))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::closed::{self, Closed, ClosedLaw, ClosedState, ROUNDED_UP};
 use contact_model::{
-    Abilities, Amplitude, ContactModel, Error, Nondimensionalisation, Normalisation, PAPER_STIFFNESS_FACTOR,
-    PreparedContact, Result, Scene, SelfAffine, Source, Surface, SurfaceKind,
+    Abilities, Amplitude, ContactModel, Error, PAPER_STIFFNESS_FACTOR, PreparedContact, Result, Scaling,
+    Scene, SelfAffine, Source, Surface, SurfaceKind,
 };
 use surface_gen::{MapStatistics, SelfAffineFit};
 
@@ -152,16 +152,12 @@ impl ContactModel for PowerLaw {
             }
             other => return Err(Error::unsupported(NAME, other.kind())),
         };
-        let (modulus, length) = (scene.modulus, scene.surface.size().length());
-        Ok(Box::new(Closed {
-            model: NAME,
-            law: Eq12::new(fractal_dimension),
-            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
-            normalisation: Normalisation { modulus, length, height: Some(height) },
-            outputs: scene.outputs,
-            strategy: "closed form (Eq. 12)",
-            stiffness_error: 0.0,
-        }))
+        let law = Eq12::new(fractal_dimension);
+        let strategy = "closed form (Eq. 12)";
+        Ok(closed::prepared(
+            Scaling::of_rough(scene, height)?,
+            Closed { model: NAME, law, strategy, stiffness_error: 0.0 },
+        ))
     }
 }
 

@@ -75,7 +75,7 @@ impl ContactModel for PowerLawBody {
             ));
         }
         let law = PowerLawShape { exponent, depth, size: scene.surface.size() };
-        closed::prepared(scene, NAME, ("closed form (Galin)", 0.0), law)
+        closed::of_body(scene, NAME, ("closed form (Galin)", 0.0), law)
     }
 }
 

@@ -1,12 +1,10 @@
 //! Westergaard: a sinusoidal wave, periodic; and the limits of the product of two waves (Johnson, Greenwood,
 //! Higginson).
 
-use crate::closed;
-use crate::closed::ROUNDED_UP;
+use crate::closed::{self, ROUNDED_UP};
 use crate::periodic::{self, Periodic, PeriodicLaw};
 use contact_model::{
-    Abilities, Boundary, ContactModel, Error, Nondimensionalisation, Normalisation, PreparedContact, Result,
-    Scene, Size, Source, Surface, SurfaceKind,
+    Abilities, ContactModel, Error, PreparedContact, Result, Scaling, Scene, Size, Source, Surface,
 };
 use numerics::root;
 use std::f64::consts::{PI, SQRT_2};
@@ -57,27 +55,15 @@ impl ContactModel for Westergaard {
     }
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            surfaces: &[SurfaceKind::Sine],
-            boundaries: &[Boundary::Periodic],
-            loads: periodic::LOADS,
-            outputs: closed::PERIODIC,
-            ..Abilities::ELASTIC
-        }
+        periodic::WAVE
     }
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.abilities().refuse(NAME, scene)?;
         let (height, whole, size) = whole_waves(scene, NAME)?;
-        let (modulus, length) = (scene.modulus, size.length());
-        Ok(Box::new(Periodic {
-            model: NAME,
-            law: Wave { full: PI * whole * (length / size.x) },
-            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
-            normalisation: Normalisation { modulus, length, height: Some(height / SQRT_2) },
-            outputs: scene.outputs,
-            strategy: "closed form (Westergaard)",
-        }))
+        let law = Wave { full: PI * whole * (size.length() / size.x) };
+        let scaling = Scaling::new(scene, height, Some(height / SQRT_2))?;
+        Ok(closed::prepared(scaling, Periodic { model: NAME, law, strategy: "closed form (Westergaard)" }))
     }
 }
 

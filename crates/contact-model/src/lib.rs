@@ -47,6 +47,7 @@ mod pair;
 mod patches;
 pub mod quantities;
 mod rheology;
+mod scaling;
 mod scene;
 mod state;
 mod step;
@@ -63,13 +64,14 @@ pub use fields::{FIELDS, Field, FieldQuantity, Fields, Shown};
 pub use height_map::HeightMap;
 pub use line::Line;
 pub use load::Load;
-pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, never};
+pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, check_stop, never};
 pub use nondimensionalisation::Nondimensionalisation;
 pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
 pub use pair::{Body, Pair};
 pub use patches::Patches;
 pub use quantities::{Output, Outputs};
 pub use rheology::{PronySeries, Relaxing, Rheology};
+pub use scaling::{ScaledState, Scaling};
 pub use scene::{Amplitude, Scene, SelfAffine, Surface, line_length};
 pub use state::{
     AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, SolveReport, Status,

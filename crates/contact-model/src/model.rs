@@ -35,6 +35,14 @@ pub fn never() -> bool {
     false
 }
 
+/// Ends a solve that is told to stop before it has a state.
+///
+/// # Errors
+/// [`Error::Stopped`] without one.
+pub fn check_stop(stop: Stop<'_>) -> Result<()> {
+    if stop() { Err(Error::Stopped { best: None }) } else { Ok(()) }
+}
+
 /// A way to answer "what force, approach and stiffness": plan once.
 pub trait ContactModel: Send + Sync {
     /// Short name, the same in code, CSV and README (`bem3d`, `mdr1d`, ...).

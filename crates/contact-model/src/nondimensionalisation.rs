@@ -6,7 +6,7 @@ use crate::error::{Error, Result, positive};
 ///
 /// A force is counted in `E* length height`, a stiffness in `E* length`, an area in `length^2`. The products are taken in an
 /// order that neither overflows nor underflows on the way, so a scene in units of 1e-150 or 1e150 loses nothing; only a result
-/// that no `f64` can hold is an error.
+/// that no `f64` can hold is an error. Numbers are of either sign: adhesion pulls.
 ///
 /// This is arithmetic for solvers. The normalised quantities that are reported (`F_bar`, `k_bar`) belong to [`crate::Normalisation`].
 ///
@@ -21,7 +21,7 @@ use crate::error::{Error, Result, positive};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nondimensionalisation {
-    modulus: f64,
+    pub(crate) modulus: f64,
     length: f64,
     height: f64,
 }
@@ -68,7 +68,7 @@ impl Nondimensionalisation {
     /// `value E* length height`, a force.
     ///
     /// # Errors
-    /// [`Error::Domain`] where no `f64` holds it: it overflows, or a positive value vanishes.
+    /// [`Error::Domain`] where no `f64` holds it: it overflows, or a value other than 0 vanishes.
     pub fn force(self, value: f64) -> Result<f64> {
         held("force", value, product([value, self.modulus, self.length, self.height]))
     }
@@ -106,17 +106,20 @@ impl Nondimensionalisation {
     }
 }
 
-/// `result` unless it overflowed or a value > 0 became 0 on the way out.
+/// `result` unless it overflowed or a value other than 0 became 0 on the way out.
 fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
-    if result.is_finite() && (result > 0.0 || value <= 0.0) {
+    if result.is_finite() && (result.abs() > 0.0 || value.abs() <= 0.0) {
         Ok(result)
     } else {
         Err(Error::domain(name, result, "a number within the range of f64 (choose other units)"))
     }
 }
 
-/// Product of non-negative factors without overflow or underflow on the way: the largest left while below 1, else the smallest.
+/// Product of a number of either sign and units > 0 without overflow or underflow on the way: the largest left while below 1, else the
+/// smallest.
 fn product<const N: usize>(mut factors: [f64; N]) -> f64 {
+    let sign = factors[0];
+    factors[0] = sign.abs();
     factors.sort_by(f64::total_cmp);
     let (mut low, mut high) = (0, N);
     let mut result = 1.0;
@@ -129,7 +132,7 @@ fn product<const N: usize>(mut factors: [f64; N]) -> f64 {
             low += 1;
         }
     }
-    result
+    result.copysign(sign)
 }
 
 #[cfg(test)]
@@ -146,7 +149,7 @@ mod tests {
             [(1.0, 1.0), (1e-150, 1e150), (1e150, 1e-150), (1e10, 1e-150), (1e-10, 1e150)]
         {
             let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
-            for value in [1e-12, 0.37, 1e6] {
+            for value in [1e-12, 0.37, 1e6, -0.37] {
                 let force = nondimensional.force(value).unwrap();
                 assert_relative_eq!(nondimensional.force_in(force), value, max_relative = ROUNDING);
             }
@@ -164,7 +167,7 @@ mod tests {
         let nondimensional = Nondimensionalisation::new(1e-150, 1e-150, 1e-150).unwrap();
         let e = nondimensional.force(1.0).unwrap_err().to_string();
         assert!(e.starts_with("force = 0: expected"), "{e}");
-        assert!(nondimensional.force(0.0).is_ok_and(|f| f <= 0.0));
+        assert!(nondimensional.force(0.0).is_ok_and(|f| f <= 0.0) && nondimensional.force(-1.0).is_err());
         assert!(
             Nondimensionalisation::new(0.0, 1.0, 1.0).is_err()
                 && Nondimensionalisation::new(1.0, 1e-310, 1.0).is_err()

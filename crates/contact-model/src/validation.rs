@@ -21,6 +21,22 @@ impl Size {
         positive("side along x", self.x)?;
         positive("side along y", self.y).map(|_| ())
     }
+
+    /// Checks that a round contact of this radius is inside of the rectangle, beyond which the half-space is free; the name is for the
+    /// error.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a radius beyond half the shorter side.
+    pub fn admit_radius(self, name: &'static str, radius: f64) -> Result<()> {
+        /// A radius of exactly half the shorter side may come out a few roundings larger.
+        const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+        let largest = 0.5 * self.shorter();
+        if radius <= largest * ROUNDED_UP {
+            Ok(())
+        } else {
+            Err(Error::OutOfRange { name: name.into(), value: radius, min: 0.0, max: largest })
+        }
+    }
 }
 
 impl Cells {

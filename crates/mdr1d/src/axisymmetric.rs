@@ -5,7 +5,8 @@
 //! and Hess 2015), pressed into independent springs of stiffness E* per length. The half width of the line in
 //! contact is the radius of the round contact.
 
-use contact_model::{Error, Line, Result, Size, Surface};
+use crate::body::check_radius;
+use contact_model::{Error, Line, Result, Surface, SurfaceKind};
 use std::f64::consts::PI;
 
 /// The MDR profile of an axisymmetric body, in units of `L = sqrt(Lx Ly)` of its rectangle (the side of a
@@ -49,6 +50,10 @@ impl RoundContact {
 }
 
 impl Profile {
+    /// The surfaces that have one.
+    pub(crate) const SURFACES: &'static [SurfaceKind] =
+        &[SurfaceKind::Sphere, SurfaceKind::Cone, SurfaceKind::PowerLaw, SurfaceKind::FlatCircle];
+
     /// The profile of a sphere (paraboloid), cone, power-law body or flat circular punch; `None` for any
     /// other surface.
     ///
@@ -172,19 +177,6 @@ fn root(x: f64, n: f64) -> f64 {
         b if b == 2.0_f64.to_bits() => x.sqrt(),
         b if b == 3.0_f64.to_bits() => x.cbrt(),
         _ => x.powf(n.recip()),
-    }
-}
-
-/// Errors where the contact (radius in units of L) has left the rectangle: the half-space beyond it is free.
-pub(crate) fn check_radius(radius: f64, size: Size) -> Result<()> {
-    /// A radius of exactly half the shorter side may come out a few roundings larger.
-    const ROUNDING: f64 = 8.0 * f64::EPSILON;
-    let (length, shorter) = (size.length(), size.shorter());
-    if radius <= 0.5 * (shorter / length) * (1.0 + ROUNDING) {
-        Ok(())
-    } else {
-        let value = radius * length;
-        Err(Error::OutOfRange { name: "contact radius".into(), value, min: 0.0, max: 0.5 * shorter })
     }
 }
 

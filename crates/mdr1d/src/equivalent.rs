@@ -5,14 +5,13 @@ mod normal;
 use self::normal::{NAME, Normal};
 use crate::axisymmetric::RoundContact;
 use crate::material::Material;
-use crate::partial_slip::slips;
 use crate::relaxation::{Relaxation, check_pair};
 use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     Abilities, Adhesion, ContactModel, ContactState, Effect, Effects, Error, Friction, Hardness, Load,
     Normalisation, Output, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, Step,
-    Stop, Surface, SurfaceKind, Tangential, TangentialState, never,
+    Stop, Surface, SurfaceKind, Tangential, never,
 };
 use std::sync::Arc;
 
@@ -265,7 +264,7 @@ impl PreparedContact for PreparedEquivalent {
                 Ok(state)
             }
             Memory::Relax(relaxation) => {
-                let step = step.validated(relaxation.at.time)?;
+                let step = relaxation.validated(step)?;
                 relax(normal, relaxation, step, stop)
             }
         }
@@ -296,26 +295,14 @@ fn slip(
     let ratio = if own > 0.0 { node.force / own } else { 1.0 };
     let next = match step.tangential {
         Tangential::Force(force) => {
-            let scaled = nondimensional.force_in(force.abs()).copysign(force);
+            let scaled = nondimensional.force_in(force);
             let held = springs.held(node.approach, coefficient * own, scaled / ratio);
-            held.ok_or_else(|| slips(force, coefficient * state.force))?
+            held.ok_or_else(|| Error::gross_slip(force, coefficient * state.force))?
         }
         Tangential::Displacement(u) => springs.moved(node.approach, nondimensional.length_in(u)),
-        other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+        other => return Err(Error::unsupported_load(NAME, other)),
     };
-    let tangential = TangentialState::new(
-        match step.tangential {
-            Tangential::Force(force) => force,
-            _ => normal.signed(next.force() * ratio)?,
-        },
-        match step.tangential {
-            Tangential::Displacement(u) => u,
-            _ => nondimensional.approach(next.displacement().abs())?.copysign(next.displacement()),
-        },
-    )
-    .with_stick_radius(nondimensional.approach(next.stick_radius())?)
-    // E* L^3: a force times a length.
-    .with_dissipated(nondimensional.approach(nondimensional.force(next.dissipated())?)?);
+    let tangential = next.state(step.tangential, ratio, nondimensional)?;
     let state = normal
         .reported(state, node.approach)
         .with_time(step.time)
@@ -331,9 +318,6 @@ fn relax(
     step: Step,
     stop: Stop<'_>,
 ) -> Result<ContactState> {
-    if step.tangential != Tangential::Force(0.0) {
-        return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
-    }
     let fresh = relaxation.at.contact.approach <= 0.0;
     let nondimensional = normal.nondimensional;
     let mut solved = None;
@@ -353,16 +337,12 @@ fn relax(
                 press(Load::Approach(nondimensional.approach(approach)?))
             })?
         }
-        other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+        other => return Err(Error::unsupported_load(NAME, other)),
     };
     let Some(mut state) = solved else {
         return Err(Error::unsupported(NAME, "a step without a contact"));
     };
-    for value in [at.memory.force, at.memory.load, at.contact.approach] {
-        if !value.is_finite() {
-            return Err(Error::domain("state in units of side and modulus", value, "a finite number"));
-        }
-    }
+    at.check()?;
     state.force = match step.normal {
         Load::Force(force) => force,
         _ => nondimensional.force(at.memory.force)?,

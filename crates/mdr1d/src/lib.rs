@@ -61,6 +61,7 @@
 mod adhesion;
 pub mod axisymmetric;
 mod bearing;
+mod body;
 mod equivalent;
 mod material;
 mod model;

@@ -1,12 +1,13 @@
 //! [`Mdr1d`]: the method behind the common trait.
 
 use crate::adhesion::{Adhesive, Failure};
-use crate::axisymmetric::{Profile, RoundContact, check_radius};
+use crate::axisymmetric::{Profile, RoundContact};
 use crate::bearing::Bearing;
+use crate::body::{RoundBody, out_of_f64};
 use contact_model::{
-    Abilities, Adhesion, ContactModel, ContactState, Effect, Error, Line, Load, Nondimensionalisation,
-    Normalisation, Output, Outputs, PreparedContact, RequiredMemory, Result, Scene, SelfAffine, Size,
-    SolveReport, Source, Stop, Surface, SurfaceKind,
+    Abilities, Adhesion, ContactModel, ContactState, Effect, Error, Line, Load, Normalisation, Output,
+    Outputs, PreparedContact, RequiredMemory, Result, ScaledState, Scene, SelfAffine, SolveReport, Source,
+    Stop, Surface, SurfaceKind, check_stop,
 };
 use std::sync::{Arc, Mutex};
 use surface_gen::LineGenerator;
@@ -99,18 +100,8 @@ impl ContactModel for Mdr1d {
         self.abilities().refuse(NAME, scene)?;
         let outputs = scene.outputs;
         let (length, modulus) = (scene.surface.size().length(), scene.modulus);
-        if let Some(profile) = Profile::new(&scene.surface)? {
-            let nondimensional = Nondimensionalisation::new(modulus, length, length)?;
-            let normalisation = Normalisation { modulus, length, height: None };
-            let (adhesive, size) = (adhesive(profile, scene)?, scene.surface.size());
-            return Ok(Box::new(RoundBody {
-                profile,
-                size,
-                adhesive,
-                nondimensional,
-                normalisation,
-                outputs,
-            }));
+        if let Some(body) = RoundBody::new(scene)? {
+            return Ok(Box::new(RoundIndenter { body, adhesive: adhesive(body.profile, scene)? }));
         }
         if scene.effects.adhesion != Adhesion::Off {
             let what = format!(
@@ -261,15 +252,12 @@ impl PreparedContact for RoughLine {
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
+        check_stop(stop)?;
         let support = self.bearing.press(load, self.normalisation.modulus)?;
-        let mut report =
-            SolveReport::exact(format!("order statistics of {} elements", self.bearing.elements()));
+        let strategy = format!("order statistics of {} elements", self.bearing.elements());
+        let mut report = SolveReport::formula(strategy, load);
         report.contact_cells = Some(support.elements);
         report.certificate.stiffness_error = self.outputs.needs_stiffness().then_some(0.0);
-        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
         ContactState::new(support.force, report)
             .with_approach(support.approach)
             .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
@@ -294,116 +282,59 @@ fn adhesive(profile: Profile, scene: &Scene) -> Result<Option<Adhesive>> {
     }
 }
 
-/// An axisymmetric body.
-struct RoundBody {
-    profile: Profile,
-    size: Size,
+/// An axisymmetric body, which may adhere.
+struct RoundIndenter {
+    body: RoundBody,
     adhesive: Option<Adhesive>,
-    nondimensional: Nondimensionalisation,
-    normalisation: Normalisation,
-    outputs: Outputs,
 }
 
-impl RoundBody {
-    /// The state under a load >= 0, and whether it has to be a contact.
-    fn press(&self, load: Load) -> Result<(RoundContact, bool)> {
-        match load.validated()? {
-            Load::Force(force) => {
-                Ok((self.profile.at_force(self.nondimensional.force_in(force)), force > 0.0))
-            }
+impl RoundIndenter {
+    /// The adhered contact under a load of either sign.
+    fn adhere(&self, adhesive: Adhesive, load: Load) -> Result<RoundContact> {
+        let nondimensional = self.body.scaling.nondimensional;
+        let (found, value) = match load.validated_with_adhesion()? {
+            Load::Force(force) => (adhesive.at_force(nondimensional.force_in(force)), force),
             Load::Approach(approach) => {
-                Ok((self.profile.at_approach(self.nondimensional.approach_in(approach)), approach > 0.0))
+                (adhesive.at_approach(nondimensional.approach_in(approach)), approach)
             }
-            _ => Err(Error::unsupported(NAME, format!("the load {load:?}"))),
-        }
-    }
-
-    /// The adhered state under a load of either sign, and whether it has to be a contact.
-    fn adhere(&self, adhesive: Adhesive, load: Load) -> Result<(RoundContact, bool)> {
-        let nondimensional = self.nondimensional;
-        let (found, name, value, smallest): (_, _, _, &dyn Fn(f64) -> Result<f64>) =
-            match load.validated_with_adhesion()? {
-                Load::Force(force) => (
-                    adhesive.at_force(nondimensional.force_in(force.abs()).copysign(force)),
-                    "force (the contact pulls off under a prescribed force)",
-                    force,
-                    &|least| nondimensional.force(least),
-                ),
-                Load::Approach(approach) => (
-                    adhesive.at_approach(nondimensional.approach_in(approach)),
-                    "approach (the contact pulls off under a prescribed approach)",
-                    approach,
-                    &|least| nondimensional.approach(least),
-                ),
-                _ => return Err(Error::unsupported(NAME, format!("the load {load:?}"))),
-            };
+            _ => return Err(Error::unsupported_load(NAME, load)),
+        };
         match found {
-            Ok(contact) => Ok((contact, adhesive.attracts() || value.abs() > 0.0)),
-            Err(Failure::PullsOff { smallest: least }) => Err(Error::OutOfRange {
-                name: name.into(),
-                value,
-                min: -smallest(-least)?,
-                max: f64::INFINITY,
-            }),
+            Ok(contact) => {
+                self.body.admit(contact)?;
+                let touches = adhesive.attracts() || value.abs() > 0.0;
+                if touches && contact.radius <= 0.0 { Err(out_of_f64(contact.radius)) } else { Ok(contact) }
+            }
+            Err(Failure::PullsOff { smallest }) => {
+                let smallest = match load {
+                    Load::Force(_) => nondimensional.force(smallest)?,
+                    _ => nondimensional.approach(smallest)?,
+                };
+                Err(Error::pull_off(load, smallest))
+            }
             Err(Failure::Range(radius)) => Err(out_of_f64(radius)),
         }
     }
 }
 
-impl PreparedContact for RoundBody {
+impl PreparedContact for RoundIndenter {
     fn normalisation(&self) -> Normalisation {
-        self.normalisation
+        self.body.scaling.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
-        let nondimensional = self.nondimensional;
-        let (contact, touches) = match self.adhesive {
-            Some(adhesive) => self.adhere(adhesive, load)?,
-            None => self.press(load)?,
-        };
-        check_radius(contact.radius, self.size)?;
-        if touches && contact.radius <= 0.0 {
-            return Err(out_of_f64(contact.radius));
-        }
-        // A loaded contact without adhesion has all three positive.
-        if touches && self.adhesive.is_none() && (contact.approach <= 0.0 || contact.force <= 0.0) {
-            return Err(out_of_f64(contact.radius));
-        }
-        let approach = nondimensional.approach(contact.approach.abs())?.copysign(contact.approach);
-        let force = match load {
-            Load::Force(force) => force,
-            _ => nondimensional.force(contact.force.abs())?.copysign(contact.force),
-        };
-        let outputs = &self.outputs;
+        check_stop(stop)?;
         // Along the branch the edge of an adhesive contact moves.
-        let slope = match self.adhesive {
-            Some(adhesive) => adhesive.slope(contact.radius),
-            None => Some(contact.stiffness()),
+        let (contact, slope) = if let Some(adhesive) = self.adhesive {
+            let contact = self.adhere(adhesive, load)?;
+            (contact, adhesive.slope(contact.radius))
+        } else {
+            let contact = self.body.press(load, NAME)?;
+            (contact, Some(contact.stiffness()))
         };
-        let stiffness = slope
-            .filter(|_| outputs.needs_stiffness())
-            .map(|slope| Ok::<_, Error>(nondimensional.stiffness(slope.abs())?.copysign(slope)))
-            .transpose()?;
-        let held =
-            outputs.needs_fixed_area().then(|| nondimensional.stiffness(contact.stiffness())).transpose()?;
-        let area = outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
-        let mut report = SolveReport::exact("closed form of the profile g(x)");
-        report.certificate.stiffness_error = stiffness.or(held).map(|_| 0.0);
-        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
-        ContactState::new(force, report)
-            .with_approach(approach)
-            .with_stiffness(stiffness)
-            .with_stiffness_fixed_area(held)
-            .with_area(area)
-            .completed(&self.outputs, self.normalisation.modulus)
+        let scaled = ScaledState { stiffness: slope, ..contact.scaled() };
+        self.body.scaling.state(scaled, load, SolveReport::formula("closed form of the profile g(x)", load))
     }
-}
-
-fn out_of_f64(radius: f64) -> Error {
-    Error::domain("contact radius over side", radius, "a number within the range of f64")
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! [`PartialSlip`]: Coulomb's friction of axisymmetric bodies along any path.
 
-use crate::axisymmetric::{Profile, check_radius};
+use crate::axisymmetric::Profile;
+use crate::body::RoundBody;
 use crate::slip::Springs;
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Error, Friction, Load, Nondimensionalisation,
-    Normalisation, Output, Outputs, Paths, PreparedContact, Result, Scene, Size, SolveReport, Source, Step,
-    Stop, SurfaceKind, Tangential, TangentialState,
+    Abilities, ContactModel, ContactState, Effect, Error, Friction, Load, Normalisation, Output, Paths,
+    PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Tangential, check_stop,
 };
 
 const NAME: &str = "mdr1d_partial_slip";
@@ -60,12 +60,7 @@ impl ContactModel for PartialSlip {
 
     fn abilities(&self) -> Abilities {
         Abilities {
-            surfaces: &[
-                SurfaceKind::Sphere,
-                SurfaceKind::Cone,
-                SurfaceKind::PowerLaw,
-                SurfaceKind::FlatCircle,
-            ],
+            surfaces: Profile::SURFACES,
             effects: &[Effect::Friction],
             needs_effect: true,
             paths: Paths::Remembered,
@@ -80,36 +75,20 @@ impl ContactModel for PartialSlip {
             let what = format!("friction ({:?}): it needs Coulomb's", scene.effects.friction);
             return Err(Error::unsupported(NAME, what));
         };
-        let Some(profile) = Profile::new(&scene.surface)? else {
-            let what = format!("{}: friction by springs needs a round contact", scene.surface.kind());
-            return Err(Error::unsupported(NAME, what));
-        };
+        let body = RoundBody::required(scene, NAME, "friction by springs needs a round contact")?;
         let Some(pair) = scene.pair else {
             return Err(Error::unsupported(
                 NAME,
                 "a scene without both bodies (Scene::of_pair): friction needs G*",
             ));
         };
-        let (length, modulus) = (scene.surface.size().length(), scene.modulus);
-        Ok(Box::new(PreparedPartialSlip {
-            profile,
-            size: scene.surface.size(),
-            nondimensional: Nondimensionalisation::new(modulus, length, length)?,
-            normalisation: Normalisation { modulus, length, height: None },
-            outputs: scene.outputs,
-            coefficient,
-            time: 0.0,
-            springs: Springs::new(profile, coefficient, pair.shear_modulus()? / modulus),
-        }))
+        let springs = Springs::new(body.profile, coefficient, pair.shear_modulus()? / scene.modulus);
+        Ok(Box::new(PreparedPartialSlip { body, coefficient, time: 0.0, springs }))
     }
 }
 
 struct PreparedPartialSlip {
-    profile: Profile,
-    size: Size,
-    nondimensional: Nondimensionalisation,
-    normalisation: Normalisation,
-    outputs: Outputs,
+    body: RoundBody,
     coefficient: f64,
     time: f64,
     springs: Springs<Profile>,
@@ -118,21 +97,17 @@ struct PreparedPartialSlip {
 impl PreparedPartialSlip {
     /// The springs under an approach where the tangential force is reached.
     fn reach(&self, approach: f64, normal: f64, force: f64) -> Result<Springs<Profile>> {
-        let limit = self.coefficient * normal;
+        let (nondimensional, limit) = (self.body.scaling.nondimensional, self.coefficient * normal);
         match self.springs.held(approach, limit, force) {
             Some(springs) => Ok(springs),
-            None => Err(slips(self.force(force)?, self.force(limit)?)),
+            None => Err(Error::gross_slip(nondimensional.force(force)?, nondimensional.force(limit)?)),
         }
-    }
-
-    fn force(&self, scaled: f64) -> Result<f64> {
-        Ok(self.nondimensional.force(scaled.abs())?.copysign(scaled))
     }
 }
 
 impl PreparedContact for PreparedPartialSlip {
     fn normalisation(&self) -> Normalisation {
-        self.normalisation
+        self.body.scaling.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
@@ -140,62 +115,23 @@ impl PreparedContact for PreparedPartialSlip {
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
+        check_stop(stop)?;
         let step = step.validated(self.time)?;
-        let nondimensional = self.nondimensional;
-        let (contact, loaded) = match step.normal {
-            Load::Force(force) => (self.profile.at_force(nondimensional.force_in(force)), force > 0.0),
-            Load::Approach(approach) => {
-                (self.profile.at_approach(nondimensional.approach_in(approach)), approach > 0.0)
-            }
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
-        };
-        check_radius(contact.radius, self.size)?;
-        if loaded && (contact.radius <= 0.0 || contact.approach <= 0.0 || contact.force <= 0.0) {
-            let expected = "a number within the range of f64";
-            return Err(Error::domain("contact radius over side", contact.radius, expected));
-        }
+        let scaling = &self.body.scaling;
+        let nondimensional = scaling.nondimensional;
+        let contact = self.body.press(step.normal, NAME)?;
         let springs = match step.tangential {
             Tangential::Force(force) => {
-                let scaled = nondimensional.force_in(force.abs()).copysign(force);
-                self.reach(contact.approach, contact.force, scaled)?
+                self.reach(contact.approach, contact.force, nondimensional.force_in(force))?
             }
             Tangential::Displacement(u) => self.springs.moved(contact.approach, nondimensional.length_in(u)),
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+            other => return Err(Error::unsupported_load(NAME, other)),
         };
         let radius = nondimensional.approach(contact.radius)?;
-        let stiffness = self
-            .outputs
-            .needs_stiffness()
-            .then(|| nondimensional.stiffness(contact.stiffness()))
-            .transpose()?;
-        let area = self.outputs.area.then(|| nondimensional.area(contact.area())).transpose()?;
-        let mut report = SolveReport::exact("springs of the profile g(x), a polygon in g");
-        report.certificate.stiffness_error = stiffness.map(|_| 0.0);
-        let normal = ContactState::new(
-            if let Load::Force(force) = step.normal { force } else { nondimensional.force(contact.force)? },
-            report,
-        )
-        .with_approach(nondimensional.approach(contact.approach)?)
-        .with_elastic_stiffness(stiffness)
-        .with_area(area)
-        .completed(&self.outputs, self.normalisation.modulus)?;
-        let displacement = springs.displacement();
-        let tangential = TangentialState::new(
-            match step.tangential {
-                Tangential::Force(force) => force,
-                _ => self.force(springs.force())?,
-            },
-            match step.tangential {
-                Tangential::Displacement(u) => u,
-                _ => nondimensional.approach(displacement.abs())?.copysign(displacement),
-            },
-        )
-        .with_stick_radius(nondimensional.approach(springs.stick_radius())?)
-        // E* L^3: a force times a length.
-        .with_dissipated(nondimensional.approach(nondimensional.force(springs.dissipated())?)?);
+        let report = SolveReport::exact("springs of the profile g(x), a polygon in g");
+        let scaled = contact.scaled().with_elastic_stiffness(contact.stiffness());
+        let normal = scaling.state(scaled, step.normal, report)?;
+        let tangential = springs.state(step.tangential, 1.0, nondimensional)?;
         (self.time, self.springs) = (step.time, springs);
         Ok(normal.with_time(step.time).with_contact_radius(radius).with_tangential(tangential))
     }
@@ -203,16 +139,6 @@ impl PreparedContact for PreparedPartialSlip {
     fn restart(&mut self) {
         self.time = 0.0;
         self.springs = self.springs.unloaded();
-    }
-}
-
-/// A tangential force beyond mu F.
-pub(crate) fn slips(force: f64, limit: f64) -> Error {
-    Error::OutOfRange {
-        name: "tangential force (beyond it the contact slips as a whole)".into(),
-        value: force,
-        min: -limit,
-        max: limit,
     }
 }
 

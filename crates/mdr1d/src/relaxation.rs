@@ -3,7 +3,7 @@
 use crate::axisymmetric::RoundContact;
 use crate::material::{Material, Memory};
 use crate::shape::Shape;
-use contact_model::{Body, Error, Pair, Result, Rheology};
+use contact_model::{Body, Error, Pair, Result, Rheology, Step, Tangential};
 use numerics::gauss::Gauss;
 
 /// Where a history stands; lengths in L, forces in E* L^2.
@@ -15,6 +15,18 @@ pub(crate) struct RelaxedState {
     pub memory: Memory,
     /// How far the force from the arms is from the one that was prescribed, relative.
     pub residual: f64,
+}
+
+impl RelaxedState {
+    /// Errors where no f64 holds it.
+    pub fn check(&self) -> Result<()> {
+        for value in [self.memory.force, self.memory.load, self.contact.approach] {
+            if !value.is_finite() {
+                return Err(Error::domain("state in units of side and modulus", value, "a finite number"));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A material and its history. The elastic law comes with each step: contacts that are numbers of another model differ by its tolerance.
@@ -31,6 +43,16 @@ impl Relaxation {
         let memory = material.fresh();
         let contact = RoundContact::NONE;
         Self { at: RelaxedState { time: 0.0, contact, memory, residual: 0.0 }, material, model }
+    }
+
+    /// A step that goes on from here, without a tangential load.
+    pub fn validated(&self, step: Step) -> Result<Step> {
+        let step = step.validated(self.at.time)?;
+        if step.tangential == Tangential::Force(0.0) {
+            Ok(step)
+        } else {
+            Err(Error::unsupported(self.model, format!("the tangential load {:?}", step.tangential)))
+        }
     }
 
     /// Back to no contact at time 0.

@@ -9,6 +9,7 @@
 //! The polygon's slope never exceeds that of the bound, so slip begins at the edge and reaches inward to one gamma.
 
 use crate::shape::Shape;
+use contact_model::{Nondimensionalisation, Result, Tangential, TangentialState};
 use numerics::root;
 
 /// A corner of the polygon.
@@ -81,6 +82,28 @@ impl<P: Shape> Springs<P> {
             })
             .sum();
         2.0 * self.shear * sum
+    }
+
+    /// The tangential part of a state, what was prescribed as it was prescribed. The factor is that of forces, for springs of a profile that
+    /// agrees with the contact to its accuracy.
+    pub fn state(
+        &self,
+        prescribed: Tangential,
+        factor: f64,
+        units: Nondimensionalisation,
+    ) -> Result<TangentialState> {
+        let force = match prescribed {
+            Tangential::Force(force) => force,
+            _ => units.force(self.force() * factor)?,
+        };
+        let displacement = match prescribed {
+            Tangential::Displacement(displacement) => displacement,
+            _ => units.approach(self.displacement())?,
+        };
+        Ok(TangentialState::new(force, displacement)
+            .with_stick_radius(units.approach(self.stick_radius())?)
+            // E* L^3: a force times a length.
+            .with_dissipated(units.approach(units.force(self.dissipated())?)?))
     }
 
     /// Radius inside which the springs are below their bound.

@@ -1,12 +1,12 @@
 //! [`Viscoelastic`]: indentation histories of axisymmetric bodies while the contact grows.
 
-use crate::axisymmetric::{Profile, check_radius};
+use crate::axisymmetric::Profile;
+use crate::body::RoundBody;
 use crate::material::Material;
 use crate::relaxation::{Relaxation, check_pair};
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation, Normalisation, Output,
-    Outputs, Paths, PreparedContact, Result, Scene, Size, SolveReport, Source, Step, Stop, SurfaceKind,
-    Tangential,
+    Abilities, ContactModel, ContactState, Effect, Error, Load, Normalisation, Output, Paths,
+    PreparedContact, Result, ScaledState, Scene, SolveReport, Source, Step, Stop, check_stop,
 };
 
 const NAME: &str = "mdr1d_viscoelastic";
@@ -69,12 +69,7 @@ impl ContactModel for Viscoelastic {
 
     fn abilities(&self) -> Abilities {
         Abilities {
-            surfaces: &[
-                SurfaceKind::Sphere,
-                SurfaceKind::Cone,
-                SurfaceKind::PowerLaw,
-                SurfaceKind::FlatCircle,
-            ],
+            surfaces: Profile::SURFACES,
             effects: RHEOLOGIES,
             needs_effect: true,
             paths: Paths::Needed,
@@ -95,34 +90,19 @@ impl ContactModel for Viscoelastic {
         if let Some(pair) = &scene.pair {
             check_pair(pair, &rheology, NAME)?;
         }
-        let Some(profile) = Profile::new(&scene.surface)? else {
-            let what = format!("{}: relaxing springs need a round contact", scene.surface.kind());
-            return Err(Error::unsupported(NAME, what));
-        };
-        let (length, modulus) = (scene.surface.size().length(), scene.modulus);
-        Ok(Box::new(PreparedViscoelastic {
-            profile,
-            size: scene.surface.size(),
-            nondimensional: Nondimensionalisation::new(modulus, length, length)?,
-            normalisation: Normalisation { modulus, length, height: None },
-            outputs: scene.outputs,
-            relaxation: Relaxation::new(material, NAME),
-        }))
+        let body = RoundBody::required(scene, NAME, "relaxing springs need a round contact")?;
+        Ok(Box::new(PreparedViscoelastic { body, relaxation: Relaxation::new(material, NAME) }))
     }
 }
 
 struct PreparedViscoelastic {
-    profile: Profile,
-    size: Size,
-    nondimensional: Nondimensionalisation,
-    normalisation: Normalisation,
-    outputs: Outputs,
+    body: RoundBody,
     relaxation: Relaxation,
 }
 
 impl PreparedContact for PreparedViscoelastic {
     fn normalisation(&self) -> Normalisation {
-        self.normalisation
+        self.body.scaling.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
@@ -130,50 +110,32 @@ impl PreparedContact for PreparedViscoelastic {
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
-            return Err(Error::Stopped { best: None });
-        }
-        let step = step.validated(self.relaxation.at.time)?;
-        if step.tangential != Tangential::Force(0.0) {
-            return Err(Error::unsupported(NAME, format!("the tangential load {:?}", step.tangential)));
-        }
-        let (nondimensional, profile) = (self.nondimensional, self.profile);
+        check_stop(stop)?;
+        let step = self.relaxation.validated(step)?;
+        let RoundBody { profile, scaling, .. } = self.body;
         let at = match step.normal {
             Load::Force(force) => {
                 let press = |force| Ok(profile.at_force(force));
-                self.relaxation.by_force(step.time, nondimensional.force_in(force), press)?
+                self.relaxation.by_force(step.time, scaling.nondimensional.force_in(force), press)?
             }
             Load::Approach(approach) => {
+                let approach = scaling.nondimensional.approach_in(approach);
                 let press = |approach| Ok((profile.at_approach(approach), profile));
-                self.relaxation.by_approach(step.time, nondimensional.approach_in(approach), press)?
+                self.relaxation.by_approach(step.time, approach, press)?
             }
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?}"))),
+            other => return Err(Error::unsupported_load(NAME, other)),
         };
-        check_radius(at.contact.radius, self.size)?;
-        for value in [at.memory.force, at.memory.load, at.contact.approach] {
-            if !value.is_finite() {
-                return Err(Error::domain("state in units of side and modulus", value, "a finite number"));
-            }
-        }
-        let radius = nondimensional.approach(at.contact.radius)?;
+        self.body.admit(at.contact)?;
+        at.check()?;
+        let radius = scaling.nondimensional.approach(at.contact.radius)?;
         let mut report = SolveReport::exact("Boltzmann's integral over the profile g(x)");
         report.certificate.load_error = at.residual;
-        let mut normal = ContactState::new(
-            match step.normal {
-                Load::Force(force) => force,
-                _ => nondimensional.force(at.memory.force)?,
-            },
-            report,
-        )
-        .with_approach(match step.normal {
-            Load::Approach(approach) => approach,
-            _ => nondimensional.approach(at.contact.approach)?,
-        })
-        .with_area(self.outputs.area.then(|| nondimensional.area(at.contact.area())).transpose()?);
-        let stiffness = nondimensional.stiffness(at.contact.stiffness())?;
-        normal.conductance = self.outputs.conductance.of(stiffness, self.normalisation.modulus)?;
+        let scaled = ScaledState { force: at.memory.force, ..at.contact.scaled() };
+        let mut state = scaling.state(scaled, step.normal, report)?;
+        // The conductance follows from a stiffness that is not claimed.
+        state.report.certificate.stiffness_error = None;
         self.relaxation.at = at;
-        Ok(normal.with_time(step.time).with_contact_radius(radius))
+        Ok(state.with_time(step.time).with_contact_radius(radius))
     }
 
     fn restart(&mut self) {

@@ -179,8 +179,4 @@ impl Normal {
         state.stiffness = state.stiffness.filter(|_| self.outputs.stiffness);
         state
     }
-
-    pub fn signed(&self, force: f64) -> Result<f64> {
-        Ok(self.nondimensional.force(force.abs())?.copysign(force))
-    }
 }

@@ -1,7 +1,8 @@
 use super::*;
 use approx::assert_relative_eq;
 use contact_model::{
-    Adhesion, Boundary, Conductance, Effects, HeightMap, Load, PreparedContact, SelfAffine, line_length,
+    Adhesion, Boundary, Conductance, Effects, HeightMap, Load, Nondimensionalisation, PreparedContact,
+    SelfAffine, line_length,
 };
 use std::sync::Arc;
 

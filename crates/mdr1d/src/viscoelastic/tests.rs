@@ -1,7 +1,8 @@
 use super::*;
 use approx::assert_relative_eq;
 use contact_model::{
-    Body, Friction, Load, Pair, PreparedContact, PronySeries, Relaxing, Rheology, SelfAffine, Step, Surface,
+    Body, Friction, Load, Nondimensionalisation, Pair, PreparedContact, PronySeries, Relaxing, Rheology,
+    SelfAffine, Step, Surface, Tangential,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -1,0 +1,128 @@
+//! From the numbers of a formula to a state: units, and what is asked for.
+
+use crate::error::Result;
+use crate::load::Load;
+use crate::nondimensionalisation::Nondimensionalisation;
+use crate::normalisation::Normalisation;
+use crate::quantities::Outputs;
+use crate::scene::Scene;
+use crate::state::{ContactState, SolveReport};
+
+/// The units in which a model counts, the normalisation of what it reports, and what is asked of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Scaling {
+    /// What turns the model's numbers into those of the caller.
+    pub nondimensional: Nondimensionalisation,
+    /// What turns those into `F_bar` and `k_bar`.
+    pub normalisation: Normalisation,
+    /// What is asked for.
+    pub outputs: Outputs,
+}
+
+/// A state in the units of a [`Scaling`]. What a theory does not claim is `None`.
+///
+/// ```
+/// use contact_model::{Load, ScaledState, Scaling, Scene, SolveReport, Surface};
+/// let mut scene = Scene::new(Surface::Flat { size: 2.0.into() }, 3.0);
+/// scene.outputs.area = true;
+/// // A flat of stiffness 1.15 E* L that is pressed by 0.01 L.
+/// let scaled = ScaledState { force: 0.0115, approach: Some(0.01), area: Some(1.0), ..ScaledState::default() };
+/// let report = SolveReport::formula("a constant", Load::Approach(0.02));
+/// let state = Scaling::of_body(&scene)?.state(scaled.with_elastic_stiffness(1.15), Load::Approach(0.02), report)?;
+/// assert!((state.force - 0.0115 * 12.0).abs() < 1e-15);
+/// assert_eq!((state.approach, state.stiffness, state.area), (Some(0.02), Some(1.15 * 6.0), Some(4.0)));
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[allow(clippy::exhaustive_structs)] // A model writes it, as it does its abilities.
+pub struct ScaledState {
+    /// Normal force.
+    pub force: f64,
+    /// Approach.
+    pub approach: Option<f64>,
+    /// Stiffness along the branch.
+    pub stiffness: Option<f64>,
+    /// Stiffness of the contact area, held.
+    pub stiffness_fixed_area: Option<f64>,
+    /// Relative uncertainty of the stiffnesses.
+    pub stiffness_error: f64,
+    /// Real contact area.
+    pub area: Option<f64>,
+}
+
+impl ScaledState {
+    /// With the stiffness of an elastic contact, the same along the branch and with its area held.
+    #[must_use]
+    pub fn with_elastic_stiffness(self, stiffness: impl Into<Option<f64>>) -> Self {
+        let stiffness = stiffness.into();
+        Self { stiffness, stiffness_fixed_area: stiffness, ..self }
+    }
+}
+
+impl Scaling {
+    /// A scene whose solver counts heights in `height`, and whose surface has the measured rms height `rms`.
+    ///
+    /// # Errors
+    /// [`crate::Error::Domain`] for a modulus or length that no unit can be.
+    pub fn new(scene: &Scene, height: f64, rms: Option<f64>) -> Result<Self> {
+        let (modulus, length) = (scene.modulus, scene.surface.size().length());
+        Ok(Self {
+            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
+            normalisation: Normalisation { modulus, length, height: rms },
+            outputs: scene.outputs,
+        })
+    }
+
+    /// A body without rms height, with everything counted in `L = sqrt(Lx Ly)`.
+    ///
+    /// # Errors
+    /// As [`Scaling::new`].
+    pub fn of_body(scene: &Scene) -> Result<Self> {
+        Self::new(scene, scene.surface.size().length(), None)
+    }
+
+    /// A rough surface of this rms height, in which heights are counted too.
+    ///
+    /// # Errors
+    /// As [`Scaling::new`].
+    pub fn of_rough(scene: &Scene, rms: f64) -> Result<Self> {
+        Self::new(scene, rms, Some(rms))
+    }
+
+    /// The same in other units.
+    #[must_use]
+    pub fn in_units(self, nondimensional: Nondimensionalisation) -> Self {
+        Self { nondimensional, ..self }
+    }
+
+    /// The state under a load: what was prescribed as it was prescribed, and of the rest what is asked for.
+    ///
+    /// # Errors
+    /// [`crate::Error::Domain`] for a number that no `f64` holds.
+    pub fn state(&self, scaled: ScaledState, load: Load, mut report: SolveReport) -> Result<ContactState> {
+        let Self { nondimensional, normalisation, outputs } = self;
+        let force = match load {
+            Load::Force(force) => force,
+            _ => nondimensional.force(scaled.force)?,
+        };
+        let approach = match load {
+            Load::Approach(approach) => Some(approach),
+            _ => scaled.approach.map(|approach| nondimensional.approach(approach)).transpose()?,
+        };
+        let asked = |value: Option<f64>, asked: bool, convert: &dyn Fn(f64) -> Result<f64>| {
+            value.filter(|_| asked).map(convert).transpose()
+        };
+        let of_stiffness = |stiffness| nondimensional.stiffness(stiffness);
+        let slope = asked(scaled.stiffness, outputs.needs_stiffness(), &of_stiffness)?;
+        let held = asked(scaled.stiffness_fixed_area, outputs.needs_fixed_area(), &of_stiffness)?;
+        let area = asked(scaled.area, outputs.area, &|area| nondimensional.area(area))?;
+        report.certificate.stiffness_error = slope.or(held).map(|_| scaled.stiffness_error);
+        ContactState::new(force, report)
+            .with_approach(approach)
+            .with_stiffness(slope)
+            .with_stiffness_fixed_area(held)
+            .with_area(area)
+            .completed(outputs, normalisation.modulus)
+    }
+}
