@@ -1,6 +1,7 @@
 //! A picture as paths and labels, which both files are written from.
 
 use crate::map::encode_rgb;
+use crate::style::{INK, NEUTRAL};
 use crate::text::{Fonts, Piece, Typeset};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -80,6 +81,12 @@ impl Drawing {
         };
         let at = if upwards { (at.0, at.1 + back) } else { (at.0 - back, at.1) };
         self.items.push(Item::Label { set, at, upwards, color: color.to_owned() });
+    }
+
+    /// A title and a line below it, of its own size, at the top from so far across.
+    pub fn heading(&mut self, fonts: &Fonts, title: &str, (subtitle, size): (&str, f64), across: f64) {
+        self.label(fonts.typeset(title, 19.0), (across, 27.0), Anchor::Start, false, INK);
+        self.label(fonts.typeset(subtitle, size), (across, 49.0), Anchor::Start, false, NEUTRAL);
     }
 
     /// Colours of three bytes in rows of so many, first row on top, stretched over a rectangle.

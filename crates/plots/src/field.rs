@@ -2,8 +2,9 @@
 
 use crate::axis::Axis;
 use crate::colours::UNDEFINED;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polyline, rectangle};
-use crate::style::{INK, NEUTRAL};
+use crate::drawing::Drawing;
+use crate::frame::{Frame, Side, TickStyle};
+use crate::map::share;
 use crate::text::Fonts;
 use crate::unit_prefix::prefixed;
 use contact_model::{Cells, Shown, Size};
@@ -48,6 +49,16 @@ const RIGHT: f64 = 124.0;
 const BELOW: f64 = 60.0;
 const BAR: f64 = 18.0;
 const TICK: f64 = 14.0;
+/// Size of the words at an axis.
+const NAME: f64 = 1.2 * TICK;
+const TICKS: TickStyle = TickStyle {
+    size: TICK,
+    long: 5.0,
+    short: None,
+    inwards: false,
+    below: [5.0 + 1.1 * TICK, 3.2 * TICK],
+    beside: [8.0, 0.5 * TICK],
+};
 /// Outline of the contact: far from all of viridis.
 const OUTLINE: [u8; 3] = [228, 26, 28];
 /// Where less than this share of the pixels is under pressure, each of these is drawn three pixels wide.
@@ -94,37 +105,21 @@ impl FieldPicture<'_> {
         let color = |v: f64| match v {
             v if !v.is_finite() => UNDEFINED,
             v if self.shown == Shown::Largest && v.abs() <= 0.0 => [255; 3],
-            // Halves, because the range of finite numbers may overflow.
-            v => colorous::VIRIDIS
-                .eval_continuous((0.5 * v - 0.5 * low) / (0.5 * high - 0.5 * low))
-                .into_array(),
+            v => colorous::VIRIDIS.eval_continuous(share(v, low, high)).into_array(),
         };
         let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
         let image = self.image(columns, rows, color).into_flattened();
         drawing.image(frame, image, columns);
         let (length_unit, per_length) = prefixed(self.length_unit, longer);
-        ticks(&fonts, &mut drawing, frame, Side::Below, (0.0, per_length * size.x));
-        ticks(&fonts, &mut drawing, frame, Side::Left, (0.0, per_length * size.y));
-        drawing.path(rectangle(frame), Paint::stroked(INK, 1.2), None);
+        let map = Frame { fonts: &fonts, place: frame, style: TICKS };
+        map.axis(&mut drawing, Side::Below, Axis::Linear(0.0, per_length * size.x), None);
+        map.axis(&mut drawing, Side::Left, Axis::Linear(0.0, per_length * size.y), None);
+        map.outline(&mut drawing, 1.2);
         let with = |words: &str, unit: &str| {
             if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
         };
-        let below = (LEFT + 0.5 * w, TOP + h + 3.2 * TICK);
-        drawing.label(
-            fonts.typeset(&with("$x$", &length_unit), 1.2 * TICK),
-            below,
-            Anchor::Middle,
-            false,
-            INK,
-        );
-        let beside = (1.4 * TICK, TOP + 0.5 * h);
-        drawing.label(
-            fonts.typeset(&with("$y$", &length_unit), 1.2 * TICK),
-            beside,
-            Anchor::Middle,
-            true,
-            INK,
-        );
+        map.name_below(&mut drawing, &with("$x$", &length_unit), NAME, TOP + h + 3.2 * TICK);
+        map.name_beside(&mut drawing, &with("$y$", &length_unit), NAME, 1.4 * TICK);
         // The bar is at least as high as its labels need.
         let bar = [LEFT + w + 24.0, TOP, BAR, h.max(160.0)];
         let steps = (bar[3] * PIXELS) as usize;
@@ -134,18 +129,13 @@ impl FieldPicture<'_> {
         };
         drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
         let (unit, per_unit) = prefixed(self.unit, low.abs().max(high.abs()));
-        ticks(&fonts, &mut drawing, bar, Side::Right, (per_unit * low, per_unit * high));
-        drawing.path(rectangle(bar), Paint::stroked(INK, 1.2), None);
-        let words = (LEFT + w + RIGHT - 0.6 * TICK, TOP + 0.5 * bar[3]);
-        drawing.label(
-            fonts.typeset(&with(&self.quantity, &unit), 1.2 * TICK),
-            words,
-            Anchor::Middle,
-            true,
-            INK,
-        );
-        drawing.label(fonts.typeset(&self.title, 19.0), (LEFT, 27.0), Anchor::Start, false, INK);
-        drawing.label(fonts.typeset(&self.subtitle, 15.0), (LEFT, 49.0), Anchor::Start, false, NEUTRAL);
+        let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TICKS };
+        let scale = Frame { fonts: &fonts, place: bar, style };
+        scale.axis(&mut drawing, Side::Right, Axis::Linear(per_unit * low, per_unit * high), None);
+        scale.outline(&mut drawing, 1.2);
+        let words = LEFT + w + RIGHT - 0.6 * TICK;
+        scale.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);
+        drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
         files::write_whole(path, &drawing.png(&fonts, path)?)
     }
 
@@ -199,43 +189,6 @@ impl FieldPicture<'_> {
             Shown::Smallest => values().fold(f64::NAN, f64::min),
             Shown::Middle => middle(),
         }
-    }
-}
-
-/// Where the ticks of a frame stand.
-#[derive(Clone, Copy)]
-enum Side {
-    Below,
-    Left,
-    Right,
-}
-
-/// Ticks and labels at one side of a frame; the power of ten that they share stands at its end.
-fn ticks(fonts: &Fonts, drawing: &mut Drawing, [x, y, w, h]: Rectangle, side: Side, (low, high): (f64, f64)) {
-    const LONG: f64 = 5.0;
-    let (ticks, power) = Axis::Linear(low, high).ticks(None);
-    for tick in ticks.iter().filter(|tick| tick.major) {
-        let (along, up) = (x + tick.at * w, y + (1.0 - tick.at) * h);
-        let beside = up + 0.33 * TICK;
-        let (line, at, anchor) = match side {
-            Side::Below => {
-                let end = y + h + LONG;
-                ([(along, y + h), (along, end)], (along, end + 1.1 * TICK), Anchor::Middle)
-            }
-            Side::Left => ([(x - LONG, up), (x, up)], (x - 8.0, beside), Anchor::End),
-            Side::Right => ([(x + w, up), (x + w + LONG, up)], (x + w + 9.0, beside), Anchor::Start),
-        };
-        drawing.path(polyline(&line), Paint::stroked(INK, 1.1), None);
-        let label = fonts.typeset(tick.label.as_deref().unwrap_or_default(), TICK);
-        drawing.label(label, at, anchor, false, INK);
-    }
-    if let Some(power) = power {
-        let (at, anchor) = match side {
-            Side::Below => ((x + w, y + h + 3.2 * TICK), Anchor::End),
-            Side::Left => ((x - 8.0, y - 0.5 * TICK), Anchor::End),
-            Side::Right => ((x, y - 0.5 * TICK), Anchor::Start),
-        };
-        drawing.label(fonts.power_of_ten(power, TICK), at, anchor, false, INK);
     }
 }
 

@@ -19,6 +19,7 @@ mod chart;
 mod colours;
 mod drawing;
 mod field;
+mod frame;
 mod legend;
 mod map;
 mod maps;

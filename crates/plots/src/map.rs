@@ -27,11 +27,6 @@ pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, v
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let low = finite().fold(f64::INFINITY, f64::min);
     let high = finite().fold(f64::NEG_INFINITY, f64::max);
-    // Halves, because the range of finite numbers may overflow.
-    let shade = |v: f64| {
-        let t = if high > low { (0.5 * v - 0.5 * low) / (0.5 * high - 0.5 * low) } else { 0.0 };
-        (255.0 * (1.0 - t.clamp(0.0, 1.0))).round() as u8
-    };
     let [width, height] = pixels(cells, size);
     let transparent = values.iter().any(|v| !v.is_finite());
     let mut bytes = Vec::with_capacity(width * height * if transparent { 2 } else { 1 });
@@ -40,7 +35,7 @@ pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, v
         for x in 0..width {
             let value = row[x * columns / width];
             let defined = value.is_finite();
-            bytes.push(if defined { shade(value) } else { 255 });
+            bytes.push(if defined { shade(value, low, high) } else { 255 });
             if transparent {
                 bytes.push(if defined { 255 } else { 0 });
             }
@@ -75,13 +70,19 @@ pub fn grey(heights: &[f64]) -> Vec<u8> {
     sorted.sort_by(f64::total_cmp);
     let at = |share: f64| sorted.get((share * (sorted.len().saturating_sub(1)) as f64) as usize).copied();
     let (low, high) = (at(0.005).unwrap_or(0.0), at(0.995).unwrap_or(0.0));
-    let shade = |h: &f64| {
-        // Halves, because the range of finite numbers may overflow.
-        let t = if high > low { (0.5 * h - 0.5 * low) / (0.5 * high - 0.5 * low) } else { 0.0 };
-        let t = t.clamp(0.0, 1.0);
-        (255.0 * (1.0 - t)).round() as u8
-    };
-    heights.iter().map(shade).collect()
+    heights.iter().map(|&h| shade(h, low, high)).collect()
+}
+
+/// White at the low end, black at the high one; white without relief.
+fn shade(value: f64, low: f64, high: f64) -> u8 {
+    let t = if high > low { share(value, low, high).clamp(0.0, 1.0) } else { 0.0 };
+    (255.0 * (1.0 - t)).round() as u8
+}
+
+/// How far a value is from the low end to the high one.
+pub(crate) fn share(value: f64, low: f64, high: f64) -> f64 {
+    // Halves, because the range of finite numbers may overflow.
+    (0.5 * value - 0.5 * low) / (0.5 * high - 0.5 * low)
 }
 
 /// Encodes a grey-scale picture, first row on top.

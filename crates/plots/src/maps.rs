@@ -1,7 +1,7 @@
 //! Several grey maps side by side.
 
 use crate::drawing::{Anchor, Drawing, Paint, rectangle};
-use crate::style::{INK, NEUTRAL};
+use crate::style::INK;
 use crate::text::Fonts;
 use runs::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -44,8 +44,7 @@ pub fn save_maps(
     let rows = maps.len().div_ceil(columns);
     let width = GAP + columns as f64 * (MAP + GAP);
     let mut drawing = Drawing::new(width, TITLE + rows as f64 * (MAP + LABEL) + GAP);
-    drawing.label(fonts.typeset(title, 19.0), (GAP, 27.0), Anchor::Start, false, INK);
-    drawing.label(fonts.typeset(subtitle, 16.0), (GAP, 49.0), Anchor::Start, false, NEUTRAL);
+    drawing.heading(&fonts, title, (subtitle, 16.0), GAP);
     for (i, map) in maps.into_iter().enumerate() {
         let x = GAP + (i % columns) as f64 * (MAP + GAP);
         let y = TITLE + LABEL + (i / columns) as f64 * (MAP + LABEL);

@@ -1,7 +1,8 @@
 //! Axes and what is drawn on them.
 
 use crate::axis::Axis;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline, rectangle};
+use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::frame::{Frame, Side, TickStyle};
 use crate::legend::{Legend, free_place};
 use crate::mark;
 use crate::style::{INK, Key, LineStyle, Mark, NEUTRAL};
@@ -14,9 +15,14 @@ const LABEL: f64 = 20.0;
 const TICK: f64 = 17.0;
 pub(crate) const WORDS: f64 = 16.0;
 pub(crate) const TITLE: f64 = 19.0;
-/// Lengths of ticks, which point inwards.
-const LONG: f64 = 8.0;
-const SHORT: f64 = 4.5;
+const TICKS: TickStyle = TickStyle {
+    size: TICK,
+    long: 8.0,
+    short: Some(4.5),
+    inwards: true,
+    below: [1.3 * TICK, 2.6 * TICK],
+    beside: [0.45 * TICK, 0.45 * TICK],
+};
 /// Farthest coordinate, in sides of the frame.
 const FAR: f64 = 1e4;
 /// From the frame to the legend in it.
@@ -259,53 +265,17 @@ impl Picture {
         }
     }
 
-    fn draw_axes(&self, fonts: &Fonts, drawing: &mut Drawing, frame: Rectangle, corner: (f64, f64)) {
+    fn draw_axes(&self, fonts: &Fonts, drawing: &mut Drawing, place: Rectangle, corner: (f64, f64)) {
         let scale = self.text_scale();
-        let [x, y, w, h] = frame;
-        let (right, bottom) = (x + w, y + h);
-        for (i, axis) in self.axes.iter().enumerate() {
-            let (ticks, power) = axis.ticks(self.ticks[i].as_deref());
-            for tick in ticks {
-                let length = scale * if tick.major { LONG } else { SHORT };
-                let ends = if i == 0 {
-                    let x = x + tick.at * w;
-                    [[(x, bottom), (x, bottom - length)], [(x, y), (x, y + length)]]
-                } else {
-                    let y = y + (1.0 - tick.at) * h;
-                    [[(x, y), (x + length, y)], [(right, y), (right - length, y)]]
-                };
-                for ends in ends {
-                    drawing.path(polyline(&ends), Paint::stroked(INK, 1.1), None);
-                }
-                let Some(label) = tick.label else { continue };
-                let set = fonts.typeset(&label, TICK * scale);
-                if i == 0 {
-                    let at = (ends[0][0].0, bottom + 1.3 * TICK * scale);
-                    // A label that would leave the picture is left out.
-                    if at.0 + 0.5 * set.width < drawing.width() {
-                        drawing.label(set, at, Anchor::Middle, false, INK);
-                    }
-                } else {
-                    let at = (x - 0.45 * TICK * scale, ends[0][0].1 + 0.33 * TICK * scale);
-                    drawing.label(set, at, Anchor::End, false, INK);
-                }
-            }
-            if let Some(power) = power {
-                let set = fonts.power_of_ten(power, TICK * scale);
-                let (at, anchor) = if i == 0 {
-                    ((right, bottom + 2.6 * TICK * scale), Anchor::End)
-                } else {
-                    ((x - 0.45 * TICK * scale, y - 0.45 * TICK * scale), Anchor::End)
-                };
-                drawing.label(set, at, anchor, false, INK);
-            }
+        let frame = Frame { fonts, place, style: TICKS.scaled(scale) };
+        for (i, side) in [Side::Below, Side::Left].into_iter().enumerate() {
+            frame.axis(drawing, side, self.axes[i], self.ticks[i].as_deref());
         }
-        drawing.path(rectangle(frame), Paint::stroked(INK, 1.3), None);
-        let label = |i: usize| fonts.typeset(&self.labels[i], LABEL * scale);
-        let below = (x + 0.5 * w, bottom + 1.55 * TICK * scale + 1.2 * LABEL * scale);
-        drawing.label(label(0), below, Anchor::Middle, false, INK);
-        let beside = (corner.0 + 1.15 * LABEL * scale, y + 0.5 * h);
-        drawing.label(label(1), beside, Anchor::Middle, true, INK);
+        frame.outline(drawing, 1.3);
+        let [x, y, _, h] = place;
+        let below = y + h + 1.55 * TICK * scale + 1.2 * LABEL * scale;
+        frame.name_below(drawing, &self.labels[0], LABEL * scale, below);
+        frame.name_beside(drawing, &self.labels[1], LABEL * scale, corner.0 + 1.15 * LABEL * scale);
         let mut above = y - 0.6 * WORDS * scale;
         if !self.subtitle.is_empty() {
             let set = fonts.typeset(&self.subtitle, WORDS * scale);
