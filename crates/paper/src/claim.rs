@@ -1,5 +1,6 @@
 //! What the paper states, what a fair reading of it is, and what was found.
 
+use crate::words;
 use analysis::Table;
 use evaluation::TableOf;
 use runs::Result;
@@ -75,9 +76,28 @@ impl Estimate {
         standard_error.map(|error| Self { value, half_width: 1.96 * error })
     }
 
-    /// Whether the interval holds a number.
-    pub fn holds(&self, other: f64) -> bool {
-        (other - self.value).abs() <= self.half_width
+    /// With another uncertainty, in quadrature.
+    pub(crate) fn widened(self, by: f64) -> Self {
+        Self { half_width: self.half_width.hypot(by), ..self }
+    }
+
+    /// Its quotient with an independent number.
+    pub(crate) fn over(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let relative = (self.half_width / self.value).hypot(other.half_width / other.value);
+        Self { value, half_width: value.abs() * relative }
+    }
+
+    /// Its difference from an independent number.
+    pub(crate) fn minus(self, other: Self) -> Self {
+        Self { value: self.value - other.value, half_width: self.half_width.hypot(other.half_width) }
+    }
+
+    /// The mean of independent numbers with Student's interval; `None` for fewer than two.
+    pub(crate) fn mean(each: &[f64]) -> Option<Self> {
+        let (value, deviation) = analysis::mean_and_deviation(each)?;
+        let n = each.len() as f64;
+        Some(Self { value, half_width: analysis::student(n - 1.0) * deviation? / n.sqrt() })
     }
 }
 
@@ -218,6 +238,11 @@ impl Claim {
         }
     }
 
+    /// Quantity, what the reading allows, what was found, and the verdict.
+    fn short_cells(&self) -> [String; 4] {
+        [self.quantity.clone(), self.allowed(), self.found(), self.verdict.to_string()]
+    }
+
     /// The remark, with what would decide where this interval does not.
     fn conditions(&self) -> String {
         let Some(half_width) = self.decided_by else { return self.remark.clone() };
@@ -294,23 +319,14 @@ pub fn claims_table(title: &str, claims: &[Claim]) -> Result<Table> {
 
 /// The claims as a Markdown table, with short numbers: for `verify.md`.
 pub fn markdown(claims: &[Claim]) -> String {
-    let mut text = format!(
-        "{}\n\n| quantity | the paper | fair reading | allowed | here, 95 % | verdict | remark |\n|---|---|---|---|---|---|---|\n",
-        counts(claims)
-    );
-    for c in claims {
-        let cells = [
-            c.quantity.clone(),
-            format!("{} ({})", c.statement.quotation, c.statement.place),
-            c.statement.reading.to_owned(),
-            c.allowed(),
-            c.found(),
-            c.verdict.to_string(),
-            c.conditions(),
-        ];
-        text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
-    }
-    text
+    let head = "| quantity | the paper | fair reading | allowed | here, 95 % | verdict | remark |\n|---|---|---|---|---|---|---|";
+    let row = |c: &Claim| {
+        let Statement { quotation, place, reading } = c.statement;
+        let paper = format!("{quotation} ({place})");
+        let [quantity, allowed, found, verdict] = c.short_cells();
+        [quantity, paper, reading.to_owned(), allowed, found, verdict, c.conditions()]
+    };
+    format!("{}\n\n{}", counts(claims), words::table(head, claims.iter().map(row)))
 }
 
 /// The short table: quantity, what the paper allows, what was found, verdict; run times are left out.
@@ -322,13 +338,9 @@ pub fn markdown(claims: &[Claim]) -> String {
 /// assert!(paper::short_table(&[c]).ends_with("| alpha | 0.5 to 0.6 | 0.54 +- 0.01 | confirmed |\n"));
 /// ```
 pub fn short_table(claims: &[Claim]) -> String {
-    let mut text =
-        format!("{}\n\n| quantity | paper | here, 95 % | verdict |\n|---|---|---|---|\n", counts(claims));
-    for c in claims.iter().filter(|c| !c.timed) {
-        let cells = [c.quantity.clone(), c.allowed(), c.found(), c.verdict.to_string()];
-        text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
-    }
-    text
+    let head = "| quantity | paper | here, 95 % | verdict |\n|---|---|---|---|";
+    let rows = claims.iter().filter(|c| !c.timed).map(Claim::short_cells);
+    format!("{}\n\n{}", counts(claims), words::table(head, rows))
 }
 
 /// One significant digit: enough for an error.
@@ -339,9 +351,12 @@ fn rounded(v: f64) -> String {
 /// The claims as aligned plain text, with the remark below what is not confirmed.
 pub fn plain(claims: &[Claim]) -> String {
     let wide = claims.iter().map(|c| c.quantity.chars().count()).max().unwrap_or(0).clamp(8, 64);
-    let mut text = format!("{:wide$}  {:>16}  {:>18}  verdict\n", "quantity", "paper", "here, 95 %");
+    let line = |[quantity, paper, here, verdict]: [String; 4]| {
+        format!("{quantity:wide$}  {paper:>16}  {here:>18}  {verdict}\n")
+    };
+    let mut text = line(["quantity", "paper", "here, 95 %", "verdict"].map(str::to_owned));
     for c in claims {
-        text += &format!("{:wide$}  {:>16}  {:>18}  {}\n", c.quantity, c.allowed(), c.found(), c.verdict);
+        text += &line(c.short_cells());
         let conditions = c.conditions();
         if c.verdict != Verdict::Confirmed && !conditions.is_empty() {
             text += &format!("    {conditions}\n");

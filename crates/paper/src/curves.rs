@@ -1,6 +1,6 @@
 //! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
 
-use crate::claim::Claim;
+use crate::claims;
 use crate::judged::Judged;
 use crate::words;
 use analysis::Table;
@@ -19,7 +19,6 @@ pub(crate) struct CurveFigure {
     /// Flags that decide the bytes of its files.
     pub flags: &'static [Flag],
     pub measure: fn(&Run, &Store, &dyn Progress) -> Result<Measured>,
-    pub claims: fn(&Measured) -> Vec<Claim>,
 }
 
 impl CurveFigure {
@@ -30,7 +29,7 @@ impl CurveFigure {
         let measured = (self.measure)(run, &session.store, progress)?;
         let mut outcome = Outcome::of(self.name, self.write(run, &measured)?, &[&measured]);
         outcome.add_budget(write_budget(self.name, self.flags, run, &measured)?);
-        let claims = (self.claims)(&measured);
+        let claims = claims::of_figure(self.name, &[&measured])?;
         Ok((Judged::new(session.close(outcome)?, claims), measured))
     }
 

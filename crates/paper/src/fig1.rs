@@ -3,7 +3,7 @@
 use crate::judged::Judged;
 use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
-use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list};
+use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use plots::{GreyMap, encode_grey, grey, save_maps};
 use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory, write_npy};
 use std::path::{Path, PathBuf};
@@ -93,16 +93,13 @@ fn full_size(out: &Path, d: f64, map: &HeightMap) -> Result<[PathBuf; 2]> {
 /// Draws `fig1.svg` and `fig1.png` from the table.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let d: Vec<f64> = file.numbers("fractal_dimension")?.into_iter().flatten().collect();
-    let heights: Vec<f64> = file.numbers("height")?.into_iter().flatten().collect();
-    let mut maps = Vec::new();
-    let mut start = 0;
-    for group in d.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
-        let side = group.len().isqrt();
-        let shades = grey(&heights[start..start + group.len()]);
-        maps.push(GreyMap { label: words::dimension(group[0]), shades: flipped(&shades, side), side });
-        start += group.len();
-    }
+    let rows: Vec<[f64; 4]> = read_rows(csv, &file)?;
+    let map = |cells: &[[f64; 4]]| {
+        let side = cells.len().isqrt();
+        let shades = grey(&cells.iter().map(|cell| cell[3]).collect::<Vec<_>>());
+        GreyMap { label: words::dimension(cells[0][0]), shades: flipped(&shades, side), side }
+    };
+    let maps = rows.chunk_by(|a, b| a[0].total_cmp(&b[0]).is_eq()).map(map).collect();
     let cells = words::flag(&file, "--cells").map(|n| format!("{n} × {n} cells, "));
     let below =
         format!("{}the same phases for every $D_{{\\rm{{f}}}}$; darker is higher", cells.unwrap_or_default());

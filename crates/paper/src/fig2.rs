@@ -1,6 +1,5 @@
 //! Fig. 2: stiffness over force in three dimensions.
 
-use crate::claims;
 use crate::curves::CurveFigure;
 use crate::judged::Judged;
 use evaluation::{FLAGS_3D, Run, measure_3d};
@@ -11,7 +10,6 @@ pub(crate) const FIGURE: CurveFigure = CurveFigure {
     title: "Fig. 2: stiffness over force, 3D boundary elements",
     flags: &FLAGS_3D,
     measure: measure_3d,
-    claims: claims::curves_3d,
 };
 
 /// Solves the 3D ensemble and writes `fig2.csv`, `fig2-samples.csv`, `fig2-budget.csv`, `fig2.svg`, `fig2.png`.

@@ -5,7 +5,7 @@ use crate::judged::Judged;
 use crate::{curves, words};
 use evaluation::{
     FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Outcome, Run, Session, TableOf, describe, header,
-    measure_3d, transformed,
+    measure_3d, read_rows, transformed,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
 use runs::{CsvFile, Progress, Result};
@@ -23,7 +23,7 @@ pub fn fig4(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     let session = Session::open(run)?;
     let measured = measure_3d(run, &session.store, progress)?;
     let outcome = session.close(write(run, &measured)?)?;
-    Ok(Judged::new(outcome, claims::collapse(&measured)))
+    Ok(Judged::new(outcome, claims::of_figure("fig4", &[&measured])?))
 }
 
 pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
@@ -47,10 +47,9 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
 /// Draws `fig4.svg` and `fig4.png` from the table: F_tilde over F_bar would be six curves on one diagonal, their ratio shows them apart.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let (d, f) = (file.numbers("fractal_dimension")?, file.numbers("force_bar")?);
-    let (t, floor) = (file.numbers("force_tilde")?, file.texts("below_floor")?);
+    let rows: Vec<(String, f64, f64, f64, bool)> = read_rows(csv, &file)?;
     let rows: Vec<(f64, f64, f64, bool)> =
-        (0..d.len()).filter_map(|i| Some((d[i]?, f[i]?, t[i]? / f[i]?, floor[i] == "true"))).collect();
+        rows.into_iter().map(|(_, d, force, tilde, floor)| (d, force, tilde / force, floor)).collect();
     let solid = || rows.iter().filter(|r| !r.3);
     let x = logarithmic(solid().map(|r| r.1));
     let highest = solid().map(|r| r.2).fold(1.0, f64::max);

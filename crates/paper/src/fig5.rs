@@ -3,7 +3,7 @@
 use crate::judged::Judged;
 use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
-use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list};
+use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use plots::{Axis, LineStyle, Panels, Picture, extent};
 use runs::{CsvFile, Error, Progress, Result, threads_for_memory, write_npy};
 use std::path::{Path, PathBuf};
@@ -93,8 +93,7 @@ fn extremes(line: &Line) -> Vec<usize> {
 /// Draws `fig5.svg` and `fig5.png` from the table.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let (d, x, h) = (file.numbers("fractal_dimension")?, file.numbers("x")?, file.numbers("height")?);
-    let rows: Vec<(f64, f64, f64)> = (0..d.len()).filter_map(|i| Some((d[i]?, x[i]?, h[i]?))).collect();
+    let rows: Vec<(f64, f64, f64)> = read_rows(csv, &file)?;
     let curves: Vec<_> = rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()).collect();
     let mut pictures = Vec::new();
     for (panel, curve) in curves.iter().enumerate() {

@@ -1,6 +1,5 @@
 //! Fig. 6: stiffness over force in one dimension.
 
-use crate::claims;
 use crate::curves::CurveFigure;
 use crate::judged::Judged;
 use evaluation::{FLAGS_1D, Run, measure_1d};
@@ -11,7 +10,6 @@ pub(crate) const FIGURE: CurveFigure = CurveFigure {
     title: "Fig. 6: stiffness over force, 1D reduction",
     flags: &FLAGS_1D,
     measure: measure_1d,
-    claims: claims::curves_1d,
 };
 
 /// Solves the 1D ensemble and writes `fig6.csv`, `fig6-samples.csv`, `fig6-budget.csv`, `fig6.svg`, `fig6.png`.

@@ -1,15 +1,16 @@
 //! What Figs. 3 and 7 have in common: fitted values over the fractal dimension.
 
-use crate::claim::Claim;
+use crate::claims;
 use crate::judged::Judged;
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use evaluation::{
     FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, WindowedLaw, dense_dimensions,
-    describe, header, laws, laws_within, measure_1d, measure_3d, windowed_law,
+    describe, header, laws, laws_within, measure_1d, measure_3d, read_rows, windowed_law,
 };
-use plots::{Axis, Key, Mark, MarkShape, Picture, number};
+use plots::{Axis, Key, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
 use runs::{CsvFile, Error, Progress, Result};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Points of one fractal dimension stand this far from each other, so that none hides another.
@@ -23,15 +24,26 @@ pub(crate) struct FittedFigure {
     pub columns: [&'static str; 2],
     pub value: fn(&FittedPowerLaw) -> (f64, Option<f64>),
     pub formulas: &'static [Formula],
-    /// Draws the picture from the table, with a finer table of Fig. 2 beside, into a directory.
-    pub draw: fn(&Path, Option<&Path>, &Path) -> Result<Vec<PathBuf>>,
-    pub claims: fn(&Measured, &Measured) -> Vec<Claim>,
+    /// Title of the picture and label of its axis.
+    pub words: [&'static str; 2],
+    /// The axis for the largest end of an error bar.
+    pub axis: fn(f64) -> Axis,
 }
 
-/// A formula of the paper: name, note, and the parameter at D_f.
-type Formula = (&'static str, &'static str, fn(f64) -> f64);
+/// A formula of the paper.
+pub(crate) struct Formula {
+    /// In the column of models.
+    pub name: &'static str,
+    /// In the column of notes.
+    pub note: &'static str,
+    /// The parameter at D_f.
+    pub of: fn(f64) -> f64,
+    pub legend: &'static str,
+    pub style: LineStyle,
+}
 
 /// A row of the table: a fit, why there is none, or a formula.
+#[derive(Default)]
 struct FittedRow {
     model: &'static str,
     fractal_dimension: f64,
@@ -52,7 +64,7 @@ impl FittedFigure {
         let solid = measure_3d(run, &session.store, progress)?;
         let line = measure_1d(run, &session.store, progress)?;
         let outcome = session.close(self.write(run, &solid, &line)?)?;
-        Ok(Judged::new(outcome, (self.claims)(&solid, &line)))
+        Ok(Judged::new(outcome, claims::of_figure(self.name, &[&solid, &line])?))
     }
 
     /// Writes `name.csv`, `name.svg` and `name.png`.
@@ -88,8 +100,7 @@ impl FittedFigure {
                 "errors: bootstrap over surfaces, {} resamples; curves of different D_f share phases, their errors are correlated",
                 Bootstrap::default().resamples
             ));
-        let draw = |csv: &Path| (self.draw)(csv, None, &run.out);
-        let files = curves::written(run, self.name, &table, &header, draw)?;
+        let files = curves::written(run, self.name, &table, &header, |csv| self.draw(csv, None, &run.out))?;
         Ok(Outcome::of(self.name, files, &[solid, line]))
     }
 
@@ -122,16 +133,13 @@ impl FittedFigure {
         };
         let fitted = of(solid).into_iter().chain(of(line));
         let dimensions = dense_dimensions(&run.dimensions());
-        let formulas = self.formulas.iter().flat_map(|&(model, note, of)| {
-            dimensions.iter().map(move |&fractal_dimension| FittedRow {
-                model,
+        let formulas = self.formulas.iter().flat_map(|formula| {
+            dimensions.iter().map(|&fractal_dimension| FittedRow {
+                model: formula.name,
                 fractal_dimension,
-                value: Some(of(fractal_dimension)),
-                error: None,
-                half_width: None,
-                common: None,
-                fit: None,
-                note: Some(note.to_owned()),
+                value: Some((formula.of)(fractal_dimension)),
+                note: Some(formula.note.to_owned()),
+                ..FittedRow::default()
             })
         });
         fitted.chain(formulas).collect()
@@ -150,120 +158,128 @@ impl FittedFigure {
     }
 }
 
-/// An empty picture of a parameter over the fractal dimension.
-pub(crate) fn picture(axes: (Axis, Axis), label: &str, title: &str) -> Picture {
-    Picture::new(axes.0, axes.1, words::DIMENSION, label)
-        .with_size(800.0, 560.0)
-        .with_title(title)
-        .with_legend_below()
+impl FittedFigure {
+    /// Draws `name.svg` and `name.png` from the table; `finer` is a table of Fig. 2 whose fitted laws stand beside.
+    pub fn draw(&self, csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
+        let file = CsvFile::read(csv)?;
+        let rows: Vec<FittedPoint> = read_rows(csv, &file)?;
+        let of =
+            |model: &str| rows.iter().filter(|r| r.model == model && r.value.is_some()).cloned().collect();
+        let mut all: Vec<(String, Vec<FittedPoint>)> = Vec::new();
+        for (model, name) in [("bem3d", "3D"), ("mdr1d", "1D")] {
+            let label = words::ensemble(&file, model).unwrap_or_default();
+            all.push((format!("{name}, {label}"), of(model)));
+        }
+        if let Some(path) = finer {
+            let file = CsvFile::read(path)?;
+            let label = words::ensemble(&file, "bem3d").unwrap_or_default();
+            all.push((format!("3D, {label}"), self.points_of(&laws_of_means(path, &file)?)));
+        }
+        let ends = all
+            .iter()
+            .flat_map(|(_, points)| points)
+            .filter_map(|p| Some(p.value? + p.half_width.unwrap_or(0.0)));
+        let y = (self.axis)(ends.fold(0.0, f64::max));
+        let [title, label] = self.words;
+        let mut picture = Picture::new(Axis::Linear(1.9, 3.1), y, words::DIMENSION, label)
+            .with_size(800.0, 560.0)
+            .with_title(title)
+            .with_legend_below();
+        for formula in self.formulas {
+            let points: Vec<FittedPoint> = of(formula.name);
+            let line: Vec<_> = points.iter().filter_map(|p| Some((p.fractal_dimension, p.value?))).collect();
+            picture.line(&line, REFERENCE, 1.6, formula.style);
+        }
+        draw_points(&mut picture, &all);
+        for formula in self.formulas {
+            picture.legend(formula.legend, REFERENCE, Key::Line(formula.style));
+        }
+        picture.save(out, self.name)
+    }
+
+    fn points_of(&self, laws: &[(f64, FittedPowerLaw)]) -> Vec<FittedPoint> {
+        let point = |(fractal_dimension, law): &(f64, FittedPowerLaw)| FittedPoint {
+            fractal_dimension: *fractal_dimension,
+            value: Some((self.value)(law).0),
+            force_bar_min: Some(law.force_bar_min),
+            force_bar_max: Some(law.force_bar_max),
+            ..FittedPoint::default()
+        };
+        laws.iter().map(point).collect()
+    }
 }
 
-/// A fitted value.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Fitted {
-    pub fractal_dimension: f64,
-    pub value: f64,
-    pub error: Option<f64>,
-    pub force_min: Option<f64>,
-    pub force_max: Option<f64>,
+/// A fitted value, or one of a formula, as the table has it.
+#[derive(Debug, Clone, Default, Deserialize)]
+struct FittedPoint {
+    model: String,
+    fractal_dimension: f64,
+    #[serde(alias = "alpha", alias = "zeta")]
+    value: Option<f64>,
+    half_width: Option<f64>,
+    force_bar_min: Option<f64>,
+    force_bar_max: Option<f64>,
 }
 
-/// The values of one model in a table.
-pub(crate) fn series(file: &CsvFile, model: &str, value: &str) -> Result<Vec<Fitted>> {
-    let (models, d) = (file.texts("model")?, file.numbers("fractal_dimension")?);
-    let (v, e) = (file.numbers(value)?, file.numbers("half_width")?);
-    let (low, high) = (file.numbers("force_bar_min")?, file.numbers("force_bar_max")?);
-    let row = |i: usize| {
-        let (fractal_dimension, value) = (d[i]?, v[i]?);
-        Some(Fitted { fractal_dimension, value, error: e[i], force_min: low[i], force_max: high[i] })
-    };
-    Ok((0..d.len()).filter(|&i| models[i] == model).filter_map(row).collect())
-}
-
-/// A formula of a table as points of its line.
-pub(crate) fn formula(file: &CsvFile, model: &str, value: &str) -> Result<Vec<(f64, f64)>> {
-    Ok(series(file, model, value)?.iter().map(|p| (p.fractal_dimension, p.value)).collect())
+/// A mean of a table of Fig. 2.
+#[derive(Deserialize)]
+struct MeanRow {
+    fractal_dimension: f64,
+    force_bar: f64,
+    stiffness_bar: Option<f64>,
+    not_converged: Option<f64>,
+    min_contact_cells: Option<usize>,
 }
 
 /// The laws of a table of Fig. 2: fitted to its means in the same window by the same code, without errors, because it does not hold
 /// the single surfaces.
-fn laws_of_means(file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw)>> {
-    let (d, force) = (file.numbers("fractal_dimension")?, file.numbers("force_bar")?);
-    let (mean, cells) = (file.numbers("stiffness_bar")?, file.numbers("min_contact_cells")?);
-    let missing = file.numbers("not_converged")?;
-    let rows: Vec<(f64, f64, Option<StiffnessSample>)> = (0..d.len())
-        .filter_map(|i| {
-            let whole = missing[i].is_none_or(|n| n < 0.5);
-            let sample = mean[i].filter(|_| whole).map(|stiffness_bar| StiffnessSample {
-                stiffness_bar,
-                contact_cells: cells[i].map(|c| c as usize),
-            });
-            Some((d[i]?, force[i]?, sample))
-        })
-        .collect();
+fn laws_of_means(path: &Path, file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw)>> {
+    let rows: Vec<MeanRow> = read_rows(path, file)?;
+    let sample = |r: &MeanRow| {
+        let stiffness_bar = r.stiffness_bar.filter(|_| r.not_converged.is_none_or(|n| n < 0.5))?;
+        Some(StiffnessSample { stiffness_bar, contact_cells: r.min_contact_cells })
+    };
     let mut laws = Vec::new();
-    for group in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
-        let forces = group.iter().map(|r| r.1).collect();
-        let means = group.iter().map(|r| r.2).collect();
+    for group in rows.chunk_by(|a, b| a.fractal_dimension.total_cmp(&b.fractal_dimension).is_eq()) {
+        let forces = group.iter().map(|r| r.force_bar).collect();
+        let means = group.iter().map(sample).collect();
         let curves = Curves::new(forces, vec![means]).map_err(Error::model("the means of a finer run"))?;
         if let Ok(law) = fit_power_law(&curves, &FitWindow::PAPER, &Bootstrap::default()) {
-            laws.push((group[0].0, law));
+            laws.push((group[0].fractal_dimension, law));
         }
     }
     Ok(laws)
 }
 
-/// The values of a finer run.
-pub(crate) fn finer_series(path: &Path, value: &str) -> Result<Vec<Fitted>> {
-    let fitted = |(fractal_dimension, law): (f64, FittedPowerLaw)| Fitted {
-        fractal_dimension,
-        value: if value == "zeta" { law.zeta } else { law.alpha },
-        error: None,
-        force_min: Some(law.force_bar_min),
-        force_max: Some(law.force_bar_max),
-    };
-    Ok(laws_of_means(&CsvFile::read(path)?)?.into_iter().map(fitted).collect())
-}
-
 /// Both models, and a finer run where there is one, with their error bars and the windows of their fits.
-pub(crate) fn points(picture: &mut Picture, file: &CsvFile, finer: Option<&Path>, value: &str) -> Result<()> {
-    let mut all = Vec::new();
-    for (model, name) in [("bem3d", "3D"), ("mdr1d", "1D")] {
-        let label = words::ensemble(file, model).unwrap_or_default();
-        all.push((format!("{name}, {label}"), series(file, model, value)?));
-    }
-    if let Some(path) = finer {
-        let label = words::ensemble(&CsvFile::read(path)?, "bem3d").unwrap_or_default();
-        all.push((format!("3D, {label}"), finer_series(path, value)?));
-    }
+fn draw_points(picture: &mut Picture, all: &[(String, Vec<FittedPoint>)]) {
     let styles = [
         ("#0b559f", Mark::Solid(MarkShape::Circle), -1.0),
         ("#d55e00", Mark::Solid(MarkShape::Square), 1.0),
         ("#0b559f", Mark::Hollow(MarkShape::Diamond), 0.0),
     ];
-    for ((label, values), (color, mark, side)) in all.iter().zip(styles) {
-        if values.is_empty() {
+    for ((label, points), (color, mark, side)) in all.iter().zip(styles) {
+        if points.is_empty() {
             continue;
         }
-        let at = |p: &Fitted| (p.fractal_dimension + side * BESIDE, p.value);
-        let bars: Vec<_> = values.iter().map(|p| (at(p).0, p.value, p.error)).collect();
-        picture.points(&values.iter().map(at).collect::<Vec<_>>(), color, 4.4, mark);
+        let bar = |p: &FittedPoint| Some((p.fractal_dimension + side * BESIDE, p.value?, p.half_width));
+        let bars: Vec<_> = points.iter().filter_map(bar).collect();
+        picture.points(&bars.iter().map(|b| (b.0, b.1)).collect::<Vec<_>>(), color, 4.4, mark);
         picture.errors(&bars, color);
-        let key = if values.iter().any(|p| p.error.is_some()) { Key::Bar(mark) } else { Key::Mark(mark) };
-        picture.legend(&format!("{label}{}", window(values)), color, key);
+        let key = if bars.iter().any(|b| b.2.is_some()) { Key::Bar(mark) } else { Key::Mark(mark) };
+        picture.legend(&format!("{label}{}", window(points)), color, key);
     }
     let words = "bars: 95 %, with scatter, window and grid; points of one $D_{\\rm{f}}$ stand side by side";
     picture.legend(words, "#000000", Key::Words);
-    if finer.is_some() {
+    if all.len() > 2 {
         picture.legend("open marks: fitted to the means alone, no error is known", "#000000", Key::Words);
     }
-    Ok(())
 }
 
 /// Where the fits of a series begin and end.
-fn window(values: &[Fitted]) -> String {
-    let (Some(first), Some(last)) = (values.first(), values.last()) else { return String::new() };
-    let (Some(a), Some(b), Some(end)) = (first.force_min, last.force_min, first.force_max) else {
+fn window(points: &[FittedPoint]) -> String {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return String::new() };
+    let (Some(a), Some(b), Some(end)) = (first.force_bar_min, last.force_bar_min, first.force_bar_max) else {
         return String::new();
     };
     let [a, b, end] = [a, b, end].map(|v| number(rounded(v)).replace('$', ""));
@@ -293,7 +309,7 @@ mod tests {
             text += &format!("2.2,{force:?},{:?},0,{cells}\n", 0.5 * force.powf(0.6));
         }
         std::fs::write(&path, text).unwrap();
-        let laws = laws_of_means(&CsvFile::read(&path).unwrap()).unwrap();
+        let laws = laws_of_means(&path, &CsvFile::read(&path).unwrap()).unwrap();
         assert_eq!((laws.len(), laws[0].1.points), (1, 4));
         approx::assert_relative_eq!(laws[0].1.alpha, 0.6, max_relative = 1e-12);
         assert_eq!((laws[0].1.force_bar_min, laws[0].1.force_bar_max), (1e-5, 1e-2));

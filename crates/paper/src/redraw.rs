@@ -31,10 +31,10 @@ pub fn redraw(directory: &Path, beside: &Beside) -> Result<Vec<PathBuf>> {
         files.extend(match name {
             "fig1" => fig1::draw(&csv, directory)?,
             "fig2" | "fig6" => curves::draw(name, &csv, over, directory)?,
-            "fig3" => fig3::draw(&csv, finer, directory)?,
+            "fig3" => fig3::FIGURE.draw(&csv, finer, directory)?,
             "fig4" => fig4::draw(&csv, directory)?,
             "fig5" => fig5::draw(&csv, directory)?,
-            "fig7" => fig7::draw(&csv, finer, directory)?,
+            "fig7" => fig7::FIGURE.draw(&csv, finer, directory)?,
             _ => two_cases::draw(&csv, directory)?,
         });
     }

@@ -22,23 +22,12 @@ pub fn verify(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     Ok(Judged::new(session.close(outcome)?, claims))
 }
 
-/// All claims in order of figures; [`sort`] puts the contradictions first.
-fn all(solid: &Measured, line: &Measured) -> Result<Vec<Claim>> {
-    let mut claims = claims::exponents(solid, line);
-    claims.extend(claims::factors(solid, line));
-    claims.extend(claims::collapse(solid));
-    claims.extend(claims::curves_3d(solid));
-    claims.extend(claims::curves_1d(line));
-    claims.extend(claims::together(solid, line));
-    claims.extend(claims::plateaus()?);
-    claims.extend(claims::regions()?);
-    claims.extend(claims::beside_stiffness()?);
-    claims.push(claims::speed(solid, line));
-    Ok(claims)
-}
-
 pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<(Outcome, Vec<Claim>)> {
-    let mut claims = all(solid, line)?;
+    let ensembles = claims::Ensembles::new(&[solid, line]);
+    let mut claims = Vec::new();
+    for command in claims::VERIFIED {
+        claims.extend(claims::judged(command, &ensembles)?);
+    }
     sort(&mut claims);
     let command = run.command("verify", &Flag::ALL);
     let title = "Statements of the paper beside what was found, contradictions first";

@@ -24,6 +24,17 @@ pub enum Convention {
 }
 
 impl Convention {
+    /// Both, in the order of tables.
+    pub const BOTH: [Self; 2] = [Self::Measured, Self::FixedSpectrum];
+
+    /// The convention in a sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Measured => "F_bar by the measured rms height of each grid",
+            Self::FixedSpectrum => "F_bar by the rms height of the spectrum on 2049 x 2049 cells",
+        }
+    }
+
     /// The word in tables.
     pub fn as_str(self) -> &'static str {
         match self {

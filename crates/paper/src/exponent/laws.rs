@@ -27,6 +27,13 @@ pub struct LawRow {
 }
 
 impl LawRow {
+    /// Whether it was fitted to this curve.
+    pub fn is_of(&self, curve: &MeanCurve) -> bool {
+        self.model == curve.model
+            && self.convention == curve.convention
+            && (self.fractal_dimension - curve.fractal_dimension).abs() < 1e-9
+    }
+
     /// Eq. 6.
     pub fn eq6(&self) -> f64 {
         0.266 * self.fractal_dimension

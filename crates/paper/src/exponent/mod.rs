@@ -209,7 +209,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
             (&store, study.threads),
             progress,
         )?;
-        for convention in [Convention::Measured, Convention::FixedSpectrum] {
+        for convention in Convention::BOTH {
             for rung in &rungs {
                 curves.push(MeanCurve::new(ladder, rung, convention, study.error)?);
             }

@@ -4,13 +4,18 @@ use super::curve::{Convention, MeanCurve};
 use super::ladder::{Ladder, Pair, Rungs};
 use super::laws::{Factor, LawRow};
 use crate::claim::short;
-use std::fmt::Write as _;
+use crate::words;
+use std::ops::Range;
 
 /// `0.5123 +- 0.0045`: as many digits as the error allows.
 fn with_error(value: f64, half_width: f64) -> String {
     let digits =
         if half_width > 0.0 { (1.0 - half_width.log10().floor()).clamp(0.0, 6.0) as usize } else { 4 };
     format!("{value:.digits$} +- {half_width:.digits$}")
+}
+
+fn loads(forces: &Range<f64>) -> String {
+    format!("{:.1e} to {:.1e}", forces.start, forces.end)
 }
 
 /// What was solved, how far each curve goes, the exponents beside the laws, and the factor between line and surface.
@@ -21,87 +26,56 @@ pub fn report(
     laws: &[LawRow],
     factors: &[Factor],
 ) -> String {
-    let mut text = format!("`{command}`\n\n");
-    text += "| | size | surfaces for each D_f | processor hours, all D_f |\n|---|---:|---:|---:|\n";
-    for (ladder, rungs) in solved {
-        let name = ladder.model.name();
-        for (level, size) in ladder.sizes.iter().enumerate() {
+    let levels = solved.iter().flat_map(|&(ladder, rungs)| {
+        ladder.sizes.iter().zip(&ladder.surfaces).enumerate().map(move |(level, (size, surfaces))| {
             let pairs = rungs.iter().flat_map(|r| &r.levels[level]);
             let hours = pairs.map(Pair::seconds).sum::<f64>() / 3600.0;
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "| {name} | {size} | {} | {} |", ladder.surfaces[level], short(hours));
-        }
-    }
+            [ladder.model.name().to_owned(), size.to_string(), surfaces.to_string(), short(hours)]
+        })
+    });
+    let head = "| | size | surfaces for each D_f | processor hours, all D_f |\n|---|---:|---:|---:|";
+    let mut text = format!("`{command}`\n\n{}", words::table(head, levels));
     for (model, words) in [("bem3d", "Surfaces"), ("mdr1d", "Lines")] {
-        for convention in [Convention::Measured, Convention::FixedSpectrum] {
-            exponents(&mut text, (model, words), convention, curves, laws);
+        for convention in Convention::BOTH {
+            let curves = curves.iter().filter(|c| c.model == model && c.convention == convention);
+            text += &format!("\n{words}, {}:\n\n{}", convention.words(), exponents(curves, laws));
         }
     }
-    for convention in [Convention::Measured, Convention::FixedSpectrum] {
-        let _ = writeln!(
-            text,
-            "\nLine over surface, {}:\n\n| D_f | F_bar | k_1D/k_3D | slope of its logarithm over ln F | constant |\n|---|---|---|---|---|",
-            words_of(convention)
-        );
-        for f in factors.iter().filter(|f| f.convention == convention) {
-            let _ = writeln!(
-                text,
-                "| {:?} | {:.1e} to {:.1e} | {} | {} | {} |",
-                f.fractal_dimension,
-                f.forces.start,
-                f.forces.end,
-                with_error(f.value, f.half_width),
-                with_error(f.slope, f.slope_half_width),
-                f.verdict()
-            );
-        }
+    let head =
+        "| D_f | F_bar | k_1D/k_3D | slope of its logarithm over ln F | constant |\n|---|---|---|---|---|";
+    let row = |f: &Factor| {
+        let [factor, slope] = [(f.value, f.half_width), (f.slope, f.slope_half_width)];
+        let d = format!("{:?}", f.fractal_dimension);
+        let [factor, slope] = [factor, slope].map(|(value, half_width)| with_error(value, half_width));
+        [d, loads(&f.forces), factor, slope, f.verdict().to_owned()]
+    };
+    for convention in Convention::BOTH {
+        let rows = factors.iter().filter(|f| f.convention == convention).map(row);
+        text += &format!("\nLine over surface, {}:\n\n{}", convention.words(), words::table(head, rows));
     }
     text
 }
 
-fn words_of(convention: Convention) -> &'static str {
-    match convention {
-        Convention::Measured => "F_bar by the measured rms height of each grid",
-        Convention::FixedSpectrum => "F_bar by the rms height of the spectrum on 2049 x 2049 cells",
-    }
-}
-
-fn exponents(
-    text: &mut String,
-    (model, words): (&str, &str),
-    convention: Convention,
-    curves: &[MeanCurve],
-    laws: &[LawRow],
-) {
-    let _ = writeln!(
-        text,
-        "\n{words}, {}:\n\n| D_f | resolved from F_bar | window | alpha | of it the grid | most of the scatter | 0.266 D_f | 1/(1 + H) | inside |\n|---|---|---|---|---|---|---|---|---|",
-        words_of(convention)
-    );
-    for curve in curves.iter().filter(|c| c.model == model && c.convention == convention) {
-        let d = curve.fractal_dimension;
-        let from = curve
-            .forces
-            .get(curve.resolved.start)
-            .map_or_else(|| "nowhere".to_owned(), |f| format!("{f:.1e}"));
-        let own = laws.iter().filter(|r| {
-            r.model == model && r.convention == convention && (r.fractal_dimension - d).abs() < 1e-9
-        });
-        for r in own {
-            let widest =
-                r.widest.map_or_else(String::new, |(size, share)| format!("{size} ({:.0} %)", 100.0 * share));
-            let _ = writeln!(
-                text,
-                "| {d:?} | {from} | {} ({:.1e} to {:.1e}) | {} | {:.4} | {widest} | {:.3} | {:.3} | {} |",
-                r.window,
-                r.forces.start,
-                r.forces.end,
+/// The exponents of curves beside the laws.
+fn exponents<'a>(curves: impl Iterator<Item = &'a MeanCurve>, laws: &[LawRow]) -> String {
+    let head = "| D_f | resolved from F_bar | window | alpha | of it the grid | most of the scatter | 0.266 D_f | 1/(1 + H) | inside |\n|---|---|---|---|---|---|---|---|---|";
+    let rows = curves.flat_map(|curve| {
+        let first = curve.forces.get(curve.resolved.start);
+        let from = first.map_or_else(|| "nowhere".to_owned(), |f| format!("{f:.1e}"));
+        laws.iter().filter(|law| law.is_of(curve)).map(move |r| {
+            let share = |(size, share): (usize, f64)| format!("{size} ({:.0} %)", 100.0 * share);
+            [
+                format!("{:?}", curve.fractal_dimension),
+                from.clone(),
+                format!("{} ({})", r.window, loads(&r.forces)),
                 with_error(r.alpha.value(), r.alpha.half_width()),
-                r.alpha.grid,
-                r.eq6(),
-                r.power_law(),
-                r.verdict()
-            );
-        }
-    }
+                format!("{:.4}", r.alpha.grid),
+                r.widest.map_or_else(String::new, share),
+                format!("{:.3}", r.eq6()),
+                format!("{:.3}", r.power_law()),
+                r.verdict().to_owned(),
+            ]
+        })
+    });
+    words::table(head, rows)
 }

@@ -12,6 +12,10 @@ use std::fmt::Write as _;
 const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";
 const CONVENTION: &str = "rms height in which F_bar is counted: measured_rms, of each grid; fixed_spectrum, of the spectrum on 2049 x 2049 cells";
 
+const SCATTER: &str = "95 % half-width from the scatter of the surfaces";
+const GRID: &str = "what the grid leaves, from the three finest";
+const BOTH_HALF: &str = "95 %, scatter and grid of both";
+
 const LEVEL_MEAN: &str = "mean k_bar on the coarsest grid, else mean difference from the next coarser grid";
 
 const VALUES: &str = "at the loads of the header that this level has, from the smallest up, separated by blanks; - where a solve did not meet its tolerance";
@@ -55,17 +59,13 @@ pub fn curves(curves: &[MeanCurve]) -> Result<Table> {
             |r| r.curve.finest(r.point),
         )
         .column("stiffness_bar", "1", "mean k/(1.1419 E* L) on that grid", |r| value(r.stiffness))
-        .column("stiffness_scatter", "1", "95 % half-width from the scatter of the surfaces", |r| {
-            scatter(r.stiffness)
-        })
-        .column("stiffness_grid", "1", "what the grid leaves, from the three finest", |r| grid(r.stiffness))
+        .column("stiffness_scatter", "1", SCATTER, |r| scatter(r.stiffness))
+        .column("stiffness_grid", "1", GRID, |r| grid(r.stiffness))
         .column("slope", "1", "d ln k/d ln F through five loads; empty where one is not resolved", |r| {
             value(r.slope)
         })
-        .column("slope_scatter", "1", "95 % half-width from the scatter of the surfaces", |r| {
-            scatter(r.slope)
-        })
-        .column("slope_grid", "1", "what the grid leaves, from the three finest", |r| grid(r.slope))
+        .column("slope_scatter", "1", SCATTER, |r| scatter(r.slope))
+        .column("slope_grid", "1", GRID, |r| grid(r.slope))
         .column(
             "resolved",
             "-",
@@ -114,9 +114,7 @@ pub fn laws(rows: &[LawRow]) -> Result<Table> {
         .column("alpha", "1", "slope of ln k over ln F by least squares, loads with equal weight", |r| {
             r.alpha.value()
         })
-        .column("scatter", "1", "95 % half-width from the scatter of the surfaces", |r| {
-            r.alpha.scatter.half_width()
-        })
+        .column("scatter", "1", SCATTER, |r| r.alpha.scatter.half_width())
         .column("grid", "1", "what the grid leaves", |r| r.alpha.grid)
         .column("widest_level", "1", "size of the level that adds most to the scatter", |r| {
             r.widest.map(|w| w.0)
@@ -135,7 +133,7 @@ pub fn ratios(rows: &[Ratio]) -> Result<Table> {
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
         .column("force_bar", "1", "F/(E* h L)", |r| r.force_bar)
         .column("ratio", "1", "k_1D/k_3D", |r| r.value)
-        .column("half_width", "1", "95 %, scatter and grid of both", |r| r.half_width)
+        .column("half_width", "1", BOTH_HALF, |r| r.half_width)
         .table()
 }
 
@@ -147,11 +145,11 @@ pub fn factors(rows: &[Factor]) -> Result<Table> {
         .column("force_bar_min", "1", "smallest load at which both are resolved", |r| r.forces.start)
         .column("force_bar_max", "1", "largest load", |r| r.forces.end)
         .column("factor", "1", "exp of the mean of ln(k_1D/k_3D) over the loads", |r| r.value)
-        .column("factor_half_width", "1", "95 %, scatter and grid of both", |r| r.half_width)
+        .column("factor_half_width", "1", BOTH_HALF, |r| r.half_width)
         .column("slope", "1", "of ln(k_1D/k_3D) over ln F: 0 where the factor depends on D_f alone", |r| {
             r.slope
         })
-        .column("slope_half_width", "1", "95 %, scatter and grid of both", |r| r.slope_half_width)
+        .column("slope_half_width", "1", BOTH_HALF, |r| r.slope_half_width)
         .column("constant", "-", "yes: 0 lies inside the slope's interval; no: it does not", Factor::verdict)
         .table()
 }

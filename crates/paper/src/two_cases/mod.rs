@@ -16,7 +16,7 @@ use evaluation::{Outcome, header};
 use job::CaseJob;
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
-use reading::{areas, claims, pairs, summary};
+use reading::{SolvedCase, judged, pairs, summary};
 use runs::{
     Error, Job, JobList, Progress, Result, Store, Threads, collect, files, run_stored, threads_for_memory,
     write_csv,
@@ -56,8 +56,9 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
         let means =
             Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.label()))?;
         let curve = mean_curve(case, slope, &means, [&surfaces, &coarser]);
-        outcome.claims.extend(claims(study, &curve, &means));
-        outcome.claims.extend(areas(study, &curve, [&surfaces, &coarser]));
+        let solved =
+            SolvedCase { study, curve: &curve, means: &means, surfaces: &surfaces, coarser: &coarser };
+        outcome.claims.extend(judged(solved)?);
         curves.push(curve);
     }
     for case in study.cases().into_iter().filter(|c| c.boundary == Boundary::Periodic) {

@@ -5,9 +5,10 @@ use super::study::{CaseCurve, NAME, NAMES, PairRow};
 use crate::words;
 use analysis::Table;
 use contact_model::PAPER_STIFFNESS_FACTOR;
-use evaluation::{FLOOR_CELLS, FRACTAL_DIMENSION, TableOf};
+use evaluation::{FLOOR_CELLS, FRACTAL_DIMENSION, TableOf, read_rows};
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, logarithmic};
 use runs::{CsvFile, Result};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Stiffness above which the pictures end: towards full contact of a periodic square it has no limit.
@@ -73,11 +74,24 @@ pub(super) fn pairs_table(pairs: &[PairRow]) -> Result<Table> {
 /// A fractal dimension and a roll-off: the four curves of a picture.
 type Problem = (f64, f64);
 
+/// A mean of the table.
+#[derive(Deserialize)]
+struct Row {
+    case: String,
+    fractal_dimension: f64,
+    roll_off: Option<f64>,
+    model: String,
+    force_bar: f64,
+    stiffness_bar: f64,
+    stiffness_bar_se: Option<f64>,
+    k_h_over_force: f64,
+    below_floor: bool,
+}
+
 /// The problems of a table, in its order, each with the names of its pictures of k and of k h/F.
-fn problems(file: &CsvFile) -> Result<Vec<(Problem, [String; 2])>> {
+fn problems(rows: &[Row]) -> Vec<(Problem, [String; 2])> {
     let mut all: Vec<Problem> = Vec::new();
-    for (d, roll_off) in file.numbers("fractal_dimension")?.into_iter().zip(file.numbers("roll_off")?) {
-        let Some(problem) = d.zip(roll_off) else { continue };
+    for problem in rows.iter().filter_map(|r| Some((r.fractal_dimension, r.roll_off?))) {
         if !all.iter().any(|known| same(*known, problem)) {
             all.push(problem);
         }
@@ -87,7 +101,7 @@ fn problems(file: &CsvFile) -> Result<Vec<(Problem, [String; 2])>> {
         let suffix = if one { String::new() } else { format!("-Df{:?}-rolloff{}", of.0, of.1) };
         (of, [format!("{NAME}{suffix}"), format!("{NAME}-ratio{suffix}")])
     };
-    Ok(all.into_iter().map(named).collect())
+    all.into_iter().map(named).collect()
 }
 
 fn same(a: Problem, b: Problem) -> bool {
@@ -96,43 +110,35 @@ fn same(a: Problem, b: Problem) -> bool {
 
 /// Names of the pictures that [`draw`] makes of a table, without their endings.
 pub(super) fn names(csv: &Path) -> Result<Vec<String>> {
-    Ok(problems(&CsvFile::read(csv)?)?.into_iter().flat_map(|(_, names)| names).collect())
+    Ok(problems(&read_rows(csv, &CsvFile::read(csv)?)?).into_iter().flat_map(|(_, names)| names).collect())
 }
 
 /// Draws two pictures of each problem from the table.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
+    let rows: Vec<Row> = read_rows(csv, &file)?;
     let mut files = Vec::new();
-    for (of, [stiffness, ratio]) in problems(&file)? {
-        files.extend(panel(&file, of, ("stiffness_bar", words::STIFFNESS), out, &stiffness)?);
-        files.extend(panel(&file, of, ("k_h_over_force", "ratio $k h/F$"), out, &ratio)?);
+    for (of, [stiffness, ratio]) in problems(&rows) {
+        files.extend(panel(&file, &rows, of, (|r| r.stiffness_bar, words::STIFFNESS), out, &stiffness)?);
+        files.extend(panel(&file, &rows, of, (|r| r.k_h_over_force, "ratio $k h/F$"), out, &ratio)?);
     }
     Ok(files)
 }
 
 fn panel(
     file: &CsvFile,
+    rows: &[Row],
     problem: Problem,
-    (quantity, label): (&str, &str),
+    (value, label): (fn(&Row) -> f64, &str),
     out: &Path,
     name: &str,
 ) -> Result<Vec<PathBuf>> {
-    let (case, model) = (file.texts("case")?, file.texts("model")?);
-    let (d, roll_off) = (file.numbers("fractal_dimension")?, file.numbers("roll_off")?);
-    let of_problem = |i: usize| d[i].is_some_and(|d| same((d, roll_off[i].unwrap_or(problem.1)), problem));
-    let (force, value, k) =
-        (file.numbers("force_bar")?, file.numbers(quantity)?, file.numbers("stiffness_bar")?);
-    let (error, floor) = (file.numbers("stiffness_bar_se")?, file.texts("below_floor")?);
-    let rows: Vec<Row<'_>> = (0..case.len())
-        .filter(|&i| of_problem(i) && k[i].is_some_and(|k| k <= HIGHEST))
-        .filter_map(|i| {
-            let (force, value) = (force[i]?, value[i]?);
-            let error = error[i].map(|e| value * e / k[i].unwrap_or(1.0));
-            Some(Row { case: case[i], model: model[i], force, value, error, below_floor: floor[i] == "true" })
-        })
-        .collect();
-    let solved = || rows.iter().filter(|r| r.model == "bem3d");
-    let (x, y) = (logarithmic(solved().map(|r| r.force)), logarithmic(solved().map(|r| r.value)));
+    // A spectrum that is fractal to the side belongs to every roll-off.
+    let of_problem = |r: &&Row| same((r.fractal_dimension, r.roll_off.unwrap_or(problem.1)), problem);
+    let rows: Vec<&Row> = rows.iter().filter(of_problem).collect();
+    let shown = || rows.iter().copied().filter(|r| r.stiffness_bar <= HIGHEST);
+    let solved = || shown().filter(|r| r.model == "bem3d");
+    let (x, y) = (logarithmic(solved().map(|r| r.force_bar)), logarithmic(solved().map(value)));
     let flag = |name| words::flag(file, name).unwrap_or("?");
     let n = flag("--cells");
     let mut picture = Picture::new(x, y, words::FORCE, label)
@@ -153,13 +159,16 @@ fn panel(
         (1.6, Mark::Hollow(MarkShape::Square), 3.2),
     ];
     for ((of, color), (width, mark, radius)) in NAMES.into_iter().zip(looks) {
-        let select = |name: &str, floor: bool| -> Vec<&Row<'_>> {
-            let wanted = |r: &&Row<'_>| r.case == of && r.model == name && r.below_floor == floor;
-            rows.iter().filter(wanted).collect()
+        let select = |name: &str, floor: bool| -> Vec<&Row> {
+            shown().filter(|r| r.case == of && r.model == name && r.below_floor == floor).collect()
         };
-        let at = |rows: &[&Row<'_>]| rows.iter().map(|r| (r.force, r.value)).collect::<Vec<_>>();
+        let at = |rows: &[&Row]| rows.iter().map(|r| (r.force_bar, value(r))).collect::<Vec<_>>();
         let inside = select("bem3d", false);
-        let bars: Vec<_> = inside.iter().map(|r| (r.force, r.value, r.error.map(|e| 2.0 * e))).collect();
+        let bar = |r: &&Row| {
+            let error = r.stiffness_bar_se.map(|e| 2.0 * (value(r) * e / r.stiffness_bar));
+            (r.force_bar, value(r), error)
+        };
+        let bars: Vec<_> = inside.iter().map(bar).collect();
         picture.line(&at(&inside), color, width, LineStyle::Solid);
         picture.points(&at(&inside), color, radius, mark);
         picture.errors(&bars, color);
@@ -176,24 +185,14 @@ fn panel(
     picture.legend("Persson", NEUTRAL, Key::Line(LineStyle::Dashed));
     picture.legend("Greenwood and Williamson", NEUTRAL, Key::Line(LineStyle::Dotted));
     picture.legend("bars: ± 2 standard errors", NEUTRAL, Key::Bar(Mark::Solid(MarkShape::Circle)));
-    if rows.iter().any(|r| r.below_floor) {
+    if shown().any(|r| r.below_floor) {
         let label = format!("fewer than {FLOOR_CELLS} contact cells");
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Ring(MarkShape::Circle)));
     }
-    if (0..k.len()).any(|i| of_problem(i) && k[i].is_some_and(|k| k > HIGHEST)) {
+    if rows.iter().any(|r| r.stiffness_bar > HIGHEST) {
         picture.legend(&format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"), NEUTRAL, Key::Words);
     }
     picture.save(out, name)
-}
-
-/// A mean as the pictures see it.
-struct Row<'a> {
-    case: &'a str,
-    model: &'a str,
-    force: f64,
-    value: f64,
-    error: Option<f64>,
-    below_floor: bool,
 }
 
 fn mark_shape(mark: Mark) -> MarkShape {

@@ -1,7 +1,9 @@
 //! What the curves say about the paper's belief.
 
 use super::study::{CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
-use crate::claim::{Claim, Estimate, Statement, plain};
+use crate::claim::{Claim, Estimate, plain};
+use crate::claims::{self, CaseData, Cases, Data, Entry, Found, Row};
+use crate::words;
 use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
 use evaluation::{FLOOR_CELLS, list};
@@ -23,102 +25,63 @@ pub(super) fn slopes(points: &[CasePoint]) -> Vec<Option<f64>> {
         .collect()
 }
 
-const FRACTAL: Statement = Statement {
-    quotation: "Whenever the surfaces are truly fractal with no cut-off wavelength, a power law applies",
-    place: "Sec. II, Eq. 6",
-    reading: "the exponent below F_bar = 0.086 is below 0.9: no proportionality",
-};
-
-const PROPORTION: Statement = Statement {
-    quotation: "the proportionality found by Persson appears only in the first case",
-    place: "Sec. II",
-    reading: "the exponent of the periodic surface with a roll-off, where 1 to 20 % of the square touch, is 1 to 0.1",
-};
-
-const ONLY: Statement = Statement {
-    reading: "only: in the three other cases the exponent in the same range of area is 1 not even to 0.1",
-    ..PROPORTION
-};
-
-const EXACT: Statement = Statement {
-    quotation: "this proportionality must be exact",
-    place: "Sec. II, on Persson's theory",
-    reading: "the same exponent is 1 to 0.02",
-};
-
-const UNITY: Statement = Statement {
-    quotation: "k ≈ ξF/h, where h is the rms roughness and ξ is a constant of the order of unity",
-    place: "Sec. II",
-    reading: "k h/F of the periodic surface with a roll-off, in the same window, is between a third and three",
-};
-
-const LINEAR: Statement = Statement {
-    quotation: "The linear dependence of the contact area on the normal force predicted by Persson's theory was found",
-    place: "Sec. IV",
-    reading: "the exponent of A over F, where at most a tenth of the square touches, is 1 to 0.05",
-};
-
-const KAPPA: Statement = Statement {
-    quotation: "A = kappa F_N/(E* grad h), where kappa is near 2",
-    place: "Sec. I",
-    reading: "between the limits sqrt(8/pi) = 1.6 and sqrt(2 pi) = 2.5 of theory",
-};
+/// A case as it was solved: its means, its surfaces, and those with cells twice as large.
+#[derive(Clone, Copy)]
+pub(super) struct SolvedCase<'a> {
+    pub(super) study: &'a TwoCases,
+    pub(super) curve: &'a CaseCurve,
+    pub(super) means: &'a Curves,
+    pub(super) surfaces: &'a [Solves],
+    pub(super) coarser: &'a [Solves],
+}
 
 /// What Sec. II expects: an exponent below 1 without a roll-off; 1, and a factor of the order of unity, for the periodic surface with
-/// one, and only for that.
-pub(super) fn claims(study: &TwoCases, curve: &CaseCurve, means: &Curves) -> Vec<Claim> {
-    let case = curve.case;
-    let named = |what: &str| format!("{what}, {}", case.label());
-    let exponent = |window: &FitWindow, statement: Statement, allowed: &dyn Fn(f64) -> [f64; 2]| {
-        let name = named("exponent of k over F");
-        let fit = fit_power_law(means, window, &Bootstrap::default());
-        let paper = allowed(fit.as_ref().map_or(0.0, |law| law.alpha));
-        match fit.map(|law| Estimate::normal(law.alpha, law.alpha_se)) {
-            Ok(Some(alpha)) => {
-                let remark =
-                    format!("{window}; {} cells a side; the interval holds the scatter", study.cells);
-                Claim::judge(name, statement, paper, alpha, remark)
-            }
-            Ok(None) => Claim::unresolved(name, statement, paper, "one surface has no scatter"),
-            Err(reason) => Claim::unresolved(name, statement, paper, reason.to_string()),
-        }
+/// one, and only for that; and what Secs. I and IV say of the area.
+///
+/// # Errors
+/// As [`claims::entries`].
+pub(super) fn judged(solved: SolvedCase<'_>) -> Result<Vec<Claim>> {
+    let case = solved.curve.case;
+    let persson = case.roll_off.is_some() && case.boundary == Boundary::Periodic;
+    let speaks_of_case = |entry: &&'static Entry| match entry.cases {
+        None => true,
+        Some(Cases::Fractal) => case.roll_off.is_none(),
+        Some(Cases::Persson) => persson,
+        Some(Cases::BesidePersson) => !persson,
     };
-    let window = loads_between(curve);
-    // Below or above the proportionality.
-    let apart = |alpha: f64| if alpha < 1.0 { [0.0, 0.9] } else { [1.1, f64::INFINITY] };
-    let mut all = Vec::new();
-    if case.roll_off.is_none() {
-        let mut claim = exponent(&FitWindow::PAPER, FRACTAL, &|_| [0.0, 0.9]);
-        claim.quantity += ", below F_bar = 0.086";
-        all.push(claim);
-    }
-    if case.roll_off.is_none() || case.boundary != Boundary::Periodic {
-        all.push(exponent(&window, ONLY, &apart));
-        return all;
-    }
+    let between = loads_between(solved.curve);
+    let [of_area, kappa] = areas(solved);
+    let found = |data: CaseData| match data {
+        CaseData::ExponentBelowTheUpperLimit => exponent(solved, &FitWindow::PAPER),
+        CaseData::ExponentBetweenAreas => exponent(solved, &between),
+        CaseData::ConstantBetweenAreas => constant(solved.curve, &between),
+        CaseData::ExponentOfArea => of_area.clone(),
+        CaseData::Kappa => kappa.clone(),
+    };
+    let claim = |entry: &'static Entry| match entry.data {
+        Data::TwoCases(data) => Some(entry.judge(Row::of(case.label(), found(data)))),
+        _ => None,
+    };
+    Ok(claims::entries("two_cases")?.iter().filter(speaks_of_case).filter_map(claim).collect())
+}
+
+/// The exponent of k over F in a window.
+fn exponent(solved: SolvedCase<'_>, window: &FitWindow) -> Found {
+    let law =
+        fit_power_law(solved.means, window, &Bootstrap::default()).map_err(|reason| reason.to_string())?;
+    let alpha = Estimate::normal(law.alpha, law.alpha_se).ok_or("one surface has no scatter")?;
+    let cells = solved.study.cells;
+    Ok((alpha, format!("{window}; {cells} cells a side; the interval holds the scatter")))
+}
+
+/// k h/F in a window: k_bar counts 1.1419 E* L, F_bar counts E* h L.
+fn constant(curve: &CaseCurve, window: &FitWindow) -> Found {
     let inside = window.min_force_bar..=window.max_force_bar;
-    // k h/F: k_bar counts 1.1419 E* L, F_bar counts E* h L.
-    let factors = curve.points.iter().filter(|p| inside.contains(&p.force_bar));
-    let factors: Vec<f64> =
-        factors.map(|p| p.stiffness_bar * contact_model::PAPER_STIFFNESS_FACTOR / p.force_bar).collect();
-    let (low, high) =
-        factors.iter().fold((f64::INFINITY, 0.0), |(low, high), &x| (f64::min(low, x), f64::max(high, x)));
-    let name = named("k h/F");
-    let unity = if factors.is_empty() {
-        Claim::unresolved(name, UNITY, [1.0 / 3.0, 3.0], "no load in the window")
-    } else {
-        let found = Estimate { value: 0.5 * (low + high), half_width: 0.5 * (high - low) };
-        Claim::judge(
-            name,
-            UNITY,
-            [1.0 / 3.0, 3.0],
-            found,
-            format!("the interval is the range over the loads; {window}"),
-        )
-    };
-    let near_one = exponent(&window, PROPORTION, &|_| [0.9, 1.1]);
-    all.extend([near_one, exponent(&window, EXACT, &|_| [0.98, 1.02]), unity]);
-    all
+    let points = curve.points.iter().filter(|p| inside.contains(&p.force_bar));
+    let all = points.map(|p| p.stiffness_bar * contact_model::PAPER_STIFFNESS_FACTOR / p.force_bar);
+    let (low, high) = plots::extent(all).ok_or("no load in the window")?;
+    let range = Estimate { value: 0.5 * (low + high), half_width: 0.5 * (high - low) };
+    Ok((range, format!("the interval is the range over the loads; {window}")))
 }
 
 /// Cells in contact from which an area counts as resolved, and the largest share of the square.
@@ -128,26 +91,26 @@ const RESOLVED: (usize, f64) = (100, 0.1);
 ///
 /// Their intervals hold the scatter of the surfaces and, in quadrature, the difference from cells twice as large: an area counted in cells
 /// is too large by a part that falls with the first order, so that as much is left.
-pub(super) fn areas(study: &TwoCases, curve: &CaseCurve, [surfaces, coarser]: [&[Solves]; 2]) -> Vec<Claim> {
+fn areas(solved: SolvedCase<'_>) -> [Found; 2] {
+    let (cells, share) = RESOLVED;
     let inside = |p: &CasePoint| {
         p.left_out == 0
-            && p.min_contact_cells.is_some_and(|n| n >= RESOLVED.0)
-            && p.area.is_some_and(|a| a <= RESOLVED.1)
+            && p.min_contact_cells.is_some_and(|n| n >= cells)
+            && p.area.is_some_and(|a| a <= share)
     };
     // Every load of the window has all surfaces, so that points and loads of the solves are in step.
-    let first = curve.points.iter().position(inside);
-    let count = first.map_or(0, |first| curve.points[first..].iter().take_while(|p| inside(p)).count());
-    let names = ["exponent of A over F", "kappa"].map(|what| format!("{what}, {}", curve.case.label()));
-    let papers = [(LINEAR, [0.95, 1.05]), (KAPPA, [1.6, 2.51])];
-    let found = first.filter(|_| count >= 3).and_then(|first| {
-        let points = &curve.points[first..first + count];
+    let points = &solved.curve.points;
+    let first = points.iter().position(inside).unwrap_or(0);
+    let count = points[first..].iter().take_while(|p| inside(p)).count();
+    let points = &points[first..first + count];
+    let found = || {
         let of = |surfaces: &[Solves]| {
             let area = |s: &Solves, j: usize| s.get(j)?.sample().map(|s| s.1);
             let each = surfaces.iter().map(|s| (first..first + count).map(|j| area(s, j)).collect());
             Multilevel::new(vec![each.collect::<Option<Vec<Vec<f64>>>>()?]).ok()
         };
-        let areas = of(surfaces)?;
-        let (means, coarse) = (areas.means(1), of(coarser)?.means(1));
+        let areas = of(solved.surfaces).filter(|_| count >= 3)?;
+        let (means, coarse) = (areas.means(1), of(solved.coarser)?.means(1));
         let weights = slope_weights(&points.iter().map(|p| p.force_bar.ln()).collect::<Vec<_>>())?;
         let exponent = |means: &[f64]| -> f64 { weights.iter().zip(means).map(|(w, a)| w * a.ln()).sum() };
         let gradient: Vec<f64> = weights.iter().zip(&means).map(|(w, a)| w / a).collect();
@@ -156,28 +119,26 @@ pub(super) fn areas(study: &TwoCases, curve: &CaseCurve, [surfaces, coarser]: [&
             points.iter().zip(&means).map(|(p, a)| Some(p.kappa? / a / count as f64)).collect();
         let units = units?;
         let kappa = |means: &[f64]| -> f64 { units.iter().zip(means).map(|(u, a)| u * a).sum() };
-        let estimate = |[value, coarse]: [f64; 2], gradient: &[f64]| {
-            let found = areas.propagated(value, gradient);
-            (Estimate { value, half_width: found.half_width().hypot(value - coarse) }, coarse)
+        let (low, high) = (points[0].force_bar, points[count - 1].force_bar);
+        let estimate = |of: &dyn Fn(&[f64]) -> f64, gradient: &[f64]| {
+            let (value, coarse) = (of(&means), of(&coarse));
+            let scatter = areas.propagated(value, gradient).half_width();
+            let remark = format!(
+                "F_bar {low:.1e} to {high:.1e}, at most {share} of the square; shortest waves of {} cells; the interval holds the scatter and the difference from cells twice as large ({coarse:.3})",
+                solved.study.cells_per_wave
+            );
+            (Estimate { value, half_width: scatter }.widened(value - coarse), remark)
         };
-        let both = |of: &dyn Fn(&[f64]) -> f64| [of(&means), of(&coarse)];
-        let loads = [points[0].force_bar, points[count - 1].force_bar];
-        Some(([estimate(both(&exponent), &gradient), estimate(both(&kappa), &units)], loads))
-    });
-    let mut claims = Vec::new();
-    for (i, (name, (statement, paper))) in names.into_iter().zip(papers).enumerate() {
-        claims.push(if let Some((found, [low, high])) = &found {
-                let remark = format!(
-                    "F_bar {low:.1e} to {high:.1e}, at most {} of the square; shortest waves of {} cells; the interval holds the scatter and the difference from cells twice as large ({:.3})",
-                    RESOLVED.1, study.cells_per_wave, found[i].1
-                );
-                Claim::judge(name, statement, paper, found[i].0, remark)
-            } else {
-                let reason = format!("fewer than 3 loads with {} cells in contact and at most {} of the square", RESOLVED.0, RESOLVED.1);
-                Claim::unresolved(name, statement, paper, reason)
-        });
+        Some([estimate(&exponent, &gradient), estimate(&kappa, &units)])
+    };
+    match found() {
+        Some(both) => both.map(Ok),
+        None => {
+            let reason =
+                format!("fewer than 3 loads with {cells} cells in contact and at most {share} of the square");
+            [Err(reason.clone().into()), Err(reason.into())]
+        }
     }
-    claims
 }
 
 /// Periodic over free stiffness, surface by surface, for both spectra.
@@ -267,49 +228,41 @@ pub(super) fn summary(
     pairs: &[PairRow],
     claims: &[Claim],
 ) -> String {
-    let mut text = format!(
-        "# Two cases\n\nSec. II of the paper tells two problems apart. A surface that is fractal up to the size of the system has physical \
-         edges, an approach, and k ~ F^alpha; a surface whose spectrum ends at a longest wave is stood for by a periodic patch, has a mean gap, \
-         and k ~ F. The authors believe that the proportionality appears only in the second problem. Here both are solved exactly, and the two mixed \
-         problems with them, so that boundary and spectrum can be told apart (D_f = {}, {} cells a side, {} surfaces, roll-off at {} waves a \
-         side).\n\n`{}`\n\n",
-        list(&study.fractal_dimensions),
-        study.cells,
-        study.surfaces,
-        list(&study.roll_offs),
-        study.command()
-    );
-    for picture in pictures {
-        text.push_str(&format!("![k and k h/F over F]({picture}.svg)\n\n"));
-    }
-    text.push_str(&format!(
-        "| case | decades of F with a local slope within {PROPORTIONAL:?} of 1 |\n| --- | ---: |\n"
-    ));
-    for curve in curves.iter().filter(|c| c.model == "bem3d") {
-        text.push_str(&format!("| {} | {:.2} |\n", curve.case.label(), proportional(curve)));
-    }
-    let [low, high] = AREAS;
-    text.push_str(&format!(
-        "\nLargest relative difference of k from boundary elements where the contact covers {low:?} to {high:?} of the square:\n\n\
-         | case | theory | difference |\n| --- | --- | ---: |\n"
-    ));
-    for theory in curves.iter().filter(|c| c.model != "bem3d") {
-        let solved = curves.iter().find(|c| c.model == "bem3d" && c.case == theory.case);
-        if let Some(difference) = solved.and_then(|solved| difference(theory, solved)) {
-            text.push_str(&format!("| {} | {} | {difference:.3} |\n", theory.case.label(), theory.model));
-        }
-    }
-    text.push_str("\nPeriodic over free stiffness of the same surfaces, with 95 % half-width:\n\n| D_f | roll-off | F_bar | ratio |\n| --- | --- | ---: | ---: |\n");
-    for p in pairs.iter().filter(|p| p.force_bar <= 1.0) {
+    let solved = |c: &&CaseCurve| c.model == "bem3d";
+    let pictures = pictures.iter().map(|picture| format!("![k and k h/F over F]({picture}.svg)\n\n"));
+    let head =
+        format!("| case | decades of F with a local slope within {PROPORTIONAL:?} of 1 |\n| --- | ---: |");
+    let decades = |c: &CaseCurve| [c.case.label(), format!("{:.2}", proportional(c))];
+    let difference = |theory: &CaseCurve| {
+        let solved = curves.iter().filter(solved).find(|c| c.case == theory.case)?;
+        let difference = difference(theory, solved)?;
+        Some([theory.case.label(), theory.model.to_owned(), format!("{difference:.3}")])
+    };
+    let theories = curves.iter().filter(|c| !solved(c));
+    let ratio = |p: &PairRow| {
         let Estimate { value, half_width } = p.ratio;
         let spectrum = p.roll_off.map_or_else(|| "none".to_owned(), |waves| waves.to_string());
-        text.push_str(&format!(
-            "| {:?} | {spectrum} | {:.3e} | {value:.3} +- {half_width:.3} |\n",
-            p.fractal_dimension, p.force_bar
-        ));
-    }
-    text.push_str("\n```\n");
-    text.push_str(&plain(claims));
-    text.push_str("```\n");
-    text
+        let ratio = format!("{value:.3} +- {half_width:.3}");
+        [format!("{:?}", p.fractal_dimension), spectrum, format!("{:.3e}", p.force_bar), ratio]
+    };
+    let light = pairs.iter().filter(|p| p.force_bar <= 1.0);
+    format!(
+        include_str!("two-cases.md"),
+        dimensions = list(&study.fractal_dimensions),
+        cells = study.cells,
+        surfaces = study.surfaces,
+        roll_offs = list(&study.roll_offs),
+        command = study.command(),
+        pictures = pictures.collect::<String>(),
+        decades = words::table(&head, curves.iter().filter(solved).map(decades)),
+        low = AREAS[0],
+        high = AREAS[1],
+        differences = words::table(
+            "| case | theory | difference |\n| --- | --- | ---: |",
+            theories.filter_map(difference)
+        ),
+        ratios =
+            words::table("| D_f | roll-off | F_bar | ratio |\n| --- | --- | ---: | ---: |", light.map(ratio)),
+        claims = plain(claims)
+    )
 }

@@ -1,0 +1,188 @@
+//! The ensembles of a command with their fitted laws, and what several numbers of them need.
+
+use super::{Data, Entry, Found, Model, Reason, Row, curves, laws, solved, wrong};
+use crate::claim::Estimate;
+use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, fit_power_law, interpolate};
+use evaluation::{Measured, Series, WindowedLaw, windowed_law};
+use runs::{Error, Result};
+
+/// The ensembles that a command has solved.
+pub(crate) struct Ensembles<'a> {
+    solid: Option<Ensemble<'a>>,
+    line: Option<Ensemble<'a>>,
+}
+
+/// An ensemble and the law of each of its series, or why there is none to judge.
+pub(super) struct Ensemble<'a> {
+    pub measured: &'a Measured,
+    pub laws: Vec<std::result::Result<Law, Reason>>,
+}
+
+/// A power law of one series, with what its window leaves.
+#[derive(Debug, Clone)]
+pub(super) struct Law {
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// The fit over the window of Figs. 3 and 7.
+    pub fit: FittedPowerLaw,
+    /// alpha: scatter and, in quadrature, the largest change with other windows and what the grid leaves.
+    pub alpha: Estimate,
+    /// The same of zeta.
+    pub zeta: Estimate,
+    /// The part of alpha's half-width that the grid leaves.
+    pub grid: f64,
+}
+
+impl<'a> Ensembles<'a> {
+    /// With their laws.
+    pub fn new(measured: &[&'a Measured]) -> Self {
+        let of = |name: &str| {
+            let measured = *measured.iter().find(|m| m.discretisation.name() == name)?;
+            let laws = measured.series.iter().map(|series| Law::new(measured, series)).collect();
+            Some(Ensemble { measured, laws })
+        };
+        Self { solid: of("bem3d"), line: of("mdr1d") }
+    }
+
+    fn of(&self, model: Model) -> Result<&Ensemble<'a>> {
+        let ensemble = if model == Model::Surfaces { &self.solid } else { &self.line };
+        ensemble
+            .as_ref()
+            .ok_or_else(|| Error::parameter("model", format!("{model:?}"), "one that the command solves"))
+    }
+
+    /// What an entry of the table is compared with.
+    ///
+    /// # Errors
+    /// What a solver refuses; an ensemble that the command does not have.
+    pub(super) fn rows(&self, entry: &'static Entry) -> Result<Vec<Row>> {
+        let solid = || self.of(Model::Surfaces);
+        let line = || self.of(Model::Lines);
+        Ok(match &entry.data {
+            Data::Exponent(model) => laws::exponents(self.of(*model)?),
+            Data::ExponentOverDimension(model) => laws::over_dimension(self.of(*model)?),
+            Data::ExponentDifference => laws::differences(solid()?, line()?),
+            Data::ExponentOfHalves(model) => laws::halves(self.of(*model)?),
+            Data::ExponentBelowMinusAbove(from, middle) => laws::below_minus_above(line()?, *from, *middle),
+            Data::Factor => laws::factors(solid()?),
+            Data::ForceWhereLawsMeet => laws::meeting_point(solid()?, |point| point.force_bar),
+            Data::StiffnessWhereLawsMeet => laws::meeting_point(solid()?, |point| point.stiffness_bar),
+            Data::FarthestRatioOfFactors => laws::ratio_of_factors(solid()?, line()?),
+            Data::FarthestDistanceOfFactors => laws::distance_of_factors(solid()?, line()?),
+            Data::ScatterOfCollapse(top) => curves::collapse(solid()?, *top, |residual| residual.scatter),
+            Data::DistanceFromCollapse(top) => {
+                curves::collapse(solid()?, *top, |residual| Some(residual.rms))
+            }
+            Data::DecadesOfCollapse(factor) => curves::decades(solid()?, *factor),
+            Data::StiffnessAt(load) => curves::stiffnesses(solid()?, *load),
+            Data::Spread(load, other) => curves::spread(solid()?, *load, *other),
+            Data::StiffnessOverLaw(load) => laws::stiffness_over_law(solid()?, *load),
+            Data::ConductanceAt(load) => curves::conductance(solid()?, *load),
+            Data::ForceAtPlateauShare(model, share) => curves::force_at_share(self.of(*model)?, *share),
+            Data::AreaAtPlateauShare(share) => curves::area_at_share(solid()?, *share),
+            Data::RatioOfForcesAtPlateauShare(share) => curves::sooner(solid()?, line()?, *share),
+            Data::ChangeWithTheGrid => curves::change_with_grid(solid()?),
+            Data::ChangeOverScatter(load) => curves::change_over_scatter(solid()?, *load),
+            Data::LargestRatio(from, to) => curves::largest_ratio(solid()?, line()?, *from..=*to),
+            Data::RatioAtSmallestLoad => curves::ratio_at_smallest_load(solid()?, line()?),
+            Data::FarthestRatio => curves::farthest_ratio(solid()?, line()?),
+            Data::Plateau => solved::plateau()?,
+            Data::RatioOfPlateaus => solved::ratio_of_plateaus()?,
+            Data::ShareInOneRegion(dimensions) => solved::share_in_one_region(dimensions)?,
+            Data::ContactLengthOverDiameters => solved::length_over_diameters()?,
+            Data::RatioOfHeights(dimensions) => solved::ratio_of_heights(dimensions)?,
+            Data::RunTimes => curves::run_times(solid()?, line()?),
+            Data::NotJudged(reason) => Row::only(Err(reason.as_str().into())),
+            Data::TwoCases(_) => {
+                return Err(wrong(&format!("{}: the study of the two problems judges it", entry.id)));
+            }
+        })
+    }
+}
+
+impl Ensemble<'_> {
+    /// A row for each series.
+    pub fn each(&self, found: impl Fn(&Series) -> Found) -> Vec<Row> {
+        self.measured.series.iter().map(|series| Row::at(series.fractal_dimension, found(series))).collect()
+    }
+
+    /// A row for each series, from its law.
+    pub fn each_law(&self, found: impl Fn(&Series, &Law) -> Found) -> Vec<Row> {
+        let row = |(series, law): (&Series, &std::result::Result<Law, Reason>)| {
+            Row::at(
+                series.fractal_dimension,
+                law.as_ref().map_err(Reason::clone).and_then(|law| found(series, law)),
+            )
+        };
+        self.measured.series.iter().zip(&self.laws).map(row).collect()
+    }
+
+    /// Series of both models at each D_f.
+    pub fn beside<'b>(&'b self, line: &'b Self) -> impl Iterator<Item = (&'b Series, &'b Series)> {
+        self.measured.series.iter().zip(&line.measured.series)
+    }
+
+    /// Surfaces of each D_f.
+    pub fn surfaces(&self) -> usize {
+        self.measured.series.first().map_or(0, |series| series.units.len())
+    }
+}
+
+impl Law {
+    fn new(measured: &Measured, series: &Series) -> std::result::Result<Self, Reason> {
+        let WindowedLaw { fit, windows, grid } = windowed_law(measured, series)?;
+        let grid = grid.ok_or("no coarser grid says what this one leaves")?;
+        let estimate = |value: f64, error: Option<f64>, window: f64, grid: f64| {
+            let scatter = Estimate::normal(value, error).ok_or(ONE_SURFACE)?;
+            Ok::<_, Reason>(scatter.widened(window).widened(grid))
+        };
+        Ok(Self {
+            fractal_dimension: series.fractal_dimension,
+            alpha: estimate(fit.alpha, fit.alpha_se, windows.0, grid.0)?,
+            zeta: estimate(fit.zeta, fit.zeta_se, windows.1, fit.zeta * grid.1)?,
+            grid: grid.0,
+            fit,
+        })
+    }
+
+    /// The window in words.
+    pub fn window(&self) -> String {
+        let FittedPowerLaw { force_bar_min, force_bar_max, points, .. } = self.fit;
+        format!("{points} loads, {force_bar_min:.1e} to {force_bar_max:.1e}")
+    }
+
+    /// The loads of the fit, whatever they touch.
+    pub fn loads(&self) -> FitWindow {
+        between(self.fit.force_bar_min, self.fit.force_bar_max)
+    }
+}
+
+/// Why a scatter is missing.
+pub(super) const ONE_SURFACE: &str = "one surface has no scatter";
+
+/// All loads from one to another, with a little slack for their rounding.
+pub(super) fn between(min: f64, max: f64) -> FitWindow {
+    FitWindow { min_force_bar: min * (1.0 - 1e-9), max_force_bar: max * (1.0 + 1e-9), min_contact_cells: 0 }
+}
+
+/// The law of the surfaces `draw`, without an error.
+pub(super) fn law_of(curves: &Curves, window: &FitWindow, draw: &[usize]) -> Option<FittedPowerLaw> {
+    let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
+    fit_power_law(&curves.resampled(draw), window, &once).ok()
+}
+
+/// A number of any choice of surfaces: its value for all, and its scatter over redrawn ones.
+pub(crate) fn resampled(surfaces: usize, number: impl Fn(&[usize]) -> Option<f64>) -> Option<Estimate> {
+    let all: Vec<usize> = (0..surfaces).collect();
+    Estimate::normal(number(&all)?, Bootstrap::default().standard_error(surfaces, number))
+}
+
+/// k_bar at any force of the curve.
+pub(super) fn stiffness_at(series: &Series, force_bar: f64) -> Option<Estimate> {
+    let forces = series.curves.force_bar();
+    let value = interpolate(forces, &series.means(), force_bar)?;
+    let error = Bootstrap::default().standard_error(series.units.len(), |draw| {
+        interpolate(forces, &series.curves.mean_of(draw), force_bar)
+    });
+    Estimate::normal(value, error)
+}
