@@ -88,6 +88,11 @@ impl Estimate {
         Self { value, half_width: value.abs() * relative }
     }
 
+    /// How far a ratio is from 1, whichever way.
+    pub(crate) fn distance_from_one(&self) -> f64 {
+        self.value.ln().abs()
+    }
+
     /// Its difference from an independent number.
     pub(crate) fn minus(self, other: Self) -> Self {
         Self { value: self.value - other.value, half_width: self.half_width.hypot(other.half_width) }

@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::LazyLock;
 
-pub(crate) use ensemble::{Ensembles, resampled};
+use ensemble::resampled;
+pub(crate) use ensemble::{Ensembles, Law};
 
 /// The commands whose claims `verify` judges, in the order of its table.
 pub(crate) const VERIFIED: [&str; 6] = ["fig3", "fig7", "fig4", "fig2", "fig6", "verify"];
@@ -31,7 +32,7 @@ pub(crate) struct Entry {
     pub id: String,
     quotation: String,
     place: String,
-    reading: String,
+    pub reading: String,
     quantity: String,
     pub data: Data,
     allowed: Limits,
@@ -408,13 +409,18 @@ mod tests {
 
     #[test]
     fn limits_follow_from_what_is_printed() {
-        let number = Printed::Number(0.5);
-        assert_eq!(Limits::Within(number, 0.25).at(2.0, 0.0), [0.25, 0.75]);
-        assert_eq!(Limits::Share(number, 0.5).at(2.0, 0.0), [0.25, 0.75]);
-        assert_eq!(Limits::Factor(number, 2.0).at(2.0, 0.0), [0.25, 1.0]);
-        let law = Limits::Within(Printed::Equation(Equation::Eq24), 0.0).at(2.5, 0.0);
-        assert_eq!(law, [1.0 / 1.5; 2]);
+        let half = Printed::Number(0.5);
+        for (limits, low, high) in [
+            (Limits::Within(half, 0.25), 0.25, 0.75),
+            (Limits::Share(half, 0.5), 0.25, 0.75),
+            (Limits::Factor(half, 2.0), 0.25, 1.0),
+            (Limits::Within(Printed::Equation(Equation::Eq24), 0.0), 1.0 / 1.5, 1.0 / 1.5),
+        ] {
+            approx::assert_relative_eq!(limits.at(2.5, 0.0)[0], low);
+            approx::assert_relative_eq!(limits.at(2.5, 0.0)[1], high);
+        }
         let either = Limits::Either([0.0, 0.9], [1.1, f64::INFINITY]);
-        assert_eq!((either.at(2.0, 0.95)[1], either.at(2.0, 1.05)[0]), (0.9, 1.1));
+        approx::assert_relative_eq!(either.at(2.5, 0.95)[1], 0.9);
+        approx::assert_relative_eq!(either.at(2.5, 1.05)[0], 1.1);
     }
 }

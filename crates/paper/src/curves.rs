@@ -161,15 +161,8 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
         picture.line(&paper_law(*d, x, y), &color(*d), 1.1, LineStyle::Dashed);
     }
     for (d, points) in &curves {
-        let (color, shape) = (color(*d), shape(*d));
-        let alone = apart(&points.iter().map(|p| p.force).collect::<Vec<_>>());
-        let marked: Vec<CurvePoint> =
-            points.iter().zip(alone).filter_map(|(p, alone)| alone.then_some(*p)).collect();
-        let floor = marked.iter().filter(|p| p.below_floor).map(|p| (p.force, p.stiffness));
-        picture.line(&above_floor(points), &color, 1.8, LineStyle::Solid);
-        picture.points(&floor.collect::<Vec<_>>(), &color, 3.0, Mark::Hollow(shape));
-        picture.points(&above_floor(&marked), &color, 3.8, Mark::Solid(shape));
-        picture.legend(&words::dimension(*d), &color, Key::Curve(Mark::Solid(shape)));
+        let points: Vec<_> = points.iter().map(|p| (p.force, p.stiffness, p.below_floor)).collect();
+        draw_curve(&mut picture, *d, &points, [1.8, 3.0, 3.8]);
     }
     picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
     let ring = Mark::Ring(MarkShape::Circle);
@@ -186,13 +179,29 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
     picture.save(out, name)
 }
 
+/// The points (x, y, below the floor of the grid) of one fractal dimension with their line and legend, in these widths of the line, of marks
+/// below the floor and of marks above it.
+pub(crate) fn draw_curve(picture: &mut Picture, d: f64, points: &[(f64, f64, bool)], widths: [f64; 3]) {
+    let (color, shape) = (color(d), shape(d));
+    let alone = apart(&points.iter().map(|p| p.0).collect::<Vec<_>>());
+    let marked = |floor: bool| -> Vec<(f64, f64)> {
+        let marked = points.iter().zip(&alone).filter(|(p, alone)| **alone && p.2 == floor);
+        marked.map(|(p, _)| (p.0, p.1)).collect()
+    };
+    let line: Vec<(f64, f64)> = points.iter().filter(|p| !p.2).map(|p| (p.0, p.1)).collect();
+    picture.line(&line, &color, widths[0], LineStyle::Solid);
+    picture.points(&marked(true), &color, widths[1], Mark::Hollow(shape));
+    picture.points(&marked(false), &color, widths[2], Mark::Solid(shape));
+    picture.legend(&words::dimension(d), &color, Key::Curve(Mark::Solid(shape)));
+}
+
 fn above_floor(points: &[CurvePoint]) -> Vec<(f64, f64)> {
     points.iter().filter(|p| !p.below_floor).map(|p| (p.force, p.stiffness)).collect()
 }
 
 /// Whether each of these increasing loads has a mark: not a single load beside one of the regular loads, where two marks would lie
 /// on each other.
-pub(crate) fn apart(forces: &[f64]) -> Vec<bool> {
+fn apart(forces: &[f64]) -> Vec<bool> {
     let step = |a: f64, b: f64| (b / a).ln();
     let mut steps: Vec<f64> = forces.windows(2).map(|w| step(w[0], w[1])).collect();
     steps.sort_by(f64::total_cmp);

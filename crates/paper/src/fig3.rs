@@ -11,6 +11,7 @@ pub(crate) const FIGURE: FittedFigure = FittedFigure {
     title: "Fig. 3: exponent of k_bar = zeta F_bar^alpha over the fractal dimension",
     columns: ["alpha", "alpha_se"],
     value: |law| (law.alpha, law.alpha_se),
+    estimate: |law| law.alpha,
     formulas: &[
         Formula {
             name: "paper_fit",

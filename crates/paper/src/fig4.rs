@@ -7,7 +7,7 @@ use evaluation::{
     FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Outcome, Run, Session, TableOf, describe, header,
     measure_3d, read_rows, transformed,
 };
-use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
+use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, logarithmic};
 use runs::{CsvFile, Progress, Result};
 use std::path::{Path, PathBuf};
 
@@ -67,19 +67,8 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         LineStyle::Dotted,
     );
     for series in rows.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
-        let (color, shape) = (color(series[0].0), shape(series[0].0));
-        let above: Vec<(f64, f64)> = series.iter().filter(|r| !r.3).map(|r| (r.1, r.2)).collect();
-        let alone = curves::apart(&series.iter().map(|r| r.1).collect::<Vec<_>>());
-        let marked = |on_floor: bool| -> Vec<(f64, f64)> {
-            let wanted = |(r, alone): (&(f64, f64, f64, bool), &bool)| {
-                (*alone && r.3 == on_floor).then_some((r.1, r.2))
-            };
-            series.iter().zip(&alone).filter_map(wanted).collect()
-        };
-        picture.line(&above, &color, 1.5, LineStyle::Solid);
-        picture.points(&marked(true), &color, 3.2, Mark::Hollow(shape));
-        picture.points(&marked(false), &color, 4.0, Mark::Solid(shape));
-        picture.legend(&words::dimension(series[0].0), &color, Key::Curve(Mark::Solid(shape)));
+        let points: Vec<_> = series.iter().map(|r| (r.1, r.2, r.3)).collect();
+        curves::draw_curve(&mut picture, series[0].0, &points, [1.5, 3.2, 4.0]);
     }
     picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
     picture.legend("its upper limit $\\bar{F} = 0.086$", NEUTRAL, Key::Line(LineStyle::Dotted));

@@ -11,6 +11,7 @@ pub(crate) const FIGURE: FittedFigure = FittedFigure {
     title: "Fig. 7: factor of k_bar = zeta F_bar^alpha over the fractal dimension",
     columns: ["zeta", "zeta_se"],
     value: |law| (law.zeta, law.zeta_se),
+    estimate: |law| law.zeta,
     formulas: &[Formula {
         name: "paper_fit",
         note: "Eq. 11: 0.18/0.086^(0.266 D_f)",

@@ -1,12 +1,13 @@
 //! What Figs. 3 and 7 have in common: fitted values over the fractal dimension.
 
-use crate::claims;
+use crate::claim::Estimate;
+use crate::claims::{self, Law};
 use crate::judged::Judged;
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use evaluation::{
-    FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, WindowedLaw, dense_dimensions,
-    describe, header, laws, laws_within, measure_1d, measure_3d, read_rows, windowed_law,
+    FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, dense_dimensions, describe, header,
+    laws, laws_within, measure_1d, measure_3d, read_rows,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
 use runs::{CsvFile, Error, Progress, Result};
@@ -23,6 +24,8 @@ pub(crate) struct FittedFigure {
     /// Names of the columns of the parameter and of its standard error.
     pub columns: [&'static str; 2],
     pub value: fn(&FittedPowerLaw) -> (f64, Option<f64>),
+    /// The parameter with all that its 95 % interval holds.
+    pub estimate: fn(&Law) -> Estimate,
     pub formulas: &'static [Formula],
     /// Title of the picture and label of its axis.
     pub words: [&'static str; 2],
@@ -123,7 +126,9 @@ impl FittedFigure {
                         fractal_dimension: law.fractal_dimension,
                         value,
                         error: error.flatten(),
-                        half_width: windowed_law(measured, series).ok().and_then(|law| self.half_width(&law)),
+                        half_width: Law::new(measured, series)
+                            .ok()
+                            .map(|law| (self.estimate)(&law).half_width),
                         common: common.fit.as_ref().ok().map(self.value),
                         fit,
                         note,
@@ -147,18 +152,6 @@ impl FittedFigure {
 }
 
 impl FittedFigure {
-    /// Scatter of 95 %, windows and grid in quadrature.
-    fn half_width(&self, law: &WindowedLaw) -> Option<f64> {
-        let scatter = 1.96 * (self.value)(&law.fit).1?;
-        let [windows, grid] = match self.columns[0] {
-            "zeta" => [law.windows.1, law.fit.zeta * law.grid?.1],
-            _ => [law.windows.0, law.grid?.0],
-        };
-        Some(scatter.hypot(windows).hypot(grid))
-    }
-}
-
-impl FittedFigure {
     /// Draws `name.svg` and `name.png` from the table; `finer` is a table of Fig. 2 whose fitted laws stand beside.
     pub fn draw(&self, csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
         let file = CsvFile::read(csv)?;
@@ -173,7 +166,15 @@ impl FittedFigure {
         if let Some(path) = finer {
             let file = CsvFile::read(path)?;
             let label = words::ensemble(&file, "bem3d").unwrap_or_default();
-            all.push((format!("3D, {label}"), self.points_of(&laws_of_means(path, &file)?)));
+            let point = |(fractal_dimension, law): (f64, FittedPowerLaw)| FittedPoint {
+                fractal_dimension,
+                value: Some((self.value)(&law).0),
+                force_bar_min: Some(law.force_bar_min),
+                force_bar_max: Some(law.force_bar_max),
+                ..FittedPoint::default()
+            };
+            let points = laws_of_means(path, &file)?.into_iter().map(point).collect();
+            all.push((format!("3D, {label}"), points));
         }
         let ends = all
             .iter()
@@ -195,17 +196,6 @@ impl FittedFigure {
             picture.legend(formula.legend, REFERENCE, Key::Line(formula.style));
         }
         picture.save(out, self.name)
-    }
-
-    fn points_of(&self, laws: &[(f64, FittedPowerLaw)]) -> Vec<FittedPoint> {
-        let point = |(fractal_dimension, law): &(f64, FittedPowerLaw)| FittedPoint {
-            fractal_dimension: *fractal_dimension,
-            value: Some((self.value)(law).0),
-            force_bar_min: Some(law.force_bar_min),
-            force_bar_max: Some(law.force_bar_max),
-            ..FittedPoint::default()
-        };
-        laws.iter().map(point).collect()
     }
 }
 

@@ -168,7 +168,7 @@ pub(super) fn ratio_at_smallest_load(solid: &Ensemble<'_>, line: &Ensemble<'_>) 
 pub(super) fn farthest_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
     compared(solid, line, |solid, line| {
         let ratios = resolved(solid).filter_map(|load| Some((load, ratio_at(solid, line, load)?)));
-        let farthest = ratios.max_by(|a, b| a.1.value.ln().abs().total_cmp(&b.1.value.ln().abs()));
+        let farthest = ratios.max_by(|a, b| a.1.distance_from_one().total_cmp(&b.1.distance_from_one()));
         let (load, ratio) = farthest
             .ok_or_else(|| format!("no common load with {RESOLVED} contact cells on every surface"))?;
         let remark =

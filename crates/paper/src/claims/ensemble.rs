@@ -20,7 +20,7 @@ pub(super) struct Ensemble<'a> {
 
 /// A power law of one series, with what its window leaves.
 #[derive(Debug, Clone)]
-pub(super) struct Law {
+pub(crate) struct Law {
     /// D_f.
     pub fractal_dimension: f64,
     /// The fit over the window of Figs. 3 and 7.
@@ -129,7 +129,8 @@ impl Ensemble<'_> {
 }
 
 impl Law {
-    fn new(measured: &Measured, series: &Series) -> std::result::Result<Self, Reason> {
+    /// The law of a series, or why there is none to judge.
+    pub fn new(measured: &Measured, series: &Series) -> std::result::Result<Self, Reason> {
         let WindowedLaw { fit, windows, grid } = windowed_law(measured, series)?;
         let grid = grid.ok_or("no coarser grid says what this one leaves")?;
         let estimate = |value: f64, error: Option<f64>, window: f64, grid: f64| {
@@ -172,7 +173,7 @@ pub(super) fn law_of(curves: &Curves, window: &FitWindow, draw: &[usize]) -> Opt
 }
 
 /// A number of any choice of surfaces: its value for all, and its scatter over redrawn ones.
-pub(crate) fn resampled(surfaces: usize, number: impl Fn(&[usize]) -> Option<f64>) -> Option<Estimate> {
+pub(super) fn resampled(surfaces: usize, number: impl Fn(&[usize]) -> Option<f64>) -> Option<Estimate> {
     let all: Vec<usize> = (0..surfaces).collect();
     Estimate::normal(number(&all)?, Bootstrap::default().standard_error(surfaces, number))
 }

@@ -146,7 +146,7 @@ fn farthest_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Option<(Estima
         let (solid, line) = (solid.as_ref().ok()?, line.as_ref().ok()?);
         Some((line.zeta.over(solid.zeta), solid.fractal_dimension))
     });
-    let farthest = ratios.max_by(|a, b| a.0.value.ln().abs().total_cmp(&b.0.value.ln().abs()));
+    let farthest = ratios.max_by(|a, b| a.0.distance_from_one().total_cmp(&b.0.distance_from_one()));
     farthest.map(|(ratio, d)| (ratio, format!("at D_f = {d:?}")))
 }
 

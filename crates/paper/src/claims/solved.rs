@@ -14,7 +14,7 @@ use surface_gen::{LineGenerator, MapGenerator};
 const GRIDS: [usize; 2] = [64, 128];
 
 /// k/(E* L) of a scene under a load that presses all of it flat.
-fn full_contact(what: String, model: &dyn ContactModel, scene: &Scene, force: f64) -> Result<f64> {
+fn full_contact(what: &str, model: &dyn ContactModel, scene: &Scene, force: f64) -> Result<f64> {
     let solved = model.prepare(scene, 0).and_then(|mut contact| contact.solve(Load::Force(force)));
     let no_stiffness = || Error::parameter("model", model.name(), "one that gives a stiffness");
     solved.map_err(Error::model(format!("full contact of {what}")))?.stiffness.ok_or_else(no_stiffness)
@@ -25,7 +25,7 @@ fn square() -> Result<Estimate> {
     let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     let of = |cells: usize| {
         let model = Bem3d { cells, tolerance: 1e-9, ..Bem3d::default() };
-        full_contact(format!("{cells} x {cells} cells"), &model, &scene, 1.0)
+        full_contact(&format!("{cells} x {cells} cells"), &model, &scene, 1.0)
     };
     let [n, m] = GRIDS;
     let (coarse, fine) = (of(n)?, of(m)?);
@@ -48,7 +48,7 @@ pub(super) fn plateau() -> Result<Vec<Row>> {
 pub(super) fn ratio_of_plateaus() -> Result<Vec<Row>> {
     let scene = Scene::new(Surface::SelfAffine(self_affine(2.0)?), 1.0);
     // 1e6 E* h L presses every element flat.
-    let line = full_contact("a line".to_owned(), &Mdr1d { elements: 4096 }, &scene, 1e6)?;
+    let line = full_contact("a line", &Mdr1d { elements: 4096 }, &scene, 1e6)?;
     let square = square()?;
     let ratio =
         Estimate { value: line / square.value, half_width: line * square.half_width / square.value.powi(2) };

@@ -125,16 +125,11 @@ impl Ladder {
 
     /// Surfaces of the level of this size that the store holds whole, from the first on.
     pub fn stored(&self, dimensions: &[f64], seed: u64, size: usize, store: &Store) -> usize {
-        let Some(level) = self.sizes.iter().position(|&own| own == size) else { return 0 };
-        let is_there = |index: usize| {
-            dimensions.iter().all(|&d| {
-                [true, false]
-                    .into_iter()
-                    .filter(|fine| *fine || level > 0)
-                    .all(|fine| is_solved(&self.unit(d, seed, level, index, fine), store))
-            })
-        };
-        (0..self.surfaces[level]).take_while(|&index| is_there(index)).count()
+        let asked = self.sizes.iter().zip(&self.surfaces);
+        let level: Vec<usize> = asked.map(|(&own, &count)| if own == size { count } else { 0 }).collect();
+        let places = self.places(dimensions, seed, &level);
+        let surfaces = places.chunk_by(|a, b| a.unit.index == b.unit.index);
+        surfaces.take_while(|places| places.iter().all(|place| is_solved(&place.unit, store))).count()
     }
 
     /// Everything that a study solves.
@@ -183,6 +178,13 @@ impl Ladder {
             }
         }
         Ok(rungs)
+    }
+}
+
+impl Rungs {
+    /// Pairs of all levels.
+    pub fn pairs(&self) -> impl Iterator<Item = &Pair> {
+        self.levels.iter().flatten()
     }
 }
 

@@ -154,20 +154,15 @@ pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<Factor>) {
             })
             .collect();
         // The scatter of line and surface is independent: squares add; what grids leave adds up.
-        let together = |a: Banded, b: Banded| {
-            (a.value() - b.value(), a.scatter.half_width().hypot(b.scatter.half_width()) + a.grid + b.grid)
+        let combined = |i: Range<usize>, j: Range<usize>, weights: &[f64]| {
+            let (a, b) = (line.logarithmic(j, weights)?, solid.logarithmic(i, weights)?);
+            let half_width = a.scatter.half_width().hypot(b.scatter.half_width()) + a.grid + b.grid;
+            Some((a.value() - b.value(), half_width))
         };
         for &(i, j) in &both {
-            let logs = line.logarithmic(j..j + 1, &[1.0]).zip(solid.logarithmic(i..i + 1, &[1.0]));
-            if let Some((ln, half)) = logs.map(|(a, b)| together(a, b)) {
-                let (force_bar, value) = (solid.forces[i], ln.exp());
-                ratios.push(Ratio {
-                    convention,
-                    fractal_dimension,
-                    force_bar,
-                    value,
-                    half_width: value * half,
-                });
+            if let Some((ln, half)) = combined(i..i + 1, j..j + 1, &[1.0]) {
+                let (force_bar, value, half_width) = (solid.forces[i], ln.exp(), ln.exp() * half);
+                ratios.push(Ratio { convention, fractal_dimension, force_bar, value, half_width });
             }
         }
         let small: Vec<(usize, usize)> =
@@ -179,13 +174,8 @@ pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<Factor>) {
             continue;
         }
         let ln_f: Vec<f64> = solid.forces[i.clone()].iter().map(|f| f.ln()).collect();
-        let combined = |weights: &[f64]| {
-            line.logarithmic(j.clone(), weights)
-                .zip(solid.logarithmic(i.clone(), weights))
-                .map(|(a, b)| together(a, b))
-        };
-        let mean = combined(&vec![1.0 / small.len() as f64; small.len()]);
-        let slope = slope_weights(&ln_f).and_then(|weights| combined(&weights));
+        let mean = combined(i.clone(), j.clone(), &vec![1.0 / small.len() as f64; small.len()]);
+        let slope = slope_weights(&ln_f).and_then(|weights| combined(i, j, &weights));
         if let (Some((mean, half)), Some((slope, slope_half_width))) = (mean, slope) {
             factors.push(Factor {
                 convention,

@@ -21,7 +21,7 @@ use analysis::Table;
 use contact_model::ContactModel as _;
 use curve::{Convention, MeanCurve};
 use evaluation::{Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, header, list};
-use ladder::Rungs;
+use ladder::{Pair, Rungs};
 use runs::{Error, Progress, Result, Store, files, write_csv};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -221,8 +221,8 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     let ladders: Vec<(&Ladder, &[Rungs])> =
         solved.iter().map(|(ladder, rungs)| (*ladder, rungs.as_slice())).collect();
     let mut outcome = Outcome::new("exponent");
-    let pairs = || solved.iter().flat_map(|(_, rungs)| rungs).flat_map(|r| r.levels.iter().flatten());
-    outcome.not_converged = pairs().map(ladder::Pair::not_converged).sum();
+    let pairs = solved.iter().flat_map(|(_, rungs)| rungs).flat_map(Rungs::pairs);
+    outcome.not_converged = pairs.map(Pair::not_converged).sum();
     let tables: [(&str, Result<Table>); 6] = [
         (picture::CURVES, tables::curves(&curves)),
         ("exponent-levels.csv", tables::levels(&curves)),
@@ -258,11 +258,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     outcome.files.push(text);
     let seconds = |model: &str| {
         let of = solved.iter().filter(|(ladder, _)| ladder.model.name() == model);
-        analysis::sum(
-            of.flat_map(|(_, rungs)| rungs)
-                .flat_map(|r| r.levels.iter().flatten())
-                .map(ladder::Pair::seconds),
-        )
+        analysis::sum(of.flat_map(|(_, rungs)| rungs).flat_map(Rungs::pairs).map(Pair::seconds))
     };
     (outcome.bem3d_seconds, outcome.mdr1d_seconds) = (Some(seconds("bem3d")), Some(seconds("mdr1d")));
     outcome.seconds = start.elapsed().as_secs_f64();

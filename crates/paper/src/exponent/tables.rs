@@ -1,36 +1,29 @@
 //! The tables of the study of the exponent.
 
 use super::curve::{Banded, MeanCurve};
-use super::ladder::Ladder;
-use super::ladder::{Pair, Rungs};
+use super::ladder::{Ladder, Pair, Rungs};
 use super::laws::{Factor, LawRow, Ratio};
 use analysis::Table;
-use evaluation::{FRACTAL_DIMENSION, TableOf};
+use evaluation::{FRACTAL_DIMENSION, RealisationResult, Sample, TableOf};
 use runs::Result;
-use std::fmt::Write as _;
 
 const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";
 const CONVENTION: &str = "rms height in which F_bar is counted: measured_rms, of each grid; fixed_spectrum, of the spectrum on 2049 x 2049 cells";
 
 const SCATTER: &str = "95 % half-width from the scatter of the surfaces";
 const GRID: &str = "what the grid leaves, from the three finest";
+const FINEST: &str = "cells a side (bem3d) or elements (mdr1d) of the finest grid at this load";
+const LOCAL_SLOPE: &str = "d ln k/d ln F through five loads; empty where one is not resolved";
+const RESOLVED: &str = "whether here and at all larger loads the grid leaves less than the stated error";
+const WINDOW: &str = "common: resolved for every D_f of the model; own: all that is resolved; else a decade";
+const EXPONENT: &str = "slope of ln k over ln F by least squares, loads with equal weight";
+const WIDEST: &str = "size of the level that adds most to the scatter";
+const RATIO_SLOPE: &str = "of ln(k_1D/k_3D) over ln F: 0 where the factor depends on D_f alone";
 const BOTH_HALF: &str = "95 %, scatter and grid of both";
 
 const LEVEL_MEAN: &str = "mean k_bar on the coarsest grid, else mean difference from the next coarser grid";
 
 const VALUES: &str = "at the loads of the header that this level has, from the smallest up, separated by blanks; - where a solve did not meet its tolerance";
-
-fn scatter(banded: Option<Banded>) -> Option<f64> {
-    banded.map(|b| b.scatter.half_width())
-}
-
-fn grid(banded: Option<Banded>) -> Option<f64> {
-    banded.map(|b| b.grid)
-}
-
-fn value(banded: Option<Banded>) -> Option<f64> {
-    banded.map(|b| b.value())
-}
 
 /// Mean curves and local slopes.
 pub fn curves(curves: &[MeanCurve]) -> Result<Table> {
@@ -52,26 +45,14 @@ pub fn curves(curves: &[MeanCurve]) -> Result<Table> {
         .column("convention", "-", CONVENTION, |r| r.curve.convention.as_str())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.curve.fractal_dimension)
         .column("force_bar", "1", "F/(E* h L)", |r| r.curve.forces[r.point])
-        .column(
-            "size",
-            "1",
-            "cells a side (bem3d) or elements (mdr1d) of the finest grid at this load",
-            |r| r.curve.finest(r.point),
-        )
-        .column("stiffness_bar", "1", "mean k/(1.1419 E* L) on that grid", |r| value(r.stiffness))
-        .column("stiffness_scatter", "1", SCATTER, |r| scatter(r.stiffness))
-        .column("stiffness_grid", "1", GRID, |r| grid(r.stiffness))
-        .column("slope", "1", "d ln k/d ln F through five loads; empty where one is not resolved", |r| {
-            value(r.slope)
-        })
-        .column("slope_scatter", "1", SCATTER, |r| scatter(r.slope))
-        .column("slope_grid", "1", GRID, |r| grid(r.slope))
-        .column(
-            "resolved",
-            "-",
-            "whether here and at all larger loads the grid leaves less than the stated error",
-            |r| r.curve.resolved.contains(&r.point),
-        )
+        .column("size", "1", FINEST, |r| r.curve.finest(r.point))
+        .column("stiffness_bar", "1", "mean k/(1.1419 E* L) on that grid", |r| r.stiffness.map(|b| b.value()))
+        .column("stiffness_scatter", "1", SCATTER, |r| r.stiffness.map(|b| b.scatter.half_width()))
+        .column("stiffness_grid", "1", GRID, |r| r.stiffness.map(|b| b.grid))
+        .column("slope", "1", LOCAL_SLOPE, |r| r.slope.map(|b| b.value()))
+        .column("slope_scatter", "1", SCATTER, |r| r.slope.map(|b| b.scatter.half_width()))
+        .column("slope_grid", "1", GRID, |r| r.slope.map(|b| b.grid))
+        .column("resolved", "-", RESOLVED, |r| r.curve.resolved.contains(&r.point))
         .table()
 }
 
@@ -103,22 +84,13 @@ pub fn laws(rows: &[LawRow]) -> Result<Table> {
         .column("model", "-", MODEL, |r| r.model)
         .column("convention", "-", CONVENTION, |r| r.convention.as_str())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
-        .column(
-            "window",
-            "-",
-            "common: resolved for every D_f of the model; own: all that is resolved; else a decade",
-            |r| r.window,
-        )
+        .column("window", "-", WINDOW, |r| r.window)
         .column("force_bar_min", "1", "smallest load", |r| r.forces.start)
         .column("force_bar_max", "1", "largest load", |r| r.forces.end)
-        .column("alpha", "1", "slope of ln k over ln F by least squares, loads with equal weight", |r| {
-            r.alpha.value()
-        })
+        .column("alpha", "1", EXPONENT, |r| r.alpha.value())
         .column("scatter", "1", SCATTER, |r| r.alpha.scatter.half_width())
         .column("grid", "1", "what the grid leaves", |r| r.alpha.grid)
-        .column("widest_level", "1", "size of the level that adds most to the scatter", |r| {
-            r.widest.map(|w| w.0)
-        })
+        .column("widest_level", "1", WIDEST, |r| r.widest.map(|w| w.0))
         .column("widest_share", "1", "its share of the variance", |r| r.widest.map(|w| w.1))
         .column("eq6", "1", "0.266 D_f", LawRow::eq6)
         .column("one_over_one_plus_hurst", "1", "1/(1 + H) = 1/(4 - D_f)", LawRow::power_law)
@@ -146,9 +118,7 @@ pub fn factors(rows: &[Factor]) -> Result<Table> {
         .column("force_bar_max", "1", "largest load", |r| r.forces.end)
         .column("factor", "1", "exp of the mean of ln(k_1D/k_3D) over the loads", |r| r.value)
         .column("factor_half_width", "1", BOTH_HALF, |r| r.half_width)
-        .column("slope", "1", "of ln(k_1D/k_3D) over ln F: 0 where the factor depends on D_f alone", |r| {
-            r.slope
-        })
+        .column("slope", "1", RATIO_SLOPE, |r| r.slope)
         .column("slope_half_width", "1", BOTH_HALF, |r| r.slope_half_width)
         .column("constant", "-", "yes: 0 lies inside the slope's interval; no: it does not", Factor::verdict)
         .table()
@@ -174,29 +144,23 @@ pub fn samples(ladders: &[(&Ladder, &[Rungs])]) -> Result<Table> {
             }
         }
     }
-    let text = |result: &evaluation::RealisationResult| {
-        let mut text = String::new();
-        for (i, sample) in result.samples.iter().enumerate() {
-            let blank = if i > 0 { " " } else { "" };
-            // Writing to a string does not fail.
-            let _ = match sample.stiffness_bar.filter(|_| sample.converged()) {
-                Some(k) => write!(text, "{blank}{k:.4e}"),
-                None => write!(text, "{blank}-"),
-            };
-        }
-        text
+    let text = |result: &RealisationResult| {
+        let stiffness = |sample: &Sample| match sample.stiffness_bar.filter(|_| sample.converged()) {
+            Some(k) => format!("{k:.4e}"),
+            None => "-".to_owned(),
+        };
+        result.samples.iter().map(stiffness).collect::<Vec<_>>().join(" ")
     };
-    TableOf::new(
-        "Stiffness k/(1.1419 E* L) of every surface on its two grids, F_bar by the measured rms height",
-        &rows,
-    )
-    .column("model", "-", MODEL, |r| r.model)
-    .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.d)
-    .column("level", "1", "0: the coarsest grid", |r| r.level)
-    .column("surface", "1", "number on its level", |r| r.pair.index)
-    .column("size", "1", "cells a side or elements", |r| r.sizes.0)
-    .column("stiffness_bar", "1", VALUES, |r| text(&r.pair.fine))
-    .column("coarse_size", "1", "cells a side or elements of the coarser grid", |r| r.sizes.1)
-    .column("coarse_stiffness_bar", "1", VALUES, |r| r.pair.coarse.as_ref().map(text))
-    .table()
+    let title =
+        "Stiffness k/(1.1419 E* L) of every surface on its two grids, F_bar by the measured rms height";
+    TableOf::new(title, &rows)
+        .column("model", "-", MODEL, |r| r.model)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.d)
+        .column("level", "1", "0: the coarsest grid", |r| r.level)
+        .column("surface", "1", "number on its level", |r| r.pair.index)
+        .column("size", "1", "cells a side or elements", |r| r.sizes.0)
+        .column("stiffness_bar", "1", VALUES, |r| text(&r.pair.fine))
+        .column("coarse_size", "1", "cells a side or elements of the coarser grid", |r| r.sizes.1)
+        .column("coarse_stiffness_bar", "1", VALUES, |r| r.pair.coarse.as_ref().map(text))
+        .table()
 }

@@ -168,13 +168,9 @@ fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Resu
                 Ok(ContactState { stiffness: Some(k), area, .. }) => points.push(CasePoint {
                     force_bar: forces[i],
                     stiffness_bar: normalisation.stiffness_bar(k),
-                    standard_error: None,
-                    surfaces: 0,
-                    left_out: 0,
                     area,
-                    area_coarser: None,
                     kappa: area.and_then(|area| analysis::kappa(area, forces[i], 1.0, slope).ok()),
-                    min_contact_cells: None,
+                    ..CasePoint::default()
                 }),
                 Ok(_) | Err(contact_model::Error::OutOfRange { .. }) => {}
                 Err(error) => return Err(error),
@@ -213,6 +209,10 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let outcome = two_cases(&small(), dir.path(), &Silent).unwrap();
         assert!(outcome.files.iter().all(|f| f.exists()));
+        for entry in crate::claims::entries("two_cases").unwrap() {
+            let judged = outcome.claims.iter().any(|claim| claim.statement.reading == entry.reading);
+            assert!(judged, "{}", entry.id);
+        }
         let file = CsvFile::read(&dir.path().join("two-cases.csv")).unwrap();
         let (case, model) = (file.texts("case").unwrap(), file.texts("model").unwrap());
         for of in small().cases() {
@@ -255,13 +255,9 @@ mod tests {
                 CasePoint {
                     force_bar: f,
                     stiffness_bar: k,
-                    standard_error: None,
                     surfaces: 1,
-                    left_out: 0,
                     area: Some(f / 1e4),
-                    area_coarser: None,
-                    kappa: None,
-                    min_contact_cells: None,
+                    ..CasePoint::default()
                 }
             });
         let curve = CaseCurve { case: small().cases()[3], model: "bem3d", points: points.into() };

@@ -213,6 +213,7 @@ pub(super) struct CaseCurve {
     pub(super) points: Vec<CasePoint>,
 }
 
+#[derive(Default)]
 pub(super) struct CasePoint {
     pub(super) force_bar: f64,
     pub(super) stiffness_bar: f64,
