@@ -2,7 +2,7 @@
 
 use crate::closed::{self, ROUNDED_UP};
 use crate::hertz::Hertz;
-use crate::memory::{Goal, SlipCurve, held, lost, reached};
+use crate::memory::{SlipCurve, SlipLoad, held, lost, reached};
 use contact_model::{
     Abilities, ContactModel, ContactState, Effect, Effects, Error, Friction, Load, Normalisation, Outputs,
     Paths, PreparedContact, Result, Scene, Source, Step, Stop, Tangential, TangentialState, check_stop,
@@ -263,8 +263,8 @@ impl PreparedContact for PreparedCattaneoMindlin {
         let mut curve = self.at.curve.clone();
         let tangential = if let Some(sphere) = sphere {
             curve.go(match step.tangential {
-                Tangential::Force(force) => Goal::Force(sphere.share(force)?),
-                Tangential::Displacement(u) => Goal::Displacement(u / sphere.reach),
+                Tangential::Force(force) => SlipLoad::Force(sphere.share(force)?),
+                Tangential::Displacement(u) => SlipLoad::Displacement(u / sphere.reach),
                 other => return Err(Error::unsupported_load(NAME, other)),
             });
             let (force, displacement) = match step.tangential {
@@ -443,7 +443,7 @@ mod tests {
             let mut curve = SlipCurve::default();
             let (mut last, mut lost) = (0.0, 0.0);
             for u in path {
-                curve.go(Goal::Displacement(u));
+                curve.go(SlipLoad::Displacement(u));
                 for (i, spring) in springs.iter_mut().enumerate() {
                     let limit = 1.0 - x(i) * x(i);
                     let free = *spring + u - last;
@@ -465,8 +465,8 @@ mod tests {
         fn both_controls_agree(path in proptest::collection::vec(-0.99_f64..0.99, 1..12)) {
             let (mut by_force, mut by_displacement) = (SlipCurve::default(), SlipCurve::default());
             for t in path {
-                by_force.go(Goal::Force(t));
-                by_displacement.go(Goal::Displacement(by_force.now.u));
+                by_force.go(SlipLoad::Force(t));
+                by_displacement.go(SlipLoad::Displacement(by_force.now.u));
                 assert_abs_diff_eq!(by_displacement.now.t, t, epsilon = 1e-12);
                 assert_abs_diff_eq!(by_displacement.dissipated, by_force.dissipated, epsilon = 1e-12);
                 assert_abs_diff_eq!(by_displacement.stick(), by_force.stick(), epsilon = 1e-4);

@@ -46,12 +46,12 @@ pub(crate) struct SlipPoint {
 
 /// Where a branch is left: at a force or at a displacement.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Goal {
+pub(crate) enum SlipLoad {
     Force(f64),
     Displacement(f64),
 }
 
-impl Goal {
+impl SlipLoad {
     fn from(self, point: SlipPoint) -> f64 {
         match self {
             Self::Force(t) => t - point.t,
@@ -76,7 +76,7 @@ pub(crate) struct SlipCurve {
 
 impl SlipCurve {
     /// Moves to a goal; a force is within [-1, 1].
-    pub fn go(&mut self, goal: Goal) {
+    pub fn go(&mut self, goal: SlipLoad) {
         let way = goal.from(self.now);
         if way.abs() <= 0.0 {
             return;
@@ -99,11 +99,11 @@ impl SlipCurve {
                 return;
             }
             let before = self.now;
-            self.along(Goal::Force(end.t));
+            self.along(SlipLoad::Force(end.t));
             // The same point, without the rounding of the branch.
             self.now = end;
             if self.turns.is_empty() {
-                if let Goal::Displacement(u) = goal {
+                if let SlipLoad::Displacement(u) = goal {
                     self.dissipated += (u - end.u).abs();
                     self.now.u = u;
                     self.origin = u - direction;
@@ -118,7 +118,7 @@ impl SlipCurve {
     }
 
     /// Moves along the branch that begins at the last turn: the first curve, doubled.
-    fn along(&mut self, goal: Goal) {
+    fn along(&mut self, goal: SlipLoad) {
         let (start, scale) = match self.turns.last() {
             Some(turn) => (*turn, 2.0),
             None => (SlipPoint { t: 0.0, u: self.origin }, 1.0),
@@ -126,8 +126,8 @@ impl SlipCurve {
         let share = |t: f64| ((t - start.t).abs() / scale).min(1.0);
         let before = lost(share(self.now.t));
         self.now = match goal {
-            Goal::Force(t) => SlipPoint { t, u: start.u + self.direction * scale * reached(share(t)) },
-            Goal::Displacement(u) => {
+            SlipLoad::Force(t) => SlipPoint { t, u: start.u + self.direction * scale * reached(share(t)) },
+            SlipLoad::Displacement(u) => {
                 let part = ((u - start.u).abs() / scale).min(1.0);
                 SlipPoint { t: start.t + self.direction * scale * held(part), u }
             }

@@ -201,7 +201,7 @@ pub(super) fn change_with_grid(solid: &Ensemble<'_>) -> Vec<Row> {
 
 /// Relative changes of k of each surface that is on both grids, at force number `j`.
 fn changes(series: &Series, coarser: Option<[&Series; 2]>, j: usize) -> Option<Vec<f64>> {
-    Some(evaluation::grid_differences(series, coarser?, j).iter().map(|d| d[0]).collect())
+    Some(series.grid_differences(coarser?, j).iter().map(|d| d[0]).collect())
 }
 
 /// rms of these changes over the scatter between surfaces, at the load nearest to one.
