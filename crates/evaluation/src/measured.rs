@@ -1,9 +1,9 @@
 //! An ensemble of one model over all fractal dimensions.
 
 use crate::realisation::{Discretisation, Realisation, RealisationResult};
+use crate::realisation_jobs::solve_realisations;
 use crate::run::Run;
 use crate::sample::{FLOOR_CELLS, Sample};
-use crate::sweep::sweep;
 use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble, relative_differences};
 use runs::{Error, Progress, Result, Store};
 use std::sync::Arc;
@@ -38,7 +38,7 @@ pub struct Measured {
 /// The 3D ensemble of a run, from the store where it is there.
 ///
 /// # Errors
-/// See [`sweep`].
+/// See [`solve_realisations`].
 pub fn measure_3d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
     let discretisation = Discretisation::Bem3d { cells: run.cells, tolerance: run.tolerance };
     with_coarser(discretisation, run.surfaces, run.forces_3d.values(), run, store, progress)
@@ -47,7 +47,7 @@ pub fn measure_3d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<M
 /// The 1D ensemble of a run, from the store where it is there.
 ///
 /// # Errors
-/// See [`sweep`].
+/// See [`solve_realisations`].
 pub fn measure_1d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
     let discretisation = Discretisation::Mdr1d { elements: run.elements };
     with_coarser(discretisation, run.lines, run.forces_1d.values(), run, store, progress)
@@ -56,7 +56,7 @@ pub fn measure_1d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<M
 /// An ensemble with its first surfaces on coarser grids.
 ///
 /// # Errors
-/// See [`sweep`].
+/// See [`solve_realisations`].
 pub fn with_coarser(
     discretisation: Discretisation,
     surfaces: usize,
@@ -109,7 +109,7 @@ fn units(discretisation: Discretisation, surfaces: usize, forces: &[f64], run: &
 /// An ensemble on its own grid alone.
 ///
 /// # Errors
-/// See [`sweep`].
+/// See [`solve_realisations`].
 pub fn measure(
     discretisation: Discretisation,
     surfaces: usize,
@@ -125,7 +125,7 @@ pub fn measure(
         Discretisation::Mdr1d { elements } => ("lines", format!("{elements} elements")),
     };
     let what = format!("{}: {} {kind} of {size}, {} loads", discretisation.name(), units.len(), forces.len());
-    let results = sweep(&what, &units, store, run.threads, progress)?;
+    let results = solve_realisations(&what, &units, store, run.threads, progress)?;
     let mut pairs: Vec<Vec<(Realisation, RealisationResult)>> =
         dimensions.iter().map(|_| Vec::new()).collect();
     for (i, pair) in units.into_iter().zip(results).enumerate() {

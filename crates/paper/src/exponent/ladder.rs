@@ -1,7 +1,7 @@
 //! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
 
 use evaluation::limits::{self, within};
-use evaluation::{Discretisation, Forces, Realisation, RealisationResult, is_solved, sweep};
+use evaluation::{Discretisation, Forces, Realisation, RealisationResult, is_solved, solve_realisations};
 use runs::{Error, Progress, Result, Store};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -141,7 +141,7 @@ impl Ladder {
     /// allows.
     ///
     /// # Errors
-    /// As [`sweep`].
+    /// As [`solve_realisations`].
     pub fn solve(
         &self,
         dimensions: &[f64],
@@ -159,7 +159,9 @@ impl Ladder {
         for (size, members) in by_size.into_iter().rev() {
             let units: Vec<Realisation> = members.iter().map(|&i| places[i].unit.clone()).collect();
             let what = format!("{}: {} surfaces, size {size}", self.model.name(), units.len());
-            for (i, result) in members.into_iter().zip(sweep(&what, &units, store, threads, progress)?) {
+            for (i, result) in
+                members.into_iter().zip(solve_realisations(&what, &units, store, threads, progress)?)
+            {
                 results[i] = Some(result);
             }
         }

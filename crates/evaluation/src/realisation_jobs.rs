@@ -1,4 +1,4 @@
-//! Units in parallel, results in order.
+//! Realisations in parallel, results in order.
 
 use crate::realisation::{Discretisation, FORMAT, Models, Realisation, RealisationResult};
 use contact_model::{Stop, never};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// # Errors
 /// [`Error::Parameter`] for a size that does not fit in memory;
 /// the first error in the order of `units`; units that finished before stay stored.
-pub fn sweep(
+pub fn solve_realisations(
     what: &str,
     units: &[Realisation],
     store: &Store,
