@@ -3,6 +3,7 @@
 use crate::forces::Forces;
 use crate::limits::{self, within};
 use crate::realisation::Discretisation;
+use crate::square_map::{read_map, unit_area};
 use crate::table_of::{maybe, names};
 use bem3d::benchmarks::{Part, Recorder, Spent, prepare_recorded};
 use bem3d::{Bem3d, Method};
@@ -11,12 +12,13 @@ use contact_model::{
     Stop, Surface, never,
 };
 use runs::{
-    Error, Result, Threads, collect, files, number, peak_memory, process_cpu_seconds, read_map,
-    reset_peak_memory, run_jobs, threads_for_memory, unit_area, write_npy,
+    Error, Result, Threads, collect, files, number, peak_memory, process_cpu_seconds, reset_peak_memory,
+    run_jobs, threads_for_memory,
 };
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
+use surface_io::write_npy;
 
 /// What is measured.
 #[derive(Debug, Clone)]
@@ -207,7 +209,7 @@ struct BenchSeries {
 /// order asked for: surfaces, tolerances, loads. With a clock each row says where its time went.
 ///
 /// # Errors
-/// [`Error::Parameter`], [`Error::File`] or [`Error::Content`] before anything is solved; [`Error::Model`] for what the model
+/// [`Error::Parameter`] or [`Error::File`] before anything is solved; [`Error::Model`] for what the model
 /// refuses; whatever `found` says. The first of them stops everything.
 pub fn bench(
     bench: &Bench,
@@ -351,7 +353,7 @@ impl BenchSeries {
             .map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells.columns))
             .unwrap_or_default();
         let name = format!("pressure_{stem}{drawn}_F{:?}_tol{:?}.npy", row.force_bar, row.tolerance);
-        write_npy(&directory.join(name), &[pressure.rows(), pressure.columns()], pressure.values())
+        Ok(write_npy(&directory.join(name), &[pressure.rows(), pressure.columns()], pressure.values())?)
     }
 }
 
@@ -369,7 +371,7 @@ pub fn write_bench(path: &Path, rows: &[BenchRow]) -> Result<()> {
     }
     writer.flush().map_err(Error::file("write", path))?;
     drop(writer);
-    files::write_whole(path, &bytes)
+    Ok(files::write_whole(path, &bytes)?)
 }
 
 #[cfg(test)]

@@ -96,7 +96,7 @@ impl Over {
 /// second picture (`NAME-force`) where there are several of both. Solves that did not converge are hollow and in no fit.
 ///
 /// # Errors
-/// [`Error::File`] or [`Error::Content`] for a table that cannot be read, [`Error::Parameter`] for a picture without a name.
+/// [`Error::File`] for a table that cannot be read, [`Error::Parameter`] for a picture without a name.
 pub fn plot_bench(csv: &Path, picture: &Path) -> Result<BenchPlot> {
     let name = picture.file_stem().and_then(|s| s.to_str());
     let name =

@@ -41,7 +41,7 @@ mod realisation_jobs;
 mod run;
 mod sample;
 mod session;
-
+mod square_map;
 mod table_of;
 mod tables;
 mod tuning;

@@ -79,7 +79,7 @@ pub(crate) fn maybe(value: Option<f64>) -> String {
 /// The rows of a CSV file as what their columns say.
 ///
 /// # Errors
-/// [`Error::Content`] for a column that is missing or an entry that does not fit it.
+/// [`Error::File`] for a column that is missing or an entry that does not fit it.
 pub fn read_rows<T: DeserializeOwned>(path: &Path, file: &CsvFile) -> Result<Vec<T>> {
     let names = StringRecord::from(file.columns.as_slice());
     let row = |row: &Vec<String>| StringRecord::from(row.as_slice()).deserialize(Some(&names));

@@ -8,7 +8,8 @@
 //! pressure.png, pressure.vti
 //! ```
 
-use fractal_contact::surface_io::{DataArray, Encoding, files, vti};
+use fractal_contact::runs::files;
+use fractal_contact::surface_io::{DataArray, Encoding, vti};
 use fractal_contact::{Bem3d, ContactModel, Load, Scene, SelfAffine, Surface};
 use std::error::Error;
 use std::path::PathBuf;

@@ -91,7 +91,7 @@ fn check(over: Option<&Path>) -> Result<()> {
 /// The means of a table; a row without a mean has no point.
 ///
 /// # Errors
-/// [`Error::Content`] for a missing column, and for a force, stiffness or fractal dimension that is not finite and positive, with its row.
+/// [`Error::File`] for a missing column, and for a force, stiffness or fractal dimension that is not finite and positive, with its row.
 fn read(path: &Path, file: &CsvFile) -> Result<Vec<CurvePoints>> {
     let here = |error: Error| Error::content(path, error.to_string());
     let numbers = |name: &str, zero: bool| -> Result<Vec<Option<f64>>> {
@@ -176,7 +176,7 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
         let label = format!("fewer than {} contact {cells}", evaluation::FLOOR_CELLS);
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
-    picture.save(out, name)
+    Ok(picture.save(out, name)?)
 }
 
 /// The points (x, y, below the floor of the grid) of one fractal dimension with their line and legend, in these widths of the line, of marks

@@ -5,8 +5,9 @@ use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
 use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use plots::{GreyMap, encode_grey, grey, save_maps};
-use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory, write_npy};
+use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory};
 use std::path::{Path, PathBuf};
+use surface_io::write_npy;
 
 /// Flags that decide what Fig. 1 holds.
 pub const FLAGS: [Flag; 3] = [Flag::CELLS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
@@ -103,7 +104,7 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let cells = words::flag(&file, "--cells").map(|n| format!("{n} × {n} cells, "));
     let below =
         format!("{}the same phases for every $D_{{\\rm{{f}}}}$; darker is higher", cells.unwrap_or_default());
-    save_maps(maps, &words::title(&file), &below, out, "fig1")
+    Ok(save_maps(maps, &words::title(&file), &below, out, "fig1")?)
 }
 
 #[cfg(test)]

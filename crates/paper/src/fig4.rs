@@ -76,5 +76,5 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let label = format!("fewer than {} contact cells", evaluation::FLOOR_CELLS);
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
-    picture.save(out, "fig4")
+    Ok(picture.save(out, "fig4")?)
 }

@@ -5,8 +5,9 @@ use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
 use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use plots::{Axis, LineStyle, Panels, Picture, extent};
-use runs::{CsvFile, Error, Progress, Result, threads_for_memory, write_npy};
+use runs::{CsvFile, Error, Progress, Result, threads_for_memory};
 use std::path::{Path, PathBuf};
+use surface_io::write_npy;
 
 /// Flags that decide what Fig. 5 holds.
 pub const FLAGS: [Flag; 3] = [Flag::ELEMENTS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
@@ -111,7 +112,7 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     }
     let size = words::flag(&file, "--elements").and_then(|n| n.parse().ok()).map(words::elements);
     let title = format!("{}{}", words::title(&file), size.map_or_else(String::new, |s| format!(", {s}")));
-    Panels { pictures, columns: 1, title, ..Panels::default() }.save(out, "fig5")
+    Ok(Panels { pictures, columns: 1, title, ..Panels::default() }.save(out, "fig5")?)
 }
 
 #[cfg(test)]

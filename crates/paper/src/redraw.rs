@@ -17,8 +17,7 @@ pub struct Beside {
 /// (its text as well) and of benches that have a picture. No table is touched.
 ///
 /// # Errors
-/// [`Error::Content`] for a directory without such a table and for a table that cannot be read, [`Error::File`] for pictures that cannot
-/// be written.
+/// [`Error::File`] for a directory without such a table, for a table that cannot be read, and for pictures that cannot be written.
 pub fn redraw(directory: &Path, beside: &Beside) -> Result<Vec<PathBuf>> {
     let over = beside.over.as_deref();
     let finer = beside.finer.as_deref();

@@ -8,14 +8,15 @@
 //! ```
 
 use contact_model::SelfAffine;
-use plots::{Error, Result, write_grey};
+use plots::write_grey;
+use std::error::Error;
 use std::path::PathBuf;
 use surface_gen::self_affine_map;
 
-fn main() -> Result<()> {
+fn main() -> Result<(), Box<dyn Error>> {
     let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
     let draw = || self_affine_map(&SelfAffine::new(2.3, [3.0, 1.0], 1.0)?, [384, 128], 5);
-    let map = draw().map_err(Error::model("the surface"))?;
+    let map = draw()?;
     // A round hole in the middle: NaN is "no value here".
     let inside = |ix: usize, iy: usize| {
         let (x, y) = ((ix as f64 + 0.5) * map.dx() - 1.5, (iy as f64 + 0.5) * map.dy() - 0.5);
@@ -29,7 +30,7 @@ fn main() -> Result<()> {
         .collect();
     let path = out.join("rough.png");
     write_grey(&path, map.cells(), map.size(), &values)?;
-    let bytes = std::fs::read(&path).map_err(Error::file("read", &path))?;
+    let bytes = std::fs::read(&path)?;
     // Width and height stand at bytes 16 to 23 of a PNG.
     let side = |at: usize| bytes[at..at + 4].iter().fold(0, |n, b| (n << 8) | u32::from(*b));
     println!(

@@ -4,7 +4,7 @@ use crate::axis::{Axis, linear, logarithmic};
 use crate::panels::Panels;
 use crate::plot::Picture;
 use crate::style::{COLORS, Key, LineStyle, Mark, SHAPES};
-use runs::Result;
+use files::Result;
 use std::path::{Path, PathBuf};
 
 /// A named curve.
@@ -39,7 +39,7 @@ impl Chart {
     /// Writes `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// [`crate::Error::File`] when they cannot be written.
+    /// [`crate::Error::System`] when they cannot be written.
     pub fn save(&self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
         self.picture().save(directory, name)
     }

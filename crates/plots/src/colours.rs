@@ -1,7 +1,7 @@
 //! Values as colours.
 
 use crate::map::encode_rgb;
-use runs::Result;
+use files::Result;
 use std::path::Path;
 
 /// Undefined points.

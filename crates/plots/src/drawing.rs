@@ -5,7 +5,7 @@ use crate::style::{INK, NEUTRAL};
 use crate::text::{Fonts, Piece, Typeset};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use runs::{Error, Result, files};
+use files::{Error, Result};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use tiny_skia as skia;

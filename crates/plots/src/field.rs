@@ -8,7 +8,7 @@ use crate::map::share;
 use crate::text::Fonts;
 use crate::unit_prefix::prefixed;
 use contact_model::{Cells, Shown, Size};
-use runs::{Error, Result, files};
+use files::{Error, Result};
 use std::ops::Range;
 use std::path::Path;
 
@@ -79,7 +79,7 @@ impl FieldPicture<'_> {
     ///
     /// # Errors
     /// [`crate::Error::Content`] for another number of values or cells in contact than cells, no cells or a size that is not positive,
-    /// [`crate::Error::File`] when it cannot be written.
+    /// [`crate::Error::System`] when it cannot be written.
     pub fn save(&self, path: &Path) -> Result<()> {
         let count = self.cells.checked_count().filter(|count| *count > 0);
         if count != Some(self.values.len()) || !self.contact.is_empty() && count != Some(self.contact.len()) {

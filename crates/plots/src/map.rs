@@ -1,7 +1,7 @@
 //! Maps as grey-scale PNG.
 
 use contact_model::{Cells, Size};
-use runs::{Error, Result, files};
+use files::{Error, Result};
 use std::path::Path;
 
 /// Most pixels along a side of a picture whose cells are oblong; one with square cells has a pixel for each.
@@ -15,7 +15,7 @@ const MOST_PIXELS: f64 = 4096.0;
 ///
 /// # Errors
 /// [`Error::Content`] for another number of values than cells, no cells or a size that is not positive,
-/// [`Error::File`] when it cannot be written.
+/// [`Error::System`] when it cannot be written.
 pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, values: &[f64]) -> Result<()> {
     let (cells, size) = (cells.into(), size.into());
     let Cells { columns, rows } = cells;

@@ -3,7 +3,7 @@
 use crate::drawing::{Anchor, Drawing, Paint, rectangle};
 use crate::style::INK;
 use crate::text::Fonts;
-use runs::{Error, Result};
+use files::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// A square map of grey values.
@@ -26,7 +26,7 @@ const TITLE: f64 = 54.0;
 /// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title and a line below it.
 ///
 /// # Errors
-/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::File`] when they cannot be written.
+/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::System`] when they cannot be written.
 pub fn save_maps(
     maps: Vec<GreyMap>,
     title: &str,

@@ -5,7 +5,7 @@ use crate::legend::Legend;
 use crate::plot::{Picture, SIZE, TITLE, WORDS};
 use crate::style::INK;
 use crate::text::Fonts;
-use runs::Result;
+use files::Result;
 use std::path::{Path, PathBuf};
 
 /// Pictures of one size beside and below each other, with a title above and a legend below all of them.
@@ -25,7 +25,7 @@ impl Panels {
     /// Writes `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// [`crate::Error::File`] when they cannot be written.
+    /// [`crate::Error::System`] when they cannot be written.
     pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
         let fonts = Fonts::load()?;
         self.drawing(&fonts).save(&fonts, directory, name)
@@ -76,7 +76,7 @@ impl Picture {
     /// Writes `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// [`crate::Error::File`] when they cannot be written.
+    /// [`crate::Error::System`] when they cannot be written.
     pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
         Panels { columns: 1, pictures: vec![self], ..Panels::default() }.save(directory, name)
     }

@@ -3,7 +3,7 @@
 //! Between dollar signs letters are italic, digits and signs upright, `_` and `^` lower and raise the next character or `{group}`,
 //! `\bar{x}` and `\tilde{x}` put an accent on a symbol, `\rm{words}` is upright: `$\bar{k} = k/(1.1419 E^* L)$`.
 
-use runs::{Error, Result};
+use files::{Error, Result};
 use std::path::Path;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 

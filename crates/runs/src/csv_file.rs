@@ -1,7 +1,6 @@
 //! CSV with a header that explains itself.
 
 use crate::error::{Error, Result};
-use crate::files;
 use analysis::{Table, Value};
 use contact_model::Source;
 use std::path::Path;
@@ -74,7 +73,7 @@ pub fn write_csv(path: &Path, table: &Table, header: &Header) -> Result<()> {
     }
     writer.flush().map_err(Error::file("write", path))?;
     drop(writer);
-    files::write_whole(path, &bytes)
+    Ok(files::write_whole(path, &bytes)?)
 }
 
 /// Shortest decimal that reads back to the same bits.
@@ -110,9 +109,9 @@ impl CsvFile {
     /// Reads a file written by [`write_csv`].
     ///
     /// # Errors
-    /// [`Error::File`] when it cannot be read, [`Error::Content`] when it is no table.
+    /// [`Error::File`] when it cannot be read or is no table.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = crate::files::read(path, LARGEST)?;
+        let bytes = files::read(path, LARGEST)?;
         let text = String::from_utf8(bytes).map_err(|e| Error::content(path, format!("no text: {e}")))?;
         let comments =
             text.lines().filter_map(|l| l.strip_prefix('#')).map(|l| l.trim().to_owned()).collect();
@@ -129,7 +128,7 @@ impl CsvFile {
     /// Where a column is.
     ///
     /// # Errors
-    /// [`Error::Content`] when there is no such column.
+    /// [`Error::File`] when there is no such column.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.columns
             .iter()

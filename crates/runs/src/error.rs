@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Result of everything in this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -20,22 +20,8 @@ pub enum Error {
         /// What was expected instead.
         expected: String,
     },
-    /// The operating system refused to read or write.
-    File {
-        /// What was being done (`write`, `create`, ...).
-        action: &'static str,
-        /// Where.
-        path: PathBuf,
-        /// Its reason.
-        source: io::Error,
-    },
-    /// A file does not hold what it should.
-    Content {
-        /// Where.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
+    /// A file cannot be read or written, or does not hold what it should.
+    File(files::Error),
     /// A model or an analysis refused its numbers.
     Model {
         /// What was being computed.
@@ -58,13 +44,13 @@ impl Error {
 
     /// A file that does not hold what it should.
     pub fn content(path: &Path, reason: impl Into<String>) -> Self {
-        Self::Content { path: path.to_owned(), reason: reason.into() }
+        Self::File(files::Error::content(path, reason))
     }
 
     /// The operating system refused `action` on `path`; for `map_err`.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
-        let path = path.to_owned();
-        move |source| Self::File { action, path, source }
+        let refused = files::Error::system(action, path);
+        move |source| Self::File(refused(source))
     }
 
     /// A model or an analysis refused its numbers while `what` was computed; for `map_err`.
@@ -78,8 +64,7 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter { name, value, expected } => write!(f, "{name} = {value}: expected {expected}"),
-            Self::File { action, path, source } => write!(f, "cannot {action} {}: {source}", path.display()),
-            Self::Content { path, reason } => write!(f, "{}: {reason}", path.display()),
+            Self::File(error) => write!(f, "{error}"),
             Self::Model { what, source } => write!(f, "{what}: {source}"),
         }
     }
@@ -88,21 +73,15 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::File { source, .. } => Some(source),
+            Self::File(error) => std::error::Error::source(error),
             Self::Model { source, .. } => Some(source),
-            Self::Parameter { .. } | Self::Content { .. } => None,
+            Self::Parameter { .. } => None,
         }
     }
 }
 
-impl From<surface_io::Error> for Error {
-    fn from(error: surface_io::Error) -> Self {
-        match error {
-            surface_io::Error::System { action, path, source } => Self::File { action, path, source },
-            surface_io::Error::Content { path, problem } => {
-                Self::Content { path, reason: problem.to_string() }
-            }
-            other => Self::Content { path: std::path::PathBuf::new(), reason: other.to_string() },
-        }
+impl From<files::Error> for Error {
+    fn from(error: files::Error) -> Self {
+        Self::File(error)
     }
 }

@@ -13,7 +13,6 @@
 //! * CSV ([`write_csv`], [`CsvFile`]): `#` lines with title, columns and units, sources, parameters, version and the command that
 //!   makes the same bytes; shortest decimals that read back to the same bits; absent is empty, never NaN. No times and no machine:
 //!   those are in `manifest.json` ([`machine`]).
-//! * NPY maps for `bench` ([`read_map`], [`write_npy`]).
 //!
 //! # Terminal
 //!
@@ -30,12 +29,10 @@ pub mod cluster;
 mod csv_file;
 mod encoding;
 mod error;
-pub mod files;
 mod finite;
 mod jobs;
 mod manifest;
 mod meters;
-mod npy;
 mod progress;
 mod reporter;
 mod shard;
@@ -46,13 +43,13 @@ mod threads;
 pub use csv_file::{CsvFile, Header, number, write_csv};
 pub use encoding::ResultKind;
 pub use error::{Error, Result};
+pub use files;
 pub use jobs::{Failure, Job, JobList, Threads, collect, on_one_thread, run_jobs, run_stored};
 pub use manifest::{file_names, machine, write_manifest};
 pub use meters::{
     available_memory, check_memory, cpu_seconds, peak_memory, process_cpu_seconds, reset_peak_memory,
     resident_memory, threads_for_memory,
 };
-pub use npy::{read_map, unit_area, write_npy};
 pub use progress::{Progress, Silent};
 pub use reporter::Reporter;
 pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign, largest_first};

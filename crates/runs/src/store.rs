@@ -6,7 +6,6 @@
 //! a million results are as many files as there were processes.
 
 use crate::error::{Error, Result};
-use crate::files;
 use crate::progress::Progress;
 use std::collections::HashMap;
 use std::fs::{self, File, TryLockError};

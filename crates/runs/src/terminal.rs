@@ -1,8 +1,8 @@
 //! Text for standard output and standard error that never ends in a panic, and commands no terminal.
 
+use files::Escaping;
 use std::fmt::{self, Arguments, Write as _};
 use std::io::{ErrorKind, Write};
-use surface_io::Escaping;
 
 /// What a shell reports of a program that SIGPIPE has ended.
 const BROKEN_PIPE: i32 = 141;

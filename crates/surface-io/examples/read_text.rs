@@ -22,7 +22,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 use surface_io::{
-    Decimal, Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, describe, files, write_map,
+    Decimal, Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, describe, write_map,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {

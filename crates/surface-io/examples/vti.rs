@@ -12,7 +12,7 @@ use contact_model::SelfAffine;
 use std::error::Error;
 use std::path::PathBuf;
 use surface_gen::self_affine_map;
-use surface_io::{DataArray, Encoding, files, vti};
+use surface_io::{DataArray, Encoding, vti};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);

@@ -2,12 +2,12 @@
 
 use crate::choice::ChannelChoice;
 use crate::error::{ContentError, Error, Place, Result};
-use crate::escape::escaped;
 use crate::extent::Extent;
 use crate::number_type::NumberType;
 use crate::options::Axes;
 use crate::quantity::{Dimension, QuantityError, Unit};
 use crate::source::Source;
+use files::escaped;
 use std::fmt;
 
 /// Unit of a channel's values as the file says it.

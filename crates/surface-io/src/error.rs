@@ -1,8 +1,8 @@
 //! The one error type of this crate: which file, where in it, which value, what to do.
 
-use crate::escape::Escaping;
 use crate::format::Format;
 use crate::quantity::{Quantity, QuantityError};
+use files::Escaping;
 use std::fmt::{self, Write as _};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -15,14 +15,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[non_exhaustive]
 pub enum Error {
     /// The operating system refused to read or write.
-    System {
-        /// What was being done (`open`, `read`, `write`, ...).
-        action: &'static str,
-        /// Where.
-        path: PathBuf,
-        /// Its reason.
-        source: io::Error,
-    },
+    System(files::Error),
     /// A file, or what is asked of it, does not make a surface.
     Content {
         /// Where.
@@ -34,8 +27,8 @@ pub enum Error {
 
 impl Error {
     pub(crate) fn system(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
-        let path = path.to_owned();
-        move |source| Self::System { action, path, source }
+        let refused = files::Error::system(action, path);
+        move |source| Self::System(refused(source))
     }
 
     pub(crate) fn content(path: &Path) -> impl FnOnce(ContentError) -> Self {
@@ -47,7 +40,15 @@ impl Error {
     pub fn problem(&self) -> Option<&ContentError> {
         match self {
             Self::Content { problem, .. } => Some(problem),
-            Self::System { .. } => None,
+            Self::System(_) => None,
+        }
+    }
+
+    /// The error with the problem in words, for who has no use for its kind.
+    pub fn into_words(self) -> files::Error {
+        match self {
+            Self::System(error) => error,
+            Self::Content { path, problem } => files::Error::content(&path, problem.to_string()),
         }
     }
 }
@@ -580,9 +581,7 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut f = Escaping::of_line(f);
         match self {
-            Self::System { action, path, source } => {
-                write!(f, "cannot {action} {}: {source}", path.display())
-            }
+            Self::System(error) => write!(f, "{error}"),
             Self::Content { path, problem } => write!(f, "{}: {problem}", path.display()),
         }
     }
@@ -591,7 +590,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::System { source, .. } => Some(source),
+            Self::System(error) => std::error::Error::source(error),
             Self::Content { problem, .. } => problem.source(),
         }
     }

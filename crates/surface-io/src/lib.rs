@@ -86,7 +86,8 @@
 //! # Writing
 //!
 //! [`write_map`] by the name's ending; [`npy`], [`hdf5`], [`text()`], [`xyz`], [`x3p`], [`gwy`], [`netcdf`] and
-//! [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or not at all.
+//! [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or not at all;
+//! [`write_npy`] does both for an array.
 //!
 //! # What it does not do
 //!
@@ -100,10 +101,8 @@ mod describe;
 mod detect;
 mod entries;
 mod error;
-mod escape;
 mod extent;
 mod fields;
-pub mod files;
 mod format;
 mod inflate;
 mod instruments;
@@ -131,7 +130,6 @@ pub use choice::ChannelChoice;
 pub use composite::composite;
 pub use describe::{Absent, Description, describe};
 pub use error::{ContentError, Error, NumberKind, Place, Result};
-pub use escape::Escaping;
 pub use format::Format;
 pub use instruments::{gwy, hdf5, netcdf, x3p};
 pub use keyword::KeywordError;
@@ -147,4 +145,4 @@ pub use scan::{Metadata, Scan};
 pub use sides::Sides;
 pub use surface_file::SurfaceFile;
 pub use vti::{DataArray, Encoding, vti};
-pub use write::{Metric, text, write_map, xyz};
+pub use write::{Metric, text, write_map, write_npy, xyz};

@@ -4,9 +4,9 @@ use crate::channel::check_unit;
 use crate::error::{ContentError, Error, Result};
 use crate::instruments::{gwy, hdf5, netcdf, x3p};
 use crate::lines::Lines;
+use crate::npy;
 use crate::quantity::{Dimension, Unit};
 use crate::vti::{DataArray, Encoding, vti};
-use crate::{files, npy};
 use contact_model::HeightMap;
 use std::path::Path;
 
@@ -92,6 +92,15 @@ pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
             return Err(Error::content(path)(problem));
         }
     };
+    files::write_whole(path, &bytes).map_err(Error::System)
+}
+
+/// Writes numbers as an NPY array of the given shape (float64, row-major), whole or not at all.
+///
+/// # Errors
+/// [`files::Error::Content`] where the shape holds another number of values, [`files::Error::System`] when it cannot be written.
+pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> files::Result<()> {
+    let bytes = npy(shape, values).map_err(|e| files::Error::content(path, e.to_string()))?;
     files::write_whole(path, &bytes)
 }
 

@@ -78,7 +78,7 @@ pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
         }
     }
     let title = "Error of the stiffness over the time of one solve".to_owned();
-    Panels { pictures, columns: 2, title, legend: legend(&points, &dimensions) }.save(out, name)
+    Ok(Panels { pictures, columns: 2, title, legend: legend(&points, &dimensions) }.save(out, name)?)
 }
 
 /// One pair of axes for all panels, no longer than the points.

@@ -95,7 +95,7 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
         Key::Words,
     );
     let title = "Local exponent of stiffness over force".to_owned();
-    Panels { pictures, columns: 3, title, legend }.save(directory, "exponent")
+    Ok(Panels { pictures, columns: 3, title, legend }.save(directory, "exponent")?)
 }
 
 fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
@@ -126,5 +126,5 @@ fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
         picture.legend(&format!("$D_{{\\rm{{f}}}} = {d:?}$"), &color, Key::Curve(mark));
     }
     picture.legend("bands: 95 %, scatter and what both grids leave", "#000000", Key::Words);
-    picture.save(directory, "exponent-ratio")
+    Ok(picture.save(directory, "exponent-ratio")?)
 }

@@ -192,7 +192,7 @@ fn panel(
     if rows.iter().any(|r| r.stiffness_bar > HIGHEST) {
         picture.legend(&format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"), NEUTRAL, Key::Words);
     }
-    picture.save(out, name)
+    Ok(picture.save(out, name)?)
 }
 
 fn mark_shape(mark: Mark) -> MarkShape {

@@ -2,7 +2,6 @@
 
 use super::words::quoted;
 use crate::error::{Error, Result};
-use crate::files;
 use crate::jobs::JobList;
 use crate::store::fnv1a_128;
 use rayon::prelude::*;
@@ -64,7 +63,7 @@ impl ShardPlan {
         }
         let Self { digest, program, arguments, jobs } = self;
         let text = json!({ "digest": digest, "program": program, "arguments": arguments, "jobs": jobs });
-        files::write_whole(&path, format!("{text:#}\n").as_bytes())
+        Ok(files::write_whole(&path, format!("{text:#}\n").as_bytes())?)
     }
 
     fn read(path: &Path) -> Option<Self> {

@@ -7,7 +7,6 @@ use super::shard_run::shards;
 use super::status::submitted_tasks;
 use super::words::{duration, line, quoted, ranges, shown, toml};
 use crate::error::{Error, Result};
-use crate::files;
 use crate::jobs::JobList;
 use std::collections::BTreeSet;
 use std::fmt;

@@ -44,6 +44,12 @@ impl From<runs::Error> for Error {
     }
 }
 
+impl From<runs::files::Error> for Error {
+    fn from(error: runs::files::Error) -> Self {
+        Self::Run(error.into())
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -188,7 +188,9 @@ impl ModelOnSurface {
                 let file = file(format.extension()).to_string();
                 let path = out.join(&file);
                 match format {
-                    FieldFormat::Npy => runs::write_npy(&path, &[field.rows(), field.columns()], values)?,
+                    FieldFormat::Npy => {
+                        surface_io::write_npy(&path, &[field.rows(), field.columns()], values)?;
+                    }
                     FieldFormat::Png => continue,
                     FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), values)?,
                     FieldFormat::Vti => write_vti(&path, quantity, scene, field.cells(), values)?,

@@ -1,6 +1,6 @@
 //! Files written whole or not at all.
 
-use crate::error::{ContentError, Error, Result};
+use crate::error::{Error, Result};
 use std::fs;
 use std::io::{Read as _, Write as _};
 use std::path::Path;
@@ -30,10 +30,10 @@ pub fn read(path: &Path, largest: u64) -> Result<Vec<u8>> {
     // Looked at before it is opened: opening a pipe waits for a writer.
     let about = fs::metadata(path).map_err(Error::system("read", path))?;
     if !about.is_file() {
-        return Err(Error::content(path)(ContentError::NotAFile));
+        return Err(Error::content(path, "not a regular file: its length is needed before it is read"));
     }
     if about.len() > largest {
-        return Err(Error::content(path)(ContentError::TooLarge { bytes: about.len(), largest }));
+        return Err(Error::content(path, format!("{} bytes: at most {largest} are read", about.len())));
     }
     let mut bytes = Vec::new();
     let mut file = fs::File::open(path).map_err(Error::system("read", path))?.take(largest);

@@ -8,7 +8,7 @@ use std::fmt::{self, Write};
 /// ```
 /// use std::fmt::Write as _;
 /// let mut shown = String::new();
-/// write!(surface_io::Escaping::of_line(&mut shown), "{}", "Height\u{1b}[2J\n").unwrap();
+/// write!(files::Escaping::of_line(&mut shown), "{}", "Height\u{1b}[2J\n").unwrap();
 /// assert_eq!(shown, "Height\\u{1b}[2J\\n");
 /// ```
 #[derive(Debug)]
@@ -54,8 +54,8 @@ impl<W: Write> Write for Escaping<W> {
     }
 }
 
-/// A name as it is shown.
-pub(crate) fn escaped(text: &str) -> String {
+/// A name as it is shown: what [`Escaping::of_line`] makes of it.
+pub fn escaped(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     // A String takes everything.
     let _ = Escaping::of_line(&mut shown).write_str(text);

@@ -1,46 +1,37 @@
-//! Arrays and height maps as NPY files.
+//! The map that `bench` is given: heights on square cells, from an NPY file.
 
-use crate::error::{Error, Result};
-use crate::files;
 use contact_model::{Cells, HeightMap, Size};
+use runs::Result;
+use runs::files::Error;
 use std::path::Path;
 use surface_io::{ContentError, Dimension, Format, Preprocessing, Quantity, ReadOptions, Scan, Sides};
-
-/// Writes numbers as an NPY array of the given shape (float64, row-major).
-///
-/// # Errors
-/// [`Error::Content`] where the shape holds another number of values, [`Error::File`] when it cannot be written.
-pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> Result<()> {
-    let bytes = surface_io::npy(shape, values).map_err(|e| Error::content(path, e.to_string()))?;
-    files::write_whole(path, &bytes)
-}
 
 /// Reads an NPY array `[row, column]` of numbers as heights on square cells with `sqrt(Lx Ly) = 1`, as they are.
 ///
 /// Either byte order and either order of the axes; the shape is compared with the length of the file before anything is allocated.
 ///
 /// # Errors
-/// [`Error::File`] when it cannot be read; [`Error::Content`] when it is no NPY file, not of real numbers, shorter or longer
+/// [`Error::System`] when it cannot be read; [`Error::Content`] when it is no NPY file, not of real numbers, shorter or longer
 /// than it says, or holds a number that is not finite (with its row and column).
-pub fn read_map(path: &Path) -> Result<HeightMap> {
-    let cell = Quantity::new(1.0, Dimension::NONE).map_err(|e| Error::content(path, e.to_string()))?;
+pub(crate) fn read_map(path: &Path) -> Result<HeightMap> {
+    let wrong = |reason: String| Error::content(path, reason);
+    let cell = Quantity::new(1.0, Dimension::NONE).map_err(|e| wrong(e.to_string()))?;
     let declared =
         ReadOptions { format: Some(Format::Npy), cell: Some(Sides::One(cell)), ..ReadOptions::default() };
-    let scan = Scan::read(path, &declared).map_err(Error::from)?;
+    let scan = Scan::read(path, &declared).map_err(surface_io::Error::into_words)?;
     let map = scan.map(&Preprocessing::default()).map_err(|error| match error.problem() {
         // What could be done about it elsewhere is not offered here.
-        Some(ContentError::Undefined { undefined, points, first }) => Error::content(
-            path,
-            format!("{undefined} of {points} numbers are NaN, the first in {first}: expected finite heights"),
-        ),
-        _ => error.into(),
+        Some(ContentError::Undefined { undefined, points, first }) => wrong(format!(
+            "{undefined} of {points} numbers are NaN, the first in {first}: expected finite heights"
+        )),
+        _ => error.into_words(),
     })?;
     let size = unit_area(map.cells());
-    HeightMap::new(map.cells(), size, map.heights().to_vec()).map_err(|e| Error::content(path, e.to_string()))
+    Ok(HeightMap::new(map.cells(), size, map.heights().to_vec()).map_err(|e| wrong(e.to_string()))?)
 }
 
 /// Sides of a rectangle of square cells with `sqrt(Lx Ly) = 1`.
-pub fn unit_area(cells: Cells) -> Size {
+pub(crate) fn unit_area(cells: Cells) -> Size {
     let aspect = cells.columns as f64 / cells.rows as f64;
     Size { x: aspect.sqrt(), y: aspect.recip().sqrt() }
 }
@@ -49,6 +40,7 @@ pub fn unit_area(cells: Cells) -> Size {
 mod tests {
     use super::*;
     use std::fs;
+    use surface_io::write_npy;
 
     fn header(text: &str) -> Vec<u8> {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();

@@ -1,0 +1,63 @@
+//! What is wrong with a file, and where it is.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Result of everything that reads or writes.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// What can go wrong with a file.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system refused.
+    System {
+        /// What was being done (`open`, `read`, `write`, ...).
+        action: &'static str,
+        /// Where.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+    /// A file does not hold what it should, or cannot hold what is asked of it.
+    Content {
+        /// Where.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+impl Error {
+    /// The operating system refused `action` on `path`; for `map_err`.
+    pub fn system(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::System { action, path, source }
+    }
+
+    /// A file that does not hold what it should.
+    pub fn content(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Content { path: path.to_owned(), reason: reason.into() }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::System { action, path, source } => {
+                write!(f, "cannot {action} {}: {source}", path.display())
+            }
+            Self::Content { path, reason } => write!(f, "{}: {reason}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::System { source, .. } => Some(source),
+            Self::Content { .. } => None,
+        }
+    }
+}
