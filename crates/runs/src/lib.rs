@@ -18,12 +18,15 @@
 //!
 //! [`Reporter`] tells how far a run is; [`out!`] and [`err!`] write lines, and neither a closed pipe nor a full device is a panic.
 //!
+//! [`amounts`] are times and memory in words.
+//!
 //! # What it does not do
 //!
 //! No mechanics, no pictures, no argument parsing.
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 
+pub mod amounts;
 mod cgroup;
 pub mod cluster;
 mod csv_file;

@@ -65,7 +65,7 @@ pub struct SolveSizes {
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     accuracy: Option<f64>,
     /// Most time that --accuracy may choose, such as 90s, 10min, 2h.
-    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "10min", requires = "accuracy", allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", value_parser = runs::amounts::seconds, default_value = "10min", requires = "accuracy", allow_hyphen_values = true)]
     budget: f64,
     /// Draw the curves of another run's fig2.csv or fig6.csv underneath (Figs. 2 and 6).
     #[arg(long, value_name = "FILE.csv")]
@@ -95,23 +95,6 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
         Ok(value)
     } else {
         Err("expected a share between 0 and 1, such as 0.02 or 2%".into())
-    }
-}
-
-/// Ten years, in seconds.
-const LONGEST: f64 = 3.2e8;
-
-/// A time: `90s`, `10min`, `2h`; a bare number is seconds.
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
-    let (digits, unit) = (units.iter())
-        .find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)))
-        .unwrap_or((text, 1.0));
-    let value = unit * digits.trim().parse::<f64>().map_err(|e| e.to_string())?;
-    if value > 0.0 && value <= LONGEST {
-        Ok(value)
-    } else {
-        Err("expected a time such as 90s, 10min or 2h, at most ten years".into())
     }
 }
 

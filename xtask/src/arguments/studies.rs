@@ -1,7 +1,7 @@
 //! Flags of the commands beside the paper's figures.
 
 use super::cluster::Sharded;
-use super::sizes::{Solid, seconds, share};
+use super::sizes::{Solid, share};
 use clap::{Args, ValueEnum};
 use evaluation::{Depth, Forces, Request, Run};
 use paper::TwoCases;
@@ -206,7 +206,7 @@ pub struct ExponentArguments {
     #[arg(long)]
     pub plan: bool,
     /// The time of --plan for surfaces, and again for lines, such as 90s, 10min, 2h.
-    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "1h", allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", value_parser = runs::amounts::seconds, default_value = "1h", allow_hyphen_values = true)]
     pub budget: f64,
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]

@@ -6,6 +6,7 @@ use crate::budget::{self, Budgeted};
 use crate::measured::{COARSER_SURFACES, Measured, measure_1d, measure_3d, run_units};
 use crate::run::{Request, Run};
 use analysis::{AccuracyTarget, GridTrial, first_grid};
+use runs::amounts::duration;
 use runs::{Error, Progress, Result, Store, files};
 
 /// Surfaces and lines of a pilot: their scatter is itself known to a fifth, and to a tenth.
@@ -261,15 +262,6 @@ impl Model {
     }
 }
 
-/// `45 s`, `12 min`, `3.5 h`.
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -296,10 +288,5 @@ mod tests {
         for other in [row(0.0, 0.1, false), row(0.0, 9.0, true), row(0.3, 0.4, false)] {
             assert_relative_eq!(surfaces_wanted(&[other], 0.1, 10), 10.0);
         }
-    }
-
-    #[test]
-    fn words_for_times() {
-        assert_eq!([30.0, 600.0, 9000.0].map(duration), ["30 s", "10 min", "2.5 h"]);
     }
 }

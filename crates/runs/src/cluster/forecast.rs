@@ -1,7 +1,7 @@
 //! What a plan will take: cores, memory, time, disk.
 
 use super::shard_run::shards;
-use super::words::{bytes, duration};
+use crate::amounts::{duration, memory};
 use crate::error::{Error, Result};
 use crate::jobs::JobList;
 use crate::shard::assign;
@@ -174,10 +174,10 @@ impl fmt::Display for Forecast {
             "tasks       {} of {} cores and {}, the longest {}",
             self.tasks,
             self.cores,
-            bytes(self.memory),
+            memory(self.memory),
             duration(task)
         )?;
-        writeln!(f, "disk        {}", bytes(self.disk as f64))?;
+        writeln!(f, "disk        {}", memory(self.disk as f64))?;
         write!(f, "({})", self.basis)
     }
 }

@@ -5,7 +5,6 @@ use crate::scenes::plan::grid_comparison::{GridErrors, Numbers, compared, on_gri
 use crate::scenes::read::diagnostic::Diagnostic;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::human_readable::short;
-use crate::scenes::read::human_readable::time;
 use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::numerics::{MOST_CELLS, Numerics};
 use crate::scenes::read::scene_file::{SceneFile, cells};
@@ -14,6 +13,7 @@ use analysis::{AccuracyTarget, GridTrial, grid_error};
 use bem3d::Bem3d;
 use contact_model::quantities::{AskedBy, Quantity};
 use contact_model::{Boundary, Cells, Load};
+use runs::amounts::time;
 use std::time::Instant;
 
 /// Polled from any thread, between iterations: `true` means stop now.

@@ -8,11 +8,12 @@ use crate::scenes::read::diagnostic::Diagnostic;
 use crate::scenes::read::effects::{EffectLine, effect_lines};
 use crate::scenes::read::entries::System;
 use crate::scenes::read::error::Result;
+use crate::scenes::read::human_readable::number;
 use crate::scenes::read::human_readable::short;
-use crate::scenes::read::human_readable::{memory, number, time};
 use crate::scenes::read::numerics::Numerics;
 use crate::scenes::read::scene_file::{SceneFile, cells};
 use contact_model::Cells;
+use runs::amounts::{memory, time};
 use std::fmt;
 
 /// What one model will do.

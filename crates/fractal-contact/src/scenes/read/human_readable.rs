@@ -18,27 +18,6 @@ pub(crate) fn short(value: f64) -> String {
     }
 }
 
-/// A time in words.
-pub(crate) fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 1e-3 => "under 1 ms".into(),
-        s if s < 1.0 => format!("{:.0} ms", 1e3 * s),
-        s if s < 120.0 => format!("{s:.1} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
-/// A number of bytes in words.
-pub(crate) fn memory(bytes: f64) -> String {
-    match bytes {
-        b if b < 1e3 => format!("{b:.0} bytes"),
-        b if b < 1e6 => format!("{:.0} kB", b / 1e3),
-        b if b < 1e9 => format!("{:.0} MB", b / 1e6),
-        b => format!("{:.1} GB", b / 1e9),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,14 +34,6 @@ mod tests {
                 number(3.199_999_999_999_999_7e-4)
             ],
             ["1e300", "2e-7", "0.25", "0", "-3e9", "3.2e-4"]
-        );
-        assert_eq!(
-            [time(0.0), time(0.5), time(60.0), time(600.0), time(36000.0)],
-            ["under 1 ms", "500 ms", "60.0 s", "10 min", "10.0 h"]
-        );
-        assert_eq!(
-            [memory(12.0), memory(5e4), memory(3e6), memory(4.2e9)],
-            ["12 bytes", "50 kB", "3 MB", "4.2 GB"]
         );
     }
 }

@@ -5,7 +5,7 @@ use crate::scenes::plan::scene_plan::Plan;
 use crate::scenes::read::entries::System;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::human_readable;
-use crate::scenes::read::human_readable::{memory, number, time};
+use crate::scenes::read::human_readable::number;
 use crate::scenes::read::outputs::HEIGHTS;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::read::words;
@@ -25,6 +25,7 @@ use contact_model::FieldQuantity;
 use contact_model::quantities::{Quantity, Role};
 use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve};
+use runs::amounts::{memory, time};
 use std::path::{Path, PathBuf};
 
 /// Bytes that the fields of a page may take: it stays below 5 MB.
